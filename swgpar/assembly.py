@@ -1,0 +1,246 @@
+"""Element arrays of the owned sectors, the sparsity of the tangent, and its way into PETSc.
+
+Every rank computes complete rows of the nodes it owns: its sectors' elements and those of the sector
+before that share nodes with it. No matrix or vector entry is ever sent, and a row's terms are summed in
+the same order on any number of ranks.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from petsc4py import PETSc
+
+from swgpar.kernel import ReferenceElements, assemble_elements, recover_stress
+from swgpar.partition import FLIP, LocalNodes, Partition
+
+
+@dataclass
+class BlockRows:
+    """Upper-triangle blocks of the owned rows, sorted by column.
+
+    start : (n_own + 1,) int64;  column : (n_blocks,) int32 global
+    values : (n_blocks, 3, 3) N/mm, values[p, l, k] is entry (k, l) of block p
+    number : (n_local,) int32 global number of each local node
+    """
+
+    start: np.ndarray
+    column: np.ndarray
+    values: np.ndarray
+    number: np.ndarray
+    n_own: int
+    keys: np.ndarray
+
+
+def read_field(partition: Partition, body: int, sectors: np.ndarray, vector: PETSc.Vec) -> np.ndarray:
+    """Nodal values (n_sectors, n_local_nodes, 3) of any sectors of a body, images turned; collective."""
+    number, flip = partition.numbers(body, sectors, np.arange(len(partition.layouts[body].mesh.coords)))
+    wanted, place = np.unique(number, return_inverse=True)
+    fixed = int(wanted[:1] == -1) if len(wanted) else 0
+    values = Exchange(partition, wanted[fixed:].astype(np.int32))(vector)
+    values = np.vstack([np.zeros((fixed, 3)), values])[place.reshape(number.shape)]
+    return np.where(flip[..., None] == 1, FLIP * values, values)
+
+
+def write_field(partition: Partition, body: int, sectors: np.ndarray, values: np.ndarray, vector: PETSc.Vec) -> None:
+    """Set the owned entries of `vector` from nodal values (n_sectors, n_local_nodes, 3) of owned sectors."""
+    number, flip = partition.numbers(body, sectors, np.arange(len(partition.layouts[body].mesh.coords)))
+    own = (number >= partition.row_start) & (number < partition.row_start + partition.n_own) & (flip == 0)
+    vector.array.reshape(-1, 3)[number[own] - partition.row_start] = values[own]
+
+
+class BodyElements:
+    """The elements of one body as one rank sees them.
+
+    Sectors run from one before the first owned to one after the last, as far as they exist: the owned
+    rows need the former, nodal averages of stress need both.
+    """
+
+    def __init__(self, partition: Partition, body: int, reference: ReferenceElements) -> None:
+        layout = partition.layouts[body]
+        self.layout, self.reference = layout, reference
+        first, end = partition.owned(body)
+        sectors = np.arange(first - 1, end + 1) if end > first else np.zeros(0, dtype=np.int64)
+        if not layout.closed:
+            sectors = sectors[(sectors >= 0) & (sectors < layout.count)]
+        self.sectors = sectors
+        self.owned = slice(int(np.searchsorted(sectors, first)), int(np.searchsorted(sectors, end)))
+        nodes = np.arange(len(layout.mesh.coords))
+        self.number, self.flip = partition.numbers(body, sectors, nodes)
+        hexes = layout.mesh.hexes
+        lo, hi = partition.row_start, partition.row_start + partition.n_own
+        # on a single rank the sector before the first is an image of an owned one: it must not count twice
+        self.neighbour = np.zeros(len(sectors), dtype=bool)
+        self.neighbour[:self.owned.start] = True
+        if layout.closed and end - first == layout.count:
+            self.neighbour[:] = False
+        counted = self.neighbour.copy()
+        counted[self.owned] = True
+        here = (self.number >= lo) & (self.number < hi) & counted[:, None]
+        touches = here[:, hexes].any(axis=2) if len(sectors) else np.zeros((0, len(hexes)), dtype=bool)
+        self.sector_of, self.ref_of = (v.astype(np.int32) for v in np.nonzero(touches))
+        angle = layout.turn(layout.first_tooth + sectors)
+        self.turn_of_sector = np.column_stack([np.cos(angle), np.sin(angle)]).reshape(-1, 2)
+        self.local = np.zeros_like(self.number, dtype=np.int32)
+
+    def bind(self, local: LocalNodes) -> None:
+        """Look up the local indices of all nodes once the rank's local nodes are known."""
+        self.local = local.index(self.number)
+        hexes = self.layout.mesh.hexes[self.ref_of]
+        self.conn = np.ascontiguousarray(self.local[self.sector_of[:, None], hexes])
+        self.conn_flip = np.ascontiguousarray(self.flip[self.sector_of[:, None], hexes])
+        self.turn = np.ascontiguousarray(self.turn_of_sector[self.sector_of])
+
+    def displacement(self, u: np.ndarray) -> np.ndarray:
+        """Displacement of all nodes of the seen sectors, images turned; (n_sectors, n_local, 3) mm."""
+        field = np.where(self.local[..., None] >= 0, u[self.local], 0.0)
+        return np.where(self.flip[..., None] == 1, FLIP * field, field)
+
+    def positions(self) -> np.ndarray:
+        """Undeformed positions of all nodes of the seen sectors; (n_sectors, n_local, 3) mm."""
+        x, y, z = self.layout.mesh.coords.T
+        c, s = self.turn_of_sector[:, :1], self.turn_of_sector[:, 1:]
+        return np.stack([c * x - s * y, s * x + c * y, np.broadcast_to(z, (len(c), len(z)))], axis=-1)
+
+    def nodal_stress(self, u: np.ndarray) -> np.ndarray:
+        """Stress at the nodes of the owned sectors: extrapolated per element, averaged over the body's elements.
+
+        Returns (n_owned, n_local, 6) MPa; components xx, yy, zz, xy, yz, zx in global axes.
+        """
+        n_sectors, (n_node, n_elem) = len(self.sectors), (len(self.layout.mesh.coords), len(self.layout.mesh.hexes))
+        sums = np.zeros((n_sectors, n_node, 6))
+        hexes = self.layout.mesh.hexes
+        for k in range(n_sectors):
+            stress = recover_stress(self.reference, np.arange(n_elem, dtype=np.int32),
+                                    np.repeat(self.turn_of_sector[k:k + 1], n_elem, axis=0),
+                                    np.ascontiguousarray(self.local[k, hexes]),
+                                    np.ascontiguousarray(self.flip[k, hexes]), u)
+            for c in range(6):
+                sums[k, :, c] = np.bincount(hexes.ravel(), stress[:, :, c].ravel(), minlength=n_node)
+        count = np.bincount(hexes.ravel(), minlength=n_node).astype(float)
+        counts = np.repeat(count[None], n_sectors, axis=0)
+        ccw, cw = self.layout.mesh.ccw_nodes, self.layout.mesh.cw_nodes
+        total = sums[:-1, ccw] + sums[1:, cw]
+        number = counts[:-1, ccw] + counts[1:, cw]
+        sums[:-1, ccw], sums[1:, cw] = total, total
+        counts[:-1, ccw], counts[1:, cw] = number, number
+        return (sums / counts[..., None])[self.owned]
+
+
+class Elements:
+    """All bodies' elements on one rank: residual, tangent and stress of the structure."""
+
+    def __init__(self, partition: Partition, references: list[ReferenceElements]) -> None:
+        self.partition = partition
+        self.bodies = [BodyElements(partition, k, r) for k, r in enumerate(references)]
+        seen = [b.number.ravel() for b in self.bodies] + [partition.multiplier_nodes]
+        self.wanted = np.unique(np.concatenate(seen))
+
+    def bind(self, local: LocalNodes) -> None:
+        for body in self.bodies:
+            body.bind(local)
+        keys = []
+        for body in self.bodies:
+            number = np.where(body.conn >= 0, local.number[body.conn], -1).astype(np.int64)
+            keys.append(self._pairs(body.conn, number, local).ravel())
+        if local.n_own and local.row_start + local.n_own == self.partition.n_global:
+            m = self.partition.multiplier_nodes
+            keys.append(m * self.partition.n_global + m)
+        own = np.arange(local.row_start, local.row_start + local.n_own)
+        keys.append(own * self.partition.n_global + own)
+        keys = np.unique(np.concatenate(keys))
+        self.keys = keys[keys >= 0]
+        self.slots = [np.searchsorted(self.keys, self._pairs(
+            b.conn, np.where(b.conn >= 0, local.number[b.conn], -1).astype(np.int64), local)) for b in self.bodies]
+        for slot, body in zip(self.slots, self.bodies):
+            number = np.where(body.conn >= 0, local.number[body.conn], -1).astype(np.int64)
+            slot[self._pairs(body.conn, number, local) < 0] = -1
+
+    def _pairs(self, conn: np.ndarray, number: np.ndarray, local: LocalNodes) -> np.ndarray:
+        """Keys row * n_global + column of an element's owned upper-triangle blocks, -1 elsewhere; (n, 64)."""
+        row, col = number[:, :, None], number[:, None, :]
+        owned = ((conn >= 0) & (conn < local.n_own))[:, :, None]
+        keys = np.where(owned & (col >= row), row * self.partition.n_global + col, -1)
+        return keys.reshape(len(conn), 64)
+
+    def rows(self, extra: np.ndarray, number: np.ndarray) -> tuple[BlockRows, list[np.ndarray]]:
+        """Pattern of the elements joined with further keys, and where each body's element blocks are in it.
+
+        extra : keys row * n_global + column of contact blocks;  number : (n_local,) int32 global numbers
+        """
+        keys = np.union1d(self.keys, extra) if len(extra) else self.keys
+        n = self.partition.n_global
+        row, column = np.divmod(keys, n)
+        first = self.partition.row_start
+        start = np.searchsorted(row, np.arange(first, first + self.partition.n_own + 1))
+        place = np.searchsorted(keys, self.keys)
+        rows = BlockRows(start.astype(np.int64), column.astype(np.int32), np.zeros((len(keys), 3, 3)), number,
+                         self.partition.n_own, keys)
+        return rows, [np.where(slot >= 0, place[slot], -1) for slot in self.slots]
+
+    def assemble(self, u: np.ndarray, residual: np.ndarray | None, rows: BlockRows | None,
+                 slots: list[np.ndarray] | None) -> None:
+        """Add internal forces to `residual` (n_local, 3) N and tangent blocks to `rows.values`."""
+        for k, body in enumerate(self.bodies):
+            if len(body.conn):
+                assemble_elements(body.reference, body.ref_of, body.turn, body.conn, body.conn_flip, u, residual,
+                                  None if slots is None else slots[k], None if rows is None else rows.values)
+
+
+def create_vector(partition: Partition) -> PETSc.Vec:
+    """Distributed vector of three unknowns per node, multipliers last."""
+    return PETSc.Vec().createMPI((3 * partition.n_own, 3 * partition.n_global), bsize=3, comm=partition.comm)
+
+
+class Exchange:
+    """Values of distributed vectors at the nodes with the given global numbers, (n,) int32."""
+
+    def __init__(self, partition: Partition, number: np.ndarray) -> None:
+        self.target = PETSc.Vec().createSeq(3 * len(number), bsize=3)
+        entries = (3 * number[:, None] + np.arange(3, dtype=PETSc.IntType)).ravel().astype(PETSc.IntType)
+        source = PETSc.IS().createGeneral(entries, comm=PETSc.COMM_SELF)
+        into = PETSc.IS().createStride(3 * len(number), 0, 1, comm=PETSc.COMM_SELF)
+        self.scatter = PETSc.Scatter().create(create_vector(partition), source, self.target, into)
+
+    def __call__(self, vector: PETSc.Vec) -> np.ndarray:
+        """Local nodal values (n_local, 3) of a global vector, ghosts included."""
+        self.scatter.scatter(vector, self.target, addv=PETSc.InsertMode.INSERT, mode=PETSc.ScatterMode.FORWARD)
+        return self.target.array_r.reshape(-1, 3).copy()
+
+
+def create_matrix(partition: Partition, rows: BlockRows) -> PETSc.Mat:
+    """Symmetric blocked matrix with the pattern of `rows` (upper triangle), not yet filled."""
+    mat = PETSc.Mat().create(comm=partition.comm)
+    size = (3 * partition.n_own, 3 * partition.n_global)
+    mat.setSizes((size, size))
+    mat.setBlockSize(3)
+    mat.setType(PETSc.Mat.Type.SBAIJ)
+    hi = partition.row_start + partition.n_own
+    own = np.repeat(np.arange(rows.n_own), np.diff(rows.start))
+    diagonal = np.bincount(own[rows.column < hi], minlength=rows.n_own).astype(PETSc.IntType)
+    off = np.bincount(own[rows.column >= hi], minlength=rows.n_own).astype(PETSc.IntType)
+    mat.setPreallocationNNZ((diagonal, off))
+    mat.setOption(PETSc.Mat.Option.ROW_ORIENTED, False)
+    mat.setOption(PETSc.Mat.Option.IGNORE_LOWER_TRIANGULAR, True)
+    mat.setOption(PETSc.Mat.Option.SYMMETRIC, True)
+    mat.setOption(PETSc.Mat.Option.SPD, True)
+    return mat
+
+
+def fill_matrix(mat: PETSc.Mat, rows: BlockRows) -> None:
+    """Overwrite the owned rows of `mat` with the blocks."""
+    mat.setValuesBlockedIJV(rows.start.astype(PETSc.IntType), rows.column, rows.values.ravel(),
+                            addv=PETSc.InsertMode.INSERT_VALUES)
+    mat.assemble()
+
+
+def add_unit_diagonal(rows: BlockRows, partition: Partition, value: float) -> None:
+    """Put `value` on the diagonal of the multiplier blocks, which couple through the border only."""
+    for node in partition.multiplier_nodes:
+        own = node - partition.row_start
+        if 0 <= own < rows.n_own:
+            place = np.searchsorted(rows.keys, node * partition.n_global + node)
+            rows.values[place] += value * np.eye(3)
+
+

@@ -1,0 +1,68 @@
+"""Which teeth can meet: the tooth of the flexible spline in a slot of the ring gear.
+
+A tooth in slot J (at angle J 2 pi / N_rg for a ring gear with a slot on +y) faces ring-gear tooth J - 1 with
+its clockwise flank and tooth J with its counter-clockwise one. It can only touch where its tip reaches past
+the tips of the ring gear.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from mpi4py import MPI
+
+from swgpar.assembly import BodyElements
+from swgpar.partition import Partition
+
+
+@dataclass(frozen=True)
+class FlankPair:
+    """A flank of the flexible spline and the ring-gear flank it faces.
+
+    sector : chain index in the flexible spline;  side : +1 clockwise flank, -1 counter-clockwise flank
+    ring : chain index in the ring gear;  ring_flip : 1 when that tooth is an image
+    ring_tooth : tooth number, images not brought back
+    """
+
+    sector: int
+    side: int
+    ring: int
+    ring_flip: int
+    ring_tooth: int
+
+
+def facing_flanks(partition: Partition, spline: BodyElements, u: np.ndarray, margin: float) -> list[FlankPair]:
+    """Pairs of flanks that can meet at displacement u (n_local, 3); the same list on every rank.
+
+    margin : mm, how far the tip of a tooth may stay inside the tip circle of the ring gear
+    """
+    layout, ring = partition.layouts
+    grid = layout.mesh.flanks[0]
+    first, end = partition.owned(0)
+    rows = np.arange(len(spline.sectors))[spline.owned]
+    tips = np.concatenate([f.nodes[0] for f in layout.mesh.flanks])
+    body = np.unique(np.concatenate([f.nodes.ravel() for f in layout.mesh.flanks]))
+    x = spline.positions()[rows] + spline.displacement(u)[rows]
+    angle = layout.turn(layout.first_tooth + np.arange(first, end))
+    c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
+    flank = x[:, body]
+    local_x, local_y = c * flank[..., 0] + s * flank[..., 1], -s * flank[..., 0] + c * flank[..., 1]
+    lean = np.arctan2(-local_x, local_y).mean(axis=1)
+    reach = np.hypot(x[:, tips, 0], x[:, tips, 1]).max(axis=1) if len(rows) else np.zeros(0)
+    table = np.concatenate(partition.comm.allgather(np.column_stack([angle + lean, reach]).reshape(-1, 2)))
+    del grid
+    pitch = 2.0 * np.pi / ring.mesh.n_sectors
+    pairs = []
+    for k in np.flatnonzero(table[:, 1] > ring.mesh.profile.r_tip_circle - margin):
+        slot = int(np.rint(table[k, 0] / pitch))
+        for side, tooth in ((1, slot - 1), (-1, slot)):
+            index, flip = ring.locate(np.array(tooth))
+            if index >= 0:
+                pairs.append(FlankPair(int(k), side, int(index), int(flip), tooth))
+    return pairs
+
+
+def largest(comm: MPI.Comm, value: float) -> float:
+    """Maximum over all ranks."""
+    return float(comm.allreduce(value, op=MPI.MAX))

@@ -1,0 +1,171 @@
+"""The validated design file: every key with its unit and range, and the derived geometry (section 3.2)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from swgpar.design_file import apply_overrides, read_toml, validate
+from swgpar.errors import InputError
+from swgpar.profiles import make_profile
+from swgpar.quantities import Section, quantity
+
+
+class Drive(Section):
+    layout: Literal["ring_fixed"] = quantity("ring_fixed", text="fixed member; the other gear is the output")
+    teeth_fs: int = quantity(text="teeth of the flexible spline", ge=8, le=2000)
+    teeth_rg: int = quantity(text="teeth of the ring gear", ge=10, le=2002)
+    module: float = quantity(unit="mm", text="module", gt=0.0)
+    pressure_angle: float = quantity(20.0, unit="deg", text="pressure angle", gt=0.0, lt=45.0)
+    addendum_coef: float = quantity(unit="modules", text="addendum", gt=0.0, le=2.0)
+    dedendum_coef: float = quantity(unit="modules", text="dedendum", gt=0.0, le=2.0)
+    face_width: float = quantity(unit="mm", text="face width", gt=0.0)
+
+
+class Profile(Section):
+    type: Literal["quadruple_arc"] = quantity("quadruple_arc", text="kind of profile")
+    r_tip: float = quantity(unit="mm", text="radius of the tip arc", gt=0.0)
+    r_addendum: float = quantity(unit="mm", text="radius of the addendum arc", gt=0.0)
+    straight_l: float = quantity(0.0, unit="mm", text="length of the straight segment", ge=0.0)
+    r_dedendum: float = quantity(unit="mm", text="radius of the dedendum arc", gt=0.0)
+    r_root: float = quantity(unit="mm", text="radius of the root arc", gt=0.0)
+
+
+class Gear(Section):
+    rim: float = quantity(unit="mm", text="rim thickness below the root circle", gt=0.0)
+    c_P: float = quantity(1.0, text="angular tooth thickness reduction", gt=0.0, le=1.2)
+    c_l: float = quantity(0.5, text="place of the pitch point on the straight segment", ge=0.0, le=1.0)
+    profile: Profile
+
+
+class WaveGenerator(Section):
+    type: Literal["elliptical"] = quantity("elliptical", text="kind of cam")
+    C: float = quantity(1.0, text="minor axis reduction", gt=0.0, le=1.0)
+    face_width: float = quantity(unit="mm", text="width of the cam", gt=0.0)
+    pin_half_angle: float = quantity(15.0, unit="deg", text="half of the angle a pushing pin covers", gt=0.0, le=60.0)
+
+
+class Cup(Section):
+    length: float = quantity(unit="mm", text="from the back of the teeth to the closed end", gt=0.0)
+    thickness_coef: float = quantity(0.8, text="cup thickness over rim thickness", ge=0.1, le=0.95)
+    fillet_radius: float = quantity(unit="mm", text="outer fillet radius", gt=0.0)
+    inner_radius: float = quantity(unit="mm", text="bore radius of the closed end", gt=0.0)
+
+
+class MicroGeometry(Section):
+    wg_crowning: float = quantity(0.0, unit="mm", text="crowning of the cam at its edges", ge=0.0)
+    wg_slope: float = quantity(0.0, unit="mm", text="slope of the cam: radial -s (2z/F_w) cos 2 theta; s > 0 follows the cone of the cup")
+    fs_crowning: float = quantity(0.0, unit="mm", text="crowning of the flexible spline's flanks at their ends", ge=0.0)
+    crowning_shape: Literal["parabolic", "circular"] = quantity("parabolic", text="curve of the crowning")
+
+
+class Material(Section):
+    E: float = quantity(unit="MPa", text="modulus of elasticity", gt=0.0)
+    nu: float = quantity(text="Poisson's ratio", ge=0.0, le=0.499)
+
+
+class Load(Section):
+    torque: float = quantity(0.0, unit="N·m", text="output torque, against the output's motion", ge=0.0)
+
+
+class Contact(Section):
+    penalty_coef: float = quantity(4.0, text="penalty over E / module", gt=0.0)
+    quadrature: int = quantity(6, text="Gauss points per direction on flank faces", ge=1, le=16)
+    wg_quadrature: int = quantity(3, text="Gauss points per direction on the inner surface", ge=1, le=16)
+    max_augmentations: int = quantity(3, text="largest number of augmentations per increment", ge=0, le=50)
+    penetration_tolerance: float = quantity(1e-4, unit="modules", text="penetration that needs no augmentation", gt=0.0, le=0.1)
+
+
+class Steps(Section):
+    rotation: float = quantity(45.0, unit="deg", text="rotation of the wave generator", ge=0.0, le=36000.0)
+    increment: float = quantity(5.0, unit="deg", text="increment of that rotation", gt=0.0, le=45.0)
+    deflect_increments: int = quantity(4, text="increments of the deflection by the pins", ge=1, le=1000)
+    engage_increments: int = quantity(2, text="increments of the engagement", ge=1, le=1000)
+    load_increments: int = quantity(2, text="increments of the torque", ge=1, le=1000)
+
+
+class Solver(Section):
+    linear: Literal["direct", "iterative"] = quantity("direct", text="MUMPS Cholesky, or CG with GAMG")
+    rtol: float = quantity(1e-10, text="residual over contact force at convergence", gt=0.0, le=1e-3)
+    max_iterations: int = quantity(25, text="Newton iterations before an increment is cut back", ge=1, le=1000)
+    max_cutbacks: int = quantity(5, text="halvings of an increment before the run ends", ge=0, le=20)
+    twofold_symmetry: bool = quantity(True, text="model half of the drive when tooth numbers allow it")
+
+
+class Output(Section):
+    fields: bool = quantity(True, text="write fields.h5 and fields.xdmf")
+    figures: bool = quantity(True, text="draw the figures")
+
+
+class DriveDesign(Section):
+    """A drive, its load and how it is computed. Attributes are the keys of the design file."""
+
+    drive: Drive
+    flexible_spline: Gear
+    ring_gear: Gear
+    wave_generator: WaveGenerator
+    cup: Cup
+    micro_geometry: MicroGeometry = MicroGeometry()
+    material: Material
+    load: Load = Load()
+    contact: Contact = Contact()
+    steps: Steps = Steps()
+    solver: Solver = Solver()
+    output: Output = Output()
+
+    @property
+    def d(self) -> float:
+        """Diametral deflection, mm."""
+        return self.drive.module * (self.drive.teeth_rg - self.drive.teeth_fs)
+
+    @property
+    def r_fs(self) -> float:
+        """Inner radius of the undeformed flexible spline, mm."""
+        g = self.drive
+        return 0.5 * g.teeth_fs * g.module - g.dedendum_coef * g.module - self.flexible_spline.rim
+
+    @property
+    def a(self) -> float:
+        """Major semi-axis of the wave generator, mm."""
+        return self.r_fs + 0.5 * self.d
+
+    @property
+    def b(self) -> float:
+        """Minor semi-axis, mm."""
+        return self.wave_generator.C * (self.r_fs - 0.5 * self.d)
+
+    @property
+    def ratio(self) -> float:
+        """Speed ratio, wave generator over output."""
+        return -self.drive.teeth_fs / (self.drive.teeth_rg - self.drive.teeth_fs)
+
+    @property
+    def gamma(self) -> float:
+        """Turn that closes the backlash on one side, rad (eq. 6.4)."""
+        return np.pi * (1.0 - self.ring_gear.c_P) / (2.0 * self.drive.teeth_fs)
+
+    @property
+    def cup_thickness(self) -> float:
+        return self.cup.thickness_coef * self.flexible_spline.rim
+
+    @property
+    def penalty(self) -> float:
+        """Contact penalty, MPa / mm."""
+        return 5.0 * self.contact.penalty_coef * self.material.E / self.drive.module
+
+
+def load_design(path: str | Path, overrides: Sequence[str] = ()) -> DriveDesign:
+    """Read and check a design file; every problem is an `InputError` of one sentence."""
+    design = validate(DriveDesign, apply_overrides(read_toml(path), overrides))
+    difference = design.drive.teeth_rg - design.drive.teeth_fs
+    if difference <= 0 or difference % 2:
+        raise InputError(f"drive.teeth_rg - drive.teeth_fs = {difference} is not allowed: allowed a positive multiple of two")
+    if design.cup.fillet_radius < design.cup_thickness:
+        raise InputError(f"cup.fillet_radius = {design.cup.fillet_radius:g} is out of range: allowed "
+                         f"{design.cup_thickness:g} (the cup's thickness) to inf mm")
+    for gear in ("flexible_spline", "ring_gear"):
+        make_profile(design, gear)
+    return design

@@ -1,0 +1,371 @@
+"""Equilibrium of one scene: residual and tangent of structure, contact and coupling, solved by SNES."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from swgpar.assembly import (BlockRows, Elements, Exchange, add_unit_diagonal, create_matrix, create_vector,
+                             fill_matrix)
+from swgpar.contact.rigid import CamPose, RigidContact
+from swgpar.contact.search import facing_flanks, largest
+from swgpar.contact.teeth import ToothContact
+from swgpar.couplings import ROTATION, Bordered, BoreCoupling
+from swgpar.design import DriveDesign
+from swgpar.log import Phases
+from swgpar.partition import LocalNodes, Partition
+from swgpar.steps import Scene
+
+NEAR, TOUCH, REACH, TIP_MARGIN = 0.25, 0.05, 0.5, 0.1
+"""Search distances as shares of the module: faces evaluated, blocks foreseen, largest gap, tip overlap."""
+
+SOFTENING, SOFT_TOLERANCE = (1e-3, 3e-2), 1e-2
+"""Shares of the penalty, and residual over contact force, of the first rough solves while contact is established."""
+
+FREE_SPRING = 1e-6
+"""Rotational stiffness / (E m^3) that keeps an unloaded drive with backlash near its kinematic angle."""
+
+
+@dataclass(frozen=True)
+class Solved:
+    """What a solve did: Newton iterations, last residual over the contact force, augmentations."""
+
+    converged: bool
+    iterations: int
+    residual: float
+    reason: str
+
+
+class SearchedStep:
+    """Newton step with a line search along the potential: the `PC` (type python) of SNES's linear solve.
+
+    Contact switches on and off along a step, so a full one can overshoot by orders of magnitude. The step is
+    scaled by t in (0, 1] such that the slope F(x - t step) . step has fallen below half of its start: a point near
+    the minimum of the potential on the line. The full step is tried first and kept near the solution. (PETSc's own
+    line searches judge by the residual's norm, which grows while contact is being established, or take one secant
+    step; petsc4py 3.18 cannot replace them, hence the scaling inside the preconditioner.)
+    """
+
+    TARGET, TRIALS = 0.5, 8
+
+    def __init__(self, border: Bordered, residual: Callable[[PETSc.Vec, PETSc.Vec], None], x: PETSc.Vec) -> None:
+        self.border, self.residual, self.x = border, residual, x
+        self.trial, self.force = x.duplicate(), x.duplicate()
+
+    def setUp(self, pc: PETSc.PC) -> None:
+        self.border.setUp(pc)
+
+    def apply(self, pc: PETSc.PC, right: PETSc.Vec, step: PETSc.Vec) -> None:
+        self.border.apply(pc, right, step)
+        start = right.dot(step)
+        if not start > 0.0:  # no descent: leave it to the plain Newton step
+            return
+
+        def slope(t: float) -> float:
+            self.x.copy(self.trial)
+            self.trial.axpy(-t, step)
+            self.residual(self.trial, self.force)
+            value = self.force.dot(step) / start
+            return value if np.isfinite(value) else -1e30
+
+        low, low_value, high, high_value = 0.0, 1.0, 1.0, slope(1.0)
+        t, value = 1.0, high_value
+        for _ in range(self.TRIALS):
+            if abs(value) <= self.TARGET or (t == 1.0 and value > 0.0):
+                break
+            t = low + (high - low) * float(np.clip(low_value / (low_value - high_value), 0.1, 0.9))
+            value = slope(t)
+            if value > 0.0:
+                low, low_value, high_value = t, value, 0.5 * high_value
+            else:
+                high, high_value, low_value = t, value, 0.5 * low_value
+        step.scale(t)
+
+
+class Equilibrium:
+    """The discrete drive and its Newton solver.
+
+    Parameters
+    ----------
+    design : the drive;  partition, elements : ownership and elements, bound to their local nodes
+    coupling : bore;  rigid, pins : cam and pins on the inner surface;  teeth : flank contact
+    """
+
+    def __init__(self, design: DriveDesign, partition: Partition, elements: Elements, coupling: BoreCoupling,
+                 rigid: RigidContact, pins: RigidContact, teeth: ToothContact, images: bool, phases: Phases) -> None:
+        self.design, self.partition, self.elements, self.coupling = design, partition, elements, coupling
+        self.rigid, self.pins, self.teeth, self.phases = rigid, pins, teeth, phases
+        self.share = 0.5 if images else 1.0
+        self.scale = design.material.E * design.drive.module
+        self.x = create_vector(partition)
+        self.scene: Scene | None = None
+        self.on_iteration = None
+        self.rebind(np.zeros(0, dtype=np.int64))
+        self.keys = np.zeros(0, dtype=np.int64)
+        self.softness = 1.0
+        self._grounding()
+        self.snes = PETSc.SNES().create(comm=partition.comm)
+        self.snes.setType(PETSc.SNES.Type.NEWTONLS)
+        options = PETSc.Options()
+        if not options.hasName("snes_linesearch_type"):
+            options["snes_linesearch_type"] = "basic"
+        self.snes.setTolerances(max_it=design.solver.max_iterations)
+        self.snes.setFunction(self._function, create_vector(partition))
+        self.snes.setConvergenceTest(self._converged)
+        self.border = Bordered(partition, "stiffness_", design.solver.linear == "iterative")
+        ksp = self.snes.getKSP()
+        ksp.setType(PETSc.KSP.Type.PREONLY)
+        ksp.getPC().setType(PETSc.PC.Type.PYTHON)
+        ksp.getPC().setPythonContext(SearchedStep(self.border, lambda x, f: self._function(self.snes, x, f), self.x))
+        self.snes.setFromOptions()
+        self.matrix: PETSc.Mat | None = None
+
+    # -- local data ------------------------------------------------------------------------------------
+
+    def rebind(self, further: np.ndarray) -> None:
+        """Take further global nodes (n,) into this rank's view."""
+        self.local = LocalNodes(self.partition, self.elements.wanted, further)
+        self.exchange = Exchange(self.partition, self.local.number)
+        self.teeth.bind(self.local)
+
+    def displacement(self, x: PETSc.Vec | None = None) -> np.ndarray:
+        """(n_local, 3) mm, ghosts included."""
+        return self.exchange(self.x if x is None else x)
+
+    def multipliers(self, x: PETSc.Vec) -> np.ndarray:
+        return self.border.multipliers(x)
+
+    def search(self) -> None:
+        """Find the flanks and faces that can meet at the present displacement and lay out the tangent for them."""
+        with self.phases("search"):
+            further = np.zeros(0, dtype=np.int64)
+            if self.scene is not None and self.scene.teeth is not None:
+                margin = TIP_MARGIN * self.design.drive.module
+                pairs = facing_flanks(self.partition, self.elements.bodies[0], self.displacement(), margin)
+                further = self.teeth.numbers(pairs)
+            else:
+                self.teeth.numbers([])
+            self.rebind(further)
+            m = self.design.drive.module
+            keys = self.teeth.select(self.displacement(), NEAR * m, TOUCH * m)
+        self.rigid.reset()
+        self.pins.reset()
+        self._pattern(keys)
+
+    def _pattern(self, keys: np.ndarray) -> None:
+        with self.phases("pattern"):
+            changed = self.matrix is None or not np.array_equal(keys, self.keys)
+            if not self.partition.comm.allreduce(int(changed), op=MPI.MAX):
+                self.rows.number = self.local.number
+                return
+            self.keys = keys
+            self.rows, self.slots = self.elements.rows(keys, self.local.number)
+            if self.matrix is not None:
+                self.matrix.destroy()
+            self.matrix = create_matrix(self.partition, self.rows)
+            self.snes.setJacobian(self._jacobian, self.matrix, self.matrix)
+
+    def _grounding(self) -> None:
+        self.supports = self.coupling.supports()
+        stiffness = 0.1 * self.scale
+        used = (0, 1) if self.coupling.images else range(6)
+        self.grounded = []
+        self.ground_vectors = []
+        for k in used:
+            vector = create_vector(self.partition)
+            array = vector.array.reshape(-1, 3)
+            for i in np.flatnonzero(np.abs(self.supports[k]).sum(axis=1)):
+                direction = np.sqrt(stiffness) * self.supports[k, i]
+                array[self.coupling.nodes[i]] += direction
+                self.grounded.append((self.coupling.nodes[i], direction))
+            self.ground_vectors.append(vector)
+
+    # -- residual and tangent --------------------------------------------------------------------------
+
+    def _controls(self, scene: Scene) -> list[int]:
+        active = [k for k in range(6) if self.coupling.active[k]]
+        if scene.control == "torque":
+            active.remove(ROTATION)
+        return active
+
+    def _contact(self, u: np.ndarray, residual: np.ndarray | None, rows: BlockRows | None) -> np.ndarray:
+        scene = self.scene
+        if scene.cam is not None:
+            self.rigid.evaluate(u, CamPose(scene.angle, scene.cam), residual, rows)
+        if scene.pins is not None:
+            self.pins.evaluate(u, CamPose(scene.angle, inset=scene.pins), residual, rows)
+        if scene.teeth is None:
+            return np.zeros(0, dtype=np.int64)
+        return self.teeth.evaluate(u, scene.teeth, residual, rows)
+
+    def _function(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
+        with self.phases("residual"):
+            u = self.displacement(x)
+            n_own = self.partition.n_own
+            contact = np.zeros_like(u)
+            self.failed = False
+            try:
+                self._contact(u, contact, None)
+                residual = contact.copy()
+                self.elements.assemble(u, residual, None, None)
+            except FloatingPointError:
+                self.failed, residual = True, contact
+            if self.partition.comm.allreduce(int(self.failed), op=MPI.MAX):
+                self.failed = True
+            self.reference = np.sqrt(self.partition.comm.allreduce(float(np.sum(contact[:n_own] ** 2))))
+            scene, multiplier = self.scene, self.multipliers(x)
+            bore = self.coupling.evaluate(u)
+            target = np.zeros(6)
+            target[ROTATION] = scene.rotation
+            tail = multiplier.copy()
+            for k in self._controls(scene):
+                residual[self.coupling.nodes] += self.scale * multiplier[k] * bore.gradient[k]
+                tail[k] = self.scale * (bore.value[k] - target[k])
+                if k == ROTATION:
+                    tail[k] -= self._compliance(k) * multiplier[k]
+            if scene.control == "torque":
+                residual[self.coupling.nodes] -= self.share * scene.torque * bore.gradient[ROTATION]
+            f.array[:] = residual[:n_own].ravel()
+            if self.partition.comm.rank == self.partition.comm.size - 1:
+                f.array[-6:] = tail
+
+    def _compliance(self, k: int) -> float:
+        if k != ROTATION or self.scene.control != "free":
+            return 0.0
+        return self.scale**2 / (FREE_SPRING * self.design.material.E * self.design.drive.module**3)
+
+    def _jacobian(self, snes: PETSc.SNES, x: PETSc.Vec, j: PETSc.Mat, p: PETSc.Mat) -> None:
+        u = self.displacement(x)
+        with self.phases("tangent"):
+            self.rows.values[:] = 0.0
+            self.elements.assemble(u, None, self.rows, self.slots)
+            missing = self._contact(u, None, self.rows)
+            n = self.partition.n_global
+            for node, direction in self.grounded:
+                if node < self.rows.n_own:
+                    number = self.partition.row_start + node
+                    place = np.searchsorted(self.rows.keys, number * n + number)
+                    self.rows.values[place] += np.outer(direction, direction)
+            add_unit_diagonal(self.rows, self.partition, self.scale)
+        self.missing = missing
+        self.stale = bool(self.partition.comm.allreduce(int(len(missing) > 0), op=MPI.MAX))
+        with self.phases("insert"):
+            fill_matrix(p, self.rows)
+        border, rows = [], self._controls(self.scene)
+        bore = self.coupling.evaluate(u)
+        for k in rows:
+            vector = create_vector(self.partition)
+            vector.array.reshape(-1, 3)[self.coupling.nodes] = self.scale * bore.gradient[k]
+            border.append(vector)
+        self.border.set_border(self.ground_vectors, border, rows, [self._compliance(k) for k in rows])
+
+    # -- solve -------------------------------------------------------------------------------------------
+
+    def _converged(self, snes: PETSc.SNES, its: int, norms: tuple[float, float, float]) -> int | None:
+        _, step, norm = norms
+        reference = max(self.reference, 1e-6 * self.scale * self.design.drive.module)
+        ratio = norm / reference
+        self.history.append(ratio)
+        if self.on_iteration is not None:
+            self.on_iteration(self.scene, its, ratio)
+        if self.failed or not np.isfinite(norm):
+            return PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN
+        if ratio <= (self.design.solver.rtol if self.softness == 1.0 else SOFT_TOLERANCE):
+            return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
+        # round-off floor: no further decrease although the residual is already very small
+        if its > 1 and ratio < 1e3 * self.design.solver.rtol and ratio > 0.3 * self.history[-2]:
+            return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
+        if self.stale and its > 0:
+            return PETSc.SNES.ConvergedReason.CONVERGED_ITS
+        if its >= self.design.solver.max_iterations:
+            return PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT
+        return None
+
+    def solve(self, scene: Scene, soft: bool = False) -> Solved:
+        """Solve for equilibrium from the present x; x is the solution, or garbage when not converged.
+
+        soft : contact is being established: approach through softened penalties
+        """
+        self.scene = scene
+        self.search()
+        iterations, self.augmentations = 0, 0
+        soften = list(SOFTENING) if soft else []
+        tolerance = self.design.contact.penetration_tolerance * self.design.drive.module
+        while True:
+            self.history, self.stale = [], False
+            self.soften(soften.pop(0) if soften else 1.0)
+            self.snes.solve(None, self.x)
+            reason = self.snes.getConvergedReason()
+            iterations += self.snes.getIterationNumber()
+            ratio = self.history[-1] if self.history else np.inf
+            if reason < 0 or iterations > 4 * self.design.solver.max_iterations:
+                return Solved(False, iterations, ratio, REASONS.get(reason, str(reason)))
+            if reason == PETSc.SNES.ConvergedReason.CONVERGED_ITS:
+                self._pattern(np.union1d(self.keys, self.missing))
+                soften.insert(0, self.softness)
+                continue
+            if self.softness != 1.0:
+                continue
+            if self.penetration() <= tolerance or self.augmentations >= self.design.contact.max_augmentations:
+                return Solved(True, iterations, ratio, "converged")
+            self.augmentations += 1
+            for contact in (self.rigid, self.pins, self.teeth):
+                contact.augment()
+
+    def soften(self, share: float) -> None:
+        """Use this share of the contact penalty."""
+        self.softness = share
+        for contact in (self.rigid, self.pins, self.teeth):
+            contact.penalty = share * self.design.penalty
+
+    def penetration(self) -> float:
+        """Largest penetration (mm) of the last evaluation, over all ranks."""
+        scene, depth = self.scene, 0.0
+        for contact, on in ((self.rigid, scene.cam), (self.pins, scene.pins), (self.teeth, scene.teeth)):
+            if on is not None:
+                depth = max(depth, contact.penetration())
+        return largest(self.partition.comm, depth)
+
+    # -- forces ------------------------------------------------------------------------------------------
+
+    def rotation(self) -> float:
+        """Turn of the bore (rad)."""
+        return float(self.coupling.evaluate(self.displacement()).value[ROTATION])
+
+    def torques(self) -> dict[str, float]:
+        """Torques about z on the flexible spline (N mm): wave generator (and pins), teeth, output."""
+        u, scene = self.displacement(), self.scene
+        body = self.elements.bodies[0]
+        rigid, teeth = np.zeros_like(u), np.zeros_like(u)
+        if scene.cam is not None:
+            self.rigid.evaluate(u, CamPose(scene.angle, scene.cam), rigid, None, owned_only=True)
+        if scene.pins is not None:
+            self.pins.evaluate(u, CamPose(scene.angle, inset=scene.pins), rigid, None, owned_only=True)
+        if scene.teeth is not None:
+            teeth = self.teeth.owned_forces(u, scene.teeth)
+        place = np.zeros_like(u)
+        own = (body.local >= 0)
+        where = body.positions()
+        where[body.flip == 1] *= (-1.0, -1.0, 1.0)
+        place[body.local[own]] = where[own]
+        spline = np.zeros(len(u), dtype=bool)
+        spline[body.local[own]] = True
+        x = place + u
+
+        def moment(residual: np.ndarray) -> float:
+            r = residual[spline]
+            local = -float(np.sum(x[spline, 0] * r[:, 1] - x[spline, 1] * r[:, 0]))
+            return self.partition.comm.allreduce(local, op=MPI.SUM) / self.share
+
+        if scene.control == "torque":
+            output = scene.torque
+        else:
+            output = -self.scale * float(self.multipliers(self.x)[ROTATION]) / self.share
+        return {"wg": moment(rigid), "teeth": moment(teeth), "output": output}
+
+
+REASONS = {value: name for name, value in vars(PETSc.SNES.ConvergedReason).items() if isinstance(value, int)}

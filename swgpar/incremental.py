@@ -1,0 +1,223 @@
+"""The run: increments with prediction, cut-back, results and restart."""
+
+from __future__ import annotations
+
+import json
+import resource
+import time
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from swgpar.assembly import Elements, read_field, write_field
+from swgpar.contact.rigid import RigidContact
+from swgpar.contact.teeth import ToothContact
+from swgpar.couplings import BoreCoupling
+from swgpar.design import DriveDesign
+from swgpar.equilibrium import Equilibrium
+from swgpar.errors import ConvergenceError
+from swgpar.kernel import reference_elements
+from swgpar.log import Phases, logger
+from swgpar.meshing import MeshRecipe, build_sector_meshes
+from swgpar.micro_geometry import WaveGeneratorSurface
+from swgpar.partition import BodyLayout, LocalNodes, Partition
+from swgpar.steps import Increment, Scene, sequence, start
+from swgpar.stress import body_fields, maxima
+
+CARRYING = 0.05
+"""The teeth carry once the torque that turns the output reaches this share of the load."""
+
+
+PRESSURE_LIMIT = 0.02
+"""Bound of contact pressures in the tangent's geometric terms, as a share of E: above any real pressure."""
+
+
+def halved(design: DriveDesign) -> bool:
+    """Whether the drive equals itself turned by 180 degrees and the design lets the model use it."""
+    even = design.drive.teeth_fs % 2 == 0 and design.drive.teeth_rg % 2 == 0
+    return design.solver.twofold_symmetry and even
+
+
+class DriveModel:
+    """Everything that exists once per run: meshes, ownership, equilibrium.
+
+    Parameters
+    ----------
+    design, recipe : the drive and how it is meshed
+    comm : communicator
+    """
+
+    def __init__(self, design: DriveDesign, recipe: MeshRecipe, comm: MPI.Comm) -> None:
+        self.design, self.comm, self.phases = design, comm, Phases()
+        images = halved(design)
+        with self.phases("mesh"):
+            self.meshes = build_sector_meshes(design, recipe)
+        layouts = []
+        for name, fixed in (("flexible_spline", np.zeros(0, dtype=np.int32)),
+                            ("ring_gear", self.meshes["ring_gear"].node_sets["outer"])):
+            mesh = self.meshes[name]
+            count = mesh.n_sectors // 2 if images else mesh.n_sectors
+            layouts.append(BodyLayout(mesh, 0, count, True, images, fixed))
+        self.partition = Partition(layouts, comm)
+        with self.phases("elements"):
+            references = [reference_elements(m.coords[m.hexes], design.material.E, design.material.nu)
+                          for m in self.meshes.values()]
+            self.elements = Elements(self.partition, references)
+            self.elements.bind(LocalNodes(self.partition, self.elements.wanted))
+        spline, ring = self.elements.bodies
+        surface = WaveGeneratorSurface(design)
+        half_width = 0.5 * design.wave_generator.face_width * (1.0 + 1e-9)
+        rigid = (surface, design.r_fs, half_width, design.contact.wg_quadrature, design.penalty,
+                 np.radians(design.wave_generator.pin_half_angle), PRESSURE_LIMIT * design.material.E)
+        micro = design.micro_geometry
+        teeth = ToothContact(self.partition, spline, ring, design.contact.quadrature, micro.fs_crowning,
+                             design.drive.face_width, micro.crowning_shape, design.penalty, 0.5 * design.drive.module,
+                             PRESSURE_LIMIT * design.material.E)
+        self.equilibrium = Equilibrium(design, self.partition, self.elements,
+                                       BoreCoupling(self.partition, spline, images), RigidContact(spline, *rigid),
+                                       RigidContact(spline, *rigid), teeth, images, self.phases)
+        self.copies = 2 if images else 1
+
+    def counts(self) -> dict[str, Any]:
+        """Nodes, elements and unknowns per body, modelled and of the whole drive."""
+        out = {}
+        for layout in self.partition.layouts:
+            per_sector = len(layout.mesh.coords) - len(layout.mesh.ccw_nodes)
+            out[layout.name] = {"nodes": per_sector * layout.count, "elements": len(layout.mesh.hexes) * layout.count,
+                                "dofs": 3 * len(layout.own) * layout.count,
+                                "nodes_whole": per_sector * layout.mesh.n_sectors,
+                                "elements_whole": len(layout.mesh.hexes) * layout.mesh.n_sectors,
+                                "quality": layout.mesh.quality}
+        return out
+
+
+def predict(model: DriveModel, x: PETSc.Vec, turn: float) -> None:
+    """Turn the state x with the wave generator by `turn` (rad): the deflection pattern moves on, teeth renamed.
+
+    After one ring-gear pitch the drive repeats with the flexible spline's teeth renamed by one (exactly, for a
+    fixed ring gear); in between the state is interpolated over the sectors by cubic polynomials.
+    """
+    partition = model.partition
+    ring_teeth = partition.layouts[1].mesh.n_sectors
+    shift = turn * ring_teeth / (2.0 * np.pi)
+    whole = int(np.floor(shift))
+    t = 1.0 - (shift - whole)
+    nodes = np.array([-1.0, 0.0, 1.0, 2.0])
+    weights = np.array([np.prod([(t - m) / (n - m) for m in nodes if m != n]) for n in nodes])
+    new = []
+    for body, layout in enumerate(partition.layouts):
+        first, end = partition.owned(body)
+        wanted = np.arange(first - whole - 2, end - whole + 2)
+        field = read_field(partition, body, wanted, x)
+        angle = layout.turn(layout.first_tooth + wanted)
+        local = _turned(field, -angle)
+        count = end - first
+        pattern = sum(w * local[k:k + count] for k, w in enumerate(weights))
+        angle = layout.turn(layout.first_tooth + np.arange(first, end))
+        if body == 0:
+            drift = turn * (1.0 - ring_teeth / layout.mesh.n_sectors)
+            coords = layout.mesh.coords[None]
+            values = _turned(coords + pattern, angle + drift) - _turned(np.repeat(coords, count, axis=0), angle)
+        else:
+            values = _turned(pattern, angle)
+        new.append((body, np.arange(first, end), values))
+    for body, sectors, values in new:
+        write_field(partition, body, sectors, values, x)
+
+
+def _turned(vectors: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """Vectors (n, m, 3) of n sectors turned about z by angles (n,)."""
+    c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
+    return np.stack([c * vectors[..., 0] - s * vectors[..., 1], s * vectors[..., 0] + c * vectors[..., 1],
+                     vectors[..., 2]], axis=-1)
+
+
+class Runner:
+    """Goes through the sequence; `row` and `fields` of each converged increment are handed to `record`."""
+
+    def __init__(self, model: DriveModel) -> None:
+        self.model, self.design = model, model.design
+        self.equilibrium = model.equilibrium
+        self.scene = start(model.design)
+        self.iterations = 0
+        self.residual = 0.0
+
+    def advance(self, target: Scene) -> None:
+        """Solve up to `target`, halving the way when Newton's iteration fails; raises ConvergenceError at the end."""
+        origin, x = self.scene, self.equilibrium.x
+        done, share, cuts = 0.0, 1.0, 0
+        while done < 1.0:
+            saved = x.copy()
+            reach = min(1.0, done + share)
+            scene = origin.toward(target, reach)
+            if scene.angle != self.scene.angle:
+                predict(self.model, x, scene.angle - self.scene.angle)
+            elif scene.name == "deflect" and self.scene.name == "deflect":
+                # the ring bends in proportion to the pins' travel
+                travel = 0.5 * self.design.d
+                x.scale((travel - scene.pins) / (travel - self.scene.pins))
+            contacts = [value is not None for value in (scene.cam, scene.pins, scene.teeth)]
+            before = [value is not None for value in (self.scene.cam, self.scene.pins, self.scene.teeth)]
+            fresh = self.scene.step == 0 or any(new and not old for new, old in zip(contacts, before))
+            solved = self.equilibrium.solve(scene, soft=fresh)
+            self.iterations += solved.iterations
+            if solved.converged:
+                self.scene, self.residual, done = scene, solved.residual, reach
+                continue
+            saved.copy(x)
+            cuts += 1
+            if cuts > self.design.solver.max_cutbacks:
+                raise ConvergenceError(
+                    f"step {target.step} ({target.name}) did not converge at a wave-generator angle of "
+                    f"{np.degrees(scene.angle):.4g} degrees after {self.design.solver.max_cutbacks} cut-backs: PETSc says "
+                    f"{solved.reason}, residual {solved.residual:.1e} of the contact force; the last converged state is saved")
+            share *= 0.5
+            logger.info("   cut back to %.3g of the increment (%s, residual %.1e)", share, solved.reason, solved.residual)
+
+    def close_backlash(self, torque: float) -> None:
+        """Turn the output until the teeth carry a share of `torque` (N mm), then hand over to torque control."""
+        angle, step = self.scene.rotation, 0.5 * max(self.design.gamma, 1e-2 * self.design.d / self.design.r_fs)
+        for _ in range(64):
+            held = replace(self.scene, step=3, name="load", cam=0.0, teeth=0.0, pins=None, control="rotation", rotation=angle)
+            self.advance(held)
+            carried = self.equilibrium.torques()["output"]
+            logger.debug("   output at %.5f deg, torque %.1f N mm", np.degrees(angle), carried)
+            if carried >= CARRYING * torque:
+                self.scene = replace(held, control="torque", torque=carried)
+                return
+            angle += step
+        raise ConvergenceError(f"step 3 (load): the teeth did not come into contact within {np.degrees(angle):.3g} degrees "
+                               "of output rotation")
+
+    def increment(self, item: Increment) -> None:
+        """Do one entry of the sequence."""
+        self.iterations = 0
+        if item.close:
+            self.close_backlash(item.scene.torque)
+        self.advance(item.scene)
+
+    def row(self) -> dict[str, float]:
+        """The history row of the present state, without stresses and times."""
+        equilibrium, copies = self.equilibrium, self.model.copies
+        torque = equilibrium.torques()
+        pairs = self.model.comm.allreduce(equilibrium.teeth.touching_pairs(), op=MPI.SUM) if self.scene.teeth is not None else 0
+        return {"step": self.scene.step, "wg_angle_deg": float(np.degrees(self.scene.angle)),
+                "output_angle_deg": float(np.degrees(equilibrium.rotation())), "wg_torque_Nmm": torque["wg"],
+                "tooth_torque_Nmm": torque["teeth"], "output_torque_Nmm": torque["output"],
+                "pairs_in_contact": copies * pairs, "max_penetration_mm": equilibrium.penetration(),
+                "newton_iterations": self.iterations}
+
+
+def stresses(model: DriveModel) -> tuple[dict[str, float], list[dict[str, np.ndarray]]]:
+    """Maxima for the history and nodal fields of both bodies."""
+    u = model.equilibrium.displacement()
+    values, fields = {}, []
+    for prefix, body in zip(("fs", "rg"), model.elements.bodies):
+        field = body_fields(body, u)
+        fields.append(field)
+        values.update({f"{prefix}_{k}": v for k, v in maxima(model.comm, field).items()})
+    return values, fields

@@ -1,0 +1,128 @@
+# cython: language_level=3, boundscheck=False, wraparound=False
+"""Cython layer of the contact kernels: checks shapes, releases the GIL, calls."""
+
+import numpy as np
+
+from libc.stdint cimport int32_t, int64_t, uint8_t
+
+
+cdef extern from "<Eigen/Dense>" nogil:
+    pass
+
+cdef extern from "contact_batch.hpp" namespace "swgpar" nogil:
+    struct FlankBatch:
+        int n_patch, n_s, n_z
+        const double* s
+        const double* z
+        const double* point
+        const double* tangent
+        const double* orientation
+        const double* turn
+        const int32_t* conn
+        const uint8_t* flip
+    struct FaceBatch:
+        int64_t n_face
+        int n_q
+        const int32_t* conn
+        const uint8_t* flip
+        const double* coords
+        const double* normal
+        const double* shape
+        const double* weight
+        const double* offset
+        const int32_t* patch
+    int64_t flank_contact(const FlankBatch&, const FaceBatch&, const double* u, const double* multiplier,
+                          double penalty, double opening, double reach, double limit, double* residual, const int64_t* start,
+                          const int32_t* column, double* values, const int32_t* number, int64_t n_own,
+                          double* gap, double* pressure, int32_t* facet)
+    int64_t add_blocks(int64_t n, int m, const int32_t* conn, const uint8_t* flip, const double* blocks,
+                       const int64_t* start, const int32_t* column, double* values, const int32_t* number,
+                       int64_t n_own)
+
+
+def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] multiplier, double penalty,
+                   double opening, double reach, double limit, double[:, ::1] residual, rows):
+    """Forces and tangent of slave faces against master flank patches.
+
+    Parameters
+    ----------
+    patches, faces : records of arrays (`swgpar.contact.teeth.Flanks`, `Faces`)
+    u : (n_local, 3) mm, displacements
+    multiplier : (n_face, n_q) MPa
+    penalty : MPa / mm
+    opening : mm, added to every gap
+    limit : MPa, bound of the pressure in the tangent's geometric term
+    reach : mm, points farther from the master surface than this are not in contact
+    residual : (n_local, 3) N, added to; None to skip
+    rows : record with start, column, values, number, n_own; None to skip the tangent
+
+    Returns
+    -------
+    gap : (n_face, n_q) mm, +inf where there is no foot point
+    pressure : (n_face, n_q) MPa
+    facet : (n_face, n_q, 2) int32, master facet (profile, width), -1 where there is none
+    missing : number of blocks the pattern lacks
+    """
+    cdef const double[::1] s = patches.s, z = patches.z, orientation = patches.orientation
+    cdef const double[:, :, ::1] point = patches.point, tangent = patches.tangent
+    cdef const double[:, ::1] turn = patches.turn
+    cdef const int32_t[:, :, ::1] pconn = patches.conn
+    cdef const uint8_t[:, :, ::1] pflip = patches.flip
+    cdef const int32_t[:, ::1] conn = faces.conn
+    cdef const uint8_t[:, ::1] flip = faces.flip
+    cdef const double[:, :, ::1] coords = faces.coords
+    cdef const double[:, ::1] normal = faces.normal, shape = faces.shape, weight = faces.weight, offset = faces.offset
+    cdef const int32_t[::1] patch = faces.patch
+    cdef int64_t n_face = conn.shape[0], n_q = shape.shape[0], n_patch = pconn.shape[0]
+    gap_array = np.full((n_face, n_q), np.inf)
+    pressure_array = np.zeros((n_face, n_q))
+    facet_array = np.full((n_face, n_q, 2), -1, dtype=np.int32)
+    if n_face == 0 or n_patch == 0:
+        return gap_array, pressure_array, facet_array, 0
+    if not (coords.shape[0] == normal.shape[0] == weight.shape[0] == offset.shape[0] == patch.shape[0] == n_face
+            and multiplier.shape[0] == n_face and multiplier.shape[1] == n_q and weight.shape[1] == n_q
+            and pconn.shape[1] == s.shape[0] and pconn.shape[2] == z.shape[0] and point.shape[0] == n_patch
+            and point.shape[1] == s.shape[0] and tangent.shape[1] == s.shape[0] and u.shape[1] == 3):
+        raise ValueError("contact_flanks: array shapes disagree")
+    cdef double[:, ::1] gap = gap_array, pressure = pressure_array
+    cdef int32_t[:, :, ::1] facet = facet_array
+    cdef FlankBatch p = FlankBatch(n_patch, s.shape[0] - 1, z.shape[0] - 1, &s[0], &z[0], &point[0, 0, 0],
+                                   &tangent[0, 0, 0], &orientation[0], &turn[0, 0], &pconn[0, 0, 0], &pflip[0, 0, 0])
+    cdef FaceBatch f = FaceBatch(n_face, n_q, &conn[0, 0], &flip[0, 0], &coords[0, 0, 0], &normal[0, 0],
+                                 &shape[0, 0], &weight[0, 0], &offset[0, 0], &patch[0])
+    cdef const int64_t[::1] start
+    cdef const int32_t[::1] column, number
+    cdef double[:, :, ::1] values
+    cdef const int64_t* p_start = NULL
+    cdef const int32_t* p_column = NULL
+    cdef const int32_t* p_number = NULL
+    cdef double* p_values = NULL
+    cdef int64_t n_own = 0, missing
+    if rows is not None:
+        start, column, values, number, n_own = rows.start, rows.column, rows.values, rows.number, rows.n_own
+        p_start, p_column, p_values, p_number = &start[0], &column[0], &values[0, 0, 0], &number[0]
+    cdef double* p_residual = NULL
+    if residual is not None:
+        p_residual = &residual[0, 0]
+    with nogil:
+        missing = flank_contact(p, f, &u[0, 0], &multiplier[0, 0], penalty, opening, reach, limit, p_residual, p_start,
+                                p_column, p_values, p_number, n_own, &gap[0, 0], &pressure[0, 0], &facet[0, 0, 0])
+    return gap_array, pressure_array, facet_array, missing
+
+
+def add_face_blocks(const int32_t[:, ::1] conn, const uint8_t[:, ::1] flip, const double[:, :, :, :, ::1] blocks, rows):
+    """Add dense blocks (n, m, m, 3, 3) of nodes conn (n, m) to the owned upper-triangle rows; returns misses."""
+    cdef const int64_t[::1] start = rows.start
+    cdef const int32_t[::1] column = rows.column, number = rows.number
+    cdef double[:, :, ::1] values = rows.values
+    cdef int64_t n = conn.shape[0], n_own = rows.n_own, missing
+    cdef int m = conn.shape[1]
+    if not (flip.shape[0] == n and flip.shape[1] == m and blocks.shape[0] == n and blocks.shape[1] == m
+            and blocks.shape[2] == m and blocks.shape[3] == 3 and blocks.shape[4] == 3):
+        raise ValueError("add_face_blocks: array shapes disagree")
+    if n == 0:
+        return 0
+    with nogil:
+        missing = add_blocks(n, m, &conn[0, 0], &flip[0, 0], &blocks[0, 0, 0, 0, 0], &start[0], &column[0],
+                             &values[0, 0, 0], &number[0], n_own)
+    return missing

@@ -1,0 +1,123 @@
+# cython: language_level=3, boundscheck=False, wraparound=False
+"""Cython layer of the element kernels: checks shapes, releases the GIL, calls, raises."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from libc.stdint cimport int32_t, int64_t, uint8_t
+
+
+cdef extern from "element_batch.hpp" namespace "swgpar" nogil:
+    struct ElementBatch:
+        int64_t n
+        const double* stiffness
+        const double* gradient
+        const double* coords
+        const int32_t* ref_of
+        const double* turn
+        const int32_t* conn
+        const uint8_t* flip
+    int64_t assemble(const ElementBatch&, const double* u, double* residual, const int64_t* slot, double* values,
+                     double* energy)
+    int64_t stress(const ElementBatch&, const double* recovery, const double* u, double* out)
+    int64_t reference(int64_t n, const double* coords, double young, double poisson, double* stiffness,
+                      double* recovery, double* gradient, double* volume)
+
+
+class ReferenceElements(NamedTuple):
+    """Matrices of undeformed elements, shared by all congruent ones.
+
+    stiffness : (n, 24, 24) N/mm;  recovery : (n, 48, 24) MPa/mm, row 6 * node + component
+    gradient : (n, 8, 3) 1/mm, at the centre;  coords : (n, 8, 3) mm;  volume : (n,) mm^3
+    """
+
+    stiffness: np.ndarray
+    recovery: np.ndarray
+    gradient: np.ndarray
+    coords: np.ndarray
+    volume: np.ndarray
+
+
+def reference_elements(coords, double young, double poisson):
+    """Matrices of C3D8I-type hexahedra.
+
+    coords : (n, 8, 3) mm, VTK node order;  young : MPa;  poisson : below 0.5
+    Raises ValueError naming the first element with a non-positive Jacobian.
+    """
+    cdef double[:, :, ::1] x = np.ascontiguousarray(coords, dtype=np.float64)
+    if x.shape[1] != 8 or x.shape[2] != 3:
+        raise ValueError("reference_elements: coords must have shape (n, 8, 3)")
+    cdef int64_t n = x.shape[0], bad
+    out = ReferenceElements(np.empty((n, 24, 24)), np.empty((n, 48, 24)), np.empty((n, 8, 3)), np.asarray(x), np.empty(n))
+    if n == 0:
+        return out
+    cdef double[:, :, ::1] k = out.stiffness, s = out.recovery, g = out.gradient
+    cdef double[::1] v = out.volume
+    with nogil:
+        bad = reference(n, &x[0, 0, 0], young, poisson, &k[0, 0, 0], &s[0, 0, 0], &g[0, 0, 0], &v[0])
+    if bad >= 0:
+        raise ValueError(f"element {bad} has a non-positive Jacobian determinant")
+    return out
+
+
+cdef ElementBatch batch(const double[:, :, ::1] stiffness, const double[:, :, ::1] gradient,
+                        const double[:, :, ::1] coords, const int32_t[::1] ref_of, const double[:, ::1] turn,
+                        const int32_t[:, ::1] conn, const uint8_t[:, ::1] flip) except *:
+    if not (turn.shape[0] == conn.shape[0] == flip.shape[0] == ref_of.shape[0] and conn.shape[1] == 8
+            and flip.shape[1] == 8 and turn.shape[1] == 2):
+        raise ValueError("element arrays: shapes disagree")
+    return ElementBatch(conn.shape[0], &stiffness[0, 0, 0], &gradient[0, 0, 0], &coords[0, 0, 0], &ref_of[0],
+                        &turn[0, 0], &conn[0, 0], &flip[0, 0])
+
+
+def assemble_elements(ref, const int32_t[::1] ref_of, const double[:, ::1] turn, const int32_t[:, ::1] conn,
+                      const uint8_t[:, ::1] flip, const double[:, ::1] u, residual, slot, values):
+    """Add forces and tangent blocks of corotated elements; returns their strain energy (N mm).
+
+    ref_of : (n,) row of `ref`;  turn : (n, 2) cosine, sine of the sector's turn
+    conn : (n, 8) local nodes, -1 fixed;  flip : (n, 8), 1 for images under the half turn
+    u : (n_local, 3) mm;  residual : (n_local, 3) N or None
+    slot : (n, 64) int64 block of each node pair, -1 to skip;  values : (n_blocks, 3, 3) N/mm, entry (k, l) of
+    block p at values[p, l, k]; both None to skip the tangent
+    """
+    cdef int64_t bad
+    cdef double energy = 0.0
+    if conn.shape[0] == 0:
+        return 0.0
+    cdef ElementBatch e = batch(ref.stiffness, ref.gradient, ref.coords, ref_of, turn, conn, flip)
+    cdef double[:, ::1] r
+    cdef double[:, :, ::1] v
+    cdef const int64_t[:, ::1] p
+    cdef double* pr = NULL
+    cdef double* pv = NULL
+    cdef const int64_t* pp = NULL
+    if residual is not None:
+        r = residual
+        pr = &r[0, 0]
+    if values is not None:
+        v, p = values, slot
+        if p.shape[0] != e.n or p.shape[1] != 64:
+            raise ValueError("assemble_elements: slot must have shape (n, 64)")
+        pv, pp = &v[0, 0, 0], &p[0, 0]
+    with nogil:
+        bad = assemble(e, &u[0, 0], pr, pp, pv, &energy)
+    if bad >= 0:
+        raise FloatingPointError(f"element {bad} has collapsed")
+    return energy
+
+
+def recover_stress(ref, const int32_t[::1] ref_of, const double[:, ::1] turn, const int32_t[:, ::1] conn,
+                   const uint8_t[:, ::1] flip, const double[:, ::1] u):
+    """Stress extrapolated to the nodes of each element; (n, 8, 6) MPa, global axes, xx yy zz xy yz zx."""
+    cdef int64_t bad
+    out = np.empty((conn.shape[0], 8, 6))
+    if conn.shape[0] == 0:
+        return out
+    cdef ElementBatch e = batch(ref.stiffness, ref.gradient, ref.coords, ref_of, turn, conn, flip)
+    cdef double[:, :, ::1] o = out, s = ref.recovery
+    with nogil:
+        bad = stress(e, &s[0, 0, 0], &u[0, 0], &o[0, 0, 0])
+    if bad >= 0:
+        raise FloatingPointError(f"element {bad} has collapsed")
+    return out

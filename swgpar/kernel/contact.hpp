@@ -1,0 +1,224 @@
+// Contact of deformable tooth flanks by face quadrature, and block assembly of contact terms.
+//
+// The master flank is the exact tooth profile plus the finite-element displacement: between two profile
+// nodes the curve is the cubic Hermite interpolant of their exact points and tangents, so that its normal
+// is continuous; the displacement is bilinear over the facet. A point of the slave surface is projected
+// onto it orthogonally; the gap's first and second variations are exact for that surface.
+#pragma once
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace swgpar {
+
+using Vec2 = Eigen::Vector2d;
+using Vec3 = Eigen::Vector3d;
+using Mat2 = Eigen::Matrix2d;
+using Mat3 = Eigen::Matrix3d;
+
+// Vector of local node `node` (-1: fixed), turned by 180 degrees about z when it is an image.
+inline Vec3 nodal(const double* u, std::int32_t node, std::uint8_t flip) {
+  if (node < 0) return Vec3::Zero();
+  const double s = flip ? -1.0 : 1.0;
+  return Vec3(s * u[3 * node], s * u[3 * node + 1], u[3 * node + 2]);
+}
+
+inline void add_nodal(double* r, std::int32_t node, std::uint8_t flip, const Vec3& f) {
+  if (node < 0) return;
+  const double s = flip ? -1.0 : 1.0;
+  r[3 * node] += s * f[0];
+  r[3 * node + 1] += s * f[1];
+  r[3 * node + 2] += f[2];
+}
+
+// Rows of the upper triangle of the blocked matrix that this rank owns; blocks are column-major.
+struct BlockRows {
+  const std::int64_t* start;    // (n_own + 1)
+  const std::int32_t* column;   // global block columns, ascending in a row
+  double* values;               // (n_blocks, 9)
+  const std::int32_t* number;   // (n_local) global number of a local node
+  std::int64_t n_own;
+
+  // Adds a block; false when the pattern lacks it.
+  bool add(std::int32_t row, std::uint8_t row_flip, std::int32_t col, std::uint8_t col_flip,
+           const Mat3& block) const {
+    if (row < 0 || col < 0 || row >= n_own) return true;
+    const std::int32_t wanted = number[col];
+    if (wanted < number[row]) return true;
+    std::int64_t lo = start[row], hi = start[row + 1];
+    while (lo < hi) {
+      const std::int64_t mid = (lo + hi) / 2;
+      if (column[mid] < wanted) lo = mid + 1; else hi = mid;
+    }
+    if (lo == start[row + 1] || column[lo] != wanted) return false;
+    Eigen::Map<Mat3> target(values + 9 * lo);
+    if (row_flip == col_flip) {
+      target += block;
+    } else {  // diag(-1,-1,1) on one side only
+      target.topLeftCorner<2, 2>() -= block.topLeftCorner<2, 2>();
+      target(2, 2) += block(2, 2);
+      const double rs = row_flip ? -1.0 : 1.0, cs = col_flip ? -1.0 : 1.0;
+      target.block<2, 1>(0, 2) += rs * block.block<2, 1>(0, 2);
+      target.block<1, 2>(2, 0) += cs * block.block<1, 2>(2, 0);
+      return true;
+    }
+    if (row_flip) {  // both flipped: only the mixed components change sign
+      target.block<2, 1>(0, 2) -= 2.0 * block.block<2, 1>(0, 2);
+      target.block<1, 2>(2, 0) -= 2.0 * block.block<1, 2>(2, 0);
+    }
+    return true;
+  }
+};
+
+// One flank of the master body: a grid of (n_s + 1) x (n_z + 1) nodes.
+struct Patch {
+  int n_s, n_z;
+  const double* s;           // (n_s + 1) arc length
+  const double* z;           // (n_z + 1)
+  const double* point;       // (n_s + 1, 2) exact profile, sector frame
+  const double* tangent;     // (n_s + 1, 2) unit
+  double orientation;        // sign that makes x_s cross x_z point out of the material
+  double c, si;              // cosine and sine of the tooth's turn
+  const std::int32_t* conn;  // (n_s + 1, n_z + 1)
+  const std::uint8_t* flip;
+
+  std::int32_t node(int i, int j) const { return conn[i * (n_z + 1) + j]; }
+  std::uint8_t image(int i, int j) const { return flip[i * (n_z + 1) + j]; }
+  Vec2 turned(const double* p) const { return Vec2(c * p[0] - si * p[1], si * p[0] + c * p[1]); }
+};
+
+// Foot point on a patch and what the variations of the gap need there.
+struct Foot {
+  int i = 0, j = 0;
+  double eta = 0.5, zeta = 0.5, gap = 0.0;
+  Vec3 x, x_eta, x_zeta, x_etaeta, x_etazeta, normal;
+  bool found = false;
+};
+
+inline void evaluate(const Patch& p, const double* u, Foot& f) {
+  const int i = f.i, j = f.j;
+  const double t = f.eta, t2 = t * t, t3 = t2 * t, len = p.s[i + 1] - p.s[i];
+  const Vec2 a = p.turned(p.point + 2 * i), b = p.turned(p.point + 2 * i + 2);
+  const Vec2 ta = len * p.turned(p.tangent + 2 * i), tb = len * p.turned(p.tangent + 2 * i + 2);
+  const Vec2 x = (2 * t3 - 3 * t2 + 1) * a + (t3 - 2 * t2 + t) * ta + (3 * t2 - 2 * t3) * b + (t3 - t2) * tb;
+  const Vec2 d = (6 * t2 - 6 * t) * (a - b) + (3 * t2 - 4 * t + 1) * ta + (3 * t2 - 2 * t) * tb;
+  const Vec2 dd = (12 * t - 6) * (a - b) + (6 * t - 4) * ta + (6 * t - 2) * tb;
+  const double z0 = p.z[j], dz = p.z[j + 1] - z0, e = f.eta, q = f.zeta;
+  const Vec3 u00 = nodal(u, p.node(i, j), p.image(i, j)), u10 = nodal(u, p.node(i + 1, j), p.image(i + 1, j));
+  const Vec3 u01 = nodal(u, p.node(i, j + 1), p.image(i, j + 1));
+  const Vec3 u11 = nodal(u, p.node(i + 1, j + 1), p.image(i + 1, j + 1));
+  f.x = Vec3(x[0], x[1], z0 + q * dz) + (1 - e) * (1 - q) * u00 + e * (1 - q) * u10 + (1 - e) * q * u01 + e * q * u11;
+  f.x_eta = Vec3(d[0], d[1], 0) + (1 - q) * (u10 - u00) + q * (u11 - u01);
+  f.x_zeta = Vec3(0, 0, dz) + (1 - e) * (u01 - u00) + e * (u11 - u10);
+  f.x_etaeta = Vec3(dd[0], dd[1], 0);
+  f.x_etazeta = u00 - u10 - u01 + u11;
+}
+
+// Orthogonal projection of a point onto a patch. Not found: it lies beside the flank.
+inline Foot project(const Patch& p, const double* u, const Vec3& xs) {
+  constexpr double kOverlap = 0.02;  // a facet's parameters may exceed it by this before the next one is taken
+  constexpr double kEnd = 0.5;       // straight continuation past the ends of the face width, in facets
+  Foot f;
+  int j = 0;
+  while (j < p.n_z - 1 && p.z[j + 1] < xs[2]) ++j;
+  double best = 1e300;
+  int row = 0;
+  for (int i = 0; i <= p.n_s; ++i) {
+    const Vec2 x = p.turned(p.point + 2 * i);
+    const Vec3 d = nodal(u, p.node(i, j), p.image(i, j));
+    const double dist = (Vec2(xs[0], xs[1]) - x - d.head<2>()).squaredNorm();
+    if (dist < best) best = dist, row = i;
+  }
+  f.i = std::min(row, p.n_s - 1);
+  f.eta = row == f.i ? 0.0 : 1.0;
+  f.j = j;
+  f.zeta = (xs[2] - p.z[j]) / (p.z[j + 1] - p.z[j]);
+  if (f.zeta < -kEnd || f.zeta > 1 + kEnd) return f;
+  for (int it = 0; it < 40; ++it) {
+    evaluate(p, u, f);
+    const Vec3 dist = xs - f.x;
+    const Vec2 r(dist.dot(f.x_eta), dist.dot(f.x_zeta));
+    Mat2 metric, h;
+    metric << f.x_eta.dot(f.x_eta), f.x_eta.dot(f.x_zeta), f.x_eta.dot(f.x_zeta), f.x_zeta.dot(f.x_zeta);
+    h = metric;
+    h(0, 0) -= dist.dot(f.x_etaeta);
+    h(0, 1) -= dist.dot(f.x_etazeta);
+    h(1, 0) = h(0, 1);
+    if (h(0, 0) < 0.2 * metric(0, 0) || h.determinant() < 0.2 * metric.determinant()) h = metric;
+    Vec2 step = h.inverse() * r;
+    const double big = std::max(std::abs(step[0]), std::abs(step[1]));
+    if (big > 1.0) step /= big;
+    f.eta += step[0];
+    f.zeta += step[1];
+    const bool small = big < 1e-13;
+    if (f.eta > 1 + kOverlap && f.i < p.n_s - 1) {
+      f.eta = std::min(1.0, (f.eta - 1) * (p.s[f.i + 1] - p.s[f.i]) / (p.s[f.i + 2] - p.s[f.i + 1]));
+      ++f.i;
+    } else if (f.eta < -kOverlap && f.i > 0) {
+      f.eta = std::max(0.0, 1 + f.eta * (p.s[f.i + 1] - p.s[f.i]) / (p.s[f.i] - p.s[f.i - 1]));
+      --f.i;
+    } else if (f.zeta > 1 + kOverlap && f.j < p.n_z - 1) {
+      f.zeta = std::min(1.0, (f.zeta - 1) * (p.z[f.j + 1] - p.z[f.j]) / (p.z[f.j + 2] - p.z[f.j + 1]));
+      ++f.j;
+    } else if (f.zeta < -kOverlap && f.j > 0) {
+      f.zeta = std::max(0.0, 1 + f.zeta * (p.z[f.j + 1] - p.z[f.j]) / (p.z[f.j] - p.z[f.j - 1]));
+      --f.j;
+    } else if (small) {
+      f.found = true;
+      break;
+    }
+    if (f.eta < -1 || f.eta > 2 || f.zeta < -1 || f.zeta > 2) return f;  // beyond the end of the grid
+  }
+  f.found = f.found && f.eta >= -kOverlap && f.eta <= 1 + kOverlap && f.zeta >= -kEnd && f.zeta <= 1 + kEnd;
+  if (!f.found) return f;
+  evaluate(p, u, f);
+  f.normal = p.orientation * f.x_eta.cross(f.x_zeta).normalized();
+  f.gap = f.normal.dot(xs - f.x);
+  return f;
+}
+
+// Adds w (stiffness dg dg^T - pressure d2g) to the blocked rows; nodes: 4 slave, then 4 master.
+// With tau_a = x_a . (dx_s - dx_m), P_a = n . dx_m,a, A = x_a . x_b, B = n . x_ab, H = A - g B:
+//   d2g = -tau A^-1 B H^-1 tau - tau H^-1 P - P H^-1 tau - g P H^-1 P.
+inline int add_contact_tangent(const Foot& f, const double* shape, const std::int32_t* conn, const std::uint8_t* flip,
+                               double weight, double stiffness, double pressure, const BlockRows& rows) {
+  const double e = f.eta, q = f.zeta;
+  const double m[4] = {(1 - e) * (1 - q), e * (1 - q), (1 - e) * q, e * q};
+  const double me[4] = {-(1 - q), 1 - q, -q, q}, mz[4] = {-(1 - e), -e, 1 - e, e};
+  double c[8], d[8][2];
+  for (int a = 0; a < 4; ++a) {
+    c[a] = shape[a];
+    d[a][0] = d[a][1] = 0;
+    c[4 + a] = -m[a];
+    d[4 + a][0] = me[a];
+    d[4 + a][1] = mz[a];
+  }
+  Mat2 metric, b, h;
+  metric << f.x_eta.dot(f.x_eta), f.x_eta.dot(f.x_zeta), f.x_eta.dot(f.x_zeta), f.x_zeta.dot(f.x_zeta);
+  b << f.normal.dot(f.x_etaeta), f.normal.dot(f.x_etazeta), f.normal.dot(f.x_etazeta), 0;
+  h = (metric - f.gap * b).inverse();
+  const Mat2 w = metric.inverse() * b * h;
+  Eigen::Matrix<double, 3, 2> x;
+  x << f.x_eta, f.x_zeta;
+  const Mat3 nn = f.normal * f.normal.transpose();
+  const Mat3 curved = stiffness * nn + pressure * (x * w * x.transpose());
+  const Eigen::Matrix<double, 3, 2> xh = x * h;  // column b: sum_a x_a H^-1_ab
+  int missing = 0;
+  for (int k = 0; k < 8; ++k) {
+    if (conn[k] < 0 || conn[k] >= rows.n_own) continue;
+    for (int l = 0; l < 8; ++l) {
+      if (conn[l] < 0) continue;
+      Mat3 block = c[k] * c[l] * curved;
+      const Vec3 right = xh * Vec2(d[l][0], d[l][1]), left = xh * Vec2(d[k][0], d[k][1]);
+      block += pressure * (c[k] * right * f.normal.transpose() + c[l] * f.normal * left.transpose());
+      const double pp = Vec2(d[k][0], d[k][1]).dot(h * Vec2(d[l][0], d[l][1]));
+      block += pressure * f.gap * pp * nn;
+      if (!rows.add(conn[k], flip[k], conn[l], flip[l], weight * block)) ++missing;
+    }
+  }
+  return missing;
+}
+
+}  // namespace swgpar

@@ -1,0 +1,106 @@
+// Loops over contact faces and blocks: what the Cython layer calls.
+#pragma once
+
+#include "contact.hpp"
+
+namespace swgpar {
+
+struct FlankBatch {  // n_patch master flanks with the same grid
+  int n_patch, n_s, n_z;
+  const double* s;
+  const double* z;
+  const double* point;        // (n_patch, n_s + 1, 2)
+  const double* tangent;      // (n_patch, n_s + 1, 2)
+  const double* orientation;  // (n_patch)
+  const double* turn;         // (n_patch, 2) cosine, sine
+  const std::int32_t* conn;   // (n_patch, n_s + 1, n_z + 1)
+  const std::uint8_t* flip;
+
+  Patch patch(int k) const {
+    const std::int64_t row = static_cast<std::int64_t>(k) * (n_s + 1);
+    return Patch{n_s, n_z, s, z, point + 2 * row, tangent + 2 * row, orientation[k], turn[2 * k], turn[2 * k + 1],
+                 conn + row * (n_z + 1), flip + row * (n_z + 1)};
+  }
+};
+
+struct FaceBatch {  // slave faces and their quadrature points
+  std::int64_t n_face;
+  int n_q;
+  const std::int32_t* conn;  // (n_face, 4)
+  const std::uint8_t* flip;
+  const double* coords;      // (n_face, 4, 3) undeformed, turned into place
+  const double* normal;      // (n_face, 3) undeformed outward normal
+  const double* shape;       // (n_q, 4)
+  const double* weight;      // (n_face, n_q) area
+  const double* offset;      // (n_face, n_q) exact surface above the facet
+  const std::int32_t* patch; // (n_face) master patch
+};
+
+inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& faces, const double* u,
+                                  const double* multiplier, double penalty, double opening, double reach,
+                                  double limit, double* residual, const std::int64_t* start, const std::int32_t* column,
+                                  double* values, const std::int32_t* number, std::int64_t n_own, double* gap,
+                                  double* pressure, std::int32_t* facet) {
+  const BlockRows rows{start, column, values, number, n_own};
+  std::int64_t missing = 0;
+  for (std::int64_t k = 0; k < faces.n_face; ++k) {
+    const Patch patch = patches.patch(faces.patch[k]);
+    const Vec3 face_normal(faces.normal[3 * k], faces.normal[3 * k + 1], faces.normal[3 * k + 2]);
+    std::int32_t conn[8];
+    std::uint8_t flip[8];
+    Vec3 corner[4];
+    for (int a = 0; a < 4; ++a) {
+      conn[a] = faces.conn[4 * k + a];
+      flip[a] = faces.flip[4 * k + a];
+      const double* c = faces.coords + 12 * k + 3 * a;
+      corner[a] = Vec3(c[0], c[1], c[2]) + nodal(u, conn[a], flip[a]);
+    }
+    for (int q = 0; q < faces.n_q; ++q) {
+      const double* shape = faces.shape + 4 * q;
+      const std::int64_t kq = k * faces.n_q + q;
+      const Vec3 xs = shape[0] * corner[0] + shape[1] * corner[1] + shape[2] * corner[2] + shape[3] * corner[3];
+      const Foot f = project(patch, u, xs);
+      // a surface seen from behind, or across a tooth, is not the one this point can touch
+      if (!f.found || f.normal.dot(face_normal) > -0.3 || std::abs(f.gap) > reach) continue;
+      facet[2 * kq] = f.i;
+      facet[2 * kq + 1] = f.j;
+      gap[kq] = f.gap - faces.offset[kq] + opening;
+      const double p = multiplier[kq] - penalty * gap[kq];
+      if (p <= 0.0) continue;
+      pressure[kq] = p;
+      const double e = f.eta, z = f.zeta, w = faces.weight[kq];
+      const double m[4] = {(1 - e) * (1 - z), e * (1 - z), (1 - e) * z, e * z};
+      const int di[4] = {0, 1, 0, 1}, dj[4] = {0, 0, 1, 1};
+      for (int a = 0; a < 4; ++a) {
+        conn[4 + a] = patch.node(f.i + di[a], f.j + dj[a]);
+        flip[4 + a] = patch.image(f.i + di[a], f.j + dj[a]);
+      }
+      if (residual != nullptr) {
+        for (int a = 0; a < 4; ++a) {
+          add_nodal(residual, conn[a], flip[a], -p * w * shape[a] * f.normal);
+          add_nodal(residual, conn[4 + a], flip[4 + a], p * w * m[a] * f.normal);
+        }
+      }
+      if (values != nullptr) missing += add_contact_tangent(f, shape, conn, flip, w, penalty, std::min(p, limit), rows);
+    }
+  }
+  return missing;
+}
+
+inline std::int64_t add_blocks(std::int64_t n, int m, const std::int32_t* conn, const std::uint8_t* flip,
+                               const double* blocks, const std::int64_t* start, const std::int32_t* column,
+                               double* values, const std::int32_t* number, std::int64_t n_own) {
+  const BlockRows rows{start, column, values, number, n_own};
+  std::int64_t missing = 0;
+  for (std::int64_t k = 0; k < n; ++k) {
+    for (int a = 0; a < m; ++a) {
+      for (int b = 0; b < m; ++b) {
+        const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> block(blocks + 9 * ((k * m + a) * m + b));
+        if (!rows.add(conn[k * m + a], flip[k * m + a], conn[k * m + b], flip[k * m + b], block)) ++missing;
+      }
+    }
+  }
+  return missing;
+}
+
+}  // namespace swgpar

@@ -1,0 +1,139 @@
+"""Logging that knows about ranks: rank 0 speaks on the terminal and in run.log, the others are silent.
+
+Progress is one line per increment, in the log file as on a terminal; a terminal shows a bar below it.
+`Phases` adds up wall seconds by phase name.
+"""
+
+from __future__ import annotations
+
+import logging
+import sys
+import time
+from collections import defaultdict
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from mpi4py import MPI
+from rich.console import Console
+from rich.logging import RichHandler
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+logger = logging.getLogger("swgpar")
+console = Console(file=sys.stdout, highlight=False, soft_wrap=True)
+
+
+class _RunLog(logging.FileHandler):
+    """Appends to run.log; a log file that cannot be written must not stop a run or print a traceback."""
+
+    def handleError(self, record: logging.LogRecord) -> None:  # noqa: N802 (name given by logging)
+        self.setLevel(logging.CRITICAL + 1)
+
+
+def start(comm: MPI.Comm, *, level: int = logging.INFO) -> logging.Logger:
+    """Send the log of rank 0 to the terminal; further calls change nothing.
+
+    Parameters
+    ----------
+    comm : communicator of the run
+    level : smallest level that is shown
+    """
+    if logger.handlers:
+        return logger
+    logger.propagate = False
+    logger.setLevel(level)
+    if comm.rank != 0:
+        logger.addHandler(logging.NullHandler())
+        logger.setLevel(logging.CRITICAL + 1)
+    elif console.is_terminal:
+        logger.addHandler(RichHandler(console=console, show_path=False, show_level=False, markup=False,
+                                      log_time_format="%H:%M:%S", omit_repeated_times=False))
+    else:
+        plain = logging.StreamHandler(sys.stdout)
+        plain.setFormatter(logging.Formatter("%(asctime)s  %(message)s", "%H:%M:%S"))
+        logger.addHandler(plain)
+    return logger
+
+
+def to_file(path: Path, comm: MPI.Comm) -> None:
+    """Append the log of rank 0 to a file as well; an earlier log file of this process is closed."""
+    start(comm)
+    if comm.rank != 0:
+        return
+    for handler in [h for h in logger.handlers if isinstance(h, _RunLog)]:
+        logger.removeHandler(handler)
+        handler.close()
+    handler = _RunLog(path, mode="a", encoding="utf-8")
+    handler.setFormatter(logging.Formatter("%(asctime)s  %(levelname)-7s  %(message)s"))
+    logger.addHandler(handler)
+
+
+class IncrementProgress:
+    """One line per increment, and a progress bar when rank 0 has a terminal.
+
+    Parameters
+    ----------
+    comm : communicator of the run
+    total : number of increments of the whole run
+    done : increments that a restart finds finished
+    """
+
+    def __init__(self, comm: MPI.Comm, total: int, *, done: int = 0) -> None:
+        self._bar: Progress | None = None
+        self._total, self._count = total, done
+        if comm.rank == 0 and console.is_terminal:
+            self._bar = Progress(TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(),
+                                 TimeElapsedColumn(), TimeRemainingColumn(), console=console, transient=True)
+            self._task = self._bar.add_task("start", total=total, completed=done)
+
+    def __enter__(self) -> IncrementProgress:
+        if self._bar:
+            self._bar.start()
+        return self
+
+    def __exit__(self, *exc_info: object) -> None:
+        if self._bar:
+            self._bar.stop()
+
+    def newton(self, step: str, angle_deg: float, iteration: int, residual: float) -> None:
+        """Report one Newton iteration: relative residual; on the bar only, and in the log at DEBUG level."""
+        if self._bar:
+            self._bar.update(self._task, description=f"{step} {angle_deg:.2f}° Newton {iteration} residual {residual:.1e}")
+        logger.debug("   %s %.3f deg  Newton %d  residual %.3e", step, angle_deg, iteration, residual)
+
+    def increment(self, step: str, angle_deg: float, iterations: int, residual: float, seconds: float) -> None:
+        """Report a converged increment."""
+        self._count += 1
+        logger.info("%3d/%d  %-8s %8.3f deg  %2d Newton iterations  residual %.1e  %7.1f s",
+                    self._count, self._total, step, angle_deg, iterations, residual, seconds)
+        if self._bar:
+            self._bar.update(self._task, completed=self._count)
+
+
+class Phases:
+    """Wall seconds added up by phase name.
+
+    Phases may be nested; each then counts its own full time, so that only phases of the same depth add up.
+    """
+
+    def __init__(self) -> None:
+        self.seconds: dict[str, float] = defaultdict(float)
+        self.calls: dict[str, int] = defaultdict(int)
+
+    @contextmanager
+    def __call__(self, name: str) -> Iterator[None]:
+        """Time what is inside the `with` block."""
+        begin = time.perf_counter()
+        try:
+            yield
+        finally:
+            self.seconds[name] += time.perf_counter() - begin
+            self.calls[name] += 1
+
+    def slowest(self, comm: MPI.Comm) -> dict[str, float]:
+        """Seconds by phase on the slowest rank of each; collective."""
+        merged: dict[str, float] = {}
+        for seconds in comm.allgather(dict(self.seconds)):
+            for name, value in seconds.items():
+                merged[name] = max(merged.get(name, 0.0), value)
+        return merged

@@ -1,0 +1,179 @@
+"""Full drives in the files of other programs: VTU (ParaView), MSH (gmsh), INP (Abaqus, CalculiX)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import meshio
+import numpy as np
+
+from swgpar.errors import InputError, OutputError
+from swgpar.meshing.quality import hex_quality, hex_volumes
+from swgpar.meshing.sector import Floats, Ints, SectorMesh
+
+if TYPE_CHECKING:
+    from swgpar.design import DriveDesign
+
+FORMATS = ("vtu", "msh", "inp")
+
+
+def sector_numbers(mesh: SectorMesh) -> Ints:
+    """Return the number (n_sectors, n_node) of every sector's nodes in the body; shared nodes have one."""
+    own = np.ones(len(mesh.coords), dtype=bool)
+    own[mesh.ccw_nodes] = False
+    place = np.cumsum(own) - 1
+    n_own = int(own.sum())
+    numbers = place + np.arange(mesh.n_sectors)[:, None] * n_own
+    numbers[:, mesh.ccw_nodes] = np.roll(numbers, -1, axis=0)[:, mesh.cw_nodes]
+    return numbers.astype(np.int32)
+
+
+def whole_body(mesh: SectorMesh) -> tuple[Floats, Ints]:
+    """Return the nodes (n, 3), mm, and hexahedra (m, 8) of all sectors, numbered as by `sector_numbers`."""
+    numbers = sector_numbers(mesh)
+    angle = mesh.phase + 2.0 * np.pi / mesh.n_sectors * np.arange(mesh.n_sectors)[:, None]
+    x, y, z = mesh.coords.T
+    coords = np.empty((int(numbers.max()) + 1, 3))
+    coords[numbers, 0] = x * np.cos(angle) - y * np.sin(angle)
+    coords[numbers, 1] = x * np.sin(angle) + y * np.cos(angle)
+    coords[numbers, 2] = z
+    return coords, numbers[:, mesh.hexes].reshape(-1, 8)
+
+
+def named_nodes(mesh: SectorMesh) -> dict[str, Ints]:
+    """Return node sets of the whole body: its surfaces, its flanks and its node sets."""
+    sets = {name: np.unique(faces) for name, faces in mesh.faces.items()} | dict(mesh.node_sets)
+    sets["flanks"] = np.unique(np.concatenate([flank.nodes.ravel() for flank in mesh.flanks]))
+    numbers = sector_numbers(mesh)
+    return {f"{mesh.body}_{name}": np.unique(numbers[:, nodes]) for name, nodes in sets.items()}
+
+
+def whole_drive(meshes: dict[str, SectorMesh]) -> meshio.Mesh:
+    """Return all bodies as one mesh; they are its cell sets and numbered by the cell data ``body``."""
+    points, cells, body, point_sets = [], [], [], {}
+    offset = 0
+    for number, mesh in enumerate(meshes.values()):
+        coords, hexes = whole_body(mesh)
+        points.append(coords)
+        cells.append(("hexahedron", hexes + offset))
+        body.append(np.full(len(hexes), number, dtype=np.int32))
+        point_sets |= {name: nodes + offset for name, nodes in named_nodes(mesh).items()}
+        offset += len(coords)
+    empty = np.empty(0, dtype=np.int64)
+    cell_sets = {
+        mesh.body: [np.arange(len(block)) if k == number else empty for k, block in enumerate(body)]
+        for number, mesh in enumerate(meshes.values())
+    }
+    return meshio.Mesh(
+        np.concatenate(points), cells, cell_data={"body": body}, point_sets=point_sets, cell_sets=cell_sets
+    )
+
+
+def _as_vtu(drive: meshio.Mesh) -> meshio.Mesh:
+    """Return the drive with its node sets as point data, since VTU has no sets."""
+    marks = {}
+    for name, nodes in drive.point_sets.items():
+        marks[name] = np.zeros(len(drive.points), dtype=np.uint8)
+        marks[name][nodes] = 1
+    return meshio.Mesh(drive.points, drive.cells, point_data=marks, cell_data=dict(drive.cell_data))
+
+
+def _as_msh(drive: meshio.Mesh) -> meshio.Mesh:
+    """Return the drive with its bodies as named physical volumes."""
+    tags = [block + 1 for block in drive.cell_data["body"]]
+    names = {body: np.array([number + 1, 3]) for number, body in enumerate(drive.cell_sets)}
+    data = {"gmsh:physical": tags, "gmsh:geometrical": [tag.copy() for tag in tags]}
+    return meshio.Mesh(drive.points, drive.cells, cell_data=data, field_data=names)
+
+
+def _lines(numbers: Ints) -> Iterator[str]:
+    """Yield the 1-based `numbers`, 16 to a line."""
+    for start in range(0, len(numbers), 16):
+        yield ", ".join(str(n) for n in numbers[start : start + 16] + 1)
+
+
+def _write_inp(path: Path, drive: meshio.Mesh) -> None:
+    """Write the drive with C3D8I elements, a type that meshio's own writer of this format does not offer."""
+    with path.open("w", encoding="ascii") as file:
+        file.write("*HEADING\nstrain wave gear drive; lengths as in the design file\n*NODE, NSET=ALL_NODES\n")
+        numbers = np.arange(1, len(drive.points) + 1)
+        # CalculiX reads the first 20 characters of a field
+        np.savetxt(file, np.column_stack((numbers, drive.points)), fmt="%d, %.12e, %.12e, %.12e")
+        first = 1
+        for body, block in zip(drive.cell_sets, drive.cells, strict=True):
+            file.write(f"*ELEMENT, TYPE=C3D8I, ELSET={body.upper()}\n")
+            table = np.column_stack((np.arange(first, first + len(block.data)), block.data + 1))
+            np.savetxt(file, table, fmt="%d", delimiter=", ")
+            first += len(block.data)
+        for name, nodes in drive.point_sets.items():
+            file.write(f"*NSET, NSET={name.upper()}\n")
+            file.writelines(f"{line}\n" for line in _lines(nodes))
+
+
+def write_mesh(
+    design: DriveDesign,
+    meshes: dict[str, SectorMesh],
+    directory: str | Path,
+    formats: Sequence[str] = FORMATS,
+) -> list[Path]:
+    """Write the full drive, all sectors of all bodies, as ``drive_120_122.vtu``, ``.msh`` and ``.inp``.
+
+    Parameters
+    ----------
+    design : DriveDesign
+        Gives the tooth numbers in the names of the files.
+    meshes : dict of SectorMesh
+    directory : str or Path
+        Made when it does not exist.
+    formats : sequence of str
+        Any of ``vtu``, ``msh``, ``inp``.
+
+    Returns
+    -------
+    list of Path
+        The files, in the order of `formats`.
+    """
+    for name in formats:
+        if name not in FORMATS:
+            raise InputError(f'mesh format = "{name}" is not available: allowed {", ".join(FORMATS)}')
+    drive = whole_drive(meshes)
+    folder = Path(directory)
+    written = []
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name in formats:
+            path = folder / f"drive_{design.drive.teeth_fs}_{design.drive.teeth_rg}.{name}"
+            if name == "vtu":
+                meshio.vtu.write(path, _as_vtu(drive), compression="zlib")
+            elif name == "msh":
+                meshio.gmsh.write(path, _as_msh(drive), fmt_version="2.2", binary=True)
+            else:
+                _write_inp(path, drive)
+            written.append(path)
+    except OSError as error:
+        raise OutputError(f"the mesh cannot be written to {folder}: {error.strerror or error}") from None
+    return written
+
+
+def mesh_report(meshes: dict[str, SectorMesh]) -> dict[str, dict[str, float]]:
+    """Return counts and worst quality of every body.
+
+    Returns
+    -------
+    dict of dict
+        For each body ``nodes`` and ``elements`` (all sectors), ``sector_elements``, ``volume`` (mm³) and the
+        keys of `swgpar.meshing.quality.hex_quality`.
+    """
+    report = {}
+    for body, mesh in meshes.items():
+        own = len(mesh.coords) - len(mesh.ccw_nodes)
+        report[body] = {
+            "nodes": own * mesh.n_sectors,
+            "elements": len(mesh.hexes) * mesh.n_sectors,
+            "sector_elements": len(mesh.hexes),
+            "volume": float(hex_volumes(mesh.coords, mesh.hexes).sum()) * mesh.n_sectors,
+            **hex_quality(mesh.coords, mesh.hexes),
+        }
+    return report

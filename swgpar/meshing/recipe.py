@@ -1,0 +1,83 @@
+"""The mesh recipe: how many elements go where."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from swgpar.design_file import read_toml, validate
+from swgpar.errors import InputError
+from swgpar.quantities import Section, quantity, show
+
+
+class ToothRecipe(Section):
+    """Elements of half a tooth cross-section of one gear, and of its rim."""
+
+    tip: int = quantity(
+        text="elements over the tip, from the centre of the top land to the end of the rounded tip edge",
+        ge=2,
+        le=40,
+    )
+    layers: int = quantity(1, text="layers of elements directly below the flank", ge=1, le=20)
+    layer_ratio: float = quantity(
+        1.0,
+        text="thickness of each of these layers over that of the next one nearer the flank",
+        ge=1.0,
+        le=3.0,
+    )
+    flank: int = quantity(
+        text="elements along the flank, from the tip edge to the split in the root arc", ge=1, le=400
+    )
+    root: int = quantity(
+        text="elements from the split in the root arc to the middle of the root", ge=2, le=80
+    )
+    under: int = quantity(text="layers of elements between the root and the lower rim", ge=1, le=40)
+    rim: int = quantity(
+        text="layers of elements in the lower rim (flexible spline: through the cup)", ge=1, le=40
+    )
+
+
+class FaceWidthRecipe(Section):
+    """Elements along the face width."""
+
+    elements: int = quantity(text="elements along the face width", ge=2, le=400)
+    end_ratio: float = quantity(
+        1.0, text="length of the middle elements over that of the elements at both ends", ge=1.0, le=10.0
+    )
+
+
+class CupRecipe(Section):
+    """Elements along the cup's wall, from the back of the teeth to the bore."""
+
+    cylinder: int = quantity(text="elements along the cylinder", ge=1, le=400)
+    fillet: int = quantity(text="elements along the fillet", ge=1, le=100)
+    closed_end: int = quantity(text="elements along the closed end", ge=1, le=400)
+    end_ratio: float = quantity(
+        1.0,
+        text="length of the middle elements of cylinder and closed end over those at their ends",
+        ge=1.0,
+        le=20.0,
+    )
+
+
+class MeshRecipe(Section):
+    """Element counts and gradings of a drive's mesh."""
+
+    flexible_spline: ToothRecipe
+    ring_gear: ToothRecipe
+    face_width: FaceWidthRecipe
+    cup: CupRecipe
+
+
+def load_recipe(path: str | Path) -> MeshRecipe:
+    """Read a mesh recipe (TOML); every failure is an `InputError` of one sentence."""
+    table = read_toml(path)
+    for key, value in table.items():
+        if key not in MeshRecipe.model_fields:
+            allowed = ", ".join(MeshRecipe.model_fields)
+            raise InputError(
+                f"{path}: {key} = {show(value)} is not a section of a mesh recipe: allowed {allowed}"
+            )
+    try:
+        return validate(MeshRecipe, table)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None

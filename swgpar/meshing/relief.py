@@ -1,0 +1,62 @@
+"""Crowning in the mesh: the flank's nodes move inwards, the inside of the tooth follows smoothly."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.linalg import splu
+
+from swgpar.meshing.sector import Floats
+from swgpar.meshing.tooth import CrossSection
+from swgpar.profiles.curve import ToothProfile
+
+# dN/dxi of the bilinear quadrilateral at the 2x2 Gauss points: (point, node, direction)
+_CORNERS = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)], dtype=float)
+_POINTS = _CORNERS / np.sqrt(3.0)
+_GRADIENT = 0.25 * np.stack(
+    (
+        _CORNERS[:, 0] * (1.0 + _POINTS[:, None, 1] * _CORNERS[:, 1]),
+        _CORNERS[:, 1] * (1.0 + _POINTS[:, None, 0] * _CORNERS[:, 0]),
+    ),
+    axis=-1,
+)
+
+
+def boundary_nodes(section: CrossSection) -> np.ndarray:
+    """Return the nodes (n,) on the boundary of the cross-section."""
+    edges = np.sort(
+        np.stack((section.quads, np.roll(section.quads, -1, axis=1)), axis=-1).reshape(-1, 2), axis=1
+    )
+    unique, times = np.unique(edges, axis=0, return_counts=True)
+    return np.unique(unique[times == 1])
+
+
+def laplacian(section: CrossSection) -> coo_matrix:
+    """Return the finite-element Laplace matrix (n_node, n_node) of the cross-section."""
+    x = section.coords[section.quads]
+    jacobian = np.einsum("eai,qak->eqik", x, _GRADIENT)
+    gradient = np.einsum("qak,eqki->eqai", _GRADIENT, np.linalg.inv(jacobian))
+    local = np.einsum("eqai,eqbi,eq->eab", gradient, gradient, np.linalg.det(jacobian))
+    rows = np.repeat(section.quads, 4, axis=1).ravel()
+    columns = np.tile(section.quads, (1, 4)).ravel()
+    n = len(section.coords)
+    return coo_matrix((local.ravel(), (rows, columns)), shape=(n, n)).tocsc()
+
+
+def relief_field(section: CrossSection, profile: ToothProfile) -> Floats:
+    """Return the displacement (n_node, 2) of the cross-section per unit of crowning.
+
+    The flanks move by the crowning weight against their normal; the other boundaries and the rim stay, and
+    the displacement in between is harmonic.
+    """
+    field = np.zeros((len(section.coords), 2))
+    move = -profile.crowning_weight(section.s)[:, None] * profile.normal(section.s)
+    field[section.flank] = move
+    field[section.mirror[section.flank]] = move * (-1.0, 1.0)
+    given = section.below_root.copy()
+    given[boundary_nodes(section)] = True
+    free = np.flatnonzero(~given)
+    if free.size:
+        rows = laplacian(section)[free]
+        field[free] = splu(rows[:, free].tocsc()).solve(-(rows[:, given] @ field[given]))
+    return field

@@ -1,0 +1,79 @@
+"""One tooth sector of a body: the finite elements from which the whole body is made by rotation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from swgpar.profiles.curve import ToothProfile
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
+
+@dataclass(frozen=True)
+class FlankGrid:
+    """Structured contact surface of one flank of sector 0.
+
+    Attributes
+    ----------
+    nodes : (n_s + 1, n_z + 1) int32
+        Local node numbers: row i at the arc length s[i], column j at z[j].
+    s : (n_s + 1,) float64, mm
+        Arc lengths on the tooth profile, from T (0) to R (the length of the profile).
+    z : (n_z + 1,) float64, mm
+    side : int
+        +1 for the flank at x > 0 (the clockwise one), -1 for its mirror image at x < 0.
+    """
+
+    nodes: Ints
+    s: Floats
+    z: Floats
+    side: int
+
+
+@dataclass(frozen=True)
+class SectorMesh:
+    """The tooth sector centred on +y; copy k of it is turned by ``phase + 2 pi k / n_sectors`` about z.
+
+    Attributes
+    ----------
+    body : str
+        ``flexible_spline`` or ``ring_gear``.
+    n_sectors : int
+        Number of teeth of the full gear.
+    phase : float, rad
+        Angle of sector 0 from +y in the drive, counter-clockwise.
+    coords : (n_node, 3) float64, mm
+    hexes : (n_elem, 8) int32
+        Nodes in VTK order.
+    ccw_nodes, cw_nodes : (n_pair,) int32
+        Nodes on the counter-clockwise and on the clockwise side: the first of sector k coincide with the
+        second of sector k + 1, in this order.
+    faces : dict of (n_face, 4) int32
+        Quadrilaterals whose right-hand normal points out of the material: ``inner`` (flexible spline, the
+        cylinder of radius r_fs within the face width) or ``outer`` (ring gear).
+    node_sets : dict of (n,) int32
+        ``bore`` (flexible spline) or ``outer`` (ring gear).
+    flanks : tuple of FlankGrid
+        Side +1, then side -1.
+    profile : ToothProfile
+    quality : dict of float
+        ``min_scaled_jacobian``, ``min_jacobian`` and ``max_jacobian`` (mm³, determinants at the 2x2x2 Gauss
+        points), ``max_aspect_ratio``.
+    """
+
+    body: str
+    n_sectors: int
+    phase: float
+    coords: Floats
+    hexes: Ints
+    ccw_nodes: Ints
+    cw_nodes: Ints
+    faces: dict[str, Ints]
+    node_sets: dict[str, Ints]
+    flanks: tuple[FlankGrid, FlankGrid]
+    profile: ToothProfile
+    quality: dict[str, float]

@@ -1,0 +1,334 @@
+r"""Cross-section of one tooth: mapped quadrilaterals that follow the flank.
+
+Half a tooth is cut into blocks (shown for an external tooth, centre line on the left; an internal one is the
+same with the radial direction reversed)::
+
+    M---T.            M  centre of the top land, T start of the flank (addendum circle)
+    |  cap K          K  end of the rounded tip edge, where the normal rises 60 degrees above the horizontal
+    A---I   \         Q  on the root arc, where it rises 45 degrees
+    |    \ s \        R  end of the flank (dedendum circle), E  middle of the root
+    | core\ i \       B  below Q on the interface circle
+    |      \ d \
+    |       \ e  Q..      C  centre line on the interface circle
+    W--------J-'  ''R--E
+    |  under     | root|
+    C------------B-----E'   interface circle: the lower rim continues from here with straight radial lines
+    |  lower rim |     |
+    '------------'-----'    free circle (inner surface of the flexible spline, outer one of the ring gear)
+
+Three lines meet at I: the flank is smooth at K, so a block that had its corner there would be degenerate.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from swgpar.meshing.mapped import MappedBlocks, QuadMesh
+from swgpar.meshing.recipe import ToothRecipe
+from swgpar.profiles.curve import ToothProfile
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
+TIP_NORMAL, ROOT_NORMAL = np.radians(60.0), np.radians(45.0)
+"""Inclination of the flank's normal, above the tangent of the pitch circle, at K and at Q."""
+
+
+@dataclass(frozen=True)
+class CrossSection:
+    """Plane mesh of a full tooth, symmetric about the +y axis.
+
+    Attributes
+    ----------
+    coords : (n_node, 2) float64, mm
+    quads : (n_quad, 4) int32
+        Counter-clockwise.
+    s : (n_s + 1,) float64, mm
+        Arc lengths of the flank's nodes, from T to R.
+    flank : (n_s + 1,) int32
+        Nodes of the flank at x > 0.
+    mirror : (n_node,) int32
+        Node at (-x, y).
+    edge : (n_edge,) int32
+        Nodes on the sector's clockwise side, ordered by radius.
+    free : (n_angle + 1,) int32
+        Nodes on the free circle, from the clockwise to the counter-clockwise side.
+    below_root : (n_node,) bool
+        Nodes of the rim: on the interface circle or beyond.
+    root_layer, rim_layer : (n_quad,) bool
+        Quadrilaterals between root and interface circle, and of the lower rim.
+    """
+
+    coords: Floats
+    quads: Ints
+    s: Floats
+    flank: Ints
+    mirror: Ints
+    edge: Ints
+    free: Ints
+    below_root: NDArray[np.bool_]
+    root_layer: NDArray[np.bool_]
+    rim_layer: NDArray[np.bool_]
+
+
+def polar(radius: float | Floats, angle: float | Floats) -> Floats:
+    """Return the points (n, 2), mm, at `radius`, mm, and `angle` (rad, clockwise from +y)."""
+    return np.stack(np.broadcast_arrays(radius * np.sin(angle), radius * np.cos(angle)), axis=-1)
+
+
+def line(start: Floats, end: Floats, fractions: Floats) -> Floats:
+    """Return the points (n, 2) at the `fractions` (n,) of the straight line from `start` to `end`."""
+    return start + np.asarray(fractions)[:, None] * (end - start)
+
+
+def even(n: int) -> Floats:
+    """Return n + 1 numbers from 0 to 1 at equal distances."""
+    return np.linspace(0.0, 1.0, n + 1)
+
+
+def graded(n: int, ratio: float) -> Floats:
+    """Return n + 1 numbers from 0 to 1; each step is `ratio` times the one before."""
+    steps = ratio ** np.arange(n)
+    return np.concatenate(([0.0], np.cumsum(steps) / steps.sum()))
+
+
+def share(total: int, lengths: Floats) -> NDArray[np.intp]:
+    """Share `total` elements out in proportion to `lengths` (k,), at least one each (total >= k)."""
+    counts = np.ones(len(lengths), dtype=np.intp)
+    for _ in range(total - len(lengths)):
+        counts[np.argmax(lengths / counts)] += 1
+    return counts
+
+
+def split_count(n: int, first: float, second: float) -> tuple[int, int]:
+    """Share `n` elements between two lengths, mm, at least one each; a length of nothing gets none."""
+    if min(first, second) <= 1e-9 * max(first, second):
+        return (n, 0) if first > second else (0, n)
+    counts = share(n, np.array((first, second)))
+    return int(counts[0]), int(counts[1])
+
+
+def stations(profile: ToothProfile, first: float, last: float, n: int) -> Floats:
+    """Return n + 1 arc lengths from `first` to `last`, mm.
+
+    The ends of the segments are among them when there are elements enough; else the distances are equal.
+    """
+    margin = 1e-9 * profile.length
+    breaks = profile.breaks[(profile.breaks > first + margin) & (profile.breaks < last - margin)]
+    ends = np.concatenate(([first], breaks, [last]))
+    if n < len(ends) - 1:
+        return first + (last - first) * even(n)
+    counts = share(n, np.diff(ends))
+    parts = [a + (b - a) * even(k)[1:] for a, b, k in zip(ends[:-1], ends[1:], counts, strict=True)]
+    return np.concatenate(([first], *parts))
+
+
+def inclination(profile: ToothProfile, s: Floats) -> Floats:
+    """Return the angle (n,), rad, of the flank's normal above the tangential direction, towards the tip."""
+    x, y = profile.point(s).T
+    towards_tip = np.stack((x, y), axis=-1) / np.hypot(x, y)[:, None] * (1.0 if profile.external else -1.0)
+    return np.arcsin(np.clip(np.einsum("ij,ij->i", profile.normal(s), towards_tip), -1.0, 1.0))
+
+
+def snap(profile: ToothProfile, s: float, within: float) -> float:
+    """Return the end of a segment next to `s` when it is nearer than `within`, else `s`, mm."""
+    nearest = profile.breaks[np.argmin(np.abs(profile.breaks - s))]
+    return float(nearest) if abs(nearest - s) < within else s
+
+
+def block_ends(profile: ToothProfile) -> tuple[float, float]:
+    """Return the arc lengths of K and Q, mm; K is T on a tooth whose tip edge is not rounded."""
+    s = profile.length * even(4096)
+    angle = inclination(profile, s)
+    middle = int(np.argmin(angle))
+    tip = np.flatnonzero(angle[: middle + 1] > TIP_NORMAL)
+    root = np.flatnonzero(angle[middle:] < ROOT_NORMAL)
+    k = s[tip[-1]] if tip.size else 0.0
+    q = min(s[middle + root[-1]], profile.length) if root.size else s[middle]
+    return snap(profile, k, 0.1 * profile.length), snap(profile, q, 0.04 * profile.length)
+
+
+class HalfTooth:
+    """Nodes on the sides of the blocks of half a tooth (x >= 0).
+
+    Parameters
+    ----------
+    profile : ToothProfile
+    recipe : ToothRecipe
+    interface, free : float, mm
+        Radii of the interface circle and of the free surface of the rim.
+    """
+
+    def __init__(self, profile: ToothProfile, recipe: ToothRecipe, interface: float, free: float) -> None:
+        self.profile, self.recipe, self.interface, self.free = profile, recipe, interface, free
+        self.half_pitch = np.pi / profile.n_teeth
+        s_k, s_q = block_ends(profile)
+        self._tip(s_k)
+        self._root(s_q)
+        self.s_side = stations(profile, s_k, s_q, recipe.flank)
+        self.s = np.concatenate((self.s_tip[:-1], self.s_side, self.s_root[1:]))
+
+    def _tip(self, s_k: float) -> None:
+        """Nodes of the tip, M to K."""
+        profile, n = self.profile, self.recipe.tip
+        n_land, n_arc = split_count(n, 0.5 * profile.top_land, s_k)
+        self.s_tip = stations(profile, 0.0, s_k, n_arc)
+        land = polar(profile.r_tip_circle, profile.polar_angle(0.0)[0] * even(n_land))
+        self.tip = np.concatenate((land[:-1], profile.point(self.s_tip)))
+
+    def _root(self, s_q: float) -> None:
+        """Nodes of the root, Q to E."""
+        profile, n = self.profile, self.recipe.root
+        n_land, n_arc = split_count(n, 0.5 * profile.root_land, profile.length - s_q)
+        self.s_root = stations(profile, s_q, profile.length, n_arc)
+        start = profile.polar_angle(profile.length)[0]
+        land = polar(profile.r_root_circle, start + (self.half_pitch - start) * even(n_land))
+        self.root = np.concatenate((profile.point(self.s_root), land[1:]))
+
+    def blocks(self) -> list[tuple[Floats, Floats, Floats, Floats]]:
+        """Return the sides (bottom, right, top, left) of all blocks: cap, side, core, under, root, 2 rim."""
+        recipe, interface = self.recipe, self.interface
+        side = self.profile.point(self.s_side)
+        k, q = side[0], side[-1]
+        n_core, n_layer = recipe.tip, recipe.layers
+        fractions = graded(n_layer, recipe.layer_ratio)
+        theta_b = self._split_angle(q)
+        b = polar(interface, theta_b)
+        bottom = polar(interface, theta_b * even(n_core + n_layer))
+        j, w = self._shoulder(q, b, n_core / (n_core + n_layer))
+        i, a = self._apex(k, n_core, n_layer)
+        # the inner line lies between the flank's shape (good for the side) and a straight one (for the core)
+        t = ((self.s_side - self.s_side[0]) / (self.s_side[-1] - self.s_side[0]))[:, None]
+        parallel = side + (1.0 - t) * (i - k) + t * (j - q)
+        inner = 0.5 * parallel + 0.5 * (i + t * (j - i))
+        height = inner[:, 1] + ((1.0 - t) * (a - i) + t * (w - j))[:, 1]
+        centre = np.stack((np.zeros_like(height), height), axis=-1)
+        k_to_i, q_to_j = line(k, i, fractions), line(q, j, fractions)
+        w_to_q = np.concatenate((line(w, j, even(n_core))[:-1], q_to_j[::-1]))
+        down = even(recipe.under)
+        q_to_b, w_to_c = line(q, b, down), line(w, bottom[0], down)
+        e = self.root[-1]
+        top = np.arctan2(*self.root.T)
+        top = (top - top[0]) / (top[-1] - top[0])
+        theta_root = theta_b + (self.half_pitch - theta_b) * (0.6 * even(recipe.root) + 0.4 * top)
+        root_bottom = polar(interface, theta_root)
+        radii = interface + (self.free - interface) * even(recipe.rim)
+        rim = [polar(radii, angle) for angle in (0.0, theta_b, self.half_pitch)]
+        cap_bottom = line(a, i, even(n_core))
+        return [
+            (
+                cap_bottom,
+                k_to_i[::-1],
+                self.tip,
+                line(a, self.tip[0], fractions[::-1].max() - fractions[::-1]),
+            ),
+            (q_to_j[::-1], side[::-1], k_to_i[::-1], inner[::-1]),
+            (w_to_q[: n_core + 1], inner[::-1], cap_bottom, centre[::-1]),
+            (bottom, q_to_b[::-1], w_to_q, w_to_c[::-1]),
+            (root_bottom, line(root_bottom[-1], e, down), self.root, q_to_b[::-1]),
+            (polar(self.free, theta_b * even(n_core + n_layer)), rim[1][::-1], bottom, rim[0][::-1]),
+            (polar(self.free, theta_root), rim[2][::-1], root_bottom, rim[1][::-1]),
+        ]
+
+    def _split_angle(self, q: Floats) -> float:
+        """Return the polar angle of B, rad: between a line square to the root arc and even widths."""
+        recipe = self.recipe
+        n_base = recipe.tip + recipe.layers
+        uniform = self.half_pitch * n_base / (n_base + recipe.root)
+        theta_q = np.arctan2(*q)
+        depth = abs(np.hypot(*q) - self.interface)
+        lean = theta_q - depth * np.tan(np.radians(15.0)) / self.interface
+        return 0.5 * (lean + np.clip(uniform, 0.8 * lean, 1.1 * lean))
+
+    def _shoulder(self, q: Floats, b: Floats, fraction: float) -> tuple[Floats, Floats]:
+        """Return J and W, the inner corners of the row of elements that ends at Q."""
+        # halfway between the flank above Q and the line to B, so that the angles at Q are about equal
+        upwards = -self.profile.tangent(self.s_side[-1])[0]
+        to_b = (b - q) / np.hypot(*(b - q))
+        direction = upwards + to_b
+        direction /= np.hypot(*direction)
+        width = (1.0 - fraction) * q[0]
+        j = q + direction * width / abs(direction[0])
+        return j, np.array((0.0, j[1] + 0.5 * (j[1] - q[1]) * j[0] / width * fraction))
+
+    def _apex(self, k: Floats, n_core: int, n_layer: int) -> tuple[Floats, Floats]:
+        """Return I and A, the inner corners of the cap."""
+        inwards = -self.profile.normal(self.s_side[0])[0]
+        reach = np.hypot(*(self.tip[0] - k)) + 0.5 * self.profile.top_land
+        depth = min(0.5 * n_layer * reach / n_core + 0.25 * reach, 0.5 * k[0] / abs(inwards[0]))
+        i = k + depth * inwards
+        return i, np.array((0.0, i[1] - 0.25 * inwards[1] / abs(inwards[1]) * abs(k[1] - i[1])))
+
+
+def cross_section(profile: ToothProfile, recipe: ToothRecipe, interface: float, free: float) -> CrossSection:
+    """Mesh the cross-section of one tooth and its rim; parameters as for `HalfTooth`."""
+    half = HalfTooth(profile, recipe, interface, free)
+    mapped = MappedBlocks(scale=half.half_pitch * profile.r_tip_circle)
+    for sides in half.blocks():
+        mapped.add_block(*sides)
+    mesh, _ = mapped.generate()
+    flank_points = profile.point(half.s)
+    find = NodeFinder(mesh.coords, 1e-6 * mapped.scale)
+    flank = find(flank_points)
+    mesh.coords[flank] = flank_points
+    edge = np.flatnonzero(np.abs(np.arctan2(*mesh.coords.T) - half.half_pitch) < 1e-9 * half.half_pitch)
+    full, mirror = mirrored(mesh)
+    radius = np.hypot(*full.coords.T)
+    rim_layer, root_layer = full.block >= 5, (full.block == 3) | (full.block == 4)
+    below_root = np.zeros(len(full.coords), dtype=bool)
+    below_root[full.quads[rim_layer]] = True
+    on_free = np.flatnonzero(np.abs(radius - free) < 1e-9 * free)
+    on_free = on_free[np.argsort(-full.coords[on_free, 0])]
+    edge = edge[np.argsort(radius[edge])]
+    return CrossSection(
+        coords=full.coords,
+        quads=full.quads,
+        s=half.s,
+        flank=flank,
+        mirror=mirror,
+        edge=edge.astype(np.int32),
+        free=on_free.astype(np.int32),
+        below_root=below_root,
+        root_layer=root_layer,
+        rim_layer=rim_layer,
+    )
+
+
+class NodeFinder:
+    """Nodes by their place: `find(points)` gives the node (n,) at each of the `points` (n, 2), mm."""
+
+    def __init__(self, coords: Floats, tolerance: float) -> None:
+        self.tree, self.tolerance = cKDTree(coords), tolerance
+
+    def __call__(self, points: Floats) -> Ints:
+        distance, node = self.tree.query(points)
+        if np.any(distance > self.tolerance):
+            raise RuntimeError("a given boundary node is missing from the cross-section")
+        return node.astype(np.int32)
+
+
+def mirrored(half: QuadMesh) -> tuple[QuadMesh, Ints]:
+    """Complete the half x >= 0 by its mirror image.
+
+    Returns
+    -------
+    mesh : QuadMesh
+    mirror : (n_node,) int32
+        Node at (-x, y); the nodes on the axis are their own.
+    """
+    coords = half.coords.copy()
+    tolerance = 1e-9 * np.abs(coords).max()
+    axis = np.abs(coords[:, 0]) < tolerance
+    coords[axis, 0] = 0.0
+    n = len(coords)
+    image = np.arange(n, dtype=np.int32)
+    image[~axis] = n + np.arange(np.count_nonzero(~axis))
+    mirror = np.concatenate((image, np.flatnonzero(~axis))).astype(np.int32)
+    quads = np.concatenate((half.quads, image[half.quads[:, ::-1]]))
+    return QuadMesh(
+        np.concatenate((coords, coords[~axis] * (-1.0, 1.0))), quads, np.tile(half.block, 2)
+    ), mirror

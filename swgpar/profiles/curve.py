@@ -1,0 +1,231 @@
+"""A tooth flank as a chain of circular arcs and straight lines, by arc length."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from swgpar.errors import InputError
+
+Floats = NDArray[np.float64]
+
+# The segments on which the flank meets the top land and the root circle: crowning fades out along them.
+END_SEGMENTS = ("tip", "root")
+
+
+@dataclass(frozen=True)
+class Segment:
+    """A piece of constant curvature of a flank, run through from the tip towards the root.
+
+    Attributes
+    ----------
+    name : str
+        Name of the segment, for example ``tip`` or ``straight``.
+    start : tuple of float, mm
+        First point (x, y).
+    direction : float, rad
+        Angle of the unit tangent at `start` from +x, counter-clockwise.
+    turn : float, 1/mm
+        Change of that angle per arc length; 0 for a straight line.
+    length : float, mm
+        Arc length.
+    """
+
+    name: str
+    start: tuple[float, float]
+    direction: float
+    turn: float
+    length: float
+
+    @property
+    def end_direction(self) -> float:
+        """Angle of the tangent at the last point, rad."""
+        return self.direction + self.turn * self.length
+
+    def point(self, s: Floats) -> Floats:
+        """Return the points at the local arc lengths `s` : (n,) mm, as (n, 2) mm."""
+        half = 0.5 * self.turn * s
+        # chord of an arc: exact for any curvature, the straight line included
+        chord = s * np.sinc(half / np.pi)
+        middle = self.direction + half
+        return np.stack((self.start[0] + chord * np.cos(middle), self.start[1] + chord * np.sin(middle)), axis=-1)
+
+    def nearest(self, points: Floats) -> Floats:
+        """Return the local arc length (n,), mm, of the point of the segment nearest to `points` (n, 2), mm."""
+        offset = points - np.asarray(self.start)
+        tangent = np.array((np.cos(self.direction), np.sin(self.direction)))
+        along = offset @ tangent
+        across = offset @ np.array((-tangent[1], tangent[0]))
+        if self.turn == 0.0:
+            return np.clip(along, 0.0, self.length)
+        # polar angle about the centre of the arc, measured from the middle of the arc so that the cut lies opposite
+        radius = 1.0 / self.turn
+        angle = np.arctan2(along * np.sign(radius), (radius - across) * np.sign(radius)) * np.sign(radius)
+        middle = 0.5 * self.turn * self.length
+        angle = middle + np.remainder(angle - middle + np.pi, 2.0 * np.pi) - np.pi
+        return np.clip(angle * radius, 0.0, self.length)
+
+
+@dataclass(frozen=True)
+class ToothProfile:
+    """One flank, on the side x > 0, of a tooth centred on +y, from its tip end T to its root end R.
+
+    Attributes
+    ----------
+    segments : tuple of Segment
+        The chain, from T to R; segments of no length are left out.
+    external : bool
+        True for teeth that point outwards (flexible spline), False for internal ones (ring gear).
+    r_tip_circle, r_root_circle : float, mm
+        Radii of the addendum and the dedendum circle.
+    n_teeth : int
+        Number of teeth of the gear.
+    """
+
+    segments: tuple[Segment, ...]
+    external: bool
+    r_tip_circle: float
+    r_root_circle: float
+    n_teeth: int
+
+    @cached_property
+    def breaks(self) -> Floats:
+        """Arc lengths of all segment ends, 0 and the total length included: (k,) mm."""
+        return np.concatenate(([0.0], np.cumsum([segment.length for segment in self.segments])))
+
+    @cached_property
+    def segment_names(self) -> tuple[str, ...]:
+        """Names of the segments from T to R: (k - 1,)."""
+        return tuple(segment.name for segment in self.segments)
+
+    @property
+    def length(self) -> float:
+        """Arc length from T to R, mm."""
+        return float(self.breaks[-1])
+
+    @property
+    def _side(self) -> float:
+        # the outward normal is the tangent turned by +90 degrees on external teeth, by -90 degrees on internal ones
+        return 1.0 if self.external else -1.0
+
+    def _split(self, s: ArrayLike) -> tuple[Floats, NDArray[np.intp], Floats]:
+        s = np.atleast_1d(np.asarray(s, dtype=np.float64))
+        index = np.clip(np.searchsorted(self.breaks, s, side="right") - 1, 0, len(self.segments) - 1)
+        return s, index, s - self.breaks[index]
+
+    def _direction(self, s: ArrayLike) -> Floats:
+        _, index, local = self._split(s)
+        start = np.array([segment.direction for segment in self.segments])
+        turn = np.array([segment.turn for segment in self.segments])
+        return start[index] + turn[index] * local
+
+    def point(self, s: ArrayLike) -> Floats:
+        """Return the points at the arc lengths `s` : (n,) mm, as (n, 2) mm."""
+        s, index, local = self._split(s)
+        points = np.empty((s.size, 2))
+        for k, segment in enumerate(self.segments):
+            inside = index == k
+            points[inside] = segment.point(local[inside])
+        return points
+
+    def tangent(self, s: ArrayLike) -> Floats:
+        """Return the unit tangents (n, 2), from T towards R, at the arc lengths `s` : (n,) mm."""
+        direction = self._direction(s)
+        return np.stack((np.cos(direction), np.sin(direction)), axis=-1)
+
+    def normal(self, s: ArrayLike) -> Floats:
+        """Return the unit normals (n, 2), out of the material, at the arc lengths `s` : (n,) mm."""
+        direction = self._direction(s)
+        return self._side * np.stack((-np.sin(direction), np.cos(direction)), axis=-1)
+
+    def curvature(self, s: ArrayLike) -> Floats:
+        """Return the curvature (n,), 1/mm: d tangent / d s = curvature * normal; negative where convex."""
+        _, index, _ = self._split(s)
+        return self._side * np.array([segment.turn for segment in self.segments])[index]
+
+    def crowning_weight(self, s: ArrayLike) -> Floats:
+        """Return the share (n,) of the crowning that is applied at the arc lengths `s` : (n,) mm.
+
+        One on the active profile; it falls to zero along the tip segment towards T and along the root segment
+        towards R, with continuous slope, so that the top land and the root circle stay where they are.
+        """
+        s, index, local = self._split(s)
+        weight = np.ones_like(s)
+        for k, segment in enumerate(self.segments):
+            if segment.name in END_SEGMENTS:
+                inside = index == k
+                x = np.clip(local[inside] / segment.length, 0.0, 1.0)
+                x = x if segment.name == "tip" else 1.0 - x
+                weight[inside] = x * x * (3.0 - 2.0 * x)
+        return weight
+
+    def distance(self, points: ArrayLike) -> tuple[Floats, Floats]:
+        """Return the signed distance to the flank and the arc length of the nearest point.
+
+        Parameters
+        ----------
+        points : (n, 2) float64, mm
+
+        Returns
+        -------
+        distance : (n,) float64, mm
+            Positive outside the material.
+        s : (n,) float64, mm
+        """
+        points = np.atleast_2d(np.asarray(points, dtype=np.float64))
+        best = np.full(len(points), np.inf)
+        foot = np.zeros(len(points))
+        for begin, segment in zip(self.breaks[:-1], self.segments, strict=True):
+            local = segment.nearest(points)
+            gap = np.linalg.norm(points - segment.point(local), axis=1)
+            closer = gap < best
+            best[closer] = gap[closer]
+            foot[closer] = begin + local[closer]
+        side = np.einsum("ij,ij->i", points - self.point(foot), self.normal(foot))
+        return np.copysign(best, side), foot
+
+    def polar_angle(self, s: ArrayLike) -> Floats:
+        """Return the angle (n,), rad, between the tooth's centre line and the points at `s` : (n,) mm."""
+        x, y = self.point(s).T
+        return np.arctan2(x, y)
+
+    @property
+    def top_land(self) -> float:
+        """Width of the top land, along the addendum circle, mm."""
+        return float(2.0 * self.r_tip_circle * self.polar_angle(0.0)[0])
+
+    @property
+    def root_land(self) -> float:
+        """Width of the dedendum circle between two neighbouring teeth, mm."""
+        angle = np.pi / self.n_teeth - self.polar_angle(self.length)[0]
+        return float(2.0 * self.r_root_circle * angle)
+
+
+def check_flank(profile: ToothProfile, tolerance: float = 1e-9) -> None:
+    """Refuse a flank that is no flank: broken tangents, folded back, or outside its half tooth sector.
+
+    Parameters
+    ----------
+    profile : ToothProfile
+    tolerance : float
+        Largest relative mismatch of points (to the tip radius) and of tangents (rad) at the joints.
+    """
+    for before, after in zip(profile.segments, profile.segments[1:], strict=False):
+        jump = before.point(np.array([before.length]))[0] - np.asarray(after.start)
+        kink = np.angle(np.exp(1j * (before.end_direction - after.direction)))
+        if np.hypot(*jump) > tolerance * profile.r_tip_circle or abs(kink) > tolerance:
+            raise InputError(f"the {before.name} and {after.name} segments do not join smoothly")
+    s = np.unique(np.concatenate((np.linspace(0.0, profile.length, 257), profile.breaks)))
+    angle = profile.polar_angle(s)
+    if angle[0] <= 0.0:
+        raise InputError("the tip arc crosses the tooth's centre line, no top land is left")
+    if angle[-1] >= np.pi / profile.n_teeth:
+        raise InputError("the root arc crosses the edge of the tooth sector, no root land is left")
+    if angle.min() <= 0.0 or angle.max() >= np.pi / profile.n_teeth:
+        raise InputError("the flank leaves its half of the tooth sector")
+    outward = np.einsum("ij,ij->i", profile.tangent(s), profile.point(s))
+    if np.any((outward if profile.external else -outward) > tolerance * profile.r_tip_circle):
+        raise InputError("the flank folds back between tip and root")

@@ -1,0 +1,96 @@
+"""What is active when: the sequence pins, engagement, torque, rotation (sections 3.4.5 and 3.5.5).
+
+1 the pins push the flexible spline outward by d / 2 each; 2 the wave generator grows into place while the pins
+are drawn back, and the teeth may touch; 3 the output is turned until the teeth carry, then the torque is applied;
+4 ... the wave generator turns in increments.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from swgpar.design import DriveDesign
+
+PINS_BACK = 0.25
+"""How far the pins are drawn back during engagement, as a share of the deflection d."""
+
+CAM_START, TEETH_START = 0.05, 0.05
+"""Clearance from which cam and flanks grow into place, as a share of the module."""
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Prescribed state of the drive at the end of an increment.
+
+    step : number of the step;  name : what it does
+    angle : rad, wave generator;  cam, teeth : mm, clearance added to every gap, None while switched off
+    pins : mm, inset of the pins, None when they are out
+    control : "rotation" (output held at `rotation`, rad) or "torque" (`torque`, N mm, on the output)
+    """
+
+    step: int
+    name: str
+    angle: float = 0.0
+    cam: float | None = None
+    teeth: float | None = None
+    pins: float | None = None
+    control: str = "rotation"
+    rotation: float = 0.0
+    torque: float = 0.0
+
+    def toward(self, target: Scene, share: float) -> Scene:
+        """Scene between this one (share 0) and `target` (share 1); switches are those of the target."""
+        if share == 1.0:
+            return target
+        values: dict[str, Any] = {}
+        for key in ("angle", "cam", "teeth", "pins", "rotation", "torque"):
+            old, new = getattr(self, key), getattr(target, key)
+            values[key] = new if new is None or old is None else old + share * (new - old)
+        return replace(target, **values)
+
+    def to_dict(self) -> dict[str, Any]:
+        return asdict(self)
+
+
+@dataclass(frozen=True)
+class Increment:
+    """One entry of the sequence; `close` asks for the backlash to be closed under rotation control first."""
+
+    scene: Scene
+    close: bool = False
+
+
+def start(design: DriveDesign) -> Scene:
+    """Undeformed drive, pins touching the inner surface."""
+    return Scene(step=0, name="start", pins=0.5 * design.d)
+
+
+def sequence(design: DriveDesign) -> Iterator[Increment]:
+    """All increments of a run, in order."""
+    d, steps, module = design.d, design.steps, design.drive.module
+    torque = 1000.0 * design.load.torque
+    n = steps.deflect_increments
+    for i in range(1, n + 1):
+        yield Increment(Scene(1, "deflect", pins=0.5 * d * (1.0 - i / n)))
+    n = steps.engage_increments
+    for i in range(1, n + 1):
+        t = i / n
+        yield Increment(Scene(2, "engage", cam=CAM_START * module * (1.0 - t), teeth=TEETH_START * module * (1.0 - t),
+                              pins=None if i == n else PINS_BACK * d * t))
+    loaded = Scene(3, "load", cam=0.0, teeth=0.0, control="torque" if torque else "free")
+    if torque:
+        n = steps.load_increments
+        for i in range(1, n + 1):
+            yield Increment(replace(loaded, torque=torque * i / n), close=i == 1)
+    else:
+        yield Increment(loaded)
+    whole = steps.rotation / steps.increment
+    count = int(np.ceil(round(whole, 9)))
+    for i in range(1, count + 1):
+        angle = np.radians(min(i * steps.increment, steps.rotation))
+        yield Increment(replace(loaded, step=3 + i, name="rotate", angle=angle, torque=torque,
+                                rotation=-angle / abs(design.ratio)))

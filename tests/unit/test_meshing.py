@@ -1,0 +1,454 @@
+"""Meshes: closed-form volumes, conforming sectors, positive Jacobians, exact flanks, recipes and exports."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from functools import lru_cache
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+
+from swgpar.design import DriveDesign, load_design
+from swgpar.errors import InputError, OutputError
+from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes, load_recipe
+from swgpar.meshing.cup import meridian
+from swgpar.meshing.export import mesh_report, whole_body, whole_drive, write_mesh
+from swgpar.meshing.quality import hex_quality, hex_volumes
+from swgpar.meshing.sweep import axial_stations
+from swgpar.meshing.tooth import cross_section
+from swgpar.profiles import make_profile
+from swgpar.profiles.curve import Segment, ToothProfile
+
+ROOT = Path(__file__).resolve().parents[2]
+REFERENCE = ROOT / "drivers" / "cup_45deg.toml"
+RECIPES = {name: ROOT / "mesh" / f"{name}.toml" for name in ("coarse", "medium", "full")}
+TINY = ROOT / "tests" / "data" / "tiny.toml"
+GEARS = ("flexible_spline", "ring_gear")
+SMALL = (
+    "drive.teeth_fs=40",
+    "drive.teeth_rg=42",
+    "cup.length=12.0",
+    "cup.inner_radius=6.0",
+    "flexible_spline.rim=0.6",
+    *(
+        f"{gear}.profile.{key}={radius}"
+        for gear in GEARS
+        for key, radius in (("r_tip", 0.3), ("straight_l", 0.2), ("r_dedendum", 2.0), ("r_root", 0.3))
+    ),
+)
+
+
+@lru_cache
+def design(*overrides: str) -> DriveDesign:
+    return load_design(REFERENCE, overrides)
+
+
+@lru_cache
+def meshes(recipe: Path, *overrides: str) -> dict[str, SectorMesh]:
+    return build_sector_meshes(design(*overrides), load_recipe(recipe))
+
+
+CASES = [pytest.param(path, (), id=name) for name, path in RECIPES.items()]
+CASES += [
+    pytest.param(TINY, SMALL, id="tiny"),
+    pytest.param(TINY, (), id="tiny-reference"),
+    pytest.param(RECIPES["medium"], ("cup.thickness_coef=0.95",), id="thick-cup"),
+    pytest.param(RECIPES["medium"], ("cup.thickness_coef=0.2",), id="thin-cup"),
+    pytest.param(RECIPES["full"], ("wave_generator.face_width=6.0",), id="narrow-cam"),
+]
+
+
+def rotated(coords: np.ndarray, angle: float) -> np.ndarray:
+    c, s = np.cos(angle), np.sin(angle)
+    return coords @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def refined(recipe: MeshRecipe, factor: int) -> MeshRecipe:
+    """Every element count of the recipe multiplied by `factor`."""
+    table = recipe.model_dump()
+    for section in table.values():
+        for key, value in section.items():
+            if isinstance(value, int):
+                section[key] = factor * value
+    return MeshRecipe.model_validate(table)
+
+
+def polygon_area(points: np.ndarray) -> float:
+    x, y = points.T
+    return 0.5 * float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
+
+
+def section_area(case: DriveDesign, gear: str) -> float:
+    """Area of one tooth and its rim by integration along the exact outline."""
+    profile = make_profile(case, gear)
+    half = np.pi / profile.n_teeth
+    flank = profile.point(np.linspace(0.0, profile.length, 20001))
+    # Green's theorem: the flank as a fine polygon, the circles exactly
+    x, y = flank.T
+    along_flank = -0.5 * np.sum(x[:-1] * y[1:] - x[1:] * y[:-1])
+    land, root = profile.polar_angle(0.0)[0], half - profile.polar_angle(profile.length)[0]
+    teeth = 2.0 * along_flank + profile.r_tip_circle**2 * land + profile.r_root_circle**2 * root
+    free = case.r_fs if gear == "flexible_spline" else profile.r_root_circle + case.ring_gear.rim
+    return abs(teeth - free**2 * half)
+
+
+def cup_volume(case: DriveDesign) -> float:
+    cup, t = case.cup, case.cup_thickness
+    outer, inner = cup.fillet_radius, cup.fillet_radius - t
+    r_centre = case.r_fs + t - outer
+    cylinder = np.pi * ((case.r_fs + t) ** 2 - case.r_fs**2) * (cup.length - outer)
+    fillet = 2.0 * np.pi * (r_centre * np.pi / 4.0 * (outer**2 - inner**2) + (outer**3 - inner**3) / 3.0)
+    return cylinder + fillet + np.pi * (r_centre**2 - cup.inner_radius**2) * t
+
+
+@pytest.mark.parametrize(("recipe", "overrides"), CASES)
+def test_jacobians_are_positive_and_elements_are_good(recipe: Path, overrides: tuple[str, ...]) -> None:
+    for mesh in meshes(recipe, *overrides).values():
+        assert mesh.quality == hex_quality(mesh.coords, mesh.hexes)
+        assert mesh.quality["min_jacobian"] > 0.0
+        assert mesh.quality["min_scaled_jacobian"] > 0.5
+        assert np.unique(mesh.hexes).size == len(mesh.coords)
+
+
+@pytest.mark.parametrize("external", [True, False])
+def test_a_sharp_trapezoidal_tooth_can_be_meshed(external: bool) -> None:
+    """No rounded tip edge and no root arc: K is T and Q is R."""
+    side = 1.0 if external else -1.0
+    t, r = np.array((0.5, 30.0 + 0.6 * side)), np.array((0.9, 30.0 - 0.8 * side))
+    direction = float(np.arctan2(*(r - t)[::-1]))
+    segment = Segment("straight", (t[0], t[1]), direction, 0.0, float(np.hypot(*(r - t))))
+    profile = ToothProfile((segment,), external, float(np.hypot(*t)), float(np.hypot(*r)), 60)
+    recipe = load_recipe(RECIPES["full"]).flexible_spline
+    section = cross_section(profile, recipe, float(np.hypot(*r)) - 0.6 * side, float(np.hypot(*r)) - side)
+    x = section.coords[section.quads]
+    after, before = np.roll(x, -1, axis=1) - x, np.roll(x, 1, axis=1) - x
+    sine = np.cross(after, before) / np.linalg.norm(after, axis=-1) / np.linalg.norm(before, axis=-1)
+    assert sine.min() > 0.2
+    assert (section.s[0], section.s[-1]) == (0.0, pytest.approx(profile.length))
+
+
+@pytest.mark.parametrize(("recipe", "overrides"), CASES)
+def test_sectors_conform(recipe: Path, overrides: tuple[str, ...]) -> None:
+    for mesh in meshes(recipe, *overrides).values():
+        next_sector = rotated(mesh.coords, 2.0 * np.pi / mesh.n_sectors)
+        gap = np.abs(mesh.coords[mesh.ccw_nodes] - next_sector[mesh.cw_nodes]).max()
+        assert gap < 1e-13 * np.abs(mesh.coords).max()
+        angle = np.arctan2(-mesh.coords[:, 0], mesh.coords[:, 1])
+        half = np.pi / mesh.n_sectors
+        assert np.all(np.abs(angle) <= half * (1.0 + 1e-12))
+        for side, nodes in ((half, mesh.ccw_nodes), (-half, mesh.cw_nodes)):
+            assert np.array_equal(np.sort(nodes), np.flatnonzero(np.abs(angle - side) < 1e-9 * half))
+
+
+@pytest.mark.parametrize(("recipe", "overrides"), CASES)
+def test_flanks_lie_on_the_profile_with_crowning(recipe: Path, overrides: tuple[str, ...]) -> None:
+    case = design(*overrides)
+    for gear, mesh in meshes(recipe, *overrides).items():
+        profile, width = mesh.profile, case.drive.face_width
+        crowning = case.micro_geometry.fs_crowning if gear == "flexible_spline" else 0.0
+        for flank, side in zip(mesh.flanks, (1, -1), strict=True):
+            assert flank.side == side
+            assert (flank.s[0], flank.z[0], flank.z[-1]) == (0.0, -0.5 * width, 0.5 * width)
+            assert flank.s[-1] == pytest.approx(profile.length, rel=1e-14)
+            assert np.all(np.diff(flank.s) > 0.0) and np.all(np.diff(flank.z) > 0.0)
+            assert flank.nodes.shape == (len(flank.s), len(flank.z))
+            cut = crowning * (2.0 * flank.z / width) ** 2
+            move = profile.crowning_weight(flank.s)[:, None] * profile.normal(flank.s)
+            exact = profile.point(flank.s)[:, None] - cut[:, None] * move[:, None]
+            exact = exact * (side, 1.0)
+            nodes = mesh.coords[flank.nodes]
+            assert np.abs(nodes[..., :2] - exact).max() < 1e-12
+            assert np.array_equal(nodes[..., 2], np.broadcast_to(flank.z, flank.nodes.shape))
+
+
+@pytest.mark.parametrize("name", RECIPES)
+def test_segment_ends_are_nodes(name: str) -> None:
+    for mesh in meshes(RECIPES[name]).values():
+        for end in mesh.profile.breaks:
+            assert np.abs(mesh.flanks[0].s - end).min() < 1e-12
+
+
+@pytest.mark.parametrize(("recipe", "overrides"), CASES)
+def test_named_faces_look_out_of_the_material(recipe: Path, overrides: tuple[str, ...]) -> None:
+    case = design(*overrides)
+    for gear, mesh in meshes(recipe, *overrides).items():
+        name, direction = ("inner", -1.0) if gear == "flexible_spline" else ("outer", 1.0)
+        radius = case.r_fs if gear == "flexible_spline" else mesh.profile.r_root_circle + case.ring_gear.rim
+        assert set(mesh.faces) == {name}
+        x = mesh.coords[mesh.faces[name]]
+        assert np.allclose(np.hypot(x[..., 0], x[..., 1]), radius, rtol=1e-13)
+        assert np.abs(x[..., 2]).max() == 0.5 * case.drive.face_width
+        normal = 0.5 * np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1])
+        radial = x.mean(axis=1) * (1.0, 1.0, 0.0) / radius
+        outward = direction * np.einsum("fi,fi->f", normal, radial)
+        assert np.all(outward > 0.0)
+        exact = 2.0 * np.pi / mesh.n_sectors * radius * case.drive.face_width
+        assert outward.sum() == pytest.approx(exact, rel=2e-3)
+
+
+def test_node_sets() -> None:
+    case, both = design(), meshes(RECIPES["coarse"])
+    bore = both["flexible_spline"].coords[both["flexible_spline"].node_sets["bore"]]
+    assert np.allclose(np.hypot(bore[:, 0], bore[:, 1]), case.cup.inner_radius, rtol=1e-13)
+    end = 0.5 * case.drive.face_width + case.cup.length
+    assert bore[:, 2].max() == pytest.approx(end) and bore[:, 2].min() == pytest.approx(
+        end - case.cup_thickness
+    )
+    ring = both["ring_gear"]
+    radius = np.hypot(ring.coords[:, 0], ring.coords[:, 1])
+    assert np.array_equal(ring.node_sets["outer"], np.flatnonzero(radius > radius.max() * (1.0 - 1e-9)))
+    assert (both["flexible_spline"].phase, ring.phase) == (0.0, np.pi / 122)
+
+
+@pytest.mark.parametrize("gear", GEARS)
+def test_section_area_converges_quadratically(gear: str) -> None:
+    case, recipe = design(), load_recipe(RECIPES["coarse"])
+    profile = make_profile(case, gear)
+    exact = section_area(case, gear)
+    interface, free = (
+        (case.r_fs + case.cup_thickness, case.r_fs)
+        if gear == "flexible_spline"
+        else (profile.r_root_circle + 1.0, profile.r_root_circle + case.ring_gear.rim)
+    )
+    errors = []
+    for factor in (1, 2, 4, 8):
+        section = cross_section(profile, getattr(refined(recipe, factor), gear), interface, free)
+        corners = section.coords[section.quads]
+        errors.append(abs(sum(polygon_area(quad) for quad in corners) - exact) / exact)
+    assert errors[0] < 0.02
+    # chords outside hollows and inside bulges cancel in part, so look at the whole way: quadratic is 64 times
+    assert errors[-1] < errors[0] / 50.0, errors
+
+
+@pytest.mark.parametrize("thickness_coef", [0.8, 0.95])
+def test_volumes_match_closed_forms(thickness_coef: float) -> None:
+    overrides = (f"cup.thickness_coef={thickness_coef}", "micro_geometry.fs_crowning=0.0")
+    case = design(*overrides)
+    errors = []
+    for factor in (1, 2):
+        recipe = refined(load_recipe(RECIPES["full"]), factor)
+        error = []
+        for gear, mesh in build_sector_meshes(case, recipe).items():
+            volume = mesh.n_sectors * hex_volumes(mesh.coords, mesh.hexes).sum()
+            exact = mesh.n_sectors * section_area(case, gear) * case.drive.face_width
+            exact += cup_volume(case) if gear == "flexible_spline" else 0.0
+            error.append(abs(volume / exact - 1.0))
+        errors.append(error)
+    assert np.max(errors[0]) < 1e-3 and np.max(errors[1]) < 4e-4, errors
+
+
+def test_crowning_leaves_everything_but_the_teeth() -> None:
+    plain = meshes(RECIPES["full"], "micro_geometry.fs_crowning=0.0")["flexible_spline"]
+    crowned = meshes(RECIPES["full"])["flexible_spline"]
+    moved = np.linalg.norm(crowned.coords - plain.coords, axis=1)
+    assert moved.max() <= 0.045 * (1.0 + 1e-12)
+    radius = np.hypot(plain.coords[:, 0], plain.coords[:, 1])
+    assert moved[radius < 59.0 + 1e-9].max() < 1e-12
+    assert moved[radius > plain.profile.r_tip_circle * (1.0 - 1e-12)].max() < 1e-12
+    assert moved[np.abs(plain.coords[:, 2]) < 1e-12].max() < 1e-12
+    # the inside of the tooth follows: its outermost free nodes move by more than half of the flank's way
+    tooth = (np.abs(plain.coords[:, 2]) == 5.0) & (np.abs(radius - 60.0) < 0.1)
+    assert np.count_nonzero(moved[tooth] > 0.02) > 4
+
+
+@pytest.mark.parametrize(
+    ("name", "low", "high"),
+    [("coarse", 30_000, 60_000), ("medium", 130_000, 170_000), ("full", 450_000, 520_000)],
+)
+def test_recipes_have_the_announced_size(name: str, low: int, high: int) -> None:
+    both = meshes(RECIPES[name])
+    assert low <= sum(len(mesh.hexes) * mesh.n_sectors for mesh in both.values()) <= high
+
+
+def test_full_recipe_is_graded_as_in_table_4_2() -> None:
+    recipe = load_recipe(RECIPES["full"])
+    case = design()
+    for gear, mesh in meshes(RECIPES["full"]).items():
+        counts = getattr(recipe, gear)
+        section = cross_section(
+            make_profile(case, gear), counts, *((59.0, 58.2) if mesh.phase == 0 else (62.8, 63.8))
+        )
+        root_land = 1  # from R to the middle of the root
+        assert len(mesh.flanks[0].s) - 1 + root_land == 21
+        assert len(section.free) - 1 >= 10
+        assert counts.rim == 2
+    assert recipe.face_width.elements >= 10
+
+
+def test_tiny_recipe_has_about_a_hundred_elements_per_sector() -> None:
+    both = meshes(TINY, *SMALL)
+    assert all(70 <= len(mesh.hexes) <= 120 for mesh in both.values())
+
+
+def test_nodes_lie_at_the_ends_of_a_narrow_wave_generator() -> None:
+    for n in range(2, 14):
+        for ratio in (1.0, 1.5, 3.0):
+            for inner in (0.5, 3.0, 6.0, 9.9, 10.0, 12.0):
+                z = axial_stations(10.0, n, ratio, inner)
+                assert len(z) == n + 1 and np.all(np.diff(z) > 0.0)
+                assert (z[0], z[-1]) == (-5.0, 5.0)
+                assert np.allclose(z, -z[::-1], atol=1e-15)
+                if n > 2 and inner < 10.0:
+                    assert np.abs(z - 0.5 * inner).min() < 1e-14 and np.abs(z + 0.5 * inner).min() < 1e-14
+    grid = meshes(RECIPES["full"], "wave_generator.face_width=6.0")["flexible_spline"].flanks[0]
+    assert np.abs(grid.z - 3.0).min() < 1e-14
+
+
+def test_meshes_scale_with_the_unit_system() -> None:
+    scale = 1e-3
+    lengths = {
+        "drive": ("module", "face_width"),
+        "flexible_spline": ("rim",),
+        "ring_gear": ("rim",),
+        "flexible_spline.profile": ("r_tip", "r_addendum", "r_dedendum", "r_root"),
+        "ring_gear.profile": ("r_tip", "r_addendum", "r_dedendum", "r_root"),
+        "wave_generator": ("face_width",),
+        "cup": ("length", "fillet_radius", "inner_radius"),
+        "micro_geometry": ("wg_crowning", "wg_slope", "fs_crowning"),
+    }
+    table = design().model_dump()
+    overrides = []
+    for section, keys in lengths.items():
+        values = table
+        for part in section.split("."):
+            values = values[part]
+        overrides += [f"{section}.{key}={scale * values[key]!r}" for key in keys]
+    for gear, metres in meshes(RECIPES["coarse"], *overrides).items():
+        millimetres = meshes(RECIPES["coarse"])[gear]
+        assert np.array_equal(metres.hexes, millimetres.hexes)
+        assert np.allclose(metres.coords, scale * millimetres.coords, rtol=0.0, atol=1e-12 * scale * 60.0)
+
+
+def test_whole_drive_is_watertight() -> None:
+    for mesh in meshes(TINY, *SMALL).values():
+        coords, hexes = whole_body(mesh)
+        assert len(coords) == mesh.n_sectors * (len(mesh.coords) - len(mesh.ccw_nodes))
+        assert hex_volumes(coords, hexes).min() > 0.0
+        sides = np.array([(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)])
+        faces = hexes[:, sides].reshape(-1, 4)
+        _, index, times = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
+        assert times.max() == 2
+        skin = faces[index[times == 1]]
+        edges = np.stack((skin, np.roll(skin, -1, axis=1)), axis=-1).reshape(-1, 2)
+        forward = {tuple(edge) for edge in edges.tolist()}
+        assert len(forward) == len(edges) and all((b, a) in forward for a, b in forward)
+        # a ring of gears and a cup with a bore are both tori: Euler number 0
+        assert np.unique(skin).size - len(edges) // 2 + len(skin) == 0
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("[cup]", "[rim]\nlayers = 2\n[cup]", ("rim", "section of a mesh recipe")),
+        ("cylinder = 2", "cylinder = 0", ("cup.cylinder = 0", "1 to 400")),
+        ("cylinder = 2", "cylinder = 2.5", ("cup.cylinder = 2.5", "whole number")),
+        ("cylinder = 2", "cylinder = 2\nfilet = 2", ("cup.filet", "did you mean cup.fillet")),
+        ("cylinder = 2", "cylinder = 2\nend_ratio = nan", ("cup.end_ratio", "finite")),
+        ("elements = 2", "elements = 1", ("face_width.elements = 1", "2 to 400")),
+        ("tip = 2", "tip = 1", ("flexible_spline.tip = 1", "2 to 40")),
+        ("flank = 2", "flank = true", ("flexible_spline.flank = true", "whole number")),
+        ("layers = 1", "layers = 1\nlayer_ratio = 0.5", ("flexible_spline.layer_ratio = 0.5", "1 to 3")),
+        ("rim = 1\n", "", ("flexible_spline.rim is missing",)),
+        ("[face_width]\nelements = 2\n", "", ("face_width is missing",)),
+        ("[face_width]\nelements = 2\n", "face_width = 3\n", ("ring_gear.face_width = 3",)),
+        ("[cup]", "[cup", ("not valid TOML",)),
+    ],
+)
+def test_bad_recipes_are_refused_in_one_sentence(
+    tmp_path: Path, old: str, new: str, words: tuple[str, ...]
+) -> None:
+    path = tmp_path / "recipe.toml"
+    good = TINY.read_text()
+    assert old in good
+    path.write_text(good.replace(old, new, 1))
+    with pytest.raises(InputError) as caught:
+        load_recipe(path)
+    message = str(caught.value)
+    assert "\n" not in message and all(word in message for word in words), message
+
+
+def test_unreadable_recipe(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no such file"):
+        load_recipe(tmp_path / "absent.toml")
+
+
+@pytest.mark.parametrize("override", ["cup.length=1.5", "cup.inner_radius=58.0"])
+def test_a_cup_that_does_not_close_is_refused(override: str) -> None:
+    with pytest.raises(InputError, match=override.partition("=")[0]):
+        meridian(design(override), load_recipe(TINY).cup)
+
+
+def test_exports_read_back(tmp_path: Path) -> None:
+    both = meshes(TINY, *SMALL)
+    drive = whole_drive(both)
+    files = write_mesh(design(*SMALL), both, tmp_path / "mesh")
+    assert [path.suffix for path in files] == [".vtu", ".msh", ".inp"]
+    for path in files[:2]:
+        back = meshio.read(path)
+        assert np.allclose(back.points, drive.points, rtol=0.0, atol=1e-12)
+        assert np.array_equal(back.cells_dict["hexahedron"], drive.cells_dict["hexahedron"])
+    marks = meshio.read(files[0]).point_data
+    assert set(marks) == set(drive.point_sets)
+    assert np.array_equal(
+        np.flatnonzero(marks["flexible_spline_bore"]), drive.point_sets["flexible_spline_bore"]
+    )
+    physical = meshio.read(files[1]).cell_data_dict["gmsh:physical"]["hexahedron"]
+    assert np.bincount(physical)[1:].tolist() == [len(m.hexes) * m.n_sectors for m in both.values()]
+    assert "TYPE=C3D8I" in files[2].read_text()
+
+
+def test_export_failures_are_clear(tmp_path: Path) -> None:
+    both = meshes(TINY, *SMALL)
+    blocked = tmp_path / "file"
+    blocked.write_text("")
+    with pytest.raises(OutputError, match="cannot be written"):
+        write_mesh(design(*SMALL), both, blocked)
+    with pytest.raises(InputError, match='"stl"'):
+        write_mesh(design(*SMALL), both, tmp_path, ("stl",))
+
+
+@pytest.mark.skipif(
+    shutil.which("ccx") is None, reason="CalculiX (ccx), the independent reader of the file, is missing"
+)
+def test_calculix_accepts_the_drive(tmp_path: Path) -> None:
+    case = design(*SMALL)
+    path = write_mesh(case, meshes(TINY, *SMALL), tmp_path, ("inp",))[0]
+    # a turn of the bore by 1e-4 rad about z with the ring gear held: the cup follows it rigidly
+    deck = [f"*INCLUDE, INPUT={path.name}", "*MATERIAL, NAME=STEEL", "*ELASTIC", "210000.0, 0.29"]
+    deck += [f"*SOLID SECTION, ELSET={gear.upper()}, MATERIAL=STEEL" for gear in GEARS]
+    deck += ["*BOUNDARY", "RING_GEAR_OUTER, 1, 3", "*STEP", "*STATIC", "*BOUNDARY"]
+    drive = whole_drive(meshes(TINY, *SMALL))
+    for node in drive.point_sets["flexible_spline_bore"]:
+        x, y, _ = drive.points[node]
+        deck += [
+            f"{node + 1}, 1, 1, {-1e-4 * y:.12e}",
+            f"{node + 1}, 2, 2, {1e-4 * x:.12e}",
+            f"{node + 1}, 3, 3",
+        ]
+    deck += ["*NODE PRINT, NSET=FLEXIBLE_SPLINE_FLANKS", "U", "*END STEP"]
+    (tmp_path / "job.inp").write_text("\n".join(deck) + "\n")
+    run = subprocess.run(
+        ["ccx", "job"], cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False
+    )
+    assert run.returncode == 0 and "*ERROR" not in run.stdout, run.stdout[-2000:]
+    rows = [line.split() for line in (tmp_path / "job.dat").read_text().splitlines()]
+    table = np.array([[float(v) for v in row] for row in rows if len(row) == 4 and row[0].isdigit()])
+    nodes = table[:, 0].astype(int) - 1
+    assert np.array_equal(np.sort(nodes), drive.point_sets["flexible_spline_flanks"])
+    x, y, _ = drive.points[nodes].T
+    exact = 1e-4 * np.stack((-y, x, np.zeros_like(x)), axis=-1)
+    assert np.abs(table[:, 1:] - exact).max() < 1e-4 * np.abs(exact).max()
+
+
+def test_report_counts_the_full_drive() -> None:
+    both = meshes(TINY, *SMALL)
+    report = mesh_report(both)
+    drive = whole_drive(both)
+    assert sum(entry["nodes"] for entry in report.values()) == len(drive.points)
+    assert sum(entry["elements"] for entry in report.values()) == sum(
+        len(block.data) for block in drive.cells
+    )
+    assert all(entry["min_jacobian"] > 0.0 and entry["volume"] > 0.0 for entry in report.values())
