@@ -20,6 +20,12 @@ from petsc4py import PETSc
 from swgpar.assembly import BodyElements
 from swgpar.partition import Partition
 
+MUMPS_DEFAULTS = {
+    "mat_mumps_icntl_7": 6,   # quasi-dense minimum degree: faster here than PORD, MUMPS' choice without METIS
+    "mat_mumps_icntl_13": 1,  # no ScaLAPACK root: its Cholesky refuses the indefinite tangents of early iterations
+    "mat_mumps_icntl_14": 60,  # per cent of memory above the estimate
+}
+
 NAMES = ("x", "y", "z", "tilt_x", "tilt_y", "rotation")
 ROTATION = 5
 
@@ -154,6 +160,10 @@ class Bordered:
             self.ksp.setType(PETSc.KSP.Type.PREONLY)
             pc.setType(PETSc.PC.Type.CHOLESKY)
             pc.setFactorSolverType("mumps")
+            options = PETSc.Options(options_prefix)
+            for name, value in MUMPS_DEFAULTS.items():
+                if not options.hasName(name):
+                    options[name] = value
         self.ksp.setFromOptions()
         self.grounding: list[PETSc.Vec] = []
         self.border: list[PETSc.Vec] = []

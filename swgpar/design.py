@@ -76,20 +76,20 @@ class Contact(Section):
     quadrature: int = quantity(6, text="Gauss points per direction on flank faces", ge=1, le=16)
     wg_quadrature: int = quantity(3, text="Gauss points per direction on the inner surface", ge=1, le=16)
     max_augmentations: int = quantity(3, text="largest number of augmentations per increment", ge=0, le=50)
-    penetration_tolerance: float = quantity(1e-4, unit="modules", text="penetration that needs no augmentation", gt=0.0, le=0.1)
+    penetration_tolerance: float = quantity(5e-4, unit="modules", text="penetration that needs no augmentation", gt=0.0, le=0.1)
 
 
 class Steps(Section):
     rotation: float = quantity(45.0, unit="deg", text="rotation of the wave generator", ge=0.0, le=36000.0)
     increment: float = quantity(5.0, unit="deg", text="increment of that rotation", gt=0.0, le=45.0)
-    deflect_increments: int = quantity(4, text="increments of the deflection by the pins", ge=1, le=1000)
-    engage_increments: int = quantity(2, text="increments of the engagement", ge=1, le=1000)
-    load_increments: int = quantity(2, text="increments of the torque", ge=1, le=1000)
+    deflect_increments: int = quantity(1, text="increments of the deflection by the pins", ge=1, le=1000)
+    engage_increments: int = quantity(1, text="increments of the engagement", ge=1, le=1000)
+    load_increments: int = quantity(1, text="increments of the torque", ge=1, le=1000)
 
 
 class Solver(Section):
     linear: Literal["direct", "iterative"] = quantity("direct", text="MUMPS Cholesky, or CG with GAMG")
-    rtol: float = quantity(1e-10, text="residual over contact force at convergence", gt=0.0, le=1e-3)
+    rtol: float = quantity(1e-9, text="residual over contact force at convergence", gt=0.0, le=1e-3)
     max_iterations: int = quantity(25, text="Newton iterations before an increment is cut back", ge=1, le=1000)
     max_cutbacks: int = quantity(5, text="halvings of an increment before the run ends", ge=0, le=20)
     twofold_symmetry: bool = quantity(True, text="model half of the drive when tooth numbers allow it")
@@ -157,15 +157,45 @@ class DriveDesign(Section):
         return 5.0 * self.contact.penalty_coef * self.material.E / self.drive.module
 
 
+def _refuse(key: str, value: float, allowed: str) -> None:
+    raise InputError(f"{key} = {value:g} is out of range: allowed {allowed}")
+
+
+def check_fit(design: DriveDesign) -> None:
+    """Refuse sizes that do not fit each other, naming the key, the value and what is allowed."""
+    g, cup, micro, wave = design.drive, design.cup, design.micro_geometry, design.wave_generator
+    difference = g.teeth_rg - g.teeth_fs
+    if difference <= 0 or difference % 2:
+        raise InputError(f"drive.teeth_rg - drive.teeth_fs = {difference} is out of range: allowed a positive multiple of two")
+    if g.dedendum_coef <= g.addendum_coef:
+        _refuse("drive.dedendum_coef", g.dedendum_coef, f"above {g.addendum_coef:g} (the addendum) to 2 modules")
+    if design.r_fs <= design.d:
+        _refuse("flexible_spline.rim", design.flexible_spline.rim, "a rim that leaves an inner radius above the deflection")
+    if design.b <= 0.0 or design.b**2 / design.a >= design.r_fs or design.b < 0.5 * design.r_fs:
+        _refuse("wave_generator.C", wave.C, "values whose minor axis is between half the spline's inner radius and that radius")
+    width = g.face_width
+    if wave.face_width > width:
+        _refuse("wave_generator.face_width", wave.face_width, f"above 0 to {width:g} mm (drive.face_width)")
+    if cup.fillet_radius < design.cup_thickness:
+        _refuse("cup.fillet_radius", cup.fillet_radius, f"{design.cup_thickness:g} (the cup's thickness) to inf mm")
+    outer = design.r_fs + design.cup_thickness
+    if cup.fillet_radius >= min(cup.length, outer - cup.inner_radius):
+        if cup.inner_radius >= outer - design.cup_thickness:
+            _refuse("cup.inner_radius", cup.inner_radius, f"above 0 to below {outer - cup.fillet_radius:g} mm")
+        _refuse("cup.fillet_radius", cup.fillet_radius, f"{design.cup_thickness:g} to below "
+                f"{min(cup.length, outer - cup.inner_radius):g} mm (the cup's length, and its radius less the bore)")
+    if micro.wg_crowning > 0.5 * design.d:
+        _refuse("micro_geometry.wg_crowning", micro.wg_crowning, f"0 to {0.5 * design.d:g} mm (half the deflection)")
+    if abs(micro.wg_slope) > 0.5 * design.d:
+        _refuse("micro_geometry.wg_slope", micro.wg_slope, f"-{0.5 * design.d:g} to {0.5 * design.d:g} mm (half the deflection)")
+    if micro.fs_crowning > 0.25 * g.module:
+        _refuse("micro_geometry.fs_crowning", micro.fs_crowning, f"0 to {0.25 * g.module:g} mm (a quarter of the module)")
+
+
 def load_design(path: str | Path, overrides: Sequence[str] = ()) -> DriveDesign:
     """Read and check a design file; every problem is an `InputError` of one sentence."""
     design = validate(DriveDesign, apply_overrides(read_toml(path), overrides))
-    difference = design.drive.teeth_rg - design.drive.teeth_fs
-    if difference <= 0 or difference % 2:
-        raise InputError(f"drive.teeth_rg - drive.teeth_fs = {difference} is not allowed: allowed a positive multiple of two")
-    if design.cup.fillet_radius < design.cup_thickness:
-        raise InputError(f"cup.fillet_radius = {design.cup.fillet_radius:g} is out of range: allowed "
-                         f"{design.cup_thickness:g} (the cup's thickness) to inf mm")
+    check_fit(design)
     for gear in ("flexible_spline", "ring_gear"):
         make_profile(design, gear)
     return design

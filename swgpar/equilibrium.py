@@ -221,7 +221,7 @@ class Equilibrium:
             bore = self.coupling.evaluate(u)
             target = np.zeros(6)
             target[ROTATION] = scene.rotation
-            tail = multiplier.copy()
+            tail = self.scale * multiplier  # unused multipliers are zero; used ones are overwritten below
             for k in self._controls(scene):
                 residual[self.coupling.nodes] += self.scale * multiplier[k] * bore.gradient[k]
                 tail[k] = self.scale * (bore.value[k] - target[k])

@@ -95,21 +95,23 @@ class DriveModel:
         return out
 
 
-def predict(model: DriveModel, x: PETSc.Vec, turn: float) -> None:
-    """Turn the state x with the wave generator by `turn` (rad): the deflection pattern moves on, teeth renamed.
+def predict(model: DriveModel, x: PETSc.Vec, turn: float, slip: float = 0.0) -> None:
+    """Turn the state x with the wave generator by `turn`, or the flexible spline in its pattern by `slip` (rad).
 
     After one ring-gear pitch the drive repeats with the flexible spline's teeth renamed by one (exactly, for a
     fixed ring gear); in between the state is interpolated over the sectors by cubic polynomials.
     """
     partition = model.partition
     ring_teeth = partition.layouts[1].mesh.n_sectors
-    shift = turn * ring_teeth / (2.0 * np.pi)
-    whole = int(np.floor(shift))
-    t = 1.0 - (shift - whole)
     nodes = np.array([-1.0, 0.0, 1.0, 2.0])
-    weights = np.array([np.prod([(t - m) / (n - m) for m in nodes if m != n]) for n in nodes])
     new = []
     for body, layout in enumerate(partition.layouts):
+        shift = turn * ring_teeth / (2.0 * np.pi)
+        if body == 0:
+            shift -= slip * layout.mesh.n_sectors / (2.0 * np.pi)
+        whole = int(np.floor(shift))
+        t = 1.0 - (shift - whole)
+        weights = np.array([np.prod([(t - m) / (n - m) for m in nodes if m != n]) for n in nodes])
         first, end = partition.owned(body)
         wanted = np.arange(first - whole - 2, end - whole + 2)
         field = read_field(partition, body, wanted, x)
@@ -119,7 +121,7 @@ def predict(model: DriveModel, x: PETSc.Vec, turn: float) -> None:
         pattern = sum(w * local[k:k + count] for k, w in enumerate(weights))
         angle = layout.turn(layout.first_tooth + np.arange(first, end))
         if body == 0:
-            drift = turn * (1.0 - ring_teeth / layout.mesh.n_sectors)
+            drift = turn * (1.0 - ring_teeth / layout.mesh.n_sectors) + slip
             coords = layout.mesh.coords[None]
             values = _turned(coords + pattern, angle + drift) - _turned(np.repeat(coords, count, axis=0), angle)
         else:
@@ -156,6 +158,8 @@ class Runner:
             scene = origin.toward(target, reach)
             if scene.angle != self.scene.angle:
                 predict(self.model, x, scene.angle - self.scene.angle)
+            elif scene.control == "rotation" and scene.rotation != self.scene.rotation:
+                predict(self.model, x, 0.0, scene.rotation - self.scene.rotation)
             elif scene.name == "deflect" and self.scene.name == "deflect":
                 # the ring bends in proportion to the pins' travel
                 travel = 0.5 * self.design.d

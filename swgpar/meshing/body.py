@@ -48,8 +48,8 @@ def _check(gear: str, quality: dict[str, float], recipe: ToothRecipe) -> None:
     if not quality["min_jacobian"] > 0.0:
         raise InputError(
             f"{gear}.tip = {recipe.tip}, {gear}.flank = {recipe.flank} of the mesh recipe turn an element "
-            f"inside out (Jacobian {quality['min_jacobian']:.3g} mm3): allowed are counts, and a profile, that "
-            "leave all Jacobians above 0"
+            f"inside out (Jacobian {quality['min_jacobian']:.3g} mm3): allowed are counts, and a profile, "
+            "that leave all Jacobians above 0"
         )
 
 

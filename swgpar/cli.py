@@ -1,0 +1,168 @@
+"""The command `swgpar`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import traceback
+from collections.abc import Sequence
+
+import swgpar
+from swgpar.errors import SwgparError
+
+EXAMPLES = """examples:
+  swgpar check drivers/cup_45deg.toml
+  mpirun -n 2 swgpar run drivers/cup_45deg.toml --mesh mesh/coarse.toml --out results/coarse
+  mpirun -n 2 swgpar run drivers/cup_45deg.toml --mesh mesh/full.toml --out results/full --set load.torque=10
+  mpirun -n 2 swgpar run drivers/cup_45deg.toml --mesh mesh/full.toml --out results/full --restart
+  swgpar mesh drivers/cup_45deg.toml --mesh mesh/coarse.toml --out results/mesh --format vtu inp
+  swgpar report results/full
+"""
+
+
+def parser() -> argparse.ArgumentParser:
+    """Argument parser of all subcommands."""
+    top = argparse.ArgumentParser(prog="swgpar", description="Contact finite-element analysis of strain wave gears.",
+                                  epilog=EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter)
+    top.add_argument("--version", action="version", version=f"swgpar {swgpar.__version__}")
+    commands = top.add_subparsers(dest="command", required=True, metavar="run | mesh | check | report")
+
+    def design_command(name: str, text: str) -> argparse.ArgumentParser:
+        command = commands.add_parser(name, help=text, description=text, epilog=EXAMPLES,
+                                      formatter_class=argparse.RawDescriptionHelpFormatter)
+        command.add_argument("design", help="design file (TOML)")
+        command.add_argument("--set", action="append", default=[], nargs="+", metavar="section.key=value",
+                             help="override a key of the design file")
+        return command
+
+    run = design_command("run", "simulate a drive; what is not known here is handed to PETSc")
+    run.add_argument("--mesh", required=True, help="mesh recipe (TOML)")
+    run.add_argument("--out", required=True, help="results folder")
+    run.add_argument("--restart", action="store_true", help="continue from the checkpoint in --out")
+    run.add_argument("--overwrite", action="store_true", help="replace results that --out already holds")
+    mesh = design_command("mesh", "write the mesh of the whole drive")
+    mesh.add_argument("--mesh", required=True, help="mesh recipe (TOML)")
+    mesh.add_argument("--out", required=True, help="folder for the mesh files")
+    mesh.add_argument("--format", nargs="+", default=["vtu", "msh", "inp"], choices=["vtu", "msh", "inp"])
+    design_command("check", "validate a design and print its geometry")
+    report = commands.add_parser("report", help="draw the figures of a finished run again")
+    report.add_argument("out", help="results folder")
+    return top
+
+
+def _run(arguments: argparse.Namespace) -> None:
+    from mpi4py import MPI
+
+    from swgpar.design import load_design
+    from swgpar.meshing import load_recipe
+    from swgpar.run import run_drive
+
+    comm = MPI.COMM_WORLD
+    design = load_design(arguments.design, arguments.overrides)
+    recipe = load_recipe(arguments.mesh)
+    result = run_drive(design, recipe, arguments.out, restart=arguments.restart, overwrite=arguments.overwrite, comm=comm,
+                       recipe_name=arguments.mesh)
+    if comm.rank == 0:
+        _print_result(result)
+        if design.output.figures:
+            _figures(arguments.out)
+    comm.Barrier()
+
+
+def _print_result(result) -> None:
+    from rich.table import Table
+
+    from swgpar.log import console
+
+    table = Table(title="maxima over the bodies, nodal averages")
+    columns = {"wg_angle_deg": ("wave generator\n(deg)", ".1f"), "output_angle_deg": ("output\n(deg)", ".5f"),
+               "fs_s1": ("spline s1\n(MPa)", ".1f"), "fs_s3": ("spline |s3|\n(MPa)", ".1f"),
+               "fs_vm": ("spline v. Mises\n(MPa)", ".1f"), "rg_vm": ("ring v. Mises\n(MPa)", ".1f"),
+               "wg_torque_Nmm": ("input torque\n(N·mm)", ".2f"), "pairs_in_contact": ("flank\npairs", "d"),
+               "newton_iterations": ("Newton", "d")}
+    table.add_column("step", justify="right")
+    for title, _ in columns.values():
+        table.add_column(title, justify="right")
+    for row in result.rows:
+        table.add_row(str(row["step"]), *(format(row[k], spec) for k, (_, spec) in columns.items()))
+    console.print(table)
+    if result.means:
+        m = result.means
+        console.print(f"means over the rotation: flexible spline s1 {m['fs_s1']:.1f}, |s3| {m['fs_s3']:.1f}, von Mises "
+                      f"{m['fs_vm']:.1f} MPa; ring gear von Mises {m['rg_vm']:.1f} MPa; input torque "
+                      f"{m['wg_torque_Nmm']:.2f} N·mm (energy balance {result.summary['wg_torque_expected_Nmm']:.2f})")
+    console.print(f"torque balance error {result.summary['balance_error_Nmm']:.1e} N·mm; "
+                  f"{result.summary['wall_s']:.0f} s on {result.summary['ranks']} ranks")
+
+
+def _figures(out: str) -> None:
+    from pathlib import Path
+
+    from swgpar.log import console
+    from swgpar.report import make_figures
+
+    try:
+        for path in make_figures(Path(out)):
+            console.print(f"figure {path}")
+    except Exception as error:  # a picture that fails must not cost the run
+        console.print(f"figures could not be drawn: {error}")
+
+
+def _mesh(arguments: argparse.Namespace) -> None:
+    from pathlib import Path
+
+    from swgpar.design import load_design
+    from swgpar.meshing import build_sector_meshes, load_recipe
+    from swgpar.meshing.export import mesh_report, write_mesh
+
+    design = load_design(arguments.design, arguments.overrides)
+    meshes = build_sector_meshes(design, load_recipe(arguments.mesh))
+    write_mesh(design, meshes, Path(arguments.out), tuple(arguments.format))
+    print(mesh_report(meshes))
+
+
+def _check(arguments: argparse.Namespace) -> None:
+    from swgpar.design import load_design
+    from swgpar.geometry_check import derived_geometry
+
+    design = load_design(arguments.design, arguments.overrides)
+    for name, value in derived_geometry(design).items():
+        print(f"{name:40s} {value:.6g}")
+
+
+def _report(arguments: argparse.Namespace) -> None:
+    _figures(arguments.out)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Entry point; returns the exit code (0, or that of the error)."""
+    known, rest = parser().parse_known_args(arguments)
+    if rest and known.command != "run":
+        parser().error(f"unknown arguments: {' '.join(rest)}")
+    known.overrides = [item for group in getattr(known, "set", []) for item in group]
+    rank = 0
+    try:
+        if known.command == "run":
+            import petsc4py
+
+            petsc4py.init(["swgpar", *rest])
+            from mpi4py import MPI
+
+            rank = MPI.COMM_WORLD.rank
+        {"run": _run, "mesh": _mesh, "check": _check, "report": _report}[known.command](known)
+    except SwgparError as error:
+        if rank == 0:
+            print(f"swgpar: error: {error}", file=sys.stderr, flush=True)
+        return error.exit_code
+    except Exception:
+        if known.command != "run":
+            raise
+        traceback.print_exc()
+        from mpi4py import MPI
+
+        MPI.COMM_WORLD.Abort(1)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,56 @@
+"""The assembled tangent against differences of the residual, with all contacts on; on any number of ranks."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from swgpar.assembly import create_vector
+from swgpar.design import load_design
+from swgpar.incremental import DriveModel
+from swgpar.meshing import load_recipe
+from swgpar.steps import Scene
+
+DATA = Path(__file__).parent.parent / "data"
+
+
+@pytest.mark.ranks3
+@pytest.mark.parametrize("half", ["true", "false"])
+def test_tangent_is_the_derivative_of_the_residual(half: str) -> None:
+    design = load_design(DATA / "small.toml", [f"solver.twofold_symmetry={half}"])
+    model = DriveModel(design, load_recipe(DATA / "tiny.toml"), MPI.COMM_WORLD)
+    equilibrium, partition = model.equilibrium, model.partition
+    # undeformed, the cam overlaps at the major axis; shrunk teeth overlap slightly at the minor axis
+    equilibrium.scene = Scene(4, "rotate", angle=0.01, cam=-0.001, teeth=-0.02, control="torque", torque=2000.0)
+    equilibrium.search()
+    start = partition.row_start
+    rng = np.random.default_rng(3)
+    every = 1e-5 * rng.standard_normal((partition.n_global, 3))
+    way = rng.standard_normal((partition.n_global, 3))
+    way[-2:] = every[-2:] = 0.0
+    own = slice(start, start + partition.n_own)
+    x, d = equilibrium.x, create_vector(partition)
+    x.array[:], d.array[:] = every[own].ravel(), way[own].ravel()
+    equilibrium._jacobian(None, x, None, equilibrium.matrix)
+    product = create_vector(partition)
+    equilibrium.matrix.mult(d, product)
+    for vector in equilibrium.ground_vectors:
+        product.axpy(-vector.dot(d), vector)
+    step, sides = 1e-8, []
+    for sign in (1.0, -1.0):
+        trial, force = x.copy(), create_vector(partition)
+        trial.axpy(sign * step, d)
+        equilibrium._function(None, trial, force)
+        sides.append(force)
+    sides[0].axpy(-1.0, sides[1])
+    sides[0].scale(0.5 / step)
+    difference = sides[0].copy()
+    difference.axpy(-1.0, product)
+    if partition.comm.rank == partition.comm.size - 1:
+        difference.array[-6:] = 0.0  # the coupling's rows are in the border, not in the matrix
+    assert equilibrium.penetration() > 0.0
+    # the torque's own second derivative is left out of the tangent, and contact points switch within the step
+    assert difference.norm() < 1e-4 * sides[0].norm()

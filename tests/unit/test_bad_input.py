@@ -1,0 +1,89 @@
+"""Bad design files: one sentence with key, value and range or reason, exit code 2."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from swgpar.design import load_design
+from swgpar.errors import InputError
+
+REFERENCE = Path(__file__).parents[2] / "drivers" / "cup_45deg.toml"
+
+OVERRIDES = [
+    ("drive.teeth_fs=-120", "drive.teeth_fs", "-120"), ("drive.teeth_fs=0", "drive.teeth_fs", "0"),
+    ("drive.teeth_fs=120.5", "drive.teeth_fs", "120.5"), ("drive.teeth_fs=true", "drive.teeth_fs", "true"),
+    ("drive.teeth_rg=121", "drive.teeth_rg", "multiple of two"), ("drive.teeth_rg=118", "drive.teeth_rg", "multiple of two"),
+    ("drive.teeth_rg=120", "drive.teeth_rg", "multiple of two"), ("drive.module=0", "drive.module", "above 0"),
+    ("drive.module=-1.0", "drive.module", "above 0"), ("drive.module=nan", "drive.module", "finite"),
+    ("drive.module=inf", "drive.module", "finite"), ('drive.module="1"', "drive.module", "a number"),
+    ("drive.pressure_angle=0", "drive.pressure_angle", "above 0"), ("drive.pressure_angle=60", "drive.pressure_angle", "45"),
+    ("drive.addendum_coef=-0.6", "drive.addendum_coef", "above 0"), ("drive.dedendum_coef=9", "drive.dedendum_coef", "2"),
+    ("drive.face_width=0", "drive.face_width", "above 0"), ("drive.face_width=-10", "drive.face_width", "-10"),
+    ('drive.layout="sideways"', "drive.layout", "sideways"), ("drive.tooth_count=3", "drive.tooth_count", "not a key"),
+    ("flexible_spline.rim=0", "flexible_spline.rim", "above 0"), ("flexible_spline.rim=nan", "flexible_spline.rim", "finite"),
+    ("flexible_spline.c_P=0", "flexible_spline.c_P", "above 0"), ("flexible_spline.c_l=2", "flexible_spline.c_l", "1"),
+    ("flexible_spline.profile.r_tip=-0.5", "flexible_spline.profile.r_tip", "above 0"),
+    ("flexible_spline.profile.r_tip=3.0", "flexible_spline.profile", "r_tip"),
+    ("flexible_spline.profile.r_root=40.0", "flexible_spline.profile", "r_root"),
+    ("ring_gear.profile.r_root=5.0", "ring_gear.profile", "allowed"),
+    ("ring_gear.profile.straight_l=-1", "ring_gear.profile.straight_l", "0"),
+    ('ring_gear.profile.type="square"', "ring_gear.profile.type", "square"),
+    ("ring_gear.profile.r_dedendum=0", "ring_gear.profile.r_dedendum", "above 0"),
+    ("wave_generator.C=0", "wave_generator.C", "above 0"), ("wave_generator.C=1.5", "wave_generator.C", "1"),
+    ("wave_generator.face_width=-1", "wave_generator.face_width", "above 0"),
+    ("wave_generator.face_width=90", "wave_generator.face_width", "allowed"),
+    ('wave_generator.type="round"', "wave_generator.type", "elliptical"),
+    ("cup.length=0", "cup.length", "above 0"), ("cup.fillet_radius=0.5", "cup.fillet_radius", "0.8"),
+    ("cup.fillet_radius=50", "cup.fillet_radius", "allowed"), ("cup.inner_radius=80", "cup.inner_radius", "allowed"),
+    ("cup.inner_radius=-2", "cup.inner_radius", "above 0"), ("cup.thickness_coef=1.4", "cup.thickness_coef", "0.95"),
+    ("micro_geometry.wg_crowning=-0.1", "micro_geometry.wg_crowning", "0"),
+    ("micro_geometry.wg_crowning=5", "micro_geometry.wg_crowning", "allowed"),
+    ("micro_geometry.fs_crowning=2", "micro_geometry.fs_crowning", "allowed"),
+    ("micro_geometry.wg_slope=nan", "micro_geometry.wg_slope", "finite"),
+    ("material.E=0", "material.E", "above 0"), ("material.nu=0.5", "material.nu", "0.499"),
+    ("material.nu=-0.1", "material.nu", "0"), ("load.torque=-3", "load.torque", "0"),
+    ("steps.increment=0", "steps.increment", "above 0"), ("steps.rotation=-45", "steps.rotation", "0"),
+    ("contact.quadrature=0", "contact.quadrature", "1"), ("solver.max_iterations=0", "solver.max_iterations", "1"),
+    ('solver.linear="magic"', "solver.linear", "iterative"), ("nonsense=1", "nonsense", "section.key=value"),
+    ("drive.module", "drive.module", "section.key=value"), ("gearbox.size=1", "gearbox", "not a key"),
+]
+
+
+@pytest.mark.parametrize(("override", "key", "reason"), OVERRIDES)
+def test_one_sentence_with_key_and_reason(override: str, key: str, reason: str) -> None:
+    with pytest.raises(InputError) as caught:
+        load_design(REFERENCE, [override])
+    message = str(caught.value)
+    assert "\n" not in message and key in message and reason in message
+    assert caught.value.exit_code == 2
+
+
+@pytest.mark.parametrize("key", ["teeth_fs", "module", "E", "face_width"])
+def test_missing_key(tmp_path: Path, key: str) -> None:
+    lines = REFERENCE.read_text(encoding="utf-8").splitlines()
+    file = tmp_path / "design.toml"
+    file.write_text("\n".join(line for line in lines if not line.startswith(f"{key} =")), encoding="utf-8")
+    with pytest.raises(InputError, match=f"{key} is missing"):
+        load_design(file)
+
+
+def test_unreadable_files(tmp_path: Path) -> None:
+    binary, broken = tmp_path / "binary.toml", tmp_path / "broken.toml"
+    binary.write_bytes(b"\xff\xfe\x00")
+    broken.write_text("[drive\nmodule = ", encoding="utf-8")
+    for path, reason in ((tmp_path / "none.toml", "no such file"), (tmp_path, "directory"), (binary, "UTF-8"),
+                         (broken, "TOML")):
+        with pytest.raises(InputError, match=reason):
+            load_design(path)
+
+
+def test_exit_code_and_no_traceback() -> None:
+    command = [sys.executable, "-m", "swgpar.cli", "check", str(REFERENCE), "--set", "load.torque=-3"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 2
+    assert "load.torque = -3" in done.stderr and "Traceback" not in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
