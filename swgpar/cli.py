@@ -74,15 +74,13 @@ def _print_result(result) -> None:
 
     from swgpar.log import console
 
-    table = Table(title="maxima over the bodies, nodal averages")
-    columns = {"wg_angle_deg": ("wave generator\n(deg)", ".1f"), "output_angle_deg": ("output\n(deg)", ".5f"),
-               "fs_s1": ("spline s1\n(MPa)", ".1f"), "fs_s3": ("spline |s3|\n(MPa)", ".1f"),
-               "fs_vm": ("spline v. Mises\n(MPa)", ".1f"), "rg_vm": ("ring v. Mises\n(MPa)", ".1f"),
-               "wg_torque_Nmm": ("input torque\n(N·mm)", ".2f"), "pairs_in_contact": ("flank\npairs", "d"),
-               "newton_iterations": ("Newton", "d")}
+    table = Table(title="largest stresses over the bodies (MPa, nodal averages); torque in N·mm, angles in degrees")
+    columns = {"wg_angle_deg": ("input", ".1f"), "output_angle_deg": ("output", ".4f"), "fs_s1": ("fs s1", ".1f"),
+               "fs_s3": ("fs |s3|", ".1f"), "fs_vm": ("fs vm", ".1f"), "rg_vm": ("rg vm", ".1f"),
+               "wg_torque_Nmm": ("torque", ".2f"), "pairs_in_contact": ("pairs", "d"), "newton_iterations": ("Newton", "d")}
     table.add_column("step", justify="right")
     for title, _ in columns.values():
-        table.add_column(title, justify="right")
+        table.add_column(title, justify="right", no_wrap=True)
     for row in result.rows:
         table.add_row(str(row["step"]), *(format(row[k], spec) for k, (_, spec) in columns.items()))
     console.print(table)

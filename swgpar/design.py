@@ -178,12 +178,12 @@ def check_fit(design: DriveDesign) -> None:
         _refuse("wave_generator.face_width", wave.face_width, f"above 0 to {width:g} mm (drive.face_width)")
     if cup.fillet_radius < design.cup_thickness:
         _refuse("cup.fillet_radius", cup.fillet_radius, f"{design.cup_thickness:g} (the cup's thickness) to inf mm")
+    if cup.length <= cup.fillet_radius:
+        _refuse("cup.length", cup.length, f"above {cup.fillet_radius:g} mm (cup.fillet_radius)")
     outer = design.r_fs + design.cup_thickness
-    if cup.fillet_radius >= min(cup.length, outer - cup.inner_radius):
-        if cup.inner_radius >= outer - design.cup_thickness:
-            _refuse("cup.inner_radius", cup.inner_radius, f"above 0 to below {outer - cup.fillet_radius:g} mm")
-        _refuse("cup.fillet_radius", cup.fillet_radius, f"{design.cup_thickness:g} to below "
-                f"{min(cup.length, outer - cup.inner_radius):g} mm (the cup's length, and its radius less the bore)")
+    if cup.inner_radius >= outer - cup.fillet_radius:
+        _refuse("cup.inner_radius", cup.inner_radius, f"above 0 to below {outer - cup.fillet_radius:g} mm (the closed end "
+                "inside cup.fillet_radius)")
     if micro.wg_crowning > 0.5 * design.d:
         _refuse("micro_geometry.wg_crowning", micro.wg_crowning, f"0 to {0.5 * design.d:g} mm (half the deflection)")
     if abs(micro.wg_slope) > 0.5 * design.d:

@@ -94,7 +94,7 @@ def _mesh(out: Path, body: str) -> dict[str, np.ndarray]:
 
 
 def _deformed(out: Path, index: int, summary: dict, figures: Path) -> Path:
-    """The deformed drive coloured by von Mises stress, ring gear cut away from half of the picture."""
+    """The deformed drive, seen from its open end, coloured by von Mises stress."""
     import pyvista
 
     pyvista.OFF_SCREEN = True
@@ -112,7 +112,7 @@ def _deformed(out: Path, index: int, summary: dict, figures: Path) -> Path:
             turn = np.array([sign, sign, 1.0])
             grid = pyvista.UnstructuredGrid(cells, kinds, (mesh["points"] + MAGNIFICATION * u) * turn)
             grid.point_data["von Mises stress (MPa)"] = vm
-            grids.append(grid.extract_surface())
+            grids.append(grid.extract_surface(algorithm="dataset_surface"))
     for grid in grids:
         plotter.add_mesh(grid, scalars="von Mises stress (MPa)", cmap="turbo", clim=(0.0, limit), smooth_shading=False)
     plotter.add_text(f"displacements x {MAGNIFICATION:g}", font_size=12)
@@ -129,7 +129,6 @@ def _pattern(out: Path, index: int, summary: dict, figures: Path) -> Path:
     from matplotlib.figure import Figure
 
     mesh, pressure = _mesh(out, "flexible_spline"), _read(out, index, "flexible_spline", "pressure")
-    n_local = int(mesh["flank_nodes"].max()) + 1
     n_sectors = summary["bodies"]["flexible_spline"]["elements"] // (
         summary["bodies"]["flexible_spline"]["elements_whole"] // summary["design"]["drive"]["teeth_fs"])
     n_local = len(pressure) // n_sectors
