@@ -37,8 +37,10 @@ def main() -> float:
 
     if MPI.COMM_WORLD.rank == 0:
         for row in result.rows:
-            print(f"step {row['step']:>3}  {row['wg_angle_deg']:7.2f} deg  s1 {row['fs_s1']:7.1f} MPa  "
-                  f"input torque {row['wg_torque_Nmm']:8.2f} N mm")
+            print(
+                f"step {row['step']:>3}  {row['wg_angle_deg']:7.2f} deg  s1 {row['fs_s1']:7.1f} MPa  "
+                f"input torque {row['wg_torque_Nmm']:8.2f} N mm"
+            )
     return result.means.get("fs_s1", float("nan"))
 
 

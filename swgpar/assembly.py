@@ -72,7 +72,7 @@ class BodyElements:
         lo, hi = partition.row_start, partition.row_start + partition.n_own
         # on a single rank the sector before the first is an image of an owned one: it must not count twice
         self.neighbour = np.zeros(len(sectors), dtype=bool)
-        self.neighbour[:self.owned.start] = True
+        self.neighbour[: self.owned.start] = True
         if layout.closed and end - first == layout.count:
             self.neighbour[:] = False
         counted = self.neighbour.copy()
@@ -112,10 +112,14 @@ class BodyElements:
         sums = np.zeros((n_sectors, n_node, 6))
         hexes = self.layout.mesh.hexes
         for k in range(n_sectors):
-            stress = recover_stress(self.reference, np.arange(n_elem, dtype=np.int32),
-                                    np.repeat(self.turn_of_sector[k:k + 1], n_elem, axis=0),
-                                    np.ascontiguousarray(self.local[k, hexes]),
-                                    np.ascontiguousarray(self.flip[k, hexes]), u)
+            stress = recover_stress(
+                self.reference,
+                np.arange(n_elem, dtype=np.int32),
+                np.repeat(self.turn_of_sector[k : k + 1], n_elem, axis=0),
+                np.ascontiguousarray(self.local[k, hexes]),
+                np.ascontiguousarray(self.flip[k, hexes]),
+                u,
+            )
             for c in range(6):
                 sums[k, :, c] = np.bincount(hexes.ravel(), stress[:, :, c].ravel(), minlength=n_node)
         count = np.bincount(hexes.ravel(), minlength=n_node).astype(float)
@@ -151,8 +155,12 @@ class Elements:
         keys.append(own * self.partition.n_global + own)
         keys = np.unique(np.concatenate(keys))
         self.keys = keys[keys >= 0]
-        self.slots = [np.searchsorted(self.keys, self._pairs(
-            b.conn, np.where(b.conn >= 0, local.number[b.conn], -1).astype(np.int64), local)) for b in self.bodies]
+        self.slots = [
+            np.searchsorted(
+                self.keys, self._pairs(b.conn, np.where(b.conn >= 0, local.number[b.conn], -1).astype(np.int64), local)
+            )
+            for b in self.bodies
+        ]
         for slot, body in zip(self.slots, self.bodies):
             number = np.where(body.conn >= 0, local.number[body.conn], -1).astype(np.int64)
             slot[self._pairs(body.conn, number, local) < 0] = -1
@@ -175,17 +183,33 @@ class Elements:
         first = self.partition.row_start
         start = np.searchsorted(row, np.arange(first, first + self.partition.n_own + 1))
         place = np.searchsorted(keys, self.keys)
-        rows = BlockRows(start.astype(np.int64), column.astype(np.int32), np.zeros((len(keys), 3, 3)), number,
-                         self.partition.n_own, keys)
+        rows = BlockRows(
+            start.astype(np.int64),
+            column.astype(np.int32),
+            np.zeros((len(keys), 3, 3)),
+            number,
+            self.partition.n_own,
+            keys,
+        )
         return rows, [np.where(slot >= 0, place[slot], -1) for slot in self.slots]
 
-    def assemble(self, u: np.ndarray, residual: np.ndarray | None, rows: BlockRows | None,
-                 slots: list[np.ndarray] | None) -> None:
+    def assemble(
+        self, u: np.ndarray, residual: np.ndarray | None, rows: BlockRows | None, slots: list[np.ndarray] | None
+    ) -> None:
         """Add internal forces to `residual` (n_local, 3) N and tangent blocks to `rows.values`."""
         for k, body in enumerate(self.bodies):
             if len(body.conn):
-                assemble_elements(body.reference, body.ref_of, body.turn, body.conn, body.conn_flip, u, residual,
-                                  None if slots is None else slots[k], None if rows is None else rows.values)
+                assemble_elements(
+                    body.reference,
+                    body.ref_of,
+                    body.turn,
+                    body.conn,
+                    body.conn_flip,
+                    u,
+                    residual,
+                    None if slots is None else slots[k],
+                    None if rows is None else rows.values,
+                )
 
 
 def create_vector(partition: Partition) -> PETSc.Vec:
@@ -230,8 +254,9 @@ def create_matrix(partition: Partition, rows: BlockRows) -> PETSc.Mat:
 
 def fill_matrix(mat: PETSc.Mat, rows: BlockRows) -> None:
     """Overwrite the owned rows of `mat` with the blocks."""
-    mat.setValuesBlockedIJV(rows.start.astype(PETSc.IntType), rows.column, rows.values.ravel(),
-                            addv=PETSc.InsertMode.INSERT_VALUES)
+    mat.setValuesBlockedIJV(
+        rows.start.astype(PETSc.IntType), rows.column, rows.values.ravel(), addv=PETSc.InsertMode.INSERT_VALUES
+    )
     mat.assemble()
 
 
@@ -242,5 +267,3 @@ def add_unit_diagonal(rows: BlockRows, partition: Partition, value: float) -> No
         if 0 <= own < rows.n_own:
             place = np.searchsorted(rows.keys, node * partition.n_global + node)
             rows.values[place] += value * np.eye(3)
-
-

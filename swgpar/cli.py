@@ -22,17 +22,28 @@ EXAMPLES = """examples:
 
 def parser() -> argparse.ArgumentParser:
     """Argument parser of all subcommands."""
-    top = argparse.ArgumentParser(prog="swgpar", description="Contact finite-element analysis of strain wave gears.",
-                                  epilog=EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter)
+    top = argparse.ArgumentParser(
+        prog="swgpar",
+        description="Contact finite-element analysis of strain wave gears.",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     top.add_argument("--version", action="version", version=f"swgpar {swgpar.__version__}")
     commands = top.add_subparsers(dest="command", required=True, metavar="run | mesh | check | report")
 
     def design_command(name: str, text: str) -> argparse.ArgumentParser:
-        command = commands.add_parser(name, help=text, description=text, epilog=EXAMPLES,
-                                      formatter_class=argparse.RawDescriptionHelpFormatter)
+        command = commands.add_parser(
+            name, help=text, description=text, epilog=EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter
+        )
         command.add_argument("design", help="design file (TOML)")
-        command.add_argument("--set", action="append", default=[], nargs="+", metavar="section.key=value",
-                             help="override a key of the design file")
+        command.add_argument(
+            "--set",
+            action="append",
+            default=[],
+            nargs="+",
+            metavar="section.key=value",
+            help="override a key of the design file",
+        )
         return command
 
     run = design_command("run", "simulate a drive; what is not known here is handed to PETSc")
@@ -60,8 +71,15 @@ def _run(arguments: argparse.Namespace) -> None:
     comm = MPI.COMM_WORLD
     design = load_design(arguments.design, arguments.overrides)
     recipe = load_recipe(arguments.mesh)
-    result = run_drive(design, recipe, arguments.out, restart=arguments.restart, overwrite=arguments.overwrite, comm=comm,
-                       recipe_name=arguments.mesh)
+    result = run_drive(
+        design,
+        recipe,
+        arguments.out,
+        restart=arguments.restart,
+        overwrite=arguments.overwrite,
+        comm=comm,
+        recipe_name=arguments.mesh,
+    )
     if comm.rank == 0:
         _print_result(result)
         if design.output.figures:
@@ -75,9 +93,17 @@ def _print_result(result) -> None:
     from swgpar.log import console
 
     table = Table(title="largest stresses over the bodies (MPa, nodal averages); torque in N·mm, angles in degrees")
-    columns = {"wg_angle_deg": ("input", ".1f"), "output_angle_deg": ("output", ".4f"), "fs_s1": ("fs s1", ".1f"),
-               "fs_s3": ("fs |s3|", ".1f"), "fs_vm": ("fs vm", ".1f"), "rg_vm": ("rg vm", ".1f"),
-               "wg_torque_Nmm": ("torque", ".2f"), "pairs_in_contact": ("pairs", "d"), "newton_iterations": ("Newton", "d")}
+    columns = {
+        "wg_angle_deg": ("input", ".1f"),
+        "output_angle_deg": ("output", ".4f"),
+        "fs_s1": ("fs s1", ".1f"),
+        "fs_s3": ("fs |s3|", ".1f"),
+        "fs_vm": ("fs vm", ".1f"),
+        "rg_vm": ("rg vm", ".1f"),
+        "wg_torque_Nmm": ("torque", ".2f"),
+        "pairs_in_contact": ("pairs", "d"),
+        "newton_iterations": ("Newton", "d"),
+    }
     table.add_column("step", justify="right")
     for title, _ in columns.values():
         table.add_column(title, justify="right", no_wrap=True)
@@ -86,11 +112,15 @@ def _print_result(result) -> None:
     console.print(table)
     if result.means:
         m = result.means
-        console.print(f"means over the rotation: flexible spline s1 {m['fs_s1']:.1f}, |s3| {m['fs_s3']:.1f}, von Mises "
-                      f"{m['fs_vm']:.1f} MPa; ring gear von Mises {m['rg_vm']:.1f} MPa; input torque "
-                      f"{m['wg_torque_Nmm']:.2f} N·mm (energy balance {result.summary['wg_torque_expected_Nmm']:.2f})")
-    console.print(f"torque balance error {result.summary['balance_error_Nmm']:.1e} N·mm; "
-                  f"{result.summary['wall_s']:.0f} s on {result.summary['ranks']} ranks")
+        console.print(
+            f"means over the rotation: flexible spline s1 {m['fs_s1']:.1f}, |s3| {m['fs_s3']:.1f}, von Mises "
+            f"{m['fs_vm']:.1f} MPa; ring gear von Mises {m['rg_vm']:.1f} MPa; input torque "
+            f"{m['wg_torque_Nmm']:.2f} N·mm (energy balance {result.summary['wg_torque_expected_Nmm']:.2f})"
+        )
+    console.print(
+        f"torque balance error {result.summary['balance_error_Nmm']:.1e} N·mm; "
+        f"{result.summary['wall_s']:.0f} s on {result.summary['ranks']} ranks"
+    )
 
 
 def _figures(out: str) -> None:
@@ -152,6 +182,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if rank == 0:
             print(f"swgpar: error: {error}", file=sys.stderr, flush=True)
         return error.exit_code
+    except BrokenPipeError:  # the reader of our output has gone
+        sys.stderr.close()
+        return 1
     except Exception:
         if known.command != "run":
             raise

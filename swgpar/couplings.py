@@ -21,7 +21,7 @@ from swgpar.assembly import BodyElements
 from swgpar.partition import Partition
 
 MUMPS_DEFAULTS = {
-    "mat_mumps_icntl_7": 6,   # quasi-dense minimum degree: faster here than PORD, MUMPS' choice without METIS
+    "mat_mumps_icntl_7": 6,  # quasi-dense minimum degree: faster here than PORD, MUMPS' choice without METIS
     "mat_mumps_icntl_13": 1,  # no ScaLAPACK root: its Cholesky refuses the indefinite tangents of early iterations
     "mat_mumps_icntl_14": 60,  # per cent of memory above the estimate
 }
@@ -102,8 +102,12 @@ class BoreCoupling:
         if self.images:
             mean[:2] = 0.0
         x, y = arm[:, 0] + v[:, 0] - mean[0], arm[:, 1] + v[:, 1] - mean[1]
-        sine, cosine = self.sum(np.column_stack([w * (arm[:, 0] * y - arm[:, 1] * x), w * (arm[:, 0] * x + arm[:, 1] * y)]))
-        tilt_x, tilt_y = self.sum(np.column_stack([w * arm[:, 1] * v[:, 2], -w * arm[:, 0] * v[:, 2]])) * 2.0 / self.radius2
+        sine, cosine = self.sum(
+            np.column_stack([w * (arm[:, 0] * y - arm[:, 1] * x), w * (arm[:, 0] * x + arm[:, 1] * y)])
+        )
+        tilt_x, tilt_y = (
+            self.sum(np.column_stack([w * arm[:, 1] * v[:, 2], -w * arm[:, 0] * v[:, 2]])) * 2.0 / self.radius2
+        )
         value = np.array([*mean, tilt_x, tilt_y, np.arctan2(sine, cosine)])
         gradient = np.zeros((6, len(w), 3))
         for k in range(3):
@@ -127,7 +131,11 @@ class BoreCoupling:
         for k, place in enumerate(places):
             # the first node at the smallest angular distance, by rank: exactly one node in the whole model
             distance = np.abs(np.mod(angle - place + np.pi, 2.0 * np.pi) - np.pi)
-            best = (float(np.round(distance.min(), 9)), self.comm.rank, int(distance.argmin())) if len(distance) else (9.0, self.comm.rank, 0)
+            best = (
+                (float(np.round(distance.min(), 9)), self.comm.rank, int(distance.argmin()))
+                if len(distance)
+                else (9.0, self.comm.rank, 0)
+            )
             winner = min(self.comm.allgather(best))
             if winner[1] == self.comm.rank:
                 node = winner[2]
@@ -138,11 +146,11 @@ class BoreCoupling:
 
 
 class Bordered:
-    """Preconditioner (PETSc `PC` of type python) for [K, C^T; C, -D] with a factor of K' = K + B B^T.
+    """Preconditioner (PETSc `PC` of type python) for [K, C^T; C, 0] with a factor of K' = K + B B^T.
 
     K alone is singular while the drive floats; the grounded K' is not. With Z = K'^-1 [B, C^T] the small system
 
-        (1 - B^T Z_B) s + B^T Z_C l = B^T z,     C Z_B s - (C Z_C + D) l = r_l - C z,     z = K'^-1 r_u
+        (1 - B^T Z_B) s + B^T Z_C l = B^T z,     C Z_B s - C Z_C l = r_l - C z,     z = K'^-1 r_u
 
     gives x = z + Z_B s - Z_C l exactly: the grounding leaves no trace.
     """
@@ -168,12 +176,10 @@ class Bordered:
         self.grounding: list[PETSc.Vec] = []
         self.border: list[PETSc.Vec] = []
         self.rows: list[int] = []
-        self.compliance: list[float] = []
 
-    def set_border(self, grounding: list[PETSc.Vec], border: list[PETSc.Vec], rows: list[int],
-                   compliance: list[float]) -> None:
-        """Vectors B and C^T (full length, zero in the multiplier rows), multiplier rows 0..5 of C, diagonal D."""
-        self.grounding, self.border, self.rows, self.compliance = grounding, border, rows, compliance
+    def set_border(self, grounding: list[PETSc.Vec], border: list[PETSc.Vec], rows: list[int]) -> None:
+        """Vectors B and C^T (full length, zero in the multiplier rows), multiplier rows 0..5 of C."""
+        self.grounding, self.border, self.rows = grounding, border, rows
 
     def setUp(self, pc: PETSc.PC) -> None:
         _, matrix = pc.getOperators()
@@ -190,7 +196,7 @@ class Bordered:
         system[:nb, :nb] = np.eye(nb) - small[:nb, :nb]
         system[:nb, nb:] = small[:nb, nb:]
         system[nb:, :nb] = small[nb:, :nb]
-        system[nb:, nb:] = -small[nb:, nb:] - np.diag(self.compliance)
+        system[nb:, nb:] = -small[nb:, nb:]
         self.system = system
 
     def multipliers(self, vector: PETSc.Vec) -> np.ndarray:

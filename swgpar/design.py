@@ -57,7 +57,9 @@ class Cup(Section):
 
 class MicroGeometry(Section):
     wg_crowning: float = quantity(0.0, unit="mm", text="crowning of the cam at its edges", ge=0.0)
-    wg_slope: float = quantity(0.0, unit="mm", text="slope of the cam: radial -s (2z/F_w) cos 2 theta; s > 0 follows the cone of the cup")
+    wg_slope: float = quantity(
+        0.0, unit="mm", text="slope of the cam: radial -s (2z/F_w) cos 2 theta; s > 0 follows the cone of the cup"
+    )
     fs_crowning: float = quantity(0.0, unit="mm", text="crowning of the flexible spline's flanks at their ends", ge=0.0)
     crowning_shape: Literal["parabolic", "circular"] = quantity("parabolic", text="curve of the crowning")
 
@@ -76,7 +78,9 @@ class Contact(Section):
     quadrature: int = quantity(6, text="Gauss points per direction on flank faces", ge=1, le=16)
     wg_quadrature: int = quantity(3, text="Gauss points per direction on the inner surface", ge=1, le=16)
     max_augmentations: int = quantity(3, text="largest number of augmentations per increment", ge=0, le=50)
-    penetration_tolerance: float = quantity(5e-4, unit="modules", text="penetration that needs no augmentation", gt=0.0, le=0.1)
+    penetration_tolerance: float = quantity(
+        5e-4, unit="modules", text="penetration that needs no augmentation", gt=0.0, le=0.1
+    )
 
 
 class Steps(Section):
@@ -166,13 +170,21 @@ def check_fit(design: DriveDesign) -> None:
     g, cup, micro, wave = design.drive, design.cup, design.micro_geometry, design.wave_generator
     difference = g.teeth_rg - g.teeth_fs
     if difference <= 0 or difference % 2:
-        raise InputError(f"drive.teeth_rg - drive.teeth_fs = {difference} is out of range: allowed a positive multiple of two")
+        raise InputError(
+            f"drive.teeth_rg - drive.teeth_fs = {difference} is out of range: allowed a positive multiple of two"
+        )
     if g.dedendum_coef <= g.addendum_coef:
         _refuse("drive.dedendum_coef", g.dedendum_coef, f"above {g.addendum_coef:g} (the addendum) to 2 modules")
     if design.r_fs <= design.d:
-        _refuse("flexible_spline.rim", design.flexible_spline.rim, "a rim that leaves an inner radius above the deflection")
+        _refuse(
+            "flexible_spline.rim", design.flexible_spline.rim, "a rim that leaves an inner radius above the deflection"
+        )
     if design.b <= 0.0 or design.b**2 / design.a >= design.r_fs or design.b < 0.5 * design.r_fs:
-        _refuse("wave_generator.C", wave.C, "values whose minor axis is between half the spline's inner radius and that radius")
+        _refuse(
+            "wave_generator.C",
+            wave.C,
+            "values whose minor axis is between half the spline's inner radius and that radius",
+        )
     width = g.face_width
     if wave.face_width > width:
         _refuse("wave_generator.face_width", wave.face_width, f"above 0 to {width:g} mm (drive.face_width)")
@@ -182,14 +194,23 @@ def check_fit(design: DriveDesign) -> None:
         _refuse("cup.length", cup.length, f"above {cup.fillet_radius:g} mm (cup.fillet_radius)")
     outer = design.r_fs + design.cup_thickness
     if cup.inner_radius >= outer - cup.fillet_radius:
-        _refuse("cup.inner_radius", cup.inner_radius, f"above 0 to below {outer - cup.fillet_radius:g} mm (the closed end "
-                "inside cup.fillet_radius)")
+        _refuse(
+            "cup.inner_radius",
+            cup.inner_radius,
+            f"above 0 to below {outer - cup.fillet_radius:g} mm (the closed end inside cup.fillet_radius)",
+        )
     if micro.wg_crowning > 0.5 * design.d:
         _refuse("micro_geometry.wg_crowning", micro.wg_crowning, f"0 to {0.5 * design.d:g} mm (half the deflection)")
     if abs(micro.wg_slope) > 0.5 * design.d:
-        _refuse("micro_geometry.wg_slope", micro.wg_slope, f"-{0.5 * design.d:g} to {0.5 * design.d:g} mm (half the deflection)")
+        _refuse(
+            "micro_geometry.wg_slope",
+            micro.wg_slope,
+            f"-{0.5 * design.d:g} to {0.5 * design.d:g} mm (half the deflection)",
+        )
     if micro.fs_crowning > 0.25 * g.module:
-        _refuse("micro_geometry.fs_crowning", micro.fs_crowning, f"0 to {0.25 * g.module:g} mm (a quarter of the module)")
+        _refuse(
+            "micro_geometry.fs_crowning", micro.fs_crowning, f"0 to {0.25 * g.module:g} mm (a quarter of the module)"
+        )
 
 
 def load_design(path: str | Path, overrides: Sequence[str] = ()) -> DriveDesign:

@@ -9,8 +9,7 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from swgpar.assembly import (BlockRows, Elements, Exchange, add_unit_diagonal, create_matrix, create_vector,
-                             fill_matrix)
+from swgpar.assembly import BlockRows, Elements, Exchange, add_unit_diagonal, create_matrix, create_vector, fill_matrix
 from swgpar.contact.rigid import CamPose, RigidContact
 from swgpar.contact.search import facing_flanks, largest
 from swgpar.contact.teeth import ToothContact
@@ -25,9 +24,6 @@ NEAR, TOUCH, REACH, TIP_MARGIN = 0.25, 0.05, 0.5, 0.1
 
 SOFTENING, SOFT_TOLERANCE = (1e-3, 3e-2), 1e-2
 """Shares of the penalty, and residual over contact force, of the first rough solves while contact is established."""
-
-FREE_SPRING = 1e-6
-"""Rotational stiffness / (E m^3) that keeps an unloaded drive with backlash near its kinematic angle."""
 
 
 @dataclass(frozen=True)
@@ -95,8 +91,18 @@ class Equilibrium:
     coupling : bore;  rigid, pins : cam and pins on the inner surface;  teeth : flank contact
     """
 
-    def __init__(self, design: DriveDesign, partition: Partition, elements: Elements, coupling: BoreCoupling,
-                 rigid: RigidContact, pins: RigidContact, teeth: ToothContact, images: bool, phases: Phases) -> None:
+    def __init__(
+        self,
+        design: DriveDesign,
+        partition: Partition,
+        elements: Elements,
+        coupling: BoreCoupling,
+        rigid: RigidContact,
+        pins: RigidContact,
+        teeth: ToothContact,
+        images: bool,
+        phases: Phases,
+    ) -> None:
         self.design, self.partition, self.elements, self.coupling = design, partition, elements, coupling
         self.rigid, self.pins, self.teeth, self.phases = rigid, pins, teeth, phases
         self.share = 0.5 if images else 1.0
@@ -225,18 +231,11 @@ class Equilibrium:
             for k in self._controls(scene):
                 residual[self.coupling.nodes] += self.scale * multiplier[k] * bore.gradient[k]
                 tail[k] = self.scale * (bore.value[k] - target[k])
-                if k == ROTATION:
-                    tail[k] -= self._compliance(k) * multiplier[k]
             if scene.control == "torque":
                 residual[self.coupling.nodes] -= self.share * scene.torque * bore.gradient[ROTATION]
             f.array[:] = residual[:n_own].ravel()
             if self.partition.comm.rank == self.partition.comm.size - 1:
                 f.array[-6:] = tail
-
-    def _compliance(self, k: int) -> float:
-        if k != ROTATION or self.scene.control != "free":
-            return 0.0
-        return self.scale**2 / (FREE_SPRING * self.design.material.E * self.design.drive.module**3)
 
     def _jacobian(self, snes: PETSc.SNES, x: PETSc.Vec, j: PETSc.Mat, p: PETSc.Mat) -> None:
         u = self.displacement(x)
@@ -261,7 +260,7 @@ class Equilibrium:
             vector = create_vector(self.partition)
             vector.array.reshape(-1, 3)[self.coupling.nodes] = self.scale * bore.gradient[k]
             border.append(vector)
-        self.border.set_border(self.ground_vectors, border, rows, [self._compliance(k) for k in rows])
+        self.border.set_border(self.ground_vectors, border, rows)
 
     # -- solve -------------------------------------------------------------------------------------------
 
@@ -348,7 +347,7 @@ class Equilibrium:
         if scene.teeth is not None:
             teeth = self.teeth.owned_forces(u, scene.teeth)
         place = np.zeros_like(u)
-        own = (body.local >= 0)
+        own = body.local >= 0
         where = body.positions()
         where[body.flip == 1] *= (-1.0, -1.0, 1.0)
         place[body.local[own]] = where[own]

@@ -26,8 +26,12 @@ def flank_clearance(design: DriveDesign, n_angles: int = 721, n_points: int = 20
         turn = psi + tilt
         for side in (1.0, -1.0):
             local = spline.point(s) * [side, 1.0] - [0.0, r]
-            x = place + np.column_stack([np.cos(turn) * local[:, 0] - np.sin(turn) * local[:, 1],
-                                         np.sin(turn) * local[:, 0] + np.cos(turn) * local[:, 1]])
+            x = place + np.column_stack(
+                [
+                    np.cos(turn) * local[:, 0] - np.sin(turn) * local[:, 1],
+                    np.sin(turn) * local[:, 0] + np.cos(turn) * local[:, 1],
+                ]
+            )
             # in the frame of the wave generator the slot that goes with a tooth at psi is at psi N_fs / N_rg
             angle = psi * design.drive.teeth_fs / design.drive.teeth_rg - side * np.pi / design.drive.teeth_rg
             c, sn = np.cos(angle), np.sin(angle)
@@ -42,17 +46,26 @@ def derived_geometry(design: DriveDesign) -> dict[str, float]:
     """Names with units, and values."""
     spline, ring = make_profile(design, "flexible_spline"), make_profile(design, "ring_gear")
     m = design.drive.module
-    return {"ratio (wave generator / output)": design.ratio, "d, diametral deflection (mm)": design.d,
-            "a, major semi-axis (mm)": design.a, "b, minor semi-axis (mm)": design.b,
-            "r_fs, inner radius of the spline (mm)": design.r_fs,
-            "backlash at the pitch circle (mm)": 0.5 * np.pi * m * (2.0 - design.ring_gear.c_P - design.flexible_spline.c_P),
-            "gamma, turn that closes it (deg)": float(np.degrees(design.gamma)),
-            "cup thickness (mm)": design.cup_thickness,
-            "tooth height, flexible spline (mm)": spline.r_tip_circle - spline.r_root_circle,
-            "tooth height, ring gear (mm)": ring.r_root_circle - ring.r_tip_circle,
-            "top land, flexible spline (mm)": spline.top_land, "top land, ring gear (mm)": ring.top_land,
-            "root land, flexible spline (mm)": spline.root_land, "root land, ring gear (mm)": ring.root_land,
-            "tip of spline to root of ring, major axis (mm)": ring.r_root_circle - spline.r_tip_circle - 0.5 * design.d,
-            "tip of ring to root of spline, major axis (mm)": ring.r_tip_circle - spline.r_root_circle - 0.5 * design.d,
-            "tips at the minor axis (mm)": ring.r_tip_circle - spline.r_tip_circle + 0.5 * design.d,
-            "smallest flank clearance, kinematic (mm)": flank_clearance(design)}
+    return {
+        "ratio (wave generator / output)": design.ratio,
+        "d, diametral deflection (mm)": design.d,
+        "a, major semi-axis (mm)": design.a,
+        "b, minor semi-axis (mm)": design.b,
+        "r_fs, inner radius of the spline (mm)": design.r_fs,
+        "backlash at the pitch circle (mm)": 0.5
+        * np.pi
+        * m
+        * (2.0 - design.ring_gear.c_P - design.flexible_spline.c_P),
+        "gamma, turn that closes it (deg)": float(np.degrees(design.gamma)),
+        "cup thickness (mm)": design.cup_thickness,
+        "tooth height, flexible spline (mm)": spline.r_tip_circle - spline.r_root_circle,
+        "tooth height, ring gear (mm)": ring.r_root_circle - ring.r_tip_circle,
+        "top land, flexible spline (mm)": spline.top_land,
+        "top land, ring gear (mm)": ring.top_land,
+        "root land, flexible spline (mm)": spline.root_land,
+        "root land, ring gear (mm)": ring.root_land,
+        "tip of spline to root of ring, major axis (mm)": ring.r_root_circle - spline.r_tip_circle - 0.5 * design.d,
+        "tip of ring to root of spline, major axis (mm)": ring.r_tip_circle - spline.r_root_circle - 0.5 * design.d,
+        "tips at the minor axis (mm)": ring.r_tip_circle - spline.r_tip_circle + 0.5 * design.d,
+        "smallest flank clearance, kinematic (mm)": flank_clearance(design),
+    }

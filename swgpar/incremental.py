@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import json
-import resource
-import time
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -25,7 +21,7 @@ from swgpar.log import Phases, logger
 from swgpar.meshing import MeshRecipe, build_sector_meshes
 from swgpar.micro_geometry import WaveGeneratorSurface
 from swgpar.partition import BodyLayout, LocalNodes, Partition
-from swgpar.steps import Increment, Scene, sequence, start
+from swgpar.steps import Increment, Scene, start
 from swgpar.stress import body_fields, maxima
 
 CARRYING = 0.05
@@ -57,29 +53,57 @@ class DriveModel:
         with self.phases("mesh"):
             self.meshes = build_sector_meshes(design, recipe)
         layouts = []
-        for name, fixed in (("flexible_spline", np.zeros(0, dtype=np.int32)),
-                            ("ring_gear", self.meshes["ring_gear"].node_sets["outer"])):
+        for name, fixed in (
+            ("flexible_spline", np.zeros(0, dtype=np.int32)),
+            ("ring_gear", self.meshes["ring_gear"].node_sets["outer"]),
+        ):
             mesh = self.meshes[name]
             count = mesh.n_sectors // 2 if images else mesh.n_sectors
             layouts.append(BodyLayout(mesh, 0, count, True, images, fixed))
         self.partition = Partition(layouts, comm)
         with self.phases("elements"):
-            references = [reference_elements(m.coords[m.hexes], design.material.E, design.material.nu)
-                          for m in self.meshes.values()]
+            references = [
+                reference_elements(m.coords[m.hexes], design.material.E, design.material.nu)
+                for m in self.meshes.values()
+            ]
             self.elements = Elements(self.partition, references)
             self.elements.bind(LocalNodes(self.partition, self.elements.wanted))
         spline, ring = self.elements.bodies
         surface = WaveGeneratorSurface(design)
         half_width = 0.5 * design.wave_generator.face_width * (1.0 + 1e-9)
-        rigid = (surface, design.r_fs, half_width, design.contact.wg_quadrature, design.penalty,
-                 np.radians(design.wave_generator.pin_half_angle), PRESSURE_LIMIT * design.material.E)
+        rigid = (
+            surface,
+            design.r_fs,
+            half_width,
+            design.contact.wg_quadrature,
+            design.penalty,
+            np.radians(design.wave_generator.pin_half_angle),
+            PRESSURE_LIMIT * design.material.E,
+        )
         micro = design.micro_geometry
-        teeth = ToothContact(self.partition, spline, ring, design.contact.quadrature, micro.fs_crowning,
-                             design.drive.face_width, micro.crowning_shape, design.penalty, 0.5 * design.drive.module,
-                             PRESSURE_LIMIT * design.material.E)
-        self.equilibrium = Equilibrium(design, self.partition, self.elements,
-                                       BoreCoupling(self.partition, spline, images), RigidContact(spline, *rigid),
-                                       RigidContact(spline, *rigid), teeth, images, self.phases)
+        teeth = ToothContact(
+            self.partition,
+            spline,
+            ring,
+            design.contact.quadrature,
+            micro.fs_crowning,
+            design.drive.face_width,
+            micro.crowning_shape,
+            design.penalty,
+            0.5 * design.drive.module,
+            PRESSURE_LIMIT * design.material.E,
+        )
+        self.equilibrium = Equilibrium(
+            design,
+            self.partition,
+            self.elements,
+            BoreCoupling(self.partition, spline, images),
+            RigidContact(spline, *rigid),
+            RigidContact(spline, *rigid),
+            teeth,
+            images,
+            self.phases,
+        )
         self.copies = 2 if images else 1
 
     def counts(self) -> dict[str, Any]:
@@ -87,11 +111,14 @@ class DriveModel:
         out = {}
         for layout in self.partition.layouts:
             per_sector = len(layout.mesh.coords) - len(layout.mesh.ccw_nodes)
-            out[layout.name] = {"nodes": per_sector * layout.count, "elements": len(layout.mesh.hexes) * layout.count,
-                                "dofs": 3 * len(layout.own) * layout.count,
-                                "nodes_whole": per_sector * layout.mesh.n_sectors,
-                                "elements_whole": len(layout.mesh.hexes) * layout.mesh.n_sectors,
-                                "quality": layout.mesh.quality}
+            out[layout.name] = {
+                "nodes": per_sector * layout.count,
+                "elements": len(layout.mesh.hexes) * layout.count,
+                "dofs": 3 * len(layout.own) * layout.count,
+                "nodes_whole": per_sector * layout.mesh.n_sectors,
+                "elements_whole": len(layout.mesh.hexes) * layout.mesh.n_sectors,
+                "quality": layout.mesh.quality,
+            }
         return out
 
 
@@ -118,7 +145,7 @@ def predict(model: DriveModel, x: PETSc.Vec, turn: float, slip: float = 0.0) -> 
         angle = layout.turn(layout.first_tooth + wanted)
         local = _turned(field, -angle)
         count = end - first
-        pattern = sum(w * local[k:k + count] for k, w in enumerate(weights))
+        pattern = sum(w * local[k : k + count] for k, w in enumerate(weights))
         angle = layout.turn(layout.first_tooth + np.arange(first, end))
         if body == 0:
             drift = turn * (1.0 - ring_teeth / layout.mesh.n_sectors) + slip
@@ -134,8 +161,9 @@ def predict(model: DriveModel, x: PETSc.Vec, turn: float, slip: float = 0.0) -> 
 def _turned(vectors: np.ndarray, angle: np.ndarray) -> np.ndarray:
     """Vectors (n, m, 3) of n sectors turned about z by angles (n,)."""
     c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
-    return np.stack([c * vectors[..., 0] - s * vectors[..., 1], s * vectors[..., 0] + c * vectors[..., 1],
-                     vectors[..., 2]], axis=-1)
+    return np.stack(
+        [c * vectors[..., 0] - s * vectors[..., 1], s * vectors[..., 0] + c * vectors[..., 1], vectors[..., 2]], axis=-1
+    )
 
 
 class Runner:
@@ -178,15 +206,20 @@ class Runner:
                 raise ConvergenceError(
                     f"step {target.step} ({target.name}) did not converge at a wave-generator angle of "
                     f"{np.degrees(scene.angle):.4g} degrees after {self.design.solver.max_cutbacks} cut-backs: PETSc says "
-                    f"{solved.reason}, residual {solved.residual:.1e} of the contact force; the last converged state is saved")
+                    f"{solved.reason}, residual {solved.residual:.1e} of the contact force; the last converged state is saved"
+                )
             share *= 0.5
-            logger.info("   cut back to %.3g of the increment (%s, residual %.1e)", share, solved.reason, solved.residual)
+            logger.info(
+                "   cut back to %.3g of the increment (%s, residual %.1e)", share, solved.reason, solved.residual
+            )
 
     def close_backlash(self, torque: float) -> None:
         """Turn the output until the teeth carry a share of `torque` (N mm), then hand over to torque control."""
         angle, step = self.scene.rotation, 0.5 * max(self.design.gamma, 1e-2 * self.design.d / self.design.r_fs)
         for _ in range(64):
-            held = replace(self.scene, step=3, name="load", cam=0.0, teeth=0.0, pins=None, control="rotation", rotation=angle)
+            held = replace(
+                self.scene, step=3, name="load", cam=0.0, teeth=0.0, pins=None, control="rotation", rotation=angle
+            )
             self.advance(held)
             carried = self.equilibrium.torques()["output"]
             logger.debug("   output at %.5f deg, torque %.1f N mm", np.degrees(angle), carried)
@@ -194,8 +227,10 @@ class Runner:
                 self.scene = replace(held, control="torque", torque=carried)
                 return
             angle += step
-        raise ConvergenceError(f"step 3 (load): the teeth did not come into contact within {np.degrees(angle):.3g} degrees "
-                               "of output rotation")
+        raise ConvergenceError(
+            f"step 3 (load): the teeth did not come into contact within {np.degrees(angle):.3g} degrees "
+            "of output rotation"
+        )
 
     def increment(self, item: Increment) -> None:
         """Do one entry of the sequence."""
@@ -208,12 +243,22 @@ class Runner:
         """The history row of the present state, without stresses and times."""
         equilibrium, copies = self.equilibrium, self.model.copies
         torque = equilibrium.torques()
-        pairs = self.model.comm.allreduce(equilibrium.teeth.touching_pairs(), op=MPI.SUM) if self.scene.teeth is not None else 0
-        return {"step": self.scene.step, "wg_angle_deg": float(np.degrees(self.scene.angle)),
-                "output_angle_deg": float(np.degrees(equilibrium.rotation())), "wg_torque_Nmm": torque["wg"],
-                "tooth_torque_Nmm": torque["teeth"], "output_torque_Nmm": torque["output"],
-                "pairs_in_contact": copies * pairs, "max_penetration_mm": equilibrium.penetration(),
-                "newton_iterations": self.iterations}
+        pairs = (
+            self.model.comm.allreduce(equilibrium.teeth.touching_pairs(), op=MPI.SUM)
+            if self.scene.teeth is not None
+            else 0
+        )
+        return {
+            "step": self.scene.step,
+            "wg_angle_deg": float(np.degrees(self.scene.angle)),
+            "output_angle_deg": float(np.degrees(equilibrium.rotation())),
+            "wg_torque_Nmm": torque["wg"],
+            "tooth_torque_Nmm": torque["teeth"],
+            "output_torque_Nmm": torque["output"],
+            "pairs_in_contact": copies * pairs,
+            "max_penetration_mm": equilibrium.penetration(),
+            "newton_iterations": self.iterations,
+        }
 
 
 def stresses(model: DriveModel) -> tuple[dict[str, float], list[dict[str, np.ndarray]]]:

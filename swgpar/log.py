@@ -46,8 +46,16 @@ def start(comm: MPI.Comm, *, level: int = logging.INFO) -> logging.Logger:
         logger.addHandler(logging.NullHandler())
         logger.setLevel(logging.CRITICAL + 1)
     elif console.is_terminal:
-        logger.addHandler(RichHandler(console=console, show_path=False, show_level=False, markup=False,
-                                      log_time_format="%H:%M:%S", omit_repeated_times=False))
+        logger.addHandler(
+            RichHandler(
+                console=console,
+                show_path=False,
+                show_level=False,
+                markup=False,
+                log_time_format="%H:%M:%S",
+                omit_repeated_times=False,
+            )
+        )
     else:
         plain = logging.StreamHandler(sys.stdout)
         plain.setFormatter(logging.Formatter("%(asctime)s  %(message)s", "%H:%M:%S"))
@@ -82,8 +90,15 @@ class IncrementProgress:
         self._bar: Progress | None = None
         self._total, self._count = total, done
         if comm.rank == 0 and console.is_terminal:
-            self._bar = Progress(TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(),
-                                 TimeElapsedColumn(), TimeRemainingColumn(), console=console, transient=True)
+            self._bar = Progress(
+                TextColumn("{task.description}"),
+                BarColumn(),
+                MofNCompleteColumn(),
+                TimeElapsedColumn(),
+                TimeRemainingColumn(),
+                console=console,
+                transient=True,
+            )
             self._task = self._bar.add_task("start", total=total, completed=done)
 
     def __enter__(self) -> IncrementProgress:
@@ -98,14 +113,24 @@ class IncrementProgress:
     def newton(self, step: str, angle_deg: float, iteration: int, residual: float) -> None:
         """Report one Newton iteration: relative residual; on the bar only, and in the log at DEBUG level."""
         if self._bar:
-            self._bar.update(self._task, description=f"{step} {angle_deg:.2f}° Newton {iteration} residual {residual:.1e}")
+            self._bar.update(
+                self._task, description=f"{step} {angle_deg:.2f}° Newton {iteration} residual {residual:.1e}"
+            )
         logger.debug("   %s %.3f deg  Newton %d  residual %.3e", step, angle_deg, iteration, residual)
 
     def increment(self, step: str, angle_deg: float, iterations: int, residual: float, seconds: float) -> None:
         """Report a converged increment."""
         self._count += 1
-        logger.info("%3d/%d  %-8s %8.3f deg  %2d Newton iterations  residual %.1e  %7.1f s",
-                    self._count, self._total, step, angle_deg, iterations, residual, seconds)
+        logger.info(
+            "%3d/%d  %-8s %8.3f deg  %2d Newton iterations  residual %.1e  %7.1f s",
+            self._count,
+            self._total,
+            step,
+            angle_deg,
+            iterations,
+            residual,
+            seconds,
+        )
         if self._bar:
             self._bar.update(self._task, completed=self._count)
 

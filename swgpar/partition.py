@@ -63,8 +63,14 @@ class BodyLayout:
         cap_row[cap_nodes] = np.arange(len(cap_nodes))
         is_fixed = np.zeros(n, dtype=bool)
         is_fixed[self.fixed] = True
-        for name, value in dict(partner=partner, row=row, own=own, cap_row=cap_row, is_fixed=is_fixed,
-                                n_cap=0 if self.closed else len(cap_nodes)).items():
+        for name, value in dict(
+            partner=partner,
+            row=row,
+            own=own,
+            cap_row=cap_row,
+            is_fixed=is_fixed,
+            n_cap=0 if self.closed else len(cap_nodes),
+        ).items():
             object.__setattr__(self, name, value)
 
     @property
@@ -101,8 +107,15 @@ class Partition:
         self.comm = comm
         self.layouts = layouts
         self.starts = [split(b.count, comm.size) for b in layouts]
-        sizes = np.array([[np.diff(s)[r] * len(b.own) + (b.n_cap if r == comm.size - 1 else 0)
-                           for s, b in zip(self.starts, layouts)] for r in range(comm.size)])
+        sizes = np.array(
+            [
+                [
+                    np.diff(s)[r] * len(b.own) + (b.n_cap if r == comm.size - 1 else 0)
+                    for s, b in zip(self.starts, layouts)
+                ]
+                for r in range(comm.size)
+            ]
+        )
         sizes[-1, -1] += N_MULTIPLIER_NODES
         flat = np.concatenate([[0], np.cumsum(sizes.ravel())])
         self._base = flat[:-1].reshape(sizes.shape)
@@ -154,8 +167,11 @@ class Partition:
             k = np.where(cap, b.count - 1, k)
         rank = self.owner(body, k)
         local = np.broadcast_to(local, k.shape)
-        offset = np.where(cap, (self.starts[body][rank + 1] - self.starts[body][rank]) * len(b.own) + b.cap_row[local],
-                          (k - self.starts[body][rank]) * len(b.own) + b.row[local])
+        offset = np.where(
+            cap,
+            (self.starts[body][rank + 1] - self.starts[body][rank]) * len(b.own) + b.cap_row[local],
+            (k - self.starts[body][rank]) * len(b.own) + b.row[local],
+        )
         number = self._base[rank, body] + offset
         fixed = np.broadcast_to(b.is_fixed[nodes], k.shape)
         return np.where(fixed, -1, number), np.where(fixed, 0, flip).astype(np.uint8)

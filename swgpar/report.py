@@ -48,8 +48,12 @@ def _stress(rows: list[dict], figures: Path) -> Path:
     rows = _turning(rows)
     figure, axes = _axes(rows, "largest stresses (nodal averages)", "stress (MPa)")
     angle = history.column(rows, "wg_angle_deg")
-    labels = {"fs_s1": "flexible spline, tensile s1", "fs_s3": "flexible spline, compressive |s3|",
-              "fs_vm": "flexible spline, von Mises", "rg_vm": "ring gear, von Mises"}
+    labels = {
+        "fs_s1": "flexible spline, tensile s1",
+        "fs_s3": "flexible spline, compressive |s3|",
+        "fs_vm": "flexible spline, von Mises",
+        "rg_vm": "ring gear, von Mises",
+    }
     for name, label in labels.items():
         axes.plot(angle, history.column(rows, name), "o-", ms=3, label=label)
     axes.set_ylim(bottom=0.0)
@@ -73,8 +77,11 @@ def _torque(rows: list[dict], summary: dict, figures: Path) -> Path:
     upper.axhline(summary["wg_torque_expected_Nmm"], color="0.4", ls="--", label="energy balance, T / ratio")
     upper.set(ylabel="torque (N·mm)", title="input torque")
     lower.plot(angle, error, "o-", ms=3)
-    lower.set(xlabel="angle of the wave generator (degrees)", ylabel="arc seconds",
-              title="transmission error: output angle less its kinematic value")
+    lower.set(
+        xlabel="angle of the wave generator (degrees)",
+        ylabel="arc seconds",
+        title="transmission error: output angle less its kinematic value",
+    )
     for axes in (upper, lower):
         axes.grid(alpha=0.3)
     upper.legend(fontsize=8)
@@ -130,7 +137,8 @@ def _pattern(out: Path, index: int, summary: dict, figures: Path) -> Path:
 
     mesh, pressure = _mesh(out, "flexible_spline"), _read(out, index, "flexible_spline", "pressure")
     n_sectors = summary["bodies"]["flexible_spline"]["elements"] // (
-        summary["bodies"]["flexible_spline"]["elements_whole"] // summary["design"]["drive"]["teeth_fs"])
+        summary["bodies"]["flexible_spline"]["elements_whole"] // summary["design"]["drive"]["teeth_fs"]
+    )
     n_local = len(pressure) // n_sectors
     field = pressure.reshape(n_sectors, n_local)[:, mesh["flank_nodes"]]  # sector, side, s, z
     peak = field.max(axis=(2, 3))
@@ -142,8 +150,15 @@ def _pattern(out: Path, index: int, summary: dict, figures: Path) -> Path:
     columns = min(4, max(1, len(chosen)))
     for place, (k, side) in enumerate(sorted(chosen)):
         axes = figure.add_subplot(-(-len(chosen) // columns), columns, place + 1)
-        image = axes.pcolormesh(mesh["flank_z"], mesh["flank_s"], field[k, side], shading="gouraud", vmin=0.0,
-                                vmax=float(peak.max()), cmap="magma")
+        image = axes.pcolormesh(
+            mesh["flank_z"],
+            mesh["flank_s"],
+            field[k, side],
+            shading="gouraud",
+            vmin=0.0,
+            vmax=float(peak.max()),
+            cmap="magma",
+        )
         axes.invert_yaxis()
         axes.set_title(f"tooth {k}, {'clockwise' if side == 0 else 'counter-clockwise'} flank", fontsize=8)
         axes.set_xlabel("z (mm)", fontsize=8)

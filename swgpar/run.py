@@ -81,20 +81,33 @@ class Recorder:
         self.rows.append(history.plain_row(row))
         self.done += 1
         with model.phases("output"):
-            ranges = [(body.layout.name, *model.partition.owned(k), body.layout.count)
-                      for k, body in enumerate(model.elements.bodies)]
+            ranges = [
+                (body.layout.name, *model.partition.owned(k), body.layout.count)
+                for k, body in enumerate(model.elements.bodies)
+            ]
             if self.writer is not None:
                 fields[0]["pressure"] = nodal_pressure(equilibrium, model.elements.bodies[0])
-                self.names = {name: {f: a.shape[2] if a.ndim == 3 else 1 for f, a in field.items()}
-                              for (name, *_), field in zip(ranges, fields)}
-                self.writer.write_increment(self.done, {name: (field, first, total)
-                                                        for (name, first, _, total), field in zip(ranges, fields)})
+                self.names = {
+                    name: {f: a.shape[2] if a.ndim == 3 else 1 for f, a in field.items()}
+                    for (name, *_), field in zip(ranges, fields)
+                }
+                self.writer.write_increment(
+                    self.done, {name: (field, first, total) for (name, first, _, total), field in zip(ranges, fields)}
+                )
                 self._index()
             write_from_root(self.comm, self.out / history.NAME, history.format_rows(self.rows))
-            blocks = {name: (np.ascontiguousarray(field["displacement"]), first, total)
-                      for (name, first, _, total), field in zip(ranges, fields)}
-            state = {"identity": self.identity, "done": self.done, "rows": self.rows, "names": self.names,
-                     "scene": runner.scene.to_dict(), "multipliers": equilibrium.multipliers(equilibrium.x).tolist()}
+            blocks = {
+                name: (np.ascontiguousarray(field["displacement"]), first, total)
+                for (name, first, _, total), field in zip(ranges, fields)
+            }
+            state = {
+                "identity": self.identity,
+                "done": self.done,
+                "rows": self.rows,
+                "names": self.names,
+                "scene": runner.scene.to_dict(),
+                "multipliers": equilibrium.multipliers(equilibrium.x).tolist(),
+            }
             checkpoint.write_checkpoint(self.out, self.comm, blocks, state)
 
     def _index(self) -> None:
@@ -103,13 +116,17 @@ class Recorder:
     def resume(self, runner: Runner) -> None:
         """Bring back the state of the checkpoint, on any number of ranks."""
         model = self.model
-        ranges = {body.layout.name: (model.partition.owned(k)[0], int(np.diff(model.partition.owned(k))[0]))
-                  for k, body in enumerate(model.elements.bodies)}
+        ranges = {
+            body.layout.name: (model.partition.owned(k)[0], int(np.diff(model.partition.owned(k))[0]))
+            for k, body in enumerate(model.elements.bodies)
+        }
         path = self.out / checkpoint.NAME
         _, state = checkpoint.read_checkpoint(path, self.comm)
         if state.get("identity") != self.identity:
-            raise InputError(f"--restart: {path} belongs to another design, recipe or solver setting; allowed are the same "
-                             "ones, only steps.rotation and the output may differ")
+            raise InputError(
+                f"--restart: {path} belongs to another design, recipe or solver setting; allowed are the same "
+                "ones, only steps.rotation and the output may differ"
+            )
         arrays, _ = checkpoint.read_checkpoint(path, self.comm, ranges)
         x = model.equilibrium.x
         for k, body in enumerate(model.elements.bodies):
@@ -128,26 +145,53 @@ def summarise(model: DriveModel, rows: list[dict[str, Any]], recipe_name: str, s
     """Content of summary.json."""
     comm, design = model.comm, model.design
     turning = [r for r in rows if int(r["step"]) >= FIRST_ROTATION]
-    means = {k: float(np.mean([r[k] for r in turning])) for k in
-             ("fs_s1", "fs_s3", "fs_vm", "rg_s1", "rg_s3", "rg_vm", "wg_torque_Nmm")} if turning else {}
+    means = (
+        {
+            k: float(np.mean([r[k] for r in turning]))
+            for k in ("fs_s1", "fs_s3", "fs_vm", "rg_s1", "rg_s3", "rg_vm", "wg_torque_Nmm")
+        }
+        if turning
+        else {}
+    )
     balance = [abs(r["wg_torque_Nmm"] + r["tooth_torque_Nmm"] + r["output_torque_Nmm"]) for r in rows]
     counts = model.counts()
     memory = comm.allgather(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0)
     expected = 1000.0 * design.load.torque / abs(design.ratio)
-    return {"recipe": recipe_name, "bodies": counts, "nodes": sum(b["nodes_whole"] for b in counts.values()),
-            "elements": sum(b["elements_whole"] for b in counts.values()), "dofs": sum(b["dofs"] for b in counts.values()),
-            "twofold_symmetry": model.copies == 2, "ranks": comm.size,
-            "versions": {"swgpar": swgpar.__version__, "python": platform.python_version(), "numpy": np.__version__,
-                         "petsc": ".".join(map(str, PETSc.Sys.getVersion()))},
-            "wall_s": seconds, "phases_s": {k: round(v, 3) for k, v in model.phases.slowest(comm).items()},
-            "peak_memory_MB_per_rank": [round(m, 1) for m in memory], "means": means,
-            "newton_iterations_mean": float(np.mean([r["newton_iterations"] for r in turning])) if turning else None,
-            "balance_error_Nmm": max(balance, default=0.0), "wg_torque_expected_Nmm": expected,
-            "design": design.model_dump()}
+    return {
+        "recipe": recipe_name,
+        "bodies": counts,
+        "nodes": sum(b["nodes_whole"] for b in counts.values()),
+        "elements": sum(b["elements_whole"] for b in counts.values()),
+        "dofs": sum(b["dofs"] for b in counts.values()),
+        "twofold_symmetry": model.copies == 2,
+        "ranks": comm.size,
+        "versions": {
+            "swgpar": swgpar.__version__,
+            "python": platform.python_version(),
+            "numpy": np.__version__,
+            "petsc": ".".join(map(str, PETSc.Sys.getVersion())),
+        },
+        "wall_s": seconds,
+        "phases_s": {k: round(v, 3) for k, v in model.phases.slowest(comm).items()},
+        "peak_memory_MB_per_rank": [round(m, 1) for m in memory],
+        "means": means,
+        "newton_iterations_mean": float(np.mean([r["newton_iterations"] for r in turning])) if turning else None,
+        "balance_error_Nmm": max(balance, default=0.0),
+        "wg_torque_expected_Nmm": expected,
+        "design": design.model_dump(),
+    }
 
 
-def run_drive(design: DriveDesign, recipe: MeshRecipe, out_dir: str | Path, *, restart: bool = False,
-              overwrite: bool = False, comm: MPI.Comm = MPI.COMM_WORLD, recipe_name: str = "") -> RunSummary:
+def run_drive(
+    design: DriveDesign,
+    recipe: MeshRecipe,
+    out_dir: str | Path,
+    *,
+    restart: bool = False,
+    overwrite: bool = False,
+    comm: MPI.Comm = MPI.COMM_WORLD,
+    recipe_name: str = "",
+) -> RunSummary:
     """Run a design and write its results to `out_dir`; collective.
 
     Raises InputError, OutputError or ConvergenceError on all ranks. After a ConvergenceError everything up to the
@@ -163,9 +207,14 @@ def run_drive(design: DriveDesign, recipe: MeshRecipe, out_dir: str | Path, *, r
     model = DriveModel(design, recipe, comm)
     runner, recorder = Runner(model), Recorder(out, model, recipe)
     counts = model.counts()
-    logger.info("%d elements, %d nodes in the whole drive; %d unknowns modelled%s; %d ranks",
-                sum(b["elements_whole"] for b in counts.values()), sum(b["nodes_whole"] for b in counts.values()),
-                sum(b["dofs"] for b in counts.values()), " (half of it, by symmetry)" if model.copies == 2 else "", comm.size)
+    logger.info(
+        "%d elements, %d nodes in the whole drive; %d unknowns modelled%s; %d ranks",
+        sum(b["elements_whole"] for b in counts.values()),
+        sum(b["nodes_whole"] for b in counts.values()),
+        sum(b["dofs"] for b in counts.values()),
+        " (half of it, by symmetry)" if model.copies == 2 else "",
+        comm.size,
+    )
     recorder.mesh()
     if restart:
         recorder.resume(runner)
@@ -173,14 +222,16 @@ def run_drive(design: DriveDesign, recipe: MeshRecipe, out_dir: str | Path, *, r
     items = list(sequence(design))
     with IncrementProgress(comm, len(items), done=recorder.done) as progress:
         model.equilibrium.on_iteration = lambda scene, its, ratio: progress.newton(
-            scene.name, np.degrees(scene.angle), its, ratio)
-        for item in items[recorder.done:]:
+            scene.name, np.degrees(scene.angle), its, ratio
+        )
+        for item in items[recorder.done :]:
             start = time.perf_counter()
             runner.increment(item)
             seconds = time.perf_counter() - start
             recorder.record(runner, seconds)
-            progress.increment(item.scene.name, float(np.degrees(item.scene.angle)), runner.iterations, runner.residual,
-                               seconds)
+            progress.increment(
+                item.scene.name, float(np.degrees(item.scene.angle)), runner.iterations, runner.residual, seconds
+            )
     summary = summarise(model, recorder.rows, recipe_name, time.perf_counter() - begin)
     write_from_root(comm, out / "summary.json", to_json(summary))
     return RunSummary(recorder.rows, summary["means"], summary)

@@ -2,7 +2,8 @@
 
 1 the pins push the flexible spline outward by d / 2 each; 2 the wave generator grows into place while the pins
 are drawn back, and the teeth may touch; 3 the output is turned until the teeth carry, then the torque is applied;
-4 ... the wave generator turns in increments.
+4 ... the wave generator turns in increments. Without a torque a drive with backlash has no definite
+output angle: the output is then held at its kinematic angle, and the torque this takes is reported.
 """
 
 from __future__ import annotations
@@ -79,9 +80,16 @@ def sequence(design: DriveDesign) -> Iterator[Increment]:
     n = steps.engage_increments
     for i in range(1, n + 1):
         t = i / n
-        yield Increment(Scene(2, "engage", cam=CAM_START * module * (1.0 - t), teeth=TEETH_START * module * (1.0 - t),
-                              pins=None if i == n else PINS_BACK * d * t))
-    loaded = Scene(3, "load", cam=0.0, teeth=0.0, control="torque" if torque else "free")
+        yield Increment(
+            Scene(
+                2,
+                "engage",
+                cam=CAM_START * module * (1.0 - t),
+                teeth=TEETH_START * module * (1.0 - t),
+                pins=None if i == n else PINS_BACK * d * t,
+            )
+        )
+    loaded = Scene(3, "load", cam=0.0, teeth=0.0, control="torque" if torque else "rotation")
     if torque:
         n = steps.load_increments
         for i in range(1, n + 1):
@@ -92,5 +100,6 @@ def sequence(design: DriveDesign) -> Iterator[Increment]:
     count = int(np.ceil(round(whole, 9)))
     for i in range(1, count + 1):
         angle = np.radians(min(i * steps.increment, steps.rotation))
-        yield Increment(replace(loaded, step=3 + i, name="rotate", angle=angle, torque=torque,
-                                rotation=-angle / abs(design.ratio)))
+        yield Increment(
+            replace(loaded, step=3 + i, name="rotate", angle=angle, torque=torque, rotation=-angle / abs(design.ratio))
+        )

@@ -27,7 +27,9 @@ def body_fields(body: BodyElements, u: np.ndarray) -> dict[str, np.ndarray]:
 
 def maxima(comm: MPI.Comm, fields: dict[str, np.ndarray]) -> dict[str, float]:
     """Maxima over the whole body (MPa): s1, s3 (positive in compression) and vm."""
-    local = np.array([fields["s1"].max(initial=-np.inf), (-fields["s3"]).max(initial=-np.inf), fields["vm"].max(initial=0.0)])
+    local = np.array(
+        [fields["s1"].max(initial=-np.inf), (-fields["s3"]).max(initial=-np.inf), fields["vm"].max(initial=0.0)]
+    )
     total = np.empty(3)
     comm.Allreduce(local, total, op=MPI.MAX)
     return dict(zip(("s1", "s3", "vm"), total.tolist()))

@@ -47,8 +47,17 @@ class RigidContact:
     pressure_limit : MPa, bound of the pressure in the tangent's geometric term
     """
 
-    def __init__(self, body: BodyElements, surface: Surface, radius: float, half_width: float, n_quadrature: int,
-                 penalty: float, pin_half_angle: float, pressure_limit: float) -> None:
+    def __init__(
+        self,
+        body: BodyElements,
+        surface: Surface,
+        radius: float,
+        half_width: float,
+        n_quadrature: int,
+        penalty: float,
+        pin_half_angle: float,
+        pressure_limit: float,
+    ) -> None:
         self.surface, self.penalty, self.pressure_limit = surface, penalty, pressure_limit
         faces = body.layout.mesh.faces["inner"]
         first = body.owned.start
@@ -85,8 +94,14 @@ class RigidContact:
         """Take the pressures of the last evaluation as multipliers."""
         self.multiplier = self.pressure.copy()
 
-    def evaluate(self, u: np.ndarray, pose: CamPose, residual: np.ndarray | None, rows: BlockRows | None,
-                 owned_only: bool = False) -> None:
+    def evaluate(
+        self,
+        u: np.ndarray,
+        pose: CamPose,
+        residual: np.ndarray | None,
+        rows: BlockRows | None,
+        owned_only: bool = False,
+    ) -> None:
         """Gaps and pressures at displacement u (n_local, 3); adds to residual (n_local, 3) and tangent rows."""
         field = np.where(self.conn[..., None] >= 0, u[self.conn], 0.0)
         field[self.flip == 1] *= (-1.0, -1.0, 1.0)
@@ -121,8 +136,10 @@ class RigidContact:
             # far from the solution the penalty's pressure is meaningless, and its geometric term would make the
             # tangent indefinite: it is bounded there
             geometric = np.minimum(force, self.pressure_limit * self.weight[pick])
-            core = (stiff[..., None, None] * gradient[..., :, None] * gradient[..., None, :]
-                    - geometric[..., None, None] * bend)
+            core = (
+                stiff[..., None, None] * gradient[..., :, None] * gradient[..., None, :]
+                - geometric[..., None, None] * bend
+            )
             blocks = np.einsum("fqij,qa,qb->fabij", core, self.shape, self.shape, optimize=True)
             add_face_blocks(self.conn[pick], self.flip[pick], np.ascontiguousarray(blocks), rows)
 

@@ -49,8 +49,16 @@ class Faces:
     patch: np.ndarray
 
     def take(self, pick: np.ndarray) -> Faces:
-        return Faces(self.conn[pick], self.flip[pick], self.coords[pick], self.normal[pick], self.shape,
-                     self.weight[pick], self.offset[pick], self.patch[pick])
+        return Faces(
+            self.conn[pick],
+            self.flip[pick],
+            self.coords[pick],
+            self.normal[pick],
+            self.shape,
+            self.weight[pick],
+            self.offset[pick],
+            self.patch[pick],
+        )
 
 
 @dataclass(frozen=True)
@@ -70,8 +78,15 @@ class FlankQuadrature:
     z: np.ndarray
 
 
-def quadrature(mesh: SectorMesh, grid: FlankGrid, order: int, removed: float, width: float, shape_name: str,
-               rule: tuple[np.ndarray, np.ndarray] | None = None) -> FlankQuadrature:
+def quadrature(
+    mesh: SectorMesh,
+    grid: FlankGrid,
+    order: int,
+    removed: float,
+    width: float,
+    shape_name: str,
+    rule: tuple[np.ndarray, np.ndarray] | None = None,
+) -> FlankQuadrature:
     """Quadrature points of a flank and their distance from the exact, crowned surface.
 
     order : Gauss points per direction;  removed : mm, crowning at |z| = width / 2;  rule : replaces the Gauss rule
@@ -111,9 +126,19 @@ class ToothContact:
     pressure_limit : MPa, bound of the pressure in the tangent's geometric term
     """
 
-    def __init__(self, partition: Partition, spline: BodyElements, ring: BodyElements, order: int, removed: float,
-                 width: float, shape_name: str, penalty: float, reach: float,
-                 pressure_limit: float) -> None:
+    def __init__(
+        self,
+        partition: Partition,
+        spline: BodyElements,
+        ring: BodyElements,
+        order: int,
+        removed: float,
+        width: float,
+        shape_name: str,
+        penalty: float,
+        reach: float,
+        pressure_limit: float,
+    ) -> None:
         self.partition, self.spline, self.ring = partition, spline, ring
         self.penalty, self.reach, self.pressure_limit = penalty, reach, pressure_limit
         mesh = spline.layout.mesh
@@ -126,8 +151,12 @@ class ToothContact:
 
     def numbers(self, pairs: list[FlankPair]) -> np.ndarray:
         """Global numbers of the flank nodes of all pairs that have a node on this rank."""
-        self.pairs = [p for p in pairs if self.partition.comm.rank in (
-            self.partition.owner(0, np.array(p.sector)), self.partition.owner(1, np.array(p.ring)))]
+        self.pairs = [
+            p
+            for p in pairs
+            if self.partition.comm.rank
+            in (self.partition.owner(0, np.array(p.sector)), self.partition.owner(1, np.array(p.ring)))
+        ]
         seen = [np.zeros(0, dtype=np.int64)]
         for p in self.pairs:
             seen.append(self.partition.numbers(0, np.array([p.sector]), self.rules[p.side].corners.ravel())[0].ravel())
@@ -138,9 +167,15 @@ class ToothContact:
         """Set up the arrays of all pairs; nothing is in contact before `select`."""
         grid = self.ring.layout.mesh.flanks[0]
         n_pair = len(self.pairs)
-        flanks = Flanks(grid.s, grid.z, *(np.zeros((n_pair, len(grid.s), 2)) for _ in range(2)), np.zeros(n_pair),
-                        np.zeros((n_pair, 2)), np.zeros((n_pair, *grid.nodes.shape), dtype=np.int32),
-                        np.zeros((n_pair, *grid.nodes.shape), dtype=np.uint8))
+        flanks = Flanks(
+            grid.s,
+            grid.z,
+            *(np.zeros((n_pair, len(grid.s), 2)) for _ in range(2)),
+            np.zeros(n_pair),
+            np.zeros((n_pair, 2)),
+            np.zeros((n_pair, *grid.nodes.shape), dtype=np.int32),
+            np.zeros((n_pair, *grid.nodes.shape), dtype=np.uint8),
+        )
         profile = self.ring.layout.mesh.profile
         everything: list[tuple[FlankPair, Faces]] = []
         for k, p in enumerate(self.pairs):
@@ -159,9 +194,14 @@ class ToothContact:
             everything.append((p, self._faces(self.rules[p.side], p, k, local)))
         self.flanks, self.local = flanks, local
         self.all = _join([f for _, f in everything]) if everything else None
-        self.all_centers = _join([self._faces(self.centers[p.side], p, k, local) for k, (p, _) in enumerate(everything)]) \
-            if everything else None
-        self.pair_of = np.concatenate([np.full(len(f.conn), k) for k, (_, f) in enumerate(everything)]) if everything else None
+        self.all_centers = (
+            _join([self._faces(self.centers[p.side], p, k, local) for k, (p, _) in enumerate(everything)])
+            if everything
+            else None
+        )
+        self.pair_of = (
+            np.concatenate([np.full(len(f.conn), k) for k, (_, f) in enumerate(everything)]) if everything else None
+        )
         owner = np.array([self.partition.owner(0, np.array(p.sector)) for p in self.pairs], dtype=np.int64)
         self.pair_owned = owner == self.partition.comm.rank
         self.pick = np.zeros(0, dtype=np.int64)
@@ -173,9 +213,16 @@ class ToothContact:
         angle = self.spline.layout.turn(np.array(self.spline.layout.first_tooth + pair.sector))
         c, s = np.cos(angle), np.sin(angle)
         turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-        return Faces(local.index(number).reshape(-1, 4), flip.reshape(-1, 4).copy(), mesh.coords[rule.corners] @ turn,
-                     rule.normal @ turn, rule.shape, rule.weight, rule.offset,
-                     np.full(len(rule.corners), patch, dtype=np.int32))
+        return Faces(
+            local.index(number).reshape(-1, 4),
+            flip.reshape(-1, 4).copy(),
+            mesh.coords[rule.corners] @ turn,
+            rule.normal @ turn,
+            rule.shape,
+            rule.weight,
+            rule.offset,
+            np.full(len(rule.corners), patch, dtype=np.int32),
+        )
 
     def _reset(self) -> None:
         self.multiplier = np.zeros((len(self.pick), self.all.weight.shape[1] if self.all is not None else 0))
@@ -191,8 +238,9 @@ class ToothContact:
         if self.all is None:
             return np.zeros(0, dtype=np.int64)
         zero = np.zeros((len(self.all_centers.conn), 1))
-        gap, _, facet, _ = contact_flanks(self.flanks, self.all_centers, u, zero, self.penalty, 0.0, self.reach,
-                                       self.pressure_limit, None, None)
+        gap, _, facet, _ = contact_flanks(
+            self.flanks, self.all_centers, u, zero, self.penalty, 0.0, self.reach, self.pressure_limit, None, None
+        )
         gap = gap[:, 0] - 0.0
         self.pick = np.flatnonzero(gap < near)
         self._reset()
@@ -221,7 +269,9 @@ class ToothContact:
         """Take the pressures of the last evaluation as multipliers."""
         self.multiplier = self.pressure.copy()
 
-    def evaluate(self, u: np.ndarray, opening: float, residual: np.ndarray | None, rows: BlockRows | None) -> np.ndarray:
+    def evaluate(
+        self, u: np.ndarray, opening: float, residual: np.ndarray | None, rows: BlockRows | None
+    ) -> np.ndarray:
         """Gaps and pressures at u (n_local, 3); adds to residual and tangent.
 
         Returns keys of blocks that the pattern lacks (empty when there are none or `rows` is None).
@@ -229,8 +279,17 @@ class ToothContact:
         if self.faces is None or not len(self.faces.conn):
             return np.zeros(0, dtype=np.int64)
         self.gap, self.pressure, facet, missing = contact_flanks(
-            self.flanks, self.faces, u, self.multiplier, self.penalty, opening, self.reach,
-            self.pressure_limit, residual, rows)
+            self.flanks,
+            self.faces,
+            u,
+            self.multiplier,
+            self.penalty,
+            opening,
+            self.reach,
+            self.pressure_limit,
+            residual,
+            rows,
+        )
         if not missing:
             return np.zeros(0, dtype=np.int64)
         face, point = np.nonzero(self.pressure > 0.0)
@@ -242,8 +301,18 @@ class ToothContact:
         if self.faces is not None and len(self.pick):
             mine = self.pair_owned[self.pair_of[self.pick]]
             faces = self.faces.take(np.flatnonzero(mine))
-            contact_flanks(self.flanks, faces, u, np.ascontiguousarray(self.multiplier[mine]), self.penalty, opening,
-                           self.reach, self.pressure_limit, residual, None)
+            contact_flanks(
+                self.flanks,
+                faces,
+                u,
+                np.ascontiguousarray(self.multiplier[mine]),
+                self.penalty,
+                opening,
+                self.reach,
+                self.pressure_limit,
+                residual,
+                None,
+            )
         return residual
 
     def touching_pairs(self) -> int:

@@ -60,9 +60,7 @@ def build_sector(design: DriveDesign, recipe: MeshRecipe, gear: str) -> SectorMe
     interface, free, root_too = _radii(design, gear, counts, profile.r_root_circle)
     section = cross_section(profile, counts, interface, free)
     width = design.drive.face_width
-    z = axial_stations(
-        width, recipe.face_width.elements, recipe.face_width.end_ratio, design.wave_generator.face_width
-    )
+    z = axial_stations(width, recipe.face_width.elements, recipe.face_width.end_ratio, design.wave_generator.face_width)
     amount, relief = np.zeros_like(z), np.zeros_like(section.coords)
     micro = design.micro_geometry
     if gear == "flexible_spline" and micro.fs_crowning != 0.0:

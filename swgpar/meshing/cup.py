@@ -58,9 +58,7 @@ def attached_quads(section: CrossSection, root_too: bool) -> NDArray[np.bool_]:
     return section.rim_layer | section.root_layer if root_too else section.rim_layer
 
 
-def depth_fractions(
-    section: CrossSection, attached: NDArray[np.bool_], r_inner: float, thickness: float
-) -> Floats:
+def depth_fractions(section: CrossSection, attached: NDArray[np.bool_], r_inner: float, thickness: float) -> Floats:
     """Return the place (n_node,) of the attached nodes in the cup's wall: 0 inner, 1 outer surface.
 
     Where the layers below the root are attached, their top follows the root and the teeth; the fraction then

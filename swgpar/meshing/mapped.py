@@ -69,11 +69,7 @@ class MappedBlocks:
         """Add a block: `bottom` and `top` (n, 2) run left to right, `left` and `right` (m, 2) upwards."""
         sides = [self.add_points(side) for side in (bottom, right, top, left)]
         b, r, t, lf = sides
-        if (
-            (b[-1], r[-1], t[0], lf[0]) != (r[0], t[-1], lf[-1], b[0])
-            or len(b) != len(t)
-            or len(r) != len(lf)
-        ):
+        if (b[-1], r[-1], t[0], lf[0]) != (r[0], t[-1], lf[-1], b[0]) or len(b) != len(t) or len(r) != len(lf):
             raise ValueError("the sides of a block do not close or do not match")
         self.blocks.append((b, r, t, lf))
 
@@ -149,6 +145,4 @@ class MappedBlocks:
         x, y = np.moveaxis(coords[quads], -1, 0)
         area = np.sum(x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1), axis=1)
         quads[area < 0.0] = quads[area < 0.0][:, ::-1]
-        return QuadMesh(coords, quads.astype(np.int32), np.concatenate(block).astype(np.int32)), node.astype(
-            np.int32
-        )
+        return QuadMesh(coords, quads.astype(np.int32), np.concatenate(block).astype(np.int32)), node.astype(np.int32)

@@ -47,9 +47,7 @@ def scaled_jacobians(coords: Floats, hexes: Ints) -> Floats:
 def aspect_ratios(coords: Floats, hexes: Ints) -> Floats:
     """Return the longest over the shortest edge of each element (n_elem,)."""
     x = coords[hexes]
-    pairs = np.array(
-        [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
-    )
+    pairs = np.array([(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)])
     lengths = np.linalg.norm(x[:, pairs[:, 0]] - x[:, pairs[:, 1]], axis=-1)
     return lengths.max(axis=1) / lengths.min(axis=1)
 

@@ -24,16 +24,10 @@ class ToothRecipe(Section):
         ge=1.0,
         le=3.0,
     )
-    flank: int = quantity(
-        text="elements along the flank, from the tip edge to the split in the root arc", ge=1, le=400
-    )
-    root: int = quantity(
-        text="elements from the split in the root arc to the middle of the root", ge=2, le=80
-    )
+    flank: int = quantity(text="elements along the flank, from the tip edge to the split in the root arc", ge=1, le=400)
+    root: int = quantity(text="elements from the split in the root arc to the middle of the root", ge=2, le=80)
     under: int = quantity(text="layers of elements between the root and the lower rim", ge=1, le=40)
-    rim: int = quantity(
-        text="layers of elements in the lower rim (flexible spline: through the cup)", ge=1, le=40
-    )
+    rim: int = quantity(text="layers of elements in the lower rim (flexible spline: through the cup)", ge=1, le=40)
 
 
 class FaceWidthRecipe(Section):
@@ -74,9 +68,7 @@ def load_recipe(path: str | Path) -> MeshRecipe:
     for key, value in table.items():
         if key not in MeshRecipe.model_fields:
             allowed = ", ".join(MeshRecipe.model_fields)
-            raise InputError(
-                f"{path}: {key} = {show(value)} is not a section of a mesh recipe: allowed {allowed}"
-            )
+            raise InputError(f"{path}: {key} = {show(value)} is not a section of a mesh recipe: allowed {allowed}")
     try:
         return validate(MeshRecipe, table)
     except InputError as error:

@@ -24,9 +24,7 @@ _GRADIENT = 0.25 * np.stack(
 
 def boundary_nodes(section: CrossSection) -> np.ndarray:
     """Return the nodes (n,) on the boundary of the cross-section."""
-    edges = np.sort(
-        np.stack((section.quads, np.roll(section.quads, -1, axis=1)), axis=-1).reshape(-1, 2), axis=1
-    )
+    edges = np.sort(np.stack((section.quads, np.roll(section.quads, -1, axis=1)), axis=-1).reshape(-1, 2), axis=1)
     unique, times = np.unique(edges, axis=0, return_counts=True)
     return np.unique(unique[times == 1])
 

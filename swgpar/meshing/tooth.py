@@ -329,6 +329,4 @@ def mirrored(half: QuadMesh) -> tuple[QuadMesh, Ints]:
     image[~axis] = n + np.arange(np.count_nonzero(~axis))
     mirror = np.concatenate((image, np.flatnonzero(~axis))).astype(np.int32)
     quads = np.concatenate((half.quads, image[half.quads[:, ::-1]]))
-    return QuadMesh(
-        np.concatenate((coords, coords[~axis] * (-1.0, 1.0))), quads, np.tile(half.block, 2)
-    ), mirror
+    return QuadMesh(np.concatenate((coords, coords[~axis] * (-1.0, 1.0))), quads, np.tile(half.block, 2)), mirror

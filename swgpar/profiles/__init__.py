@@ -14,13 +14,28 @@ def make_profile(design, gear: str) -> ToothProfile:
     drive, spec = design.drive, getattr(design, gear)
     external = gear == "flexible_spline"
     p = spec.profile
-    profile = quadruple_arc(drive.teeth_fs if external else drive.teeth_rg, drive.module, np.radians(drive.pressure_angle),
-                            drive.addendum_coef * drive.module, drive.dedendum_coef * drive.module, spec.c_P, spec.c_l,
-                            p.r_tip, p.r_addendum, p.straight_l, p.r_dedendum, p.r_root, external, f"{gear}.profile")
+    profile = quadruple_arc(
+        drive.teeth_fs if external else drive.teeth_rg,
+        drive.module,
+        np.radians(drive.pressure_angle),
+        drive.addendum_coef * drive.module,
+        drive.dedendum_coef * drive.module,
+        spec.c_P,
+        spec.c_l,
+        p.r_tip,
+        p.r_addendum,
+        p.straight_l,
+        p.r_dedendum,
+        p.r_root,
+        external,
+        f"{gear}.profile",
+    )
     try:
         check_flank(profile)
     except InputError as error:
-        raise InputError(f"{gear}.profile cannot be built: {error}; allowed are arcs that stay inside the tooth") from None
+        raise InputError(
+            f"{gear}.profile cannot be built: {error}; allowed are arcs that stay inside the tooth"
+        ) from None
     return profile
 
 

@@ -24,9 +24,22 @@ def _close(radius, wanted: float, what: str) -> float:
     return float(brentq(lambda angle: radius(angle) - wanted, low, high, xtol=1e-15, rtol=1e-15))
 
 
-def quadruple_arc(n_teeth: int, module: float, pressure_angle: float, addendum: float, dedendum: float, c_P: float,
-                  c_l: float, r_tip: float, r_addendum: float, straight_l: float, r_dedendum: float, r_root: float,
-                  external: bool, name: str = "profile") -> ToothProfile:
+def quadruple_arc(
+    n_teeth: int,
+    module: float,
+    pressure_angle: float,
+    addendum: float,
+    dedendum: float,
+    c_P: float,
+    c_l: float,
+    r_tip: float,
+    r_addendum: float,
+    straight_l: float,
+    r_dedendum: float,
+    r_root: float,
+    external: bool,
+    name: str = "profile",
+) -> ToothProfile:
     """Build the flank; lengths in mm, `pressure_angle` in rad, `addendum` and `dedendum` are heights in mm."""
     s = 1.0 if external else -1.0
     r_pitch = 0.5 * n_teeth * module
@@ -54,22 +67,35 @@ def quadruple_arc(n_teeth: int, module: float, pressure_angle: float, addendum: 
     def root_center(angle: float) -> np.ndarray:
         return o_d - (r_dedendum - r_root) * n(star + angle)
 
-    a_a = _close(lambda t: float(np.hypot(*tip_center(t))) + s * r_tip, r_a,
-                 f"{name}.r_tip = {r_tip:g} with r_addendum = {r_addendum:g} cannot close")
-    a_d = _close(lambda t: float(np.hypot(*root_center(t))) - s * r_root, r_d,
-                 f"{name}.r_root = {r_root:g} with r_dedendum = {r_dedendum:g} cannot close")
+    a_a = _close(
+        lambda t: float(np.hypot(*tip_center(t))) + s * r_tip,
+        r_a,
+        f"{name}.r_tip = {r_tip:g} with r_addendum = {r_addendum:g} cannot close",
+    )
+    a_d = _close(
+        lambda t: float(np.hypot(*root_center(t))) - s * r_root,
+        r_d,
+        f"{name}.r_root = {r_root:g} with r_dedendum = {r_dedendum:g} cannot close",
+    )
     o_t, o_r = tip_center(a_a), root_center(a_d)
     beta_t, beta_r = beta_of(s * o_t / np.hypot(*o_t)), beta_of(s * o_r / np.hypot(*o_r))
     turn = -s
-    pieces = [("tip", o_t + r_tip * n(beta_t), beta_t, turn / r_tip, r_tip * (beta_t - star - a_a)),
-              ("addendum", o_a + r_addendum * n(star + a_a), star + a_a, turn / r_addendum, r_addendum * a_a),
-              ("straight", top, star, 0.0, straight_l),
-              ("dedendum", bottom, star, -turn / r_dedendum, r_dedendum * a_d),
-              ("root", o_r - r_root * n(star + a_d), star + a_d, -turn / r_root, r_root * (beta_r - star - a_d))]
+    pieces = [
+        ("tip", o_t + r_tip * n(beta_t), beta_t, turn / r_tip, r_tip * (beta_t - star - a_a)),
+        ("addendum", o_a + r_addendum * n(star + a_a), star + a_a, turn / r_addendum, r_addendum * a_a),
+        ("straight", top, star, 0.0, straight_l),
+        ("dedendum", bottom, star, -turn / r_dedendum, r_dedendum * a_d),
+        ("root", o_r - r_root * n(star + a_d), star + a_d, -turn / r_root, r_root * (beta_r - star - a_d)),
+    ]
     for piece, *_, length in pieces:
         if length < 0.0:
-            raise InputError(f"{name}.r_{piece}: the {piece} arc would have a negative length ({length:.3g} mm); "
-                             "allowed are radii for which all arcs run from tip to root")
-    segments = tuple(Segment(k, (float(p[0]), float(p[1])), tangent(b), t, float(length))
-                     for k, p, b, t, length in pieces if length > 1e-12 * module)
+            raise InputError(
+                f"{name}.r_{piece}: the {piece} arc would have a negative length ({length:.3g} mm); "
+                "allowed are radii for which all arcs run from tip to root"
+            )
+    segments = tuple(
+        Segment(k, (float(p[0]), float(p[1])), tangent(b), t, float(length))
+        for k, p, b, t, length in pieces
+        if length > 1e-12 * module
+    )
     return ToothProfile(segments, external, r_a, r_d, n_teeth)

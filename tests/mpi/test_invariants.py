@@ -115,17 +115,25 @@ def test_units_do_not_matter() -> None:
         return {name: getattr(section, name) / inch for name in names}
 
     def gear(g):
-        profile = g.profile.model_copy(update=lengths(g.profile, "r_tip", "r_addendum", "straight_l", "r_dedendum", "r_root"))
+        profile = g.profile.model_copy(
+            update=lengths(g.profile, "r_tip", "r_addendum", "straight_l", "r_dedendum", "r_root")
+        )
         return g.model_copy(update={**lengths(g, "rim"), "profile": profile})
 
-    other = d.model_copy(update={
-        "drive": d.drive.model_copy(update=lengths(d.drive, "module", "face_width")),
-        "flexible_spline": gear(d.flexible_spline), "ring_gear": gear(d.ring_gear),
-        "wave_generator": d.wave_generator.model_copy(update=lengths(d.wave_generator, "face_width")),
-        "cup": d.cup.model_copy(update=lengths(d.cup, "length", "fillet_radius", "inner_radius")),
-        "micro_geometry": d.micro_geometry.model_copy(update=lengths(d.micro_geometry, "wg_crowning", "wg_slope", "fs_crowning")),
-        "material": d.material.model_copy(update={"E": d.material.E * inch**2 / pound}),
-        "load": d.load.model_copy(update={"torque": d.load.torque / inch / pound})})
+    other = d.model_copy(
+        update={
+            "drive": d.drive.model_copy(update=lengths(d.drive, "module", "face_width")),
+            "flexible_spline": gear(d.flexible_spline),
+            "ring_gear": gear(d.ring_gear),
+            "wave_generator": d.wave_generator.model_copy(update=lengths(d.wave_generator, "face_width")),
+            "cup": d.cup.model_copy(update=lengths(d.cup, "length", "fillet_radius", "inner_radius")),
+            "micro_geometry": d.micro_geometry.model_copy(
+                update=lengths(d.micro_geometry, "wg_crowning", "wg_slope", "fs_crowning")
+            ),
+            "material": d.material.model_copy(update={"E": d.material.E * inch**2 / pound}),
+            "load": d.load.model_copy(update={"torque": d.load.torque / inch / pound}),
+        }
+    )
     _, a = base()
     _, b = loaded(other)
     for name in ("fs_s1", "fs_s3", "fs_vm", "rg_vm"):

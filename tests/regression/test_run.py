@@ -20,8 +20,20 @@ SHORT = ["steps.rotation=4.0", "steps.increment=2.0"]
 
 
 def command(out: Path, *more: str) -> list[str]:
-    return [sys.executable, "-m", "swgpar.cli", "run", str(DATA / "small.toml"), "--mesh", str(DATA / "tiny.toml"),
-            "--out", str(out), *more, "--set", *SHORT]
+    return [
+        sys.executable,
+        "-m",
+        "swgpar.cli",
+        "run",
+        str(DATA / "small.toml"),
+        "--mesh",
+        str(DATA / "tiny.toml"),
+        "--out",
+        str(out),
+        *more,
+        "--set",
+        *SHORT,
+    ]
 
 
 @pytest.fixture(scope="module")

@@ -7,9 +7,31 @@ from pathlib import Path
 
 import swgpar
 
-ORDER = ("errors", "log", "quantities", "design_file", "profiles", "design", "geometry_check", "cams", "micro_geometry",
-         "meshing", "partition", "kernel", "assembly", "couplings", "contact", "steps", "stress", "equilibrium", "incremental",
-         "results", "report", "run", "cli")
+ORDER = (
+    "errors",
+    "log",
+    "quantities",
+    "design_file",
+    "profiles",
+    "design",
+    "geometry_check",
+    "cams",
+    "micro_geometry",
+    "meshing",
+    "partition",
+    "kernel",
+    "assembly",
+    "couplings",
+    "contact",
+    "steps",
+    "stress",
+    "equilibrium",
+    "incremental",
+    "results",
+    "report",
+    "run",
+    "cli",
+)
 ROOT = Path(__file__).parents[2] / "swgpar"
 
 
@@ -24,7 +46,9 @@ def imported(path: Path) -> set[str]:
 
 
 def test_every_module_has_its_place() -> None:
-    there = {p.stem if p.is_file() else p.name for p in ROOT.iterdir() if p.suffix == ".py" or (p / "__init__.py").exists()}
+    there = {
+        p.stem if p.is_file() else p.name for p in ROOT.iterdir() if p.suffix == ".py" or (p / "__init__.py").exists()
+    }
     assert there - {"__init__"} == set(ORDER), swgpar.__file__
 
 
@@ -34,6 +58,9 @@ def test_imports_go_upwards_only() -> None:
         own = path.relative_to(ROOT).parts[0].removesuffix(".py")
         if own == "__init__":
             continue
-        wrong += [f"{path.relative_to(ROOT)} imports {name}" for name in imported(path)
-                  if ORDER.index(name) > ORDER.index(own)]
+        wrong += [
+            f"{path.relative_to(ROOT)} imports {name}"
+            for name in imported(path)
+            if ORDER.index(name) > ORDER.index(own)
+        ]
     assert not wrong

@@ -194,9 +194,7 @@ def test_node_sets() -> None:
     bore = both["flexible_spline"].coords[both["flexible_spline"].node_sets["bore"]]
     assert np.allclose(np.hypot(bore[:, 0], bore[:, 1]), case.cup.inner_radius, rtol=1e-13)
     end = 0.5 * case.drive.face_width + case.cup.length
-    assert bore[:, 2].max() == pytest.approx(end) and bore[:, 2].min() == pytest.approx(
-        end - case.cup_thickness
-    )
+    assert bore[:, 2].max() == pytest.approx(end) and bore[:, 2].min() == pytest.approx(end - case.cup_thickness)
     ring = both["ring_gear"]
     radius = np.hypot(ring.coords[:, 0], ring.coords[:, 1])
     assert np.array_equal(ring.node_sets["outer"], np.flatnonzero(radius > radius.max() * (1.0 - 1e-9)))
@@ -268,9 +266,7 @@ def test_full_recipe_is_graded_as_in_table_4_2() -> None:
     case = design()
     for gear, mesh in meshes(RECIPES["full"]).items():
         counts = getattr(recipe, gear)
-        section = cross_section(
-            make_profile(case, gear), counts, *((59.0, 58.2) if mesh.phase == 0 else (62.8, 63.8))
-        )
+        section = cross_section(make_profile(case, gear), counts, *((59.0, 58.2) if mesh.phase == 0 else (62.8, 63.8)))
         root_land = 1  # from R to the middle of the root
         assert len(mesh.flanks[0].s) - 1 + root_land == 21
         assert len(section.free) - 1 >= 10
@@ -357,9 +353,7 @@ def test_whole_drive_is_watertight() -> None:
         ("[cup]", "[cup", ("not valid TOML",)),
     ],
 )
-def test_bad_recipes_are_refused_in_one_sentence(
-    tmp_path: Path, old: str, new: str, words: tuple[str, ...]
-) -> None:
+def test_bad_recipes_are_refused_in_one_sentence(tmp_path: Path, old: str, new: str, words: tuple[str, ...]) -> None:
     path = tmp_path / "recipe.toml"
     good = TINY.read_text()
     assert old in good
@@ -392,9 +386,7 @@ def test_exports_read_back(tmp_path: Path) -> None:
         assert np.array_equal(back.cells_dict["hexahedron"], drive.cells_dict["hexahedron"])
     marks = meshio.read(files[0]).point_data
     assert set(marks) == set(drive.point_sets)
-    assert np.array_equal(
-        np.flatnonzero(marks["flexible_spline_bore"]), drive.point_sets["flexible_spline_bore"]
-    )
+    assert np.array_equal(np.flatnonzero(marks["flexible_spline_bore"]), drive.point_sets["flexible_spline_bore"])
     physical = meshio.read(files[1]).cell_data_dict["gmsh:physical"]["hexahedron"]
     assert np.bincount(physical)[1:].tolist() == [len(m.hexes) * m.n_sectors for m in both.values()]
     assert "TYPE=C3D8I" in files[2].read_text()
@@ -430,9 +422,7 @@ def test_calculix_accepts_the_drive(tmp_path: Path) -> None:
         ]
     deck += ["*NODE PRINT, NSET=FLEXIBLE_SPLINE_FLANKS", "U", "*END STEP"]
     (tmp_path / "job.inp").write_text("\n".join(deck) + "\n")
-    run = subprocess.run(
-        ["ccx", "job"], cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False
-    )
+    run = subprocess.run(["ccx", "job"], cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False)
     assert run.returncode == 0 and "*ERROR" not in run.stdout, run.stdout[-2000:]
     rows = [line.split() for line in (tmp_path / "job.dat").read_text().splitlines()]
     table = np.array([[float(v) for v in row] for row in rows if len(row) == 4 and row[0].isdigit()])
@@ -448,7 +438,5 @@ def test_report_counts_the_full_drive() -> None:
     report = mesh_report(both)
     drive = whole_drive(both)
     assert sum(entry["nodes"] for entry in report.values()) == len(drive.points)
-    assert sum(entry["elements"] for entry in report.values()) == sum(
-        len(block.data) for block in drive.cells
-    )
+    assert sum(entry["elements"] for entry in report.values()) == sum(len(block.data) for block in drive.cells)
     assert all(entry["min_jacobian"] > 0.0 and entry["volume"] > 0.0 for entry in report.values())

@@ -24,7 +24,7 @@ def test_quadruple_arc(teeth: int, external: bool, radii: dict[str, float]) -> N
     # the pitch point: half the pitch's angle at the pitch circle
     s = np.linspace(0.0, p.length, 20001)
     radius = np.hypot(*p.point(s).T)
-    at = np.interp(0.5 * teeth, sign * radius[::-int(sign)] * sign, s[::-int(sign)])
+    at = np.interp(0.5 * teeth, sign * radius[:: -int(sign)] * sign, s[:: -int(sign)])
     assert p.polar_angle(at)[0] == pytest.approx(0.5 * np.pi / teeth, rel=1e-5)
     # differences of points give tangents, of tangents curvatures
     h = 1e-6

@@ -21,7 +21,12 @@ class Solid:
     def __init__(self, points: np.ndarray, hexes: np.ndarray, young: float, poisson: float) -> None:
         self.points, self.hexes, n = points, np.ascontiguousarray(hexes, dtype=np.int32), len(hexes)
         self.reference = reference_elements(points[hexes], young, poisson)
-        self.arrays = (np.arange(n, dtype=np.int32), np.tile([1.0, 0.0], (n, 1)), self.hexes, np.zeros((n, 8), np.uint8))
+        self.arrays = (
+            np.arange(n, dtype=np.int32),
+            np.tile([1.0, 0.0], (n, 1)),
+            self.hexes,
+            np.zeros((n, 8), np.uint8),
+        )
         self.slot = np.arange(64 * n).reshape(n, 64)
 
     def residual(self, u: np.ndarray) -> np.ndarray:
@@ -151,12 +156,22 @@ def cantilever(shape: str, direction: int) -> float:
     return float(u[tip, direction].mean() / scale / (3e-5, 0.1081, 0.4321)[direction])
 
 
-@pytest.mark.parametrize(("shape", "direction", "low", "high"), [
-    ("regular", 0, 0.98, 1.01), ("regular", 1, 0.97, 1.0), ("regular", 2, 0.97, 1.0),
-    # this element type is known to stiffen when slanted and to lock as a trapezoid: MacNeal and Harder's own hexahedron
-    # with incompatible modes reaches about 0.62 and 0.53 as parallelogram, a few per cent as trapezoid
-    ("parallelogram", 0, 0.97, 1.02), ("parallelogram", 1, 0.60, 0.65), ("parallelogram", 2, 0.50, 0.56),
-    ("trapezoid", 0, 0.97, 1.02), ("trapezoid", 1, 0.02, 0.10), ("trapezoid", 2, 0.01, 0.10)])
+@pytest.mark.parametrize(
+    ("shape", "direction", "low", "high"),
+    [
+        ("regular", 0, 0.98, 1.01),
+        ("regular", 1, 0.97, 1.0),
+        ("regular", 2, 0.97, 1.0),
+        # this element type is known to stiffen when slanted and to lock as a trapezoid: MacNeal and Harder's own hexahedron
+        # with incompatible modes reaches about 0.62 and 0.53 as parallelogram, a few per cent as trapezoid
+        ("parallelogram", 0, 0.97, 1.02),
+        ("parallelogram", 1, 0.60, 0.65),
+        ("parallelogram", 2, 0.50, 0.56),
+        ("trapezoid", 0, 0.97, 1.02),
+        ("trapezoid", 1, 0.02, 0.10),
+        ("trapezoid", 2, 0.01, 0.10),
+    ],
+)
 def test_macneal_harder_beam(shape: str, direction: int, low: float, high: float) -> None:
     ratio = cantilever(shape, direction)
     print(f"{shape}, direction {direction}: {ratio:.4f} of theory")
