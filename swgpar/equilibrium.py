@@ -48,15 +48,19 @@ class SearchedStep:
 
     TARGET, TRIALS = 0.5, 8
 
-    def __init__(self, border: Bordered, residual: Callable[[PETSc.Vec, PETSc.Vec], None], x: PETSc.Vec) -> None:
-        self.border, self.residual, self.x = border, residual, x
+    def __init__(
+        self, border: Bordered, residual: Callable[[PETSc.Vec, PETSc.Vec], None], x: PETSc.Vec, phases: Phases
+    ) -> None:
+        self.border, self.residual, self.x, self.phases = border, residual, x, phases
         self.trial, self.force = x.duplicate(), x.duplicate()
 
     def setUp(self, pc: PETSc.PC) -> None:
-        self.border.setUp(pc)
+        with self.phases("factor"):
+            self.border.setUp(pc)
 
     def apply(self, pc: PETSc.PC, right: PETSc.Vec, step: PETSc.Vec) -> None:
-        self.border.apply(pc, right, step)
+        with self.phases("solve"):
+            self.border.apply(pc, right, step)
         start = right.dot(step)
         if not start > 0.0:  # no descent: leave it to the plain Newton step
             return
@@ -126,7 +130,8 @@ class Equilibrium:
         ksp = self.snes.getKSP()
         ksp.setType(PETSc.KSP.Type.PREONLY)
         ksp.getPC().setType(PETSc.PC.Type.PYTHON)
-        ksp.getPC().setPythonContext(SearchedStep(self.border, lambda x, f: self._function(self.snes, x, f), self.x))
+        step = SearchedStep(self.border, lambda x, f: self._function(self.snes, x, f), self.x, phases)
+        ksp.getPC().setPythonContext(step)
         self.snes.setFromOptions()
         self.matrix: PETSc.Mat | None = None
 

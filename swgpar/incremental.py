@@ -205,8 +205,9 @@ class Runner:
             if cuts > self.design.solver.max_cutbacks:
                 raise ConvergenceError(
                     f"step {target.step} ({target.name}) did not converge at a wave-generator angle of "
-                    f"{np.degrees(scene.angle):.4g} degrees after {self.design.solver.max_cutbacks} cut-backs: PETSc says "
-                    f"{solved.reason}, residual {solved.residual:.1e} of the contact force; the last converged state is saved"
+                    f"{np.degrees(scene.angle):.4g} degrees after {self.design.solver.max_cutbacks} cut-backs: "
+                    f"PETSc says {solved.reason}, residual {solved.residual:.1e} of the contact force; the last converged "
+                    "state is saved"
                 )
             share *= 0.5
             logger.info(

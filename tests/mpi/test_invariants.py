@@ -77,7 +77,7 @@ def test_any_number_of_ranks_gives_the_same() -> None:
 
 
 def test_period_and_work() -> None:
-    """After one ring-gear pitch the state repeats, the output turned by pitch / ratio; the mean input torque is T / ratio."""
+    """After one ring-gear pitch the state repeats, the output turned by pitch / ratio; the mean torque is T / ratio."""
     runner, _ = loaded(small())
     pitch, samples = 2.0 * np.pi / 42, 6
     first = turn(runner, 0.2 * pitch)  # away from the start, whose history is another one

@@ -179,9 +179,10 @@ def non_uniformity(order: int, slave: int = 3) -> float:
 
 
 def test_patch_on_meshes_that_do_not_match() -> None:
-    """The only error is that of integrating across the edges of master facets: it falls with the number of Gauss points.
+    """The only error is that of integrating across the edges of master facets: it falls with the Gauss points.
 
-    At the default order 6 the worst point is 1.3 % off, at 16 it is 0.34 %. Exactness would need integration by segments.
+    At the default order 6 the worst point is 1.3 % off, at 16 it is 0.34 %: exactness would need integration by
+    segments.
     """
     found = {order: non_uniformity(order) for order in (2, 4, 6, 16)}
     print({order: f"{value:.1e}" for order, value in found.items()})

@@ -162,8 +162,8 @@ def cantilever(shape: str, direction: int) -> float:
         ("regular", 0, 0.98, 1.01),
         ("regular", 1, 0.97, 1.0),
         ("regular", 2, 0.97, 1.0),
-        # this element type is known to stiffen when slanted and to lock as a trapezoid: MacNeal and Harder's own hexahedron
-        # with incompatible modes reaches about 0.62 and 0.53 as parallelogram, a few per cent as trapezoid
+        # this element type is known to stiffen when slanted and to lock as a trapezoid: MacNeal and Harder's
+        # own hexahedron with incompatible modes reaches about 0.62 and 0.53 as parallelogram, a few per cent as trapezoid
         ("parallelogram", 0, 0.97, 1.02),
         ("parallelogram", 1, 0.60, 0.65),
         ("parallelogram", 2, 0.50, 0.56),
@@ -187,7 +187,7 @@ def ring(n: int) -> tuple[Solid, np.ndarray, np.ndarray]:
 
 
 def test_pinched_thin_ring() -> None:
-    """The diameters change by 0.1488 and 0.1366 P R^3 / (E I) along and across the load (Timoshenko); converges as h^2."""
+    """The diameters change by 0.1488 and 0.1366 P R^3 / (E I) along and across the load (Timoshenko); error as h^2."""
     errors = []
     for n in (10, 20, 40):
         mesh, angle, _ = ring(n)
