@@ -1,0 +1,1 @@
+"""Result files: history, fields, checkpoint, summary."""

@@ -1,0 +1,110 @@
+"""Files that are whole or not there, and errors that all ranks agree on.
+
+A file is written under a temporary name beside its target, flushed to the disk and renamed. A process
+that is killed at any moment leaves the previous file, never half of a new one.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+
+from swgpar.errors import OutputError
+
+TEMPORARY = ".tmp"
+"""Suffix of files being written; left-overs of a killed run are removed by the next one."""
+
+
+def sentence(error: BaseException) -> str:
+    """Reason of a failure without traceback, number or file name."""
+    if isinstance(error, OSError) and error.strerror:
+        return error.strerror
+    return str(error).splitlines()[0] if str(error) else type(error).__name__
+
+
+@contextmanager
+def agreed(comm: MPI.Comm, path: Path, action: str = "write") -> Iterator[None]:
+    """Run a block in which a rank may fail alone, and raise OutputError on all ranks if one did.
+
+    The block must not contain collective calls after a statement that can fail on one rank only.
+    Collective itself: every rank enters and leaves it.
+    """
+    reason = None
+    try:
+        yield
+    except (OSError, RuntimeError, ValueError, KeyError) as error:
+        reason = sentence(error)
+    reasons = [r for r in comm.allgather(reason) if r is not None]
+    if reasons:
+        raise OutputError(f"cannot {action} {path}: {reasons[0]}")
+
+
+def reserve(path: Path, size: int) -> None:
+    """Make the file system set `size` bytes aside for a file, so that a full disk shows here and not later."""
+    if size == 0:
+        return
+    handle = os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
+    try:
+        os.posix_fallocate(handle, 0, size)
+    finally:
+        os.close(handle)
+
+
+def finish(temporary: Path, path: Path) -> None:
+    """Flush a finished temporary file to the disk and give it its name."""
+    _sync(temporary)
+    os.replace(temporary, path)
+    _sync(path.parent)
+
+
+def _sync(path: Path) -> None:
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def discard(path: Path) -> None:
+    """Remove a temporary file if it is there."""
+    with suppress(OSError):
+        path.unlink()
+
+
+def write_file(path: Path, content: bytes) -> None:
+    """Write a whole file atomically; call it on one rank only."""
+    temporary = path.with_name(path.name + TEMPORARY)
+    try:
+        with open(temporary, "wb") as file:
+            file.write(content)
+        finish(temporary, path)
+    except BaseException:
+        discard(temporary)
+        raise
+
+
+def write_from_root(comm: MPI.Comm, path: Path, content: bytes) -> None:
+    """Write the content that rank 0 holds; collective, the error is raised on all ranks."""
+    with agreed(comm, path):
+        if comm.rank == 0:
+            write_file(path, content)
+
+
+def to_json(data: dict[str, Any]) -> bytes:
+    """JSON text of a dict that may hold NumPy scalars and arrays."""
+
+    def plain(value: Any) -> Any:
+        if isinstance(value, (np.generic, np.ndarray)):
+            return value.tolist()
+        if isinstance(value, Path):
+            return str(value)
+        raise TypeError(f"{type(value).__name__} has no place in a JSON file")
+
+    return (json.dumps(data, indent=2, default=plain) + "\n").encode()

@@ -1,0 +1,67 @@
+"""history.csv: one row per increment, numbers that read back to the last bit."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+NAME = "history.csv"
+
+UNITS = {
+    "step": "",
+    "wg_angle_deg": "deg",
+    "output_angle_deg": "deg",
+    "fs_s1": "MPa",
+    "fs_s3": "MPa",
+    "fs_vm": "MPa",
+    "rg_s1": "MPa",
+    "rg_s3": "MPa",
+    "rg_vm": "MPa",
+    "wg_torque_Nmm": "N·mm",
+    "tooth_torque_Nmm": "N·mm",
+    "output_torque_Nmm": "N·mm",
+    "pairs_in_contact": "",
+    "max_penetration_mm": "mm",
+    "newton_iterations": "",
+    "wall_s": "s",
+}
+"""Columns in the order of the file, with their units. Stresses are maxima of nodal averages over a body,
+s3 as a positive number; torques act on the flexible spline."""
+
+COLUMNS = tuple(UNITS)
+_TEXT = {"step"}
+_WHOLE = {"pairs_in_contact", "newton_iterations"}
+
+
+def plain_row(row: Mapping[str, Any]) -> dict[str, Any]:
+    """A row with Python's own types, in the order of the columns; ValueError when columns are wrong."""
+    if set(row) != set(COLUMNS):
+        wrong = sorted(set(row) ^ set(COLUMNS))
+        raise ValueError(f"history row: missing or unknown columns {', '.join(wrong)}")
+    return {c: str(row[c]) if c in _TEXT else int(row[c]) if c in _WHOLE else float(row[c]) for c in COLUMNS}
+
+
+def format_rows(rows: Iterable[Mapping[str, Any]]) -> bytes:
+    """The text of the whole file; floats as the shortest text that reads back the same."""
+    text = io.StringIO()
+    writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
+    writer.writeheader()
+    for row in rows:
+        writer.writerow({c: repr(v) if isinstance(v, float) else v for c, v in plain_row(row).items()})
+    return text.getvalue().encode()
+
+
+def read_history(path: Path) -> list[dict[str, Any]]:
+    """Rows of a history.csv."""
+    with open(path, newline="", encoding="utf-8") as file:
+        return [plain_row(row) for row in csv.DictReader(file)]
+
+
+def column(rows: Iterable[Mapping[str, Any]], name: str) -> np.ndarray:
+    """One column as (n,) float64."""
+    return np.array([row[name] for row in rows], dtype=float)
