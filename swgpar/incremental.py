@@ -206,8 +206,8 @@ class Runner:
                 raise ConvergenceError(
                     f"step {target.step} ({target.name}) did not converge at a wave-generator angle of "
                     f"{np.degrees(scene.angle):.4g} degrees after {self.design.solver.max_cutbacks} cut-backs: "
-                    f"PETSc says {solved.reason}, residual {solved.residual:.1e} of the contact force; the last converged "
-                    "state is saved"
+                    f"PETSc says {solved.reason}, residual {solved.residual:.1e} of the contact force; the last "
+                    "converged state is saved"
                 )
             share *= 0.5
             logger.info(

@@ -19,6 +19,7 @@ DATA = Path(__file__).parents[1] / "data"
 SHORT = ["steps.rotation=4.0", "steps.increment=2.0"]
 
 
+# every run starts in DATA: from the root of a checkout, python -m would pick up its source tree, which is not built
 def command(out: Path, *more: str) -> list[str]:
     return [
         sys.executable,
@@ -39,7 +40,7 @@ def command(out: Path, *more: str) -> list[str]:
 @pytest.fixture(scope="module")
 def plain(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("plain") / "run"
-    subprocess.run([*command(out), "output.fields=true", "output.figures=true"], check=True, timeout=600)
+    subprocess.run([*command(out), "output.fields=true", "output.figures=true"], check=True, timeout=600, cwd=DATA)
     return out
 
 
@@ -56,13 +57,13 @@ def test_result_files(plain: Path) -> None:
 
 
 def test_results_are_not_overwritten_by_accident(plain: Path) -> None:
-    done = subprocess.run(command(plain), capture_output=True, text=True, timeout=120)
+    done = subprocess.run(command(plain), capture_output=True, text=True, timeout=120, cwd=DATA)
     assert done.returncode == 4 and "--restart" in done.stderr and "Traceback" not in done.stderr
 
 
 def test_kill_and_restart(plain: Path, tmp_path: Path) -> None:
     out = tmp_path / "killed"
-    process = subprocess.Popen(command(out))
+    process = subprocess.Popen(command(out), cwd=DATA)
     limit = time.monotonic() + 300.0
     while time.monotonic() < limit:
         if (out / "history.csv").exists() and len(history.read_history(out / "history.csv")) >= 3:
@@ -70,7 +71,7 @@ def test_kill_and_restart(plain: Path, tmp_path: Path) -> None:
         time.sleep(0.1)
     os.kill(process.pid, signal.SIGKILL)
     process.wait()
-    subprocess.run(command(out, "--restart"), check=True, timeout=600)
+    subprocess.run(command(out, "--restart"), check=True, timeout=600, cwd=DATA)
     again, before = (history.read_history(p / "history.csv") for p in (out, plain))
     assert len(again) == len(before)
     for a, b in zip(again, before):
@@ -81,6 +82,6 @@ def test_kill_and_restart(plain: Path, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("place", ["/proc/swgpar", "/dev/null/run"])
 def test_unwritable_folder(place: str) -> None:
-    done = subprocess.run(command(Path(place)), capture_output=True, text=True, timeout=120)
+    done = subprocess.run(command(Path(place)), capture_output=True, text=True, timeout=120, cwd=DATA)
     assert done.returncode == 4
     assert place in done.stderr and "Traceback" not in done.stderr

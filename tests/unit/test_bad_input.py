@@ -109,7 +109,7 @@ def test_unreadable_files(tmp_path: Path) -> None:
 
 def test_exit_code_and_no_traceback() -> None:
     command = [sys.executable, "-m", "swgpar.cli", "check", str(REFERENCE), "--set", "load.torque=-3"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, cwd=REFERENCE.parent)
     assert done.returncode == 2
     assert "load.torque = -3" in done.stderr and "Traceback" not in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1

@@ -163,7 +163,7 @@ def cantilever(shape: str, direction: int) -> float:
         ("regular", 1, 0.97, 1.0),
         ("regular", 2, 0.97, 1.0),
         # this element type is known to stiffen when slanted and to lock as a trapezoid: MacNeal and Harder's
-        # own hexahedron with incompatible modes reaches about 0.62 and 0.53 as parallelogram, a few per cent as trapezoid
+        # own hexahedron with incompatible modes reaches about 0.62 and 0.53 as parallelogram, a few per cent otherwise
         ("parallelogram", 0, 0.97, 1.02),
         ("parallelogram", 1, 0.60, 0.65),
         ("parallelogram", 2, 0.50, 0.56),
