@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -123,7 +123,7 @@ def _fill(temporary: Path, path: Path, comm: MPI.Comm, blocks: Mapping[str, Bloc
     except (OSError, RuntimeError, ValueError, TypeError) as error:
         failure = error
     with agreed(comm, path):
-        with suppress(RuntimeError) if failure else suppress():
+        with suppress(RuntimeError) if failure else nullcontext():
             file.close()
         if failure:
             raise OSError(str(failure))
