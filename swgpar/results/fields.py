@@ -49,7 +49,7 @@ class FieldWriter:
     ) -> None:
         """Write the undeformed mesh.
 
-        bodies : name -> points (n_sectors, n_local, 3) mm, cells of one sector (n_elem, 8), first sector, sectors in all
+        bodies : name -> points (n_sectors, n_local, 3) mm, one sector's cells (n_elem, 8), first sector, all sectors
         extra : further small data sets, the same on all ranks
         """
         blocks = {}
@@ -78,7 +78,7 @@ class FieldWriter:
         parallel_hdf5.write(self.out / FOLDER / f"{increment_name(index)}.h5", self.comm, blocks)
 
     def write_index(self, increments: Sequence[tuple[int, float]], names: Mapping[str, Mapping[str, int]]) -> None:
-        """Rewrite fields.h5 and fields.xdmf for increments (index, wave-generator angle) and body -> field -> components."""
+        """Rewrite fields.h5 and fields.xdmf: increments (index, cam angle), body -> field -> components."""
         path = self.out / "fields.h5"
         with agreed(self.comm, path):
             if self.comm.rank == 0:
