@@ -155,23 +155,18 @@ class Bordered:
     gives x = z + Z_B s - Z_C l exactly: the grounding leaves no trace.
     """
 
-    def __init__(self, partition: Partition, options_prefix: str, iterative: bool) -> None:
+    def __init__(self, partition: Partition, options_prefix: str) -> None:
         self.partition = partition
         self.ksp = PETSc.KSP().create(comm=partition.comm)
         self.ksp.setOptionsPrefix(options_prefix)
         pc = self.ksp.getPC()
-        if iterative:
-            self.ksp.setType(PETSc.KSP.Type.CG)
-            self.ksp.setTolerances(rtol=1e-10, max_it=2000)
-            pc.setType(PETSc.PC.Type.GAMG)
-        else:
-            self.ksp.setType(PETSc.KSP.Type.PREONLY)
-            pc.setType(PETSc.PC.Type.CHOLESKY)
-            pc.setFactorSolverType("mumps")
-            options = PETSc.Options(options_prefix)
-            for name, value in MUMPS_DEFAULTS.items():
-                if not options.hasName(name):
-                    options[name] = value
+        self.ksp.setType(PETSc.KSP.Type.PREONLY)
+        pc.setType(PETSc.PC.Type.CHOLESKY)
+        pc.setFactorSolverType("mumps")
+        options = PETSc.Options(options_prefix)
+        for name, value in MUMPS_DEFAULTS.items():
+            if not options.hasName(name):
+                options[name] = value
         self.ksp.setFromOptions()
         self.grounding: list[PETSc.Vec] = []
         self.border: list[PETSc.Vec] = []

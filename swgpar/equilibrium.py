@@ -126,7 +126,7 @@ class Equilibrium:
         self.snes.setTolerances(max_it=design.solver.max_iterations)
         self.snes.setFunction(self._function, create_vector(partition))
         self.snes.setConvergenceTest(self._converged)
-        self.border = Bordered(partition, "stiffness_", design.solver.linear == "iterative")
+        self.border = Bordered(partition, "stiffness_")
         ksp = self.snes.getKSP()
         ksp.setType(PETSc.KSP.Type.PREONLY)
         ksp.getPC().setType(PETSc.PC.Type.PYTHON)

@@ -68,7 +68,7 @@ OVERRIDES = [
     ("steps.rotation=-45", "steps.rotation", "0"),
     ("contact.quadrature=0", "contact.quadrature", "1"),
     ("solver.max_iterations=0", "solver.max_iterations", "1"),
-    ('solver.linear="magic"', "solver.linear", "iterative"),
+    ('solver.linear="magic"', "solver.linear", "direct"),
     ("nonsense=1", "nonsense", "section.key=value"),
     ("drive.module", "drive.module", "section.key=value"),
     ("gearbox.size=1", "gearbox", "not a key"),
