@@ -74,12 +74,12 @@ class Load(Section):
 
 
 class Contact(Section):
-    penalty_coef: float = quantity(4.0, text="penalty over E / module", gt=0.0)
-    quadrature: int = quantity(6, text="Gauss points per direction on flank faces", ge=1, le=16)
+    penalty_coef: float = quantity(50.0, text="penalty over E / module", gt=0.0)
+    quadrature: int = quantity(2, text="Gauss points per direction on segments of flank faces", ge=1, le=16)
     wg_quadrature: int = quantity(3, text="Gauss points per direction on the inner surface", ge=1, le=16)
     max_augmentations: int = quantity(3, text="largest number of augmentations per increment", ge=0, le=50)
     penetration_tolerance: float = quantity(
-        5e-4, unit="modules", text="penetration that needs no augmentation", gt=0.0, le=0.1
+        1e-3, unit="modules", text="penetration that needs no augmentation", gt=0.0, le=0.1
     )
 
 
@@ -158,7 +158,7 @@ class DriveDesign(Section):
     @property
     def penalty(self) -> float:
         """Contact penalty, MPa / mm."""
-        return 5.0 * self.contact.penalty_coef * self.material.E / self.drive.module
+        return self.contact.penalty_coef * self.material.E / self.drive.module
 
 
 def _refuse(key: str, value: float, allowed: str) -> None:

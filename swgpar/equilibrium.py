@@ -25,6 +25,9 @@ NEAR, TOUCH, REACH, TIP_MARGIN = 0.25, 0.05, 0.5, 0.1
 SOFTENING, SOFT_TOLERANCE = (1e-3, 3e-2), 1e-2
 """Shares of the penalty, and residual over contact force, of the first rough solves while contact is established."""
 
+HOLD = 1e-3
+"""Residual over contact force below which segments of the flanks are kept: Newton's iteration is then quadratic."""
+
 
 @dataclass(frozen=True)
 class Solved:
@@ -278,6 +281,8 @@ class Equilibrium:
             self.on_iteration(self.scene, its, ratio)
         if self.failed or not np.isfinite(norm):
             return PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN
+        if ratio < HOLD and self.softness == 1.0:
+            self.teeth.hold()
         if ratio <= (self.design.solver.rtol if self.softness == 1.0 else SOFT_TOLERANCE):
             return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
         # round-off floor: no further decrease although the residual is already very small

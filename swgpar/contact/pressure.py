@@ -16,16 +16,18 @@ def nodal_pressure(equilibrium, body: BodyElements) -> np.ndarray:
     force, area = np.zeros(n), np.zeros(n)
 
     def add(conn: np.ndarray, shape: np.ndarray, weight: np.ndarray, pressure: np.ndarray) -> None:
-        free = conn >= 0
-        force[:] += np.bincount(conn[free], np.einsum("fq,qa->fa", weight * pressure, shape)[free], minlength=n)
-        area[:] += np.bincount(conn[free], np.einsum("fq,qa->fa", weight, shape)[free], minlength=n)
+        free, shape_of = conn >= 0, "fqa" if shape.ndim == 3 else "qa"
+        force[:] += np.bincount(
+            conn[free], np.einsum(f"fq,{shape_of}->fa", weight * pressure, shape)[free], minlength=n
+        )
+        area[:] += np.bincount(conn[free], np.einsum(f"fq,{shape_of}->fa", weight, shape)[free], minlength=n)
 
     scene = equilibrium.scene
     for contact, on in ((equilibrium.rigid, scene.cam), (equilibrium.pins, scene.pins)):
         if on is not None:
             add(contact.conn, contact.shape, contact.weight, contact.pressure)
     teeth = equilibrium.teeth
-    if scene.teeth is not None and teeth.faces is not None and len(teeth.pick):
+    if scene.teeth is not None and teeth.faces is not None:
         add(teeth.faces.conn, teeth.faces.shape, teeth.faces.weight, teeth.pressure)
     mean = np.divide(force, area, out=np.zeros(n), where=area > 0.0)
     local = body.local[body.owned]

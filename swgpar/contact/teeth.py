@@ -1,24 +1,23 @@
 """Tooth flanks of the flexible spline (slave) against those of the ring gear (master), both deformable.
 
-Face quadrature on the slave flank; the master flank is the exact profile plus the finite-element
-displacement (see kernel/contact.hpp). Sliding is finite: the foot point is found anew in every evaluation.
+Quadrature by segments on the slave flank (see segments.py); the master flank is the exact profile plus the
+finite-element displacement (see kernel/contact.hpp). Sliding is finite: foot points are found anew in every
+evaluation, and segments too until the solution is near: the tangent does not know how they move, and multipliers
+belong to their points.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
 from swgpar.assembly import BlockRows, BodyElements
 from swgpar.contact.enforcement import penetration
 from swgpar.contact.search import FlankPair
+from swgpar.contact.segments import MIRROR, FlankFaces, Segments, bilinear, cut_faces, flank_faces, lagrange
 from swgpar.kernel import contact_flanks
-from swgpar.meshing.sector import FlankGrid, SectorMesh
-from swgpar.micro_geometry import crowning
 from swgpar.partition import LocalNodes, Partition
-
-MIRROR = np.array([-1.0, 1.0])
 
 
 @dataclass
@@ -48,70 +47,43 @@ class Faces:
     offset: np.ndarray
     patch: np.ndarray
 
-    def take(self, pick: np.ndarray) -> Faces:
+
+@dataclass
+class PlacedFaces:
+    """Faces of all pairs, turned into place, not yet cut: see `Faces` and `FlankFaces`."""
+
+    conn: np.ndarray
+    flip: np.ndarray
+    coords: np.ndarray
+    normal: np.ndarray
+    size: np.ndarray
+    offset: np.ndarray
+    patch: np.ndarray
+
+    def cut(self, pick: np.ndarray, segments: Segments) -> Faces:
+        """The segments of the faces `pick` as faces of their own."""
+        face = pick[segments.parent]
+        area = self.size[face, 0] * self.size[face, 1]
+        offset = np.einsum(
+            "fij,fqi,fqj->fq", self.offset[face], lagrange(segments.a), lagrange(segments.b), optimize=True
+        )
         return Faces(
-            self.conn[pick],
-            self.flip[pick],
-            self.coords[pick],
-            self.normal[pick],
-            self.shape,
-            self.weight[pick],
-            self.offset[pick],
-            self.patch[pick],
+            self.conn[face],
+            self.flip[face],
+            self.coords[face],
+            self.normal[face],
+            bilinear(segments.a, segments.b),
+            area[:, None] * segments.share,
+            offset,
+            self.patch[face],
         )
 
-
-@dataclass(frozen=True)
-class FlankQuadrature:
-    """Quadrature of one flank of sector 0: faces by rows of the profile, then along the width.
-
-    corners : (n_face, 4) local nodes;  shape : (n_q, 4);  weight, offset : (n_face, n_q) mm^2, mm
-    normal : (n_face, 3), s, z : (n_face, n_q) arc length and axial place of the points
-    """
-
-    corners: np.ndarray
-    shape: np.ndarray
-    weight: np.ndarray
-    offset: np.ndarray
-    normal: np.ndarray
-    s: np.ndarray
-    z: np.ndarray
-
-
-def quadrature(
-    mesh: SectorMesh,
-    grid: FlankGrid,
-    order: int,
-    removed: float,
-    width: float,
-    shape_name: str,
-    rule: tuple[np.ndarray, np.ndarray] | None = None,
-) -> FlankQuadrature:
-    """Quadrature points of a flank and their distance from the exact, crowned surface.
-
-    order : Gauss points per direction;  removed : mm, crowning at |z| = width / 2;  rule : replaces the Gauss rule
-    """
-    t, w = np.polynomial.legendre.leggauss(order) if rule is None else rule
-    t, w = 0.5 * (t + 1.0), 0.5 * w
-    a, b = (v.ravel() for v in np.meshgrid(t, t, indexing="ij"))
-    shape = np.column_stack([(1 - a) * (1 - b), a * (1 - b), a * b, (1 - a) * b])
-    n = grid.nodes
-    corners = np.stack([n[:-1, :-1], n[1:, :-1], n[1:, 1:], n[:-1, 1:]], axis=-1).reshape(-1, 4)
-    ds, dz = np.diff(grid.s), np.diff(grid.z)
-    n_s, n_z, n_q = len(ds), len(dz), len(a)
-    s = np.broadcast_to((grid.s[:-1, None] + ds[:, None] * a)[:, None, :], (n_s, n_z, n_q)).reshape(-1, n_q)
-    z = np.broadcast_to((grid.z[:-1, None] + dz[:, None] * b)[None, :, :], (n_s, n_z, n_q)).reshape(-1, n_q)
-    weight = (ds[:, None] * dz).reshape(-1, 1) * np.outer(w, w).ravel()
-    profile = mesh.profile
-    flip = MIRROR if grid.side < 0 else np.ones(2)
-    normal2 = profile.normal(s.ravel()) * flip
-    cut = crowning(removed, z.ravel(), width, shape_name)[0] * profile.crowning_weight(s.ravel())
-    exact = profile.point(s.ravel()) * flip - cut[:, None] * normal2
-    facet = np.einsum("qa,fai->fqi", shape, mesh.coords[corners]).reshape(-1, 3)
-    offset = np.sum((exact - facet[:, :2]) * normal2, axis=1).reshape(s.shape)
-    middle = profile.normal(s.mean(axis=1)) * flip
-    normal = np.column_stack([middle, np.zeros(len(middle))])
-    return FlankQuadrature(corners, shape, weight, offset, normal, s, z)
+    def corners(self, pick: np.ndarray) -> Faces:
+        """The faces `pick` with their corners as points, offsets left out."""
+        a, b = (np.tile(v, (len(pick), 1)) for v in ([0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 1.0]))
+        faces = self.cut(pick, Segments(np.arange(len(pick)), a, b, np.ones_like(a)))
+        faces.offset[:] = 0.0
+        return faces
 
 
 class ToothContact:
@@ -120,7 +92,7 @@ class ToothContact:
     Parameters
     ----------
     partition, spline, ring : ownership and the elements of both bodies
-    order : Gauss points per direction on a slave face
+    order : Gauss points per direction on a segment of a slave face
     removed, width, shape_name : crowning of the flexible spline's flanks (mm, mm, curve)
     penalty : MPa / mm;  reach : mm, largest |gap| that is looked at
     pressure_limit : MPa, bound of the pressure in the tangent's geometric term
@@ -141,11 +113,9 @@ class ToothContact:
     ) -> None:
         self.partition, self.spline, self.ring = partition, spline, ring
         self.penalty, self.reach, self.pressure_limit = penalty, reach, pressure_limit
+        self.order = order
         mesh = spline.layout.mesh
-        args = (removed, width, shape_name)
-        self.rules = {g.side: quadrature(mesh, g, order, *args) for g in mesh.flanks}
-        center = (np.array([0.0]), np.array([2.0]))
-        self.centers = {g.side: quadrature(mesh, g, 1, *args, rule=center) for g in mesh.flanks}
+        self.slaves = {g.side: flank_faces(mesh, g, removed, width, shape_name) for g in mesh.flanks}
         self.grids = {g.side: g for g in ring.layout.mesh.flanks}
         self.pairs: list[FlankPair] = []
 
@@ -159,7 +129,7 @@ class ToothContact:
         ]
         seen = [np.zeros(0, dtype=np.int64)]
         for p in self.pairs:
-            seen.append(self.partition.numbers(0, np.array([p.sector]), self.rules[p.side].corners.ravel())[0].ravel())
+            seen.append(self.partition.numbers(0, np.array([p.sector]), self.slaves[p.side].corners.ravel())[0].ravel())
             seen.append(self.partition.numbers(1, np.array([p.ring]), self.grids[-p.side].nodes.ravel())[0].ravel())
         return np.concatenate(seen)
 
@@ -177,7 +147,7 @@ class ToothContact:
             np.zeros((n_pair, *grid.nodes.shape), dtype=np.uint8),
         )
         profile = self.ring.layout.mesh.profile
-        everything: list[tuple[FlankPair, Faces]] = []
+        placed: list[PlacedFaces] = []
         for k, p in enumerate(self.pairs):
             grid = self.grids[-p.side]
             mirror = MIRROR if grid.side < 0 else np.ones(2)
@@ -191,43 +161,55 @@ class ToothContact:
             number, flip = self.partition.numbers(1, np.array([p.ring]), grid.nodes.ravel())
             flanks.conn[k] = local.index(number).reshape(grid.nodes.shape)
             flanks.flip[k] = np.where(number >= 0, flip ^ p.ring_flip, 0).reshape(grid.nodes.shape)
-            everything.append((p, self._faces(self.rules[p.side], p, k, local)))
+            placed.append(self._placed(self.slaves[p.side], p, k, local))
         self.flanks, self.local = flanks, local
-        self.all = _join([f for _, f in everything]) if everything else None
-        self.all_centers = (
-            _join([self._faces(self.centers[p.side], p, k, local) for k, (p, _) in enumerate(everything)])
-            if everything
+        names = [f.name for f in fields(PlacedFaces)]
+        self.all = (
+            PlacedFaces(*(np.ascontiguousarray(np.concatenate([getattr(f, n) for f in placed])) for n in names))
+            if placed
             else None
-        )
-        self.pair_of = (
-            np.concatenate([np.full(len(f.conn), k) for k, (_, f) in enumerate(everything)]) if everything else None
         )
         owner = np.array([self.partition.owner(0, np.array(p.sector)) for p in self.pairs], dtype=np.int64)
         self.pair_owned = owner == self.partition.comm.rank
         self.pick = np.zeros(0, dtype=np.int64)
         self._reset()
 
-    def _faces(self, rule: FlankQuadrature, pair: FlankPair, patch: int, local: LocalNodes) -> Faces:
+    def _placed(self, slave: FlankFaces, pair: FlankPair, patch: int, local: LocalNodes) -> PlacedFaces:
         mesh = self.spline.layout.mesh
-        number, flip = self.partition.numbers(0, np.array([pair.sector]), rule.corners.ravel())
+        number, flip = self.partition.numbers(0, np.array([pair.sector]), slave.corners.ravel())
         angle = self.spline.layout.turn(np.array(self.spline.layout.first_tooth + pair.sector))
         c, s = np.cos(angle), np.sin(angle)
         turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-        return Faces(
+        return PlacedFaces(
             local.index(number).reshape(-1, 4),
             flip.reshape(-1, 4).copy(),
-            mesh.coords[rule.corners] @ turn,
-            rule.normal @ turn,
-            rule.shape,
-            rule.weight,
-            rule.offset,
-            np.full(len(rule.corners), patch, dtype=np.int32),
+            mesh.coords[slave.corners] @ turn,
+            slave.normal @ turn,
+            slave.size,
+            slave.offset,
+            np.full(len(slave.corners), patch, dtype=np.int32),
         )
 
     def _reset(self) -> None:
-        self.multiplier = np.zeros((len(self.pick), self.all.weight.shape[1] if self.all is not None else 0))
-        self.gap, self.pressure = np.full_like(self.multiplier, np.inf), np.zeros_like(self.multiplier)
-        self.faces = self.all.take(self.pick) if self.all is not None else None
+        self.faces: Faces | None = None
+        self.parent = np.zeros(0, dtype=np.int64)
+        self.multiplier = self.gap = self.pressure = np.zeros((0, self.order**2))
+        self.frozen = False
+
+    def _cut(self, u: np.ndarray) -> None:
+        """Cut the faces for displacement u; without multipliers, which would belong to other points."""
+        faces = self.all.corners(self.pick)
+        zero = np.zeros(faces.weight.shape)
+        _, _, place, _ = self._contact(faces, u, zero, 0.0, None, None)
+        segments = cut_faces(place, self.flanks.s, self.flanks.z, self.order)
+        self.parent = self.pick[segments.parent]
+        self.faces = self.all.cut(self.pick, segments)
+        self.multiplier = np.zeros_like(self.faces.weight)
+
+    def _contact(self, faces: Faces, u: np.ndarray, multiplier: np.ndarray, opening: float, residual, rows):
+        return contact_flanks(
+            self.flanks, faces, u, multiplier, self.penalty, opening, self.reach, self.pressure_limit, residual, rows
+        )
 
     def select(self, u: np.ndarray, near: float, touch: float) -> np.ndarray:
         """Choose the faces within `near` (mm) of the master and return the blocks that may couple.
@@ -237,21 +219,26 @@ class ToothContact:
         """
         if self.all is None:
             return np.zeros(0, dtype=np.int64)
-        zero = np.zeros((len(self.all_centers.conn), 1))
-        gap, _, facet, _ = contact_flanks(
-            self.flanks, self.all_centers, u, zero, self.penalty, 0.0, self.reach, self.pressure_limit, None, None
-        )
-        gap = gap[:, 0] - 0.0
-        self.pick = np.flatnonzero(gap < near)
+        every = np.arange(len(self.all.conn))
+        half = np.full((len(every), 1), 0.5)
+        centers = self.all.cut(every, Segments(every, half, half, np.ones_like(half)))
+        gap, _, place, _ = self._contact(centers, u, np.zeros_like(half), 0.0, None, None)
+        self.pick = np.flatnonzero(gap[:, 0] < near)
         self._reset()
-        pick = np.flatnonzero(gap < touch)
-        return self._keys(pick, facet[pick, 0])
+        pick = np.flatnonzero(gap[:, 0] < touch)
+        return self._keys(pick, place[pick, 0])
 
-    def _keys(self, pick: np.ndarray, facet: np.ndarray, window: tuple[int, int] = (2, 1)) -> np.ndarray:
+    def _keys(self, pick: np.ndarray, place: np.ndarray, window: tuple[int, int] = (2, 1)) -> np.ndarray:
         n_s, n_z = len(self.flanks.s), len(self.flanks.z)
+        facet = np.column_stack(
+            [
+                np.searchsorted(line, value, side="right") - 1
+                for line, value in zip((self.flanks.s, self.flanks.z), place.T)
+            ]
+        )
         number = self.local.number.astype(np.int64)
-        slave = self.all_centers.conn[pick]
-        patch = self.all_centers.patch[pick]
+        slave = self.all.conn[pick]
+        patch = self.all.patch[pick]
         columns = [np.where(slave >= 0, number[slave], -1)]
         for di in range(-window[0], window[0] + 2):
             for dj in range(-window[1], window[1] + 2):
@@ -265,9 +252,14 @@ class ToothContact:
         valid = (row >= lo) & (row < lo + self.local.n_own) & (col >= row)
         return np.unique((row * self.partition.n_global + col)[valid])
 
+    def hold(self) -> None:
+        """Keep the segments of the last evaluation until the next search."""
+        self.frozen = self.faces is not None
+
     def augment(self) -> None:
-        """Take the pressures of the last evaluation as multipliers."""
+        """Take the pressures of the last evaluation as multipliers; their points stay where they are from now on."""
         self.multiplier = self.pressure.copy()
+        self.hold()
 
     def evaluate(
         self, u: np.ndarray, opening: float, residual: np.ndarray | None, rows: BlockRows | None
@@ -276,58 +268,32 @@ class ToothContact:
 
         Returns keys of blocks that the pattern lacks (empty when there are none or `rows` is None).
         """
-        if self.faces is None or not len(self.faces.conn):
+        if self.all is None or not len(self.pick):
             return np.zeros(0, dtype=np.int64)
-        self.gap, self.pressure, facet, missing = contact_flanks(
-            self.flanks,
-            self.faces,
-            u,
-            self.multiplier,
-            self.penalty,
-            opening,
-            self.reach,
-            self.pressure_limit,
-            residual,
-            rows,
-        )
+        if not self.frozen:
+            self._cut(u)
+        self.gap, self.pressure, place, missing = self._contact(self.faces, u, self.multiplier, opening, residual, rows)
         if not missing:
             return np.zeros(0, dtype=np.int64)
         face, point = np.nonzero(self.pressure > 0.0)
-        return self._keys(self.pick[face], facet[face, point])
+        return self._keys(self.parent[face], place[face, point])
 
     def owned_forces(self, u: np.ndarray, opening: float) -> np.ndarray:
         """Nodal forces (n_local, 3) N of the pairs whose flexible-spline tooth this rank owns, as a residual."""
         residual = np.zeros_like(u)
-        if self.faces is not None and len(self.pick):
-            mine = self.pair_owned[self.pair_of[self.pick]]
-            faces = self.faces.take(np.flatnonzero(mine))
-            contact_flanks(
-                self.flanks,
-                faces,
-                u,
-                np.ascontiguousarray(self.multiplier[mine]),
-                self.penalty,
-                opening,
-                self.reach,
-                self.pressure_limit,
-                residual,
-                None,
-            )
+        if self.faces is not None:
+            mine = self.pair_owned[self.faces.patch]
+            faces = Faces(*(np.ascontiguousarray(getattr(self.faces, f.name)[mine]) for f in fields(Faces)))
+            self._contact(faces, u, np.ascontiguousarray(self.multiplier[mine]), opening, residual, None)
         return residual
 
     def touching_pairs(self) -> int:
         """Flank pairs with pressure whose flexible-spline tooth this rank owns."""
         if self.faces is None:
             return 0
-        touching = np.unique(self.pair_of[self.pick[(self.pressure > 0.0).any(axis=1)]])
+        touching = np.unique(self.faces.patch[(self.pressure > 0.0).any(axis=1)])
         return int(self.pair_owned[touching].sum())
 
     def penetration(self) -> float:
         """Largest penetration (mm) of the last evaluation on this rank."""
         return penetration(self.gap, self.pressure)
-
-
-def _join(faces: list[Faces]) -> Faces:
-    names = ("conn", "flip", "coords", "normal", "weight", "offset", "patch")
-    joined = {n: np.ascontiguousarray(np.concatenate([getattr(f, n) for f in faces])) for n in names}
-    return Faces(shape=np.ascontiguousarray(faces[0].shape), **joined)

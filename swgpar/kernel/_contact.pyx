@@ -34,7 +34,7 @@ cdef extern from "contact_batch.hpp" namespace "swgpar" nogil:
     int64_t flank_contact(const FlankBatch&, const FaceBatch&, const double* u, const double* multiplier,
                           double penalty, double opening, double reach, double limit, double* residual, const int64_t* start,
                           const int32_t* column, double* values, const int32_t* number, int64_t n_own,
-                          double* gap, double* pressure, int32_t* facet)
+                          double* gap, double* pressure, double* place)
     int64_t add_blocks(int64_t n, int m, const int32_t* conn, const uint8_t* flip, const double* blocks,
                        const int64_t* start, const int32_t* column, double* values, const int32_t* number,
                        int64_t n_own)
@@ -60,7 +60,7 @@ def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] 
     -------
     gap : (n_face, n_q) mm, +inf where there is no foot point
     pressure : (n_face, n_q) MPa
-    facet : (n_face, n_q, 2) int32, master facet (profile, width), -1 where there is none
+    place : (n_face, n_q, 2) mm, arc length and z of the foot point on the master, nan where there is none
     missing : number of blocks the pattern lacks
     """
     cdef const double[::1] s = patches.s, z = patches.z, orientation = patches.orientation
@@ -71,25 +71,26 @@ def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] 
     cdef const int32_t[:, ::1] conn = faces.conn
     cdef const uint8_t[:, ::1] flip = faces.flip
     cdef const double[:, :, ::1] coords = faces.coords
-    cdef const double[:, ::1] normal = faces.normal, shape = faces.shape, weight = faces.weight, offset = faces.offset
+    cdef const double[:, ::1] normal = faces.normal, weight = faces.weight, offset = faces.offset
+    cdef const double[:, :, ::1] shape = faces.shape
     cdef const int32_t[::1] patch = faces.patch
-    cdef int64_t n_face = conn.shape[0], n_q = shape.shape[0], n_patch = pconn.shape[0]
+    cdef int64_t n_face = conn.shape[0], n_q = shape.shape[1], n_patch = pconn.shape[0]
     gap_array = np.full((n_face, n_q), np.inf)
     pressure_array = np.zeros((n_face, n_q))
-    facet_array = np.full((n_face, n_q, 2), -1, dtype=np.int32)
+    place_array = np.full((n_face, n_q, 2), np.nan)
     if n_face == 0 or n_patch == 0:
-        return gap_array, pressure_array, facet_array, 0
-    if not (coords.shape[0] == normal.shape[0] == weight.shape[0] == offset.shape[0] == patch.shape[0] == n_face
+        return gap_array, pressure_array, place_array, 0
+    if not (coords.shape[0] == normal.shape[0] == shape.shape[0] == weight.shape[0] == offset.shape[0] == patch.shape[0] == n_face
             and multiplier.shape[0] == n_face and multiplier.shape[1] == n_q and weight.shape[1] == n_q
             and pconn.shape[1] == s.shape[0] and pconn.shape[2] == z.shape[0] and point.shape[0] == n_patch
             and point.shape[1] == s.shape[0] and tangent.shape[1] == s.shape[0] and u.shape[1] == 3):
         raise ValueError("contact_flanks: array shapes disagree")
     cdef double[:, ::1] gap = gap_array, pressure = pressure_array
-    cdef int32_t[:, :, ::1] facet = facet_array
+    cdef double[:, :, ::1] place = place_array
     cdef FlankBatch p = FlankBatch(n_patch, s.shape[0] - 1, z.shape[0] - 1, &s[0], &z[0], &point[0, 0, 0],
                                    &tangent[0, 0, 0], &orientation[0], &turn[0, 0], &pconn[0, 0, 0], &pflip[0, 0, 0])
     cdef FaceBatch f = FaceBatch(n_face, n_q, &conn[0, 0], &flip[0, 0], &coords[0, 0, 0], &normal[0, 0],
-                                 &shape[0, 0], &weight[0, 0], &offset[0, 0], &patch[0])
+                                 &shape[0, 0, 0], &weight[0, 0], &offset[0, 0], &patch[0])
     cdef const int64_t[::1] start
     cdef const int32_t[::1] column, number
     cdef double[:, :, ::1] values
@@ -106,8 +107,8 @@ def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] 
         p_residual = &residual[0, 0]
     with nogil:
         missing = flank_contact(p, f, &u[0, 0], &multiplier[0, 0], penalty, opening, reach, limit, p_residual, p_start,
-                                p_column, p_values, p_number, n_own, &gap[0, 0], &pressure[0, 0], &facet[0, 0, 0])
-    return gap_array, pressure_array, facet_array, missing
+                                p_column, p_values, p_number, n_own, &gap[0, 0], &pressure[0, 0], &place[0, 0, 0])
+    return gap_array, pressure_array, place_array, missing
 
 
 def add_face_blocks(const int32_t[:, ::1] conn, const uint8_t[:, ::1] flip, const double[:, :, :, :, ::1] blocks, rows):

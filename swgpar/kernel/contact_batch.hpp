@@ -30,7 +30,7 @@ struct FaceBatch {  // slave faces and their quadrature points
   const std::uint8_t* flip;
   const double* coords;      // (n_face, 4, 3) undeformed, turned into place
   const double* normal;      // (n_face, 3) undeformed outward normal
-  const double* shape;       // (n_q, 4)
+  const double* shape;       // (n_face, n_q, 4)
   const double* weight;      // (n_face, n_q) area
   const double* offset;      // (n_face, n_q) exact surface above the facet
   const std::int32_t* patch; // (n_face) master patch
@@ -40,7 +40,7 @@ inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& fa
                                   const double* multiplier, double penalty, double opening, double reach,
                                   double limit, double* residual, const std::int64_t* start, const std::int32_t* column,
                                   double* values, const std::int32_t* number, std::int64_t n_own, double* gap,
-                                  double* pressure, std::int32_t* facet) {
+                                  double* pressure, double* place) {
   const BlockRows rows{start, column, values, number, n_own};
   std::int64_t missing = 0;
   for (std::int64_t k = 0; k < faces.n_face; ++k) {
@@ -56,14 +56,14 @@ inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& fa
       corner[a] = Vec3(c[0], c[1], c[2]) + nodal(u, conn[a], flip[a]);
     }
     for (int q = 0; q < faces.n_q; ++q) {
-      const double* shape = faces.shape + 4 * q;
       const std::int64_t kq = k * faces.n_q + q;
+      const double* shape = faces.shape + 4 * kq;
       const Vec3 xs = shape[0] * corner[0] + shape[1] * corner[1] + shape[2] * corner[2] + shape[3] * corner[3];
       const Foot f = project(patch, u, xs);
       // a surface seen from behind, or across a tooth, is not the one this point can touch
       if (!f.found || f.normal.dot(face_normal) > -0.3 || std::abs(f.gap) > reach) continue;
-      facet[2 * kq] = f.i;
-      facet[2 * kq + 1] = f.j;
+      place[2 * kq] = patch.s[f.i] + f.eta * (patch.s[f.i + 1] - patch.s[f.i]);
+      place[2 * kq + 1] = patch.z[f.j] + f.zeta * (patch.z[f.j + 1] - patch.z[f.j]);
       gap[kq] = f.gap - faces.offset[kq] + opening;
       const double p = multiplier[kq] - penalty * gap[kq];
       if (p <= 0.0) continue;

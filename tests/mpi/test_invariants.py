@@ -101,7 +101,7 @@ def test_half_the_drive_equals_the_whole() -> None:
 def test_penalty_does_not_show() -> None:
     _, r = base()
     for factor in (0.25, 4.0):
-        _, other = loaded(small(f"contact.penalty_coef={4.0 * factor}"))
+        _, other = loaded(small(f"contact.penalty_coef={50.0 * factor}"))
         for name in ("fs_s1", "fs_s3", "fs_vm"):
             assert other[name] == pytest.approx(r[name], rel=5e-3), (factor, name)
 

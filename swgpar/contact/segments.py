@@ -1,0 +1,117 @@
+"""Quadrature on slave flank faces by segments: a face is cut along the edges of the master facets it lies on.
+
+Gap and shape functions of both sides are smooth inside a segment, so that a few Gauss points integrate them
+exactly where the whole segment is in contact: the contact patch test then passes on meshes that do not match.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from swgpar.meshing.sector import FlankGrid, SectorMesh
+from swgpar.micro_geometry import crowning
+
+MIRROR = np.array([-1.0, 1.0])
+
+SAMPLES = 0.5 - 0.5 * np.cos(np.pi * (np.arange(5) + 0.5) / 5)
+"""Places per direction, in [0, 1], at which the exact surface is sampled; it is interpolated by polynomials."""
+
+
+@dataclass(frozen=True)
+class FlankFaces:
+    """Faces of one flank of sector 0, by rows of the profile, then along the width.
+
+    corners : (n_face, 4) local nodes, at (a, b) = (0, 0), (1, 0), (1, 1), (0, 1): a along the profile, b along z
+    size : (n_face, 2) mm, arc length and width;  normal : (n_face, 3) outward, undeformed
+    offset : (n_face, n, n) mm, height of the exact, crowned surface over the facet at `SAMPLES`
+    """
+
+    corners: np.ndarray
+    size: np.ndarray
+    normal: np.ndarray
+    offset: np.ndarray
+
+
+def flank_faces(mesh: SectorMesh, grid: FlankGrid, removed: float, width: float, shape_name: str) -> FlankFaces:
+    """Faces of a flank; removed : mm, crowning at |z| = width / 2, of the curve `shape_name`."""
+    n = grid.nodes
+    corners = np.stack([n[:-1, :-1], n[1:, :-1], n[1:, 1:], n[:-1, 1:]], axis=-1).reshape(-1, 4)
+    ds, dz = np.diff(grid.s), np.diff(grid.z)
+    size = np.stack(np.meshgrid(ds, dz, indexing="ij"), axis=-1).reshape(-1, 2)
+    a, b = (v.ravel() for v in np.meshgrid(SAMPLES, SAMPLES, indexing="ij"))
+    shape = (len(ds), len(dz), len(a))
+    s = np.broadcast_to((grid.s[:-1, None] + ds[:, None] * a)[:, None, :], shape).ravel()
+    z = np.broadcast_to((grid.z[:-1, None] + dz[:, None] * b)[None, :, :], shape).ravel()
+    profile = mesh.profile
+    side = MIRROR if grid.side < 0 else np.ones(2)
+    outward = profile.normal(s) * side
+    cut = crowning(removed, z, width, shape_name)[0] * profile.crowning_weight(s)
+    exact = profile.point(s) * side - cut[:, None] * outward
+    facet = np.einsum("qa,fai->fqi", bilinear(a, b), mesh.coords[corners]).reshape(-1, 3)
+    offset = np.sum((exact - facet[:, :2]) * outward, axis=1).reshape(-1, len(SAMPLES), len(SAMPLES))
+    middle = profile.normal(np.repeat(grid.s[:-1] + 0.5 * ds, len(dz))) * side
+    return FlankFaces(corners, size, np.column_stack([middle, np.zeros(len(middle))]), offset)
+
+
+def bilinear(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Shape functions (..., 4) of a face's corners at (a, b) in [0, 1]."""
+    return np.stack([(1 - a) * (1 - b), a * (1 - b), a * b, (1 - a) * b], axis=-1)
+
+
+def lagrange(t: np.ndarray) -> np.ndarray:
+    """Polynomials (..., n) that are one at one of `SAMPLES` and zero at the others, at t (...)."""
+    factors = np.subtract.outer(t, SAMPLES)
+    values = np.empty_like(factors)
+    for k, sample in enumerate(SAMPLES):
+        others = np.delete(np.arange(len(SAMPLES)), k)
+        values[..., k] = np.prod(factors[..., others] / (sample - SAMPLES[others]), axis=-1)
+    return values
+
+
+def _cuts(low: np.ndarray, high: np.ndarray, lines: np.ndarray) -> np.ndarray:
+    """Ends of the segments of [0, 1], ascending, (n, m): where the way from low to high (n,) crosses a line.
+
+    Halves are cut too, and the number of segments padded by empty ones: points move continuously with the cuts.
+    """
+    first = np.searchsorted(lines, np.minimum(low, high))
+    count = np.where(np.isfinite(low + high), np.searchsorted(lines, np.maximum(low, high)) - first, 0)
+    step = np.arange(count.max(initial=0))
+    crossed = lines[np.minimum(first[:, None] + step, len(lines) - 1)]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        place = (crossed - low[:, None]) / (high - low)[:, None]
+    place = np.where(step < count[:, None], np.clip(place, 0.0, 1.0), 1.0)
+    ends = np.broadcast_to([0.0, 0.5, 1.0], (len(low), 3))
+    return np.sort(np.concatenate([ends, place], axis=1), axis=1)
+
+
+@dataclass(frozen=True)
+class Segments:
+    """Segments of faces: parent (n,) face of each, (a, b) (n, n_q) places in it, share (n, n_q) of its area."""
+
+    parent: np.ndarray
+    a: np.ndarray
+    b: np.ndarray
+    share: np.ndarray
+
+
+def cut_faces(place: np.ndarray, s: np.ndarray, z: np.ndarray, order: int) -> Segments:
+    """Cut faces along the lines s and z of the master's nodes.
+
+    place : (n_face, 4, 2) mm, foot points of the corners on the master, nan where there is none
+    s, z : lines, ascending;  order : Gauss points per direction of a segment
+    """
+    along = [_cuts(place[:, [0, 3], 0].mean(axis=1), place[:, [1, 2], 0].mean(axis=1), s)]
+    along.append(_cuts(place[:, [0, 1], 1].mean(axis=1), place[:, [2, 3], 1].mean(axis=1), z))
+    width = [np.diff(ends, axis=1) for ends in along]
+    parent, i, j = np.nonzero((width[0] > 1e-12)[:, :, None] & (width[1] > 1e-12)[:, None, :])
+    t, w = np.polynomial.legendre.leggauss(order)
+    ta, tb = (v.ravel() for v in np.meshgrid(0.5 * (t + 1.0), 0.5 * (t + 1.0), indexing="ij"))
+    size_a, size_b = width[0][parent, i, None], width[1][parent, j, None]
+    return Segments(
+        parent,
+        along[0][parent, i, None] + size_a * ta,
+        along[1][parent, j, None] + size_b * tb,
+        size_a * size_b * (0.25 * np.outer(w, w).ravel()),
+    )

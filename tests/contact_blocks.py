@@ -1,0 +1,119 @@
+"""Two elastic blocks pressed together: kernel and flank contact alone, solved by a dense-free Newton iteration."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.linalg import spsolve
+from swgpar.kernel._kernel import assemble_elements, reference_elements
+
+from swgpar.contact.segments import cut_faces
+from swgpar.contact.teeth import Faces, Flanks, PlacedFaces
+from swgpar.kernel import contact_flanks
+
+
+class Rows:
+    """All blocks among the first n nodes, upper triangle."""
+
+    def __init__(self, n: int) -> None:
+        counts = np.arange(n, 0, -1)
+        self.start = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+        self.column = np.concatenate([np.arange(k, n) for k in range(n)]).astype(np.int32)
+        self.values = np.zeros((len(self.column), 3, 3))
+        self.number, self.n_own = np.arange(n, dtype=np.int32), n
+
+    def matrix(self) -> np.ndarray:
+        full = np.zeros((self.n_own, 3, self.n_own, 3))
+        row = np.repeat(np.arange(self.n_own), np.diff(self.start))
+        for r, c, v in zip(row, self.column, self.values):
+            full[r, :, c], full[c, :, r] = v.T, v
+        return full.reshape(3 * self.n_own, -1)
+
+
+def master(points: np.ndarray, tangents: np.ndarray, s: np.ndarray, z: np.ndarray, first: int) -> Flanks:
+    """One flank whose nodes are numbered from `first`; the tangent runs to +x, the outward normal to +y."""
+    n = len(s) * len(z)
+    return Flanks(
+        s,
+        z,
+        points[None].copy(),
+        tangents[None].copy(),
+        np.array([-1.0]),  # x cross z points to -y
+        np.array([[1.0, 0.0]]),
+        (first + np.arange(n, dtype=np.int32)).reshape(1, len(s), len(z)),
+        np.zeros((1, len(s), len(z)), dtype=np.uint8),
+    )
+
+
+def block(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Points (n, 3), hexahedra (m, 8) and the numbers (n_x, n_y, n_z) of the nodes of a grid."""
+    points = np.stack(np.meshgrid(x, y, z, indexing="ij"), -1)
+    number = np.arange(points[..., 0].size).reshape(points.shape[:3])
+    corner = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+    n = np.array(number.shape) - 1
+    hexes = [number[a : a + n[0], b : b + n[1], c : c + n[2]].ravel() for a, b, c in corner]
+    return points.reshape(-1, 3), np.stack(hexes, axis=1), number
+
+
+def face_corners(grid: np.ndarray) -> np.ndarray:
+    """Corners (n, 4) of the faces of a grid of nodes, as in `swgpar.contact.segments.FlankFaces`."""
+    return np.stack([grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]], -1).reshape(-1, 4).astype(np.int32)
+
+
+@dataclass
+class Blocks:
+    """The flank of the lower block is the master, the faces of the upper one are the slaves.
+
+    points (n, 3) mm, hexes (m, 8), the nodes of both contact surfaces among the first n_surface ones
+    fixed (n, 3) : components with a given displacement;  order : Gauss points per direction of a segment
+    """
+
+    points: np.ndarray
+    hexes: np.ndarray
+    n_surface: int
+    flanks: Flanks
+    placed: PlacedFaces
+    fixed: np.ndarray
+    young: float
+    poisson: float
+    penalty: float
+    order: int
+
+    def press(self, u: np.ndarray, force: np.ndarray, augmentations: int = 0) -> tuple[Faces, np.ndarray, np.ndarray]:
+        """Equilibrium from u (n, 3), which is changed; its fixed components stay. Segments, pressure, contact force."""
+        hexes = self.hexes.astype(np.int32)
+        reference = reference_elements(self.points[hexes], self.young, self.poisson)
+        place = np.arange(len(hexes), dtype=np.int32), np.tile([1.0, 0.0], (len(hexes), 1))
+        arrays = (*place, hexes, np.zeros((len(hexes), 8), np.uint8))
+        slot = np.arange(64 * len(hexes)).reshape(-1, 64)
+        axis = np.arange(3)
+        i = 3 * np.repeat(hexes, 8, axis=1).ravel()[:, None, None] + axis[:, None] + 0 * axis
+        j = 3 * np.tile(hexes, (1, 8)).ravel()[:, None, None] + 0 * axis[:, None] + axis
+        surface = np.arange(3 * self.n_surface)
+        si, sj = (v.ravel() for v in np.meshgrid(surface, surface, indexing="ij"))
+        free, pick = np.flatnonzero(~self.fixed.ravel()), np.arange(len(self.placed.conn))
+        settings = (self.penalty, 0.0, 0.2, np.inf)
+        for augmentation in range(augmentations + 1):
+            for iteration in range(40):
+                values, r, rows = np.zeros((slot.size, 3, 3)), -force, Rows(self.n_surface)
+                assemble_elements(reference, *arrays, u, r, slot, values)
+                if augmentation == 0:
+                    corners = self.placed.corners(pick)
+                    foot = contact_flanks(self.flanks, corners, u, np.zeros((len(pick), 4)), *settings, None, None)[2]
+                    faces = self.placed.cut(pick, cut_faces(foot, self.flanks.s, self.flanks.z, self.order))
+                    multiplier = np.zeros(faces.weight.shape)
+                contact = np.zeros_like(r)
+                _, pressure, _, _ = contact_flanks(self.flanks, faces, u, multiplier, *settings, contact, rows)
+                r += contact
+                residual = np.abs(r.ravel()[free]).max() / np.abs(contact).max()
+                if residual < 1e-9:
+                    break
+                entries = np.concatenate([values.transpose(0, 2, 1).ravel(), rows.matrix().ravel()])
+                where = np.concatenate([i.ravel(), si]), np.concatenate([j.ravel(), sj])
+                stiffness = coo_matrix((entries, where), shape=(u.size, u.size)).tocsc()
+                u.ravel()[free] -= spsolve(stiffness[free][:, free], r.ravel()[free])
+            assert residual < 1e-7, (augmentation, iteration, residual)
+            multiplier = pressure.copy()
+        return faces, pressure, contact
