@@ -96,7 +96,7 @@ class Blocks:
         free, pick = np.flatnonzero(~self.fixed.ravel()), np.arange(len(self.placed.conn))
         settings = (self.penalty, 0.0, 0.2, np.inf)
         for augmentation in range(augmentations + 1):
-            for iteration in range(40):
+            for _ in range(40):
                 values, r, rows = np.zeros((slot.size, 3, 3)), -force, Rows(self.n_surface)
                 assemble_elements(reference, *arrays, u, r, slot, values)
                 if augmentation == 0:
@@ -114,6 +114,6 @@ class Blocks:
                 where = np.concatenate([i.ravel(), si]), np.concatenate([j.ravel(), sj])
                 stiffness = coo_matrix((entries, where), shape=(u.size, u.size)).tocsc()
                 u.ravel()[free] -= spsolve(stiffness[free][:, free], r.ravel()[free])
-            assert residual < 1e-7, (augmentation, iteration, residual)
+            assert residual < 1e-7, (augmentation, residual)
             multiplier = pressure.copy()
         return faces, pressure, contact

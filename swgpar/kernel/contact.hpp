@@ -35,22 +35,24 @@ inline void add_nodal(double* r, std::int32_t node, std::uint8_t flip, const Vec
 
 // Rows of the upper triangle of the blocked matrix that this rank owns; blocks are column-major.
 struct BlockRows {
-  const std::int64_t* start;    // (n_own + 1)
-  const std::int32_t* column;   // global block columns, ascending in a row
-  double* values;               // (n_blocks, 9)
-  const std::int32_t* number;   // (n_local) global number of a local node
+  const std::int64_t* start;   // (n_own + 1)
+  const std::int32_t* column;  // global block columns, ascending in a row
+  double* values;              // (n_blocks, 9)
+  const std::int32_t* number;  // (n_local) global number of a local node
   std::int64_t n_own;
 
   // Adds a block; false when the pattern lacks it.
-  bool add(std::int32_t row, std::uint8_t row_flip, std::int32_t col, std::uint8_t col_flip,
-           const Mat3& block) const {
+  bool add(std::int32_t row, std::uint8_t row_flip, std::int32_t col, std::uint8_t col_flip, const Mat3& block) const {
     if (row < 0 || col < 0 || row >= n_own) return true;
     const std::int32_t wanted = number[col];
     if (wanted < number[row]) return true;
     std::int64_t lo = start[row], hi = start[row + 1];
     while (lo < hi) {
       const std::int64_t mid = (lo + hi) / 2;
-      if (column[mid] < wanted) lo = mid + 1; else hi = mid;
+      if (column[mid] < wanted)
+        lo = mid + 1;
+      else
+        hi = mid;
     }
     if (lo == start[row + 1] || column[lo] != wanted) return false;
     Eigen::Map<Mat3> target(values + 9 * lo);

@@ -18,8 +18,17 @@ struct FlankBatch {  // n_patch master flanks with the same grid
 
   Patch patch(int k) const {
     const std::int64_t row = static_cast<std::int64_t>(k) * (n_s + 1);
-    return Patch{n_s, n_z, s, z, point + 2 * row, tangent + 2 * row, orientation[k], turn[2 * k], turn[2 * k + 1],
-                 conn + row * (n_z + 1), flip + row * (n_z + 1)};
+    return Patch{n_s,
+                 n_z,
+                 s,
+                 z,
+                 point + 2 * row,
+                 tangent + 2 * row,
+                 orientation[k],
+                 turn[2 * k],
+                 turn[2 * k + 1],
+                 conn + row * (n_z + 1),
+                 flip + row * (n_z + 1)};
   }
 };
 
@@ -28,17 +37,17 @@ struct FaceBatch {  // slave faces and their quadrature points
   int n_q;
   const std::int32_t* conn;  // (n_face, 4)
   const std::uint8_t* flip;
-  const double* coords;      // (n_face, 4, 3) undeformed, turned into place
-  const double* normal;      // (n_face, 3) undeformed outward normal
-  const double* shape;       // (n_face, n_q, 4)
-  const double* weight;      // (n_face, n_q) area
-  const double* offset;      // (n_face, n_q) exact surface above the facet
-  const std::int32_t* patch; // (n_face) master patch
+  const double* coords;       // (n_face, 4, 3) undeformed, turned into place
+  const double* normal;       // (n_face, 3) undeformed outward normal
+  const double* shape;        // (n_face, n_q, 4)
+  const double* weight;       // (n_face, n_q) area
+  const double* offset;       // (n_face, n_q) exact surface above the facet
+  const std::int32_t* patch;  // (n_face) master patch
 };
 
 inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& faces, const double* u,
-                                  const double* multiplier, double penalty, double opening, double reach,
-                                  double limit, double* residual, const std::int64_t* start, const std::int32_t* column,
+                                  const double* multiplier, double penalty, double opening, double reach, double limit,
+                                  double* residual, const std::int64_t* start, const std::int32_t* column,
                                   double* values, const std::int32_t* number, std::int64_t n_own, double* gap,
                                   double* pressure, double* place) {
   const BlockRows rows{start, column, values, number, n_own};

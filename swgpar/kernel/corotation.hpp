@@ -21,7 +21,8 @@ inline Eigen::Matrix3d polar_rotation(const Eigen::Matrix3d& f) {
   Eigen::Matrix3d r = f;
   for (int it = 0; it < 50; ++it) {
     const Eigen::Matrix3d inverse = r.inverse();
-    const double change0 = r.squaredNorm(), scale = it < 4 ? std::sqrt(std::sqrt(inverse.squaredNorm() / change0)) : 1.0;
+    const double change0 = r.squaredNorm(),
+                 scale = it < 4 ? std::sqrt(std::sqrt(inverse.squaredNorm() / change0)) : 1.0;
     const Eigen::Matrix3d next = 0.5 * (scale * r + inverse.transpose() / scale);
     const double change = (next - r).squaredNorm();
     r = next;

@@ -1,4 +1,4 @@
-"""Whole runs of the small drive through the command: result files, kill and restart, full disk."""
+"""Whole runs of the small drive through the command: result files, kill and restart, the script in drivers/."""
 
 from __future__ import annotations
 
@@ -12,36 +12,22 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from small_drive import (
+    DATA,
+    DESIGN,
+    RECIPE,
+    SHORT,
+    assert_same_history,
+    environment,
+    execute,
+    on_ranks,
+    run_command,
+    succeed,
+)
 
 from swgpar.results import history
 
-DATA = Path(__file__).parents[1] / "data"
-SHORT = ["steps.rotation=4.0", "steps.increment=2.0"]
-
-
-# every run starts in DATA: from the root of a checkout, python -m would pick up its source tree, which is not built
-def command(out: Path, *more: str) -> list[str]:
-    return [
-        sys.executable,
-        "-m",
-        "swgpar.cli",
-        "run",
-        str(DATA / "small.toml"),
-        "--mesh",
-        str(DATA / "tiny.toml"),
-        "--out",
-        str(out),
-        *more,
-        "--set",
-        *SHORT,
-    ]
-
-
-@pytest.fixture(scope="module")
-def plain(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    out = tmp_path_factory.mktemp("plain") / "run"
-    subprocess.run([*command(out), "output.fields=true", "output.figures=true"], check=True, timeout=600, cwd=DATA)
-    return out
+CUP_ROTATION = Path(__file__).parents[2] / "drivers" / "cup_rotation.py"
 
 
 def test_result_files(plain: Path) -> None:
@@ -57,31 +43,64 @@ def test_result_files(plain: Path) -> None:
 
 
 def test_results_are_not_overwritten_by_accident(plain: Path) -> None:
-    done = subprocess.run(command(plain), capture_output=True, text=True, timeout=120, cwd=DATA)
+    done = execute(run_command(plain))
     assert done.returncode == 4 and "--restart" in done.stderr and "Traceback" not in done.stderr
 
 
-def test_kill_and_restart(plain: Path, tmp_path: Path) -> None:
+def of_session(leader: int) -> list[int]:
+    """Processes of a session; mpirun gives its ranks process groups of their own, but not sessions."""
+    found = []
+    for entry in Path("/proc").iterdir():
+        if entry.name.isdigit():
+            try:
+                if os.getsid(int(entry.name)) == leader:
+                    found.append(int(entry.name))
+            except ProcessLookupError:  # ended meanwhile
+                pass
+    return found
+
+
+def kill_after(command: list[str], out: Path, rows: int) -> None:
+    """Start a run and kill all its processes once its history has `rows` rows."""
+    process = subprocess.Popen(command, cwd=DATA, env=environment(), start_new_session=True)
+    limit = time.monotonic() + 600.0
+    try:
+        while not ((out / "history.csv").exists() and len(history.read_history(out / "history.csv")) >= rows):
+            assert process.poll() is None and time.monotonic() < limit
+            time.sleep(0.05)
+    finally:
+        for pid in of_session(process.pid):
+            try:
+                os.kill(pid, signal.SIGKILL)
+            except ProcessLookupError:
+                pass
+        process.wait()
+
+
+@pytest.mark.parametrize(("before", "after"), [(1, 1), (2, 1), (1, 2)])
+def test_kill_and_restart(plain: Path, tmp_path: Path, before: int, after: int) -> None:
     out = tmp_path / "killed"
-    process = subprocess.Popen(command(out), cwd=DATA)
-    limit = time.monotonic() + 300.0
-    while time.monotonic() < limit:
-        if (out / "history.csv").exists() and len(history.read_history(out / "history.csv")) >= 3:
-            break
-        time.sleep(0.1)
-    os.kill(process.pid, signal.SIGKILL)
-    process.wait()
-    subprocess.run(command(out, "--restart"), check=True, timeout=600, cwd=DATA)
-    again, before = (history.read_history(p / "history.csv") for p in (out, plain))
-    assert len(again) == len(before)
-    for a, b in zip(again, before):
-        for name in history.COLUMNS:
-            if name not in ("step", "wall_s"):
-                assert a[name] == pytest.approx(b[name], rel=1e-8, abs=1e-9), name
+    kill_after(run_command(out, ranks=before), out, rows=3)
+    assert not (out / "summary.json").exists()
+    succeed(run_command(out, "--restart", ranks=after))
+    assert "restarted after increment" in (out / "run.log").read_text(encoding="utf-8")
+    assert json.loads((out / "summary.json").read_text(encoding="utf-8"))["ranks"] == after
+    assert_same_history(out, plain, iterations=before == after == 1)
+
+
+def test_script_of_the_reference_drive(plain: Path, tmp_path: Path) -> None:
+    out = tmp_path / "script"
+    arguments = ["--design", DESIGN, "--mesh", RECIPE, "--out", out, "--set", *SHORT]
+    done = succeed([*on_ranks(2), sys.executable, str(CUP_ROTATION), *map(str, arguments)])
+    assert_same_history(out, plain, iterations=False)
+    printed = [line.split() for line in done.stdout.splitlines() if line.startswith("step ")]
+    rows = history.read_history(plain / "history.csv")
+    assert [words[1] for words in printed] == [r["step"] for r in rows]
+    assert [words[5] for words in printed] == [f"{r['fs_s1']:.1f}" for r in rows]
 
 
 @pytest.mark.parametrize("place", ["/proc/swgpar", "/dev/null/run"])
 def test_unwritable_folder(place: str) -> None:
-    done = subprocess.run(command(Path(place)), capture_output=True, text=True, timeout=120, cwd=DATA)
+    done = execute(run_command(Path(place)))
     assert done.returncode == 4
     assert place in done.stderr and "Traceback" not in done.stderr

@@ -1,0 +1,68 @@
+"""What cannot be used as given, on two ranks: one sentence from one of them, the same exit code, no waiting."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from small_drive import DATA, DESIGN, RECIPE, execute, on_ranks, swgpar
+
+# mpirun passes on one exit code only and ends the others: this shell reports that of each rank and ends well itself
+EACH = ["sh", "-c", '"$@"; echo "exit code $?"', "sh"]
+
+
+def refused(command: list[str], exit_code: int) -> str:
+    """The one sentence of a command that every rank must refuse."""
+    done = execute([*on_ranks(2), *EACH, *command], timeout=120.0)
+    assert done.stdout.splitlines() == 2 * [f"exit code {exit_code}"]
+    (sentence,) = done.stderr.splitlines()
+    assert sentence.startswith("swgpar: error: ")
+    return sentence
+
+
+@pytest.mark.parametrize(
+    ("design", "recipe", "override", "words"),
+    [
+        (DESIGN, RECIPE, "drive.module=0", "drive.module = 0 is out of range"),
+        (DESIGN, RECIPE, "drive.modul=1", "drive.modul is not a key"),
+        (DATA / "none.toml", RECIPE, "drive.module=1", "none.toml cannot be read"),
+        (DESIGN, DATA / "none.toml", "drive.module=1", "none.toml cannot be read"),
+        (DESIGN, DESIGN, "drive.module=1", "drive"),
+    ],
+)
+def test_bad_files_and_values(tmp_path: Path, design: Path, recipe: Path, override: str, words: str) -> None:
+    out = tmp_path / "run"
+    assert words in refused(swgpar("run", design, "--mesh", recipe, "--out", out, "--set", override), 2)
+    assert not out.exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [(("run", DESIGN, "--mesh", RECIPE), "--out"), (("run",), "design"), (("walk", DESIGN), "walk")],
+)
+def test_bad_command_line(arguments: tuple[object, ...], words: str) -> None:
+    assert words in refused(swgpar(*arguments), 2)
+
+
+def test_mpirun_passes_the_exit_code_on(tmp_path: Path) -> None:
+    command = swgpar("run", DESIGN, "--mesh", RECIPE, "--out", tmp_path / "run", "--set", "load.torque=-3")
+    done = execute([*on_ranks(2), *command], timeout=120.0)
+    assert done.returncode == 2
+    assert done.stderr == "swgpar: error: load.torque = -3 is out of range: allowed 0 to inf N·m\n"
+
+
+def test_a_file_that_only_one_rank_can_read(tmp_path: Path) -> None:
+    """As on a cluster whose nodes do not share the folder: the others must not wait for that rank."""
+    good = [*EACH, *swgpar("run", DESIGN, "--mesh", RECIPE, "--out", tmp_path / "run")]
+    bad = [*EACH, *swgpar("run", DATA / "none.toml", "--mesh", RECIPE, "--out", tmp_path / "run")]
+    done = execute([*on_ranks(2)[:-2], "-n", "1", *good, ":", "-n", "1", *bad], timeout=120.0)
+    assert done.stdout.splitlines() == 2 * ["exit code 2"]
+    (sentence,) = done.stderr.splitlines()
+    assert "none.toml cannot be read" in sentence
+
+
+def test_a_log_that_cannot_be_written(tmp_path: Path) -> None:
+    """Only the first rank writes it."""
+    (tmp_path / "run.log").mkdir()
+    command = swgpar("run", DESIGN, "--mesh", RECIPE, "--out", tmp_path)
+    assert f"cannot write {tmp_path / 'run.log'}: Is a directory" in refused(command, 4)

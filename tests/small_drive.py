@@ -1,0 +1,65 @@
+"""Runs of the small drive as child processes, for tests of the command."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from swgpar.results import history
+
+DATA = Path(__file__).parent / "data"
+DESIGN, RECIPE = DATA / "small.toml", DATA / "tiny.toml"
+SHORT = ("steps.rotation=4.0", "steps.increment=2.0")
+
+# a process that has initialised MPI passes these on, and mpirun then takes itself for a rank of that job
+INHERITED = ("OMPI_COMM_", "OMPI_MCA_ess", "OMPI_MCA_orte", "PMIX_")
+
+
+def environment() -> dict[str, str]:
+    return {name: value for name, value in os.environ.items() if not name.startswith(INHERITED)}
+
+
+def on_ranks(ranks: int) -> list[str]:
+    """What goes before a command; one rank runs without mpirun, which is told not to comment on exit codes."""
+    return ["mpirun", "--quiet", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
+
+
+def swgpar(*arguments: object) -> list[str]:
+    return [sys.executable, "-m", "swgpar.cli", *map(str, arguments)]
+
+
+def run_command(out: Path, *more: str, ranks: int = 1, overrides: Sequence[str] = SHORT) -> list[str]:
+    return on_ranks(ranks) + swgpar("run", DESIGN, "--mesh", RECIPE, "--out", out, *more, "--set", *overrides)
+
+
+def execute(command: list[str], *, timeout: float = 900.0) -> subprocess.CompletedProcess[str]:
+    """Run to the end, keeping both streams.
+
+    Every child starts in DATA: from the root of a checkout, python -m would pick up its source tree, not built there.
+    """
+    return subprocess.run(command, capture_output=True, text=True, timeout=timeout, cwd=DATA, env=environment())
+
+
+def succeed(command: list[str]) -> subprocess.CompletedProcess[str]:
+    done = execute(command)
+    assert done.returncode == 0, done.stderr + done.stdout
+    return done
+
+
+def assert_same_history(folder: Path, other: Path, rel: float = 1e-8, *, iterations: bool = True) -> None:
+    """Rows agree within `rel` of the largest value of their column: entries that vanish are round-off.
+
+    iterations : compare Newton iterations too; on other numbers of ranks round-off may cost or save one
+    """
+    a, b = (history.read_history(path / history.NAME) for path in (folder, other))
+    assert [r["step"] for r in a] == [r["step"] for r in b]
+    for name in history.COLUMNS:
+        if name in ("step", "wall_s") or (name == "newton_iterations" and not iterations):
+            continue
+        left, right = history.column(a, name), history.column(b, name)
+        assert np.abs(left - right).max() <= rel * np.abs(right).max(), (name, left, right)
