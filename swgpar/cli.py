@@ -5,10 +5,16 @@ from __future__ import annotations
 import argparse
 import sys
 import traceback
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, NoReturn, TypeVar
 
 import swgpar
-from swgpar.errors import SwgparError
+from swgpar.errors import InputError, SwgparError
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
+T = TypeVar("T")
 
 EXAMPLES = """examples:
   swgpar check drivers/cup_45deg.toml
@@ -20,9 +26,16 @@ EXAMPLES = """examples:
 """
 
 
+class _Parser(argparse.ArgumentParser):
+    """Reports a bad command line like any other bad input: one sentence, from one rank."""
+
+    def error(self, message: str) -> NoReturn:
+        raise InputError(f"{message} (see {self.prog} --help)")
+
+
 def parser() -> argparse.ArgumentParser:
     """Argument parser of all subcommands."""
-    top = argparse.ArgumentParser(
+    top = _Parser(
         prog="swgpar",
         description="Contact finite-element analysis of strain wave gears.",
         epilog=EXAMPLES,
@@ -61,6 +74,19 @@ def parser() -> argparse.ArgumentParser:
     return top
 
 
+def _on_all(comm: MPI.Comm, read: Callable[[], T]) -> T:
+    """What `read` returns; raises InputError on all ranks when one cannot read it, so that none waits for another."""
+    value, reason = None, None
+    try:
+        value = read()
+    except InputError as error:
+        reason = str(error)
+    reasons = [r for r in comm.allgather(reason) if r is not None]
+    if reasons:
+        raise InputError(reasons[0])
+    return value
+
+
 def _run(arguments: argparse.Namespace) -> None:
     from mpi4py import MPI
 
@@ -69,8 +95,8 @@ def _run(arguments: argparse.Namespace) -> None:
     from swgpar.run import run_drive
 
     comm = MPI.COMM_WORLD
-    design = load_design(arguments.design, arguments.overrides)
-    recipe = load_recipe(arguments.mesh)
+    design = _on_all(comm, lambda: load_design(arguments.design, arguments.overrides))
+    recipe = _on_all(comm, lambda: load_recipe(arguments.mesh))
     result = run_drive(
         design,
         recipe,
@@ -164,29 +190,29 @@ def _report(arguments: argparse.Namespace) -> None:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Entry point; returns the exit code (0, or that of the error)."""
-    known, rest = parser().parse_known_args(arguments)
-    if rest and known.command != "run":
-        parser().error(f"unknown arguments: {' '.join(rest)}")
-    known.overrides = [item for group in getattr(known, "set", []) for item in group]
-    rank = 0
+    command = None
     try:
-        if known.command == "run":
+        known, rest = parser().parse_known_args(arguments)
+        command = known.command
+        if rest and command != "run":
+            parser().error(f"unknown arguments: {' '.join(rest)}")
+        known.overrides = [item for group in getattr(known, "set", []) for item in group]
+        if command == "run":
             import petsc4py
 
             petsc4py.init(["swgpar", *rest])
-            from mpi4py import MPI
-
-            rank = MPI.COMM_WORLD.rank
-        {"run": _run, "mesh": _mesh, "check": _check, "report": _report}[known.command](known)
+        {"run": _run, "mesh": _mesh, "check": _check, "report": _report}[command](known)
     except SwgparError as error:
-        if rank == 0:
+        from mpi4py import MPI
+
+        if MPI.COMM_WORLD.rank == 0:
             print(f"swgpar: error: {error}", file=sys.stderr, flush=True)
         return error.exit_code
     except BrokenPipeError:  # the reader of our output has gone
         sys.stderr.close()
         return 1
     except Exception:
-        if known.command != "run":
+        if command != "run":
             raise
         traceback.print_exc()
         from mpi4py import MPI

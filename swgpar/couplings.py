@@ -1,4 +1,4 @@
-"""The distributing coupling on the bore, and linear systems bordered by its constraints.
+"""The distributing coupling on the bore.
 
 The coupling ties six quantities of the bore to a reference point without stiffening the bore: the mean
 displacement, the mean tilts and the mean rotation about z of its nodes, weighted by their area. The rotation
@@ -15,16 +15,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from mpi4py import MPI
-from petsc4py import PETSc
 
 from swgpar.assembly import BodyElements
 from swgpar.partition import Partition
-
-MUMPS_DEFAULTS = {
-    "mat_mumps_icntl_7": 6,  # quasi-dense minimum degree: faster here than PORD, MUMPS' choice without METIS
-    "mat_mumps_icntl_13": 1,  # no ScaLAPACK root: its Cholesky refuses the indefinite tangents of early iterations
-    "mat_mumps_icntl_14": 60,  # per cent of memory above the estimate
-}
 
 NAMES = ("x", "y", "z", "tilt_x", "tilt_y", "rotation")
 ROTATION = 5
@@ -143,76 +136,3 @@ class BoreCoupling:
                 pick[2 * k, node, 2] = 1.0
                 pick[2 * k + 1, node, :2] = np.array([-a[1], a[0]]) / np.hypot(a[0], a[1])
         return pick
-
-
-class Bordered:
-    """Preconditioner (PETSc `PC` of type python) for [K, C^T; C, 0] with a factor of K' = K + B B^T.
-
-    K alone is singular while the drive floats; the grounded K' is not. With Z = K'^-1 [B, C^T] the small system
-
-        (1 - B^T Z_B) s + B^T Z_C l = B^T z,     C Z_B s - C Z_C l = r_l - C z,     z = K'^-1 r_u
-
-    gives x = z + Z_B s - Z_C l exactly: the grounding leaves no trace.
-    """
-
-    def __init__(self, partition: Partition, options_prefix: str) -> None:
-        self.partition = partition
-        self.ksp = PETSc.KSP().create(comm=partition.comm)
-        self.ksp.setOptionsPrefix(options_prefix)
-        pc = self.ksp.getPC()
-        self.ksp.setType(PETSc.KSP.Type.PREONLY)
-        pc.setType(PETSc.PC.Type.CHOLESKY)
-        pc.setFactorSolverType("mumps")
-        options = PETSc.Options(options_prefix)
-        for name, value in MUMPS_DEFAULTS.items():
-            if not options.hasName(name):
-                options[name] = value
-        self.ksp.setFromOptions()
-        self.grounding: list[PETSc.Vec] = []
-        self.border: list[PETSc.Vec] = []
-        self.rows: list[int] = []
-
-    def set_border(self, grounding: list[PETSc.Vec], border: list[PETSc.Vec], rows: list[int]) -> None:
-        """Vectors B and C^T (full length, zero in the multiplier rows), multiplier rows 0..5 of C."""
-        self.grounding, self.border, self.rows = grounding, border, rows
-
-    def setUp(self, pc: PETSc.PC) -> None:
-        _, matrix = pc.getOperators()
-        self.ksp.setOperators(matrix)
-        self.ksp.setUp()
-        self.columns = []
-        for vector in self.grounding + self.border:
-            solution = vector.duplicate()
-            self.ksp.solve(vector, solution)
-            self.columns.append(solution)
-        b, c, nb = self.grounding, self.border, len(self.grounding)
-        small = np.array([[left.dot(right) for right in self.columns] for left in b + c]).reshape(len(b + c), -1)
-        system = np.zeros_like(small)
-        system[:nb, :nb] = np.eye(nb) - small[:nb, :nb]
-        system[:nb, nb:] = small[:nb, nb:]
-        system[nb:, :nb] = small[nb:, :nb]
-        system[nb:, nb:] = -small[nb:, nb:]
-        self.system = system
-
-    def multipliers(self, vector: PETSc.Vec) -> np.ndarray:
-        """The six multiplier entries of a full-length vector, on every rank."""
-        comm, last = self.partition.comm, self.partition.comm.size - 1
-        values = vector.array_r[-6:].copy() if comm.rank == last else np.empty(6)
-        comm.Bcast(values, root=last)
-        return values
-
-    def apply(self, pc: PETSc.PC, right: PETSc.Vec, x: PETSc.Vec) -> None:
-        self.ksp.solve(right, x)
-        if self.ksp.getConvergedReason() < 0:
-            pc.setFailedReason(PETSc.PC.FailedReason.SUBPC_ERROR)
-        entries = self.multipliers(right)
-        if not self.columns:
-            return
-        nb = len(self.grounding)
-        load = np.array([v.dot(x) for v in self.grounding + self.border])
-        load[nb:] = entries[self.rows] - load[nb:]
-        answer = np.linalg.solve(self.system, load)
-        for k, column in enumerate(self.columns):
-            x.axpy(answer[k] if k < nb else -answer[k], column)
-        if self.partition.comm.rank == self.partition.comm.size - 1:
-            x.array[-6:][self.rows] = answer[nb:]

@@ -13,8 +13,9 @@ from swgpar.assembly import BlockRows, Elements, Exchange, add_unit_diagonal, cr
 from swgpar.contact.rigid import CamPose, RigidContact
 from swgpar.contact.search import facing_flanks, largest
 from swgpar.contact.teeth import ToothContact
-from swgpar.couplings import ROTATION, Bordered, BoreCoupling
+from swgpar.couplings import ROTATION, BoreCoupling
 from swgpar.design import DriveDesign
+from swgpar.linear import Bordered
 from swgpar.log import Phases
 from swgpar.partition import LocalNodes, Partition
 from swgpar.steps import Scene
@@ -129,7 +130,7 @@ class Equilibrium:
         self.snes.setTolerances(max_it=design.solver.max_iterations)
         self.snes.setFunction(self._function, create_vector(partition))
         self.snes.setConvergenceTest(self._converged)
-        self.border = Bordered(partition, "stiffness_")
+        self.border = Bordered(partition, design.solver.linear, self._positions()[: partition.n_own], "stiffness_")
         ksp = self.snes.getKSP()
         ksp.setType(PETSc.KSP.Type.PREONLY)
         ksp.getPC().setType(PETSc.PC.Type.PYTHON)
@@ -149,6 +150,15 @@ class Equilibrium:
     def displacement(self, x: PETSc.Vec | None = None) -> np.ndarray:
         """(n_local, 3) mm, ghosts included."""
         return self.exchange(self.x if x is None else x)
+
+    def _positions(self) -> np.ndarray:
+        """Undeformed positions (n_local, 3) mm, as their owners see them; zero for the multipliers."""
+        place = np.zeros((len(self.local), 3))
+        for body in self.elements.bodies:
+            seen, where = body.local >= 0, body.positions()
+            where[body.flip == 1] *= (-1.0, -1.0, 1.0)
+            place[body.local[seen]] = where[seen]
+        return place
 
     def multipliers(self, x: PETSc.Vec) -> np.ndarray:
         return self.border.multipliers(x)
@@ -356,14 +366,9 @@ class Equilibrium:
             self.pins.evaluate(u, CamPose(scene.angle, inset=scene.pins), rigid, None, owned_only=True)
         if scene.teeth is not None:
             teeth = self.teeth.owned_forces(u, scene.teeth)
-        place = np.zeros_like(u)
-        own = body.local >= 0
-        where = body.positions()
-        where[body.flip == 1] *= (-1.0, -1.0, 1.0)
-        place[body.local[own]] = where[own]
         spline = np.zeros(len(u), dtype=bool)
-        spline[body.local[own]] = True
-        x = place + u
+        spline[body.local[body.local >= 0]] = True
+        x = self._positions() + u
 
         def moment(residual: np.ndarray) -> float:
             r = residual[spline]

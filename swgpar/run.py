@@ -19,12 +19,12 @@ from swgpar import log
 from swgpar.assembly import write_field
 from swgpar.contact.pressure import nodal_pressure
 from swgpar.design import DriveDesign
-from swgpar.errors import InputError, OutputError
+from swgpar.errors import InputError
 from swgpar.incremental import DriveModel, Runner, stresses
 from swgpar.log import IncrementProgress, logger
 from swgpar.meshing import MeshRecipe
 from swgpar.results import checkpoint, history
-from swgpar.results.atomic import to_json, write_from_root
+from swgpar.results.atomic import agreed, to_json, write_from_root
 from swgpar.results.fields import FieldWriter
 from swgpar.results.folder import prepare
 from swgpar.steps import Scene, sequence
@@ -43,8 +43,8 @@ class RunSummary:
 
 
 def fingerprint(design: DriveDesign, recipe: MeshRecipe) -> str:
-    """Identity of what is computed, for restarts: everything but the amount of output and the rotation asked for."""
-    content = design.model_dump(exclude={"output": True, "steps": {"rotation"}})
+    """Identity of what is computed, for restarts: everything but the output, the rotation and the linear solver."""
+    content = design.model_dump(exclude={"output": True, "steps": {"rotation"}, "solver": {"linear"}})
     return hashlib.sha256(to_json({"design": content, "recipe": recipe.model_dump()})).hexdigest()
 
 
@@ -125,7 +125,7 @@ class Recorder:
         if state.get("identity") != self.identity:
             raise InputError(
                 f"--restart: {path} belongs to another design, recipe or solver setting; allowed are the same "
-                "ones, only steps.rotation and the output may differ"
+                "ones, only steps.rotation, solver.linear and the output may differ"
             )
         arrays, _ = checkpoint.read_checkpoint(path, self.comm, ranges)
         x = model.equilibrium.x
@@ -200,10 +200,8 @@ def run_drive(
     out, begin = Path(out_dir), time.perf_counter()
     prepare(out, comm, restart, overwrite)
     log.start(comm)
-    try:
+    with agreed(comm, out / "run.log"):
         log.to_file(out / "run.log", comm)
-    except OSError as error:
-        raise OutputError(f"cannot write {out / 'run.log'}: {error.strerror}") from None
     model = DriveModel(design, recipe, comm)
     runner, recorder = Runner(model), Recorder(out, model, recipe)
     counts = model.counts()

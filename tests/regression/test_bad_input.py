@@ -24,7 +24,7 @@ def refused(command: list[str], exit_code: int) -> str:
     ("design", "recipe", "override", "words"),
     [
         (DESIGN, RECIPE, "drive.module=0", "drive.module = 0 is out of range"),
-        (DESIGN, RECIPE, "drive.modul=1", "drive.modul is not a key"),
+        (DESIGN, RECIPE, "drive.modul=1", "did you mean drive.module"),
         (DATA / "none.toml", RECIPE, "drive.module=1", "none.toml cannot be read"),
         (DESIGN, DATA / "none.toml", "drive.module=1", "none.toml cannot be read"),
         (DESIGN, DESIGN, "drive.module=1", "drive"),

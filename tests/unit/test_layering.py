@@ -22,6 +22,7 @@ ORDER = (
     "kernel",
     "assembly",
     "couplings",
+    "linear",
     "contact",
     "steps",
     "stress",
