@@ -130,7 +130,7 @@ class Equilibrium:
         self.snes.setTolerances(max_it=design.solver.max_iterations)
         self.snes.setFunction(self._function, create_vector(partition))
         self.snes.setConvergenceTest(self._converged)
-        self.border = Bordered(partition, design.solver.linear, self._positions()[: partition.n_own], "stiffness_")
+        self.border = Bordered(partition, design.solver.linear, self.positions()[: partition.n_own], "stiffness_")
         ksp = self.snes.getKSP()
         ksp.setType(PETSc.KSP.Type.PREONLY)
         ksp.getPC().setType(PETSc.PC.Type.PYTHON)
@@ -151,7 +151,7 @@ class Equilibrium:
         """(n_local, 3) mm, ghosts included."""
         return self.exchange(self.x if x is None else x)
 
-    def _positions(self) -> np.ndarray:
+    def positions(self) -> np.ndarray:
         """Undeformed positions (n_local, 3) mm, as their owners see them; zero for the multipliers."""
         place = np.zeros((len(self.local), 3))
         for body in self.elements.bodies:
@@ -368,7 +368,7 @@ class Equilibrium:
             teeth = self.teeth.owned_forces(u, scene.teeth)
         spline = np.zeros(len(u), dtype=bool)
         spline[body.local[body.local >= 0]] = True
-        x = self._positions() + u
+        x = self.positions() + u
 
         def moment(residual: np.ndarray) -> float:
             r = residual[spline]

@@ -17,7 +17,6 @@ from swgpar.steps import Scene
 DATA = Path(__file__).parent.parent / "data"
 
 
-@pytest.mark.ranks3
 @pytest.mark.parametrize("half", ["true", "false"])
 def test_tangent_is_the_derivative_of_the_residual(half: str) -> None:
     design = load_design(DATA / "small.toml", [f"solver.twofold_symmetry={half}"])

@@ -10,10 +10,12 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from swgpar.contact.rigid import CamPose
 from swgpar.design import DriveDesign, load_design
 from swgpar.incremental import DriveModel, Runner, stresses
 from swgpar.meshing import load_recipe
 from swgpar.steps import sequence
+from swgpar.stress import body_fields
 
 DATA = Path(__file__).parent.parent / "data"
 WORLD = MPI.COMM_WORLD
@@ -58,7 +60,6 @@ def assert_same(a: dict[str, float], b: dict[str, float], rel: float) -> None:
     assert a["pairs_in_contact"] == b["pairs_in_contact"]
 
 
-@pytest.mark.ranks3
 def test_torques_balance() -> None:
     _, r = base()
     total = r["wg_torque_Nmm"] + r["tooth_torque_Nmm"] + r["output_torque_Nmm"]
@@ -66,7 +67,6 @@ def test_torques_balance() -> None:
     assert abs(total) < 1e-6 * r["output_torque_Nmm"]
 
 
-@pytest.mark.ranks3
 def test_any_number_of_ranks_gives_the_same() -> None:
     if WORLD.size == 1:
         pytest.skip("compares several ranks with one: runs under mpirun")
@@ -90,6 +90,33 @@ def test_period_and_work() -> None:
         assert abs(r["wg_torque_Nmm"] + r["tooth_torque_Nmm"] + r["output_torque_Nmm"]) < 1e-6 * 2000.0
     # the integrand is continuous with kinks where pairs come and go: six samples a period are good to a per cent
     assert np.mean([r["wg_torque_Nmm"] for r in rows]) == pytest.approx(2000.0 / 20.0, rel=0.01)
+
+
+def test_rotating_the_whole_spline_changes_no_stress() -> None:
+    """The loaded spline and its wave generator turned by 0.7 rad: the same stresses, the forces turned alike."""
+    runner, _ = base()
+    equilibrium, scene, angle = runner.equilibrium, runner.scene, 0.7
+    c, s = np.cos(angle), np.sin(angle)
+    turned = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    spline = equilibrium.elements.bodies[0]
+    nodes = np.unique(spline.local[spline.local >= 0])
+    place, u = equilibrium.positions(), equilibrium.displacement()
+    v = u.copy()
+    v[nodes] = (place + u)[nodes] @ turned.T - place[nodes]
+
+    def forces(w: np.ndarray, pose: CamPose) -> np.ndarray:
+        r = np.zeros_like(w)
+        equilibrium.elements.assemble(w, r, None, None)
+        equilibrium.rigid.evaluate(w, pose, r, None)
+        return r[nodes[nodes < equilibrium.partition.n_own]]
+
+    after, before = forces(v, CamPose(scene.angle + angle, scene.cam)), forces(u, CamPose(scene.angle, scene.cam))
+    largest = WORLD.allreduce(np.abs(before).max(), op=MPI.MAX)
+    assert np.abs(after - before @ turned.T).max() < 1e-8 * largest
+    first, second = body_fields(spline, u), body_fields(spline, v)
+    for name in ("s1", "s3", "vm"):
+        largest = WORLD.allreduce(np.abs(first[name]).max(), op=MPI.MAX)
+        assert np.abs(first[name] - second[name]).max() < 1e-8 * largest, name
 
 
 def test_half_the_drive_equals_the_whole() -> None:

@@ -1,0 +1,59 @@
+"""Time of residual and tangent of all elements, and of their insertion into a PETSc matrix, without contact."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Callable
+
+import numpy as np
+from mpi4py import MPI
+
+from swgpar.assembly import create_matrix, fill_matrix
+from swgpar.design import load_design
+from swgpar.incremental import DriveModel
+from swgpar.meshing import load_recipe
+
+
+def fastest(repeat: int, action: Callable[[], None]) -> float:
+    """Seconds of the fastest of `repeat` runs."""
+    seconds = []
+    for _ in range(repeat):
+        begin = time.perf_counter()
+        action()
+        seconds.append(time.perf_counter() - begin)
+    return min(seconds)
+
+
+def main() -> None:
+    options = argparse.ArgumentParser(description=__doc__)
+    options.add_argument("--design", default="drivers/cup_45deg.toml")
+    options.add_argument("--mesh", default="mesh/full.toml")
+    options.add_argument("--repeat", type=int, default=3)
+    arguments = options.parse_args()
+    design = load_design(arguments.design, ["solver.twofold_symmetry=false"])
+    model = DriveModel(design, load_recipe(arguments.mesh), MPI.COMM_SELF)
+    equilibrium, elements = model.equilibrium, model.elements
+    rows, slots = elements.rows(np.zeros(0, dtype=np.int64), equilibrium.local.number)
+    matrix = create_matrix(model.partition, rows)
+    # every element turned and strained a little, so that none takes a short way
+    u = np.random.default_rng(1).uniform(-1e-3, 1e-3, (len(equilibrium.local), 3))
+    residual = np.zeros_like(u)
+
+    def both() -> None:
+        rows.values[:] = 0.0
+        elements.assemble(u, residual, rows, slots)
+
+    fill_matrix(matrix, rows)  # the first insertion is not the one that repeats
+    count = sum(b["elements"] for b in model.counts().values())
+    kernel, insertion = fastest(arguments.repeat, both), fastest(arguments.repeat, lambda: fill_matrix(matrix, rows))
+    force = fastest(arguments.repeat, lambda: elements.assemble(u, residual, None, None))
+    print(f"{count} elements, {3 * model.partition.n_global} unknowns, one core; fastest of {arguments.repeat}")
+    print(f"residual and tangent {kernel:7.2f} s   {1e6 * kernel / count:6.2f} microseconds per element")
+    print(f"insertion into PETSc {insertion:7.2f} s   {1e6 * insertion / count:6.2f}")
+    print(f"together             {kernel + insertion:7.2f} s   {1e6 * (kernel + insertion) / count:6.2f}")
+    print(f"residual alone       {force:7.2f} s   {1e6 * force / count:6.2f}")
+
+
+if __name__ == "__main__":
+    main()
