@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import pyvista
 from small_drive import (
     DATA,
     DESIGN,
@@ -41,6 +42,17 @@ def test_result_files(plain: Path) -> None:
         assert (plain / name).stat().st_size > 0
     for name in ("stress", "torque_and_transmission_error", "contact_pattern", "deformed_drive"):
         assert (plain / "figures" / f"{name}.png").stat().st_size > 5000
+
+
+def test_fields_open_in_paraview(plain: Path) -> None:
+    """VTK's XDMF reader is the one that ParaView offers."""
+    rows = history.read_history(plain / "history.csv")
+    reader = pyvista.XdmfReader(str(plain / "fields.xdmf"))
+    assert reader.number_time_points == len(rows)
+    reader.set_active_time_point(len(rows) - 1)
+    for block, prefix in zip(reader.read(), ("fs", "rg")):
+        assert {"displacement", "stress", "s1", "s3", "vm"} <= set(block.array_names)
+        assert block.point_data["vm"].max() == pytest.approx(rows[-1][f"{prefix}_vm"], rel=1e-6)
 
 
 def test_results_are_not_overwritten_by_accident(plain: Path) -> None:
