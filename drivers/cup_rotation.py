@@ -28,12 +28,14 @@ def main() -> float:
     options.add_argument("--design", default=HERE / "cup_45deg.toml")
     options.add_argument("--mesh", default=HERE.parent / "mesh" / "coarse.toml")
     options.add_argument("--out", default="results/cup_rotation")
+    options.add_argument("--restart", action="store_true", help="continue from the checkpoint in --out")
+    options.add_argument("--overwrite", action="store_true", help="replace results that --out already holds")
     options.add_argument("--set", nargs="*", default=[], help="section.key=value")
     arguments = options.parse_args()
 
     design = load_design(arguments.design, arguments.set)
     recipe = load_recipe(arguments.mesh)
-    result = run_drive(design, recipe, arguments.out, overwrite=True)
+    result = run_drive(design, recipe, arguments.out, restart=arguments.restart, overwrite=arguments.overwrite)
 
     if MPI.COMM_WORLD.rank == 0:
         for row in result.rows:

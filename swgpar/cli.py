@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import difflib
 import sys
 import traceback
 from collections.abc import Callable, Sequence
@@ -15,6 +16,8 @@ if TYPE_CHECKING:
     from mpi4py import MPI
 
 T = TypeVar("T")
+
+OPTIONS = ("--set", "--mesh", "--out", "--restart", "--overwrite", "--format", "--help", "--version")
 
 EXAMPLES = """examples:
   swgpar check drivers/cup_45deg.toml
@@ -114,11 +117,13 @@ def _run(arguments: argparse.Namespace) -> None:
 
 
 def _print_result(result) -> None:
+    from rich import box
     from rich.table import Table
 
     from swgpar.log import console
 
-    table = Table(title="largest stresses over the bodies (MPa, nodal averages); torque in N·mm, angles in degrees")
+    title = "largest stresses over the bodies (MPa, nodal averages); torque in N·mm, angles in degrees"
+    table = Table(title=title, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))  # fits into 80 columns
     columns = {
         "wg_angle_deg": ("input", ".1f"),
         "output_angle_deg": ("output", ".4f"),
@@ -130,7 +135,7 @@ def _print_result(result) -> None:
         "pairs_in_contact": ("pairs", "d"),
         "newton_iterations": ("Newton", "d"),
     }
-    table.add_column("step", justify="right")
+    table.add_column("step", justify="right", no_wrap=True)
     for title, _ in columns.values():
         table.add_column(title, justify="right", no_wrap=True)
     for row in result.rows:
@@ -172,7 +177,10 @@ def _mesh(arguments: argparse.Namespace) -> None:
     design = load_design(arguments.design, arguments.overrides)
     meshes = build_sector_meshes(design, load_recipe(arguments.mesh))
     write_mesh(design, meshes, Path(arguments.out), tuple(arguments.format))
-    print(mesh_report(meshes))
+    for body, values in mesh_report(meshes).items():
+        print(body)
+        for name, value in values.items():
+            print(f"  {name:30s} {value:.6g}")
 
 
 def _check(arguments: argparse.Namespace) -> None:
@@ -185,7 +193,25 @@ def _check(arguments: argparse.Namespace) -> None:
 
 
 def _report(arguments: argparse.Namespace) -> None:
-    _figures(arguments.out)
+    from pathlib import Path
+
+    from swgpar.log import console
+    from swgpar.report import make_figures
+
+    for path in make_figures(Path(arguments.out)):
+        console.print(f"figure {path}")
+
+
+def _check_rest(rest: Sequence[str], petsc: bool) -> None:
+    """Refuse what is neither an option of swgpar nor one of PETSc (-name, -name value)."""
+    after_option = False
+    for word in rest:
+        option = petsc and len(word) > 1 and word[0] == "-" and (word[1].isalpha())
+        if not option and not after_option:
+            near = difflib.get_close_matches(word, OPTIONS, n=1)
+            hint = f": did you mean {near[0]}?" if near else "; options of PETSc begin with one dash" if petsc else ""
+            raise InputError(f"unknown argument {word}{hint}")
+        after_option = option
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -194,8 +220,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         known, rest = parser().parse_known_args(arguments)
         command = known.command
-        if rest and command != "run":
-            parser().error(f"unknown arguments: {' '.join(rest)}")
+        _check_rest(rest, petsc=command == "run")
         known.overrides = [item for group in getattr(known, "set", []) for item in group]
         if command == "run":
             import petsc4py

@@ -19,8 +19,8 @@ from mpi4py import MPI
 from swgpar.assembly import BodyElements
 from swgpar.partition import Partition
 
-NAMES = ("x", "y", "z", "tilt_x", "tilt_y", "rotation")
 ROTATION = 5
+"""Coupled quantities: displacement x, y, z, tilts about x and y, rotation about z."""
 
 
 @dataclass

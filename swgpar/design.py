@@ -85,7 +85,7 @@ class Contact(Section):
 
 class Steps(Section):
     rotation: float = quantity(45.0, unit="deg", text="rotation of the wave generator", ge=0.0, le=36000.0)
-    increment: float = quantity(5.0, unit="deg", text="increment of that rotation", gt=0.0, le=45.0)
+    increment: float = quantity(5.0, unit="deg", text="increment of that rotation", ge=0.01, le=45.0)
     deflect_increments: int = quantity(1, text="increments of the deflection by the pins", ge=1, le=1000)
     engage_increments: int = quantity(1, text="increments of the engagement", ge=1, le=1000)
     load_increments: int = quantity(1, text="increments of the torque", ge=1, le=1000)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +14,7 @@ from swgpar.contact.search import facing_flanks, largest
 from swgpar.contact.teeth import ToothContact
 from swgpar.couplings import ROTATION, BoreCoupling
 from swgpar.design import DriveDesign
+from swgpar.line_search import SearchedStep
 from swgpar.linear import Bordered
 from swgpar.log import Phases
 from swgpar.partition import LocalNodes, Partition
@@ -29,6 +29,9 @@ SOFTENING, SOFT_TOLERANCE = (1e-3, 3e-2), 1e-2
 HOLD = 1e-3
 """Residual over contact force below which segments of the flanks are kept: Newton's iteration is then quadratic."""
 
+FLOOR = 0.05
+"""Share of the round-off that a residual can hold below which it counts as zero; 0.01 to 0.06 of it is reached."""
+
 
 @dataclass(frozen=True)
 class Solved:
@@ -38,56 +41,6 @@ class Solved:
     iterations: int
     residual: float
     reason: str
-
-
-class SearchedStep:
-    """Newton step with a line search along the potential: the `PC` (type python) of SNES's linear solve.
-
-    Contact switches on and off along a step, so a full one can overshoot by orders of magnitude. The step is
-    scaled by t in (0, 1] such that the slope F(x - t step) . step has fallen below half of its start: a point near
-    the minimum of the potential on the line. The full step is tried first and kept near the solution. (PETSc's own
-    line searches judge by the residual's norm, which grows while contact is being established, or take one secant
-    step; petsc4py 3.18 cannot replace them, hence the scaling inside the preconditioner.)
-    """
-
-    TARGET, TRIALS = 0.5, 8
-
-    def __init__(
-        self, border: Bordered, residual: Callable[[PETSc.Vec, PETSc.Vec], None], x: PETSc.Vec, phases: Phases
-    ) -> None:
-        self.border, self.residual, self.x, self.phases = border, residual, x, phases
-        self.trial, self.force = x.duplicate(), x.duplicate()
-
-    def setUp(self, pc: PETSc.PC) -> None:
-        with self.phases("factor"):
-            self.border.setUp(pc)
-
-    def apply(self, pc: PETSc.PC, right: PETSc.Vec, step: PETSc.Vec) -> None:
-        with self.phases("solve"):
-            self.border.apply(pc, right, step)
-        start = right.dot(step)
-        if not start > 0.0:  # no descent: leave it to the plain Newton step
-            return
-
-        def slope(t: float) -> float:
-            self.x.copy(self.trial)
-            self.trial.axpy(-t, step)
-            self.residual(self.trial, self.force)
-            value = self.force.dot(step) / start
-            return value if np.isfinite(value) else -1e30
-
-        low, low_value, high, high_value = 0.0, 1.0, 1.0, slope(1.0)
-        t, value = 1.0, high_value
-        for _ in range(self.TRIALS):
-            if abs(value) <= self.TARGET or (t == 1.0 and value > 0.0):
-                break
-            t = low + (high - low) * float(np.clip(low_value / (low_value - high_value), 0.1, 0.9))
-            value = slope(t)
-            if value > 0.0:
-                low, low_value, high_value = t, value, 0.5 * high_value
-            else:
-                high, high_value, low_value = t, value, 0.5 * low_value
-        step.scale(t)
 
 
 class Equilibrium:
@@ -120,6 +73,9 @@ class Equilibrium:
         self.on_iteration = None
         self.rebind(np.zeros(0, dtype=np.int64))
         self.keys = np.zeros(0, dtype=np.int64)
+        own = np.arange(partition.row_start, partition.row_start + partition.n_own)
+        self.own_keys = own * partition.n_global + own
+        self.round_off = 0.0
         self.softness = 1.0
         self._grounding()
         self.snes = PETSc.SNES().create(comm=partition.comm)
@@ -134,7 +90,7 @@ class Equilibrium:
         ksp = self.snes.getKSP()
         ksp.setType(PETSc.KSP.Type.PREONLY)
         ksp.getPC().setType(PETSc.PC.Type.PYTHON)
-        step = SearchedStep(self.border, lambda x, f: self._function(self.snes, x, f), self.x, phases)
+        step = SearchedStep(self.border, self._trial, self.x, phases)
         ksp.getPC().setPythonContext(step)
         self.snes.setFromOptions()
         self.matrix: PETSc.Mat | None = None
@@ -179,6 +135,15 @@ class Equilibrium:
         self.rigid.reset()
         self.pins.reset()
         self._pattern(keys)
+
+    def _overlooked(self) -> bool:
+        """Whether flanks that the search left out have come into contact."""
+        if self.scene.teeth is None:
+            return False
+        with self.phases("search"):
+            pairs = facing_flanks(self.partition, self.elements.bodies[0], self.displacement(), 0.0)
+            found = self.teeth.overlooked(pairs, self.displacement(), self.scene.teeth)
+        return bool(self.partition.comm.allreduce(int(found), op=MPI.MAX))
 
     def _pattern(self, keys: np.ndarray) -> None:
         with self.phases("pattern"):
@@ -255,6 +220,11 @@ class Equilibrium:
             if self.partition.comm.rank == self.partition.comm.size - 1:
                 f.array[-6:] = tail
 
+    def _trial(self, x: PETSc.Vec, f: PETSc.Vec) -> bool:
+        """Residual f at x; whether an element has collapsed there."""
+        self._function(self.snes, x, f)
+        return self.failed
+
     def _jacobian(self, snes: PETSc.SNES, x: PETSc.Vec, j: PETSc.Mat, p: PETSc.Mat) -> None:
         u = self.displacement(x)
         with self.phases("tangent"):
@@ -269,6 +239,11 @@ class Equilibrium:
                     self.rows.values[place] += np.outer(direction, direction)
             add_unit_diagonal(self.rows, self.partition, self.scale)
         self.missing = missing
+        # forces that follow from a last-digit error of every position
+        diagonal = self.rows.values[np.searchsorted(self.rows.keys, self.own_keys)]
+        squares = float(np.einsum("nkk,nkk->", diagonal, diagonal))
+        squares = self.partition.comm.allreduce(squares, op=MPI.SUM)
+        self.round_off = np.finfo(float).eps * self.design.r_fs * np.sqrt(squares)
         self.stale = bool(self.partition.comm.allreduce(int(len(missing) > 0), op=MPI.MAX))
         with self.phases("insert"):
             fill_matrix(p, self.rows)
@@ -295,8 +270,9 @@ class Equilibrium:
             self.teeth.hold()
         if ratio <= (self.design.solver.rtol if self.softness == 1.0 else SOFT_TOLERANCE):
             return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
-        # round-off floor: no further decrease although the residual is already very small
-        if its > 1 and ratio < 1e3 * self.design.solver.rtol and ratio > 0.3 * self.history[-2]:
+        # round-off floor: what positions known to 16 digits leave of the forces, or no decrease close to it
+        stalled = its > 1 and ratio > 0.3 * self.history[-2]
+        if norm <= (1.0 if stalled else FLOOR) * self.round_off:
             return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
         if self.stale and its > 0:
             return PETSc.SNES.ConvergedReason.CONVERGED_ITS
@@ -311,7 +287,7 @@ class Equilibrium:
         """
         self.scene = scene
         self.search()
-        iterations, self.augmentations = 0, 0
+        iterations, self.augmentations, searched = 0, 0, False
         soften = list(SOFTENING) if soft else []
         tolerance = self.design.contact.penetration_tolerance * self.design.drive.module
         while True:
@@ -328,6 +304,11 @@ class Equilibrium:
                 soften.insert(0, self.softness)
                 continue
             if self.softness != 1.0:
+                continue
+            if not searched and self._overlooked():
+                # the state searched at was too far off: the found one is close to the solution
+                self.search()
+                searched = True
                 continue
             if self.penetration() <= tolerance or self.augmentations >= self.design.contact.max_augmentations:
                 return Solved(True, iterations, ratio, "converged")

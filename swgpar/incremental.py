@@ -1,4 +1,4 @@
-"""The run: increments with prediction, cut-back, results and restart."""
+"""The run: increments with prediction and cut-back, backlash, histories."""
 
 from __future__ import annotations
 
@@ -167,7 +167,7 @@ def _turned(vectors: np.ndarray, angle: np.ndarray) -> np.ndarray:
 
 
 class Runner:
-    """Goes through the sequence; `row` and `fields` of each converged increment are handed to `record`."""
+    """Goes through the sequence, one increment after the other; `row` describes the state reached."""
 
     def __init__(self, model: DriveModel) -> None:
         self.model, self.design = model, model.design
@@ -183,7 +183,7 @@ class Runner:
         while done < 1.0:
             saved = x.copy()
             reach = min(1.0, done + share)
-            scene = origin.toward(target, reach)
+            scene = origin.toward(target, reach, self.design.drive.module, self.design.d)
             if scene.angle != self.scene.angle:
                 predict(self.model, x, scene.angle - self.scene.angle)
             elif scene.control == "rotation" and scene.rotation != self.scene.rotation:

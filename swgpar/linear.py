@@ -87,6 +87,8 @@ class Bordered:
         self.ksp.setInitialGuessNonzero(self.modes is not None)  # those of the last tangent
         for vector, solution in zip(sides, self.columns):
             self.ksp.solve(vector, solution)
+            if self.ksp.getConvergedReason() < 0:
+                solution.set(np.nan)
         self.ksp.setInitialGuessNonzero(False)
         b, c, nb = self.grounding, self.border, len(self.grounding)
         small = np.array([[left.dot(right) for right in self.columns] for left in b + c]).reshape(len(b + c), -1)
@@ -107,7 +109,7 @@ class Bordered:
     def apply(self, pc: PETSc.PC, right: PETSc.Vec, x: PETSc.Vec) -> None:
         self.ksp.solve(right, x)
         if self.ksp.getConvergedReason() < 0:
-            x.set(np.nan)  # the residual there is not finite either: the increment is cut back
+            x.set(np.nan)  # the residual at such a step is not finite: the increment is cut back
             return
         entries = self.multipliers(right)
         if not self.columns:

@@ -143,7 +143,6 @@ class Phases:
 
     def __init__(self) -> None:
         self.seconds: dict[str, float] = defaultdict(float)
-        self.calls: dict[str, int] = defaultdict(int)
 
     @contextmanager
     def __call__(self, name: str) -> Iterator[None]:
@@ -153,7 +152,6 @@ class Phases:
             yield
         finally:
             self.seconds[name] += time.perf_counter() - begin
-            self.calls[name] += 1
 
     def slowest(self, comm: MPI.Comm) -> dict[str, float]:
         """Seconds by phase on the slowest rank of each; collective."""

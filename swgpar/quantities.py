@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import difflib
 import json
-import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -143,8 +142,3 @@ def sentence(model: type[Section], error: ValidationError) -> str:
     if kind in ("greater_than", "greater_than_equal", "less_than", "less_than_equal"):
         return f"{key} = {show(value)} is out of range: {limits}"
     return f"{key} = {show(value)} is not {noun}: {limits}"
-
-
-def is_number(value: Any) -> bool:
-    """Return whether `value` is a finite int or float (a bool is not a number)."""
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from swgpar.errors import OutputError
 from swgpar.results import history
 from swgpar.results.fields import FOLDER, MESH, increment_name
 from swgpar.results.parallel_hdf5 import h5py
@@ -18,6 +19,9 @@ MAGNIFICATION = 5.0
 def make_figures(out: Path) -> list[Path]:
     """Draw all figures that the files in `out` allow, into out/figures; call it on one rank."""
     out = Path(out)
+    for name in (history.NAME, "summary.json"):
+        if not (out / name).exists():
+            raise OutputError(f"{out} has no {name}: figures are drawn from the files of a finished run")
     figures = out / "figures"
     figures.mkdir(exist_ok=True)
     rows = history.read_history(out / history.NAME)
@@ -28,7 +32,7 @@ def make_figures(out: Path) -> list[Path]:
     return made
 
 
-def _axes(rows: list[dict], title: str, ylabel: str):
+def _axes(title: str, ylabel: str):
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(7.0, 4.2), layout="constrained")
@@ -46,7 +50,7 @@ def _turning(rows: list[dict]) -> list[dict]:
 
 def _stress(rows: list[dict], figures: Path) -> Path:
     rows = _turning(rows)
-    figure, axes = _axes(rows, "largest stresses (nodal averages)", "stress (MPa)")
+    figure, axes = _axes("largest stresses (nodal averages)", "stress (MPa)")
     angle = history.column(rows, "wg_angle_deg")
     labels = {
         "fs_s1": "flexible spline, tensile s1",

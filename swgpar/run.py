@@ -27,7 +27,8 @@ from swgpar.results import checkpoint, history
 from swgpar.results.atomic import agreed, to_json, write_from_root
 from swgpar.results.fields import FieldWriter
 from swgpar.results.folder import prepare
-from swgpar.steps import Scene, sequence
+from swgpar.results.parallel_hdf5 import require_parallel
+from swgpar.steps import Increment, Scene, sequence
 
 FIRST_ROTATION = 4
 """Step number of the first rotation increment: means are taken from there on."""
@@ -72,8 +73,11 @@ class Recorder:
             extra[f"{mesh.body}/flank_s"], extra[f"{mesh.body}/flank_z"] = mesh.flanks[0].s, mesh.flanks[0].z
         self.writer.write_mesh(bodies, extra)
 
-    def record(self, runner: Runner, seconds: float) -> None:
-        """Store the state after an increment: fields, then history, then the checkpoint that vouches for them."""
+    def record(self, runner: Runner, seconds: float, elapsed: float) -> None:
+        """Store the state after an increment: fields, then history, then the checkpoint that vouches for them.
+
+        seconds : wall time of the increment;  elapsed : of the whole run, restarts included
+        """
         model, equilibrium = self.model, self.model.equilibrium
         with model.phases("stress"):
             values, fields = stresses(model)
@@ -107,14 +111,21 @@ class Recorder:
                 "names": self.names,
                 "scene": runner.scene.to_dict(),
                 "multipliers": equilibrium.multipliers(equilibrium.x).tolist(),
+                "wall_s": elapsed,
+                "phases_s": model.phases.slowest(self.comm),
             }
             checkpoint.write_checkpoint(self.out, self.comm, blocks, state)
 
     def _index(self) -> None:
-        self.writer.write_index([(i + 1, row["wg_angle_deg"]) for i, row in enumerate(self.rows)], self.names)
+        # a run that was started without fields has none of its first increments
+        there = [(i + 1, row["wg_angle_deg"]) for i, row in enumerate(self.rows) if self.writer.has(i + 1)]
+        self.writer.write_index(self.comm.bcast(there), self.names)
 
-    def resume(self, runner: Runner) -> None:
-        """Bring back the state of the checkpoint, on any number of ranks."""
+    def resume(self, runner: Runner, items: list[Increment]) -> float:
+        """Bring back the state of the checkpoint, on any number of ranks; returns the wall seconds spent on it.
+
+        items : the sequence that is to be continued
+        """
         model = self.model
         ranges = {
             body.layout.name: (model.partition.owned(k)[0], int(np.diff(model.partition.owned(k))[0]))
@@ -127,6 +138,12 @@ class Recorder:
                 f"--restart: {path} belongs to another design, recipe or solver setting; allowed are the same "
                 "ones, only steps.rotation, solver.linear and the output may differ"
             )
+        last = Scene(**state["scene"])
+        if state["done"] > len(items) or items[state["done"] - 1].scene != last:
+            raise InputError(
+                f"--restart: steps.rotation = {self.model.design.steps.rotation:g} does not continue {path}, which "
+                f"ends at {np.degrees(last.angle):g} degrees; allowed are values with this angle among their increments"
+            )
         arrays, _ = checkpoint.read_checkpoint(path, self.comm, ranges)
         x = model.equilibrium.x
         for k, body in enumerate(model.elements.bodies):
@@ -135,10 +152,13 @@ class Recorder:
         if self.comm.rank == self.comm.size - 1:
             x.array[-6:] = state["multipliers"]
         self.rows, self.done, self.names = state["rows"], state["done"], state["names"]
-        runner.scene = Scene(**state["scene"])
+        runner.scene = last
+        for name, value in state["phases_s"].items():
+            model.phases.seconds[name] += value
         if self.writer is not None:
             self._index()
         write_from_root(self.comm, self.out / history.NAME, history.format_rows(self.rows))
+        return float(state["wall_s"])
 
 
 def summarise(model: DriveModel, rows: list[dict[str, Any]], recipe_name: str, seconds: float) -> dict[str, Any]:
@@ -198,7 +218,8 @@ def run_drive(
     last converged increment is on disk and can be continued with `restart`.
     """
     out, begin = Path(out_dir), time.perf_counter()
-    prepare(out, comm, restart, overwrite)
+    require_parallel(comm)
+    resumed = prepare(out, comm, restart, overwrite)
     log.start(comm)
     with agreed(comm, out / "run.log"):
         log.to_file(out / "run.log", comm)
@@ -214,10 +235,13 @@ def run_drive(
         comm.size,
     )
     recorder.mesh()
-    if restart:
-        recorder.resume(runner)
-        logger.info("restarted after increment %d", recorder.done)
     items = list(sequence(design))
+    before = 0.0
+    if resumed:
+        before = recorder.resume(runner, items)
+        logger.info("restarted after increment %d", recorder.done)
+    elif restart:
+        logger.info("no increment was saved: starting from the beginning")
     with IncrementProgress(comm, len(items), done=recorder.done) as progress:
         model.equilibrium.on_iteration = lambda scene, its, ratio: progress.newton(
             scene.name, np.degrees(scene.angle), its, ratio
@@ -226,10 +250,10 @@ def run_drive(
             start = time.perf_counter()
             runner.increment(item)
             seconds = time.perf_counter() - start
-            recorder.record(runner, seconds)
+            recorder.record(runner, seconds, before + time.perf_counter() - begin)
             progress.increment(
                 item.scene.name, float(np.degrees(item.scene.angle)), runner.iterations, runner.residual, seconds
             )
-    summary = summarise(model, recorder.rows, recipe_name, time.perf_counter() - begin)
+    summary = summarise(model, recorder.rows, recipe_name, before + time.perf_counter() - begin)
     write_from_root(comm, out / "summary.json", to_json(summary))
     return RunSummary(recorder.rows, summary["means"], summary)

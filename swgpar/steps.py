@@ -43,14 +43,24 @@ class Scene:
     rotation: float = 0.0
     torque: float = 0.0
 
-    def toward(self, target: Scene, share: float) -> Scene:
-        """Scene between this one (share 0) and `target` (share 1); switches are those of the target."""
+    def toward(self, target: Scene, share: float, module: float, travel: float) -> Scene:
+        """Scene between this one (share 0) and `target` (share 1).
+
+        What the target switches on grows from the clearances `CAM_START`, `TEETH_START`; pins that it takes out are
+        drawn back by `PINS_BACK` on the way. module : mm;  travel : mm, deflection d of the drive
+        """
         if share == 1.0:
             return target
         values: dict[str, Any] = {}
-        for key in ("angle", "cam", "teeth", "pins", "rotation", "torque"):
+        for key in ("angle", "rotation", "torque"):
             old, new = getattr(self, key), getattr(target, key)
-            values[key] = new if new is None or old is None else old + share * (new - old)
+            values[key] = old + share * (new - old)
+        for key, clearance in (("cam", CAM_START * module), ("teeth", TEETH_START * module)):
+            old, new = getattr(self, key), getattr(target, key)
+            values[key] = None if new is None else (1.0 - share) * (clearance if old is None else old) + share * new
+        if self.pins is not None:
+            back = PINS_BACK * travel if target.pins is None else target.pins
+            values["pins"] = self.pins + share * (back - self.pins)
         return replace(target, **values)
 
     def to_dict(self) -> dict[str, Any]:

@@ -38,7 +38,6 @@ def facing_flanks(partition: Partition, spline: BodyElements, u: np.ndarray, mar
     margin : mm, how far the tip of a tooth may stay inside the tip circle of the ring gear
     """
     layout, ring = partition.layouts
-    grid = layout.mesh.flanks[0]
     first, end = partition.owned(0)
     rows = np.arange(len(spline.sectors))[spline.owned]
     tips = np.concatenate([f.nodes[0] for f in layout.mesh.flanks])
@@ -51,7 +50,6 @@ def facing_flanks(partition: Partition, spline: BodyElements, u: np.ndarray, mar
     lean = np.arctan2(-local_x, local_y).mean(axis=1)
     reach = np.hypot(x[:, tips, 0], x[:, tips, 1]).max(axis=1) if len(rows) else np.zeros(0)
     table = np.concatenate(partition.comm.allgather(np.column_stack([angle + lean, reach]).reshape(-1, 2)))
-    del grid
     pitch = 2.0 * np.pi / ring.mesh.n_sectors
     pairs = []
     for k in np.flatnonzero(table[:, 1] > ring.mesh.profile.r_tip_circle - margin):

@@ -2,6 +2,8 @@
 
 Gap and shape functions of both sides are smooth inside a segment, so that a few Gauss points integrate them
 exactly where the whole segment is in contact: the contact patch test then passes on meshes that do not match.
+The cuts run along the face's own edges: exact where both grids are aligned, as those of flanks swept along the
+axis are; for a tilt t between them the pressure of the patch test is uniform to about 0.03 t.
 """
 
 from __future__ import annotations

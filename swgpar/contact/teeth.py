@@ -119,14 +119,13 @@ class ToothContact:
         self.grids = {g.side: g for g in ring.layout.mesh.flanks}
         self.pairs: list[FlankPair] = []
 
+    def _takes_part(self, p: FlankPair) -> bool:
+        owners = self.partition.owner(0, np.array(p.sector)), self.partition.owner(1, np.array(p.ring))
+        return self.partition.comm.rank in owners
+
     def numbers(self, pairs: list[FlankPair]) -> np.ndarray:
         """Global numbers of the flank nodes of all pairs that have a node on this rank."""
-        self.pairs = [
-            p
-            for p in pairs
-            if self.partition.comm.rank
-            in (self.partition.owner(0, np.array(p.sector)), self.partition.owner(1, np.array(p.ring)))
-        ]
+        self.pairs = [p for p in pairs if self._takes_part(p)]
         seen = [np.zeros(0, dtype=np.int64)]
         for p in self.pairs:
             seen.append(self.partition.numbers(0, np.array([p.sector]), self.slaves[p.side].corners.ravel())[0].ravel())
@@ -219,14 +218,29 @@ class ToothContact:
         """
         if self.all is None:
             return np.zeros(0, dtype=np.int64)
+        gap, place = self._centers(u)
+        self.pick = np.flatnonzero(gap < near)
+        self._reset()
+        pick = np.flatnonzero(gap < touch)
+        return self._keys(pick, place[pick])
+
+    def _centers(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Gap (n_face,) mm at the middle of every face and its place (n_face, 2) on the master."""
         every = np.arange(len(self.all.conn))
         half = np.full((len(every), 1), 0.5)
-        centers = self.all.cut(every, Segments(every, half, half, np.ones_like(half)))
-        gap, _, place, _ = self._contact(centers, u, np.zeros_like(half), 0.0, None, None)
-        self.pick = np.flatnonzero(gap[:, 0] < near)
-        self._reset()
-        pick = np.flatnonzero(gap[:, 0] < touch)
-        return self._keys(pick, place[pick, 0])
+        faces = self.all.cut(every, Segments(every, half, half, np.ones_like(half)))
+        gap, _, place, _ = self._contact(faces, u, np.zeros_like(half), 0.0, None, None)
+        return gap[:, 0], place[:, 0]
+
+    def overlooked(self, pairs: list[FlankPair], u: np.ndarray, opening: float) -> bool:
+        """Whether there are pairs that the last search did not see, or faces in contact that it did not pick."""
+        mine = [p for p in pairs if self._takes_part(p)]
+        if not set(mine) <= set(self.pairs):
+            return True
+        if self.all is None:
+            return False
+        gap, _ = self._centers(u)
+        return bool(np.delete(gap + opening < 0.0, self.pick).any())
 
     def _keys(self, pick: np.ndarray, place: np.ndarray, window: tuple[int, int] = (2, 1)) -> np.ndarray:
         n_s, n_z = len(self.flanks.s), len(self.flanks.z)

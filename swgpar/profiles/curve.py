@@ -96,11 +96,6 @@ class ToothProfile:
         """Arc lengths of all segment ends, 0 and the total length included: (k,) mm."""
         return np.concatenate(([0.0], np.cumsum([segment.length for segment in self.segments])))
 
-    @cached_property
-    def segment_names(self) -> tuple[str, ...]:
-        """Names of the segments from T to R: (k - 1,)."""
-        return tuple(segment.name for segment in self.segments)
-
     @property
     def length(self) -> float:
         """Arc length from T to R, mm."""

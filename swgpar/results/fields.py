@@ -26,6 +26,10 @@ def increment_name(index: int) -> str:
     return f"increment_{index:04d}"
 
 
+TENSOR6 = [0, 3, 5, 1, 4, 2]
+"""Components xx yy zz xy yz zx in XDMF's order xx xy xz yy yz zz."""
+
+
 class FieldWriter:
     """Writes mesh and increments below a results folder.
 
@@ -64,12 +68,18 @@ class FieldWriter:
             blocks[name] = Block(np.ascontiguousarray(rows), 0, len(array))
         parallel_hdf5.write(self.out / FOLDER / f"{MESH}.h5", self.comm, blocks)
 
+    def has(self, index: int) -> bool:
+        """Whether the fields of an increment were written; seen from this rank."""
+        return (self.out / FOLDER / f"{increment_name(index)}.h5").exists()
+
     def write_increment(self, index: int, fields: Mapping[str, tuple[Mapping[str, np.ndarray], int, int]]) -> None:
         """Write nodal fields: body -> name -> (n_sectors, n_local[, n_components]), first sector, sectors in all."""
         blocks = {}
         for body, (values, first, total) in fields.items():
             for name, array in values.items():
                 n_local = array.shape[1]
+                if array.ndim == 3 and array.shape[2] == 6:
+                    array = array[..., TENSOR6]
                 rows = array.reshape(-1, *array.shape[2:])
                 kind = np.float64 if name == "displacement" else np.float32
                 blocks[f"{body}/{name}"] = Block(

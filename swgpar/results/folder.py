@@ -9,12 +9,26 @@ from mpi4py import MPI
 from swgpar.errors import OutputError
 from swgpar.results import checkpoint, history
 from swgpar.results.atomic import TEMPORARY, agreed, discard, write_file
+from swgpar.results.fields import FOLDER
+
+RESULTS = (
+    history.NAME,
+    checkpoint.NAME,
+    "summary.json",
+    "fields.xdmf",
+    "fields.h5",
+    f"{FOLDER}/*.h5",
+    "figures/*.png",
+    "run.log",
+)
+"""What `overwrite` removes."""
 
 
-def prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> None:
+def prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> bool:
     """Make the folder and try to write in it; raises OutputError on all ranks.
 
-    Results of an earlier run are kept: continue them with `restart`, or say `overwrite`.
+    Results of an earlier run are kept: continue them with `restart`, or say `overwrite`. Returns whether there is a
+    state to continue from: a run that ended before its first increment was saved starts again.
     """
     with agreed(comm, out):
         if comm.rank == 0:
@@ -26,8 +40,6 @@ def prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> None:
                 discard(left)
     there = comm.bcast((out / history.NAME).exists() if comm.rank == 0 else None)
     saved = comm.bcast((out / checkpoint.NAME).exists() if comm.rank == 0 else None)
-    if restart and not saved:
-        raise OutputError(f"cannot restart from {out}: it has no {checkpoint.NAME}")
     if there and not restart and not overwrite:
         raise OutputError(
             f"{out} already holds results: continue them with --restart, replace them with --overwrite, "
@@ -36,5 +48,7 @@ def prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> None:
     if overwrite and not restart:
         with agreed(comm, out):
             if comm.rank == 0:
-                for name in (history.NAME, checkpoint.NAME, "summary.json", "fields.xdmf", "fields.h5"):
-                    (out / name).unlink(missing_ok=True)
+                for pattern in RESULTS:
+                    for old in out.glob(pattern):
+                        old.unlink()
+    return restart and saved

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from swgpar.contact.pressure import nodal_pressure
 from swgpar.contact.rigid import CamPose
 from swgpar.design import DriveDesign, load_design
 from swgpar.incremental import DriveModel, Runner, stresses
@@ -70,9 +71,12 @@ def test_torques_balance() -> None:
 def test_any_number_of_ranks_gives_the_same() -> None:
     if WORLD.size == 1:
         pytest.skip("compares several ranks with one: runs under mpirun")
-    _, parallel = base()
-    _, alone = loaded(small(), MPI.COMM_SELF)
+    several, parallel = base()
+    one, alone = loaded(small(), MPI.COMM_SELF)
     assert_same(parallel, alone, 1e-8)
+    first, end = several.model.partition.owned(0)
+    mine, whole = (nodal_pressure(r.equilibrium, r.equilibrium.elements.bodies[0]) for r in (several, one))
+    assert np.abs(mine - whole[first:end]).max() < 1e-6 * whole.max()
     assert parallel["output_angle_deg"] == pytest.approx(alone["output_angle_deg"], rel=1e-8)
 
 

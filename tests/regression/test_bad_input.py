@@ -38,10 +38,21 @@ def test_bad_files_and_values(tmp_path: Path, design: Path, recipe: Path, overri
 
 @pytest.mark.parametrize(
     ("arguments", "words"),
-    [(("run", DESIGN, "--mesh", RECIPE), "--out"), (("run",), "design"), (("walk", DESIGN), "walk")],
+    [
+        (("run", DESIGN, "--mesh", RECIPE), "--out"),
+        (("run",), "design"),
+        (("walk", DESIGN), "walk"),
+        (("run", DESIGN, "--mesh", RECIPE, "--out", "x", "--restrat"), "did you mean --restart"),
+        (("run", DESIGN, "--mesh", RECIPE, "--out", "x", "-snes_monitor", "on", "off"), "off"),
+    ],
 )
 def test_bad_command_line(arguments: tuple[object, ...], words: str) -> None:
     assert words in refused(swgpar(*arguments), 2)
+
+
+def test_report_of_nothing(tmp_path: Path) -> None:
+    done = execute(swgpar("report", tmp_path), timeout=120.0)
+    assert done.returncode == 4 and "has no history.csv" in done.stderr and not list(tmp_path.iterdir())
 
 
 def test_mpirun_passes_the_exit_code_on(tmp_path: Path) -> None:

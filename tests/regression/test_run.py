@@ -52,6 +52,9 @@ def test_fields_open_in_paraview(plain: Path) -> None:
     reader.set_active_time_point(len(rows) - 1)
     for block, prefix in zip(reader.read(), ("fs", "rg")):
         assert {"displacement", "stress", "s1", "s3", "vm"} <= set(block.array_names)
+        tensor = np.linalg.eigvalsh(block.point_data["stress"].reshape(-1, 3, 3))
+        assert tensor[:, 2] == pytest.approx(block.point_data["s1"], abs=1e-3)
+        assert tensor[:, 0] == pytest.approx(block.point_data["s3"], abs=1e-3)
         assert block.point_data["vm"].max() == pytest.approx(rows[-1][f"{prefix}_vm"], rel=1e-6)
 
 
@@ -99,6 +102,30 @@ def test_kill_and_restart(plain: Path, tmp_path: Path, before: int, after: int) 
     assert "restarted after increment" in (out / "run.log").read_text(encoding="utf-8")
     assert json.loads((out / "summary.json").read_text(encoding="utf-8"))["ranks"] == after
     assert_same_history(out, plain, iterations=before == after == 1)
+
+
+def test_restart_before_anything_was_saved(plain: Path, tmp_path: Path) -> None:
+    """As after a kill in the first increment, or between the first history and its checkpoint."""
+    for k, name in enumerate(("empty", "history")):
+        out = tmp_path / name
+        out.mkdir()
+        if k:
+            (out / "history.csv").write_bytes((plain / "history.csv").read_bytes())
+        succeed(run_command(out, "--restart"))
+        assert "starting from the beginning" in (out / "run.log").read_text(encoding="utf-8")
+        assert_same_history(out, plain)
+
+
+def test_restart_with_more_rotation_and_fields(plain: Path, tmp_path: Path) -> None:
+    out = tmp_path / "longer"
+    succeed(run_command(out, overrides=("steps.rotation=2.0", "steps.increment=2.0", "output.fields=false")))
+    first = json.loads((out / "summary.json").read_text(encoding="utf-8"))
+    succeed([*run_command(out, "--restart"), "output.fields=true"])
+    assert_same_history(out, plain)
+    assert json.loads((out / "summary.json").read_text(encoding="utf-8"))["wall_s"] > first["wall_s"]
+    assert pyvista.XdmfReader(str(out / "fields.xdmf")).number_time_points == 1
+    refused = execute(run_command(out, "--restart", overrides=("steps.rotation=3.0", "steps.increment=2.0")))
+    assert refused.returncode == 2 and "steps.rotation = 3" in refused.stderr
 
 
 def test_script_of_the_reference_drive(plain: Path, tmp_path: Path) -> None:

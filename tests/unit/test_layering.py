@@ -23,6 +23,7 @@ ORDER = (
     "assembly",
     "couplings",
     "linear",
+    "line_search",
     "contact",
     "steps",
     "stress",
