@@ -129,12 +129,25 @@ def test_half_the_drive_equals_the_whole() -> None:
     assert_same(half, whole, 1e-6)
 
 
-def test_penalty_does_not_show() -> None:
+@pytest.mark.parametrize(
+    ("overrides", "augmented", "gears"),
+    [
+        (("contact.penalty_coef=200",), False, ("fs", "rg")),
+        # softer than the elements: the ring's stress under the contact needs the augmentation, the spline's maxima not
+        (("contact.penalty_coef=12.5",), False, ("fs",)),
+        (
+            ("contact.penalty_coef=10", "contact.penetration_tolerance=5e-5", "contact.max_augmentations=10"),
+            True,
+            ("fs", "rg"),
+        ),
+    ],
+)
+def test_enforcement_does_not_show(overrides: tuple[str, ...], augmented: bool, gears: tuple[str, ...]) -> None:
     _, r = base()
-    for factor in (0.25, 4.0):
-        _, other = loaded(small(f"contact.penalty_coef={50.0 * factor}"))
-        for name in ("fs_s1", "fs_s3", "fs_vm"):
-            assert other[name] == pytest.approx(r[name], rel=5e-3), (factor, name)
+    runner, other = loaded(small(*overrides))
+    assert (runner.equilibrium.augmentations > 0) == augmented
+    for name in (f"{gear}_{stress}" for gear in gears for stress in ("s1", "s3", "vm")):
+        assert other[name] == pytest.approx(r[name], rel=5e-3), name
 
 
 def test_units_do_not_matter() -> None:
