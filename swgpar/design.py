@@ -8,9 +8,10 @@ from typing import Literal
 
 import numpy as np
 
+from swgpar.cams import FourRoller, WaveGenerator, make_cam
 from swgpar.design_file import apply_overrides, read_toml, validate
 from swgpar.errors import InputError
-from swgpar.profiles import make_profile
+from swgpar.profiles import ExternalProfile, InternalProfile, RackInvolute, make_profile
 from swgpar.quantities import Section, quantity
 
 
@@ -25,27 +26,18 @@ class Drive(Section):
     face_width: float = quantity(unit="mm", text="face width", gt=0.0)
 
 
-class Profile(Section):
-    type: Literal["quadruple_arc"] = quantity("quadruple_arc", text="kind of profile")
-    r_tip: float = quantity(unit="mm", text="radius of the tip arc", gt=0.0)
-    r_addendum: float = quantity(unit="mm", text="radius of the addendum arc", gt=0.0)
-    straight_l: float = quantity(0.0, unit="mm", text="length of the straight segment", ge=0.0)
-    r_dedendum: float = quantity(unit="mm", text="radius of the dedendum arc", gt=0.0)
-    r_root: float = quantity(unit="mm", text="radius of the root arc", gt=0.0)
-
-
 class Gear(Section):
     rim: float = quantity(unit="mm", text="rim thickness below the root circle", gt=0.0)
-    c_P: float = quantity(1.0, text="angular tooth thickness reduction", gt=0.0, le=1.2)
+    c_P: float = quantity(1.0, text="angular tooth thickness reduction; 1 for involutes", gt=0.0, le=1.2)
     c_l: float = quantity(0.5, text="place of the pitch point on the straight segment", ge=0.0, le=1.0)
-    profile: Profile
 
 
-class WaveGenerator(Section):
-    type: Literal["elliptical"] = quantity("elliptical", text="kind of cam")
-    C: float = quantity(1.0, text="minor axis reduction", gt=0.0, le=1.0)
-    face_width: float = quantity(unit="mm", text="width of the cam", gt=0.0)
-    pin_half_angle: float = quantity(15.0, unit="deg", text="half of the angle a pushing pin covers", gt=0.0, le=60.0)
+class ExternalGear(Gear):
+    profile: ExternalProfile
+
+
+class InternalGear(Gear):
+    profile: InternalProfile
 
 
 class Cup(Section):
@@ -108,8 +100,8 @@ class DriveDesign(Section):
     """A drive, its load and how it is computed. Attributes are the keys of the design file."""
 
     drive: Drive
-    flexible_spline: Gear
-    ring_gear: Gear
+    flexible_spline: ExternalGear
+    ring_gear: InternalGear
     wave_generator: WaveGenerator
     cup: Cup
     micro_geometry: MicroGeometry = MicroGeometry()
@@ -127,18 +119,19 @@ class DriveDesign(Section):
 
     @property
     def r_fs(self) -> float:
-        """Inner radius of the undeformed flexible spline, mm."""
-        g = self.drive
-        return 0.5 * g.teeth_fs * g.module - g.dedendum_coef * g.module - self.flexible_spline.rim
+        """Inner radius of the undeformed flexible spline, mm (eq. 3.1); a profile shift moves the root circle."""
+        g, profile = self.drive, self.flexible_spline.profile
+        shift = profile.shift if isinstance(profile, RackInvolute) else 0.0
+        return (0.5 * g.teeth_fs - g.dedendum_coef + shift) * g.module - self.flexible_spline.rim
 
     @property
     def a(self) -> float:
-        """Major semi-axis of the wave generator, mm."""
+        """Major semi-axis of the wave generator, mm (eq. 3.3)."""
         return self.r_fs + 0.5 * self.d
 
     @property
     def b(self) -> float:
-        """Minor semi-axis, mm."""
+        """Minor semi-axis, mm (eqs 3.2, 3.4); rollers have none."""
         return self.wave_generator.C * (self.r_fs - 0.5 * self.d)
 
     @property
@@ -147,9 +140,17 @@ class DriveDesign(Section):
         return -self.drive.teeth_fs / (self.drive.teeth_rg - self.drive.teeth_fs)
 
     @property
+    def backlash(self) -> float:
+        """Circumferential backlash at the pitch circles, mm (eqs 6.1 to 6.3): the pitch less both teeth."""
+        g = self.drive
+        teeth = {"flexible_spline": g.teeth_fs, "ring_gear": g.teeth_rg}
+        thickness = [make_profile(self, gear).thickness(0.5 * n * g.module) for gear, n in teeth.items()]
+        return float(np.pi * g.module - sum(thickness))
+
+    @property
     def gamma(self) -> float:
         """Turn that closes the backlash on one side, rad (eq. 6.4)."""
-        return np.pi * (1.0 - self.ring_gear.c_P) / (2.0 * self.drive.teeth_fs)
+        return self.backlash / (self.drive.teeth_fs * self.drive.module)
 
     @property
     def cup_thickness(self) -> float:
@@ -179,12 +180,11 @@ def check_fit(design: DriveDesign) -> None:
         _refuse(
             "flexible_spline.rim", design.flexible_spline.rim, "a rim that leaves an inner radius above the deflection"
         )
-    if design.b <= 0.0 or design.b**2 / design.a >= design.r_fs or design.b < 0.5 * design.r_fs:
-        _refuse(
-            "wave_generator.C",
-            wave.C,
-            "values whose minor axis is between half the spline's inner radius and that radius",
-        )
+    if isinstance(wave, FourRoller):
+        if wave.beta >= wave.pin_half_angle:
+            _refuse("wave_generator.beta", wave.beta, f"above 0 to below {wave.pin_half_angle:g} deg (pin_half_angle)")
+    elif design.b < 0.4 * design.r_fs:
+        _refuse("wave_generator.C", wave.C, "values whose minor semi-axis is at least 0.4 of the spline's inner radius")
     width = g.face_width
     if wave.face_width > width:
         _refuse("wave_generator.face_width", wave.face_width, f"above 0 to {width:g} mm (drive.face_width)")
@@ -219,4 +219,5 @@ def load_design(path: str | Path, overrides: Sequence[str] = ()) -> DriveDesign:
     check_fit(design)
     for gear in ("flexible_spline", "ring_gear"):
         make_profile(design, gear)
+    make_cam(design)
     return design

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.spatial import cKDTree
 
+from swgpar.cams import make_cam, pin_travel, taut_length
 from swgpar.design import DriveDesign
 from swgpar.profiles import make_profile
 
@@ -16,46 +18,49 @@ def flank_clearance(design: DriveDesign, n_angles: int = 721, n_points: int = 20
     """
     spline, ring = make_profile(design, "flexible_spline"), make_profile(design, "ring_gear")
     r = design.r_fs + 0.5 * design.flexible_spline.rim
-    s = np.linspace(0.0, spline.length, n_points)
+    psi = np.linspace(-0.25 * np.pi, 0.25 * np.pi, n_angles)
+    w, v = 0.5 * design.d * np.cos(2.0 * psi), -0.25 * design.d * np.sin(2.0 * psi)
+    turn = psi + (v + design.d * np.sin(2.0 * psi)) / r
+    # flank relative to its tooth's place on the mid-line, turned, then set down at the deflected place
+    place = ((r + w) * np.array([-np.sin(psi + v / r), np.cos(psi + v / r)])).T
+    flank = spline.point(np.linspace(0.0, spline.length, n_points))
+    samples = np.linspace(0.0, ring.length, 1001)
+    tree, normal = cKDTree(ring.point(samples)), ring.normal(samples)
     smallest = np.inf
-    for psi in np.linspace(-0.25 * np.pi, 0.25 * np.pi, n_angles):
-        w, v = 0.5 * design.d * np.cos(2.0 * psi), -0.25 * design.d * np.sin(2.0 * psi)
-        tilt = (v + design.d * np.sin(2.0 * psi)) / r
-        # flank relative to its tooth's place on the mid-line, turned, then set down at the deflected place
-        place = (r + w) * np.array([-np.sin(psi + v / r), np.cos(psi + v / r)])
-        turn = psi + tilt
-        for side in (1.0, -1.0):
-            local = spline.point(s) * [side, 1.0] - [0.0, r]
-            x = place + np.column_stack(
-                [
-                    np.cos(turn) * local[:, 0] - np.sin(turn) * local[:, 1],
-                    np.sin(turn) * local[:, 0] + np.cos(turn) * local[:, 1],
-                ]
-            )
-            # in the frame of the wave generator the slot that goes with a tooth at psi is at psi N_fs / N_rg
-            angle = psi * design.drive.teeth_fs / design.drive.teeth_rg - side * np.pi / design.drive.teeth_rg
-            c, sn = np.cos(angle), np.sin(angle)
-            local_ring = np.column_stack([c * x[:, 0] + sn * x[:, 1], -sn * x[:, 0] + c * x[:, 1]]) * [-side, 1.0]
-            inside = np.hypot(*local_ring.T) > ring.r_tip_circle
-            if inside.any():
-                smallest = min(smallest, float(ring.distance(local_ring[inside])[0].min()))
+    for side in (1.0, -1.0):
+        x = place[:, None] + turned(flank * [side, 1.0] - [0.0, r], turn[:, None])
+        # in the frame of the wave generator the slot that goes with a tooth at psi is at psi N_fs / N_rg
+        angle = psi * design.drive.teeth_fs / design.drive.teeth_rg - side * np.pi / design.drive.teeth_rg
+        in_ring = (turned(x, -angle[:, None]) * [-side, 1.0]).reshape(-1, 2)
+        in_ring = in_ring[np.hypot(*in_ring.T) > ring.r_tip_circle]
+        if len(in_ring):
+            # to the nearest sample first, so that the exact distance is needed for the nearest points only
+            rough, index = tree.query(in_ring)
+            rough = np.copysign(rough, np.einsum("ij,ij->i", in_ring - tree.data[index], normal[index]))
+            near = rough < rough.min() + 2.0 * samples[1]
+            smallest = min(smallest, float(ring.distance(in_ring[near])[0].min()))
     return smallest
+
+
+def turned(points: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """Points (..., 2), mm, turned counter-clockwise about the axis by `angle` (...), rad."""
+    x, y = np.moveaxis(points, -1, 0)
+    return np.stack([np.cos(angle) * x - np.sin(angle) * y, np.sin(angle) * x + np.cos(angle) * y], axis=-1)
 
 
 def derived_geometry(design: DriveDesign) -> dict[str, float]:
     """Names with units, and values."""
     spline, ring = make_profile(design, "flexible_spline"), make_profile(design, "ring_gear")
-    m = design.drive.module
+    cam = make_cam(design)
     return {
         "ratio (wave generator / output)": design.ratio,
         "d, diametral deflection (mm)": design.d,
         "a, major semi-axis (mm)": design.a,
-        "b, minor semi-axis (mm)": design.b,
+        "b, half width of the cam (mm)": float(cam.outline(7200)[:, 0].max()),
+        "taut length of cam / inner perimeter - 1": taut_length(cam) / (2.0 * np.pi * design.r_fs) - 1.0,
+        "travel of the pins (mm)": pin_travel(cam, design.r_fs),
         "r_fs, inner radius of the spline (mm)": design.r_fs,
-        "backlash at the pitch circle (mm)": 0.5
-        * np.pi
-        * m
-        * (2.0 - design.ring_gear.c_P - design.flexible_spline.c_P),
+        "backlash at the pitch circle (mm)": design.backlash,
         "gamma, turn that closes it (deg)": float(np.degrees(design.gamma)),
         "cup thickness (mm)": design.cup_thickness,
         "tooth height, flexible spline (mm)": spline.r_tip_circle - spline.r_root_circle,

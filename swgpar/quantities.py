@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import difflib
 import json
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, get_args
 
 import annotated_types
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
@@ -34,6 +34,11 @@ def quantity(default: Any = ..., *, unit: str = "", text: str, **limits: float) 
     """
     description = f"{text} ({unit})" if unit else text
     return Field(default, description=description, json_schema_extra={"unit": unit}, **limits)
+
+
+def default_type(name: str) -> Callable[[Any], Any]:
+    """Return a validator that gives a table without a `type` the type `name`; for fields with several sections."""
+    return lambda value: {"type": name, **value} if isinstance(value, dict) else value
 
 
 def show(value: Any) -> str:
@@ -76,20 +81,30 @@ def allowed(field: FieldInfo) -> str:
     return f"allowed {lower} to {upper}" + (f" {unit}" if unit else "")
 
 
-def _section_class(field: FieldInfo) -> type[Section] | None:
-    annotation = field.annotation
-    return annotation if isinstance(annotation, type) and issubclass(annotation, Section) else None
+def _section_classes(field: FieldInfo) -> list[type[Section]]:
+    """Return the section a field holds, or all those it has the choice of; none for a plain value."""
+    choices = get_args(field.annotation) or (field.annotation,)
+    return [choice for choice in choices if isinstance(choice, type) and issubclass(choice, Section)]
 
 
-def _locate(model: type[Section], path: Sequence[Any]) -> tuple[type[Section], FieldInfo | None]:
-    """Return the section that holds the last key of `path`, and the field when it is a known key."""
-    for key in path[:-1]:
-        field = model.model_fields.get(str(key))
-        inner = _section_class(field) if field else None
-        if inner is None:
-            return model, field
-        model = inner
-    return model, model.model_fields.get(str(path[-1]))
+def _locate(model: type[Section], path: Sequence[Any]) -> tuple[type[Section], FieldInfo | None, list[Any]]:
+    """Return the section that holds the last key of `path`, the field when it is a known key, and the keys.
+
+    Below a field with several sections pydantic puts the type that was chosen into the path: it is no key.
+    """
+    path, keys = list(path), []
+    field = None
+    while path:
+        keys.append(path.pop(0))
+        field = model.model_fields.get(str(keys[-1]))
+        classes = _section_classes(field) if field else []
+        if len(classes) > 1 and path:
+            tag = path.pop(0)
+            classes = [c for c in classes if tag in get_args(c.model_fields["type"].annotation)]
+        if not (classes and path):
+            break
+        model = classes[0]
+    return model, field, keys
 
 
 def _unknown_key(model: type[Section], path: Sequence[Any], value: Any) -> str:
@@ -113,15 +128,18 @@ def sentence(model: type[Section], error: ValidationError) -> str:
     findings.sort(key=lambda item: item["type"] != "extra_forbidden")
     finding = findings[0]
     kind, path, value = finding["type"], finding["loc"], finding.get("input")
-    key = ".".join(map(str, path))
     if not path:
         return "the design file has to be a table of sections"
-    owner, field = _locate(model, path)
+    owner, field, path = _locate(model, path)
+    key = ".".join(map(str, path))
     if kind == "extra_forbidden" or field is None:
         return _unknown_key(owner, path, value)
-    inner = _section_class(field)
-    if inner is not None:
-        keys = ", ".join(inner.model_fields)
+    inner = _section_classes(field)
+    if kind == "union_tag_invalid":
+        choices = " or ".join(json.dumps(name) for c in inner for name in get_args(c.model_fields["type"].annotation))
+        return f"{key}.type = {show(value['type'])} is not available: allowed {choices}"
+    if inner:
+        keys = ", ".join(inner[0].model_fields)
         if kind == "missing":
             return f"{key} is missing: the section [{key}] has the keys {keys}"
         return f"{key} = {show(value)} is not a section: write [{key}] with the keys {keys}"
@@ -130,7 +148,7 @@ def sentence(model: type[Section], error: ValidationError) -> str:
         return f"{key} = {show(value)} is not available: allowed {choices}"
     if field.annotation is bool:
         limits, noun = "allowed true or false", "true or false"
-    elif field.annotation in (int, float):
+    elif field.annotation in (int, float, float | None):
         limits, noun = allowed(field), "a whole number" if field.annotation is int else "a number"
     else:
         choices = " or ".join(json.dumps(choice) for choice in getattr(field.annotation, "__args__", ()))

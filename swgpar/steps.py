@@ -1,9 +1,10 @@
 """What is active when: the sequence pins, engagement, torque, rotation (sections 3.4.5 and 3.5.5).
 
-1 the pins push the flexible spline outward by d / 2 each; 2 the wave generator grows into place while the pins
-are drawn back, and the teeth may touch; 3 the output is turned until the teeth carry, then the torque is applied;
-4 ... the wave generator turns in increments. Without a torque a drive with backlash has no definite
-output angle: the output is then held at its kinematic angle, and the torque this takes is reported.
+1 the pins, the halves of the cam, push the flexible spline outward by d / 2 each (more for a cam that bulges beside
+its tips); 2 the wave generator grows into place while the pins are drawn back, and the teeth may touch; 3 the output
+is turned until the teeth carry, then the torque is applied; 4 ... the wave generator turns in increments. Without a
+torque a drive with backlash has no definite output angle: the output is then held at its kinematic angle, and the
+torque this takes is reported.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from swgpar.cams import make_cam, pin_travel
 from swgpar.design import DriveDesign
 
 PINS_BACK = 0.25
@@ -77,16 +79,17 @@ class Increment:
 
 def start(design: DriveDesign) -> Scene:
     """Undeformed drive, pins touching the inner surface."""
-    return Scene(step=0, name="start", pins=0.5 * design.d)
+    return Scene(step=0, name="start", pins=pin_travel(make_cam(design), design.r_fs))
 
 
 def sequence(design: DriveDesign) -> Iterator[Increment]:
     """All increments of a run, in order."""
     d, steps, module = design.d, design.steps, design.drive.module
     torque = 1000.0 * design.load.torque
+    travel = start(design).pins
     n = steps.deflect_increments
     for i in range(1, n + 1):
-        yield Increment(Scene(1, "deflect", pins=0.5 * d * (1.0 - i / n)))
+        yield Increment(Scene(1, "deflect", pins=travel * (1.0 - i / n)))
     n = steps.engage_increments
     for i in range(1, n + 1):
         t = i / n

@@ -41,3 +41,8 @@ class EllipticalCam:
         distance = (x - b * s) * normal[:, 0] + (y - a * c) * normal[:, 1]
         curvature = a * b / (a * a * s * s + b * b * c * c) ** 1.5
         return distance, normal, curvature / (1.0 + curvature * distance)
+
+    def outline(self, n: int) -> np.ndarray:
+        """Points (n, 2), mm, of the curve, clockwise from the tip."""
+        t = 2.0 * np.pi * np.arange(n) / n
+        return np.column_stack([self.b * np.sin(t), self.a * np.cos(t)])

@@ -4,7 +4,7 @@ Half a tooth is cut into blocks (shown for an external tooth, centre line on the
 same with the radial direction reversed)::
 
     M---T.            M  centre of the top land, T start of the flank (addendum circle)
-    |  cap K          K  end of the rounded tip edge, where the normal rises 60 degrees above the horizontal
+    |  cap K          K  end of the rounded tip edge, where the normal rises 60 degrees above the horizontal, or T
     A---I   \         Q  on the root arc, where it rises 45 degrees
     |    \ s \        R  end of the flank (dedendum circle), E  middle of the root
     | core\ i \       B  below Q on the interface circle
@@ -258,6 +258,10 @@ class HalfTooth:
     def _apex(self, k: Floats, n_core: int, n_layer: int) -> tuple[Floats, Floats]:
         """Return I and A, the inner corners of the cap."""
         inwards = -self.profile.normal(self.s_side[0])[0]
+        if self.s_side[0] == 0.0:
+            # a sharp edge: halfway between the flank and the top land
+            inwards = inwards - k / np.hypot(*k) * (1.0 if self.profile.external else -1.0)
+            inwards = inwards / np.hypot(*inwards)
         reach = np.hypot(*(self.tip[0] - k)) + 0.5 * self.profile.top_land
         depth = min(0.5 * n_layer * reach / n_core + 0.25 * reach, 0.5 * k[0] / abs(inwards[0]))
         i = k + depth * inwards

@@ -1,19 +1,37 @@
-"""A tooth flank as a chain of circular arcs and straight lines, by arc length."""
+"""A tooth flank as a chain of smoothly joined segments, by arc length."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import brentq
 
 from swgpar.errors import InputError
 
 Floats = NDArray[np.float64]
 
-# The segments on which the flank meets the top land and the root circle: crowning fades out along them.
-END_SEGMENTS = ("tip", "root")
+
+class FlankSegment(Protocol):
+    """A smooth piece of a flank, run through from the tip towards the root; local arc lengths s in mm."""
+
+    name: str
+    length: float
+
+    def point(self, s: Floats) -> Floats:
+        """Points (n, 2), mm, at `s` : (n,)."""
+
+    def angle(self, s: Floats) -> Floats:
+        """Angles (n,), rad, of the unit tangents from +x, counter-clockwise, at `s` : (n,)."""
+
+    def bend(self, s: Floats) -> Floats:
+        """Change of that angle per arc length (n,), 1/mm, at `s` : (n,)."""
+
+    def nearest(self, points: Floats) -> Floats:
+        """Local arc lengths (n,), mm, of the points of the segment nearest to `points` (n, 2), mm."""
 
 
 @dataclass(frozen=True)
@@ -40,10 +58,13 @@ class Segment:
     turn: float
     length: float
 
-    @property
-    def end_direction(self) -> float:
-        """Angle of the tangent at the last point, rad."""
-        return self.direction + self.turn * self.length
+    def angle(self, s: Floats) -> Floats:
+        """Return the angles of the tangents (n,), rad, at the local arc lengths `s` : (n,) mm."""
+        return self.direction + self.turn * s
+
+    def bend(self, s: Floats) -> Floats:
+        """Return `turn` at each of the local arc lengths `s` : (n,) mm."""
+        return np.full_like(s, self.turn)
 
     def point(self, s: Floats) -> Floats:
         """Return the points at the local arc lengths `s` : (n,) mm, as (n, 2) mm."""
@@ -63,7 +84,7 @@ class Segment:
             return np.clip(along, 0.0, self.length)
         # polar angle about the centre of the arc, measured from the middle of the arc so that the cut lies opposite
         radius = 1.0 / self.turn
-        angle = np.arctan2(along * np.sign(radius), (radius - across) * np.sign(radius)) * np.sign(radius)
+        angle = np.arctan2(along * np.sign(radius), (radius - across) * np.sign(radius))
         middle = 0.5 * self.turn * self.length
         angle = middle + np.remainder(angle - middle + np.pi, 2.0 * np.pi) - np.pi
         return np.clip(angle * radius, 0.0, self.length)
@@ -75,7 +96,7 @@ class ToothProfile:
 
     Attributes
     ----------
-    segments : tuple of Segment
+    segments : tuple of FlankSegment
         The chain, from T to R; segments of no length are left out.
     external : bool
         True for teeth that point outwards (flexible spline), False for internal ones (ring gear).
@@ -85,7 +106,7 @@ class ToothProfile:
         Number of teeth of the gear.
     """
 
-    segments: tuple[Segment, ...]
+    segments: tuple[FlankSegment, ...]
     external: bool
     r_tip_circle: float
     r_root_circle: float
@@ -111,49 +132,48 @@ class ToothProfile:
         index = np.clip(np.searchsorted(self.breaks, s, side="right") - 1, 0, len(self.segments) - 1)
         return s, index, s - self.breaks[index]
 
-    def _direction(self, s: ArrayLike) -> Floats:
-        _, index, local = self._split(s)
-        start = np.array([segment.direction for segment in self.segments])
-        turn = np.array([segment.turn for segment in self.segments])
-        return start[index] + turn[index] * local
+    def _gather(self, what: str, s: ArrayLike, *shape: int) -> Floats:
+        """Call the method `what` of each segment for the arc lengths that lie on it."""
+        s, index, local = self._split(s)
+        values = np.empty((s.size, *shape))
+        for k, segment in enumerate(self.segments):
+            inside = index == k
+            if inside.any():
+                values[inside] = getattr(segment, what)(local[inside])
+        return values
 
     def point(self, s: ArrayLike) -> Floats:
         """Return the points at the arc lengths `s` : (n,) mm, as (n, 2) mm."""
-        s, index, local = self._split(s)
-        points = np.empty((s.size, 2))
-        for k, segment in enumerate(self.segments):
-            inside = index == k
-            points[inside] = segment.point(local[inside])
-        return points
+        return self._gather("point", s, 2)
 
     def tangent(self, s: ArrayLike) -> Floats:
         """Return the unit tangents (n, 2), from T towards R, at the arc lengths `s` : (n,) mm."""
-        direction = self._direction(s)
+        direction = self._gather("angle", s)
         return np.stack((np.cos(direction), np.sin(direction)), axis=-1)
 
     def normal(self, s: ArrayLike) -> Floats:
         """Return the unit normals (n, 2), out of the material, at the arc lengths `s` : (n,) mm."""
-        direction = self._direction(s)
+        direction = self._gather("angle", s)
         return self._side * np.stack((-np.sin(direction), np.cos(direction)), axis=-1)
 
     def curvature(self, s: ArrayLike) -> Floats:
         """Return the curvature (n,), 1/mm: d tangent / d s = curvature * normal; negative where convex."""
-        _, index, _ = self._split(s)
-        return self._side * np.array([segment.turn for segment in self.segments])[index]
+        return self._side * self._gather("bend", s)
 
     def crowning_weight(self, s: ArrayLike) -> Floats:
         """Return the share (n,) of the crowning that is applied at the arc lengths `s` : (n,) mm.
 
-        One on the active profile; it falls to zero along the tip segment towards T and along the root segment
-        towards R, with continuous slope, so that the top land and the root circle stay where they are.
+        One on the active profile; it falls to zero along the last segment towards R, with continuous slope, so that
+        the root circle stays where it is, and along a rounded tip edge towards T. A sharp edge is crowned in full.
         """
         s, index, local = self._split(s)
         weight = np.ones_like(s)
+        last = len(self.segments) - 1
         for k, segment in enumerate(self.segments):
-            if segment.name in END_SEGMENTS:
+            if k == last or segment.name == "tip":
                 inside = index == k
                 x = np.clip(local[inside] / segment.length, 0.0, 1.0)
-                x = x if segment.name == "tip" else 1.0 - x
+                x = 1.0 - x if k == last else x
                 weight[inside] = x * x * (3.0 - 2.0 * x)
         return weight
 
@@ -187,6 +207,14 @@ class ToothProfile:
         x, y = self.point(s).T
         return np.arctan2(x, y)
 
+    def thickness(self, radius: float) -> float:
+        """Return the thickness of the tooth along the circle of `radius`, mm, that its flank crosses once."""
+
+        def beyond(s: float) -> float:
+            return float(np.hypot(*self.point(s)[0])) - radius
+
+        return 2.0 * radius * float(self.polar_angle(brentq(beyond, 0.0, self.length, xtol=1e-14 * radius))[0])
+
     @property
     def top_land(self) -> float:
         """Width of the top land, along the addendum circle, mm."""
@@ -209,16 +237,17 @@ def check_flank(profile: ToothProfile, tolerance: float = 1e-9) -> None:
         Largest relative mismatch of points (to the tip radius) and of tangents (rad) at the joints.
     """
     for before, after in zip(profile.segments, profile.segments[1:], strict=False):
-        jump = before.point(np.array([before.length]))[0] - np.asarray(after.start)
-        kink = np.angle(np.exp(1j * (before.end_direction - after.direction)))
+        end, start = np.array([before.length]), np.zeros(1)
+        jump = before.point(end)[0] - after.point(start)[0]
+        kink = np.angle(np.exp(1j * (before.angle(end)[0] - after.angle(start)[0])))
         if np.hypot(*jump) > tolerance * profile.r_tip_circle or abs(kink) > tolerance:
             raise InputError(f"the {before.name} and {after.name} segments do not join smoothly")
     s = np.unique(np.concatenate((np.linspace(0.0, profile.length, 257), profile.breaks)))
     angle = profile.polar_angle(s)
     if angle[0] <= 0.0:
-        raise InputError("the tip arc crosses the tooth's centre line, no top land is left")
+        raise InputError("the tip end crosses the tooth's centre line, no top land is left")
     if angle[-1] >= np.pi / profile.n_teeth:
-        raise InputError("the root arc crosses the edge of the tooth sector, no root land is left")
+        raise InputError("the root end crosses the edge of the tooth sector, no root land is left")
     if angle.min() <= 0.0 or angle.max() >= np.pi / profile.n_teeth:
         raise InputError("the flank leaves its half of the tooth sector")
     outward = np.einsum("ij,ij->i", profile.tangent(s), profile.point(s))

@@ -1,41 +1,312 @@
-"""The cam's surface: distance, gradient and Hessian."""
+"""The cam's surface: distance, normal and curvature against dense searches, joints, perimeters, pins, derivatives."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq
+from scipy.special import ellipe
 
-from swgpar.cams import EllipticalCam
+from swgpar.cams import EllipticalCam, make_cam, pin_travel, taut_length
+from swgpar.cams.chain import ChainCam, Parabola
+from swgpar.cams.four_roller import four_roller
+from swgpar.cams.parabolic import Side, parabolic
+from swgpar.cams.simplified import simplified
 from swgpar.design import load_design
+from swgpar.errors import InputError
 from swgpar.micro_geometry import WaveGeneratorSurface, crowning
+from swgpar.steps import sequence, start
 
-DRIVERS = Path(__file__).parents[2] / "drivers"
+REFERENCE = Path(__file__).parents[2] / "drivers" / "cup_45deg.toml"
+A, B, R_FS = 59.2, 57.2, 58.2
 
 
-def test_distance_against_a_dense_search() -> None:
-    cam = EllipticalCam(59.2, 57.2)
+@dataclass(frozen=True)
+class Curve:
+    """A piece x(t) of a reference curve, low <= t <= high, with its first two derivatives: functions (n,) to (n, 2)."""
+
+    low: float
+    high: float
+    x: Callable
+    dx: Callable
+    ddx: Callable
+
+    def turned(self) -> Curve:
+        """The piece after half a turn."""
+        return Curve(self.low, self.high, *(lambda t, f=f: -f(t) for f in (self.x, self.dx, self.ddx)))
+
+
+def columns(x, y) -> np.ndarray:
+    return np.stack(np.broadcast_arrays(x, y), axis=-1)
+
+
+def arc(cx: float, cy: float, r: float, low: float, high: float) -> Curve:
+    return Curve(
+        low,
+        high,
+        lambda t: columns(cx + r * np.cos(t), cy + r * np.sin(t)),
+        lambda t: columns(-r * np.sin(t), r * np.cos(t)),
+        lambda t: columns(-r * np.cos(t), -r * np.sin(t)),
+    )
+
+
+def ellipse(a: float, b: float) -> list[Curve]:
+    whole = Curve(
+        0.0,
+        2.0 * np.pi,
+        lambda t: columns(b * np.cos(t), a * np.sin(t)),
+        lambda t: columns(-b * np.sin(t), a * np.cos(t)),
+        lambda t: columns(-b * np.cos(t), -a * np.sin(t)),
+    )
+    return [whole]
+
+
+def stadium(a: float, r: float) -> list[Curve]:
+    h = a - r
+    side = Curve(-h, h, lambda t: columns(r, t), lambda t: columns(0.0, 1.0 + 0.0 * t), lambda t: columns(0.0, 0.0 * t))
+    top = arc(0.0, h, r, 0.0, np.pi)
+    return [side, top, side.turned(), top.turned()]
+
+
+def quarter(a: float, b: float, a_p: float, C_p: float, r_c: float, tilt: float, mirror: float) -> list[Curve]:
+    """Right side of a lobe from eqs 3.5 to 3.11, its aperture by a root of the source's equation; mirror = -1: left."""
+    c, s = np.cos(tilt), np.sin(tilt)
+
+    def placed(x, y):
+        return columns(mirror * (c * x - s * y), s * x + c * y)
+
+    end = C_p * b
+    curve = Curve(
+        0.0,
+        end,
+        lambda t: placed(t, -a_p * t**2) + [0.0, a],
+        lambda t: placed(1.0 + 0.0 * t, -2.0 * a_p * t),
+        lambda t: placed(0.0 * t, -2.0 * a_p + 0.0 * t),
+    )
+    # to the right side: the mirror image of everything at the end
+    px, py = curve.x(np.array(end)) * [mirror, 1.0]
+    tx, ty = curve.dx(np.array(end)) * [mirror, 1.0]
+    theta = np.arctan2(tx, -ty)
+    cx, cy = px - r_c * np.cos(theta), py - r_c * np.sin(theta)
+
+    def miss(alpha: float) -> float:
+        r_l = r_c + cy / np.sin(alpha)
+        return cx - (r_l - r_c) * np.cos(alpha) - (b - r_l)
+
+    alpha = brentq(miss, 1e-6, theta, xtol=1e-15, rtol=1e-15)
+    r_l = r_c + cy / np.sin(alpha)
+    if mirror > 0.0:
+        return [arc(b - r_l, 0.0, r_l, 0.0, alpha), arc(cx, cy, r_c, alpha, theta), curve]
+    pi = np.pi
+    return [curve, arc(-cx, cy, r_c, pi - theta, pi - alpha), arc(r_l - b, 0.0, r_l, pi - alpha, pi)]
+
+
+def parabola(a: float, b: float, right: tuple, left: tuple, tilt: float) -> list[Curve]:
+    upper = quarter(a, b, *right, tilt, 1.0) + quarter(a, b, *left, -tilt, -1.0)
+    return upper + [piece.turned() for piece in upper]
+
+
+def rollers(a: float, beta: float, r: float) -> list[Curve]:
+    x, y = (a - r) * np.sin(beta), (a - r) * np.cos(beta)
+    return [arc(i * x, j * y, r, -np.pi, np.pi) for i in (1, -1) for j in (1, -1)]
+
+
+IMPROVED, OTHER = (0.0097, 0.51, 10.0), (0.0095, 0.45, 12.0)
+STEEP = (0.0162, 0.86, 5.0)
+LAMBDA = np.radians(0.5)
+BETA = np.radians(10.0)
+CAMS = {
+    "elliptical": (EllipticalCam(A, B), ellipse(A, B)),
+    "elliptical-0.5": (EllipticalCam(A, 0.5 * B), ellipse(A, 0.5 * B)),
+    "simplified": (simplified(A, 0.97 * B), stadium(A, 0.97 * B)),
+    "simplified-0.5": (simplified(A, 0.5 * B), stadium(A, 0.5 * B)),
+    "parabolic": (parabolic(A, B, Side(*IMPROVED), Side(*IMPROVED)), parabola(A, B, IMPROVED, IMPROVED, 0.0)),
+    "parabolic-0.5": (
+        parabolic(A, 0.5 * B, Side(0.01, 0.5, 10.0), Side(0.01, 0.5, 10.0)),
+        parabola(A, 0.5 * B, (0.01, 0.5, 10.0), (0.01, 0.5, 10.0), 0.0),
+    ),
+    "parabolic-flat": (
+        parabolic(A, B, Side(0.005, 0.5, 10.0), Side(0.005, 0.5, 10.0)),
+        parabola(A, B, (0.005, 0.5, 10.0), (0.005, 0.5, 10.0), 0.0),
+    ),
+    "parabolic-steep": (  # its ends lie more than 1 / (2 a_p) below the apex
+        parabolic(A, 0.9 * B, Side(*STEEP), Side(*IMPROVED)),
+        parabola(A, 0.9 * B, STEEP, IMPROVED, 0.0),
+    ),
+    "angle-based": (
+        parabolic(A, B, Side(*IMPROVED), Side(*IMPROVED), LAMBDA),
+        parabola(A, B, IMPROVED, IMPROVED, LAMBDA),
+    ),
+    "bilateral": (parabolic(A, B, Side(*OTHER), Side(*IMPROVED)), parabola(A, B, OTHER, IMPROVED, 0.0)),
+    "four_roller": (four_roller(A, BETA, 8.0), rollers(A, BETA, 8.0)),
+}
+CHAINS = [name for name, (cam, _) in CAMS.items() if isinstance(cam, ChainCam)]
+SIDE, OTHER_SIDE = ({"a_p": a_p, "C_p": C_p, "r_c": r_c} for a_p, C_p, r_c in (IMPROVED, OTHER))
+
+
+def keys(cam: str, **more) -> dict:
+    return {"type": cam, "face_width": 10.0, **more}
+
+
+SECTIONS = {
+    "elliptical": keys("elliptical"),
+    "simplified": keys("simplified", C=0.97),
+    "parabolic": keys("parabolic", **SIDE),
+    "angle-based": keys("asymmetric_parabolic", rotational_angle=0.5, right=SIDE, left=SIDE),
+    "bilateral": keys("asymmetric_parabolic", right=OTHER_SIDE, left=SIDE),
+    "four_roller": keys("four_roller", beta=10.0, r_4=8.0),
+}
+
+
+def nearest(pieces: list[Curve], p: np.ndarray) -> tuple[float, np.ndarray, np.ndarray, float]:
+    """Distance of p, foot, outward normal and curvature there: a dense search, then the root of (x - p) . x'."""
+    best = (np.inf,)
+    for piece in pieces:
+        t = np.linspace(piece.low, piece.high, 1001)
+        i = int(np.hypot(*(piece.x(t) - p).T).argmin())
+        low, high = t[max(i - 1, 0)], t[min(i + 1, 1000)]
+
+        def slope(t: float, piece: Curve = piece) -> float:
+            return float((piece.x(np.array(t)) - p) @ piece.dx(np.array(t)))
+
+        foot = brentq(slope, low, high, xtol=1e-15, rtol=1e-15) if slope(low) * slope(high) < 0.0 else t[i]
+        gap = float(np.hypot(*(piece.x(np.array(foot)) - p)))
+        if gap < best[0]:
+            best = (gap, piece, np.array(foot))
+    gap, piece, t = best
+    x, dx, ddx = piece.x(t), piece.dx(t), piece.ddx(t)
+    bend = (dx[0] * ddx[1] - dx[1] * ddx[0]) / np.hypot(*dx) ** 3
+    normal = np.array([dx[1], -dx[0]]) / np.hypot(*dx) * np.sign(bend or dx[1] * x[0] - dx[0] * x[1])
+    return gap, x, normal, abs(float(bend))
+
+
+@pytest.mark.parametrize("name", CAMS)
+def test_distance_normal_and_curvature_against_a_dense_search(name: str) -> None:
+    cam, pieces = CAMS[name]
     rng = np.random.default_rng(1)
-    angle, radius = rng.uniform(0, 2 * np.pi, 40), rng.uniform(56.0, 61.0, 40)
-    points = np.column_stack([radius * np.sin(angle), radius * np.cos(angle)])
-    distance, normal, _ = cam.evaluate(points)
-    for p, d, n in zip(points, distance, normal):
-        t = np.linspace(0, 2 * np.pi, 20001)
-        for _ in range(4):  # refine around the nearest sample
-            away = np.hypot(57.2 * np.sin(t) - p[0], 59.2 * np.cos(t) - p[1])
-            best = t[away.argmin()]
-            width = 2.0 * (t[1] - t[0])
-            t = np.linspace(best - width, best + width, 2001)
-        assert abs(d) == pytest.approx(away.min(), abs=1e-9)
-        assert np.sign(d) == np.sign((p[0] / 57.2) ** 2 + (p[1] / 59.2) ** 2 - 1.0)
-        foot = p - d * n
-        assert (foot[0] / 57.2) ** 2 + (foot[1] / 59.2) ** 2 == pytest.approx(1.0, abs=1e-12)
+    feet, outward = [], []
+    for piece in pieces:
+        t = rng.uniform(piece.low, piece.high, 4)
+        dx = piece.dx(t)
+        n = np.stack([dx[:, 1], -dx[:, 0]], axis=-1) / np.hypot(*dx.T)[:, None]
+        feet.append(piece.x(t))
+        bend = dx[:, 0] * piece.ddx(t)[:, 1] - dx[:, 1] * piece.ddx(t)[:, 0]
+        outside = np.where(np.abs(bend) > 0.0, bend, np.einsum("ij,ij->i", n, feet[-1]))
+        outward.append(n * np.sign(outside)[:, None])
+    feet, outward = np.concatenate(feet), np.concatenate(outward)
+    for height in (-1.5, 0.3, 30.0):
+        points = feet + height * outward
+        distance, normal, k = cam.evaluate(points)
+        for p, d, n, bend in zip(points, distance, normal, k, strict=True):
+            gap, foot, expected, curvature = nearest(pieces, p)
+            signed = gap * np.sign((p - foot) @ expected)
+            assert d == pytest.approx(signed, rel=1e-9)
+            assert np.abs(n - expected).max() < 1e-9
+            assert bend == pytest.approx(curvature / (1.0 + curvature * signed), rel=1e-9, abs=1e-15)
 
 
+@pytest.mark.parametrize("name", CHAINS)
+def test_chains_are_closed_and_smooth(name: str) -> None:
+    cam = CAMS[name][0]
+    assert np.abs(np.hypot(*cam.tangents.T) - 1.0).max() < 1e-14
+    for joint, tangent, before, after in zip(cam.joints, cam.tangents, cam.pieces, cam.pieces[1:], strict=False):
+        for piece in (before, after):
+            distance, normal, _ = piece.evaluate(joint[None])
+            assert abs(distance[0]) < 1e-12 * A
+            assert abs(normal[0] @ tangent) < 1e-12
+    first, last = cam.pieces[0].evaluate(-cam.outline(2)[1:]), cam.pieces[-1].evaluate(cam.outline(2)[1:])
+    assert first[1][0] == pytest.approx([1.0, 0.0], abs=1e-12) and last[1][0] == pytest.approx([-1.0, 0.0], abs=1e-12)
+    x = cam.outline(3600)
+    assert np.abs(cam.evaluate(x)[0]).max() < 1e-11
+    edge = np.roll(x, -1, axis=0) - x
+    turn = np.angle(np.exp(1j * np.diff(np.arctan2(edge[:, 1], edge[:, 0]))))
+    assert turn.min() > -1e-9  # convex
+
+
+@pytest.mark.parametrize("name", CAMS)
+def test_half_a_turn_changes_nothing(name: str) -> None:
+    cam = CAMS[name][0]
+    x = 1.01 * cam.outline(400)
+    x = x[np.abs(x[:, 1]) > 1e-9]  # on the minor axis the curvature may jump
+    here, there = cam.evaluate(x), cam.evaluate(-x)
+    assert np.allclose(here[0], there[0], atol=1e-12) and np.allclose(here[1], -there[1], atol=1e-12)
+    assert np.allclose(here[2], there[2], atol=1e-12)
+
+
+def perimeter(pieces: list[Curve]) -> float:
+    return sum(quad(lambda t, f=piece.dx: np.hypot(*f(np.array(t))), piece.low, piece.high)[0] for piece in pieces)
+
+
+@pytest.mark.parametrize("name", CAMS)
+def test_taut_length(name: str) -> None:
+    cam, pieces = CAMS[name]
+    exact = perimeter(pieces)
+    if name == "four_roller":
+        x, y = cam.center
+        exact = 2.0 * np.pi * cam.radius + 4.0 * (x + y)
+    assert taut_length(cam) == pytest.approx(exact, rel=1e-6)
+
+
+def test_the_ellipse_is_longer_than_the_inner_circumference() -> None:
+    """An interference of 7.4e-5, 4.3 micrometres of radius."""
+    exact = 4.0 * A * ellipe(1.0 - (B / A) ** 2)
+    excess = taut_length(EllipticalCam(A, B)) / (2.0 * np.pi * R_FS) - 1.0
+    assert excess == pytest.approx(exact / (2.0 * np.pi * R_FS) - 1.0, abs=1e-6)
+    assert excess == pytest.approx(7.4e-5, abs=1e-6)
+
+
+def test_positive_rotational_angle_raises_the_right_side() -> None:
+    cam = CAMS["angle-based"][0]
+    right, left = cam.evaluate(np.array([[10.0, 58.2], [-10.0, 58.2]]))[0]
+    assert right < CAMS["parabolic"][0].evaluate(np.array([[10.0, 58.2]]))[0][0] < left
+    assert np.hypot(*cam.outline(3600).T).max() > A  # section 5.7.1: beyond the circle of radius a
+    assert cam.evaluate(np.array([[0.0, A]]))[0][0] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_rollers_reach_to_the_circle_of_radius_a() -> None:
+    distance = CAMS["four_roller"][0].evaluate(A * np.array([[np.sin(BETA), np.cos(BETA)]]))[0]
+    assert distance[0] == pytest.approx(0.0, abs=1e-12)
+    assert np.hypot(*CAMS["four_roller"][0].outline(4000).T).max() == pytest.approx(A, rel=1e-6)
+
+
+def test_foot_on_the_parabola_by_its_cubic() -> None:
+    tilted = Parabola(A, 0.0097, 0.1)
+    point, normal = tilted.at(17.0)
+    distance, n, k = tilted.evaluate(point + 2.5 * normal[None])
+    assert distance[0] == pytest.approx(2.5, rel=1e-12) and n[0] == pytest.approx(normal, abs=1e-13)
+    radius = (1.0 + (2.0 * 0.0097 * 17.0) ** 2) ** 1.5 / (2.0 * 0.0097)
+    assert 1.0 / k[0] == pytest.approx(radius + 2.5, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", SECTIONS)
+def test_pins_fit_into_the_spline_and_end_at_the_cam(name: str, design_file: Callable) -> None:
+    design = load_design(design_file({"wave_generator": SECTIONS[name]}))
+    cam = make_cam(design)
+    travel = pin_travel(cam, R_FS)
+    angle = np.radians(np.linspace(-60.0, 60.0, 20001))
+    inner = R_FS * np.stack([np.sin(angle), np.cos(angle)], axis=-1) + [0.0, travel]
+    gap = cam.evaluate(inner)[0]
+    assert abs(gap.min()) < 1e-5
+    assert travel >= 0.5 * design.d - 1e-12
+    if name in ("elliptical", "simplified", "parabolic", "bilateral"):
+        assert travel == pytest.approx(0.5 * design.d, abs=1e-12)
+    if name == "four_roller":
+        x, y = cam.center
+        assert travel == pytest.approx(y - np.sqrt((R_FS - cam.radius) ** 2 - x**2), rel=1e-5)
+    assert start(design).pins == travel
+    assert [i.scene.pins for i in sequence(design) if i.scene.step == 1][-1] == 0.0
+
+
+@pytest.mark.parametrize("name", SECTIONS)
 @pytest.mark.parametrize("shape", ["parabolic", "circular"])
-def test_derivatives_of_the_modified_surface(shape: str) -> None:
-    design = load_design(DRIVERS / "cup_45deg.toml", [f"micro_geometry.crowning_shape={shape}"])
+def test_derivatives_of_the_modified_surface(shape: str, name: str, design_file: Callable) -> None:
+    path = design_file({"wave_generator": SECTIONS[name]})
+    design = load_design(path, [f"micro_geometry.crowning_shape={shape}"])
     surface = WaveGeneratorSurface(design)
     rng = np.random.default_rng(2)
     angle, radius = rng.uniform(0, 2 * np.pi, 50), rng.uniform(57.0, 60.0, 50)
@@ -51,7 +322,7 @@ def test_derivatives_of_the_modified_surface(shape: str) -> None:
 
 
 def test_slope_raises_the_open_end_at_the_major_axis() -> None:
-    surface = WaveGeneratorSurface(load_design(DRIVERS / "cup_45deg.toml", ["micro_geometry.wg_crowning=0"]))
+    surface = WaveGeneratorSurface(load_design(REFERENCE, ["micro_geometry.wg_crowning=0"]))
     open_end, closed_end = surface.evaluate(np.array([[0.0, 59.2, -5.0], [0.0, 59.2, 5.0]]))[0]
     assert open_end == pytest.approx(-0.09) and closed_end == pytest.approx(0.09)
 
@@ -61,3 +332,32 @@ def test_crowning_is_the_amount_at_the_edges_and_nothing_in_the_middle(shape: st
     value, slope, _ = crowning(0.1, np.array([-5.0, 0.0, 5.0]), 10.0, shape)
     assert value == pytest.approx([0.1, 0.0, 0.1], abs=1e-12)
     assert slope[0] == -slope[2] and slope[1] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("section", "key"),
+    [
+        (keys("parabolic", a_p=0.05, C_p=0.51, r_c=10.0), "wave_generator.a_p = 0.05"),
+        (keys("parabolic", a_p=0.0097, C_p=1.0, r_c=10.0), "wave_generator.C_p = 1"),
+        (keys("parabolic", a_p=0.0097, C_p=0.9, r_c=60.0), "wave_generator.r_c = 60"),
+        (keys("parabolic", a_p=0.0097, C_p=0.51), "wave_generator.r_c is missing"),
+        (keys("parabolic", beta=10.0), "wave_generator.beta = 10"),
+        (keys("asymmetric_parabolic", right=SIDE, left={**SIDE, "r_c": 900.0}), "wave_generator.left.r_c = 900"),
+        (keys("asymmetric_parabolic", right={**SIDE, "r_c": -1.0}, left=SIDE), "wave_generator.right.r_c = -1"),
+        (keys("asymmetric_parabolic", right=SIDE), "wave_generator.left is missing"),
+        (
+            keys("asymmetric_parabolic", rotational_angle=20.0, right=SIDE, left=SIDE),
+            "wave_generator.rotational_angle = 20",
+        ),
+        (keys("four_roller", beta=10.0, r_4=9.0), "wave_generator.r_4 = 9"),
+        (keys("four_roller", beta=10.0, r_4=8.0, C=1.0), "wave_generator.C = 1"),
+        (keys("four_roller", beta=70.0, r_4=8.0), "wave_generator.beta = 70"),
+        (keys("simplified", C=0.2), "wave_generator.C = 0.2"),
+        (keys("round"), 'wave_generator.type = "round"'),
+    ],
+)
+def test_cams_that_cannot_be_built_are_refused(section: dict, key: str, design_file: Callable) -> None:
+    with pytest.raises(InputError) as caught:
+        load_design(design_file({"wave_generator": section}))
+    message = str(caught.value)
+    assert key in message and ("allowed" in message or "missing" in message) and "\n" not in message, message

@@ -39,6 +39,18 @@ SMALL = (
         for key, radius in (("r_tip", 0.3), ("straight_l", 0.2), ("r_dedendum", 2.0), ("r_root", 0.3))
     ),
 )
+# section 6.5.4, and involutes of both cutters; their tip edges are sharp
+DOUBLE_ARC = tuple(
+    item
+    for gear in GEARS
+    for item in (f"{gear}.profile={{type='double_arc', r_addendum=1.0, r_dedendum=0.6}}", f"{gear}.c_l=0.0")
+)
+INVOLUTE = (
+    "flexible_spline.profile={type='involute', cutter_radius=0.2}",
+    "ring_gear.profile={type='involute', cutter_radius=0.2, cutter_teeth=80}",
+    "ring_gear.c_P=1.0",
+)
+SHIFTED = ("flexible_spline.profile.shift=0.3", "ring_gear.profile.shift=0.35", "ring_gear.profile.pressure_angle=20.4")
 
 
 @lru_cache
@@ -58,6 +70,10 @@ CASES += [
     pytest.param(RECIPES["medium"], ("cup.thickness_coef=0.95",), id="thick-cup"),
     pytest.param(RECIPES["medium"], ("cup.thickness_coef=0.2",), id="thin-cup"),
     pytest.param(RECIPES["full"], ("wave_generator.face_width=6.0",), id="narrow-cam"),
+    pytest.param(RECIPES["coarse"], DOUBLE_ARC, id="double-arc"),
+    pytest.param(RECIPES["coarse"], INVOLUTE, id="involute"),
+    pytest.param(RECIPES["full"], INVOLUTE, id="involute-full"),
+    pytest.param(RECIPES["coarse"], (*INVOLUTE, *SHIFTED), id="involute-shifted"),
 ]
 
 
@@ -111,6 +127,13 @@ def test_jacobians_are_positive_and_elements_are_good(recipe: Path, overrides: t
         assert mesh.quality["min_jacobian"] > 0.0
         assert mesh.quality["min_scaled_jacobian"] > 0.5
         assert np.unique(mesh.hexes).size == len(mesh.coords)
+
+
+@pytest.mark.parametrize("recipe", RECIPES)
+def test_double_arcs_in_finer_recipes(recipe: str) -> None:
+    # elements of the top land narrow towards the tooth's inside: less well shaped than with rounded tip edges
+    for mesh in meshes(RECIPES[recipe], *DOUBLE_ARC).values():
+        assert mesh.quality["min_jacobian"] > 0.0 and mesh.quality["min_scaled_jacobian"] > 0.4
 
 
 @pytest.mark.parametrize("external", [True, False])

@@ -1,0 +1,90 @@
+"""What the directly defined profiles have in common: the pitch point, and the directions at it (section 3.3.2)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from swgpar.profiles.curve import Segment
+
+
+@dataclass(frozen=True)
+class FlankFrame:
+    """Flank at x > 0 of a tooth centred on +y; side = +1 for external, -1 for internal teeth.
+
+    Attributes
+    ----------
+    n_teeth : int
+    module : float, mm
+    pressure_angle : float, rad
+    addendum, dedendum : float, mm
+        Heights of the tooth above and below the pitch circle.
+    c_P : float
+        Angular tooth thickness reduction (eq. 3.22).
+    external : bool
+    """
+
+    n_teeth: int
+    module: float
+    pressure_angle: float
+    addendum: float
+    dedendum: float
+    c_P: float
+    external: bool
+
+    @property
+    def side(self) -> float:
+        return 1.0 if self.external else -1.0
+
+    @property
+    def r_pitch(self) -> float:
+        """Pitch radius, mm (eq. 3.13)."""
+        return 0.5 * self.n_teeth * self.module
+
+    @property
+    def r_tip_circle(self) -> float:
+        """Addendum radius, mm (eq. 3.16)."""
+        return self.r_pitch + self.side * self.addendum
+
+    @property
+    def r_root_circle(self) -> float:
+        """Dedendum radius, mm (eq. 3.17)."""
+        return self.r_pitch - self.side * self.dedendum
+
+    @property
+    def half_thickness(self) -> float:
+        """Angle between the tooth's centre line and the pitch point, rad (eq. 3.22)."""
+        return 0.5 * self.c_P * np.pi / self.n_teeth
+
+    @property
+    def star(self) -> float:
+        """Angle of the normal at the pitch point, rad (eq. 3.27)."""
+        return self.pressure_angle - self.side * self.half_thickness
+
+    @property
+    def pitch(self) -> np.ndarray:
+        """Pitch point (2,), mm (eq. 3.23)."""
+        return self.r_pitch * np.array([np.sin(self.half_thickness), np.cos(self.half_thickness)])
+
+    @property
+    def up(self) -> np.ndarray:
+        """Unit tangent (2,) at the pitch point, towards the tip (eq. 3.29)."""
+        return np.array([-np.sin(self.star), self.side * np.cos(self.star)])
+
+    def n(self, beta: float) -> np.ndarray:
+        """Outward normal (2,) of inclination beta, rad (eqs 3.28, 3.34)."""
+        return np.array([np.cos(beta), self.side * np.sin(beta)])
+
+    def beta_of(self, center: np.ndarray) -> float:
+        """Inclination, rad, of the normal common to an arc about `center` (2,) and to a circle about the axis."""
+        x, y = self.side * center / np.hypot(*center)
+        return float(np.arctan2(self.side * y, x))
+
+    def segment(self, name: str, start: np.ndarray, beta: float, convexity: float, length: float) -> Segment:
+        """Segment from `start` (2,), mm, where the normal's inclination is beta.
+
+        `convexity` is its curvature, 1/mm, above 0 where the tooth is convex, and `length` its arc length, mm.
+        """
+        direction = beta - 0.5 * np.pi if self.external else 0.5 * np.pi - beta
+        return Segment(name, (float(start[0]), float(start[1])), direction, -self.side * convexity, float(length))
