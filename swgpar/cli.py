@@ -79,14 +79,16 @@ def parser() -> argparse.ArgumentParser:
 
 def _on_all(comm: MPI.Comm, read: Callable[[], T]) -> T:
     """What `read` returns; raises InputError on all ranks when one cannot read it, so that none waits for another."""
+    from swgpar.results.atomic import first_reason
+
     value, reason = None, None
     try:
         value = read()
     except InputError as error:
         reason = str(error)
-    reasons = [r for r in comm.allgather(reason) if r is not None]
-    if reasons:
-        raise InputError(reasons[0])
+    reason = first_reason(comm, reason)
+    if reason is not None:
+        raise InputError(reason)
     return value
 
 

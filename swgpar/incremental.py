@@ -190,7 +190,7 @@ class Runner:
                 predict(self.model, x, 0.0, scene.rotation - self.scene.rotation)
             elif scene.name == "deflect" and self.scene.name == "deflect":
                 # the ring bends in proportion to the pins' travel
-                travel = 0.5 * self.design.d
+                travel = start(self.design).pins
                 x.scale((travel - scene.pins) / (travel - self.scene.pins))
             contacts = [value is not None for value in (scene.cam, scene.pins, scene.teeth)]
             before = [value is not None for value in (self.scene.cam, self.scene.pins, self.scene.teeth)]

@@ -85,10 +85,12 @@ class Bordered:
         if len(self.columns) != len(sides):
             self.columns = [vector.duplicate() for vector in sides]
         self.ksp.setInitialGuessNonzero(self.modes is not None)  # those of the last tangent
+        self.failed = False
         for vector, solution in zip(sides, self.columns):
             self.ksp.solve(vector, solution)
             if self.ksp.getConvergedReason() < 0:
-                solution.set(np.nan)
+                self.failed = True
+                solution.set(0.0)  # nothing to start the next tangent's from
         self.ksp.setInitialGuessNonzero(False)
         b, c, nb = self.grounding, self.border, len(self.grounding)
         small = np.array([[left.dot(right) for right in self.columns] for left in b + c]).reshape(len(b + c), -1)
@@ -108,7 +110,7 @@ class Bordered:
 
     def apply(self, pc: PETSc.PC, right: PETSc.Vec, x: PETSc.Vec) -> None:
         self.ksp.solve(right, x)
-        if self.ksp.getConvergedReason() < 0:
+        if self.failed or self.ksp.getConvergedReason() < 0:
             x.set(np.nan)  # the residual at such a step is not finite: the increment is cut back
             return
         entries = self.multipliers(right)

@@ -57,11 +57,6 @@ def block(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.n
     return points.reshape(-1, 3), np.stack(hexes, axis=1), number
 
 
-def face_corners(grid: np.ndarray) -> np.ndarray:
-    """Corners (n, 4) of the faces of a grid of nodes, as in `swgpar.contact.segments.FlankFaces`."""
-    return np.stack([grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]], -1).reshape(-1, 4).astype(np.int32)
-
-
 @dataclass
 class Blocks:
     """The flank of the lower block is the master, the faces of the upper one are the slaves.

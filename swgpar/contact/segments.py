@@ -38,8 +38,7 @@ class FlankFaces:
 
 def flank_faces(mesh: SectorMesh, grid: FlankGrid, removed: float, width: float, shape_name: str) -> FlankFaces:
     """Faces of a flank; removed : mm, crowning at |z| = width / 2, of the curve `shape_name`."""
-    n = grid.nodes
-    corners = np.stack([n[:-1, :-1], n[1:, :-1], n[1:, 1:], n[:-1, 1:]], axis=-1).reshape(-1, 4)
+    corners = face_corners(grid.nodes)
     ds, dz = np.diff(grid.s), np.diff(grid.z)
     size = np.stack(np.meshgrid(ds, dz, indexing="ij"), axis=-1).reshape(-1, 2)
     a, b = (v.ravel() for v in np.meshgrid(SAMPLES, SAMPLES, indexing="ij"))
@@ -55,6 +54,11 @@ def flank_faces(mesh: SectorMesh, grid: FlankGrid, removed: float, width: float,
     offset = np.sum((exact - facet[:, :2]) * outward, axis=1).reshape(-1, len(SAMPLES), len(SAMPLES))
     middle = profile.normal(np.repeat(grid.s[:-1] + 0.5 * ds, len(dz))) * side
     return FlankFaces(corners, size, np.column_stack([middle, np.zeros(len(middle))]), offset)
+
+
+def face_corners(n: np.ndarray) -> np.ndarray:
+    """Corners (n_face, 4) of the faces of a grid of nodes (n_s + 1, n_z + 1), as in `FlankFaces`."""
+    return np.stack([n[:-1, :-1], n[1:, :-1], n[1:, 1:], n[:-1, 1:]], axis=-1).reshape(-1, 4)
 
 
 def bilinear(a: np.ndarray, b: np.ndarray) -> np.ndarray:

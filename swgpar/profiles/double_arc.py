@@ -61,11 +61,4 @@ def double_arc(
         ("straight", top, star, 0.0, length),
         ("dedendum", bottom, star, -1.0 / r_dedendum, r_dedendum * (beta_r - star)),
     ]
-    for piece, *_, size in pieces:
-        if size < 0.0:
-            raise InputError(
-                f"{name}.r_{piece}: the {piece} arc would have a negative length ({size:.3g} mm); "
-                "allowed are radii and a c_l for which all arcs run from tip to root"
-            )
-    segments = tuple(frame.segment(*piece) for piece in pieces if piece[-1] > 1e-12 * frame.module)
-    return ToothProfile(segments, frame.external, frame.r_tip_circle, frame.r_root_circle, frame.n_teeth)
+    return frame.profile(pieces, name, "radii and a c_l")

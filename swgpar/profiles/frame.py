@@ -6,7 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from swgpar.profiles.curve import Segment
+from swgpar.errors import InputError
+from swgpar.profiles.curve import Segment, ToothProfile
+
+Piece = tuple[str, np.ndarray, float, float, float]
+"""Name, start, inclination, convexity and length of a segment, as `FlankFrame.segment` takes them."""
 
 
 @dataclass(frozen=True)
@@ -88,3 +92,17 @@ class FlankFrame:
         """
         direction = beta - 0.5 * np.pi if self.external else 0.5 * np.pi - beta
         return Segment(name, (float(start[0]), float(start[1])), direction, -self.side * convexity, float(length))
+
+    def profile(self, pieces: list[Piece], name: str, allowed: str) -> ToothProfile:
+        """Flank of `pieces` from tip to root; those of no length are left out, a negative length is refused.
+
+        name : section of the design file;  allowed : what may be changed, for the message
+        """
+        for piece, *_, length in pieces:
+            if length < 0.0:
+                raise InputError(
+                    f"{name}.r_{piece}: the {piece} arc would have a negative length ({length:.3g} mm); "
+                    f"allowed are {allowed} for which all arcs run from tip to root"
+                )
+        segments = tuple(self.segment(*piece) for piece in pieces if piece[-1] > 1e-12 * self.module)
+        return ToothProfile(segments, self.external, self.r_tip_circle, self.r_root_circle, self.n_teeth)

@@ -66,11 +66,4 @@ def quadruple_arc(
         ("dedendum", bottom, star, -1.0 / r_dedendum, r_dedendum * a_d),
         ("root", o_r - r_root * n(star + a_d), star + a_d, -1.0 / r_root, r_root * (beta_r - star - a_d)),
     ]
-    for piece, *_, length in pieces:
-        if length < 0.0:
-            raise InputError(
-                f"{name}.r_{piece}: the {piece} arc would have a negative length ({length:.3g} mm); "
-                "allowed are radii for which all arcs run from tip to root"
-            )
-    segments = tuple(frame.segment(*piece) for piece in pieces if piece[-1] > 1e-12 * frame.module)
-    return ToothProfile(segments, frame.external, frame.r_tip_circle, frame.r_root_circle, frame.n_teeth)
+    return frame.profile(pieces, name, "radii")

@@ -29,6 +29,11 @@ def sentence(error: BaseException) -> str:
     return str(error).splitlines()[0] if str(error) else type(error).__name__
 
 
+def first_reason(comm: MPI.Comm, reason: str | None) -> str | None:
+    """The reason of the first rank that has one, None where all went well; collective."""
+    return next((r for r in comm.allgather(reason) if r is not None), None)
+
+
 @contextmanager
 def agreed(comm: MPI.Comm, path: Path, action: str = "write") -> Iterator[None]:
     """Run a block in which a rank may fail alone, and raise OutputError on all ranks if one did.
@@ -41,9 +46,9 @@ def agreed(comm: MPI.Comm, path: Path, action: str = "write") -> Iterator[None]:
         yield
     except (OSError, RuntimeError, ValueError, KeyError) as error:
         reason = sentence(error)
-    reasons = [r for r in comm.allgather(reason) if r is not None]
-    if reasons:
-        raise OutputError(f"cannot {action} {path}: {reasons[0]}")
+    reason = first_reason(comm, reason)
+    if reason is not None:
+        raise OutputError(f"cannot {action} {path}: {reason}")
 
 
 def reserve(path: Path, size: int) -> None:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from contact_blocks import Blocks, Rows, block, face_corners, master
+from contact_blocks import Blocks, Rows, block, master
 
-from swgpar.contact.segments import SAMPLES
+from swgpar.contact.segments import SAMPLES, bilinear, face_corners
 from swgpar.contact.teeth import Faces, PlacedFaces
 from swgpar.kernel import contact_flanks
 
@@ -17,7 +17,7 @@ def shape_functions(order: int) -> tuple[np.ndarray, np.ndarray]:
     t, w = np.polynomial.legendre.leggauss(order)
     t, w = 0.5 * (t + 1), 0.5 * w
     a, b = (v.ravel() for v in np.meshgrid(t, t, indexing="ij"))
-    return np.column_stack([(1 - a) * (1 - b), a * (1 - b), a * b, (1 - a) * b]), np.outer(w, w).ravel()
+    return bilinear(a, b), np.outer(w, w).ravel()
 
 
 def test_tangent_and_balance_on_a_curved_deformed_master() -> None:
@@ -77,7 +77,7 @@ def non_uniformity(slave: int) -> float:
     points = np.vstack([lower, upper])
     flanks = master(np.column_stack([line, np.full(5, 0.5)]), np.tile([1.0, 0.0], (5, 1)), line, line, 0)
     flanks.conn[0] = lower_grid[:, -1]
-    conn = face_corners(first + upper_grid[:, 0])
+    conn = face_corners(first + upper_grid[:, 0]).astype(np.int32)
     placed = PlacedFaces(
         conn,
         np.zeros_like(conn, dtype=np.uint8),
@@ -134,7 +134,7 @@ def test_hertz_line_contact() -> None:
     points, hexes = points[order], number[hexes]
     flanks = master(np.column_stack([line, 0.0 * line]), np.tile([1.0, 0.0], (len(line), 1)), line, z, 0)
     flanks.conn[0] = number[lower_grid[:, -1]]
-    conn = face_corners(number[first + upper_grid[:, 0]])
+    conn = face_corners(number[first + upper_grid[:, 0]]).astype(np.int32)
     chord = points[conn[:, 1]] - points[conn[:, 0]]
     length = np.linalg.norm(chord, axis=1)
     normal = np.column_stack([chord[:, 1], -chord[:, 0], 0.0 * length]) / length[:, None]
