@@ -8,43 +8,23 @@ import numpy as np
 
 from swgpar.errors import InputError
 from swgpar.profiles.curve import Segment, ToothProfile
+from swgpar.profiles.teeth import Teeth
 
 Piece = tuple[str, np.ndarray, float, float, float]
 """Name, start, inclination, convexity and length of a segment, as `FlankFrame.segment` takes them."""
 
 
 @dataclass(frozen=True)
-class FlankFrame:
-    """Flank at x > 0 of a tooth centred on +y; side = +1 for external, -1 for internal teeth.
+class FlankFrame(Teeth):
+    """Flank at x > 0 of a tooth centred on +y.
 
     Attributes
     ----------
-    n_teeth : int
-    module : float, mm
-    pressure_angle : float, rad
-    addendum, dedendum : float, mm
-        Heights of the tooth above and below the pitch circle.
     c_P : float
         Angular tooth thickness reduction (eq. 3.22).
-    external : bool
     """
 
-    n_teeth: int
-    module: float
-    pressure_angle: float
-    addendum: float
-    dedendum: float
     c_P: float
-    external: bool
-
-    @property
-    def side(self) -> float:
-        return 1.0 if self.external else -1.0
-
-    @property
-    def r_pitch(self) -> float:
-        """Pitch radius, mm (eq. 3.13)."""
-        return 0.5 * self.n_teeth * self.module
 
     @property
     def r_tip_circle(self) -> float:

@@ -23,40 +23,23 @@ from scipy.optimize import brentq
 from swgpar.errors import InputError
 from swgpar.profiles.curve import Floats, ToothProfile
 from swgpar.profiles.curved_segment import CurvedSegment, Local
+from swgpar.profiles.teeth import Teeth
 
 
 @dataclass(frozen=True)
-class Cutter:
-    """Gear and cutter of the same reference profile; lengths in mm, angles in rad.
+class Cutter(Teeth):
+    """Gear and cutter of the same reference profile: external teeth by a rack, internal ones by a shaper; mm.
 
     Attributes
     ----------
-    n_teeth, module, pressure_angle : of the gear
-    addendum, dedendum : heights of the gear's teeth above and below the pitch circle without shift
     tip_radius : rounding of the cutter's teeth
     shift : profile shift, in modules: the cutter is set outwards by shift * module
-    external : external teeth by a rack; else internal ones by a shaper
     cutter_teeth : teeth of the shaper
     """
 
-    n_teeth: int
-    module: float
-    pressure_angle: float
-    addendum: float
-    dedendum: float
     tip_radius: float
     shift: float
-    external: bool
     cutter_teeth: int = 0
-
-    @property
-    def side(self) -> float:
-        return 1.0 if self.external else -1.0
-
-    @property
-    def r_pitch(self) -> float:
-        """Pitch radius (eq. 3.13)."""
-        return 0.5 * self.n_teeth * self.module
 
     @property
     def r_base(self) -> float:

@@ -26,8 +26,8 @@ ALPHA = np.radians(20.0)
 IMPROVED = dict(r_tip=0.5, r_addendum=1.0, straight_l=0.0, r_dedendum=20.0, r_root=0.6)
 INITIAL = dict(r_tip=0.3, r_addendum=1.0, straight_l=0.2, r_dedendum=2.0, r_root=0.3)
 GEARS = [(120, True), (122, False)]
-SPLINE = Cutter(120, 1.0, ALPHA, 0.6, 0.8, 0.2, 0.0, True)
-RING = Cutter(122, 1.0, ALPHA, 0.6, 0.8, 0.2, 0.0, False, 80)
+SPLINE = Cutter(120, 1.0, ALPHA, 0.6, 0.8, True, 0.2, 0.0)
+RING = Cutter(122, 1.0, ALPHA, 0.6, 0.8, False, 0.2, 0.0, 80)
 CUTTERS = {
     "rack": SPLINE,
     "rack-20.4": replace(SPLINE, pressure_angle=np.radians(20.4)),
@@ -41,7 +41,7 @@ CUTTERS = {
 
 
 def frame(teeth: int, external: bool, c_P: float = 1.0) -> FlankFrame:
-    return FlankFrame(teeth, 1.0, ALPHA, 0.6, 0.8, c_P, external)
+    return FlankFrame(teeth, 1.0, ALPHA, 0.6, 0.8, external, c_P)
 
 
 def differences_agree(p: ToothProfile) -> None:

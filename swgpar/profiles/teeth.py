@@ -1,0 +1,37 @@
+"""What the teeth of every profile start from: their number and size, and the pitch circle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Teeth:
+    """Sizes of a gear's teeth.
+
+    Attributes
+    ----------
+    n_teeth : int
+    module : float, mm
+    pressure_angle : float, rad
+    addendum, dedendum : float, mm
+        Heights of the tooth above and below the pitch circle, without profile shift.
+    external : bool
+    """
+
+    n_teeth: int
+    module: float
+    pressure_angle: float
+    addendum: float
+    dedendum: float
+    external: bool
+
+    @property
+    def side(self) -> float:
+        """+1 for external, -1 for internal teeth."""
+        return 1.0 if self.external else -1.0
+
+    @property
+    def r_pitch(self) -> float:
+        """Pitch radius, mm (eq. 3.13)."""
+        return 0.5 * self.n_teeth * self.module
