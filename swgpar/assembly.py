@@ -68,7 +68,7 @@ class BodyElements:
         self.owned = slice(int(np.searchsorted(sectors, first)), int(np.searchsorted(sectors, end)))
         nodes = np.arange(len(layout.mesh.coords))
         self.number, self.flip = partition.numbers(body, sectors, nodes)
-        hexes = layout.mesh.hexes
+        elements = layout.mesh.elements
         lo, hi = partition.row_start, partition.row_start + partition.n_own
         # on a single rank the sector before the first is an image of an owned one: it must not count twice
         self.neighbour = np.zeros(len(sectors), dtype=bool)
@@ -78,7 +78,7 @@ class BodyElements:
         counted = self.neighbour.copy()
         counted[self.owned] = True
         here = (self.number >= lo) & (self.number < hi) & counted[:, None]
-        touches = here[:, hexes].any(axis=2) if len(sectors) else np.zeros((0, len(hexes)), dtype=bool)
+        touches = here[:, elements].any(axis=2) if len(sectors) else np.zeros((0, len(elements)), dtype=bool)
         self.sector_of, self.ref_of = (v.astype(np.int32) for v in np.nonzero(touches))
         angle = layout.turn(layout.first_tooth + sectors)
         self.turn_of_sector = np.column_stack([np.cos(angle), np.sin(angle)]).reshape(-1, 2)
@@ -87,9 +87,9 @@ class BodyElements:
     def bind(self, local: LocalNodes) -> None:
         """Look up the local indices of all nodes once the rank's local nodes are known."""
         self.local = local.index(self.number)
-        hexes = self.layout.mesh.hexes[self.ref_of]
-        self.conn = np.ascontiguousarray(self.local[self.sector_of[:, None], hexes])
-        self.conn_flip = np.ascontiguousarray(self.flip[self.sector_of[:, None], hexes])
+        nodes = self.layout.mesh.elements[self.ref_of]
+        self.conn = np.ascontiguousarray(self.local[self.sector_of[:, None], nodes])
+        self.conn_flip = np.ascontiguousarray(self.flip[self.sector_of[:, None], nodes])
         self.turn = np.ascontiguousarray(self.turn_of_sector[self.sector_of])
 
     def displacement(self, u: np.ndarray) -> np.ndarray:
@@ -108,23 +108,26 @@ class BodyElements:
 
         Returns (n_owned, n_local, 6) MPa; components xx, yy, zz, xy, yz, zx in global axes.
         """
-        n_sectors, (n_node, n_elem) = len(self.sectors), (len(self.layout.mesh.coords), len(self.layout.mesh.hexes))
+        mesh = self.layout.mesh
+        elements, tied = mesh.elements, mesh.tied
+        n_sectors, n_node, n_elem = len(self.sectors), len(mesh.coords), len(elements)
         sums = np.zeros((n_sectors, n_node, 6))
-        hexes = self.layout.mesh.hexes
         for k in range(n_sectors):
             stress = recover_stress(
                 self.reference,
                 np.arange(n_elem, dtype=np.int32),
                 np.repeat(self.turn_of_sector[k : k + 1], n_elem, axis=0),
-                np.ascontiguousarray(self.local[k, hexes]),
-                np.ascontiguousarray(self.flip[k, hexes]),
+                np.ascontiguousarray(self.local[k, elements]),
+                np.ascontiguousarray(self.flip[k, elements]),
                 u,
             )
             for c in range(6):
-                sums[k, :, c] = np.bincount(hexes.ravel(), stress[:, :, c].ravel(), minlength=n_node)
-        count = np.bincount(hexes.ravel(), minlength=n_node).astype(float)
+                sums[k, :, c] = np.bincount(elements.ravel(), stress[:, :, c].ravel(), minlength=n_node)
+        count = np.bincount(elements.ravel(), minlength=n_node).astype(float)
+        if tied is not None:
+            sums, count = sums[:, tied], count[tied]
         counts = np.repeat(count[None], n_sectors, axis=0)
-        ccw, cw = self.layout.mesh.ccw_nodes, self.layout.mesh.cw_nodes
+        ccw, cw = mesh.ccw_nodes, mesh.cw_nodes
         total = sums[:-1, ccw] + sums[1:, cw]
         number = counts[:-1, ccw] + counts[1:, cw]
         sums[:-1, ccw], sums[1:, cw] = total, total
@@ -166,11 +169,11 @@ class Elements:
             slot[self._pairs(body.conn, number, local) < 0] = -1
 
     def _pairs(self, conn: np.ndarray, number: np.ndarray, local: LocalNodes) -> np.ndarray:
-        """Keys row * n_global + column of an element's owned upper-triangle blocks, -1 elsewhere; (n, 64)."""
+        """Keys row * n_global + column of an element's owned upper-triangle blocks, -1 elsewhere; (n, pairs)."""
         row, col = number[:, :, None], number[:, None, :]
         owned = ((conn >= 0) & (conn < local.n_own))[:, :, None]
         keys = np.where(owned & (col >= row), row * self.partition.n_global + col, -1)
-        return keys.reshape(len(conn), 64)
+        return keys.reshape(len(conn), conn.shape[1] ** 2)
 
     def rows(self, extra: np.ndarray, number: np.ndarray) -> tuple[BlockRows, list[np.ndarray]]:
         """Pattern of the elements joined with further keys, and where each body's element blocks are in it.
@@ -236,9 +239,9 @@ class Exchange:
 def create_matrix(partition: Partition, rows: BlockRows) -> PETSc.Mat:
     """Symmetric blocked matrix with the pattern of `rows` (upper triangle), not yet filled."""
     mat = PETSc.Mat().create(comm=partition.comm)
-    size = (3 * partition.n_own, 3 * partition.n_global)
+    size = (partition.dims * partition.n_own, partition.dims * partition.n_global)
     mat.setSizes((size, size))
-    mat.setBlockSize(3)
+    mat.setBlockSize(partition.dims)
     mat.setType(PETSc.Mat.Type.SBAIJ)
     hi = partition.row_start + partition.n_own
     own = np.repeat(np.arange(rows.n_own), np.diff(rows.start))
@@ -253,10 +256,10 @@ def create_matrix(partition: Partition, rows: BlockRows) -> PETSc.Mat:
 
 
 def fill_matrix(mat: PETSc.Mat, rows: BlockRows) -> None:
-    """Overwrite the owned rows of `mat` with the blocks."""
-    mat.setValuesBlockedIJV(
-        rows.start.astype(PETSc.IntType), rows.column, rows.values.ravel(), addv=PETSc.InsertMode.INSERT_VALUES
-    )
+    """Overwrite the owned rows of `mat` with the blocks, without their z in the plane."""
+    dims = mat.getBlockSize()
+    values = rows.values[:, :dims, :dims].ravel()
+    mat.setValuesBlockedIJV(rows.start.astype(PETSc.IntType), rows.column, values, addv=PETSc.InsertMode.INSERT_VALUES)
     mat.assemble()
 
 

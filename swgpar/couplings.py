@@ -1,6 +1,6 @@
-"""The distributing coupling on the bore.
+"""The distributing coupling on the bore (in the plane on the inner surface), or on the ring gear's outer surface.
 
-The coupling ties six quantities of the bore to a reference point without stiffening the bore: the mean
+The coupling ties six quantities of a surface to a reference point without stiffening it: the mean
 displacement, the mean tilts and the mean rotation about z of its nodes, weighted by their area. The rotation
 
     phi = atan2(sum w (X x dx)_z, sum w (X . dx)),   X, dx taken from the weighted means,
@@ -24,15 +24,15 @@ ROTATION = 5
 
 
 @dataclass
-class BoreState:
-    """Values (6,) and gradients (6, n_local_bore, 3) of the coupled quantities."""
+class MeanMotion:
+    """Values (6,) and gradients (6, n_local, 3) of the coupled quantities."""
 
     value: np.ndarray
     gradient: np.ndarray
 
 
 def node_weights(coords: np.ndarray, nodes: np.ndarray, ccw: np.ndarray) -> np.ndarray:
-    """Tributary area of bore nodes of one sector (arc length times axial share), closed over the sector.
+    """Tributary area of the surface's nodes of one sector (arc length times axial share), closed over the sector.
 
     coords : (n, 3) mm, sector 0;  nodes : (k,) local;  ccw : local nodes that the next sector owns
     """
@@ -53,21 +53,21 @@ def node_weights(coords: np.ndarray, nodes: np.ndarray, ccw: np.ndarray) -> np.n
     return np.where(np.isin(nodes, ccw), 0.0, weight)
 
 
-class BoreCoupling:
-    """Mean motions of the bore of the flexible spline's cup.
+class Coupling:
+    """Mean motions of a surface of a body.
 
     Parameters
     ----------
     partition : ownership
-    body : elements of the flexible spline on this rank (bound to local nodes)
+    body : elements of the body on this rank (bound to local nodes);  surface : name of its node set
     images : the model holds half a turn; then only z and the rotation can be non-zero
     """
 
-    def __init__(self, partition: Partition, body: BodyElements, images: bool) -> None:
+    def __init__(self, partition: Partition, body: BodyElements, surface: str, images: bool) -> None:
         self.comm = partition.comm
         self.images = images
         mesh = body.layout.mesh
-        nodes = mesh.node_sets["bore"]
+        nodes = mesh.node_sets[surface]
         weight = node_weights(mesh.coords, nodes, mesh.ccw_nodes)
         keep = weight > 0
         nodes, weight = nodes[keep], weight[keep]
@@ -81,14 +81,16 @@ class BoreCoupling:
         center[2] = self.sum(self.weight * self.reference[:, 2])
         self.arm = self.reference - center
         self.radius2 = float(self.sum(self.weight * (self.arm[:, 0] ** 2 + self.arm[:, 1] ** 2)))
-        self.active = np.array([not images, not images, True, not images, not images, True])
+        self.solid = partition.dims == 3
+        whole = not images
+        self.active = np.array([whole, whole, self.solid, whole and self.solid, whole and self.solid, True])
 
     def sum(self, value: np.ndarray) -> np.ndarray:
-        """Sum over all nodes of the bore, on all ranks."""
+        """Sum over all nodes of the surface, on all ranks."""
         local = np.sum(np.asarray(value, dtype=float), axis=0)
         return self.comm.allreduce(local, op=MPI.SUM)
 
-    def evaluate(self, u: np.ndarray) -> BoreState:
+    def evaluate(self, u: np.ndarray) -> MeanMotion:
         """Coupled quantities (mm, mm, mm, rad, rad, rad) and their gradients at displacement u (n_local, 3)."""
         v, w, arm = u[self.nodes], self.weight, self.arm
         mean = self.sum(w[:, None] * v)
@@ -110,18 +112,19 @@ class BoreCoupling:
         norm = cosine * cosine + sine * sine
         gradient[5, :, 0] = w * (-cosine * arm[:, 1] - sine * arm[:, 0]) / norm
         gradient[5, :, 1] = w * (cosine * arm[:, 0] - sine * arm[:, 1]) / norm
-        return BoreState(value, gradient)
+        return MeanMotion(value, gradient)
 
     def supports(self) -> np.ndarray:
-        """Six unit directions (6, n_local_bore, 3) on single nodes that hold the bore as a rigid body.
+        """Unit directions (n, n_local, 3) on single nodes that hold the body rigidly.
 
-        They ground the structure inside a factorisation and are taken out again exactly; see `Bordered`.
-        Half a model needs two of them only: axial and tangential at one node.
+        They ground the structure inside a factorisation and are taken out again exactly; see `Bordered`. A solid
+        needs six of them, axial and tangential at three nodes, a plane body the tangential ones only; half a model
+        needs those of one node.
         """
-        pick = np.zeros((6, len(self.nodes), 3))
-        angle = np.mod(np.arctan2(-self.arm[:, 0], self.arm[:, 1]), 2.0 * np.pi)
         places = (0.0,) if self.images else (0.0, 2.0 * np.pi / 3.0, 4.0 * np.pi / 3.0)
-        for k, place in enumerate(places):
+        angle = np.mod(np.arctan2(-self.arm[:, 0], self.arm[:, 1]), 2.0 * np.pi)
+        picked = []
+        for place in places:
             # the first node at the smallest angular distance, by rank: exactly one node in the whole model
             distance = np.abs(np.mod(angle - place + np.pi, 2.0 * np.pi) - np.pi)
             best = (
@@ -130,9 +133,47 @@ class BoreCoupling:
                 else (9.0, self.comm.rank, 0)
             )
             winner = min(self.comm.allgather(best))
+            axial, tangential = np.zeros((2, len(self.nodes), 3))
             if winner[1] == self.comm.rank:
                 node = winner[2]
                 a = self.arm[node]
-                pick[2 * k, node, 2] = 1.0
-                pick[2 * k + 1, node, :2] = np.array([-a[1], a[0]]) / np.hypot(a[0], a[1])
-        return pick
+                axial[node, 2] = 1.0
+                tangential[node, :2] = np.array([-a[1], a[0]]) / np.hypot(a[0], a[1])
+            picked += [axial, tangential] if self.solid else [tangential]
+        return np.array(picked)
+
+
+class Housing:
+    """Rigid ring in which the output ring gear turns: the nodes of its outer surface stay on their circle (section 5.8).
+
+    Stiff radial springs, as hard as contact; the nodes are free along the circle and the axis.
+
+    Parameters
+    ----------
+    coupling : of the outer surface;  area : mm², of the modelled surface;  penalty : MPa / mm
+    """
+
+    def __init__(self, coupling: Coupling, area: float, penalty: float) -> None:
+        self.nodes, self.place = coupling.nodes, coupling.reference[:, :2]
+        self.radius = np.hypot(*self.place.T)
+        self.stiffness = penalty * area * coupling.weight
+
+    def _radial(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Radii (n,) mm, outward normals (n, 2) and forces along them (n,) N at displacement u (n_local, 3)."""
+        x = self.place + u[self.nodes, :2]
+        r = np.hypot(*x.T)
+        return r, x / r[:, None], self.stiffness * (r - self.radius)
+
+    def add_forces(self, u: np.ndarray, residual: np.ndarray) -> None:
+        """Add to residual (n_local, 3) N."""
+        _, normal, force = self._radial(u)
+        residual[self.nodes, :2] += force[:, None] * normal
+
+    def blocks(self, u: np.ndarray) -> np.ndarray:
+        """Tangent blocks (n, 3, 3) N/mm of the nodes."""
+        r, normal, force = self._radial(u)
+        blocks = np.zeros((len(r), 3, 3))
+        nn = normal[:, :, None] * normal[:, None, :]
+        bent = (force / r)[:, None, None]
+        blocks[:, :2, :2] = self.stiffness[:, None, None] * nn + bent * (np.eye(2) - nn)
+        return blocks

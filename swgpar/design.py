@@ -16,7 +16,8 @@ from swgpar.quantities import Section, quantity
 
 
 class Drive(Section):
-    layout: Literal["ring_fixed"] = quantity("ring_fixed", text="fixed member; the other gear is the output")
+    layout: Literal["ring_fixed", "spline_fixed"] = quantity("ring_fixed", text="fixed member; the other gear is the output")
+    model: Literal["cup", "plane"] = quantity("cup", text="the cup drive, or the toothed section in plane stress")
     teeth_fs: int = quantity(text="teeth of the flexible spline", ge=8, le=2000)
     teeth_rg: int = quantity(text="teeth of the ring gear", ge=10, le=2002)
     module: float = quantity(unit="mm", text="module", gt=0.0)
@@ -66,7 +67,8 @@ class Load(Section):
 
 
 class Contact(Section):
-    penalty_coef: float = quantity(50.0, text="penalty over E / module", gt=0.0)
+    penalty_coef: float = quantity(50.0, text="penalty of the flanks over E / module", gt=0.0)
+    wg_penalty_coef: float = quantity(1.0, text="penalty of cam and pins over E / module", gt=0.0)
     quadrature: int = quantity(2, text="Gauss points per direction on segments of flank faces", ge=1, le=16)
     wg_quadrature: int = quantity(3, text="Gauss points per direction on the inner surface", ge=1, le=16)
     max_augmentations: int = quantity(3, text="largest number of augmentations per increment", ge=0, le=50)
@@ -103,7 +105,7 @@ class DriveDesign(Section):
     flexible_spline: ExternalGear
     ring_gear: InternalGear
     wave_generator: WaveGenerator
-    cup: Cup
+    cup: Cup | None = None
     micro_geometry: MicroGeometry = MicroGeometry()
     material: Material
     load: Load = Load()
@@ -137,7 +139,8 @@ class DriveDesign(Section):
     @property
     def ratio(self) -> float:
         """Speed ratio, wave generator over output."""
-        return -self.drive.teeth_fs / (self.drive.teeth_rg - self.drive.teeth_fs)
+        g = self.drive
+        return (-g.teeth_fs if g.layout == "ring_fixed" else g.teeth_rg) / (g.teeth_rg - g.teeth_fs)
 
     @property
     def backlash(self) -> float:
@@ -154,12 +157,18 @@ class DriveDesign(Section):
 
     @property
     def cup_thickness(self) -> float:
-        return self.cup.thickness_coef * self.flexible_spline.rim
+        """mm; the rim's thickness in the plane model, which has no cup."""
+        return (self.cup.thickness_coef if self.cup else 1.0) * self.flexible_spline.rim
 
     @property
     def penalty(self) -> float:
-        """Contact penalty, MPa / mm."""
+        """Penalty of the flanks' contact, MPa / mm."""
         return self.contact.penalty_coef * self.material.E / self.drive.module
+
+    @property
+    def wg_penalty(self) -> float:
+        """Penalty of the contact of cam and pins, MPa / mm."""
+        return self.contact.wg_penalty_coef * self.material.E / self.drive.module
 
 
 def _refuse(key: str, value: float, allowed: str) -> None:
@@ -188,6 +197,13 @@ def check_fit(design: DriveDesign) -> None:
     width = g.face_width
     if wave.face_width > width:
         _refuse("wave_generator.face_width", wave.face_width, f"above 0 to {width:g} mm (drive.face_width)")
+    if g.model == "plane":
+        for key in ("wg_crowning", "wg_slope", "fs_crowning"):
+            if getattr(micro, key) != 0.0:
+                _refuse(f"micro_geometry.{key}", getattr(micro, key), 'only 0 with drive.model = "plane"')
+        return
+    if cup is None:
+        raise InputError('cup is missing: allowed only with drive.model = "plane"')
     if cup.fillet_radius < design.cup_thickness:
         _refuse("cup.fillet_radius", cup.fillet_radius, f"{design.cup_thickness:g} (the cup's thickness) to inf mm")
     if cup.length <= cup.fillet_radius:

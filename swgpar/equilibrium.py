@@ -12,7 +12,7 @@ from swgpar.assembly import BlockRows, Elements, Exchange, add_unit_diagonal, cr
 from swgpar.contact.rigid import CamPose, RigidContact
 from swgpar.contact.search import facing_flanks, largest
 from swgpar.contact.teeth import ToothContact
-from swgpar.couplings import ROTATION, BoreCoupling
+from swgpar.couplings import ROTATION, Coupling, Housing
 from swgpar.design import DriveDesign
 from swgpar.line_search import SearchedStep
 from swgpar.linear import Bordered
@@ -28,6 +28,12 @@ SOFTENING, SOFT_TOLERANCE = (1e-3, 3e-2), 1e-2
 
 HOLD = 1e-3
 """Residual over contact force below which segments of the flanks are kept: Newton's iteration is then quadratic."""
+
+LOADED_SIDE = -1
+"""Flanks that carry: the load turns the flexible spline counter-clockwise against the ring gear."""
+
+LONGEST, MEETING = 0.05, 2e-4
+"""Largest way (modules) of the teeth in a Newton step under torque control, and how deep they meet when apart."""
 
 FLOOR = 0.05
 """Share of the round-off that a residual can hold below which it counts as zero; 0.01 to 0.06 of it is reached."""
@@ -49,7 +55,8 @@ class Equilibrium:
     Parameters
     ----------
     design : the drive;  partition, elements : ownership and elements, bound to their local nodes
-    coupling : bore;  rigid, pins : cam and pins on the inner surface;  teeth : flank contact
+    couplings : of the bodies that float, the output last;  housing : around the ring gear when that floats
+    rigid, pins : cam and pins on the inner surface;  teeth : flank contact
     """
 
     def __init__(
@@ -57,14 +64,16 @@ class Equilibrium:
         design: DriveDesign,
         partition: Partition,
         elements: Elements,
-        coupling: BoreCoupling,
+        couplings: list[Coupling],
+        housing: Housing | None,
         rigid: RigidContact,
         pins: RigidContact,
         teeth: ToothContact,
         images: bool,
         phases: Phases,
     ) -> None:
-        self.design, self.partition, self.elements, self.coupling = design, partition, elements, coupling
+        self.design, self.partition, self.elements, self.couplings = design, partition, elements, couplings
+        self.housing = housing
         self.rigid, self.pins, self.teeth, self.phases = rigid, pins, teeth, phases
         self.share = 0.5 if images else 1.0
         self.scale = design.material.E * design.drive.module
@@ -94,6 +103,12 @@ class Equilibrium:
         ksp.getPC().setPythonContext(step)
         self.snes.setFromOptions()
         self.matrix: PETSc.Mat | None = None
+        # SNES sees vectors of three unknowns per node, the matrix may have two: it is known to the border alone
+        shell = PETSc.Mat().create(comm=partition.comm)
+        shell.setSizes([self.x.getSizes()] * 2)
+        shell.setType(PETSc.Mat.Type.SHELL)
+        shell.setUp()
+        self.snes.setJacobian(self._jacobian, shell, shell)
 
     # -- local data ------------------------------------------------------------------------------------
 
@@ -125,7 +140,7 @@ class Equilibrium:
             further = np.zeros(0, dtype=np.int64)
             if self.scene is not None and self.scene.teeth is not None:
                 margin = TIP_MARGIN * self.design.drive.module
-                pairs = facing_flanks(self.partition, self.elements.bodies[0], self.displacement(), margin)
+                pairs = facing_flanks(self.partition, self.elements.bodies[0], self.displacement(), self._ring_turn(), margin)
                 further = self.teeth.numbers(pairs)
             else:
                 self.teeth.numbers([])
@@ -141,7 +156,7 @@ class Equilibrium:
         if self.scene.teeth is None:
             return False
         with self.phases("search"):
-            pairs = facing_flanks(self.partition, self.elements.bodies[0], self.displacement(), 0.0)
+            pairs = facing_flanks(self.partition, self.elements.bodies[0], self.displacement(), self._ring_turn(), 0.0)
             found = self.teeth.overlooked(pairs, self.displacement(), self.scene.teeth)
         return bool(self.partition.comm.allreduce(int(found), op=MPI.MAX))
 
@@ -156,29 +171,28 @@ class Equilibrium:
             if self.matrix is not None:
                 self.matrix.destroy()
             self.matrix = create_matrix(self.partition, self.rows)
-            self.snes.setJacobian(self._jacobian, self.matrix, self.matrix)
 
     def _grounding(self) -> None:
-        self.supports = self.coupling.supports()
         stiffness = 0.1 * self.scale
-        used = (0, 1) if self.coupling.images else range(6)
         self.grounded = []
         self.ground_vectors = []
-        for k in used:
-            vector = create_vector(self.partition)
-            array = vector.array.reshape(-1, 3)
-            for i in np.flatnonzero(np.abs(self.supports[k]).sum(axis=1)):
-                direction = np.sqrt(stiffness) * self.supports[k, i]
-                array[self.coupling.nodes[i]] += direction
-                self.grounded.append((self.coupling.nodes[i], direction))
-            self.ground_vectors.append(vector)
+        for coupling in self.couplings:
+            for support in coupling.supports():
+                vector = create_vector(self.partition)
+                array = vector.array.reshape(-1, 3)
+                for i in np.flatnonzero(np.abs(support).sum(axis=1)):
+                    direction = np.sqrt(stiffness) * support[i]
+                    array[coupling.nodes[i]] += direction
+                    self.grounded.append((coupling.nodes[i], direction))
+                self.ground_vectors.append(vector)
 
     # -- residual and tangent --------------------------------------------------------------------------
 
-    def _controls(self, scene: Scene) -> list[int]:
-        active = [k for k in range(6) if self.coupling.active[k]]
+    def _controls(self, scene: Scene) -> list[tuple[int, int]]:
+        """Coupling and quantity that are prescribed, in pairs."""
+        active = [(i, int(k)) for i, c in enumerate(self.couplings) for k in np.flatnonzero(c.active)]
         if scene.control == "torque":
-            active.remove(ROTATION)
+            active.remove((len(self.couplings) - 1, ROTATION))
         return active
 
     def _contact(self, u: np.ndarray, residual: np.ndarray | None, rows: BlockRows | None) -> np.ndarray:
@@ -201,24 +215,27 @@ class Equilibrium:
                 self._contact(u, contact, None)
                 residual = contact.copy()
                 self.elements.assemble(u, residual, None, None)
+                if self.housing is not None:
+                    self.housing.add_forces(u, residual)
             except FloatingPointError:
                 self.failed, residual = True, contact
             if self.partition.comm.allreduce(int(self.failed), op=MPI.MAX):
                 self.failed = True
             self.reference = np.sqrt(self.partition.comm.allreduce(float(np.sum(contact[:n_own] ** 2))))
             scene, multiplier = self.scene, self.multipliers(x)
-            bore = self.coupling.evaluate(u)
-            target = np.zeros(6)
-            target[ROTATION] = scene.rotation
-            tail = self.scale * multiplier  # unused multipliers are zero; used ones are overwritten below
-            for k in self._controls(scene):
-                residual[self.coupling.nodes] += self.scale * multiplier[k] * bore.gradient[k]
-                tail[k] = self.scale * (bore.value[k] - target[k])
+            motion = [coupling.evaluate(u) for coupling in self.couplings]
+            target = np.zeros((len(motion), 6))
+            target[-1, ROTATION] = scene.rotation
+            tail = self.scale * multiplier  # unused ones are zero; used ones are overwritten below
+            for i, k in self._controls(scene):
+                gradient = motion[i].gradient[k]
+                residual[self.couplings[i].nodes] += self.scale * multiplier[6 * i + k] * gradient
+                tail[6 * i + k] = self.scale * (motion[i].value[k] - target[i, k])
             if scene.control == "torque":
-                residual[self.coupling.nodes] -= self.share * scene.torque * bore.gradient[ROTATION]
+                residual[self.couplings[-1].nodes] -= self.share * scene.torque * motion[-1].gradient[ROTATION]
             f.array[:] = residual[:n_own].ravel()
             if self.partition.comm.rank == self.partition.comm.size - 1:
-                f.array[-6:] = tail
+                f.array[-len(tail) :] = tail
 
     def _trial(self, x: PETSc.Vec, f: PETSc.Vec) -> bool:
         """Residual f at x; whether an element has collapsed there."""
@@ -231,12 +248,10 @@ class Equilibrium:
             self.rows.values[:] = 0.0
             self.elements.assemble(u, None, self.rows, self.slots)
             missing = self._contact(u, None, self.rows)
-            n = self.partition.n_global
             for node, direction in self.grounded:
-                if node < self.rows.n_own:
-                    number = self.partition.row_start + node
-                    place = np.searchsorted(self.rows.keys, number * n + number)
-                    self.rows.values[place] += np.outer(direction, direction)
+                self._add_diagonal(np.array([node]), np.outer(direction, direction))
+            if self.housing is not None:
+                self._add_diagonal(self.housing.nodes, self.housing.blocks(u))
             add_unit_diagonal(self.rows, self.partition, self.scale)
         self.missing = missing
         # forces that follow from a last-digit error of every position
@@ -246,14 +261,34 @@ class Equilibrium:
         self.round_off = np.finfo(float).eps * self.design.r_fs * np.sqrt(squares)
         self.stale = bool(self.partition.comm.allreduce(int(len(missing) > 0), op=MPI.MAX))
         with self.phases("insert"):
-            fill_matrix(p, self.rows)
-        border, rows = [], self._controls(self.scene)
-        bore = self.coupling.evaluate(u)
-        for k in rows:
+            fill_matrix(self.matrix, self.rows)
+            p.stateIncrease()
+        border, controls, bound = [], self._controls(self.scene), None
+        if self.scene.control == "torque":
+            controls.append((len(self.couplings) - 1, ROTATION))
+            bound = self.scale * self._longest_turn()
+        motion = [coupling.evaluate(u) for coupling in self.couplings]
+        for i, k in controls:
             vector = create_vector(self.partition)
-            vector.array.reshape(-1, 3)[self.coupling.nodes] = self.scale * bore.gradient[k]
+            vector.array.reshape(-1, 3)[self.couplings[i].nodes] = self.scale * motion[i].gradient[k]
             border.append(vector)
-        self.border.set_border(self.ground_vectors, border, rows)
+        rows = [6 * i + k for i, k in controls]
+        self.border.set_system(self.matrix, self.ground_vectors, border, rows, bound)
+
+    def _longest_turn(self) -> float:
+        """Bound (rad) of the output's turn in a Newton step under torque control.
+
+        Flanks close no faster than their radius times the turn: up to contact there is no overshoot.
+        """
+        drive = self.design.drive
+        gap = -largest(self.partition.comm, -self.teeth.clearance(LOADED_SIDE)) / drive.module
+        reach = 0.5 * drive.teeth_rg * drive.module + self.design.d  # no tooth is farther out
+        return drive.module * (min(gap, LONGEST) + MEETING if gap > 0.0 else LONGEST) / reach
+
+    def _add_diagonal(self, nodes: np.ndarray, blocks: np.ndarray) -> None:
+        """Add blocks (n, 3, 3) N/mm to the diagonal of owned nodes (n,)."""
+        keys = (self.partition.row_start + nodes.astype(np.int64)) * (self.partition.n_global + 1)
+        self.rows.values[np.searchsorted(self.rows.keys, keys)] += blocks
 
     # -- solve -------------------------------------------------------------------------------------------
 
@@ -286,6 +321,10 @@ class Equilibrium:
         soft : contact is being established: approach through softened penalties
         """
         self.scene = scene
+        if self.partition.comm.rank == self.partition.comm.size - 1:
+            unused = np.ones(self.partition.n_multipliers, dtype=bool)
+            unused[[6 * i + k for i, k in self._controls(scene)]] = False
+            self.x.array[-len(unused) :][unused] = 0.0
         self.search()
         iterations, self.augmentations, searched = 0, 0, False
         soften = list(SOFTENING) if soft else []
@@ -319,8 +358,8 @@ class Equilibrium:
     def soften(self, share: float) -> None:
         """Use this share of the contact penalty."""
         self.softness = share
-        for contact in (self.rigid, self.pins, self.teeth):
-            contact.penalty = share * self.design.penalty
+        self.rigid.penalty = self.pins.penalty = share * self.design.wg_penalty
+        self.teeth.penalty = share * self.design.penalty
 
     def penetration(self) -> float:
         """Largest penetration (mm) of the last evaluation, over all ranks."""
@@ -333,11 +372,17 @@ class Equilibrium:
     # -- forces ------------------------------------------------------------------------------------------
 
     def rotation(self) -> float:
-        """Turn of the bore (rad)."""
-        return float(self.coupling.evaluate(self.displacement()).value[ROTATION])
+        """Turn of the output (rad)."""
+        return float(self.couplings[-1].evaluate(self.displacement()).value[ROTATION])
+
+    def _ring_turn(self) -> float:
+        return self.rotation() if len(self.couplings) > 1 else 0.0
 
     def torques(self) -> dict[str, float]:
-        """Torques about z on the flexible spline (N mm): wave generator (and pins), teeth, output."""
+        """Torques about z (N mm): wave generator (and pins) and teeth on the flexible spline, load on the output.
+
+        "balance" is what is left of the largest sum that should vanish, over the bodies that are free to turn.
+        """
         u, scene = self.displacement(), self.scene
         body = self.elements.bodies[0]
         rigid, teeth = np.zeros_like(u), np.zeros_like(u)
@@ -356,11 +401,14 @@ class Equilibrium:
             local = -float(np.sum(x[spline, 0] * r[:, 1] - x[spline, 1] * r[:, 0]))
             return self.partition.comm.allreduce(local, op=MPI.SUM) / self.share
 
-        if scene.control == "torque":
-            output = scene.torque
+        held = -self.scale * self.multipliers(self.x)[ROTATION::6] / self.share
+        output = scene.torque if scene.control == "torque" else float(held[-1])
+        wg, teeth_torque = moment(rigid), moment(teeth)
+        if len(self.couplings) == 1:
+            balance = abs(wg + teeth_torque + output)
         else:
-            output = -self.scale * float(self.multipliers(self.x)[ROTATION]) / self.share
-        return {"wg": moment(rigid), "teeth": moment(teeth), "output": output}
+            balance = max(abs(wg + teeth_torque + float(held[0])), abs(output - teeth_torque))
+        return {"wg": wg, "teeth": teeth_torque, "output": output, "balance": balance}
 
 
 REASONS = {value: name for name, value in vars(PETSc.SNES.ConvergedReason).items() if isinstance(value, int)}

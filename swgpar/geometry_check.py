@@ -62,7 +62,7 @@ def derived_geometry(design: DriveDesign) -> dict[str, float]:
         "r_fs, inner radius of the spline (mm)": design.r_fs,
         "backlash at the pitch circle (mm)": design.backlash,
         "gamma, turn that closes it (deg)": float(np.degrees(design.gamma)),
-        "cup thickness (mm)": design.cup_thickness,
+        **({"cup thickness (mm)": design.cup_thickness} if design.drive.model == "cup" else {}),
         "tooth height, flexible spline (mm)": spline.r_tip_circle - spline.r_root_circle,
         "tooth height, ring gear (mm)": ring.r_root_circle - ring.r_tip_circle,
         "top land, flexible spline (mm)": spline.top_land,

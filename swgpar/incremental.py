@@ -12,7 +12,7 @@ from petsc4py import PETSc
 from swgpar.assembly import Elements, read_field, write_field
 from swgpar.contact.rigid import RigidContact
 from swgpar.contact.teeth import ToothContact
-from swgpar.couplings import BoreCoupling
+from swgpar.couplings import Coupling, Housing
 from swgpar.design import DriveDesign
 from swgpar.equilibrium import Equilibrium
 from swgpar.errors import ConvergenceError
@@ -21,12 +21,14 @@ from swgpar.log import Phases, logger
 from swgpar.meshing import MeshRecipe, build_sector_meshes
 from swgpar.micro_geometry import WaveGeneratorSurface
 from swgpar.partition import BodyLayout, LocalNodes, Partition
-from swgpar.steps import Increment, Scene, start
+from swgpar.steps import Scene, start
 from swgpar.stress import body_fields, maxima
 
-CARRYING = 0.05
-"""The teeth carry once the torque that turns the output reaches this share of the load."""
+LOADED = 3
+"""Step from which states repeat with the period."""
 
+MEMORY = 40
+"""States of the rotation that are kept to predict the next ones from."""
 
 PRESSURE_LIMIT = 0.02
 """Bound of contact pressures in the tangent's geometric terms, as a share of E: above any real pressure."""
@@ -53,17 +55,17 @@ class DriveModel:
         with self.phases("mesh"):
             self.meshes = build_sector_meshes(design, recipe)
         layouts = []
-        for name, fixed in (
-            ("flexible_spline", np.zeros(0, dtype=np.int32)),
-            ("ring_gear", self.meshes["ring_gear"].node_sets["outer"]),
-        ):
-            mesh = self.meshes[name]
+        for name, mesh in self.meshes.items():
+            clamped = name == "ring_gear" and design.drive.layout == "ring_fixed"
+            fixed = mesh.node_sets["outer"] if clamped else np.zeros(0, dtype=np.int32)
             count = mesh.n_sectors // 2 if images else mesh.n_sectors
             layouts.append(BodyLayout(mesh, 0, count, True, images, fixed))
         self.partition = Partition(layouts, comm)
         with self.phases("elements"):
             references = [
-                reference_elements(m.coords[m.hexes], design.material.E, design.material.nu)
+                reference_elements(
+                    m.coords[m.elements], design.material.E, design.material.nu, design.drive.face_width
+                )
                 for m in self.meshes.values()
             ]
             self.elements = Elements(self.partition, references)
@@ -93,11 +95,18 @@ class DriveModel:
             0.5 * design.drive.module,
             PRESSURE_LIMIT * design.material.E,
         )
+        couplings, housing = [Coupling(self.partition, spline, "bore", images)], None
+        if design.drive.layout == "spline_fixed":
+            couplings.append(Coupling(self.partition, ring, "outer", images))
+            outer = float(np.hypot(*couplings[-1].reference[:, :2].T).max(initial=0.0))
+            area = 2.0 * np.pi * outer * design.drive.face_width / (2.0 if images else 1.0)
+            housing = Housing(couplings[-1], area, design.penalty)
         self.equilibrium = Equilibrium(
             design,
             self.partition,
             self.elements,
-            BoreCoupling(self.partition, spline, images),
+            couplings,
+            housing,
             RigidContact(spline, *rigid),
             RigidContact(spline, *rigid),
             teeth,
@@ -105,12 +114,14 @@ class DriveModel:
             self.phases,
         )
         self.copies = 2 if images else 1
+        self.fixed_body = 1 if design.drive.layout == "ring_fixed" else 0
 
     def counts(self) -> dict[str, Any]:
         """Nodes, elements and unknowns per body, modelled and of the whole drive."""
         out = {}
         for layout in self.partition.layouts:
-            per_sector = len(layout.mesh.coords) - len(layout.mesh.ccw_nodes)
+            layers = 1 if layout.mesh.tied is None else 2
+            per_sector = (len(layout.mesh.coords) - len(layout.mesh.ccw_nodes)) // layers
             out[layout.name] = {
                 "nodes": per_sector * layout.count,
                 "elements": len(layout.mesh.hexes) * layout.count,
@@ -123,19 +134,21 @@ class DriveModel:
 
 
 def predict(model: DriveModel, x: PETSc.Vec, turn: float, slip: float = 0.0) -> None:
-    """Turn the state x with the wave generator by `turn`, or the flexible spline in its pattern by `slip` (rad).
+    """Turn the state x with the wave generator by `turn`, or the output in its pattern by `slip` (rad).
 
-    After one ring-gear pitch the drive repeats with the flexible spline's teeth renamed by one (exactly, for a
-    fixed ring gear); in between the state is interpolated over the sectors by cubic polynomials.
+    After one pitch of the fixed gear the drive repeats with the teeth renamed by one (exactly, as that gear stands
+    still); in between the state is interpolated over the sectors by cubic polynomials.
     """
     partition = model.partition
-    ring_teeth = partition.layouts[1].mesh.n_sectors
+    teeth = [layout.mesh.n_sectors for layout in partition.layouts]
+    fixed = model.fixed_body
     nodes = np.array([-1.0, 0.0, 1.0, 2.0])
     new = []
     for body, layout in enumerate(partition.layouts):
-        shift = turn * ring_teeth / (2.0 * np.pi)
-        if body == 0:
-            shift -= slip * layout.mesh.n_sectors / (2.0 * np.pi)
+        shift, drift = turn * teeth[fixed] / (2.0 * np.pi), 0.0
+        if body != fixed:
+            shift -= slip * teeth[body] / (2.0 * np.pi)
+            drift = turn * (1.0 - teeth[fixed] / teeth[body]) + slip
         whole = int(np.floor(shift))
         t = 1.0 - (shift - whole)
         weights = np.array([np.prod([(t - m) / (n - m) for m in nodes if m != n]) for n in nodes])
@@ -147,12 +160,8 @@ def predict(model: DriveModel, x: PETSc.Vec, turn: float, slip: float = 0.0) -> 
         count = end - first
         pattern = sum(w * local[k : k + count] for k, w in enumerate(weights))
         angle = layout.turn(layout.first_tooth + np.arange(first, end))
-        if body == 0:
-            drift = turn * (1.0 - ring_teeth / layout.mesh.n_sectors) + slip
-            coords = layout.mesh.coords[None]
-            values = _turned(coords + pattern, angle + drift) - _turned(np.repeat(coords, count, axis=0), angle)
-        else:
-            values = _turned(pattern, angle)
+        coords = layout.mesh.coords[None]
+        values = _turned(coords + pattern, angle + drift) - _turned(np.repeat(coords, count, axis=0), angle)
         new.append((body, np.arange(first, end), values))
     for body, sectors, values in new:
         write_field(partition, body, sectors, values, x)
@@ -175,6 +184,7 @@ class Runner:
         self.scene = start(model.design)
         self.iterations = 0
         self.residual = 0.0
+        self.visited: list[tuple[float, PETSc.Vec]] = []
 
     def advance(self, target: Scene) -> None:
         """Solve up to `target`, halving the way when Newton's iteration fails; raises ConvergenceError at the end."""
@@ -185,7 +195,7 @@ class Runner:
             reach = min(1.0, done + share)
             scene = origin.toward(target, reach, self.design.drive.module, self.design.d)
             if scene.angle != self.scene.angle:
-                predict(self.model, x, scene.angle - self.scene.angle)
+                self._turn_to(scene.angle)
             elif scene.control == "rotation" and scene.rotation != self.scene.rotation:
                 predict(self.model, x, 0.0, scene.rotation - self.scene.rotation)
             elif scene.name == "deflect" and self.scene.name == "deflect":
@@ -199,6 +209,8 @@ class Runner:
             self.iterations += solved.iterations
             if solved.converged:
                 self.scene, self.residual, done = scene, solved.residual, reach
+                if target.step >= LOADED:
+                    self.visited = [*self.visited, (scene.angle, x.copy())][-MEMORY:]
                 continue
             saved.copy(x)
             cuts += 1
@@ -214,31 +226,21 @@ class Runner:
                 "   cut back to %.3g of the increment (%s, residual %.1e)", share, solved.reason, solved.residual
             )
 
-    def close_backlash(self, torque: float) -> None:
-        """Turn the output until the teeth carry a share of `torque` (N mm), then hand over to torque control."""
-        angle, step = self.scene.rotation, 0.5 * max(self.design.gamma, 1e-2 * self.design.d / self.design.r_fs)
-        for _ in range(64):
-            held = replace(
-                self.scene, step=3, name="load", cam=0.0, teeth=0.0, pins=None, control="rotation", rotation=angle
-            )
-            self.advance(held)
-            carried = self.equilibrium.torques()["output"]
-            logger.debug("   output at %.5f deg, torque %.1f N mm", np.degrees(angle), carried)
-            if carried >= CARRYING * torque:
-                self.scene = replace(held, control="torque", torque=carried)
-                return
-            angle += step
-        raise ConvergenceError(
-            f"step 3 (load): the teeth did not come into contact within {np.degrees(angle):.3g} degrees "
-            "of output rotation"
-        )
+    def _turn_to(self, angle: float) -> None:
+        """Predict the state at a cam angle (rad) from the visited one that is nearest to it in the period."""
+        pitch = 2.0 * np.pi / self.model.partition.layouts[self.model.fixed_body].mesh.n_sectors
+        turns = [(angle - visited) / pitch for visited, _ in self.visited]
+        nearest = min(reversed(range(len(turns))), key=lambda i: round(abs(turns[i] - np.rint(turns[i])), 6), default=None)
+        start = self.scene.angle
+        if nearest is not None:
+            start, x = self.visited[nearest]
+            x.copy(self.equilibrium.x)
+        predict(self.model, self.equilibrium.x, angle - start)
 
-    def increment(self, item: Increment) -> None:
+    def increment(self, target: Scene) -> None:
         """Do one entry of the sequence."""
         self.iterations = 0
-        if item.close:
-            self.close_backlash(item.scene.torque)
-        self.advance(item.scene)
+        self.advance(target)
 
     def row(self) -> dict[str, float]:
         """The history row of the present state, without stresses and times."""
@@ -256,6 +258,7 @@ class Runner:
             "wg_torque_Nmm": torque["wg"],
             "tooth_torque_Nmm": torque["teeth"],
             "output_torque_Nmm": torque["output"],
+            "torque_balance_Nmm": torque["balance"],
             "pairs_in_contact": copies * pairs,
             "max_penetration_mm": equilibrium.penetration(),
             "newton_iterations": self.iterations,

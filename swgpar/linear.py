@@ -1,4 +1,4 @@
-"""Linear systems: the grounded stiffness, bordered by the constraints of the bore, factorised or iterated on."""
+"""Linear systems: the grounded stiffness, bordered by the constraints of the couplings, factorised or iterated on."""
 
 from __future__ import annotations
 
@@ -37,6 +37,10 @@ class Bordered:
         (1 - B^T Z_B) s + B^T Z_C l = B^T z,     C Z_B s - C Z_C l = r_l - C z,     z = K'^-1 r_u
 
     gives x = z + Z_B s - Z_C l exactly: the grounding leaves no trace.
+
+    The last border is the motion of the output. Where it is not prescribed but loaded, its Newton step is the one at
+    which its l vanishes, and it is bounded: a drive whose teeth have parted floats, and there the step has no end.
+    All other unknowns follow the bounded motion.
     """
 
     def __init__(self, partition: Partition, linear: str, positions: np.ndarray, options_prefix: str) -> None:
@@ -55,7 +59,8 @@ class Bordered:
             self.ksp.setType(PETSc.KSP.Type.GMRES)
             pc.setType(PETSc.PC.Type.GAMG)
             defaults = GAMG_DEFAULTS
-            place = PETSc.Vec().createWithArray(positions.ravel(), bsize=3, comm=partition.comm)
+            place = positions[:, : partition.dims].ravel()
+            place = PETSc.Vec().createWithArray(place, bsize=partition.dims, comm=partition.comm)
             self.modes = PETSc.NullSpace().createRigidBody(place)
         options = PETSc.Options(options_prefix)
         for name, value in defaults.items():
@@ -67,12 +72,35 @@ class Bordered:
         self.rows: list[int] = []
         self.columns: list[PETSc.Vec] = []
 
-    def set_border(self, grounding: list[PETSc.Vec], border: list[PETSc.Vec], rows: list[int]) -> None:
-        """Vectors B and C^T (full length, zero in the multiplier rows), multiplier rows 0..5 of C."""
-        self.grounding, self.border, self.rows = grounding, border, rows
+    def _solve(self, right: PETSc.Vec, x: PETSc.Vec) -> None:
+        """x = K'^-1 right; in the plane the matrix has no z, and x gets a zero there."""
+        dims = self.partition.dims
+        if dims == 3:
+            self.ksp.solve(right, x)
+            return
+        into, out = self.ksp.getOperators()[0].createVecs()
+        for vector, flat in ((right, into), (x, out)):
+            flat.array.reshape(-1, dims)[:] = vector.array_r.reshape(-1, 3)[:, :dims]
+        self.ksp.solve(into, out)
+        x.array.reshape(-1, 3)[:, :dims] = out.array_r.reshape(-1, dims)
+        x.array.reshape(-1, 3)[:, dims:] = 0.0
+
+    def set_system(
+        self,
+        matrix: PETSc.Mat,
+        grounding: list[PETSc.Vec],
+        border: list[PETSc.Vec],
+        rows: list[int],
+        bound: float | None = None,
+    ) -> None:
+        """K', vectors B and C^T (full length, zero in the multiplier rows), multiplier rows of C.
+
+        bound : of C x in the last row when that is loaded instead of prescribed
+        """
+        self.matrix, self.grounding, self.border, self.rows, self.bound = matrix, grounding, border, rows, bound
 
     def setUp(self, pc: PETSc.PC) -> None:
-        _, matrix = pc.getOperators()
+        matrix = self.matrix
         if self.modes is not None:  # GAMG has no triangular storage
             if self.unblocked is not None:
                 self.unblocked.destroy()
@@ -87,7 +115,7 @@ class Bordered:
         self.ksp.setInitialGuessNonzero(self.modes is not None)  # those of the last tangent
         self.failed = False
         for vector, solution in zip(sides, self.columns):
-            self.ksp.solve(vector, solution)
+            self._solve(vector, solution)
             if self.ksp.getConvergedReason() < 0:
                 self.failed = True
                 solution.set(0.0)  # nothing to start the next tangent's from
@@ -102,25 +130,32 @@ class Bordered:
         self.system = system
 
     def multipliers(self, vector: PETSc.Vec) -> np.ndarray:
-        """The six multiplier entries of a full-length vector, on every rank."""
-        comm, last = self.partition.comm, self.partition.comm.size - 1
-        values = vector.array_r[-6:].copy() if comm.rank == last else np.empty(6)
+        """The multiplier entries of a full-length vector, on every rank."""
+        comm, last, n = self.partition.comm, self.partition.comm.size - 1, self.partition.n_multipliers
+        values = vector.array_r[-n:].copy() if comm.rank == last else np.empty(n)
         comm.Bcast(values, root=last)
         return values
 
     def apply(self, pc: PETSc.PC, right: PETSc.Vec, x: PETSc.Vec) -> None:
-        self.ksp.solve(right, x)
+        self._solve(right, x)
         if self.failed or self.ksp.getConvergedReason() < 0:
             x.set(np.nan)  # the residual at such a step is not finite: the increment is cut back
             return
-        entries = self.multipliers(right)
-        if not self.columns:
-            return
         nb = len(self.grounding)
         load = np.array([v.dot(x) for v in self.grounding + self.border])
-        load[nb:] = entries[self.rows] - load[nb:]
+        load[nb:] = self.multipliers(right)[self.rows] - load[nb:]
+        prescribed = slice(nb, len(load))
+        if self.bound is not None:
+            prescribed = slice(nb, len(load) - 1)
+            load[-1] -= self.multipliers(right)[self.rows[-1]]
         answer = np.linalg.solve(self.system, load)
+        if self.bound is not None:
+            unit = np.linalg.solve(self.system, np.eye(len(load))[-1])
+            force, stiffness = answer[-1], -unit[-1]
+            motion = force / stiffness if stiffness * self.bound > abs(force) else np.sign(force) * self.bound
+            answer += motion * unit
         for k, column in enumerate(self.columns):
             x.axpy(answer[k] if k < nb else -answer[k], column)
         if self.partition.comm.rank == self.partition.comm.size - 1:
-            x.array[-6:][self.rows] = answer[nb:]
+            entries = x.array[-self.partition.n_multipliers :]
+            entries[self.rows[: prescribed.stop - nb]] = answer[prescribed]

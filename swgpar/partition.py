@@ -21,8 +21,8 @@ from swgpar.meshing.sector import SectorMesh
 FLIP = np.array([-1.0, -1.0, 1.0])
 """Factors of a vector's components under the half turn of a twofold-symmetric image."""
 
-N_MULTIPLIER_NODES = 2
-"""Blocks appended after the last node: six unknowns for the multipliers of the bore coupling."""
+MULTIPLIER_NODES = 2
+"""Blocks appended after the last node for each body that floats: six multipliers of its coupling."""
 
 
 def split(n: int, parts: int) -> np.ndarray:
@@ -55,14 +55,21 @@ class BodyLayout:
         row = np.zeros(n, dtype=np.int64)
         row[self.mesh.ccw_nodes] = -1
         row[self.fixed] = -1
+        tied = self.mesh.tied
+        if tied is not None:
+            row[tied != np.arange(n)] = -1
         own = np.flatnonzero(row == 0)
         row[own] = np.arange(len(own))
+        if tied is not None:
+            row = row[tied]
         cap = row[self.mesh.cw_nodes]
         cap_nodes = np.sort(self.mesh.cw_nodes[cap >= 0])
         cap_row = np.full(n, -1, dtype=np.int64)
         cap_row[cap_nodes] = np.arange(len(cap_nodes))
         is_fixed = np.zeros(n, dtype=bool)
         is_fixed[self.fixed] = True
+        if tied is not None:
+            is_fixed = is_fixed[tied]
         for name, value in dict(
             partner=partner,
             row=row,
@@ -101,11 +108,14 @@ class Partition:
     ----------
     layouts : the bodies, flexible spline first
     comm : communicator; each rank owns a contiguous range of sectors of every body
+
+    `dims` is the number of unknowns per node that the tangent has: 2 in the plane, where vectors keep a zero z.
     """
 
     def __init__(self, layouts: list[BodyLayout], comm: MPI.Comm) -> None:
         self.comm = comm
         self.layouts = layouts
+        self.dims = 3 if layouts[0].mesh.tied is None else 2
         self.starts = [split(b.count, comm.size) for b in layouts]
         sizes = np.array(
             [
@@ -116,13 +126,15 @@ class Partition:
                 for r in range(comm.size)
             ]
         )
-        sizes[-1, -1] += N_MULTIPLIER_NODES
+        appended = MULTIPLIER_NODES * sum(len(b.fixed) == 0 for b in layouts)
+        sizes[-1, -1] += appended
         flat = np.concatenate([[0], np.cumsum(sizes.ravel())])
         self._base = flat[:-1].reshape(sizes.shape)
         self.n_global = int(flat[-1])
         self.row_start = int(self._base[comm.rank, 0])
         self.n_own = int(sizes[comm.rank].sum())
-        self.multiplier_nodes = self.n_global - N_MULTIPLIER_NODES + np.arange(N_MULTIPLIER_NODES)
+        self.multiplier_nodes = self.n_global - appended + np.arange(appended)
+        self.n_multipliers = 3 * appended
 
     def owned(self, body: int) -> tuple[int, int]:
         """Range (first, end) of chain indices this rank owns."""

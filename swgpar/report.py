@@ -71,10 +71,8 @@ def _torque(rows: list[dict], summary: dict, figures: Path) -> Path:
     from matplotlib.figure import Figure
 
     rows = _turning(rows)
-    drive = summary["design"]["drive"]
-    ratio = drive["teeth_fs"] / (drive["teeth_rg"] - drive["teeth_fs"])
     angle = history.column(rows, "wg_angle_deg")
-    error = 3600.0 * (history.column(rows, "output_angle_deg") + angle / ratio)
+    error = 3600.0 * (history.column(rows, "output_angle_deg") - angle / summary["ratio"])
     figure = Figure(figsize=(7.0, 6.0), layout="constrained")
     upper, lower = figure.subplots(2, 1, sharex=True)
     upper.plot(angle, history.column(rows, "wg_torque_Nmm"), "o-", ms=3, label="wave generator")

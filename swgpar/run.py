@@ -28,7 +28,7 @@ from swgpar.results.atomic import agreed, to_json, write_from_root
 from swgpar.results.fields import FieldWriter
 from swgpar.results.folder import prepare
 from swgpar.results.parallel_hdf5 import require_parallel
-from swgpar.steps import Increment, Scene, sequence
+from swgpar.steps import Scene, sequence
 
 FIRST_ROTATION = 4
 """Step number of the first rotation increment: means are taken from there on."""
@@ -121,7 +121,7 @@ class Recorder:
         there = [(i + 1, row["wg_angle_deg"]) for i, row in enumerate(self.rows) if self.writer.has(i + 1)]
         self.writer.write_index(self.comm.bcast(there), self.names)
 
-    def resume(self, runner: Runner, items: list[Increment]) -> float:
+    def resume(self, runner: Runner, items: list[Scene]) -> float:
         """Bring back the state of the checkpoint, on any number of ranks; returns the wall seconds spent on it.
 
         items : the sequence that is to be continued
@@ -139,7 +139,7 @@ class Recorder:
                 "ones, only steps.rotation, solver.linear and the output may differ"
             )
         last = Scene(**state["scene"])
-        if state["done"] > len(items) or items[state["done"] - 1].scene != last:
+        if state["done"] > len(items) or items[state["done"] - 1] != last:
             raise InputError(
                 f"--restart: steps.rotation = {self.model.design.steps.rotation:g} does not continue {path}, which "
                 f"ends at {np.degrees(last.angle):g} degrees; allowed are values with this angle among their increments"
@@ -150,7 +150,7 @@ class Recorder:
             first, end = model.partition.owned(k)
             write_field(model.partition, k, np.arange(first, end), arrays[body.layout.name], x)
         if self.comm.rank == self.comm.size - 1:
-            x.array[-6:] = state["multipliers"]
+            x.array[-model.partition.n_multipliers :] = state["multipliers"]
         self.rows, self.done, self.names = state["rows"], state["done"], state["names"]
         runner.scene = last
         for name, value in state["phases_s"].items():
@@ -173,7 +173,6 @@ def summarise(model: DriveModel, rows: list[dict[str, Any]], recipe_name: str, s
         if turning
         else {}
     )
-    balance = [abs(r["wg_torque_Nmm"] + r["tooth_torque_Nmm"] + r["output_torque_Nmm"]) for r in rows]
     counts = model.counts()
     memory = comm.allgather(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0)
     expected = 1000.0 * design.load.torque / abs(design.ratio)
@@ -196,8 +195,9 @@ def summarise(model: DriveModel, rows: list[dict[str, Any]], recipe_name: str, s
         "peak_memory_MB_per_rank": [round(m, 1) for m in memory],
         "means": means,
         "newton_iterations_mean": float(np.mean([r["newton_iterations"] for r in turning])) if turning else None,
-        "balance_error_Nmm": max(balance, default=0.0),
+        "balance_error_Nmm": max((r["torque_balance_Nmm"] for r in rows), default=0.0),
         "wg_torque_expected_Nmm": expected,
+        "ratio": design.ratio,
         "design": design.model_dump(),
     }
 
@@ -252,7 +252,7 @@ def run_drive(
             seconds = time.perf_counter() - start
             recorder.record(runner, seconds, before + time.perf_counter() - begin)
             progress.increment(
-                item.scene.name, float(np.degrees(item.scene.angle)), runner.iterations, runner.residual, seconds
+                item.name, float(np.degrees(item.angle)), runner.iterations, runner.residual, seconds
             )
     summary = summarise(model, recorder.rows, recipe_name, before + time.perf_counter() - begin)
     write_from_root(comm, out / "summary.json", to_json(summary))

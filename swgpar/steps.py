@@ -1,8 +1,8 @@
 """What is active when: the sequence pins, engagement, torque, rotation (sections 3.4.5 and 3.5.5).
 
 1 the pins, the halves of the cam, push the flexible spline outward by d / 2 each (more for a cam that bulges beside
-its tips); 2 the wave generator grows into place while the pins are drawn back, and the teeth may touch; 3 the output
-is turned until the teeth carry, then the torque is applied; 4 ... the wave generator turns in increments. Without a
+its tips); 2 the wave generator grows into place while the pins are drawn back, and the teeth may touch; 3 the torque
+is applied, and the output turns until the teeth carry it; 4 ... the wave generator turns in increments. Without a
 torque a drive with backlash has no definite output angle: the output is then held at its kinematic angle, and the
 torque this takes is reported.
 """
@@ -32,7 +32,7 @@ class Scene:
     step : number of the step;  name : what it does
     angle : rad, wave generator;  cam, teeth : mm, clearance added to every gap, None while switched off
     pins : mm, inset of the pins, None when they are out
-    control : "rotation" (output held at `rotation`, rad) or "torque" (`torque`, N mm, on the output)
+    control : "rotation" (output held at `rotation`, rad) or "torque" (`torque`, N mm, on the output, against its motion)
     """
 
     step: int
@@ -69,50 +69,38 @@ class Scene:
         return asdict(self)
 
 
-@dataclass(frozen=True)
-class Increment:
-    """One entry of the sequence; `close` asks for the backlash to be closed under rotation control first."""
-
-    scene: Scene
-    close: bool = False
-
-
 def start(design: DriveDesign) -> Scene:
     """Undeformed drive, pins touching the inner surface."""
     return Scene(step=0, name="start", pins=pin_travel(make_cam(design), design.r_fs))
 
 
-def sequence(design: DriveDesign) -> Iterator[Increment]:
+def sequence(design: DriveDesign) -> Iterator[Scene]:
     """All increments of a run, in order."""
     d, steps, module = design.d, design.steps, design.drive.module
-    torque = 1000.0 * design.load.torque
+    torque = -np.copysign(1000.0 * design.load.torque, design.ratio)
     travel = start(design).pins
     n = steps.deflect_increments
     for i in range(1, n + 1):
-        yield Increment(Scene(1, "deflect", pins=travel * (1.0 - i / n)))
+        yield Scene(1, "deflect", pins=travel * (1.0 - i / n))
     n = steps.engage_increments
     for i in range(1, n + 1):
         t = i / n
-        yield Increment(
-            Scene(
-                2,
-                "engage",
-                cam=CAM_START * module * (1.0 - t),
-                teeth=TEETH_START * module * (1.0 - t),
-                pins=None if i == n else PINS_BACK * d * t,
-            )
+        yield Scene(
+            2,
+            "engage",
+            cam=CAM_START * module * (1.0 - t),
+            teeth=TEETH_START * module * (1.0 - t),
+            pins=None if i == n else PINS_BACK * d * t,
         )
     loaded = Scene(3, "load", cam=0.0, teeth=0.0, control="torque" if torque else "rotation")
     if torque:
         n = steps.load_increments
         for i in range(1, n + 1):
-            yield Increment(replace(loaded, torque=torque * i / n), close=i == 1)
+            yield replace(loaded, torque=torque * i / n)
     else:
-        yield Increment(loaded)
+        yield loaded
     whole = steps.rotation / steps.increment
     count = int(np.ceil(round(whole, 9)))
     for i in range(1, count + 1):
         angle = np.radians(min(i * steps.increment, steps.rotation))
-        yield Increment(
-            replace(loaded, step=3 + i, name="rotate", angle=angle, torque=torque, rotation=-angle / abs(design.ratio))
-        )
+        yield replace(loaded, step=3 + i, name="rotate", angle=angle, torque=torque, rotation=angle / design.ratio)

@@ -32,10 +32,12 @@ class FlankPair:
     ring_tooth: int
 
 
-def facing_flanks(partition: Partition, spline: BodyElements, u: np.ndarray, margin: float) -> list[FlankPair]:
+def facing_flanks(
+    partition: Partition, spline: BodyElements, u: np.ndarray, turn: float, margin: float
+) -> list[FlankPair]:
     """Pairs of flanks that can meet at displacement u (n_local, 3); the same list on every rank.
 
-    margin : mm, how far the tip of a tooth may stay inside the tip circle of the ring gear
+    turn : rad, of the ring gear;  margin : mm, how far the tip of a tooth may stay inside the tip circle of the ring gear
     """
     layout, ring = partition.layouts
     first, end = partition.owned(0)
@@ -53,7 +55,7 @@ def facing_flanks(partition: Partition, spline: BodyElements, u: np.ndarray, mar
     pitch = 2.0 * np.pi / ring.mesh.n_sectors
     pairs = []
     for k in np.flatnonzero(table[:, 1] > ring.mesh.profile.r_tip_circle - margin):
-        slot = int(np.rint(table[k, 0] / pitch))
+        slot = int(np.rint((table[k, 0] - turn) / pitch))
         for side, tooth in ((1, slot - 1), (-1, slot)):
             index, flip = ring.locate(np.array(tooth))
             if index >= 0:

@@ -308,6 +308,13 @@ class ToothContact:
         touching = np.unique(self.faces.patch[(self.pressure > 0.0).any(axis=1)])
         return int(self.pair_owned[touching].sum())
 
+    def clearance(self, side: int) -> float:
+        """Smallest gap (mm) of the flanks on one side, of the last evaluation on this rank; inf without any."""
+        if self.faces is None:
+            return np.inf
+        sides = np.array([p.side for p in self.pairs])
+        return float(self.gap[sides[self.faces.patch] == side].min(initial=np.inf))
+
     def penetration(self) -> float:
         """Largest penetration (mm) of the last evaluation on this rank."""
         return penetration(self.gap, self.pressure)

@@ -18,18 +18,25 @@ cdef extern from "element_batch.hpp" namespace "swgpar" nogil:
         const double* turn
         const int32_t* conn
         const uint8_t* flip
-    int64_t assemble(const ElementBatch&, const double* u, double* residual, const int64_t* slot, double* values,
-                     double* energy)
-    int64_t stress(const ElementBatch&, const double* recovery, const double* u, double* out)
-    int64_t reference(int64_t n, const double* coords, double young, double poisson, double* stiffness,
-                      double* recovery, double* gradient, double* volume)
+    int64_t assemble8 "swgpar::assemble<8>"(const ElementBatch&, const double* u, double* residual,
+                                            const int64_t* slot, double* values, double* energy)
+    int64_t assemble4 "swgpar::assemble<4>"(const ElementBatch&, const double* u, double* residual,
+                                            const int64_t* slot, double* values, double* energy)
+    int64_t stress8 "swgpar::stress<8>"(const ElementBatch&, const double* recovery, const double* u, double* out)
+    int64_t stress4 "swgpar::stress<4>"(const ElementBatch&, const double* recovery, const double* u, double* out)
+    int64_t solid "swgpar::reference<swgpar::Hex8i>"(int64_t n, const double* coords, double young, double poisson,
+                                                     double* stiffness, double* recovery, double* gradient,
+                                                     double* volume)
+    int64_t plane "swgpar::reference<swgpar::Quad4i>"(int64_t n, const double* coords, double young, double poisson,
+                                                      double* stiffness, double* recovery, double* gradient,
+                                                      double* volume, double thickness)
 
 
 class ReferenceElements(NamedTuple):
-    """Matrices of undeformed elements, shared by all congruent ones.
+    """Matrices of undeformed elements of m nodes (8, or 4 in the plane), shared by all congruent ones.
 
-    stiffness : (n, 24, 24) N/mm;  recovery : (n, 48, 24) MPa/mm, row 6 * node + component
-    gradient : (n, 8, 3) 1/mm, at the centre;  coords : (n, 8, 3) mm;  volume : (n,) mm^3
+    stiffness : (n, 3 m, 3 m) N/mm;  recovery : (n, 6 m, 3 m) MPa/mm, row 6 * node + component
+    gradient : (n, m, 3) 1/mm, at the centre;  coords : (n, m, 3) mm;  volume : (n,) mm^3
     """
 
     stiffness: np.ndarray
@@ -39,23 +46,30 @@ class ReferenceElements(NamedTuple):
     volume: np.ndarray
 
 
-def reference_elements(coords, double young, double poisson):
-    """Matrices of C3D8I-type hexahedra.
+def reference_elements(coords, double young, double poisson, double thickness=0.0):
+    """Matrices of C3D8I-type hexahedra or of CPS4I-type quadrilaterals.
 
-    coords : (n, 8, 3) mm, VTK node order;  young : MPa;  poisson : below 0.5
+    coords : (n, 8, 3) mm, VTK node order, or (n, 4, 3) at one z, counter-clockwise seen against z
+    young : MPa;  poisson : below 0.5;  thickness : mm, of quadrilaterals
     Raises ValueError naming the first element with a non-positive Jacobian.
     """
     cdef double[:, :, ::1] x = np.ascontiguousarray(coords, dtype=np.float64)
-    if x.shape[1] != 8 or x.shape[2] != 3:
-        raise ValueError("reference_elements: coords must have shape (n, 8, 3)")
-    cdef int64_t n = x.shape[0], bad
-    out = ReferenceElements(np.empty((n, 24, 24)), np.empty((n, 48, 24)), np.empty((n, 8, 3)), np.asarray(x), np.empty(n))
+    if x.shape[1] not in (4, 8) or x.shape[2] != 3:
+        raise ValueError("reference_elements: coords must have shape (n, 8, 3) or (n, 4, 3)")
+    if x.shape[1] == 4 and not thickness > 0.0:
+        raise ValueError("reference_elements: quadrilaterals need a thickness above 0")
+    cdef int64_t n = x.shape[0], m = x.shape[1], bad
+    out = ReferenceElements(np.empty((n, 3 * m, 3 * m)), np.empty((n, 6 * m, 3 * m)), np.empty((n, m, 3)),
+                            np.asarray(x), np.empty(n))
     if n == 0:
         return out
     cdef double[:, :, ::1] k = out.stiffness, s = out.recovery, g = out.gradient
     cdef double[::1] v = out.volume
     with nogil:
-        bad = reference(n, &x[0, 0, 0], young, poisson, &k[0, 0, 0], &s[0, 0, 0], &g[0, 0, 0], &v[0])
+        if m == 4:
+            bad = plane(n, &x[0, 0, 0], young, poisson, &k[0, 0, 0], &s[0, 0, 0], &g[0, 0, 0], &v[0], thickness)
+        else:
+            bad = solid(n, &x[0, 0, 0], young, poisson, &k[0, 0, 0], &s[0, 0, 0], &g[0, 0, 0], &v[0])
     if bad >= 0:
         raise ValueError(f"element {bad} has a non-positive Jacobian determinant")
     return out
@@ -64,8 +78,8 @@ def reference_elements(coords, double young, double poisson):
 cdef ElementBatch batch(const double[:, :, ::1] stiffness, const double[:, :, ::1] gradient,
                         const double[:, :, ::1] coords, const int32_t[::1] ref_of, const double[:, ::1] turn,
                         const int32_t[:, ::1] conn, const uint8_t[:, ::1] flip) except *:
-    if not (turn.shape[0] == conn.shape[0] == flip.shape[0] == ref_of.shape[0] and conn.shape[1] == 8
-            and flip.shape[1] == 8 and turn.shape[1] == 2):
+    if not (turn.shape[0] == conn.shape[0] == flip.shape[0] == ref_of.shape[0] and turn.shape[1] == 2
+            and conn.shape[1] == flip.shape[1] == coords.shape[1]):
         raise ValueError("element arrays: shapes disagree")
     return ElementBatch(conn.shape[0], &stiffness[0, 0, 0], &gradient[0, 0, 0], &coords[0, 0, 0], &ref_of[0],
                         &turn[0, 0], &conn[0, 0], &flip[0, 0])
@@ -76,9 +90,9 @@ def assemble_elements(ref, const int32_t[::1] ref_of, const double[:, ::1] turn,
     """Add forces and tangent blocks of corotated elements; returns their strain energy (N mm).
 
     ref_of : (n,) row of `ref`;  turn : (n, 2) cosine, sine of the sector's turn
-    conn : (n, 8) local nodes, -1 fixed;  flip : (n, 8), 1 for images under the half turn
+    conn : (n, m) local nodes, -1 fixed;  flip : (n, m), 1 for images under the half turn
     u : (n_local, 3) mm;  residual : (n_local, 3) N or None
-    slot : (n, 64) int64 block of each node pair, -1 to skip;  values : (n_blocks, 3, 3) N/mm, entry (k, l) of
+    slot : (n, m * m) int64 block of each node pair, -1 to skip;  values : (n_blocks, 3, 3) N/mm, entry (k, l) of
     block p at values[p, l, k]; both None to skip the tangent
     """
     cdef int64_t bad
@@ -97,11 +111,14 @@ def assemble_elements(ref, const int32_t[::1] ref_of, const double[:, ::1] turn,
         pr = &r[0, 0]
     if values is not None:
         v, p = values, slot
-        if p.shape[0] != e.n or p.shape[1] != 64:
-            raise ValueError("assemble_elements: slot must have shape (n, 64)")
+        if p.shape[0] != e.n or p.shape[1] != conn.shape[1] * conn.shape[1]:
+            raise ValueError("assemble_elements: slot must have a column for each pair of nodes")
         pv, pp = &v[0, 0, 0], &p[0, 0]
     with nogil:
-        bad = assemble(e, &u[0, 0], pr, pp, pv, &energy)
+        if conn.shape[1] == 4:
+            bad = assemble4(e, &u[0, 0], pr, pp, pv, &energy)
+        else:
+            bad = assemble8(e, &u[0, 0], pr, pp, pv, &energy)
     if bad >= 0:
         raise FloatingPointError(f"element {bad} has collapsed")
     return energy
@@ -109,15 +126,18 @@ def assemble_elements(ref, const int32_t[::1] ref_of, const double[:, ::1] turn,
 
 def recover_stress(ref, const int32_t[::1] ref_of, const double[:, ::1] turn, const int32_t[:, ::1] conn,
                    const uint8_t[:, ::1] flip, const double[:, ::1] u):
-    """Stress extrapolated to the nodes of each element; (n, 8, 6) MPa, global axes, xx yy zz xy yz zx."""
+    """Stress extrapolated to the nodes of each element; (n, m, 6) MPa, global axes, xx yy zz xy yz zx."""
     cdef int64_t bad
-    out = np.empty((conn.shape[0], 8, 6))
+    out = np.empty((conn.shape[0], conn.shape[1], 6))
     if conn.shape[0] == 0:
         return out
     cdef ElementBatch e = batch(ref.stiffness, ref.gradient, ref.coords, ref_of, turn, conn, flip)
     cdef double[:, :, ::1] o = out, s = ref.recovery
     with nogil:
-        bad = stress(e, &s[0, 0, 0], &u[0, 0], &o[0, 0, 0])
+        if conn.shape[1] == 4:
+            bad = stress4(e, &s[0, 0, 0], &u[0, 0], &o[0, 0, 0])
+        else:
+            bad = stress8(e, &s[0, 0, 0], &u[0, 0], &o[0, 0, 0])
     if bad >= 0:
         raise FloatingPointError(f"element {bad} has collapsed")
     return out

@@ -121,6 +121,7 @@ inline void evaluate(const Patch& p, const double* u, Foot& f) {
 // Orthogonal projection of a point onto a patch. Not found: it lies beside the flank.
 inline Foot project(const Patch& p, const double* u, const Vec3& xs) {
   constexpr double kOverlap = 0.02;  // a facet's parameters may exceed it by this before the next one is taken
+  constexpr double kStep = 1e-10;    // last step, in facets: round-off of positions far from the axis allows 1e-13
   constexpr double kEnd = 0.5;       // straight continuation past the ends of the face width, in facets
   Foot f;
   int j = 0;
@@ -154,7 +155,7 @@ inline Foot project(const Patch& p, const double* u, const Vec3& xs) {
     if (big > 1.0) step /= big;
     f.eta += step[0];
     f.zeta += step[1];
-    const bool small = big < 1e-13;
+    const bool small = big < kStep;
     if (f.eta > 1 + kOverlap && f.i < p.n_s - 1) {
       f.eta = std::min(1.0, (f.eta - 1) * (p.s[f.i + 1] - p.s[f.i]) / (p.s[f.i + 2] - p.s[f.i + 1]));
       ++f.i;

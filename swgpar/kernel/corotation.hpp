@@ -31,58 +31,76 @@ inline Eigen::Matrix3d polar_rotation(const Eigen::Matrix3d& f) {
   return r;
 }
 
+// The same for a rotation about z alone.
+inline Eigen::Matrix3d plane_rotation(const Eigen::Matrix3d& f) {
+  const double c = f(0, 0) + f(1, 1), s = f(1, 0) - f(0, 1), norm = std::hypot(c, s);
+  Eigen::Matrix3d r = Eigen::Matrix3d::Identity();
+  r(0, 0) = r(1, 1) = c / norm;
+  r(1, 0) = s / norm;
+  r(0, 1) = -r(1, 0);
+  return r;
+}
+
+// N: 8 for hexahedra; 4 for plane elements, whose nodes have no displacement along z.
+template <int N>
 struct Corotated {
+  using Nodes = Eigen::Matrix<double, N, 3>;
+  using Vector = Eigen::Matrix<double, 3 * N, 1>;
+  using Square = Eigen::Matrix<double, 3 * N, 3 * N>;
+  using Rows = Eigen::Matrix<double, 3, 3 * N>;
+
   Eigen::Matrix3d rotation, stretch;
-  Mat8x3 y;
-  Vec24 d, f0, r;
+  Nodes y;
+  Vector d, f0, r;
   Eigen::Vector3d moment;
-  Mat3x24 q;
+  Rows q;
   bool valid = true;
 
   // small: X_a - mean(X), turned: the same after the sector's turn, u: displacements. The displacement in the
   // element frame is R^T (turned + u - mean u) - small, formed from small numbers only.
-  Corotated(const Mat8x3& small, const Mat8x3& turned, const Mat8x3& u, const Mat8x3& g, const double* stiffness) {
+  Corotated(const Nodes& small, const Nodes& turned, const Nodes& u, const Nodes& g, const double* stiffness) {
     const Eigen::RowVector3d mean = u.colwise().mean();
-    const Mat8x3 x = turned + (u.rowwise() - mean);
-    const Eigen::Matrix3d f = x.transpose() * g;
+    const Nodes x = turned + (u.rowwise() - mean);
+    Eigen::Matrix3d f = x.transpose() * g;
+    if (N == 4) f(2, 2) = 1.0;
     if (!(f.determinant() > 0)) {
       valid = false;
       return;
     }
-    rotation = polar_rotation(f);
+    rotation = N == 4 ? plane_rotation(f) : polar_rotation(f);
     stretch = rotation.transpose() * f;
     stretch = (0.5 * (stretch + stretch.transpose())).eval();
     y = x * rotation;
-    for (int a = 0; a < 8; ++a) d.segment<3>(3 * a) = (y.row(a) - small.row(a)).transpose();
-    f0.noalias() = Eigen::Map<const Mat24>(stiffness) * d;
+    for (int a = 0; a < N; ++a) d.template segment<3>(3 * a) = (y.row(a) - small.row(a)).transpose();
+    f0.noalias() = Eigen::Map<const Square>(stiffness) * d;
     moment.setZero();
-    for (int a = 0; a < 8; ++a) moment += Eigen::Vector3d(y.row(a)).cross(f0.segment<3>(3 * a));
+    for (int a = 0; a < N; ++a) moment += Eigen::Vector3d(y.row(a)).cross(f0.template segment<3>(3 * a));
     const Eigen::Matrix3d gi = (stretch.trace() * Eigen::Matrix3d::Identity() - stretch).inverse();
-    for (int a = 0; a < 8; ++a) q.middleCols<3>(3 * a) = gi * skew(g.row(a));
+    for (int a = 0; a < N; ++a) q.template middleCols<3>(3 * a) = gi * skew(g.row(a));
     r = f0 - q.transpose() * moment;
   }
 
   // Tangent in the element frame; symmetric.
-  Mat24 tangent(const Mat8x3& g, const double* stiffness) const {
-    const Eigen::Map<const Mat24> k0(stiffness);
-    Mat24x3 lever;
-    Mat3x24 spin_f0, spin_r, change;
+  Square tangent(const Nodes& g, const double* stiffness) const {
+    const Eigen::Map<const Square> k0(stiffness);
+    Eigen::Matrix<double, 3 * N, 3> lever;
+    Rows spin_f0, spin_r, change;
     const Eigen::Matrix3d gi = (stretch.trace() * Eigen::Matrix3d::Identity() - stretch).inverse();
     const Eigen::Vector3d n = gi * moment;
-    for (int a = 0; a < 8; ++a) {
-      lever.middleRows<3>(3 * a) = skew(y.row(a));
-      spin_f0.middleCols<3>(3 * a) = skew(f0.segment<3>(3 * a));
-      spin_r.middleCols<3>(3 * a) = skew(r.segment<3>(3 * a));
+    for (int a = 0; a < N; ++a) {
+      lever.template middleRows<3>(3 * a) = skew(y.row(a));
+      spin_f0.template middleCols<3>(3 * a) = skew(f0.template segment<3>(3 * a));
+      spin_r.template middleCols<3>(3 * a) = skew(r.template segment<3>(3 * a));
       const Eigen::Vector3d ga = g.row(a);
-      change.middleCols<3>(3 * a) = n * ga.transpose() - ga.dot(n) * Eigen::Matrix3d::Identity();
+      change.template middleCols<3>(3 * a) = n * ga.transpose() - ga.dot(n) * Eigen::Matrix3d::Identity();
     }
     change.noalias() -= skew(stretch * n) * q;
     // P^T K0 P + Q^T F0 P + Fr^T Q + Q^T N, gathered as K0 + A Q + Q^T A^T-like low-rank updates
-    const Mat24x3 ky = k0 * lever;
+    const Eigen::Matrix<double, 3 * N, 3> ky = k0 * lever;
     const Eigen::Matrix3d inner = lever.transpose() * ky + spin_f0 * lever;
-    Mat3x24 left = ky.transpose() + spin_f0 + change;
+    Rows left = ky.transpose() + spin_f0 + change;
     left.noalias() += inner * q;
-    Mat24 t = k0;
+    Square t = k0;
     t.noalias() += ky * q;
     t.noalias() += q.transpose() * left;
     t.noalias() += spin_r.transpose() * q;

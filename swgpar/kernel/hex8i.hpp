@@ -10,9 +10,6 @@
 namespace swgpar {
 
 using Mat24 = Eigen::Matrix<double, 24, 24>;
-using Mat24x3 = Eigen::Matrix<double, 24, 3>;
-using Mat3x24 = Eigen::Matrix<double, 3, 24>;
-using Vec24 = Eigen::Matrix<double, 24, 1>;
 using Mat8x3 = Eigen::Matrix<double, 8, 3>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
@@ -50,6 +47,7 @@ inline void strain_column(Eigen::Ref<Eigen::Matrix<double, 6, 1>> col, const Eig
 }
 
 struct Hex8i {
+  static constexpr int kNodes = 8;
   Mat24 stiffness;
   Eigen::Matrix<double, 48, 24> recovery;  // stress at the nodes: row 6 * node + component
   Mat8x3 gradient;                         // dN/dX at the centre

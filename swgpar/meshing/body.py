@@ -31,6 +31,8 @@ def _radii(design: DriveDesign, gear: str, recipe: ToothRecipe, r_root: float) -
     lower = rim * recipe.rim / (recipe.rim + recipe.under)
     if gear == "ring_gear":
         return r_root + rim - lower, r_root + rim, False
+    if design.drive.model == "plane":
+        return design.r_fs + lower, design.r_fs, False
     if design.cup_thickness > THICK_CUP * rim:
         return design.r_fs + lower, design.r_fs, True
     return design.r_fs + design.cup_thickness, design.r_fs, False
@@ -54,13 +56,18 @@ def _check(gear: str, quality: dict[str, float], recipe: ToothRecipe) -> None:
 
 
 def build_sector(design: DriveDesign, recipe: MeshRecipe, gear: str) -> SectorMesh:
-    """Mesh the tooth sector of `gear` (``flexible_spline`` or ``ring_gear``)."""
+    """Mesh the tooth sector of `gear` (``flexible_spline`` or ``ring_gear``); one layer of it for the plane model."""
     counts: ToothRecipe = getattr(recipe, gear)
     profile = make_profile(design, gear)
     interface, free, root_too = _radii(design, gear, counts, profile.r_root_circle)
     section = cross_section(profile, counts, interface, free)
     width = design.drive.face_width
-    z = axial_stations(width, recipe.face_width.elements, recipe.face_width.end_ratio, design.wave_generator.face_width)
+    plane = design.drive.model == "plane"
+    if plane:
+        z = np.array([-0.5, 0.5]) * width
+    else:
+        number, ratio = recipe.face_width.elements, recipe.face_width.end_ratio
+        z = axial_stations(width, number, ratio, design.wave_generator.face_width)
     amount, relief = np.zeros_like(z), np.zeros_like(section.coords)
     micro = design.micro_geometry
     if gear == "flexible_spline" and micro.fs_crowning != 0.0:
@@ -72,6 +79,9 @@ def build_sector(design: DriveDesign, recipe: MeshRecipe, gear: str) -> SectorMe
     cw, ccw = rows[:, section.edge], rows[:, section.mirror[section.edge]]
     if gear == "flexible_spline":
         faces = {"inner": sweep_line(section.free, rows)}
+        # in the plane the torque acts on the inner surface, of which the lower layer stands for both
+        node_sets = {"bore": np.sort(rows[0, section.free])}
+    if gear == "flexible_spline" and not plane:
         attached = attached_quads(section, root_too)
         cup, columns = cup_nodes(design, recipe.cup, section, attached)
         place = np.full(len(section.coords), -1, dtype=np.int32)
@@ -85,9 +95,9 @@ def build_sector(design: DriveDesign, recipe: MeshRecipe, gear: str) -> SectorMe
         cw = np.concatenate((cw.ravel(), new[:, edge].ravel()))
         ccw = np.concatenate((ccw.ravel(), new[:, other].ravel()))
         node_sets = {"bore": np.sort(cup_rows[-1])}
-    else:
+    if gear == "ring_gear":
         faces = {"outer": sweep_line(section.free[::-1], rows)}
-        node_sets = {"outer": np.unique(faces["outer"])}
+        node_sets = {"outer": np.unique(rows[:1, section.free] if plane else faces["outer"])}
     quality = hex_quality(coords, hexes)
     _check(gear, quality, counts)
     flanks = tuple(
@@ -107,6 +117,7 @@ def build_sector(design: DriveDesign, recipe: MeshRecipe, gear: str) -> SectorMe
         flanks=(flanks[0], flanks[1]),
         profile=profile,
         quality=quality,
+        tied=np.tile(rows[0], 2) if plane else None,
     )
 
 
@@ -118,4 +129,8 @@ def build_sector_meshes(design: DriveDesign, recipe: MeshRecipe) -> dict[str, Se
     dict of SectorMesh
         Keys ``flexible_spline`` (with its slice of the cup) and ``ring_gear``.
     """
+    if design.drive.model == "cup":
+        for name in ("face_width", "cup"):
+            if getattr(recipe, name) is None:
+                raise InputError(f'[{name}] is missing in the mesh recipe: allowed only with drive.model = "plane"')
     return {gear: build_sector(design, recipe, gear) for gear in ("flexible_spline", "ring_gear")}

@@ -58,8 +58,8 @@ class MeshRecipe(Section):
 
     flexible_spline: ToothRecipe
     ring_gear: ToothRecipe
-    face_width: FaceWidthRecipe
-    cup: CupRecipe
+    face_width: FaceWidthRecipe | None = None
+    cup: CupRecipe | None = None
 
 
 def load_recipe(path: str | Path) -> MeshRecipe:

@@ -63,6 +63,8 @@ class SectorMesh:
     quality : dict of float
         ``min_scaled_jacobian``, ``min_jacobian`` and ``max_jacobian`` (mm³, determinants at the 2x2x2 Gauss
         points), ``max_aspect_ratio``.
+    tied : (n_node,) int32 or None
+        Plane model: the node of the lower layer that each node moves with; None for a solid.
     """
 
     body: str
@@ -77,3 +79,9 @@ class SectorMesh:
     flanks: tuple[FlankGrid, FlankGrid]
     profile: ToothProfile
     quality: dict[str, float]
+    tied: Ints | None = None
+
+    @property
+    def elements(self) -> Ints:
+        """Nodes of the finite elements: the hexahedra, or their lower faces in the plane model; (n_elem, 8 or 4)."""
+        return self.hexes if self.tied is None else self.hexes[:, :4]

@@ -25,13 +25,14 @@ UNITS = {
     "wg_torque_Nmm": "N·mm",
     "tooth_torque_Nmm": "N·mm",
     "output_torque_Nmm": "N·mm",
+    "torque_balance_Nmm": "N·mm",
     "pairs_in_contact": "",
     "max_penetration_mm": "mm",
     "newton_iterations": "",
     "wall_s": "s",
 }
 """Columns in the order of the file, with their units. Stresses are maxima of nodal averages over a body,
-s3 as a positive number; torques act on the flexible spline."""
+s3 as a positive number; torques act on the flexible spline, that of the output on the output."""
 
 COLUMNS = tuple(UNITS)
 _TEXT = {"step"}

@@ -26,7 +26,7 @@ def loaded(design: DriveDesign, comm: MPI.Comm = WORLD) -> tuple[Runner, dict[st
     """The small drive after step 3, and its history row."""
     runner = Runner(DriveModel(design, load_recipe(DATA / "tiny.toml"), comm))
     for item in sequence(design):
-        if item.scene.step > 3:
+        if item.step > 3:
             break
         runner.increment(item)
     return runner, row(runner)

@@ -22,7 +22,7 @@ def test_iterative_equals_direct() -> None:
     equilibrium, partition = model.equilibrium, model.partition
     equilibrium.scene = Scene(4, "rotate", angle=0.01, cam=-0.001, teeth=-0.02, control="rotation", rotation=1e-3)
     equilibrium.search()
-    equilibrium._jacobian(None, equilibrium.x, None, equilibrium.matrix)
+    equilibrium._jacobian(None, equilibrium.x, equilibrium.matrix, equilibrium.matrix)
     positions = equilibrium.positions()[: partition.n_own]
     right = create_vector(partition)
     right.array[:] = np.random.default_rng(1).standard_normal(3 * partition.n_global)[
@@ -31,9 +31,8 @@ def test_iterative_equals_direct() -> None:
     solutions = []
     for linear in ("direct", "iterative"):
         border = Bordered(partition, linear, positions, f"test_{linear}_")
-        border.set_border(equilibrium.ground_vectors, equilibrium.border.border, equilibrium.border.rows)
+        border.set_system(equilibrium.matrix, equilibrium.ground_vectors, equilibrium.border.border, equilibrium.border.rows)
         pc = equilibrium.snes.getKSP().getPC()
-        pc.setOperators(equilibrium.matrix)
         border.setUp(pc)
         solutions.append(create_vector(partition))
         border.apply(pc, right, solutions[-1])

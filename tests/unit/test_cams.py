@@ -299,7 +299,7 @@ def test_pins_fit_into_the_spline_and_end_at_the_cam(name: str, design_file: Cal
         x, y = cam.center
         assert travel == pytest.approx(y - np.sqrt((R_FS - cam.radius) ** 2 - x**2), rel=1e-5)
     assert start(design).pins == travel
-    assert [i.scene.pins for i in sequence(design) if i.scene.step == 1][-1] == 0.0
+    assert [i.pins for i in sequence(design) if i.step == 1][-1] == 0.0
 
 
 @pytest.mark.parametrize("name", SECTIONS)
