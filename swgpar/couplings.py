@@ -38,7 +38,7 @@ def node_weights(coords: np.ndarray, nodes: np.ndarray, ccw: np.ndarray) -> np.n
     """
     x, y, z = coords[nodes].T
     angle = np.round(np.arctan2(-x, y), 9)
-    z = np.round((z - z.min()) / (np.ptp(z) or 1.0), 9)
+    z = np.round(z / max(np.ptp(z), 1e-300), 9)
 
     def share(values: np.ndarray, closed: bool) -> np.ndarray:
         level, inverse = np.unique(values, return_inverse=True)
@@ -144,7 +144,7 @@ class Coupling:
 
 
 class Housing:
-    """Rigid ring in which the ring gear turns as the output: its outer nodes stay on their circle (section 5.8).
+    """Rigid ring in which the output ring gear turns: the nodes of its outer surface stay on their circle (section 5.8).
 
     Stiff radial springs, as hard as contact; the nodes are free along the circle and the axis.
 

@@ -9,21 +9,19 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from swgpar.assembly import BlockRows, Elements, Exchange, add_unit_diagonal, create_matrix, create_vector, fill_matrix
-from swgpar.contact.friction import FIRST_STEP, PairKey
 from swgpar.contact.rigid import CamPose, RigidContact
-from swgpar.contact.search import FlankPair, facing_flanks, largest
+from swgpar.contact.search import facing_flanks, largest
 from swgpar.contact.teeth import ToothContact
+from swgpar.couplings import ROTATION, Coupling, Housing
 from swgpar.design import DriveDesign
-from swgpar.holding import Holding
 from swgpar.line_search import SearchedStep
 from swgpar.linear import Bordered
 from swgpar.log import Phases
 from swgpar.partition import LocalNodes, Partition
 from swgpar.steps import Scene
 
-NEAR, TOUCH, TIP_MARGIN = 0.25, 0.05, 0.1
-"""Search distances as shares of the module: faces evaluated (farther off in a drive with more backlash), blocks
-foreseen, tip overlap."""
+NEAR, TOUCH, REACH, TIP_MARGIN = 0.25, 0.05, 0.5, 0.1
+"""Search distances as shares of the module: faces evaluated, blocks foreseen, largest gap, tip overlap."""
 
 SOFTENING, SOFT_TOLERANCE = (1e-3, 3e-2), 1e-2
 """Shares of the penalty, and residual over contact force, of the first rough solves while contact is established."""
@@ -39,11 +37,6 @@ LONGEST, MEETING = 0.05, 2e-4
 
 FLOOR = 0.05
 """Share of the round-off that a residual can hold below which it counts as zero; 0.01 to 0.06 of it is reached."""
-
-
-def near(design: DriveDesign) -> float:
-    """Distance (mm) within which flanks are followed: under torque all those that the backlash may bring together."""
-    return max(NEAR * design.drive.module, TOUCH * design.drive.module + design.backlash)
 
 
 @dataclass(frozen=True)
@@ -62,7 +55,7 @@ class Equilibrium:
     Parameters
     ----------
     design : the drive;  partition, elements : ownership and elements, bound to their local nodes
-    holding : what holds and loads the bodies
+    couplings : of the bodies that float, the output last;  housing : around the ring gear when that floats
     rigid, pins : cam and pins on the inner surface;  teeth : flank contact
     """
 
@@ -71,17 +64,20 @@ class Equilibrium:
         design: DriveDesign,
         partition: Partition,
         elements: Elements,
-        holding: Holding,
+        couplings: list[Coupling],
+        housing: Housing | None,
         rigid: RigidContact,
         pins: RigidContact,
         teeth: ToothContact,
+        images: bool,
         phases: Phases,
     ) -> None:
-        self.design, self.partition, self.elements, self.holding = design, partition, elements, holding
+        self.design, self.partition, self.elements, self.couplings = design, partition, elements, couplings
+        self.housing = housing
         self.rigid, self.pins, self.teeth, self.phases = rigid, pins, teeth, phases
-        self.scale, self.share = holding.scale, holding.share
-        self.x, self.accepted = create_vector(partition), create_vector(partition)
-        self.near = near(design)
+        self.share = 0.5 if images else 1.0
+        self.scale = design.material.E * design.drive.module
+        self.x = create_vector(partition)
         self.scene: Scene | None = None
         self.on_iteration = None
         self.rebind(np.zeros(0, dtype=np.int64))
@@ -90,6 +86,7 @@ class Equilibrium:
         self.own_keys = own * partition.n_global + own
         self.round_off = 0.0
         self.softness = 1.0
+        self._grounding()
         self.snes = PETSc.SNES().create(comm=partition.comm)
         self.snes.setType(PETSc.SNES.Type.NEWTONLS)
         options = PETSc.Options()
@@ -98,9 +95,7 @@ class Equilibrium:
         self.snes.setTolerances(max_it=design.solver.max_iterations)
         self.snes.setFunction(self._function, create_vector(partition))
         self.snes.setConvergenceTest(self._converged)
-        self.border = Bordered(
-            partition, design.solver.linear, self.positions()[: partition.n_own], "stiffness_", teeth.symmetric
-        )
+        self.border = Bordered(partition, design.solver.linear, self.positions()[: partition.n_own], "stiffness_")
         ksp = self.snes.getKSP()
         ksp.setType(PETSc.KSP.Type.PREONLY)
         ksp.getPC().setType(PETSc.PC.Type.PYTHON)
@@ -115,12 +110,6 @@ class Equilibrium:
         shell.setUp()
         self.snes.setJacobian(self._jacobian, shell, shell)
 
-    def destroy(self) -> None:
-        """Release the solvers, which refer to this object, and their matrices; collective."""
-        for held in (self.snes, self.border.ksp, self.border.unblocked, self.matrix):
-            if held is not None:
-                held.destroy()
-
     # -- local data ------------------------------------------------------------------------------------
 
     def rebind(self, further: np.ndarray) -> None:
@@ -128,7 +117,6 @@ class Equilibrium:
         self.local = LocalNodes(self.partition, self.elements.wanted, further)
         self.exchange = Exchange(self.partition, self.local.number)
         self.teeth.bind(self.local)
-        self.teeth.turn = self.holding.ring_turn(self.displacement())
 
     def displacement(self, x: PETSc.Vec | None = None) -> np.ndarray:
         """(n_local, 3) mm, ghosts included."""
@@ -152,29 +140,23 @@ class Equilibrium:
             further = np.zeros(0, dtype=np.int64)
             if self.scene is not None and self.scene.teeth is not None:
                 margin = TIP_MARGIN * self.design.drive.module
-                pairs = self._facing(margin)
+                pairs = facing_flanks(self.partition, self.elements.bodies[0], self.displacement(), self._ring_turn(), margin)
                 further = self.teeth.numbers(pairs)
             else:
                 self.teeth.numbers([])
             self.rebind(further)
             m = self.design.drive.module
-            keys = self.teeth.select(self.displacement(), self.near, TOUCH * m)
-            if not self.teeth.symmetric and self.scene is not None and self.scene.step >= FIRST_STEP:
-                self.teeth.resist(self.displacement(self.accepted))
+            keys = self.teeth.select(self.displacement(), NEAR * m, TOUCH * m)
         self.rigid.reset()
         self.pins.reset()
         self._pattern(keys)
-
-    def _facing(self, margin: float) -> list[FlankPair]:
-        u = self.displacement()
-        return facing_flanks(self.partition, self.elements.bodies[0], u, self.holding.ring_turn(u), margin)
 
     def _overlooked(self) -> bool:
         """Whether flanks that the search left out have come into contact."""
         if self.scene.teeth is None:
             return False
         with self.phases("search"):
-            pairs = self._facing(0.0)
+            pairs = facing_flanks(self.partition, self.elements.bodies[0], self.displacement(), self._ring_turn(), 0.0)
             found = self.teeth.overlooked(pairs, self.displacement(), self.scene.teeth)
         return bool(self.partition.comm.allreduce(int(found), op=MPI.MAX))
 
@@ -190,7 +172,28 @@ class Equilibrium:
                 self.matrix.destroy()
             self.matrix = create_matrix(self.partition, self.rows)
 
+    def _grounding(self) -> None:
+        stiffness = 0.1 * self.scale
+        self.grounded = []
+        self.ground_vectors = []
+        for coupling in self.couplings:
+            for support in coupling.supports():
+                vector = create_vector(self.partition)
+                array = vector.array.reshape(-1, 3)
+                for i in np.flatnonzero(np.abs(support).sum(axis=1)):
+                    direction = np.sqrt(stiffness) * support[i]
+                    array[coupling.nodes[i]] += direction
+                    self.grounded.append((coupling.nodes[i], direction))
+                self.ground_vectors.append(vector)
+
     # -- residual and tangent --------------------------------------------------------------------------
+
+    def _controls(self, scene: Scene) -> list[tuple[int, int]]:
+        """Coupling and quantity that are prescribed, in pairs."""
+        active = [(i, int(k)) for i, c in enumerate(self.couplings) for k in np.flatnonzero(c.active)]
+        if scene.control == "torque":
+            active.remove((len(self.couplings) - 1, ROTATION))
+        return active
 
     def _contact(self, u: np.ndarray, residual: np.ndarray | None, rows: BlockRows | None) -> np.ndarray:
         scene = self.scene
@@ -200,12 +203,7 @@ class Equilibrium:
             self.pins.evaluate(u, CamPose(scene.angle, inset=scene.pins), residual, rows)
         if scene.teeth is None:
             return np.zeros(0, dtype=np.int64)
-        self.teeth.turn = self.holding.ring_turn(u)
-        missing = self.teeth.evaluate(u, scene.teeth, residual, rows)
-        if residual is not None:
-            # the flanks' heights over their chords turn with the ring gear
-            self.holding.add_ring_moment(u, self.partition.comm.allreduce(self.teeth.moment, op=MPI.SUM), residual)
-        return missing
+        return self.teeth.evaluate(u, scene.teeth, residual, rows)
 
     def _function(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
         with self.phases("residual"):
@@ -217,12 +215,24 @@ class Equilibrium:
                 self._contact(u, contact, None)
                 residual = contact.copy()
                 self.elements.assemble(u, residual, None, None)
+                if self.housing is not None:
+                    self.housing.add_forces(u, residual)
             except FloatingPointError:
                 self.failed, residual = True, contact
             if self.partition.comm.allreduce(int(self.failed), op=MPI.MAX):
                 self.failed = True
             self.reference = np.sqrt(self.partition.comm.allreduce(float(np.sum(contact[:n_own] ** 2))))
-            tail = self.holding.add_forces(u, self.scene, self.multipliers(x), residual)
+            scene, multiplier = self.scene, self.multipliers(x)
+            motion = [coupling.evaluate(u) for coupling in self.couplings]
+            target = np.zeros((len(motion), 6))
+            target[-1, ROTATION] = scene.rotation
+            tail = self.scale * multiplier  # unused ones are zero; used ones are overwritten below
+            for i, k in self._controls(scene):
+                gradient = motion[i].gradient[k]
+                residual[self.couplings[i].nodes] += self.scale * multiplier[6 * i + k] * gradient
+                tail[6 * i + k] = self.scale * (motion[i].value[k] - target[i, k])
+            if scene.control == "torque":
+                residual[self.couplings[-1].nodes] -= self.share * scene.torque * motion[-1].gradient[ROTATION]
             f.array[:] = residual[:n_own].ravel()
             if self.partition.comm.rank == self.partition.comm.size - 1:
                 f.array[-len(tail) :] = tail
@@ -238,7 +248,10 @@ class Equilibrium:
             self.rows.values[:] = 0.0
             self.elements.assemble(u, None, self.rows, self.slots)
             missing = self._contact(u, None, self.rows)
-            self.holding.add_blocks(u, self.rows)
+            for node, direction in self.grounded:
+                self._add_diagonal(np.array([node]), np.outer(direction, direction))
+            if self.housing is not None:
+                self._add_diagonal(self.housing.nodes, self.housing.blocks(u))
             add_unit_diagonal(self.rows, self.partition, self.scale)
         self.missing = missing
         # forces that follow from a last-digit error of every position
@@ -250,9 +263,17 @@ class Equilibrium:
         with self.phases("insert"):
             fill_matrix(self.matrix, self.rows)
             p.stateIncrease()
-        bound = self.scale * self._longest_turn() if self.scene.control == "torque" else None
-        border, rows = self.holding.border(u, self.scene)
-        self.border.set_system(self.matrix, self.holding.ground_vectors, border, rows, bound)
+        border, controls, bound = [], self._controls(self.scene), None
+        if self.scene.control == "torque":
+            controls.append((len(self.couplings) - 1, ROTATION))
+            bound = self.scale * self._longest_turn()
+        motion = [coupling.evaluate(u) for coupling in self.couplings]
+        for i, k in controls:
+            vector = create_vector(self.partition)
+            vector.array.reshape(-1, 3)[self.couplings[i].nodes] = self.scale * motion[i].gradient[k]
+            border.append(vector)
+        rows = [6 * i + k for i, k in controls]
+        self.border.set_system(self.matrix, self.ground_vectors, border, rows, bound)
 
     def _longest_turn(self) -> float:
         """Bound (rad) of the output's turn in a Newton step under torque control.
@@ -263,6 +284,11 @@ class Equilibrium:
         gap = -largest(self.partition.comm, -self.teeth.clearance(LOADED_SIDE)) / drive.module
         reach = 0.5 * drive.teeth_rg * drive.module + self.design.d  # no tooth is farther out
         return drive.module * (min(gap, LONGEST) + MEETING if gap > 0.0 else LONGEST) / reach
+
+    def _add_diagonal(self, nodes: np.ndarray, blocks: np.ndarray) -> None:
+        """Add blocks (n, 3, 3) N/mm to the diagonal of owned nodes (n,)."""
+        keys = (self.partition.row_start + nodes.astype(np.int64)) * (self.partition.n_global + 1)
+        self.rows.values[np.searchsorted(self.rows.keys, keys)] += blocks
 
     # -- solve -------------------------------------------------------------------------------------------
 
@@ -296,7 +322,8 @@ class Equilibrium:
         """
         self.scene = scene
         if self.partition.comm.rank == self.partition.comm.size - 1:
-            unused = self.holding.unused(scene)
+            unused = np.ones(self.partition.n_multipliers, dtype=bool)
+            unused[[6 * i + k for i, k in self._controls(scene)]] = False
             self.x.array[-len(unused) :][unused] = 0.0
         self.search()
         iterations, self.augmentations, searched = 0, 0, False
@@ -323,21 +350,10 @@ class Equilibrium:
                 searched = True
                 continue
             if self.penetration() <= tolerance or self.augmentations >= self.design.contact.max_augmentations:
-                self.accept()
                 return Solved(True, iterations, ratio, "converged")
             self.augmentations += 1
             for contact in (self.rigid, self.pins, self.teeth):
                 contact.augment()
-
-    def accept(self) -> None:
-        """Make x the state from which friction counts the slip of the next solve."""
-        self.x.copy(self.accepted)
-        self.teeth.accept()
-
-    def resume(self, tractions: dict[PairKey, np.ndarray]) -> None:
-        """Take x and these tractions of the flanks as an accepted state."""
-        self.x.copy(self.accepted)
-        self.teeth.history = tractions
 
     def soften(self, share: float) -> None:
         """Use this share of the contact penalty."""
@@ -357,7 +373,10 @@ class Equilibrium:
 
     def rotation(self) -> float:
         """Turn of the output (rad)."""
-        return self.holding.turn(self.displacement())
+        return float(self.couplings[-1].evaluate(self.displacement()).value[ROTATION])
+
+    def _ring_turn(self) -> float:
+        return self.rotation() if len(self.couplings) > 1 else 0.0
 
     def torques(self) -> dict[str, float]:
         """Torques about z (N mm): wave generator (and pins) and teeth on the flexible spline, load on the output.
@@ -382,10 +401,10 @@ class Equilibrium:
             local = -float(np.sum(x[spline, 0] * r[:, 1] - x[spline, 1] * r[:, 0]))
             return self.partition.comm.allreduce(local, op=MPI.SUM) / self.share
 
-        held = self.holding.reactions(self.multipliers(self.x))
+        held = -self.scale * self.multipliers(self.x)[ROTATION::6] / self.share
         output = scene.torque if scene.control == "torque" else float(held[-1])
         wg, teeth_torque = moment(rigid), moment(teeth)
-        if len(held) == 1:
+        if len(self.couplings) == 1:
             balance = abs(wg + teeth_torque + output)
         else:
             balance = max(abs(wg + teeth_torque + float(held[0])), abs(output - teeth_torque))

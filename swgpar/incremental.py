@@ -14,9 +14,8 @@ from swgpar.contact.rigid import RigidContact
 from swgpar.contact.teeth import ToothContact
 from swgpar.couplings import Coupling, Housing
 from swgpar.design import DriveDesign
-from swgpar.equilibrium import Equilibrium, near
+from swgpar.equilibrium import Equilibrium
 from swgpar.errors import ConvergenceError
-from swgpar.holding import Holding
 from swgpar.kernel import reference_elements
 from swgpar.log import Phases, logger
 from swgpar.meshing import MeshRecipe, build_sector_meshes
@@ -64,10 +63,12 @@ class DriveModel:
         self.partition = Partition(layouts, comm)
         with self.phases("elements"):
             references = [
-                reference_elements(m.coords[m.elements], design.material.E, design.material.nu, design.drive.face_width)
+                reference_elements(
+                    m.coords[m.elements], design.material.E, design.material.nu, design.drive.face_width
+                )
                 for m in self.meshes.values()
             ]
-            self.elements = Elements(self.partition, references, symmetric=design.contact.friction == 0.0)
+            self.elements = Elements(self.partition, references)
             self.elements.bind(LocalNodes(self.partition, self.elements.wanted))
         spline, ring = self.elements.bodies
         surface = WaveGeneratorSurface(design)
@@ -91,9 +92,8 @@ class DriveModel:
             design.drive.face_width,
             micro.crowning_shape,
             design.penalty,
-            max(0.5 * design.drive.module, near(design)),
+            0.5 * design.drive.module,
             PRESSURE_LIMIT * design.material.E,
-            design.contact.friction,
         )
         couplings, housing = [Coupling(self.partition, spline, "bore", images)], None
         if design.drive.layout == "spline_fixed":
@@ -101,23 +101,20 @@ class DriveModel:
             outer = float(np.hypot(*couplings[-1].reference[:, :2].T).max(initial=0.0))
             area = 2.0 * np.pi * outer * design.drive.face_width / (2.0 if images else 1.0)
             housing = Housing(couplings[-1], area, design.penalty)
-        scale = design.material.E * design.drive.module
         self.equilibrium = Equilibrium(
             design,
             self.partition,
             self.elements,
-            Holding(self.partition, couplings, housing, scale, 0.5 if images else 1.0),
+            couplings,
+            housing,
             RigidContact(spline, *rigid),
             RigidContact(spline, *rigid),
             teeth,
+            images,
             self.phases,
         )
         self.copies = 2 if images else 1
         self.fixed_body = 1 if design.drive.layout == "ring_fixed" else 0
-
-    def destroy(self) -> None:
-        """Release the solver and its factor, which Python cannot: PETSc holds references in a circle. Collective."""
-        self.equilibrium.destroy()
 
     def counts(self) -> dict[str, Any]:
         """Nodes, elements and unknowns per body, modelled and of the whole drive."""
@@ -128,7 +125,7 @@ class DriveModel:
             out[layout.name] = {
                 "nodes": per_sector * layout.count,
                 "elements": len(layout.mesh.hexes) * layout.count,
-                "dofs": self.partition.dims * len(layout.own) * layout.count,
+                "dofs": 3 * len(layout.own) * layout.count,
                 "nodes_whole": per_sector * layout.mesh.n_sectors,
                 "elements_whole": len(layout.mesh.hexes) * layout.mesh.n_sectors,
                 "quality": layout.mesh.quality,
@@ -192,10 +189,6 @@ class Runner:
     def advance(self, target: Scene) -> None:
         """Solve up to `target`, halving the way when Newton's iteration fails; raises ConvergenceError at the end."""
         origin, x = self.scene, self.equilibrium.x
-        if origin.control == "rotation" and target.control == "torque":
-            # cut, the way begins with the torque that holds the output
-            held = self.equilibrium.holding.reactions(self.equilibrium.multipliers(x))
-            origin = replace(origin, torque=float(held[-1]))
         done, share, cuts = 0.0, 1.0, 0
         while done < 1.0:
             saved = x.copy()
@@ -237,8 +230,7 @@ class Runner:
         """Predict the state at a cam angle (rad) from the visited one that is nearest to it in the period."""
         pitch = 2.0 * np.pi / self.model.partition.layouts[self.model.fixed_body].mesh.n_sectors
         turns = [(angle - visited) / pitch for visited, _ in self.visited]
-        apart = [round(abs(turn - np.rint(turn)), 6) for turn in turns]
-        nearest = min(reversed(range(len(turns))), key=apart.__getitem__, default=None)
+        nearest = min(reversed(range(len(turns))), key=lambda i: round(abs(turns[i] - np.rint(turns[i])), 6), default=None)
         start = self.scene.angle
         if nearest is not None:
             start, x = self.visited[nearest]

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import os
-import signal
 import subprocess
 import sys
-import time
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -16,13 +14,6 @@ from swgpar.results import history
 
 DATA = Path(__file__).parent / "data"
 DESIGN, RECIPE = DATA / "small.toml", DATA / "tiny.toml"
-PLANE = (
-    "drive.model=plane",
-    "load.torque=0.2",
-    *(f"micro_geometry.{key}=0" for key in ("wg_crowning", "wg_slope", "fs_crowning")),
-)
-"""Overrides that make the plane model of the small drive; it carries a tenth of the torque."""
-
 SHORT = ("steps.rotation=4.0", "steps.increment=2.0")
 
 # a process that has initialised MPI passes these on, and mpirun then takes itself for a rank of that job
@@ -71,36 +62,4 @@ def assert_same_history(folder: Path, other: Path, rel: float = 1e-8, *, iterati
         if name in ("step", "wall_s") or (name == "newton_iterations" and not iterations):
             continue
         left, right = history.column(a, name), history.column(b, name)
-        # the balance is nothing but round-off, of the torques
-        scale = right if name != "torque_balance_Nmm" else history.column(b, "output_torque_Nmm")
-        assert np.abs(left - right).max() <= rel * np.abs(scale).max(), (name, left, right)
-
-
-def of_session(leader: int) -> list[int]:
-    """Processes of a session; mpirun gives its ranks process groups of their own, but not sessions."""
-    found = []
-    for entry in Path("/proc").iterdir():
-        if entry.name.isdigit():
-            try:
-                if os.getsid(int(entry.name)) == leader:
-                    found.append(int(entry.name))
-            except ProcessLookupError:  # ended meanwhile
-                pass
-    return found
-
-
-def kill_after(command: list[str], out: Path, rows: int) -> None:
-    """Start a run and kill all its processes once its history has `rows` rows."""
-    process = subprocess.Popen(command, cwd=DATA, env=environment(), start_new_session=True)
-    limit = time.monotonic() + 600.0
-    try:
-        while not ((out / "history.csv").exists() and len(history.read_history(out / "history.csv")) >= rows):
-            assert process.poll() is None and time.monotonic() < limit
-            time.sleep(0.05)
-    finally:
-        for pid in of_session(process.pid):
-            try:
-                os.kill(pid, signal.SIGKILL)
-            except ProcessLookupError:
-                pass
-        process.wait()
+        assert np.abs(left - right).max() <= rel * np.abs(right).max(), (name, left, right)

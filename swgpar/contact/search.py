@@ -31,19 +31,13 @@ class FlankPair:
     ring_flip: int
     ring_tooth: int
 
-    @property
-    def key(self) -> tuple[int, int, int]:
-        """What tells the pair from others: sector, side, number of the ring gear's tooth."""
-        return self.sector, self.side, self.ring_tooth
-
 
 def facing_flanks(
     partition: Partition, spline: BodyElements, u: np.ndarray, turn: float, margin: float
 ) -> list[FlankPair]:
     """Pairs of flanks that can meet at displacement u (n_local, 3); the same list on every rank.
 
-    turn : rad, of the ring gear
-    margin : mm, how far the tip of a tooth may stay inside the tip circle of the ring gear
+    turn : rad, of the ring gear;  margin : mm, how far the tip of a tooth may stay inside the tip circle of the ring gear
     """
     layout, ring = partition.layouts
     first, end = partition.owned(0)
@@ -55,7 +49,7 @@ def facing_flanks(
     c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
     flank = x[:, body]
     local_x, local_y = c * flank[..., 0] + s * flank[..., 1], -s * flank[..., 0] + c * flank[..., 1]
-    lean = np.arctan2(-local_x.mean(axis=1), local_y.mean(axis=1))
+    lean = np.arctan2(-local_x, local_y).mean(axis=1)
     reach = np.hypot(x[:, tips, 0], x[:, tips, 1]).max(axis=1) if len(rows) else np.zeros(0)
     table = np.concatenate(partition.comm.allgather(np.column_stack([angle + lean, reach]).reshape(-1, 2)))
     pitch = 2.0 * np.pi / ring.mesh.n_sectors

@@ -3,7 +3,6 @@
 
 import numpy as np
 
-from libc.math cimport cos, sin
 from libc.stdint cimport int32_t, int64_t, uint8_t
 
 
@@ -19,7 +18,6 @@ cdef extern from "contact_batch.hpp" namespace "swgpar" nogil:
         const double* tangent
         const double* orientation
         const double* turn
-        double body_cosine, body_sine
         const int32_t* conn
         const uint8_t* flip
     struct FaceBatch:
@@ -33,48 +31,17 @@ cdef extern from "contact_batch.hpp" namespace "swgpar" nogil:
         const double* weight
         const double* offset
         const int32_t* patch
-    struct BlockRows:
-        const int64_t* start
-        const int32_t* column
-        double* values
-        const int32_t* number
-        int64_t n_own
-        bint symmetric
-    struct Friction:
-        double coefficient, stiffness
-        const double* place
-        const double* gap
-        const double* traction
-        double* now
     int64_t flank_contact(const FlankBatch&, const FaceBatch&, const double* u, const double* multiplier,
-                          double penalty, double opening, double reach, double limit, const Friction& friction,
-                          double* residual, const BlockRows& rows, double* gap, double* pressure, double* place,
-                          double* moment)
+                          double penalty, double opening, double reach, double limit, double* residual, const int64_t* start,
+                          const int32_t* column, double* values, const int32_t* number, int64_t n_own,
+                          double* gap, double* pressure, double* place)
     int64_t add_blocks(int64_t n, int m, const int32_t* conn, const uint8_t* flip, const double* blocks,
-                       const BlockRows& rows)
-
-
-cdef BlockRows rows_of(rows):
-    cdef const int64_t[::1] start = rows.start
-    cdef const int32_t[::1] column = rows.column, number = rows.number
-    cdef double[:, :, ::1] values = rows.values
-    return BlockRows(&start[0], &column[0], &values[0, 0, 0], &number[0], rows.n_own, rows.symmetric)
-
-
-cdef Friction friction_of(law, int64_t n_face, int64_t n_q) except *:
-    cdef const double[:, :, ::1] place = law.place, traction = law.traction
-    cdef const double[:, ::1] gap = law.gap
-    cdef double[:, :, ::1] now = law.now
-    for array in (law.place, law.traction, law.gap, law.now):
-        if array.shape[0] != n_face or array.shape[1] != n_q:
-            raise ValueError("contact_flanks: arrays of the friction have another shape than the faces")
-    law.now[...] = 0.0  # also where the last evaluation had contact and this one has not
-    return Friction(law.coefficient, law.stiffness, &place[0, 0, 0], &gap[0, 0], &traction[0, 0, 0], &now[0, 0, 0])
+                       const int64_t* start, const int32_t* column, double* values, const int32_t* number,
+                       int64_t n_own)
 
 
 def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] multiplier, double penalty,
-                   double opening, double reach, double limit, double[:, ::1] residual, rows, friction=None,
-                   double turn=0.0, double[::1] moment=None):
+                   double opening, double reach, double limit, double[:, ::1] residual, rows):
     """Forces and tangent of slave faces against master flank patches.
 
     Parameters
@@ -87,10 +54,7 @@ def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] 
     limit : MPa, bound of the pressure in the tangent's geometric term
     reach : mm, points farther from the master surface than this are not in contact
     residual : (n_local, 3) N, added to; None to skip
-    rows : record with start, column, values, number, n_own, symmetric; None to skip the tangent
-    friction : record of the last converged state, where tractions are put (`swgpar.contact.friction.Friction`), or None
-    turn : rad, of the master body as a whole
-    moment : (n_face,) N mm, derivative of the contact's energy with respect to `turn`, added to with the residual
+    rows : record with start, column, values, number, n_own; None to skip the tangent
 
     Returns
     -------
@@ -101,7 +65,7 @@ def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] 
     """
     cdef const double[::1] s = patches.s, z = patches.z, orientation = patches.orientation
     cdef const double[:, :, ::1] point = patches.point, tangent = patches.tangent
-    cdef const double[:, ::1] place_of = patches.turn
+    cdef const double[:, ::1] turn = patches.turn
     cdef const int32_t[:, :, ::1] pconn = patches.conn
     cdef const uint8_t[:, :, ::1] pflip = patches.flip
     cdef const int32_t[:, ::1] conn = faces.conn
@@ -124,33 +88,35 @@ def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] 
     cdef double[:, ::1] gap = gap_array, pressure = pressure_array
     cdef double[:, :, ::1] place = place_array
     cdef FlankBatch p = FlankBatch(n_patch, s.shape[0] - 1, z.shape[0] - 1, &s[0], &z[0], &point[0, 0, 0],
-                                   &tangent[0, 0, 0], &orientation[0], &place_of[0, 0], cos(turn), sin(turn),
-                                   &pconn[0, 0, 0], &pflip[0, 0, 0])
+                                   &tangent[0, 0, 0], &orientation[0], &turn[0, 0], &pconn[0, 0, 0], &pflip[0, 0, 0])
     cdef FaceBatch f = FaceBatch(n_face, n_q, &conn[0, 0], &flip[0, 0], &coords[0, 0, 0], &normal[0, 0],
                                  &shape[0, 0, 0], &weight[0, 0], &offset[0, 0], &patch[0])
-    cdef int64_t missing
-    cdef BlockRows r = BlockRows(NULL, NULL, NULL, NULL, 0, True)
-    cdef Friction law = Friction(0.0, 0.0, NULL, NULL, NULL, NULL, NULL)
+    cdef const int64_t[::1] start
+    cdef const int32_t[::1] column, number
+    cdef double[:, :, ::1] values
+    cdef const int64_t* p_start = NULL
+    cdef const int32_t* p_column = NULL
+    cdef const int32_t* p_number = NULL
+    cdef double* p_values = NULL
+    cdef int64_t n_own = 0, missing
     if rows is not None:
-        r = rows_of(rows)
-    if friction is not None:
-        law = friction_of(friction, n_face, n_q)
+        start, column, values, number, n_own = rows.start, rows.column, rows.values, rows.number, rows.n_own
+        p_start, p_column, p_values, p_number = &start[0], &column[0], &values[0, 0, 0], &number[0]
     cdef double* p_residual = NULL
     if residual is not None:
         p_residual = &residual[0, 0]
-    cdef double[::1] moments = np.zeros(n_face) if moment is None else moment
-    if moments.shape[0] != n_face:
-        raise ValueError("contact_flanks: moment must have an entry for each face")
     with nogil:
-        missing = flank_contact(p, f, &u[0, 0], &multiplier[0, 0], penalty, opening, reach, limit, law, p_residual, r,
-                                &gap[0, 0], &pressure[0, 0], &place[0, 0, 0], &moments[0])
+        missing = flank_contact(p, f, &u[0, 0], &multiplier[0, 0], penalty, opening, reach, limit, p_residual, p_start,
+                                p_column, p_values, p_number, n_own, &gap[0, 0], &pressure[0, 0], &place[0, 0, 0])
     return gap_array, pressure_array, place_array, missing
 
 
 def add_face_blocks(const int32_t[:, ::1] conn, const uint8_t[:, ::1] flip, const double[:, :, :, :, ::1] blocks, rows):
-    """Add dense blocks (n, m, m, 3, 3) of nodes conn (n, m) to the owned rows; returns misses."""
-    cdef int64_t n = conn.shape[0], missing
-    cdef BlockRows r = rows_of(rows)
+    """Add dense blocks (n, m, m, 3, 3) of nodes conn (n, m) to the owned upper-triangle rows; returns misses."""
+    cdef const int64_t[::1] start = rows.start
+    cdef const int32_t[::1] column = rows.column, number = rows.number
+    cdef double[:, :, ::1] values = rows.values
+    cdef int64_t n = conn.shape[0], n_own = rows.n_own, missing
     cdef int m = conn.shape[1]
     if not (flip.shape[0] == n and flip.shape[1] == m and blocks.shape[0] == n and blocks.shape[1] == m
             and blocks.shape[2] == m and blocks.shape[3] == 3 and blocks.shape[4] == 3):
@@ -158,5 +124,6 @@ def add_face_blocks(const int32_t[:, ::1] conn, const uint8_t[:, ::1] flip, cons
     if n == 0:
         return 0
     with nogil:
-        missing = add_blocks(n, m, &conn[0, 0], &flip[0, 0], &blocks[0, 0, 0, 0, 0], r)
+        missing = add_blocks(n, m, &conn[0, 0], &flip[0, 0], &blocks[0, 0, 0, 0, 0], &start[0], &column[0],
+                             &values[0, 0, 0], &number[0], n_own)
     return missing

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "contact.hpp"
-#include "friction.hpp"
 
 namespace swgpar {
 
@@ -14,8 +13,7 @@ struct FlankBatch {  // n_patch master flanks with the same grid
   const double* tangent;      // (n_patch, n_s + 1, 2)
   const double* orientation;  // (n_patch)
   const double* turn;         // (n_patch, 2) cosine, sine
-  double body_cosine, body_sine;
-  const std::int32_t* conn;  // (n_patch, n_s + 1, n_z + 1)
+  const std::int32_t* conn;   // (n_patch, n_s + 1, n_z + 1)
   const std::uint8_t* flip;
 
   Patch patch(int k) const {
@@ -29,8 +27,6 @@ struct FlankBatch {  // n_patch master flanks with the same grid
                  orientation[k],
                  turn[2 * k],
                  turn[2 * k + 1],
-                 body_cosine,
-                 body_sine,
                  conn + row * (n_z + 1),
                  flip + row * (n_z + 1)};
   }
@@ -42,7 +38,7 @@ struct FaceBatch {  // slave faces and their quadrature points
   const std::int32_t* conn;  // (n_face, 4)
   const std::uint8_t* flip;
   const double* coords;       // (n_face, 4, 3) undeformed, turned into place
-  const double* normal;       // (n_face, 3) undeformed outward normal, of which the side matters
+  const double* normal;       // (n_face, 3) undeformed outward normal
   const double* shape;        // (n_face, n_q, 4)
   const double* weight;       // (n_face, n_q) area
   const double* offset;       // (n_face, n_q) exact surface above the facet
@@ -51,24 +47,23 @@ struct FaceBatch {  // slave faces and their quadrature points
 
 inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& faces, const double* u,
                                   const double* multiplier, double penalty, double opening, double reach, double limit,
-                                  const Friction& friction, double* residual, const BlockRows& rows, double* gap,
-                                  double* pressure, double* place, double* moment) {
+                                  double* residual, const std::int64_t* start, const std::int32_t* column,
+                                  double* values, const std::int32_t* number, std::int64_t n_own, double* gap,
+                                  double* pressure, double* place) {
+  const BlockRows rows{start, column, values, number, n_own};
   std::int64_t missing = 0;
   for (std::int64_t k = 0; k < faces.n_face; ++k) {
     const Patch patch = patches.patch(faces.patch[k]);
+    const Vec3 face_normal(faces.normal[3 * k], faces.normal[3 * k + 1], faces.normal[3 * k + 2]);
     std::int32_t conn[8];
     std::uint8_t flip[8];
-    Vec3 before[4], corner[4];
+    Vec3 corner[4];
     for (int a = 0; a < 4; ++a) {
       conn[a] = faces.conn[4 * k + a];
       flip[a] = faces.flip[4 * k + a];
       const double* c = faces.coords + 12 * k + 3 * a;
-      before[a] = Vec3(c[0], c[1], c[2]);
-      corner[a] = before[a] + nodal(u, conn[a], flip[a]);
+      corner[a] = Vec3(c[0], c[1], c[2]) + nodal(u, conn[a], flip[a]);
     }
-    const Vec3 outward(faces.normal[3 * k], faces.normal[3 * k + 1], faces.normal[3 * k + 2]);
-    Vec3 face_normal = (corner[2] - corner[0]).cross(corner[3] - corner[1]).normalized();
-    if ((before[2] - before[0]).cross(before[3] - before[1]).dot(outward) < 0.0) face_normal = -face_normal;
     for (int q = 0; q < faces.n_q; ++q) {
       const std::int64_t kq = k * faces.n_q + q;
       const double* shape = faces.shape + 4 * kq;
@@ -94,28 +89,17 @@ inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& fa
           add_nodal(residual, conn[a], flip[a], -p * w * shape[a] * f.normal);
           add_nodal(residual, conn[4 + a], flip[4 + a], p * w * m[a] * f.normal);
         }
-        moment[k] += p * w * (f.normal[1] * f.height[0] - f.normal[0] * f.height[1]);
       }
-      if (rows.values != nullptr)
-        missing += add_contact_tangent(f, shape, conn, flip, w, penalty, std::min(p, limit), rows);
-      if (friction.coefficient == 0.0) continue;
-      const Vec2 length(patch.s[f.i + 1] - patch.s[f.i], patch.z[f.j + 1] - patch.z[f.j]);
-      const Traction t = traction(f, length, Vec2(place[2 * kq], place[2 * kq + 1]), friction, kq, p, penalty);
-      const Motion motion(f, shape);
-      if (residual != nullptr) {
-        const Eigen::Matrix<double, 24, 1> force = w * motion.foot.transpose() * (motion.x.transpose() * t.value);
-        for (int a = 0; a < 8; ++a) add_nodal(residual, conn[a], flip[a], force.segment<3>(3 * a));
-      }
-      if (rows.values != nullptr)
-        missing += add_friction_tangent(f, t, motion, patch.bent(f.i), conn, flip, w, penalty, p,
-                                        std::min(1.0, limit / p), friction, rows);
+      if (values != nullptr) missing += add_contact_tangent(f, shape, conn, flip, w, penalty, std::min(p, limit), rows);
     }
   }
   return missing;
 }
 
 inline std::int64_t add_blocks(std::int64_t n, int m, const std::int32_t* conn, const std::uint8_t* flip,
-                               const double* blocks, const BlockRows& rows) {
+                               const double* blocks, const std::int64_t* start, const std::int32_t* column,
+                               double* values, const std::int32_t* number, std::int64_t n_own) {
+  const BlockRows rows{start, column, values, number, n_own};
   std::int64_t missing = 0;
   for (std::int64_t k = 0; k < n; ++k) {
     for (int a = 0; a < m; ++a) {

@@ -8,7 +8,7 @@ import numpy as np
 
 from swgpar.errors import InputError
 from swgpar.meshing.cup import attached_quads, cup_nodes
-from swgpar.meshing.quality import hex_quality, quad_quality
+from swgpar.meshing.quality import hex_quality
 from swgpar.meshing.recipe import MeshRecipe, ToothRecipe
 from swgpar.meshing.relief import relief_field
 from swgpar.meshing.sector import FlankGrid, Floats, SectorMesh
@@ -46,11 +46,11 @@ def _swept(section: CrossSection, z: Floats, relief: Floats, amount: Floats) -> 
     return coords
 
 
-def _check(gear: str, quality: dict[str, float], recipe: ToothRecipe, unit: str) -> None:
+def _check(gear: str, quality: dict[str, float], recipe: ToothRecipe) -> None:
     if not quality["min_jacobian"] > 0.0:
         raise InputError(
             f"{gear}.tip = {recipe.tip}, {gear}.flank = {recipe.flank} of the mesh recipe turn an element "
-            f"inside out (Jacobian {quality['min_jacobian']:.3g} {unit}): allowed are counts, and a profile, "
+            f"inside out (Jacobian {quality['min_jacobian']:.3g} mm3): allowed are counts, and a profile, "
             "that leave all Jacobians above 0"
         )
 
@@ -98,8 +98,8 @@ def build_sector(design: DriveDesign, recipe: MeshRecipe, gear: str) -> SectorMe
     if gear == "ring_gear":
         faces = {"outer": sweep_line(section.free[::-1], rows)}
         node_sets = {"outer": np.unique(rows[:1, section.free] if plane else faces["outer"])}
-    quality = quad_quality(coords, hexes[:, :4]) if plane else hex_quality(coords, hexes)
-    _check(gear, quality, counts, "mm2" if plane else "mm3")
+    quality = hex_quality(coords, hexes)
+    _check(gear, quality, counts)
     flanks = tuple(
         FlankGrid(np.ascontiguousarray(rows[:, nodes].T), section.s, z, side)
         for side, nodes in ((1, section.flank), (-1, section.mirror[section.flank]))
@@ -121,14 +121,6 @@ def build_sector(design: DriveDesign, recipe: MeshRecipe, gear: str) -> SectorMe
     )
 
 
-def require_sections(design: DriveDesign, recipe: MeshRecipe) -> None:
-    """Refuse a recipe that lacks what the model needs."""
-    if design.drive.model == "cup":
-        for name in ("face_width", "cup"):
-            if getattr(recipe, name) is None:
-                raise InputError(f'[{name}] is missing in the mesh recipe: allowed only with drive.model = "plane"')
-
-
 def build_sector_meshes(design: DriveDesign, recipe: MeshRecipe) -> dict[str, SectorMesh]:
     """Mesh one tooth sector of each gear.
 
@@ -137,5 +129,8 @@ def build_sector_meshes(design: DriveDesign, recipe: MeshRecipe) -> dict[str, Se
     dict of SectorMesh
         Keys ``flexible_spline`` (with its slice of the cup) and ``ring_gear``.
     """
-    require_sections(design, recipe)
+    if design.drive.model == "cup":
+        for name in ("face_width", "cup"):
+            if getattr(recipe, name) is None:
+                raise InputError(f'[{name}] is missing in the mesh recipe: allowed only with drive.model = "plane"')
     return {gear: build_sector(design, recipe, gear) for gear in ("flexible_spline", "ring_gear")}

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from mpi4py import MPI
-from small_drive import PLANE
 
 from swgpar.assembly import create_vector
 from swgpar.design import load_design
@@ -18,46 +17,28 @@ from swgpar.steps import Scene
 DATA = Path(__file__).parent.parent / "data"
 
 
-@pytest.mark.parametrize(
-    "overrides",
-    [
-        (),
-        ("solver.twofold_symmetry=false",),
-        ("drive.layout=spline_fixed",),
-        PLANE,
-        (*PLANE, "solver.twofold_symmetry=false"),
-        (*PLANE, "drive.layout=spline_fixed"),
-        ("contact.friction=0.2",),
-    ],
-)
-def test_tangent_is_the_derivative_of_the_residual(overrides: tuple[str, ...]) -> None:
-    design = load_design(DATA / "small.toml", overrides)
+@pytest.mark.parametrize("half", ["true", "false"])
+def test_tangent_is_the_derivative_of_the_residual(half: str) -> None:
+    design = load_design(DATA / "small.toml", [f"solver.twofold_symmetry={half}"])
     model = DriveModel(design, load_recipe(DATA / "tiny.toml"), MPI.COMM_WORLD)
-    equilibrium, partition, dims = model.equilibrium, model.partition, model.partition.dims
+    equilibrium, partition = model.equilibrium, model.partition
     # undeformed, the cam overlaps at the major axis; shrunk teeth overlap slightly at the minor axis
     equilibrium.scene = Scene(4, "rotate", angle=0.01, cam=-0.001, teeth=-0.02, control="torque", torque=2000.0)
-    rng = np.random.default_rng(3)
-    own = slice(partition.row_start, partition.row_start + partition.n_own)
-    # with friction: points of the flanks have come from here, most of them slip
-    equilibrium.accepted.array[:] = 1e-2 * rng.standard_normal((partition.n_global, 3))[own].ravel()
     equilibrium.search()
     # the overlaps here are far beyond any real pressure: the bound of the geometric terms must not act
     equilibrium.rigid.pressure_limit = equilibrium.teeth.pressure_limit = np.inf
+    start = partition.row_start
+    rng = np.random.default_rng(3)
     every = 1e-5 * rng.standard_normal((partition.n_global, 3))
     way = rng.standard_normal((partition.n_global, 3))
-    for vectors in (way, every):
-        vectors[partition.multiplier_nodes] = vectors[:, dims:] = 0.0
+    way[-2:] = every[-2:] = 0.0
+    own = slice(start, start + partition.n_own)
     x, d = equilibrium.x, create_vector(partition)
     x.array[:], d.array[:] = every[own].ravel(), way[own].ravel()
-    equilibrium._function(None, x, create_vector(partition))
-    equilibrium.teeth.hold()  # the tangent does not know how the segments' edges move
     equilibrium._jacobian(None, x, None, equilibrium.matrix)
     product = create_vector(partition)
-    into, out = equilibrium.matrix.createVecs()
-    into.array.reshape(-1, dims)[:] = d.array.reshape(-1, 3)[:, :dims]
-    equilibrium.matrix.mult(into, out)
-    product.array.reshape(-1, 3)[:, :dims] = out.array.reshape(-1, dims)
-    for vector in equilibrium.holding.ground_vectors:
+    equilibrium.matrix.mult(d, product)
+    for vector in equilibrium.ground_vectors:
         product.axpy(-vector.dot(d), vector)
     step, sides = 1e-8, []
     for sign in (1.0, -1.0):
@@ -70,14 +51,7 @@ def test_tangent_is_the_derivative_of_the_residual(overrides: tuple[str, ...]) -
     difference = sides[0].copy()
     difference.axpy(-1.0, product)
     if partition.comm.rank == partition.comm.size - 1:
-        difference.array[-partition.n_multipliers :] = 0.0  # the couplings' rows are in the border, not in the matrix
+        difference.array[-6:] = 0.0  # the coupling's rows are in the border, not in the matrix
     assert equilibrium.penetration() > 0.0
-    if design.contact.friction:
-        law = equilibrium.teeth.friction
-        slipping = 0 if law is None else np.count_nonzero(np.linalg.norm(law.now, axis=2))
-        assert partition.comm.allreduce(slipping) > 0
-    print(f"relative difference {difference.norm() / sides[0].norm():.1e}")
-    # left out of the tangent: the second derivative of the coupling's rotation, and that flanks turn with a ring gear
-    # that is the output, their height over the chord (0.01 of the radius here) times the slope of normals to it
-    tolerance = 1e-6 if design.drive.layout == "ring_fixed" else 1e-5
-    assert difference.norm() < tolerance * sides[0].norm()
+    # the torque's own second derivative is left out of the tangent, and contact points switch within the step
+    assert difference.norm() < 1e-4 * sides[0].norm()

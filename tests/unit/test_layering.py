@@ -26,15 +26,12 @@ ORDER = (
     "line_search",
     "contact",
     "steps",
-    "holding",
     "stress",
     "equilibrium",
     "incremental",
-    "plain_ring",
     "results",
     "report",
     "run",
-    "study",
     "cli",
 )
 ROOT = Path(__file__).parents[2] / "swgpar"
