@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, NoReturn, TypeVar
 
 import swgpar
-from swgpar.errors import InputError, SwgparError
+from swgpar.errors import InputError, StudyError, SwgparError
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -26,6 +26,23 @@ EXAMPLES = """examples:
   mpirun -n 2 swgpar run drivers/cup_45deg.toml --mesh mesh/full.toml --out results/full --restart
   swgpar mesh drivers/cup_45deg.toml --mesh mesh/coarse.toml --out results/mesh --format vtu inp
   swgpar report results/full
+"""
+
+STUDY = """A study computes many designs and compares them: a grid or a sweep over any keys of the design file, on one
+mesh or more, beside published values where there are some. The file is described in docs/studies.md."""
+
+STUDY_EXAMPLES = """examples:
+  mpirun -n 4 swgpar study drivers/studies/torque.toml --out results/torque
+  mpirun -n 4 swgpar study drivers/studies/torque.toml --out results/torque --restart
+
+a study file:
+  [study]
+  design = "../cup_45deg.toml"              # relative to the study file, like the meshes
+  meshes = ["../../mesh/coarse.toml"]
+  [study.vary]
+  "load.torque" = [5.0, 10.0, 20.0]
+
+--restart keeps what is finished, continues what was interrupted and tries again what failed.
 """
 
 
@@ -45,7 +62,7 @@ def parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     top.add_argument("--version", action="version", version=f"swgpar {swgpar.__version__}")
-    commands = top.add_subparsers(dest="command", required=True, metavar="run | mesh | check | report")
+    commands = top.add_subparsers(dest="command", required=True, metavar="run | study | mesh | check | report")
 
     def design_command(name: str, text: str) -> argparse.ArgumentParser:
         command = commands.add_parser(
@@ -67,6 +84,17 @@ def parser() -> argparse.ArgumentParser:
     run.add_argument("--out", required=True, help="results folder")
     run.add_argument("--restart", action="store_true", help="continue from the checkpoint in --out")
     run.add_argument("--overwrite", action="store_true", help="replace results that --out already holds")
+    study = commands.add_parser(
+        "study",
+        help="compute and compare many designs; what is not known here is handed to PETSc",
+        description=STUDY,
+        epilog=STUDY_EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    study.add_argument("study", help="study file (TOML)")
+    study.add_argument("--out", required=True, help="folder of the study")
+    study.add_argument("--restart", action="store_true", help="continue the study in --out")
+    study.add_argument("--overwrite", action="store_true", help="replace a study that --out already holds")
     mesh = design_command("mesh", "write the mesh of the whole drive")
     mesh.add_argument("--mesh", required=True, help="mesh recipe (TOML)")
     mesh.add_argument("--out", required=True, help="folder for the mesh files")
@@ -169,6 +197,28 @@ def _figures(out: str) -> None:
         console.print(f"figures could not be drawn: {error}")
 
 
+def _study(arguments: argparse.Namespace) -> None:
+    from pathlib import Path
+
+    from mpi4py import MPI
+
+    from swgpar.log import console
+    from swgpar.study import run_study
+    from swgpar.study.table import compare
+    from swgpar.study.terminal import print_results
+
+    out = Path(arguments.out)
+    results = run_study(arguments.study, out, restart=arguments.restart, overwrite=arguments.overwrite)
+    if MPI.COMM_WORLD.rank == 0:
+        print_results(results, compare(results))
+        for path in sorted([*out.glob("*.csv"), *out.glob("*.html")]):
+            console.print(f"written {path}")
+    MPI.COMM_WORLD.Barrier()  # mpirun ends all ranks when one of them fails
+    failed = sum(outcome.status == "failed" for _, outcome in results)
+    if failed:
+        raise StudyError(f"{failed} of {len(results)} runs failed: the reasons are in {out / 'study.csv'}")
+
+
 def _mesh(arguments: argparse.Namespace) -> None:
     from pathlib import Path
 
@@ -222,13 +272,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         known, rest = parser().parse_known_args(arguments)
         command = known.command
-        _check_rest(rest, petsc=command == "run")
+        solves = command in ("run", "study")
+        _check_rest(rest, petsc=solves)
         known.overrides = [item for group in getattr(known, "set", []) for item in group]
-        if command == "run":
+        if solves:
             import petsc4py
 
             petsc4py.init(["swgpar", *rest])
-        {"run": _run, "mesh": _mesh, "check": _check, "report": _report}[command](known)
+        {"run": _run, "study": _study, "mesh": _mesh, "check": _check, "report": _report}[command](known)
     except SwgparError as error:
         from mpi4py import MPI
 
@@ -239,7 +290,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stderr.close()
         return 1
     except Exception:
-        if command != "run":
+        if command not in ("run", "study"):
             raise
         traceback.print_exc()
         from mpi4py import MPI

@@ -144,7 +144,7 @@ class Coupling:
 
 
 class Housing:
-    """Rigid ring in which the output ring gear turns: the nodes of its outer surface stay on their circle (section 5.8).
+    """Rigid ring in which the ring gear turns as the output: its outer nodes stay on their circle (section 5.8).
 
     Stiff radial springs, as hard as contact; the nodes are free along the circle and the axis.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -16,7 +16,9 @@ from swgpar.quantities import Section, quantity
 
 
 class Drive(Section):
-    layout: Literal["ring_fixed", "spline_fixed"] = quantity("ring_fixed", text="fixed member; the other gear is the output")
+    layout: Literal["ring_fixed", "spline_fixed"] = quantity(
+        "ring_fixed", text="fixed member; the other gear is the output"
+    )
     model: Literal["cup", "plane"] = quantity("cup", text="the cup drive, or the toothed section in plane stress")
     teeth_fs: int = quantity(text="teeth of the flexible spline", ge=8, le=2000)
     teeth_rg: int = quantity(text="teeth of the ring gear", ge=10, le=2002)
@@ -231,7 +233,12 @@ def check_fit(design: DriveDesign) -> None:
 
 def load_design(path: str | Path, overrides: Sequence[str] = ()) -> DriveDesign:
     """Read and check a design file; every problem is an `InputError` of one sentence."""
-    design = validate(DriveDesign, apply_overrides(read_toml(path), overrides))
+    return make_design(apply_overrides(read_toml(path), overrides))
+
+
+def make_design(table: dict[str, Any]) -> DriveDesign:
+    """Check the content of a design file; every problem is an `InputError` of one sentence."""
+    design = validate(DriveDesign, table)
     check_fit(design)
     for gear in ("flexible_spline", "ring_gear"):
         make_profile(design, gear)

@@ -47,21 +47,33 @@ def parse_value(text: str) -> Any:
 
 def apply_overrides(table: dict[str, Any], overrides: Sequence[str]) -> dict[str, Any]:
     """Return a copy of `table` with each ``section.key=value`` of `overrides` set, in order."""
-    table = _copy(table)
     for override in overrides:
-        key, equals, text = override.partition("=")
-        names = [name.strip() for name in key.split(".")]
-        if not equals or not text.strip() or len(names) < 2 or not all(names):
-            raise InputError(f"--set {show(override)} cannot be read: write section.key=value")
-        target = table
-        for depth, name in enumerate(names[:-1], start=1):
-            target = target.setdefault(name, {})
-            if not isinstance(target, dict):
-                raise InputError(
-                    f"--set {show(override)} cannot be applied: {'.'.join(names[:depth])} = {show(target)} "
-                    "is a value, not a section"
-                )
-        target[names[-1]] = parse_value(text.strip())
+        key, text = split_override(override)
+        table = with_value(table, key, parse_value(text))
+    return table
+
+
+def split_override(override: str) -> tuple[str, str]:
+    """Key and text of the value of a ``section.key=value``."""
+    key, equals, text = override.partition("=")
+    names = [name.strip() for name in key.split(".")]
+    if not equals or not text.strip() or len(names) < 2 or not all(names):
+        raise InputError(f"--set {show(override)} cannot be read: write section.key=value")
+    return ".".join(names), text.strip()
+
+
+def with_value(table: dict[str, Any], key: str, value: Any) -> dict[str, Any]:
+    """Return a copy of `table` with the value of ``section.key`` replaced; sections on the way are made."""
+    table = _copy(table)
+    target, names = table, key.split(".")
+    for depth, name in enumerate(names[:-1], start=1):
+        target = target.setdefault(name, {})
+        if not isinstance(target, dict):
+            raise InputError(
+                f"{key} = {show(value)} cannot be applied: {'.'.join(names[:depth])} = {show(target)} "
+                "is a value, not a section"
+            )
+    target[names[-1]] = value
     return table
 
 

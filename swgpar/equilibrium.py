@@ -10,7 +10,7 @@ from petsc4py import PETSc
 
 from swgpar.assembly import BlockRows, Elements, Exchange, add_unit_diagonal, create_matrix, create_vector, fill_matrix
 from swgpar.contact.rigid import CamPose, RigidContact
-from swgpar.contact.search import facing_flanks, largest
+from swgpar.contact.search import FlankPair, facing_flanks, largest
 from swgpar.contact.teeth import ToothContact
 from swgpar.couplings import ROTATION, Coupling, Housing
 from swgpar.design import DriveDesign
@@ -110,6 +110,12 @@ class Equilibrium:
         shell.setUp()
         self.snes.setJacobian(self._jacobian, shell, shell)
 
+    def destroy(self) -> None:
+        """Release the solvers, which refer to this object, and their matrices; collective."""
+        for held in (self.snes, self.border.ksp, self.border.unblocked, self.matrix):
+            if held is not None:
+                held.destroy()
+
     # -- local data ------------------------------------------------------------------------------------
 
     def rebind(self, further: np.ndarray) -> None:
@@ -140,7 +146,7 @@ class Equilibrium:
             further = np.zeros(0, dtype=np.int64)
             if self.scene is not None and self.scene.teeth is not None:
                 margin = TIP_MARGIN * self.design.drive.module
-                pairs = facing_flanks(self.partition, self.elements.bodies[0], self.displacement(), self._ring_turn(), margin)
+                pairs = self._facing(margin)
                 further = self.teeth.numbers(pairs)
             else:
                 self.teeth.numbers([])
@@ -151,12 +157,16 @@ class Equilibrium:
         self.pins.reset()
         self._pattern(keys)
 
+    def _facing(self, margin: float) -> list[FlankPair]:
+        turn = self.rotation() if len(self.couplings) > 1 else 0.0
+        return facing_flanks(self.partition, self.elements.bodies[0], self.displacement(), turn, margin)
+
     def _overlooked(self) -> bool:
         """Whether flanks that the search left out have come into contact."""
         if self.scene.teeth is None:
             return False
         with self.phases("search"):
-            pairs = facing_flanks(self.partition, self.elements.bodies[0], self.displacement(), self._ring_turn(), 0.0)
+            pairs = self._facing(0.0)
             found = self.teeth.overlooked(pairs, self.displacement(), self.scene.teeth)
         return bool(self.partition.comm.allreduce(int(found), op=MPI.MAX))
 
@@ -374,9 +384,6 @@ class Equilibrium:
     def rotation(self) -> float:
         """Turn of the output (rad)."""
         return float(self.couplings[-1].evaluate(self.displacement()).value[ROTATION])
-
-    def _ring_turn(self) -> float:
-        return self.rotation() if len(self.couplings) > 1 else 0.0
 
     def torques(self) -> dict[str, float]:
         """Torques about z (N mm): wave generator (and pins) and teeth on the flexible spline, load on the output.

@@ -27,6 +27,12 @@ class ConvergenceError(SwgparError):
     exit_code = 3
 
 
+class StudyError(SwgparError):
+    """A study that went through all its cases and could not finish some of them."""
+
+    exit_code = 5
+
+
 class OutputError(SwgparError):
     """A result, figure or checkpoint that could not be written or read back."""
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -63,9 +62,7 @@ class DriveModel:
         self.partition = Partition(layouts, comm)
         with self.phases("elements"):
             references = [
-                reference_elements(
-                    m.coords[m.elements], design.material.E, design.material.nu, design.drive.face_width
-                )
+                reference_elements(m.coords[m.elements], design.material.E, design.material.nu, design.drive.face_width)
                 for m in self.meshes.values()
             ]
             self.elements = Elements(self.partition, references)
@@ -115,6 +112,10 @@ class DriveModel:
         )
         self.copies = 2 if images else 1
         self.fixed_body = 1 if design.drive.layout == "ring_fixed" else 0
+
+    def destroy(self) -> None:
+        """Release the solver and its factor, which Python cannot: PETSc holds references in a circle. Collective."""
+        self.equilibrium.destroy()
 
     def counts(self) -> dict[str, Any]:
         """Nodes, elements and unknowns per body, modelled and of the whole drive."""
@@ -230,7 +231,8 @@ class Runner:
         """Predict the state at a cam angle (rad) from the visited one that is nearest to it in the period."""
         pitch = 2.0 * np.pi / self.model.partition.layouts[self.model.fixed_body].mesh.n_sectors
         turns = [(angle - visited) / pitch for visited, _ in self.visited]
-        nearest = min(reversed(range(len(turns))), key=lambda i: round(abs(turns[i] - np.rint(turns[i])), 6), default=None)
+        apart = [round(abs(turn - np.rint(turn)), 6) for turn in turns]
+        nearest = min(reversed(range(len(turns))), key=apart.__getitem__, default=None)
         start = self.scene.angle
         if nearest is not None:
             start, x = self.visited[nearest]

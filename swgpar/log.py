@@ -30,13 +30,14 @@ class _RunLog(logging.FileHandler):
         self.setLevel(logging.CRITICAL + 1)
 
 
-def start(comm: MPI.Comm, *, level: int = logging.INFO) -> logging.Logger:
+def start(comm: MPI.Comm, *, level: int = logging.INFO, terminal: bool = True) -> logging.Logger:
     """Send the log of rank 0 to the terminal; further calls change nothing.
 
     Parameters
     ----------
     comm : communicator of the run
     level : smallest level that is shown
+    terminal : False keeps the terminal free; the log then goes into files only
     """
     if logger.handlers:
         return logger
@@ -45,6 +46,8 @@ def start(comm: MPI.Comm, *, level: int = logging.INFO) -> logging.Logger:
     if comm.rank != 0:
         logger.addHandler(logging.NullHandler())
         logger.setLevel(logging.CRITICAL + 1)
+    elif not terminal:
+        logger.addHandler(logging.NullHandler())
     elif console.is_terminal:
         logger.addHandler(
             RichHandler(
@@ -68,12 +71,17 @@ def to_file(path: Path, comm: MPI.Comm) -> None:
     start(comm)
     if comm.rank != 0:
         return
-    for handler in [h for h in logger.handlers if isinstance(h, _RunLog)]:
-        logger.removeHandler(handler)
-        handler.close()
+    close_file()
     handler = _RunLog(path, mode="a", encoding="utf-8")
     handler.setFormatter(logging.Formatter("%(asctime)s  %(levelname)-7s  %(message)s"))
     logger.addHandler(handler)
+
+
+def close_file() -> None:
+    """Close the log file of this process, if there is one."""
+    for handler in [h for h in logger.handlers if isinstance(h, _RunLog)]:
+        logger.removeHandler(handler)
+        handler.close()
 
 
 class IncrementProgress:
@@ -84,21 +92,14 @@ class IncrementProgress:
     comm : communicator of the run
     total : number of increments of the whole run
     done : increments that a restart finds finished
+    terminal : False shows no bar
     """
 
-    def __init__(self, comm: MPI.Comm, total: int, *, done: int = 0) -> None:
+    def __init__(self, comm: MPI.Comm, total: int, *, done: int = 0, terminal: bool = True) -> None:
         self._bar: Progress | None = None
         self._total, self._count = total, done
-        if comm.rank == 0 and console.is_terminal:
-            self._bar = Progress(
-                TextColumn("{task.description}"),
-                BarColumn(),
-                MofNCompleteColumn(),
-                TimeElapsedColumn(),
-                TimeRemainingColumn(),
-                console=console,
-                transient=True,
-            )
+        if comm.rank == 0 and console.is_terminal and terminal:
+            self._bar = progress_bar()
             self._task = self._bar.add_task("start", total=total, completed=done)
 
     def __enter__(self) -> IncrementProgress:
@@ -133,6 +134,19 @@ class IncrementProgress:
         )
         if self._bar:
             self._bar.update(self._task, completed=self._count)
+
+
+def progress_bar() -> Progress:
+    """A bar below the log on the terminal that goes when it is stopped."""
+    return Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+        console=console,
+        transient=True,
+    )
 
 
 class Phases:

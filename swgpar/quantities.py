@@ -81,6 +81,10 @@ def allowed(field: FieldInfo) -> str:
     return f"allowed {lower} to {upper}" + (f" {unit}" if unit else "")
 
 
+PLURALS = {list[str]: "a list of texts", dict[str, float]: "a table of numbers", dict[str, Any]: "a table"}
+"""What fields that hold several values are called."""
+
+
 def _section_classes(field: FieldInfo) -> list[type[Section]]:
     """Return the section a field holds, or all those it has the choice of; none for a plain value."""
     choices = get_args(field.annotation) or (field.annotation,)
@@ -150,6 +154,10 @@ def sentence(model: type[Section], error: ValidationError) -> str:
         limits, noun = "allowed true or false", "true or false"
     elif field.annotation in (int, float, float | None):
         limits, noun = allowed(field), "a whole number" if field.annotation is int else "a number"
+    elif field.annotation in PLURALS:
+        limits, noun = f"allowed {field.description}", PLURALS[field.annotation]
+    elif field.annotation is str:
+        limits, noun = f"allowed {field.description}", "a text"
     else:
         choices = " or ".join(json.dumps(choice) for choice in getattr(field.annotation, "__args__", ()))
         limits, noun = f"allowed {choices}", "a text"

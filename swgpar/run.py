@@ -6,6 +6,7 @@ import hashlib
 import platform
 import resource
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -19,7 +20,7 @@ from swgpar import log
 from swgpar.assembly import write_field
 from swgpar.contact.pressure import nodal_pressure
 from swgpar.design import DriveDesign
-from swgpar.errors import InputError
+from swgpar.errors import InputError, SwgparError
 from swgpar.incremental import DriveModel, Runner, stresses
 from swgpar.log import IncrementProgress, logger
 from swgpar.meshing import MeshRecipe
@@ -32,6 +33,9 @@ from swgpar.steps import Scene, sequence
 
 FIRST_ROTATION = 4
 """Step number of the first rotation increment: means are taken from there on."""
+
+MEANS = ("fs_s1", "fs_s3", "fs_vm", "rg_s1", "rg_s3", "rg_vm", "wg_torque_Nmm")
+"""Columns of the history whose means over the rotation are taken."""
 
 
 @dataclass(frozen=True)
@@ -165,14 +169,7 @@ def summarise(model: DriveModel, rows: list[dict[str, Any]], recipe_name: str, s
     """Content of summary.json."""
     comm, design = model.comm, model.design
     turning = [r for r in rows if int(r["step"]) >= FIRST_ROTATION]
-    means = (
-        {
-            k: float(np.mean([r[k] for r in turning]))
-            for k in ("fs_s1", "fs_s3", "fs_vm", "rg_s1", "rg_s3", "rg_vm", "wg_torque_Nmm")
-        }
-        if turning
-        else {}
-    )
+    means = {k: float(np.mean([r[k] for r in turning])) for k in MEANS} if turning else {}
     counts = model.counts()
     memory = comm.allgather(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0)
     expected = 1000.0 * design.load.torque / abs(design.ratio)
@@ -211,8 +208,11 @@ def run_drive(
     overwrite: bool = False,
     comm: MPI.Comm = MPI.COMM_WORLD,
     recipe_name: str = "",
+    on_increment: Callable[[], None] | None = None,
 ) -> RunSummary:
     """Run a design and write its results to `out_dir`; collective.
+
+    on_increment : called after every increment, instead of a report on the terminal
 
     Raises InputError, OutputError or ConvergenceError on all ranks. After a ConvergenceError everything up to the
     last converged increment is on disk and can be continued with `restart`.
@@ -220,10 +220,30 @@ def run_drive(
     out, begin = Path(out_dir), time.perf_counter()
     require_parallel(comm)
     resumed = prepare(out, comm, restart, overwrite)
-    log.start(comm)
+    log.start(comm, terminal=on_increment is None)
     with agreed(comm, out / "run.log"):
         log.to_file(out / "run.log", comm)
     model = DriveModel(design, recipe, comm)
+    try:
+        result = _compute(model, recipe, out, resumed, restart, begin, recipe_name, on_increment)
+    except SwgparError:
+        model.destroy()  # collective: not after an error that perhaps this rank alone has met
+        raise
+    model.destroy()
+    return result
+
+
+def _compute(
+    model: DriveModel,
+    recipe: MeshRecipe,
+    out: Path,
+    resumed: bool,
+    restart: bool,
+    begin: float,
+    recipe_name: str,
+    on_increment: Callable[[], None] | None,
+) -> RunSummary:
+    comm = model.comm
     runner, recorder = Runner(model), Recorder(out, model, recipe)
     counts = model.counts()
     logger.info(
@@ -235,14 +255,14 @@ def run_drive(
         comm.size,
     )
     recorder.mesh()
-    items = list(sequence(design))
+    items = list(sequence(model.design))
     before = 0.0
     if resumed:
         before = recorder.resume(runner, items)
         logger.info("restarted after increment %d", recorder.done)
     elif restart:
         logger.info("no increment was saved: starting from the beginning")
-    with IncrementProgress(comm, len(items), done=recorder.done) as progress:
+    with IncrementProgress(comm, len(items), done=recorder.done, terminal=on_increment is None) as progress:
         model.equilibrium.on_iteration = lambda scene, its, ratio: progress.newton(
             scene.name, np.degrees(scene.angle), its, ratio
         )
@@ -251,9 +271,9 @@ def run_drive(
             runner.increment(item)
             seconds = time.perf_counter() - start
             recorder.record(runner, seconds, before + time.perf_counter() - begin)
-            progress.increment(
-                item.name, float(np.degrees(item.angle)), runner.iterations, runner.residual, seconds
-            )
+            progress.increment(item.name, float(np.degrees(item.angle)), runner.iterations, runner.residual, seconds)
+            if on_increment is not None:
+                on_increment()
     summary = summarise(model, recorder.rows, recipe_name, before + time.perf_counter() - begin)
     write_from_root(comm, out / "summary.json", to_json(summary))
     return RunSummary(recorder.rows, summary["means"], summary)

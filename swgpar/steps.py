@@ -32,7 +32,7 @@ class Scene:
     step : number of the step;  name : what it does
     angle : rad, wave generator;  cam, teeth : mm, clearance added to every gap, None while switched off
     pins : mm, inset of the pins, None when they are out
-    control : "rotation" (output held at `rotation`, rad) or "torque" (`torque`, N mm, on the output, against its motion)
+    control : "rotation" (output held at `rotation`, rad) or "torque" (`torque`, N mm, against the output's motion)
     """
 
     step: int

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
+import time
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -63,3 +65,33 @@ def assert_same_history(folder: Path, other: Path, rel: float = 1e-8, *, iterati
             continue
         left, right = history.column(a, name), history.column(b, name)
         assert np.abs(left - right).max() <= rel * np.abs(right).max(), (name, left, right)
+
+
+def of_session(leader: int) -> list[int]:
+    """Processes of a session; mpirun gives its ranks process groups of their own, but not sessions."""
+    found = []
+    for entry in Path("/proc").iterdir():
+        if entry.name.isdigit():
+            try:
+                if os.getsid(int(entry.name)) == leader:
+                    found.append(int(entry.name))
+            except ProcessLookupError:  # ended meanwhile
+                pass
+    return found
+
+
+def kill_after(command: list[str], out: Path, rows: int) -> None:
+    """Start a run and kill all its processes once its history has `rows` rows."""
+    process = subprocess.Popen(command, cwd=DATA, env=environment(), start_new_session=True)
+    limit = time.monotonic() + 600.0
+    try:
+        while not ((out / "history.csv").exists() and len(history.read_history(out / "history.csv")) >= rows):
+            assert process.poll() is None and time.monotonic() < limit
+            time.sleep(0.05)
+    finally:
+        for pid in of_session(process.pid):
+            try:
+                os.kill(pid, signal.SIGKILL)
+            except ProcessLookupError:
+                pass
+        process.wait()

@@ -37,7 +37,8 @@ def facing_flanks(
 ) -> list[FlankPair]:
     """Pairs of flanks that can meet at displacement u (n_local, 3); the same list on every rank.
 
-    turn : rad, of the ring gear;  margin : mm, how far the tip of a tooth may stay inside the tip circle of the ring gear
+    turn : rad, of the ring gear
+    margin : mm, how far the tip of a tooth may stay inside the tip circle of the ring gear
     """
     layout, ring = partition.layouts
     first, end = partition.owned(0)

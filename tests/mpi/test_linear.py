@@ -31,7 +31,8 @@ def test_iterative_equals_direct() -> None:
     solutions = []
     for linear in ("direct", "iterative"):
         border = Bordered(partition, linear, positions, f"test_{linear}_")
-        border.set_system(equilibrium.matrix, equilibrium.ground_vectors, equilibrium.border.border, equilibrium.border.rows)
+        solved = equilibrium.border
+        border.set_system(equilibrium.matrix, equilibrium.ground_vectors, solved.border, solved.rows)
         pc = equilibrium.snes.getKSP().getPC()
         border.setUp(pc)
         solutions.append(create_vector(partition))

@@ -3,25 +3,20 @@
 from __future__ import annotations
 
 import json
-import os
 import re
-import signal
-import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 import pyvista
 from small_drive import (
-    DATA,
     DESIGN,
     RECIPE,
     SHORT,
     assert_same_history,
-    environment,
     execute,
+    kill_after,
     on_ranks,
     run_command,
     succeed,
@@ -61,36 +56,6 @@ def test_fields_open_in_paraview(plain: Path) -> None:
 def test_results_are_not_overwritten_by_accident(plain: Path) -> None:
     done = execute(run_command(plain))
     assert done.returncode == 4 and "--restart" in done.stderr and "Traceback" not in done.stderr
-
-
-def of_session(leader: int) -> list[int]:
-    """Processes of a session; mpirun gives its ranks process groups of their own, but not sessions."""
-    found = []
-    for entry in Path("/proc").iterdir():
-        if entry.name.isdigit():
-            try:
-                if os.getsid(int(entry.name)) == leader:
-                    found.append(int(entry.name))
-            except ProcessLookupError:  # ended meanwhile
-                pass
-    return found
-
-
-def kill_after(command: list[str], out: Path, rows: int) -> None:
-    """Start a run and kill all its processes once its history has `rows` rows."""
-    process = subprocess.Popen(command, cwd=DATA, env=environment(), start_new_session=True)
-    limit = time.monotonic() + 600.0
-    try:
-        while not ((out / "history.csv").exists() and len(history.read_history(out / "history.csv")) >= rows):
-            assert process.poll() is None and time.monotonic() < limit
-            time.sleep(0.05)
-    finally:
-        for pid in of_session(process.pid):
-            try:
-                os.kill(pid, signal.SIGKILL)
-            except ProcessLookupError:
-                pass
-        process.wait()
 
 
 @pytest.mark.parametrize(("before", "after"), [(1, 1), (2, 1), (1, 2)])

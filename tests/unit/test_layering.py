@@ -32,6 +32,7 @@ ORDER = (
     "results",
     "report",
     "run",
+    "study",
     "cli",
 )
 ROOT = Path(__file__).parents[2] / "swgpar"

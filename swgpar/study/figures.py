@@ -1,0 +1,121 @@
+"""Figures of a study as PNG, for its report."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+from swgpar.results import history
+from swgpar.results.history import UNITS
+from swgpar.run import FIRST_ROTATION
+from swgpar.study.cases import Case
+from swgpar.study.job import Outcome
+from swgpar.study.table import MEANS, by_case, shown
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from swgpar.study.table import Result
+
+TITLES = {
+    "fs_s1": "flexible spline, tensile s1",
+    "fs_s3": "flexible spline, compressive |s3|",
+    "fs_vm": "flexible spline, von Mises",
+    "rg_vm": "ring gear, von Mises",
+    "wg_torque_Nmm": "torque of the wave generator",
+}
+OVER_ANGLE = ("fs_s1", "fs_s3", "fs_vm")
+LINES = 12
+"""Lines in one figure: more of them cannot be told apart."""
+
+LETTERS = 160
+"""Letters of a legend's row."""
+
+MARKERS = "os^vDP"
+
+
+def over_angle(results: Sequence[Result]) -> Iterator[bytes]:
+    """Stresses against the angle of the wave generator, every case on its finest finished mesh."""
+    lines = []
+    for case, outcomes in by_case(results):
+        finished = [outcome for outcome in outcomes if outcome.status == "finished"]
+        if finished and len(turning(finished[-1].rows)) > 1:
+            lines.append((case.name, turning(finished[-1].rows)))
+    for part in _parts(lines):
+        figure, axes = _axes(len(OVER_ANGLE))
+        for name, place in zip(OVER_ANGLE, axes):
+            for k, (label, rows) in enumerate(part):
+                place.plot(history.column(rows, "wg_angle_deg"), history.column(rows, name), label=label, **_style(k))
+            _name(place, name, "angle of the wave generator (degrees)")
+        yield _png(figure, axes)
+
+
+def turning(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The loaded drive: last increment of the load, and the rotation."""
+    loaded = [row for row in rows if int(row["step"]) == FIRST_ROTATION - 1]
+    return loaded[-1:] + [row for row in rows if int(row["step"]) >= FIRST_ROTATION]
+
+
+def over_key(results: Sequence[Result], key: str) -> Iterator[bytes]:
+    """Means over the rotation against a varied key; a line for each combination of all else. None without numbers."""
+    lines: dict[str, list[tuple[float, Outcome]]] = {}
+    for case, outcomes in by_case(results):
+        value = case.varied.get(key)
+        if not isinstance(value, (int, float)) or isinstance(value, bool):
+            return
+        if outcomes[-1].means:
+            lines.setdefault(_rest(case, key), []).append((float(value), outcomes[-1]))
+    drawn = [(label, sorted(points, key=lambda point: point[0])) for label, points in lines.items()]
+    if not any(len(points) > 1 for _, points in drawn):
+        return
+    for part in _parts(drawn):
+        figure, axes = _axes(len(MEANS))
+        for name, place in zip(MEANS, axes):
+            for k, (label, points) in enumerate(part):
+                place.plot([x for x, _ in points], [o.means[name] for _, o in points], label=label, **_style(k))
+            _name(place, name, key)
+        yield _png(figure, axes)
+
+
+def _rest(case: Case, key: str) -> str:
+    """What tells a line of a figure over `key` from the others."""
+    others = [f"{k} = {shown(v)}" for k, v in case.varied.items() if k != key]
+    return ", ".join(text for text in [case.section.name, *others] if text)
+
+
+def _parts(lines: Sequence[Any]) -> Iterator[Sequence[Any]]:
+    for first in range(0, len(lines), LINES):
+        yield lines[first : first + LINES]
+
+
+def _style(k: int) -> dict[str, Any]:
+    return {"color": f"C{k % 10}", "marker": MARKERS[k % len(MARKERS)], "ms": 3, "ls": "-" if k < 10 else "--"}
+
+
+def _axes(count: int) -> tuple[Figure, list[Axes]]:
+    from matplotlib.figure import Figure
+
+    columns = min(3, count)
+    rows = -(-count // columns)
+    figure = Figure(figsize=(4.2 * columns, 3.6 * rows), layout="constrained")
+    return figure, [figure.add_subplot(rows, columns, k + 1) for k in range(count)]
+
+
+def _name(axes: Axes, column: str, xlabel: str) -> None:
+    axes.set(xlabel=xlabel, ylabel=f"{'torque' if 'torque' in column else 'stress'} ({UNITS[column]})")
+    axes.set_title(TITLES[column], fontsize=10)
+    axes.grid(alpha=0.3)
+    axes.ticklabel_format(axis="y", useOffset=False)
+
+
+def _png(figure: Figure, axes: Sequence[Axes]) -> bytes:
+    handles, labels = axes[0].get_legend_handles_labels()
+    if any(labels):
+        columns = max(1, min(4, len(labels), LETTERS // max(map(len, labels))))
+        figure.set_figheight(figure.get_figheight() + 0.2 * -(-len(labels) // columns))
+        figure.legend(handles, labels, loc="outside lower center", ncols=columns, fontsize=8)
+    file = io.BytesIO()
+    figure.savefig(file, format="png", dpi=110)
+    return file.getvalue()

@@ -1,0 +1,152 @@
+"""study.html: tables, figures and failures of a study in one file that needs nothing else."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Iterable, Mapping, Sequence
+from html import escape
+from pathlib import Path
+from typing import Any
+
+import swgpar
+from swgpar.study import figures
+from swgpar.study.spec import Study
+from swgpar.study.table import MEANS, Comparison, Result, by_case, estimate_of, study_rows
+
+STYLE = """
+body { font: 15px/1.45 sans-serif; margin: 2em auto; max-width: 84em; padding: 0 1em; color: #222; }
+table { border-collapse: collapse; margin: 1em 0; }
+th, td { padding: .25em .8em; border-bottom: 1px solid #ddd; text-align: right; vertical-align: top; }
+th { border-bottom: 2px solid #888; }
+.text { text-align: left; }
+.bad td, .bad { color: #a40000; }
+.scroll { overflow-x: auto; }
+img { max-width: 100%; }
+pre { background: #f4f4f4; padding: .8em; overflow-x: auto; }
+"""
+
+ESTIMATE = (
+    "The error estimate is Richardson's extrapolation from the last two meshes of a case: with element sizes "
+    "h1 &gt; h2 that follow from the numbers of elements (n<sup>-1/3</sup>, in plane models n<sup>-1/2</sup>) and an "
+    "error that falls with h², converged = f2 + (f2 - f1) / ((h1/h2)² - 1), and the estimate is |converged - f2|. It "
+    "holds when both meshes resolve the stress and all directions were refined alike. Under edge contact (no "
+    "micro-geometry) and for |s3| below the tooth contact it means nothing: the stress then grows with the mesh."
+)
+LOG_LINES = 12
+"""Of a failed run, in the report."""
+
+
+def make_report(study: Study, results: Sequence[Result], comparisons: Sequence[Comparison], out: Path) -> bytes:
+    """The whole page; reads the logs of failed cases below `out`. Call it on one rank."""
+    title = study.section.title or study.path.stem
+    parts = [f"<h1>{escape(title)}</h1>", _introduction(study, results)]
+    if comparisons:
+        parts += ["<h2>Published values</h2>", _comparisons(comparisons)]
+    parts += [
+        "<h2>Cases</h2>",
+        "<p>Means over the rotation of the largest nodal averages of each gear (MPa; s3 as a positive number) and of "
+        "the wave generator's torque (N·mm).</p>",
+        _cases(results),
+    ]
+    estimates = _estimates(results)
+    if estimates or any(c.estimate for c in comparisons):
+        parts += ["<h2>Error estimates from meshes</h2>", f"<p>{ESTIMATE}</p>", estimates]
+    parts += _failures(results, out)
+    try:
+        parts += _figures(results)
+    except Exception as error:  # a picture that fails must not cost the report
+        parts.append(f"<p class=bad>Figures could not be drawn: {escape(str(error))}</p>")
+    parts += ["<h2>Study file</h2>", f"<pre>{escape(study.text)}</pre>"]
+    head = f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
+    return f"{head}<style>{STYLE}</style></head><body>\n{chr(10).join(parts)}\n</body></html>\n".encode()
+
+
+def _introduction(study: Study, results: Sequence[Result]) -> str:
+    failed = sum(outcome.status == "failed" for _, outcome in results)
+    seconds = sum(outcome.wall_s or 0.0 for _, outcome in results)
+    text = f"swgpar {swgpar.__version__}: {len(results)} runs, {failed} failed, {seconds:.0f} s of computing."
+    return f"<p>{text} Design: {escape(study.section.design)}.</p>"
+
+
+def table(header: Sequence[str], rows: Iterable[tuple[Sequence[Any], bool]]) -> str:
+    """An HTML table. rows : cells and whether something is wrong; texts stand on the left, numbers on the right."""
+    lines = ["<div class=scroll><table><tr>" + "".join(f"<th>{escape(name)}</th>" for name in header) + "</tr>"]
+    for cells, bad in rows:
+        line = "".join(
+            f"<td{' class=text' if isinstance(cell, str) else ''}>{escape(number(cell))}</td>" for cell in cells
+        )
+        lines.append(f"<tr{' class=bad' if bad else ''}>{line}</tr>")
+    return "\n".join([*lines, "</table></div>"])
+
+
+def number(value: Any) -> str:
+    """A value in a table: five digits, nothing for None."""
+    if value is None:
+        return ""
+    return f"{value:.5g}" if isinstance(value, float) else str(value)
+
+
+def _cases(results: Sequence[Result]) -> str:
+    rows: list[Mapping[str, Any]] = study_rows(results)
+    header = [name for name in rows[0] if name != "reason"]
+    notes = {job.case.name: job.case.section.note for job, _ in results}
+    if any(notes.values()):
+        header.append("note")
+        rows = [{**row, "note": notes[row["case"]]} for row in rows]
+    return table(header, (([row[name] for name in header], row["status"] == "failed") for row in rows))
+
+
+def _comparisons(comparisons: Sequence[Comparison]) -> str:
+    header = ["case", "quantity", "unit", "published", "computed", "difference %", "tolerance %", ""]
+    header += ["converged", "error estimate"]
+    return table(
+        header,
+        (
+            (
+                [c.case, c.quantity, c.unit, c.published, c.computed, c.difference, c.tolerance, c.verdict]
+                + [c.estimate.converged if c.estimate else None, c.estimate.error if c.estimate else None],
+                c.verdict == "MISS",
+            )
+            for c in comparisons
+        ),
+    )
+
+
+def _estimates(results: Sequence[Result]) -> str:
+    rows = []
+    for case, outcomes in by_case(results):
+        for name in MEANS:
+            found = estimate_of(case, outcomes, f"mean.{name}")
+            if found:
+                values = [outcome.means[name] for outcome in outcomes[-2:]]
+                percent = 100.0 * found.error / abs(values[1]) if values[1] else None
+                rows.append(([case.name, f"mean.{name}", *values, found.converged, found.error, percent], False))
+    header = ["case", "quantity", "coarser mesh", "finest mesh", "converged", "error estimate", "%"]
+    return table(header, rows) if rows else ""
+
+
+def _failures(results: Sequence[Result], out: Path) -> list[str]:
+    parts = []
+    for job, outcome in results:
+        if outcome.status == "failed":
+            parts.append(f"<h3>{escape(job.title)}</h3><p class=bad>{escape(outcome.reason)}</p>")
+            log = job.folder(out) / "run.log"
+            if log.exists():
+                lines = log.read_text(encoding="utf-8", errors="replace").splitlines()[-LOG_LINES:]
+                parts.append(f"<pre>{escape(chr(10).join(lines))}</pre>")
+    return ["<h2>Failures</h2>", *parts] if parts else []
+
+
+def _figures(results: Sequence[Result]) -> list[str]:
+    parts = [_image(png, "stresses against angle") for png in figures.over_angle(results)]
+    if parts:
+        parts.insert(0, "<h2>Stresses against the angle of the wave generator</h2>")
+    for key in dict.fromkeys(key for job, _ in results for key in job.case.varied):
+        images = [_image(png, f"means against {key}") for png in figures.over_key(results, key)]
+        if images:
+            parts += [f"<h2>Means over the rotation against {escape(key)}</h2>", *images]
+    return parts
+
+
+def _image(png: bytes, text: str) -> str:
+    return f'<p><img alt="{escape(text)}" src="data:image/png;base64,{base64.b64encode(png).decode()}"></p>'

@@ -1,0 +1,84 @@
+"""Jobs handed out to ranks without a rank that serves the others, and reports on the way back."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+
+PAUSE = 0.05
+"""Seconds between two looks of a rank that has nothing left to do; MPI's own waiting would take a whole core."""
+
+
+class Counter:
+    """The numbers 0, 1, 2, ... of which every rank takes the next one; they stand in the memory of rank 0.
+
+    Creation and `free` are collective, `take` is not.
+    """
+
+    def __init__(self, comm: MPI.Comm) -> None:
+        size = MPI.INT64_T.Get_size()
+        self._window = MPI.Win.Allocate(size if comm.rank == 0 else 0, size, comm=comm)
+        if comm.rank == 0:
+            self._window.Lock(0, MPI.LOCK_EXCLUSIVE)
+            np.frombuffer(self._window.tomemory(), dtype=np.int64)[:] = 0
+            self._window.Unlock(0)
+        comm.Barrier()
+
+    def take(self) -> int:
+        """The next number."""
+        one, number = np.ones(1, dtype=np.int64), np.empty(1, dtype=np.int64)
+        self._window.Lock(0, MPI.LOCK_SHARED)
+        self._window.Fetch_and_op(one, number, 0, op=MPI.SUM)
+        self._window.Unlock(0)
+        return int(number[0])
+
+    def free(self) -> None:
+        """Give the memory back."""
+        self._window.Free()
+
+
+class Reports:
+    """Messages of all ranks to rank 0, which looks at them between its own increments.
+
+    comm : used by this object alone
+    receive : called on rank 0 with every message
+    """
+
+    def __init__(self, comm: MPI.Comm, receive: Callable[[Any], None]) -> None:
+        self._comm, self._receive = comm, receive
+        self._sent: list[MPI.Request] = []
+        self._ended = 0
+
+    def send(self, message: Any) -> None:
+        """Tell rank 0; does not wait."""
+        if self._comm.rank == 0:
+            self._receive(message)
+            self.look()
+        else:
+            self._sent = [request for request in self._sent if not request.Test()]
+            self._sent.append(self._comm.isend(message, 0))
+
+    def look(self) -> None:
+        """Receive what has arrived on rank 0."""
+        while self._comm.iprobe():
+            message = self._comm.recv()
+            if message is None:
+                self._ended += 1
+            else:
+                self._receive(message)
+
+    def end(self) -> None:
+        """Wait until every rank has come here and rank 0 has received everything; collective."""
+        if self._comm.rank != 0:
+            self.send(None)
+        while self._comm.rank == 0 and self._ended < self._comm.size - 1:
+            self.look()
+            time.sleep(PAUSE)
+        all_here = self._comm.Ibarrier()
+        while not all_here.Test():
+            time.sleep(PAUSE)
+        MPI.Request.Waitall(self._sent)

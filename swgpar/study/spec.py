@@ -1,0 +1,150 @@
+"""The study file: which designs are computed, on which meshes, and what they are compared with."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from swgpar.design_file import read_toml, split_override, validate
+from swgpar.errors import InputError
+from swgpar.quantities import Section, quantity, show
+from swgpar.study.measured import refuse_unknown
+
+NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.,+=-]*")
+"""Names of cases are names of folders."""
+
+
+class CaseSection(Section):
+    """One `[[study.case]]`."""
+
+    name: str = quantity(text="letters, digits and _ . , + = -")
+    set: list[str] = quantity([], text='"section.key=value" for this case')
+    section: dict[str, Any] = quantity({}, text="whole sections that replace those of the design")
+    meshes: list[str] = quantity([], text="mesh recipes of this case instead of the study's")
+    published: dict[str, float] = quantity({}, text="published values of this case by quantity")
+    tolerance: dict[str, float] = quantity({}, text="largest difference by quantity (percent)")
+    note: str = quantity("", text="a remark for the report")
+
+
+class StudySection(Section):
+    """The `[study]` without its cases."""
+
+    title: str = quantity("", text="title of the report")
+    design: str = quantity(text="the design file, relative to the study file")
+    meshes: list[str] = quantity(text="mesh recipes, coarse to fine, relative to the study file")
+    set: list[str] = quantity([], text='"section.key=value" for all cases')
+    parallel: Literal["cases", "ranks"] = quantity(
+        "cases", text="every rank works on cases of its own, or all on one case after the other"
+    )
+    mode: Literal["grid", "sweep"] = quantity("grid", text="all combinations of the varied values, or in step")
+    vary: dict[str, Any] = quantity({}, text="keys of the design file with lists of values")
+
+
+class _CaseFile(Section):
+    case: CaseSection
+
+
+class _StudyFile(Section):
+    study: StudySection
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study file that has been read.
+
+    path : the file, whose folder the other paths are relative to;  text : its content, for the report
+    section : [study];  cases : its [[study.case]], one without a name when there are none
+    """
+
+    path: Path
+    text: str
+    section: StudySection
+    cases: tuple[CaseSection, ...]
+
+
+def load_study(path: str | Path) -> Study:
+    """Read and check a study file; every problem is an `InputError` of one sentence that names the file."""
+    path = Path(path)
+    table = read_toml(path)
+    try:
+        for key, value in table.items():
+            if key != "study" or not isinstance(value, dict):
+                raise InputError(f"{key} = {show(value)} is not a section of a study file: allowed [study]")
+        study = dict(table.get("study", {}))
+        tables = study.pop("case", [])
+        if isinstance(study.get("vary"), dict):
+            study["vary"] = flat(study["vary"])
+        section = validate(_StudyFile, {"study": study}).study
+        if not isinstance(tables, list):
+            raise InputError(f"study.case = {show(tables)} is not a list of cases: write [[study.case]]")
+        cases = tuple(_case(number, entry) for number, entry in enumerate(tables, start=1))
+        _check_study(section)
+        for case in cases:
+            _check_case(case, section)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+    return Study(path, path.read_text(encoding="utf-8-sig"), section, cases or (CaseSection.model_construct(name=""),))
+
+
+def _case(number: int, table: dict[str, Any]) -> CaseSection:
+    try:
+        if isinstance(table, dict):
+            dotted = {k: flat(v) for k, v in table.items() if k in ("published", "tolerance") and isinstance(v, dict)}
+            table = {**table, **dotted}
+        return validate(_CaseFile, {"case": table}).case
+    except InputError as error:
+        raise InputError(f"[[study.case]] {number}: {error}") from None
+
+
+def flat(table: dict[str, Any], above: str = "") -> dict[str, Any]:
+    """Tables in tables as one with dotted keys: in TOML, load.torque = 1 and "load.torque" = 1 then mean the same."""
+    out: dict[str, Any] = {}
+    for key, value in table.items():
+        out.update(flat(value, f"{above}{key}.") if isinstance(value, dict) else {f"{above}{key}": value})
+    return out
+
+
+def _check_study(study: StudySection) -> None:
+    if not study.meshes:
+        raise InputError("study.meshes = [] is empty: allowed one mesh recipe or more, coarse to fine")
+    for override in study.set:
+        split_override(override)
+    for key, values in study.vary.items():
+        if not isinstance(values, list) or not values:
+            raise InputError(f'study.vary."{key}" = {show(values)} is not a list of values: allowed one value or more')
+        if "." not in key and not all(isinstance(value, dict) for value in values):
+            raise InputError(f'study.vary."{key}" holds a value: allowed "section.key", or tables for a whole section')
+        for other in study.vary:
+            if other.startswith(f"{key}."):
+                raise InputError(f'study.vary."{key}" replaces study.vary."{other}": allowed is one of both')
+    lengths = {key: len(values) for key, values in study.vary.items()}
+    if study.mode == "sweep" and len(set(lengths.values())) > 1:
+        counted = ", ".join(f"{key} has {n}" for key, n in lengths.items())
+        raise InputError(f'study.mode = "sweep" takes values in step: allowed are lists of one length, but {counted}')
+
+
+def _check_case(case: CaseSection, study: StudySection) -> None:
+    where = f"study.case {show(case.name)}"
+    if not NAME.fullmatch(case.name):
+        raise InputError(
+            f"study.case.name = {show(case.name)} names no folder: allowed letters, digits and _ . , + = -"
+        )
+    for override in case.set:
+        key, _ = split_override(override)
+        for varied in study.vary:
+            if f"{key}.".startswith(f"{varied}.") or varied.startswith(f"{key}."):
+                raise InputError(f"{where} sets {key}, which study.vary varies: allowed in one of both")
+    for name, value in case.section.items():
+        if not isinstance(value, dict):
+            raise InputError(f"{where}: section.{name} = {show(value)} is not a section: allowed a table")
+    for name in case.published:
+        refuse_unknown(f"{where}: published", name)
+    for name, percent in case.tolerance.items():
+        if name not in case.published:
+            raise InputError(f"{where}: tolerance.{name} has no published value: allowed {', '.join(case.published)}")
+        if percent <= 0.0:
+            raise InputError(f"{where}: tolerance.{name} = {show(percent)} is out of range: allowed above 0 to inf %")
+        if case.published[name] == 0.0:
+            raise InputError(f"{where}: tolerance.{name} is a share of a published 0: allowed for other values only")

@@ -1,0 +1,150 @@
+"""The numbers of a study: a row per case and mesh, published values, error estimates from two meshes."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from swgpar.study.cases import Case, Job
+from swgpar.study.job import Outcome
+from swgpar.study.measured import measured, unit
+
+MEANS = ("fs_s1", "fs_s3", "fs_vm", "rg_vm", "wg_torque_Nmm")
+"""Means over the rotation that the tables show."""
+
+ORDER = 2
+"""Order in the element size that the error estimate assumes."""
+
+Result = tuple[Job, Outcome]
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Extrapolation from two meshes. converged : value without discretisation error;  error : its distance."""
+
+    converged: float
+    error: float
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A published value beside the computed one of the finest mesh.
+
+    difference : percent of the published value;  verdict : "inside", "MISS", or empty without a tolerance
+    """
+
+    case: str
+    quantity: str
+    unit: str
+    published: float
+    computed: float | None
+    difference: float | None
+    tolerance: float | None
+    verdict: str
+    estimate: Estimate | None
+
+
+def estimate(coarse: float, fine: float, n_coarse: int, n_fine: int, dimensions: int) -> Estimate | None:
+    """Richardson's extrapolation from element counts, h ~ n^(-1/dimensions); None unless the second is finer."""
+    if n_fine <= n_coarse:
+        return None
+    ratio = (n_fine / n_coarse) ** (1.0 / dimensions)
+    converged = fine + (fine - coarse) / (ratio**ORDER - 1.0)
+    return Estimate(converged, abs(converged - fine))
+
+
+def by_case(results: Sequence[Result]) -> list[tuple[Case, list[Outcome]]]:
+    """Cases with the outcomes on their meshes, coarse to fine."""
+    groups: dict[str, tuple[Case, list[Outcome]]] = {}
+    for job, outcome in results:
+        groups.setdefault(job.case.name, (job.case, []))[1].append(outcome)
+    return list(groups.values())
+
+
+def estimate_of(case: Case, outcomes: Sequence[Outcome], name: str) -> Estimate | None:
+    """Error estimate of a quantity from the last two meshes; None without two values."""
+    pair = [(measured(name, o.means, o.rows), o.elements) for o in outcomes[-2:]]
+    if len(pair) < 2 or any(value is None for value, _ in pair):
+        return None
+    (coarse, n_coarse), (fine, n_fine) = pair
+    plane = getattr(case.design.drive, "model", "cup") == "plane"
+    return estimate(coarse, fine, n_coarse, n_fine, 2 if plane else 3)
+
+
+def compare(results: Sequence[Result]) -> list[Comparison]:
+    """All published values."""
+    rows = []
+    for case, outcomes in by_case(results):
+        for name, published in case.section.published.items():
+            computed = measured(name, outcomes[-1].means, outcomes[-1].rows)
+            difference = None
+            if computed is not None and published != 0.0:
+                difference = 100.0 * (computed - published) / abs(published)
+            tolerance, verdict = case.section.tolerance.get(name), ""
+            if tolerance is not None:
+                verdict = "inside" if difference is not None and abs(difference) <= tolerance else "MISS"
+            found = estimate_of(case, outcomes, name)
+            rows.append(
+                Comparison(case.name, name, unit(name), published, computed, difference, tolerance, verdict, found)
+            )
+    return rows
+
+
+def study_rows(results: Sequence[Result]) -> list[dict[str, Any]]:
+    """Rows of study.csv."""
+    keys = list(dict.fromkeys(key for job, _ in results for key in job.case.varied))
+    rows = []
+    for job, outcome in results:
+        row: dict[str, Any] = {"case": job.case.name, "mesh": job.mesh.stem, "elements": outcome.elements}
+        row.update({key: shown(job.case.varied.get(key)) for key in keys})
+        row["status"] = outcome.status
+        row.update({f"mean.{name}": outcome.means.get(name) for name in MEANS})
+        row.update(newton_mean=outcome.newton_mean, wall_s=outcome.wall_s, reason=outcome.reason)
+        rows.append(row)
+    return rows
+
+
+def shown(value: Any) -> Any:
+    """A varied value in a table: numbers and texts as they are, all else as in TOML."""
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key} = {_toml(item)}" for key, item in value.items()) + " }"
+    if value is None:
+        return None
+    return value if isinstance(value, (float, int, str)) and not isinstance(value, bool) else _toml(value)
+
+
+def _toml(value: Any) -> str:
+    return str(shown(value)) if isinstance(value, dict) else json.dumps(value, ensure_ascii=False)
+
+
+def published_rows(comparisons: Iterable[Comparison]) -> list[dict[str, Any]]:
+    """Rows of published.csv."""
+    return [
+        {
+            "case": c.case,
+            "quantity": c.quantity,
+            "unit": c.unit,
+            "published": c.published,
+            "computed": c.computed,
+            "difference_percent": c.difference,
+            "tolerance_percent": c.tolerance,
+            "verdict": c.verdict,
+            "converged": c.estimate.converged if c.estimate else None,
+            "error_estimate": c.estimate.error if c.estimate else None,
+        }
+        for c in comparisons
+    ]
+
+
+def format_csv(rows: Sequence[Mapping[str, Any]]) -> bytes:
+    """A CSV file; floats as the shortest text that reads back the same, empty where there is no value."""
+    text = io.StringIO()
+    writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
+    writer.writeheader()
+    for row in rows:
+        writer.writerow({k: repr(v) if isinstance(v, float) else v for k, v in row.items()})
+    return text.getvalue().encode()
