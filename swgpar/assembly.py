@@ -18,7 +18,7 @@ from swgpar.partition import FLIP, LocalNodes, Partition
 
 @dataclass
 class BlockRows:
-    """Upper-triangle blocks of the owned rows, sorted by column.
+    """Blocks of the owned rows, of a symmetric matrix those of the upper triangle, sorted by column.
 
     start : (n_own + 1,) int64;  column : (n_blocks,) int32 global
     values : (n_blocks, 3, 3) N/mm, values[p, l, k] is entry (k, l) of block p
@@ -31,6 +31,7 @@ class BlockRows:
     number: np.ndarray
     n_own: int
     keys: np.ndarray
+    symmetric: bool
 
 
 def read_field(partition: Partition, body: int, sectors: np.ndarray, vector: PETSc.Vec) -> np.ndarray:
@@ -136,10 +137,13 @@ class BodyElements:
 
 
 class Elements:
-    """All bodies' elements on one rank: residual, tangent and stress of the structure."""
+    """All bodies' elements on one rank: residual, tangent and stress of the structure.
 
-    def __init__(self, partition: Partition, references: list[ReferenceElements]) -> None:
-        self.partition = partition
+    symmetric : keep the tangent's upper triangle only
+    """
+
+    def __init__(self, partition: Partition, references: list[ReferenceElements], symmetric: bool = True) -> None:
+        self.partition, self.symmetric = partition, symmetric
         self.bodies = [BodyElements(partition, k, r) for k, r in enumerate(references)]
         seen = [b.number.ravel() for b in self.bodies] + [partition.multiplier_nodes]
         self.wanted = np.unique(np.concatenate(seen))
@@ -169,10 +173,10 @@ class Elements:
             slot[self._pairs(body.conn, number, local) < 0] = -1
 
     def _pairs(self, conn: np.ndarray, number: np.ndarray, local: LocalNodes) -> np.ndarray:
-        """Keys row * n_global + column of an element's owned upper-triangle blocks, -1 elsewhere; (n, pairs)."""
+        """Keys row * n_global + column of an element's owned blocks, -1 elsewhere; (n, pairs)."""
         row, col = number[:, :, None], number[:, None, :]
         owned = ((conn >= 0) & (conn < local.n_own))[:, :, None]
-        keys = np.where(owned & (col >= row), row * self.partition.n_global + col, -1)
+        keys = np.where(owned & (col >= (row if self.symmetric else 0)), row * self.partition.n_global + col, -1)
         return keys.reshape(len(conn), conn.shape[1] ** 2)
 
     def rows(self, extra: np.ndarray, number: np.ndarray) -> tuple[BlockRows, list[np.ndarray]]:
@@ -193,6 +197,7 @@ class Elements:
             number,
             self.partition.n_own,
             keys,
+            self.symmetric,
         )
         return rows, [np.where(slot >= 0, place[slot], -1) for slot in self.slots]
 
@@ -237,21 +242,23 @@ class Exchange:
 
 
 def create_matrix(partition: Partition, rows: BlockRows) -> PETSc.Mat:
-    """Symmetric blocked matrix with the pattern of `rows` (upper triangle), not yet filled."""
+    """Blocked matrix with the pattern of `rows`, not yet filled; a symmetric one keeps its upper triangle."""
     mat = PETSc.Mat().create(comm=partition.comm)
     size = (partition.dims * partition.n_own, partition.dims * partition.n_global)
     mat.setSizes((size, size))
     mat.setBlockSize(partition.dims)
-    mat.setType(PETSc.Mat.Type.SBAIJ)
-    hi = partition.row_start + partition.n_own
+    mat.setType(PETSc.Mat.Type.SBAIJ if rows.symmetric else PETSc.Mat.Type.BAIJ)
+    lo, hi = partition.row_start, partition.row_start + partition.n_own
     own = np.repeat(np.arange(rows.n_own), np.diff(rows.start))
-    diagonal = np.bincount(own[rows.column < hi], minlength=rows.n_own).astype(PETSc.IntType)
-    off = np.bincount(own[rows.column >= hi], minlength=rows.n_own).astype(PETSc.IntType)
+    here = (rows.column >= lo) & (rows.column < hi)
+    diagonal = np.bincount(own[here], minlength=rows.n_own).astype(PETSc.IntType)
+    off = np.bincount(own[~here], minlength=rows.n_own).astype(PETSc.IntType)
     mat.setPreallocationNNZ((diagonal, off))
     mat.setOption(PETSc.Mat.Option.ROW_ORIENTED, False)
-    mat.setOption(PETSc.Mat.Option.IGNORE_LOWER_TRIANGULAR, True)
-    mat.setOption(PETSc.Mat.Option.SYMMETRIC, True)
-    mat.setOption(PETSc.Mat.Option.SPD, True)
+    if rows.symmetric:
+        mat.setOption(PETSc.Mat.Option.IGNORE_LOWER_TRIANGULAR, True)
+        mat.setOption(PETSc.Mat.Option.SYMMETRIC, True)
+        mat.setOption(PETSc.Mat.Option.SPD, True)
     return mat
 
 

@@ -69,8 +69,9 @@ class Load(Section):
 
 
 class Contact(Section):
+    friction: float = quantity(0.0, text="coefficient of friction between the flanks", ge=0.0, le=1.0)
     penalty_coef: float = quantity(50.0, text="penalty of the flanks over E / module", gt=0.0)
-    wg_penalty_coef: float = quantity(1.0, text="penalty of cam and pins over E / module", gt=0.0)
+    wg_penalty_coef: float = quantity(5.0, text="penalty of cam and pins over E / module", gt=0.0)
     quadrature: int = quantity(2, text="Gauss points per direction on segments of flank faces", ge=1, le=16)
     wg_quadrature: int = quantity(3, text="Gauss points per direction on the inner surface", ge=1, le=16)
     max_augmentations: int = quantity(3, text="largest number of augmentations per increment", ge=0, le=50)
@@ -216,6 +217,11 @@ def check_fit(design: DriveDesign) -> None:
             "cup.inner_radius",
             cup.inner_radius,
             f"above 0 to below {outer - cup.fillet_radius:g} mm (the closed end inside cup.fillet_radius)",
+        )
+    if design.contact.friction > 0.0 and design.solver.linear == "iterative":
+        raise InputError(
+            f'solver.linear = "iterative" is not available with contact.friction = {design.contact.friction:g}: '
+            'allowed "direct" with friction'
         )
     if micro.wg_crowning > 0.5 * design.d:
         _refuse("micro_geometry.wg_crowning", micro.wg_crowning, f"0 to {0.5 * design.d:g} mm (half the deflection)")

@@ -9,6 +9,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from swgpar.assembly import BlockRows, Elements, Exchange, add_unit_diagonal, create_matrix, create_vector, fill_matrix
+from swgpar.contact.friction import FIRST_STEP, PairKey
 from swgpar.contact.rigid import CamPose, RigidContact
 from swgpar.contact.search import FlankPair, facing_flanks, largest
 from swgpar.contact.teeth import ToothContact
@@ -77,7 +78,7 @@ class Equilibrium:
         self.rigid, self.pins, self.teeth, self.phases = rigid, pins, teeth, phases
         self.share = 0.5 if images else 1.0
         self.scale = design.material.E * design.drive.module
-        self.x = create_vector(partition)
+        self.x, self.accepted = create_vector(partition), create_vector(partition)
         self.scene: Scene | None = None
         self.on_iteration = None
         self.rebind(np.zeros(0, dtype=np.int64))
@@ -95,7 +96,9 @@ class Equilibrium:
         self.snes.setTolerances(max_it=design.solver.max_iterations)
         self.snes.setFunction(self._function, create_vector(partition))
         self.snes.setConvergenceTest(self._converged)
-        self.border = Bordered(partition, design.solver.linear, self.positions()[: partition.n_own], "stiffness_")
+        self.border = Bordered(
+            partition, design.solver.linear, self.positions()[: partition.n_own], "stiffness_", teeth.symmetric
+        )
         ksp = self.snes.getKSP()
         ksp.setType(PETSc.KSP.Type.PREONLY)
         ksp.getPC().setType(PETSc.PC.Type.PYTHON)
@@ -153,6 +156,8 @@ class Equilibrium:
             self.rebind(further)
             m = self.design.drive.module
             keys = self.teeth.select(self.displacement(), NEAR * m, TOUCH * m)
+            if not self.teeth.symmetric and self.scene is not None and self.scene.step >= FIRST_STEP:
+                self.teeth.resist(self.displacement(self.accepted))
         self.rigid.reset()
         self.pins.reset()
         self._pattern(keys)
@@ -360,10 +365,21 @@ class Equilibrium:
                 searched = True
                 continue
             if self.penetration() <= tolerance or self.augmentations >= self.design.contact.max_augmentations:
+                self.accept()
                 return Solved(True, iterations, ratio, "converged")
             self.augmentations += 1
             for contact in (self.rigid, self.pins, self.teeth):
                 contact.augment()
+
+    def accept(self) -> None:
+        """Make x the state from which friction counts the slip of the next solve."""
+        self.x.copy(self.accepted)
+        self.teeth.accept()
+
+    def resume(self, tractions: dict[PairKey, np.ndarray]) -> None:
+        """Take x and these tractions of the flanks as an accepted state."""
+        self.x.copy(self.accepted)
+        self.teeth.history = tractions
 
     def soften(self, share: float) -> None:
         """Use this share of the contact penalty."""

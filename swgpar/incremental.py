@@ -65,7 +65,7 @@ class DriveModel:
                 reference_elements(m.coords[m.elements], design.material.E, design.material.nu, design.drive.face_width)
                 for m in self.meshes.values()
             ]
-            self.elements = Elements(self.partition, references)
+            self.elements = Elements(self.partition, references, symmetric=design.contact.friction == 0.0)
             self.elements.bind(LocalNodes(self.partition, self.elements.wanted))
         spline, ring = self.elements.bodies
         surface = WaveGeneratorSurface(design)
@@ -91,6 +91,7 @@ class DriveModel:
             design.penalty,
             0.5 * design.drive.module,
             PRESSURE_LIMIT * design.material.E,
+            design.contact.friction,
         )
         couplings, housing = [Coupling(self.partition, spline, "bore", images)], None
         if design.drive.layout == "spline_fixed":

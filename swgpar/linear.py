@@ -36,14 +36,16 @@ class Bordered:
 
         (1 - B^T Z_B) s + B^T Z_C l = B^T z,     C Z_B s - C Z_C l = r_l - C z,     z = K'^-1 r_u
 
-    gives x = z + Z_B s - Z_C l exactly: the grounding leaves no trace.
+    gives x = z + Z_B s - Z_C l exactly, whether K is symmetric or not: the grounding leaves no trace.
 
     The last border is the motion of the output. Where it is not prescribed but loaded, its Newton step is the one at
     which its l vanishes, and it is bounded: a drive whose teeth have parted floats, and there the step has no end.
     All other unknowns follow the bounded motion.
     """
 
-    def __init__(self, partition: Partition, linear: str, positions: np.ndarray, options_prefix: str) -> None:
+    def __init__(
+        self, partition: Partition, linear: str, positions: np.ndarray, options_prefix: str, symmetric: bool = True
+    ) -> None:
         self.partition = partition
         self.ksp = PETSc.KSP().create(comm=partition.comm)
         self.ksp.setOptionsPrefix(options_prefix)
@@ -52,7 +54,7 @@ class Bordered:
         self.unblocked: PETSc.Mat | None = None
         if linear == "direct":
             self.ksp.setType(PETSc.KSP.Type.PREONLY)
-            pc.setType(PETSc.PC.Type.CHOLESKY)
+            pc.setType(PETSc.PC.Type.CHOLESKY if symmetric else PETSc.PC.Type.LU)
             pc.setFactorSolverType("mumps")
             defaults = MUMPS_DEFAULTS
         else:

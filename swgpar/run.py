@@ -18,6 +18,7 @@ from petsc4py import PETSc
 import swgpar
 from swgpar import log
 from swgpar.assembly import write_field
+from swgpar.contact import friction
 from swgpar.contact.pressure import nodal_pressure
 from swgpar.design import DriveDesign
 from swgpar.errors import InputError, SwgparError
@@ -108,6 +109,10 @@ class Recorder:
                 name: (np.ascontiguousarray(field["displacement"]), first, total)
                 for (name, first, _, total), field in zip(ranges, fields)
             }
+            if model.design.contact.friction:
+                first, end = model.partition.owned(0)
+                for name, values in equilibrium.teeth.history_rows(first, end).items():
+                    blocks[name] = values, first, model.partition.layouts[0].count
             state = {
                 "identity": self.identity,
                 "done": self.done,
@@ -155,6 +160,11 @@ class Recorder:
             write_field(model.partition, k, np.arange(first, end), arrays[body.layout.name], x)
         if self.comm.rank == self.comm.size - 1:
             x.array[-model.partition.n_multipliers :] = state["multipliers"]
+        if model.design.contact.friction:
+            # a rank needs the flanks that its ring teeth face too
+            every = (0, model.partition.layouts[0].count)
+            rows, _ = checkpoint.read_checkpoint(path, self.comm, dict.fromkeys(friction.ROWS, every))
+            model.equilibrium.resume(friction.from_rows(rows))
         self.rows, self.done, self.names = state["rows"], state["done"], state["names"]
         runner.scene = last
         for name, value in state["phases_s"].items():

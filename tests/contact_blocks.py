@@ -2,33 +2,36 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import spsolve
 from swgpar.kernel._kernel import assemble_elements, reference_elements
 
-from swgpar.contact.segments import cut_faces
+from swgpar.contact import friction
+from swgpar.contact.segments import Segments, cut_faces
 from swgpar.contact.teeth import Faces, Flanks, PlacedFaces
 from swgpar.kernel import contact_flanks
 
 
 class Rows:
-    """All blocks among the first n nodes, upper triangle."""
+    """All blocks among the first n nodes, of a symmetric matrix the upper triangle."""
 
-    def __init__(self, n: int) -> None:
-        counts = np.arange(n, 0, -1)
-        self.start = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
-        self.column = np.concatenate([np.arange(k, n) for k in range(n)]).astype(np.int32)
+    def __init__(self, n: int, symmetric: bool = True) -> None:
+        first = np.arange(n) if symmetric else np.zeros(n, dtype=np.int64)
+        self.start = np.concatenate([[0], np.cumsum(n - first)]).astype(np.int64)
+        self.column = np.concatenate([np.arange(k, n) for k in first]).astype(np.int32)
         self.values = np.zeros((len(self.column), 3, 3))
-        self.number, self.n_own = np.arange(n, dtype=np.int32), n
+        self.number, self.n_own, self.symmetric = np.arange(n, dtype=np.int32), n, symmetric
 
     def matrix(self) -> np.ndarray:
         full = np.zeros((self.n_own, 3, self.n_own, 3))
         row = np.repeat(np.arange(self.n_own), np.diff(self.start))
         for r, c, v in zip(row, self.column, self.values):
-            full[r, :, c], full[c, :, r] = v.T, v
+            full[r, :, c] = v.T
+            if self.symmetric:
+                full[c, :, r] = v
         return full.reshape(3 * self.n_own, -1)
 
 
@@ -63,6 +66,7 @@ class Blocks:
 
     points (n, 3) mm, hexes (m, 8), the nodes of both contact surfaces among the first n_surface ones
     fixed (n, 3) : components with a given displacement;  order : Gauss points per direction of a segment
+    coefficient : of friction, on the way from the displacement `before` (n, 3) with the tractions `history`
     """
 
     points: np.ndarray
@@ -75,6 +79,9 @@ class Blocks:
     poisson: float
     penalty: float
     order: int
+    coefficient: float = 0.0
+    before: np.ndarray | None = None
+    history: np.ndarray | None = None
 
     def press(self, u: np.ndarray, force: np.ndarray, augmentations: int = 0) -> tuple[Faces, np.ndarray, np.ndarray]:
         """Equilibrium from u (n, 3), which is changed; its fixed components stay. Segments, pressure, contact force."""
@@ -89,18 +96,21 @@ class Blocks:
         surface = np.arange(3 * self.n_surface)
         si, sj = (v.ravel() for v in np.meshgrid(surface, surface, indexing="ij"))
         free, pick = np.flatnonzero(~self.fixed.ravel()), np.arange(len(self.placed.conn))
-        settings = (self.penalty, 0.0, 0.2, np.inf)
+        settings, law = (self.penalty, 0.0, 0.2, np.inf), None
         for augmentation in range(augmentations + 1):
             for _ in range(40):
-                values, r, rows = np.zeros((slot.size, 3, 3)), -force, Rows(self.n_surface)
+                values, r, rows = np.zeros((slot.size, 3, 3)), -force, Rows(self.n_surface, self.coefficient == 0.0)
                 assemble_elements(reference, *arrays, u, r, slot, values)
                 if augmentation == 0:
                     corners = self.placed.corners(pick)
                     foot = contact_flanks(self.flanks, corners, u, np.zeros((len(pick), 4)), *settings, None, None)[2]
-                    faces = self.placed.cut(pick, cut_faces(foot, self.flanks.s, self.flanks.z, self.order))
+                    segments = cut_faces(foot, self.flanks.s, self.flanks.z, self.order)
+                    faces = self.placed.cut(pick, segments)
                     multiplier = np.zeros(faces.weight.shape)
+                    if self.coefficient > 0.0:
+                        law = self._friction(faces, segments, multiplier)
                 contact = np.zeros_like(r)
-                _, pressure, _, _ = contact_flanks(self.flanks, faces, u, multiplier, *settings, contact, rows)
+                _, pressure, _, _ = contact_flanks(self.flanks, faces, u, multiplier, *settings, contact, rows, law)
                 r += contact
                 residual = np.abs(r.ravel()[free]).max() / np.abs(contact).max()
                 if residual < 1e-9:
@@ -111,4 +121,13 @@ class Blocks:
                 u.ravel()[free] -= spsolve(stiffness[free][:, free], r.ravel()[free])
             assert residual < 1e-7, (augmentation, residual)
             multiplier = pressure.copy()
+        if law is not None:
+            self.before, self.traction = u.copy(), law.now
+            self.history = np.stack([friction.sampled(segments, law.now, k) for k in pick])
         return faces, pressure, contact
+
+    def _friction(self, faces: Faces, segments: Segments, zero: np.ndarray) -> friction.Friction:
+        settings = (self.penalty, 0.0, 0.2, np.inf)
+        gap, _, place, _ = contact_flanks(self.flanks, faces, self.before, zero, *settings, None, None)
+        law = friction.begin(self.coefficient, place, gap, friction.interpolated(self.history, segments))
+        return replace(law, stiffness=friction.STIFFNESS * self.penalty)

@@ -2,7 +2,7 @@
 
 epsilon is a stiffness per area near E / h; lambda, one number per quadrature point, starts at zero in every
 increment and is set to p until the remaining penetration is below a tolerance, so that neither shows in the
-results. A tangential law (Coulomb friction) would act beside `pressure` on the slip at the same points.
+results. Friction acts at the same points (see friction.py).
 """
 
 from __future__ import annotations

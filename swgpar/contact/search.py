@@ -31,6 +31,11 @@ class FlankPair:
     ring_flip: int
     ring_tooth: int
 
+    @property
+    def key(self) -> tuple[int, int, int]:
+        """What tells the pair from others: sector, side, number of the ring gear's tooth."""
+        return self.sector, self.side, self.ring_tooth
+
 
 def facing_flanks(
     partition: Partition, spline: BodyElements, u: np.ndarray, turn: float, margin: float

@@ -8,12 +8,14 @@ belong to their points.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
 from swgpar.assembly import BlockRows, BodyElements
+from swgpar.contact import friction
 from swgpar.contact.enforcement import penetration
+from swgpar.contact.friction import Friction, PairKey
 from swgpar.contact.search import FlankPair
 from swgpar.contact.segments import MIRROR, FlankFaces, Segments, bilinear, cut_faces, flank_faces, lagrange
 from swgpar.kernel import contact_flanks
@@ -96,6 +98,7 @@ class ToothContact:
     removed, width, shape_name : crowning of the flexible spline's flanks (mm, mm, curve)
     penalty : MPa / mm;  reach : mm, largest |gap| that is looked at
     pressure_limit : MPa, bound of the pressure in the tangent's geometric term
+    friction : coefficient
     """
 
     def __init__(
@@ -110,14 +113,17 @@ class ToothContact:
         penalty: float,
         reach: float,
         pressure_limit: float,
+        coefficient: float,
     ) -> None:
         self.partition, self.spline, self.ring = partition, spline, ring
         self.penalty, self.reach, self.pressure_limit = penalty, reach, pressure_limit
-        self.order = order
+        self.order, self.coefficient = order, coefficient
         mesh = spline.layout.mesh
         self.slaves = {g.side: flank_faces(mesh, g, removed, width, shape_name) for g in mesh.flanks}
         self.grids = {g.side: g for g in ring.layout.mesh.flanks}
         self.pairs: list[FlankPair] = []
+        self.n_face = len(self.slaves[1].corners)
+        self.history: dict[PairKey, np.ndarray] = {}
 
     def _takes_part(self, p: FlankPair) -> bool:
         owners = self.partition.owner(0, np.array(p.sector)), self.partition.owner(1, np.array(p.ring))
@@ -172,6 +178,7 @@ class ToothContact:
         self.pair_owned = owner == self.partition.comm.rank
         self.pick = np.zeros(0, dtype=np.int64)
         self._reset()
+        self.before: np.ndarray | None = None
 
     def _placed(self, slave: FlankFaces, pair: FlankPair, patch: int, local: LocalNodes) -> PlacedFaces:
         mesh = self.spline.layout.mesh
@@ -191,9 +198,9 @@ class ToothContact:
 
     def _reset(self) -> None:
         self.faces: Faces | None = None
-        self.parent = np.zeros(0, dtype=np.int64)
         self.multiplier = self.gap = self.pressure = np.zeros((0, self.order**2))
         self.frozen = False
+        self.friction: Friction | None = None
 
     def _cut(self, u: np.ndarray) -> None:
         """Cut the faces for displacement u; without multipliers, which would belong to other points."""
@@ -201,20 +208,23 @@ class ToothContact:
         zero = np.zeros(faces.weight.shape)
         _, _, place, _ = self._contact(faces, u, zero, 0.0, None, None)
         segments = cut_faces(place, self.flanks.s, self.flanks.z, self.order)
-        self.parent = self.pick[segments.parent]
         self.faces = self.all.cut(self.pick, segments)
+        self.segments = replace(segments, parent=self.pick[segments.parent])
         self.multiplier = np.zeros_like(self.faces.weight)
+        if self.before is not None:
+            gap, _, place, _ = self._contact(self.faces, self.before, self.multiplier, 0.0, None, None)
+            traction = friction.interpolated(self.samples, self.segments)
+            self.friction = friction.begin(self.coefficient, place, gap, traction)
 
-    def _contact(self, faces: Faces, u: np.ndarray, multiplier: np.ndarray, opening: float, residual, rows):
-        return contact_flanks(
-            self.flanks, faces, u, multiplier, self.penalty, opening, self.reach, self.pressure_limit, residual, rows
-        )
+    def _contact(self, faces: Faces, u: np.ndarray, multiplier: np.ndarray, opening: float, residual, rows, law=None):
+        settings = (self.penalty, opening, self.reach, self.pressure_limit)
+        return contact_flanks(self.flanks, faces, u, multiplier, *settings, residual, rows, law)
 
     def select(self, u: np.ndarray, near: float, touch: float) -> np.ndarray:
         """Choose the faces within `near` (mm) of the master and return the blocks that may couple.
 
         Keys row * n_global + column of the node pairs of faces within `touch` (mm) and of the master facets
-        around their foot points; upper triangle, owned rows.
+        around their foot points; owned rows, of a symmetric tangent the upper triangle.
         """
         if self.all is None:
             return np.zeros(0, dtype=np.int64)
@@ -263,8 +273,35 @@ class ToothContact:
         nodes = np.concatenate(columns, axis=1)
         row, col = nodes[:, :, None], nodes[:, None, :]
         lo = self.local.row_start
-        valid = (row >= lo) & (row < lo + self.local.n_own) & (col >= row)
+        valid = (row >= lo) & (row < lo + self.local.n_own) & (col >= (row if self.symmetric else 0))
         return np.unique((row * self.partition.n_global + col)[valid])
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether the tangent is symmetric."""
+        return self.coefficient == 0.0
+
+    def resist(self, before: np.ndarray) -> None:
+        """Let friction act until the next search, on the way from the converged displacement (n_local, 3) mm."""
+        self.before = before
+        self.samples = np.zeros((len(self.pairs), self.n_face, friction.SAMPLES, friction.SAMPLES, 2))
+        for k, pair in enumerate(self.pairs):
+            self.samples[k] = self.history.get(pair.key, 0.0)
+        self.samples = self.samples.reshape(-1, *self.samples.shape[2:])
+
+    def accept(self) -> None:
+        """Keep the tangential tractions of the last evaluation, of a converged state."""
+        self.history = {}
+        if self.friction is None:
+            return
+        for face in np.unique(self.segments.parent[(self.pressure > 0.0).any(axis=1)]):
+            k, local = divmod(int(face), self.n_face)
+            store = self.history.setdefault(self.pairs[k].key, np.zeros((self.n_face, *self.samples.shape[1:])))
+            store[local] = friction.sampled(self.segments, self.friction.now, face)
+
+    def history_rows(self, first: int, end: int) -> dict[str, np.ndarray]:
+        """The kept tractions of the sectors first .. end - 1, as rows for a file."""
+        return friction.to_rows(self.history, first, end, self.n_face)
 
     def hold(self) -> None:
         """Keep the segments of the last evaluation until the next search."""
@@ -286,11 +323,15 @@ class ToothContact:
             return np.zeros(0, dtype=np.int64)
         if not self.frozen:
             self._cut(u)
-        self.gap, self.pressure, place, missing = self._contact(self.faces, u, self.multiplier, opening, residual, rows)
+        if self.friction is not None:
+            self.friction.stiffness = friction.STIFFNESS * self.penalty
+        self.gap, self.pressure, place, missing = self._contact(
+            self.faces, u, self.multiplier, opening, residual, rows, self.friction
+        )
         if not missing:
             return np.zeros(0, dtype=np.int64)
         face, point = np.nonzero(self.pressure > 0.0)
-        return self._keys(self.parent[face], place[face, point])
+        return self._keys(self.segments.parent[face], place[face, point])
 
     def owned_forces(self, u: np.ndarray, opening: float) -> np.ndarray:
         """Nodal forces (n_local, 3) N of the pairs whose flexible-spline tooth this rank owns, as a residual."""
@@ -298,7 +339,8 @@ class ToothContact:
         if self.faces is not None:
             mine = self.pair_owned[self.faces.patch]
             faces = Faces(*(np.ascontiguousarray(getattr(self.faces, f.name)[mine]) for f in fields(Faces)))
-            self._contact(faces, u, np.ascontiguousarray(self.multiplier[mine]), opening, residual, None)
+            law = None if self.friction is None else self.friction.picked(mine)
+            self._contact(faces, u, np.ascontiguousarray(self.multiplier[mine]), opening, residual, None, law)
         return residual
 
     def touching_pairs(self) -> int:

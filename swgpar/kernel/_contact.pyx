@@ -31,17 +31,46 @@ cdef extern from "contact_batch.hpp" namespace "swgpar" nogil:
         const double* weight
         const double* offset
         const int32_t* patch
+    struct BlockRows:
+        const int64_t* start
+        const int32_t* column
+        double* values
+        const int32_t* number
+        int64_t n_own
+        bint symmetric
+    struct Friction:
+        double coefficient, stiffness
+        const double* place
+        const double* gap
+        const double* traction
+        double* now
     int64_t flank_contact(const FlankBatch&, const FaceBatch&, const double* u, const double* multiplier,
-                          double penalty, double opening, double reach, double limit, double* residual, const int64_t* start,
-                          const int32_t* column, double* values, const int32_t* number, int64_t n_own,
-                          double* gap, double* pressure, double* place)
+                          double penalty, double opening, double reach, double limit, const Friction& friction,
+                          double* residual, const BlockRows& rows, double* gap, double* pressure, double* place)
     int64_t add_blocks(int64_t n, int m, const int32_t* conn, const uint8_t* flip, const double* blocks,
-                       const int64_t* start, const int32_t* column, double* values, const int32_t* number,
-                       int64_t n_own)
+                       const BlockRows& rows)
+
+
+cdef BlockRows rows_of(rows):
+    cdef const int64_t[::1] start = rows.start
+    cdef const int32_t[::1] column = rows.column, number = rows.number
+    cdef double[:, :, ::1] values = rows.values
+    return BlockRows(&start[0], &column[0], &values[0, 0, 0], &number[0], rows.n_own, rows.symmetric)
+
+
+cdef Friction friction_of(law, int64_t n_face, int64_t n_q) except *:
+    cdef const double[:, :, ::1] place = law.place, traction = law.traction
+    cdef const double[:, ::1] gap = law.gap
+    cdef double[:, :, ::1] now = law.now
+    for array in (law.place, law.traction, law.gap, law.now):
+        if array.shape[0] != n_face or array.shape[1] != n_q:
+            raise ValueError("contact_flanks: arrays of the friction have another shape than the faces")
+    law.now[...] = 0.0  # also where the last evaluation had contact and this one has not
+    return Friction(law.coefficient, law.stiffness, &place[0, 0, 0], &gap[0, 0], &traction[0, 0, 0], &now[0, 0, 0])
 
 
 def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] multiplier, double penalty,
-                   double opening, double reach, double limit, double[:, ::1] residual, rows):
+                   double opening, double reach, double limit, double[:, ::1] residual, rows, friction=None):
     """Forces and tangent of slave faces against master flank patches.
 
     Parameters
@@ -54,7 +83,8 @@ def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] 
     limit : MPa, bound of the pressure in the tangent's geometric term
     reach : mm, points farther from the master surface than this are not in contact
     residual : (n_local, 3) N, added to; None to skip
-    rows : record with start, column, values, number, n_own; None to skip the tangent
+    rows : record with start, column, values, number, n_own, symmetric; None to skip the tangent
+    friction : record of the last converged state, where tractions are put (`swgpar.contact.friction.Friction`), or None
 
     Returns
     -------
@@ -91,32 +121,26 @@ def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] 
                                    &tangent[0, 0, 0], &orientation[0], &turn[0, 0], &pconn[0, 0, 0], &pflip[0, 0, 0])
     cdef FaceBatch f = FaceBatch(n_face, n_q, &conn[0, 0], &flip[0, 0], &coords[0, 0, 0], &normal[0, 0],
                                  &shape[0, 0, 0], &weight[0, 0], &offset[0, 0], &patch[0])
-    cdef const int64_t[::1] start
-    cdef const int32_t[::1] column, number
-    cdef double[:, :, ::1] values
-    cdef const int64_t* p_start = NULL
-    cdef const int32_t* p_column = NULL
-    cdef const int32_t* p_number = NULL
-    cdef double* p_values = NULL
-    cdef int64_t n_own = 0, missing
+    cdef int64_t missing
+    cdef BlockRows r = BlockRows(NULL, NULL, NULL, NULL, 0, True)
+    cdef Friction law = Friction(0.0, 0.0, NULL, NULL, NULL, NULL, NULL)
     if rows is not None:
-        start, column, values, number, n_own = rows.start, rows.column, rows.values, rows.number, rows.n_own
-        p_start, p_column, p_values, p_number = &start[0], &column[0], &values[0, 0, 0], &number[0]
+        r = rows_of(rows)
+    if friction is not None:
+        law = friction_of(friction, n_face, n_q)
     cdef double* p_residual = NULL
     if residual is not None:
         p_residual = &residual[0, 0]
     with nogil:
-        missing = flank_contact(p, f, &u[0, 0], &multiplier[0, 0], penalty, opening, reach, limit, p_residual, p_start,
-                                p_column, p_values, p_number, n_own, &gap[0, 0], &pressure[0, 0], &place[0, 0, 0])
+        missing = flank_contact(p, f, &u[0, 0], &multiplier[0, 0], penalty, opening, reach, limit, law, p_residual, r,
+                                &gap[0, 0], &pressure[0, 0], &place[0, 0, 0])
     return gap_array, pressure_array, place_array, missing
 
 
 def add_face_blocks(const int32_t[:, ::1] conn, const uint8_t[:, ::1] flip, const double[:, :, :, :, ::1] blocks, rows):
-    """Add dense blocks (n, m, m, 3, 3) of nodes conn (n, m) to the owned upper-triangle rows; returns misses."""
-    cdef const int64_t[::1] start = rows.start
-    cdef const int32_t[::1] column = rows.column, number = rows.number
-    cdef double[:, :, ::1] values = rows.values
-    cdef int64_t n = conn.shape[0], n_own = rows.n_own, missing
+    """Add dense blocks (n, m, m, 3, 3) of nodes conn (n, m) to the owned rows; returns misses."""
+    cdef int64_t n = conn.shape[0], missing
+    cdef BlockRows r = rows_of(rows)
     cdef int m = conn.shape[1]
     if not (flip.shape[0] == n and flip.shape[1] == m and blocks.shape[0] == n and blocks.shape[1] == m
             and blocks.shape[2] == m and blocks.shape[3] == 3 and blocks.shape[4] == 3):
@@ -124,6 +148,5 @@ def add_face_blocks(const int32_t[:, ::1] conn, const uint8_t[:, ::1] flip, cons
     if n == 0:
         return 0
     with nogil:
-        missing = add_blocks(n, m, &conn[0, 0], &flip[0, 0], &blocks[0, 0, 0, 0, 0], &start[0], &column[0],
-                             &values[0, 0, 0], &number[0], n_own)
+        missing = add_blocks(n, m, &conn[0, 0], &flip[0, 0], &blocks[0, 0, 0, 0, 0], r)
     return missing

@@ -33,19 +33,20 @@ inline void add_nodal(double* r, std::int32_t node, std::uint8_t flip, const Vec
   r[3 * node + 2] += f[2];
 }
 
-// Rows of the upper triangle of the blocked matrix that this rank owns; blocks are column-major.
+// Rows of the blocked matrix that this rank owns, of a symmetric one the upper triangle; blocks are column-major.
 struct BlockRows {
   const std::int64_t* start;   // (n_own + 1)
   const std::int32_t* column;  // global block columns, ascending in a row
   double* values;              // (n_blocks, 9)
   const std::int32_t* number;  // (n_local) global number of a local node
   std::int64_t n_own;
+  bool symmetric;
 
   // Adds a block; false when the pattern lacks it.
   bool add(std::int32_t row, std::uint8_t row_flip, std::int32_t col, std::uint8_t col_flip, const Mat3& block) const {
     if (row < 0 || col < 0 || row >= n_own) return true;
     const std::int32_t wanted = number[col];
-    if (wanted < number[row]) return true;
+    if (symmetric && wanted < number[row]) return true;
     std::int64_t lo = start[row], hi = start[row + 1];
     while (lo < hi) {
       const std::int64_t mid = (lo + hi) / 2;
@@ -89,6 +90,12 @@ struct Patch {
   std::int32_t node(int i, int j) const { return conn[i * (n_z + 1) + j]; }
   std::uint8_t image(int i, int j) const { return flip[i * (n_z + 1) + j]; }
   Vec2 turned(const double* p) const { return Vec2(c * p[0] - si * p[1], si * p[0] + c * p[1]); }
+  Vec3 bent(int i) const {  // third derivative of the curve between profile nodes i and i + 1
+    const double len = s[i + 1] - s[i];
+    const Vec2 d = 12 * (turned(point + 2 * i) - turned(point + 2 * i + 2)) +
+                   6 * len * (turned(tangent + 2 * i) + turned(tangent + 2 * i + 2));
+    return Vec3(d[0], d[1], 0);
+  }
 };
 
 // Foot point on a patch and what the variations of the gap need there.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "contact.hpp"
+#include "friction.hpp"
 
 namespace swgpar {
 
@@ -47,10 +48,8 @@ struct FaceBatch {  // slave faces and their quadrature points
 
 inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& faces, const double* u,
                                   const double* multiplier, double penalty, double opening, double reach, double limit,
-                                  double* residual, const std::int64_t* start, const std::int32_t* column,
-                                  double* values, const std::int32_t* number, std::int64_t n_own, double* gap,
+                                  const Friction& friction, double* residual, const BlockRows& rows, double* gap,
                                   double* pressure, double* place) {
-  const BlockRows rows{start, column, values, number, n_own};
   std::int64_t missing = 0;
   for (std::int64_t k = 0; k < faces.n_face; ++k) {
     const Patch patch = patches.patch(faces.patch[k]);
@@ -90,16 +89,26 @@ inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& fa
           add_nodal(residual, conn[4 + a], flip[4 + a], p * w * m[a] * f.normal);
         }
       }
-      if (values != nullptr) missing += add_contact_tangent(f, shape, conn, flip, w, penalty, std::min(p, limit), rows);
+      if (rows.values != nullptr)
+        missing += add_contact_tangent(f, shape, conn, flip, w, penalty, std::min(p, limit), rows);
+      if (friction.coefficient == 0.0) continue;
+      const Vec2 length(patch.s[f.i + 1] - patch.s[f.i], patch.z[f.j + 1] - patch.z[f.j]);
+      const Traction t = traction(f, length, Vec2(place[2 * kq], place[2 * kq + 1]), friction, kq, p, penalty);
+      const Motion motion(f, shape);
+      if (residual != nullptr) {
+        const Eigen::Matrix<double, 24, 1> force = w * motion.foot.transpose() * (motion.x.transpose() * t.value);
+        for (int a = 0; a < 8; ++a) add_nodal(residual, conn[a], flip[a], force.segment<3>(3 * a));
+      }
+      if (rows.values != nullptr)
+        missing += add_friction_tangent(f, t, motion, patch.bent(f.i), conn, flip, w, penalty, p,
+                                        std::min(1.0, limit / p), friction, rows);
     }
   }
   return missing;
 }
 
 inline std::int64_t add_blocks(std::int64_t n, int m, const std::int32_t* conn, const std::uint8_t* flip,
-                               const double* blocks, const std::int64_t* start, const std::int32_t* column,
-                               double* values, const std::int32_t* number, std::int64_t n_own) {
-  const BlockRows rows{start, column, values, number, n_own};
+                               const double* blocks, const BlockRows& rows) {
   std::int64_t missing = 0;
   for (std::int64_t k = 0; k < n; ++k) {
     for (int a = 0; a < m; ++a) {

@@ -17,22 +17,23 @@ from swgpar.steps import Scene
 DATA = Path(__file__).parent.parent / "data"
 
 
-@pytest.mark.parametrize("half", ["true", "false"])
-def test_tangent_is_the_derivative_of_the_residual(half: str) -> None:
-    design = load_design(DATA / "small.toml", [f"solver.twofold_symmetry={half}"])
+@pytest.mark.parametrize(("half", "friction"), [("true", 0.0), ("false", 0.0), ("true", 0.2)])
+def test_tangent_is_the_derivative_of_the_residual(half: str, friction: float) -> None:
+    design = load_design(DATA / "small.toml", [f"solver.twofold_symmetry={half}", f"contact.friction={friction}"])
     model = DriveModel(design, load_recipe(DATA / "tiny.toml"), MPI.COMM_WORLD)
     equilibrium, partition = model.equilibrium, model.partition
     # undeformed, the cam overlaps at the major axis; shrunk teeth overlap slightly at the minor axis
     equilibrium.scene = Scene(4, "rotate", angle=0.01, cam=-0.001, teeth=-0.02, control="torque", torque=2000.0)
+    rng = np.random.default_rng(3)
+    own = slice(partition.row_start, partition.row_start + partition.n_own)
+    # with friction: points of the flanks have come from here, most of them slip
+    equilibrium.accepted.array[:] = 1e-2 * rng.standard_normal((partition.n_global, 3))[own].ravel()
     equilibrium.search()
     # the overlaps here are far beyond any real pressure: the bound of the geometric terms must not act
     equilibrium.rigid.pressure_limit = equilibrium.teeth.pressure_limit = np.inf
-    start = partition.row_start
-    rng = np.random.default_rng(3)
     every = 1e-5 * rng.standard_normal((partition.n_global, 3))
     way = rng.standard_normal((partition.n_global, 3))
     way[-2:] = every[-2:] = 0.0
-    own = slice(start, start + partition.n_own)
     x, d = equilibrium.x, create_vector(partition)
     x.array[:], d.array[:] = every[own].ravel(), way[own].ravel()
     equilibrium._jacobian(None, x, None, equilibrium.matrix)
@@ -53,5 +54,9 @@ def test_tangent_is_the_derivative_of_the_residual(half: str) -> None:
     if partition.comm.rank == partition.comm.size - 1:
         difference.array[-6:] = 0.0  # the coupling's rows are in the border, not in the matrix
     assert equilibrium.penetration() > 0.0
+    if friction:
+        law = equilibrium.teeth.friction
+        slipping = 0 if law is None else np.count_nonzero(np.linalg.norm(law.now, axis=2))
+        assert partition.comm.allreduce(slipping) > 0
     # the torque's own second derivative is left out of the tangent, and contact points switch within the step
     assert difference.norm() < 1e-4 * sides[0].norm()

@@ -69,6 +69,18 @@ def test_kill_and_restart(plain: Path, tmp_path: Path, before: int, after: int) 
     assert_same_history(out, plain, iterations=before == after == 1)
 
 
+def test_restart_with_friction(tmp_path: Path) -> None:
+    """The tractions of the flanks go through the checkpoint, on to another number of ranks.
+
+    Slip turns round at the start of the rotation: flanks stick in such small increments, and remember.
+    """
+    whole, parts, more = tmp_path / "whole", tmp_path / "parts", ("steps.increment=0.01", "contact.friction=0.1")
+    succeed(run_command(whole, overrides=("steps.rotation=0.02", *more)))
+    succeed(run_command(parts, ranks=2, overrides=("steps.rotation=0.01", *more)))
+    succeed(run_command(parts, "--restart", overrides=("steps.rotation=0.02", *more)))
+    assert_same_history(parts, whole, iterations=False)
+
+
 def test_restart_before_anything_was_saved(plain: Path, tmp_path: Path) -> None:
     """As after a kill in the first increment, or between the first history and its checkpoint."""
     for k, name in enumerate(("empty", "history")):

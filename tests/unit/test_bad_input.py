@@ -67,6 +67,9 @@ OVERRIDES = [
     ("steps.increment=0", "steps.increment", "0.01 to 45 deg"),
     ("steps.rotation=-45", "steps.rotation", "0"),
     ("contact.quadrature=0", "contact.quadrature", "1"),
+    ("contact.friction=-0.1", "contact.friction", "allowed 0 to 1"),
+    ("contact.friction=1.5", "contact.friction", "allowed 0 to 1"),
+    ('contact.friction="low"', "contact.friction", "a number"),
     ("solver.max_iterations=0", "solver.max_iterations", "1"),
     ('solver.linear="magic"', "solver.linear", "direct"),
     ("nonsense=1", "nonsense", "section.key=value"),
@@ -82,6 +85,11 @@ def test_one_sentence_with_key_and_reason(override: str, key: str, reason: str) 
     message = str(caught.value)
     assert "\n" not in message and key in message and reason in message
     assert caught.value.exit_code == 2
+
+
+def test_friction_needs_the_direct_solver() -> None:
+    with pytest.raises(InputError, match='solver.linear = "iterative" .* contact.friction = 0.1: allowed "direct"'):
+        load_design(REFERENCE, ["contact.friction=0.1", 'solver.linear="iterative"'])
 
 
 @pytest.mark.parametrize("key", ["teeth_fs", "module", "E", "face_width"])

@@ -1,0 +1,114 @@
+"""Coulomb friction between flanks: what is kept of the last converged state, at fixed points of the material.
+
+Segments are cut anew in every increment, so that their quadrature points are not the same material points. The
+tangential traction therefore lives on a uniform grid of `SAMPLES` x `SAMPLES` points of every slave face, between
+which it is interpolated. Where a point's foot was then needs no store: it is projected again at the converged
+displacement, exactly. Components are those of the master's undeformed coordinates, arc length and z, with the
+current base vectors (see kernel/friction.hpp).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from swgpar.contact.segments import Segments
+
+SAMPLES = 8
+"""Points per direction of a face on which the traction is kept, at the middles of equal cells."""
+
+STIFFNESS = 1.0
+"""Tangential stiffness over the normal penalty: a point that sticks has moved less than mu times its penetration."""
+
+FIRST_STEP = 3
+"""Friction acts from this step on: cam and teeth growing into place are no motion of the drive."""
+
+PairKey = tuple[int, int, int]
+"""Sector of the flexible spline, side of its tooth, number of the ring gear's tooth."""
+
+
+@dataclass
+class Friction:
+    """Law and history at the quadrature points of the present segments; see `swgpar.kernel.contact_flanks`.
+
+    coefficient : of friction;  stiffness : MPa / mm
+    place (n_face, n_q, 2) mm, gap (n_face, n_q) mm : of the last converged state, nan and inf without a foot
+    traction (n_face, n_q, 2) MPa : of the last converged state
+    now (n_face, n_q, 2) MPa : set by the kernel
+    """
+
+    coefficient: float
+    stiffness: float
+    place: np.ndarray
+    gap: np.ndarray
+    traction: np.ndarray
+    now: np.ndarray
+
+    def picked(self, rows: np.ndarray) -> Friction:
+        """The same of some of the faces."""
+        arrays = (self.place, self.gap, self.traction, self.now)
+        return Friction(self.coefficient, self.stiffness, *(np.ascontiguousarray(a[rows]) for a in arrays))
+
+
+def begin(coefficient: float, place: np.ndarray, gap: np.ndarray, traction: np.ndarray) -> Friction:
+    """Friction at points whose last converged state is given; see `Friction`."""
+    return Friction(coefficient, 0.0, place, gap, traction, np.zeros_like(traction))
+
+
+def sampled(segments: Segments, values: np.ndarray, face: int) -> np.ndarray:
+    """Values (n, n_q, k) at the points of segments of one face, taken to its samples (SAMPLES, SAMPLES, k).
+
+    The points of a face form a grid: linear interpolation in both directions, constant beyond the outermost ones.
+    """
+    mine = segments.parent == face
+    a, i = np.unique(segments.a[mine], return_inverse=True)
+    b, j = np.unique(segments.b[mine], return_inverse=True)
+    grid = np.zeros((len(a), len(b), values.shape[2]))
+    grid[i.ravel(), j.ravel()] = values[mine].reshape(-1, values.shape[2])
+    at = (np.arange(SAMPLES) + 0.5) / SAMPLES
+    to_a, to_b = (np.stack([np.interp(at, x, unit) for unit in np.eye(len(x))], axis=1) for x in (a, b))
+    return np.einsum("ai,bj,ijk->abk", to_a, to_b, grid)
+
+
+def interpolated(samples: np.ndarray, segments: Segments) -> np.ndarray:
+    """Values (n, n_q, k) at the points of segments from samples (n_face, SAMPLES, SAMPLES, k) of all faces."""
+    low, share = [], []
+    for x in (segments.a, segments.b):
+        place = np.clip(SAMPLES * x - 0.5, 0.0, SAMPLES - 1.0)
+        low.append(np.minimum(place.astype(np.int64), SAMPLES - 2))
+        share.append((place - low[-1])[..., None])
+    (i, j), (s, t), face = low, share, segments.parent[:, None]
+    return (1 - s) * ((1 - t) * samples[face, i, j] + t * samples[face, i, j + 1]) + s * (
+        (1 - t) * samples[face, i + 1, j] + t * samples[face, i + 1, j + 1]
+    )
+
+
+NO_TOOTH = np.iinfo(np.int64).min
+"""Stands in a file where a flank has no traction."""
+
+ROWS = ("friction/tooth", "friction/traction")
+"""Names of the rows in a file, by sector of the flexible spline."""
+
+
+def to_rows(store: Mapping[PairKey, np.ndarray], first: int, end: int, n_face: int) -> dict[str, np.ndarray]:
+    """The tractions of the sectors first .. end - 1 as rows for a file.
+
+    Returns teeth (end - first, 2) of the ring gear that the flanks of side +1 and -1 touch, and their tractions
+    (end - first, 2, n_face, SAMPLES, SAMPLES, 2) MPa.
+    """
+    tooth = np.full((end - first, 2), NO_TOOTH)
+    traction = np.zeros((end - first, 2, n_face, SAMPLES, SAMPLES, 2))
+    for (sector, side, ring_tooth), values in store.items():
+        if first <= sector < end:
+            place = sector - first, int(side < 0)
+            tooth[place], traction[place] = ring_tooth, values
+    return dict(zip(ROWS, (tooth, traction)))
+
+
+def from_rows(rows: Mapping[str, np.ndarray]) -> dict[PairKey, np.ndarray]:
+    """The tractions that `to_rows` made rows of, those of all sectors from 0 on."""
+    tooth, traction = (rows[name] for name in ROWS)
+    there = zip(*np.nonzero(tooth != NO_TOOTH))
+    return {(int(k), (1, -1)[side], int(tooth[k, side])): traction[k, side] for k, side in there}

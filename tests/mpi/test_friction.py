@@ -1,0 +1,125 @@
+"""Friction in the small drive: balance, work, ranks, the limit of no friction; the same tests on 1, 2 and 3 ranks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from swgpar.contact.segments import Segments
+from swgpar.design import load_design
+from swgpar.incremental import DriveModel, Runner
+from swgpar.meshing import load_recipe
+from swgpar.steps import sequence
+
+DATA = Path(__file__).parent.parent / "data"
+WORLD = MPI.COMM_WORLD
+PITCH = 2.0 * np.pi / 42
+
+
+def loaded(friction: float, comm: MPI.Comm = WORLD) -> Runner:
+    """The small drive after step 3."""
+    design = load_design(DATA / "small.toml", [f"contact.friction={friction}"])
+    runner = Runner(DriveModel(design, load_recipe(DATA / "tiny.toml"), comm))
+    for item in sequence(design):
+        if item.scene.step > 3:
+            break
+        runner.increment(item)
+    return runner
+
+
+def turn(runner: Runner, angle: float) -> dict[str, float]:
+    runner.advance(replace(runner.scene, step=4, name="rotate", angle=angle))
+    return runner.row()
+
+
+@dataclass
+class Forces:
+    """Tangential forces (N) on the points of the flanks of a state, and where these are on the master (mm)."""
+
+    keys: list
+    segments: Segments
+    force: np.ndarray
+    place: np.ndarray
+
+
+def forces(runner: Runner) -> tuple[Forces, float]:
+    """Forces of the present state, and their work over the slip since the one before; metric taken as one."""
+    teeth, u = runner.equilibrium.teeth, runner.equilibrium.displacement()
+    if teeth.faces is None:
+        none = np.zeros((0, 4, 2))
+        return Forces([], Segments(np.zeros(0, dtype=np.int64), *np.zeros((3, 0, 4))), none, none), 0.0
+    place = teeth._contact(teeth.faces, u, teeth.multiplier, 0.0, None, None)[2]
+    force = teeth.faces.weight[..., None] * teeth.friction.now
+    force[~teeth.pair_owned[teeth.faces.patch]] = 0.0
+    work = float(np.nansum(force * (place - teeth.friction.place)))
+    return Forces([p.key for p in teeth.pairs], teeth.segments, force, place), work
+
+
+def onward(runner: Runner, old: Forces) -> float:
+    """Work of the forces of the state before over the slip since then."""
+    teeth, u = runner.equilibrium.teeth, runner.equilibrium.displacement()
+    now = {p.key: k for k, p in enumerate(teeth.pairs)}
+    pair, local = np.divmod(old.segments.parent, teeth.n_face)
+    new = np.array([now.get(key, -1) for key in old.keys], dtype=np.int64)[pair]
+    keep = np.flatnonzero((new >= 0) & (np.abs(old.force).sum(axis=(1, 2)) > 0.0))
+    if not len(keep):
+        return 0.0
+    part = Segments(np.arange(len(keep)), *(getattr(old.segments, n)[keep] for n in ("a", "b", "share")))
+    faces = teeth.all.cut(new[keep] * teeth.n_face + local[keep], part)
+    place = teeth._contact(faces, u, np.zeros_like(faces.weight), 0.0, None, None)[2]
+    return float(np.nansum(old.force[keep] * (place - old.place[keep])))
+
+
+def test_input_work_is_output_work_and_dissipation() -> None:
+    """Over a pitch, from a state that has forgotten the start: the torque exceeds T / ratio by the friction's work.
+
+    Work by the trapezoidal rule over all increments, cut ones too: the slip of the points in contact before and after.
+    """
+    samples, torque, ratio = 12, 2000.0, 20.0
+    runner = loaded(0.1)
+    first = turn(runner, 0.2 * PITCH)
+    equilibrium, (old, _), dissipated = runner.equilibrium, forces(runner), 0.0
+    accept = equilibrium.accept
+
+    def measure() -> None:
+        nonlocal old, dissipated
+        after = onward(runner, old)
+        old, before = forces(runner)
+        dissipated += 0.5 * (after + before) / equilibrium.share
+        accept()
+
+    equilibrium.accept = measure
+    rows = [turn(runner, (0.2 + k / samples) * PITCH) for k in range(1, samples + 1)]
+    for r in rows:
+        assert abs(r["wg_torque_Nmm"] + r["tooth_torque_Nmm"] + r["output_torque_Nmm"]) < 1e-6 * torque
+    # the state repeats but for what is left of the start
+    assert rows[-1]["wg_torque_Nmm"] == pytest.approx(first["wg_torque_Nmm"], rel=1e-3)
+    excess = (np.mean([r["wg_torque_Nmm"] for r in rows]) - torque / ratio) * PITCH
+    dissipated = WORLD.allreduce(dissipated, op=MPI.SUM)
+    print(f"work over a pitch: input less output {excess:.4f}, friction {dissipated:.4f} N mm")
+    assert excess > 0.05 * torque / ratio * PITCH
+    # both rules see the kinks where contacts come and go only at their samples
+    assert dissipated == pytest.approx(excess, rel=0.03)
+
+
+def assert_same(a: dict[str, float], b: dict[str, float], rel: float) -> None:
+    for name in ("wg_torque_Nmm", "tooth_torque_Nmm", "output_angle_deg", "max_penetration_mm", "pairs_in_contact"):
+        assert a[name] == pytest.approx(b[name], rel=rel), name
+
+
+def test_any_number_of_ranks_gives_the_same() -> None:
+    if WORLD.size == 1:
+        pytest.skip("compares several ranks with one: runs under mpirun")
+    several, one = (turn(loaded(0.1, comm), 0.3 * PITCH) for comm in (WORLD, MPI.COMM_SELF))
+    assert_same(several, one, 1e-8)
+
+
+def test_vanishing_friction_is_none() -> None:
+    """The full matrix and its LU give what the symmetric ones do; with friction the torque is another one."""
+    none, little, much = (turn(loaded(mu), 0.3 * PITCH) for mu in (0.0, 1e-9, 0.1))
+    assert_same(little, none, 1e-6)
+    assert much["wg_torque_Nmm"] > 1.01 * none["wg_torque_Nmm"]
