@@ -41,7 +41,7 @@ class SectorMesh:
     Attributes
     ----------
     body : str
-        ``flexible_spline`` or ``ring_gear``.
+        ``flexible_spline`` or ``ring_gear``, or ``ring`` for a plain one.
     n_sectors : int
         Number of teeth of the full gear.
     phase : float, rad
@@ -58,8 +58,8 @@ class SectorMesh:
     node_sets : dict of (n,) int32
         ``bore`` (flexible spline) or ``outer`` (ring gear).
     flanks : tuple of FlankGrid
-        Side +1, then side -1.
-    profile : ToothProfile
+        Side +1, then side -1; none on a plain ring, which has no profile either.
+    profile : ToothProfile or None
     quality : dict of float
         ``min_scaled_jacobian``, ``min_jacobian`` and ``max_jacobian`` (mm³, determinants at the 2x2x2 Gauss
         points), ``max_aspect_ratio``.
@@ -76,8 +76,8 @@ class SectorMesh:
     cw_nodes: Ints
     faces: dict[str, Ints]
     node_sets: dict[str, Ints]
-    flanks: tuple[FlankGrid, FlankGrid]
-    profile: ToothProfile
+    flanks: tuple[FlankGrid, ...]
+    profile: ToothProfile | None
     quality: dict[str, float]
     tied: Ints | None = None
 

@@ -29,6 +29,7 @@ ORDER = (
     "stress",
     "equilibrium",
     "incremental",
+    "plain_ring",
     "results",
     "report",
     "run",
