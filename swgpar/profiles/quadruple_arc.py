@@ -18,10 +18,16 @@ from swgpar.profiles.frame import FlankFrame
 
 
 def _close(radius, wanted: float, what: str) -> float:
-    """Angle in (0, pi/2) where `radius` meets `wanted`; refuses when there is none."""
-    low, high = 0.0, 0.5 * np.pi
-    if (radius(low) - wanted) * (radius(high) - wanted) > 0.0:
+    """Smallest angle in (0, pi/2) where `radius` meets `wanted`; refuses when there is none.
+
+    Long arcs reach their circle twice: `radius` has one extremum in between.
+    """
+    angles = np.linspace(0.0, 0.5 * np.pi, 91)
+    side = np.sign([radius(angle) - wanted for angle in angles])
+    crossed = np.flatnonzero(side[1:] != side[:-1])
+    if len(crossed) == 0:
         raise InputError(f"{what}: allowed are radii for which the arcs close on the addendum and dedendum circles")
+    low, high = angles[crossed[0] : crossed[0] + 2]
     return float(brentq(lambda angle: radius(angle) - wanted, low, high, xtol=1e-15, rtol=1e-15))
 
 

@@ -27,7 +27,7 @@ class Case:
 
     varied : value of every varied key as the study file has it
     design : None when it is refused, for the reason in `refusal`
-    meshes : recipes, coarse to fine
+    meshes : recipes, coarse to fine;  compared : place of the one that published values are compared on
     """
 
     name: str
@@ -35,6 +35,7 @@ class Case:
     design: DriveDesign | None
     refusal: str
     meshes: tuple[Path, ...]
+    compared: int
     section: CaseSection
 
 
@@ -85,6 +86,8 @@ def _expand(study: Study) -> list[Job]:
     for entry in study.cases:
         meshes = tuple(folder / mesh for mesh in entry.meshes or section.meshes)
         stems = [mesh.stem for mesh in meshes]
+        wanted = Path(section.compared).stem
+        compared = stems.index(wanted) if wanted in stems else len(stems) - 1
         if len(set(stems)) < len(stems):
             raise InputError(f"meshes = {show(stems)} have a name twice: allowed are recipes of different names")
         recipes.update({mesh: load_recipe(mesh) for mesh in meshes if mesh not in recipes})
@@ -99,7 +102,7 @@ def _expand(study: Study) -> list[Job]:
                 design = make_design(table)
             except InputError as error:
                 refusal = str(error)
-            cases.append(Case(name, varied, design, refusal, meshes, entry))
+            cases.append(Case(name, varied, design, refusal, meshes, compared, entry))
     twice = [name for name, count in Counter(case.name for case in cases).items() if count > 1]
     if twice:
         raise InputError(f"{show(twice[0])} is the name of two cases: allowed are different names and values")

@@ -97,13 +97,13 @@ def _cases(results: Sequence[Result]) -> str:
 
 
 def _comparisons(comparisons: Sequence[Comparison]) -> str:
-    header = ["case", "quantity", "unit", "published", "computed", "difference %", "tolerance %", ""]
+    header = ["case", "mesh", "quantity", "unit", "published", "computed", "difference %", "tolerance %", ""]
     header += ["converged", "error estimate"]
     return table(
         header,
         (
             (
-                [c.case, c.quantity, c.unit, c.published, c.computed, c.difference, c.tolerance, c.verdict]
+                [c.case, c.mesh, c.quantity, c.unit, c.published, c.computed, c.difference, c.tolerance, c.verdict]
                 + [c.estimate.converged if c.estimate else None, c.estimate.error if c.estimate else None],
                 c.verdict == "MISS",
             )

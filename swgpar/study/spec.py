@@ -34,6 +34,7 @@ class StudySection(Section):
     title: str = quantity("", text="title of the report")
     design: str = quantity(text="the design file, relative to the study file")
     meshes: list[str] = quantity(text="mesh recipes, coarse to fine, relative to the study file")
+    compared: str = quantity("", text="the one of the meshes that published values are compared on; else the last")
     set: list[str] = quantity([], text='"section.key=value" for all cases')
     parallel: Literal["cases", "ranks"] = quantity(
         "cases", text="every rank works on cases of its own, or all on one case after the other"
@@ -109,6 +110,8 @@ def flat(table: dict[str, Any], above: str = "") -> dict[str, Any]:
 def _check_study(study: StudySection) -> None:
     if not study.meshes:
         raise InputError("study.meshes = [] is empty: allowed one mesh recipe or more, coarse to fine")
+    if study.compared and study.compared not in study.meshes:
+        raise InputError(f"study.compared = {show(study.compared)} is none of study.meshes = {show(study.meshes)}")
     for override in study.set:
         split_override(override)
     for key, values in study.vary.items():

@@ -32,12 +32,14 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Comparison:
-    """A published value beside the computed one of the finest mesh.
+    """A published value beside the computed one.
 
+    mesh : the one it was computed on;  estimate : from the two finest meshes, its error that of the computed value
     difference : percent of the published value;  verdict : "inside", "MISS", or empty without a tolerance
     """
 
     case: str
+    mesh: str
     quantity: str
     unit: str
     published: float
@@ -80,7 +82,8 @@ def compare(results: Sequence[Result]) -> list[Comparison]:
     rows = []
     for case, outcomes in by_case(results):
         for name, published in case.section.published.items():
-            computed = measured(name, outcomes[-1].means, outcomes[-1].rows)
+            outcome = outcomes[case.compared]
+            computed = measured(name, outcome.means, outcome.rows)
             difference = None
             if computed is not None and published != 0.0:
                 difference = 100.0 * (computed - published) / abs(published)
@@ -88,8 +91,13 @@ def compare(results: Sequence[Result]) -> list[Comparison]:
             if tolerance is not None:
                 verdict = "inside" if difference is not None and abs(difference) <= tolerance else "MISS"
             found = estimate_of(case, outcomes, name)
+            if found is not None and computed is not None:
+                found = Estimate(found.converged, abs(found.converged - computed))
+            mesh = case.meshes[case.compared].stem
             rows.append(
-                Comparison(case.name, name, unit(name), published, computed, difference, tolerance, verdict, found)
+                Comparison(
+                    case.name, mesh, name, unit(name), published, computed, difference, tolerance, verdict, found
+                )
             )
     return rows
 
@@ -126,6 +134,7 @@ def published_rows(comparisons: Iterable[Comparison]) -> list[dict[str, Any]]:
     return [
         {
             "case": c.case,
+            "mesh": c.mesh,
             "quantity": c.quantity,
             "unit": c.unit,
             "published": c.published,

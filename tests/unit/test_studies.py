@@ -1,0 +1,49 @@
+"""Every study of the repository expands into designs and meshes that can be built; nothing is run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from swgpar.meshing import build_sector_meshes
+from swgpar.study.cases import Job, expand
+from swgpar.study.spec import load_study
+
+ROOT = Path(__file__).parents[2]
+FILES = sorted((ROOT / "drivers" / "studies").glob("*.toml"))
+REFUSED = {
+    ("double_arc", "r_dedendum=0.8"): "no root land is left",
+    ("four_roller", "r_4=10"): "where the rollers touch",
+    ("quadruple_arc", "r_addendum=0.9"): "r_tip = 0.3 with r_addendum = 0.9 cannot close",
+    ("quadruple_arc", "r_root=0.7"): "no root land is left",
+}
+"""Cases that show a refusal."""
+
+
+def jobs_of(path: Path) -> list[Job]:
+    return expand(load_study(path))
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_geometry(path: Path) -> None:
+    jobs = jobs_of(path)
+    refused = {(path.stem, job.case.name): job.case.refusal for job in jobs if job.case.design is None}
+    meant = {case: words for case, words in REFUSED.items() if case[0] == path.stem}
+    assert refused.keys() == meant.keys()
+    assert all(words in refused[case] for case, words in meant.items())
+    for design, recipe in {(j.case.name, j.mesh): (j.case.design, j.recipe) for j in jobs if j.case.design}.values():
+        assert len(build_sector_meshes(design, recipe)) == 2
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_one_period(path: Path) -> None:
+    """Means of the plane model are over one period in 8 increments; cases at 45 degrees end there in their period."""
+    for case in {job.case.name: job.case for job in jobs_of(path)}.values():
+        if case.design is None or case.design.drive.model != "plane":
+            continue
+        drive, steps = case.design.drive, case.design.steps
+        period = 360.0 / (drive.teeth_rg if drive.layout == "ring_fixed" else drive.teeth_fs)
+        assert steps.increment == pytest.approx(period / 8, rel=1e-14)
+        share = 45.0 / period % 1.0 if "45deg" in case.name else 1.0
+        assert steps.rotation == pytest.approx(share * period, rel=1e-12)
