@@ -38,7 +38,7 @@ def node_weights(coords: np.ndarray, nodes: np.ndarray, ccw: np.ndarray) -> np.n
     """
     x, y, z = coords[nodes].T
     angle = np.round(np.arctan2(-x, y), 9)
-    z = np.round(z / (np.ptp(z) or 1.0), 9)
+    z = np.round((z - z.min()) / (np.ptp(z) or 1.0), 9)
 
     def share(values: np.ndarray, closed: bool) -> np.ndarray:
         level, inverse = np.unique(values, return_inverse=True)

@@ -126,6 +126,7 @@ class Equilibrium:
         self.local = LocalNodes(self.partition, self.elements.wanted, further)
         self.exchange = Exchange(self.partition, self.local.number)
         self.teeth.bind(self.local)
+        self.teeth.turn = self._ring_turn(self.displacement())
 
     def displacement(self, x: PETSc.Vec | None = None) -> np.ndarray:
         """(n_local, 3) mm, ghosts included."""
@@ -163,8 +164,12 @@ class Equilibrium:
         self._pattern(keys)
 
     def _facing(self, margin: float) -> list[FlankPair]:
-        turn = self.rotation() if len(self.couplings) > 1 else 0.0
-        return facing_flanks(self.partition, self.elements.bodies[0], self.displacement(), turn, margin)
+        u = self.displacement()
+        return facing_flanks(self.partition, self.elements.bodies[0], u, self._ring_turn(u), margin)
+
+    def _ring_turn(self, u: np.ndarray) -> float:
+        """Turn (rad) of the ring gear at displacement u."""
+        return float(self.couplings[-1].evaluate(u).value[ROTATION]) if len(self.couplings) > 1 else 0.0
 
     def _overlooked(self) -> bool:
         """Whether flanks that the search left out have come into contact."""
@@ -218,7 +223,14 @@ class Equilibrium:
             self.pins.evaluate(u, CamPose(scene.angle, inset=scene.pins), residual, rows)
         if scene.teeth is None:
             return np.zeros(0, dtype=np.int64)
-        return self.teeth.evaluate(u, scene.teeth, residual, rows)
+        self.teeth.turn = self._ring_turn(u)
+        missing = self.teeth.evaluate(u, scene.teeth, residual, rows)
+        if residual is not None and len(self.couplings) > 1:
+            # the flanks' heights over their chords turn with the ring gear
+            moment = self.partition.comm.allreduce(self.teeth.moment, op=MPI.SUM)
+            ring = self.couplings[-1]
+            residual[ring.nodes] += moment * ring.evaluate(u).gradient[ROTATION]
+        return missing
 
     def _function(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
         with self.phases("residual"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -127,7 +128,7 @@ class DriveModel:
             out[layout.name] = {
                 "nodes": per_sector * layout.count,
                 "elements": len(layout.mesh.hexes) * layout.count,
-                "dofs": 3 * len(layout.own) * layout.count,
+                "dofs": self.partition.dims * len(layout.own) * layout.count,
                 "nodes_whole": per_sector * layout.mesh.n_sectors,
                 "elements_whole": len(layout.mesh.hexes) * layout.mesh.n_sectors,
                 "quality": layout.mesh.quality,
@@ -191,6 +192,9 @@ class Runner:
     def advance(self, target: Scene) -> None:
         """Solve up to `target`, halving the way when Newton's iteration fails; raises ConvergenceError at the end."""
         origin, x = self.scene, self.equilibrium.x
+        if origin.control == "rotation" and target.control == "torque":
+            # cut, the way begins with the torque that holds the output
+            origin = replace(origin, torque=self.equilibrium.torques()["output"])
         done, share, cuts = 0.0, 1.0, 0
         while done < 1.0:
             saved = x.copy()

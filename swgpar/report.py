@@ -13,7 +13,7 @@ from swgpar.results.fields import FOLDER, MESH, increment_name
 from swgpar.results.parallel_hdf5 import h5py
 
 MAGNIFICATION = 5.0
-"""Of displacements in the picture of the deformed drive."""
+"""Of displacements in the picture of the deformed cup drive; that of the plane model is true to scale."""
 
 
 def make_figures(out: Path) -> list[Path]:
@@ -102,10 +102,20 @@ def _mesh(out: Path, body: str) -> dict[str, np.ndarray]:
         return {name: file[f"{body}/{name}"][:] for name in ("points", "cells", "flank_nodes", "flank_s", "flank_z")}
 
 
+def _is_plane(summary: dict) -> bool:
+    return summary["design"]["drive"]["model"] == "plane"
+
+
+def _flank(tooth: int, side: int) -> str:
+    return f"tooth {tooth}, {'clockwise' if side == 0 else 'counter-clockwise'} flank"
+
+
 def _deformed(out: Path, index: int, summary: dict, figures: Path) -> Path:
-    """The deformed drive, seen from its open end, coloured by von Mises stress."""
+    """The deformed drive, seen from its open end, coloured by von Mises stress; the plane model seen along its axis."""
     import pyvista
 
+    plane = _is_plane(summary)
+    magnification = 1.0 if plane else MAGNIFICATION
     pyvista.OFF_SCREEN = True
     plotter = pyvista.Plotter(off_screen=True, window_size=(1400, 1100))
     copies = (1.0, -1.0) if summary["twofold_symmetry"] else (1.0,)
@@ -119,14 +129,19 @@ def _deformed(out: Path, index: int, summary: dict, figures: Path) -> Path:
         kinds = np.full(len(mesh["cells"]), pyvista.CellType.HEXAHEDRON)
         for sign in copies:
             turn = np.array([sign, sign, 1.0])
-            grid = pyvista.UnstructuredGrid(cells, kinds, (mesh["points"] + MAGNIFICATION * u) * turn)
+            grid = pyvista.UnstructuredGrid(cells, kinds, (mesh["points"] + magnification * u) * turn)
             grid.point_data["von Mises stress (MPa)"] = vm
             grids.append(grid.extract_surface(algorithm="dataset_surface"))
     for grid in grids:
         plotter.add_mesh(grid, scalars="von Mises stress (MPa)", cmap="turbo", clim=(0.0, limit), smooth_shading=False)
-    plotter.add_text(f"displacements x {MAGNIFICATION:g}", font_size=12)
-    plotter.camera_position = [(60.0, 60.0, -170.0), (0.0, 0.0, 10.0), (0.0, 1.0, 0.0)]
-    plotter.reset_camera()
+    plotter.add_text("true to scale" if plane else f"displacements x {magnification:g}", font_size=12)
+    if plane:
+        plotter.enable_parallel_projection()
+        plotter.view_xy()
+        plotter.camera.zoom(1.2)
+    else:
+        plotter.camera_position = [(60.0, 60.0, -170.0), (0.0, 0.0, 10.0), (0.0, 1.0, 0.0)]
+        plotter.reset_camera()
     path = figures / "deformed_drive.png"
     plotter.screenshot(path)
     plotter.close()
@@ -134,7 +149,7 @@ def _deformed(out: Path, index: int, summary: dict, figures: Path) -> Path:
 
 
 def _pattern(out: Path, index: int, summary: dict, figures: Path) -> Path:
-    """Pressure on the flanks with contact, over arc length and face width."""
+    """Pressure on the flanks with contact, over arc length and face width; in the plane over arc length."""
     from matplotlib.figure import Figure
 
     mesh, pressure = _mesh(out, "flexible_spline"), _read(out, index, "flexible_spline", "pressure")
@@ -149,6 +164,14 @@ def _pattern(out: Path, index: int, summary: dict, figures: Path) -> Path:
     figure = Figure(figsize=(10.0, 6.0), layout="constrained")
     if not chosen:
         figure.text(0.5, 0.5, "no flank is in contact", ha="center")
+    if _is_plane(summary) and chosen:
+        axes = figure.add_subplot()
+        for k, side in sorted(chosen):
+            axes.plot(mesh["flank_s"], field[k, side, :, 0], "o-", ms=3, label=_flank(k, side))
+        axes.set(xlabel="arc length from the tip (mm)", ylabel="contact pressure, nodal mean (MPa)", ylim=(0.0, None))
+        axes.grid(alpha=0.3)
+        axes.legend(fontsize=8)
+        chosen = []
     columns = min(4, max(1, len(chosen)))
     for place, (k, side) in enumerate(sorted(chosen)):
         axes = figure.add_subplot(-(-len(chosen) // columns), columns, place + 1)
@@ -162,7 +185,7 @@ def _pattern(out: Path, index: int, summary: dict, figures: Path) -> Path:
             cmap="magma",
         )
         axes.invert_yaxis()
-        axes.set_title(f"tooth {k}, {'clockwise' if side == 0 else 'counter-clockwise'} flank", fontsize=8)
+        axes.set_title(_flank(k, side), fontsize=8)
         axes.set_xlabel("z (mm)", fontsize=8)
         axes.set_ylabel("from the tip (mm)", fontsize=8)
     if chosen:

@@ -55,7 +55,7 @@ def facing_flanks(
     c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
     flank = x[:, body]
     local_x, local_y = c * flank[..., 0] + s * flank[..., 1], -s * flank[..., 0] + c * flank[..., 1]
-    lean = np.arctan2(-local_x, local_y).mean(axis=1)
+    lean = np.arctan2(-local_x.mean(axis=1), local_y.mean(axis=1))
     reach = np.hypot(x[:, tips, 0], x[:, tips, 1]).max(axis=1) if len(rows) else np.zeros(0)
     table = np.concatenate(partition.comm.allgather(np.column_stack([angle + lean, reach]).reshape(-1, 2)))
     pitch = 2.0 * np.pi / ring.mesh.n_sectors

@@ -99,6 +99,9 @@ class ToothContact:
     penalty : MPa / mm;  reach : mm, largest |gap| that is looked at
     pressure_limit : MPa, bound of the pressure in the tangent's geometric term
     friction : coefficient
+
+    `turn` (rad) of the ring gear as a whole is set from outside; `moment` (N mm) is the derivative of the contact's
+    energy with respect to it, of the last evaluation with a residual, over the pairs that this rank owns.
     """
 
     def __init__(
@@ -124,6 +127,7 @@ class ToothContact:
         self.pairs: list[FlankPair] = []
         self.n_face = len(self.slaves[1].corners)
         self.history: dict[PairKey, np.ndarray] = {}
+        self.turn, self.moment = 0.0, 0.0
 
     def _takes_part(self, p: FlankPair) -> bool:
         owners = self.partition.owner(0, np.array(p.sector)), self.partition.owner(1, np.array(p.ring))
@@ -217,8 +221,12 @@ class ToothContact:
             self.friction = friction.begin(self.coefficient, place, gap, traction)
 
     def _contact(self, faces: Faces, u: np.ndarray, multiplier: np.ndarray, opening: float, residual, rows, law=None):
-        settings = (self.penalty, opening, self.reach, self.pressure_limit)
-        return contact_flanks(self.flanks, faces, u, multiplier, *settings, residual, rows, law)
+        moment = np.zeros(len(faces.conn))
+        settings = self.penalty, opening, self.reach, self.pressure_limit, residual, rows, law, self.turn, moment
+        result = contact_flanks(self.flanks, faces, u, multiplier, *settings)
+        if residual is not None:
+            self.moment = float(moment[self.pair_owned[faces.patch]].sum())
+        return result
 
     def select(self, u: np.ndarray, near: float, touch: float) -> np.ndarray:
         """Choose the faces within `near` (mm) of the master and return the blocks that may couple.
@@ -319,6 +327,7 @@ class ToothContact:
 
         Returns keys of blocks that the pattern lacks (empty when there are none or `rows` is None).
         """
+        self.moment = 0.0
         if self.all is None or not len(self.pick):
             return np.zeros(0, dtype=np.int64)
         if not self.frozen:

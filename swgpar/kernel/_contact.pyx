@@ -3,6 +3,7 @@
 
 import numpy as np
 
+from libc.math cimport cos, sin
 from libc.stdint cimport int32_t, int64_t, uint8_t
 
 
@@ -18,6 +19,7 @@ cdef extern from "contact_batch.hpp" namespace "swgpar" nogil:
         const double* tangent
         const double* orientation
         const double* turn
+        double body_cosine, body_sine
         const int32_t* conn
         const uint8_t* flip
     struct FaceBatch:
@@ -46,7 +48,8 @@ cdef extern from "contact_batch.hpp" namespace "swgpar" nogil:
         double* now
     int64_t flank_contact(const FlankBatch&, const FaceBatch&, const double* u, const double* multiplier,
                           double penalty, double opening, double reach, double limit, const Friction& friction,
-                          double* residual, const BlockRows& rows, double* gap, double* pressure, double* place)
+                          double* residual, const BlockRows& rows, double* gap, double* pressure, double* place,
+                          double* moment)
     int64_t add_blocks(int64_t n, int m, const int32_t* conn, const uint8_t* flip, const double* blocks,
                        const BlockRows& rows)
 
@@ -70,7 +73,8 @@ cdef Friction friction_of(law, int64_t n_face, int64_t n_q) except *:
 
 
 def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] multiplier, double penalty,
-                   double opening, double reach, double limit, double[:, ::1] residual, rows, friction=None):
+                   double opening, double reach, double limit, double[:, ::1] residual, rows, friction=None,
+                   double turn=0.0, double[::1] moment=None):
     """Forces and tangent of slave faces against master flank patches.
 
     Parameters
@@ -85,6 +89,8 @@ def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] 
     residual : (n_local, 3) N, added to; None to skip
     rows : record with start, column, values, number, n_own, symmetric; None to skip the tangent
     friction : record of the last converged state, where tractions are put (`swgpar.contact.friction.Friction`), or None
+    turn : rad, of the master body as a whole
+    moment : (n_face,) N mm, derivative of the contact's energy with respect to `turn`, added to with the residual
 
     Returns
     -------
@@ -95,7 +101,7 @@ def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] 
     """
     cdef const double[::1] s = patches.s, z = patches.z, orientation = patches.orientation
     cdef const double[:, :, ::1] point = patches.point, tangent = patches.tangent
-    cdef const double[:, ::1] turn = patches.turn
+    cdef const double[:, ::1] place_of = patches.turn
     cdef const int32_t[:, :, ::1] pconn = patches.conn
     cdef const uint8_t[:, :, ::1] pflip = patches.flip
     cdef const int32_t[:, ::1] conn = faces.conn
@@ -118,7 +124,8 @@ def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] 
     cdef double[:, ::1] gap = gap_array, pressure = pressure_array
     cdef double[:, :, ::1] place = place_array
     cdef FlankBatch p = FlankBatch(n_patch, s.shape[0] - 1, z.shape[0] - 1, &s[0], &z[0], &point[0, 0, 0],
-                                   &tangent[0, 0, 0], &orientation[0], &turn[0, 0], &pconn[0, 0, 0], &pflip[0, 0, 0])
+                                   &tangent[0, 0, 0], &orientation[0], &place_of[0, 0], cos(turn), sin(turn),
+                                   &pconn[0, 0, 0], &pflip[0, 0, 0])
     cdef FaceBatch f = FaceBatch(n_face, n_q, &conn[0, 0], &flip[0, 0], &coords[0, 0, 0], &normal[0, 0],
                                  &shape[0, 0, 0], &weight[0, 0], &offset[0, 0], &patch[0])
     cdef int64_t missing
@@ -131,9 +138,12 @@ def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] 
     cdef double* p_residual = NULL
     if residual is not None:
         p_residual = &residual[0, 0]
+    cdef double[::1] moments = np.zeros(n_face) if moment is None else moment
+    if moments.shape[0] != n_face:
+        raise ValueError("contact_flanks: moment must have an entry for each face")
     with nogil:
         missing = flank_contact(p, f, &u[0, 0], &multiplier[0, 0], penalty, opening, reach, limit, law, p_residual, r,
-                                &gap[0, 0], &pressure[0, 0], &place[0, 0, 0])
+                                &gap[0, 0], &pressure[0, 0], &place[0, 0, 0], &moments[0])
     return gap_array, pressure_array, place_array, missing
 
 

@@ -2,8 +2,9 @@
 //
 // The master flank is the exact tooth profile plus the finite-element displacement: between two profile
 // nodes the curve is the cubic Hermite interpolant of their exact points and tangents, so that its normal
-// is continuous; the displacement is bilinear over the facet. A point of the slave surface is projected
-// onto it orthogonally; the gap's first and second variations are exact for that surface.
+// is continuous; the displacement is bilinear over the facet. The curve's height over its chord turns with the
+// body, so that a body turned as a whole has the turned flank. A point of the slave surface is projected
+// onto it orthogonally; the gap's first and second variations are exact for that surface at that turn.
 #pragma once
 
 #include <Eigen/Dense>
@@ -84,17 +85,20 @@ struct Patch {
   const double* tangent;     // (n_s + 1, 2) unit
   double orientation;        // sign that makes x_s cross x_z point out of the material
   double c, si;              // cosine and sine of the tooth's turn
+  double cb, sb;             // cosine and sine of the body's turn
   const std::int32_t* conn;  // (n_s + 1, n_z + 1)
   const std::uint8_t* flip;
 
   std::int32_t node(int i, int j) const { return conn[i * (n_z + 1) + j]; }
   std::uint8_t image(int i, int j) const { return flip[i * (n_z + 1) + j]; }
   Vec2 turned(const double* p) const { return Vec2(c * p[0] - si * p[1], si * p[0] + c * p[1]); }
+  Vec2 carried(const Vec2& v) const { return Vec2(cb * v[0] - sb * v[1], sb * v[0] + cb * v[1]); }
   Vec3 bent(int i) const {  // third derivative of the curve between profile nodes i and i + 1
     const double len = s[i + 1] - s[i];
     const Vec2 d = 12 * (turned(point + 2 * i) - turned(point + 2 * i + 2)) +
                    6 * len * (turned(tangent + 2 * i) + turned(tangent + 2 * i + 2));
-    return Vec3(d[0], d[1], 0);
+    const Vec2 now = carried(d);
+    return Vec3(now[0], now[1], 0);
   }
 };
 
@@ -103,6 +107,7 @@ struct Foot {
   int i = 0, j = 0;
   double eta = 0.5, zeta = 0.5, gap = 0.0;
   Vec3 x, x_eta, x_zeta, x_etaeta, x_etazeta, normal;
+  Vec2 height;  // of the curve over its chord
   bool found = false;
 };
 
@@ -111,9 +116,11 @@ inline void evaluate(const Patch& p, const double* u, Foot& f) {
   const double t = f.eta, t2 = t * t, t3 = t2 * t, len = p.s[i + 1] - p.s[i];
   const Vec2 a = p.turned(p.point + 2 * i), b = p.turned(p.point + 2 * i + 2);
   const Vec2 ta = len * p.turned(p.tangent + 2 * i), tb = len * p.turned(p.tangent + 2 * i + 2);
-  const Vec2 x = (2 * t3 - 3 * t2 + 1) * a + (t3 - 2 * t2 + t) * ta + (3 * t2 - 2 * t3) * b + (t3 - t2) * tb;
-  const Vec2 d = (6 * t2 - 6 * t) * (a - b) + (3 * t2 - 4 * t + 1) * ta + (3 * t2 - 2 * t) * tb;
-  const Vec2 dd = (12 * t - 6) * (a - b) + (6 * t - 4) * ta + (6 * t - 2) * tb;
+  const Vec2 chord = b - a;
+  f.height = p.carried((3 * t2 - 2 * t3 - t) * chord + (t3 - 2 * t2 + t) * ta + (t3 - t2) * tb);
+  const Vec2 x = a + t * chord + f.height;
+  const Vec2 d = chord + p.carried((6 * t - 6 * t2 - 1) * chord + (3 * t2 - 4 * t + 1) * ta + (3 * t2 - 2 * t) * tb);
+  const Vec2 dd = p.carried((6 - 12 * t) * chord + (6 * t - 4) * ta + (6 * t - 2) * tb);
   const double z0 = p.z[j], dz = p.z[j + 1] - z0, e = f.eta, q = f.zeta;
   const Vec3 u00 = nodal(u, p.node(i, j), p.image(i, j)), u10 = nodal(u, p.node(i + 1, j), p.image(i + 1, j));
   const Vec3 u01 = nodal(u, p.node(i, j + 1), p.image(i, j + 1));

@@ -14,7 +14,8 @@ struct FlankBatch {  // n_patch master flanks with the same grid
   const double* tangent;      // (n_patch, n_s + 1, 2)
   const double* orientation;  // (n_patch)
   const double* turn;         // (n_patch, 2) cosine, sine
-  const std::int32_t* conn;   // (n_patch, n_s + 1, n_z + 1)
+  double body_cosine, body_sine;
+  const std::int32_t* conn;  // (n_patch, n_s + 1, n_z + 1)
   const std::uint8_t* flip;
 
   Patch patch(int k) const {
@@ -28,6 +29,8 @@ struct FlankBatch {  // n_patch master flanks with the same grid
                  orientation[k],
                  turn[2 * k],
                  turn[2 * k + 1],
+                 body_cosine,
+                 body_sine,
                  conn + row * (n_z + 1),
                  flip + row * (n_z + 1)};
   }
@@ -39,7 +42,7 @@ struct FaceBatch {  // slave faces and their quadrature points
   const std::int32_t* conn;  // (n_face, 4)
   const std::uint8_t* flip;
   const double* coords;       // (n_face, 4, 3) undeformed, turned into place
-  const double* normal;       // (n_face, 3) undeformed outward normal
+  const double* normal;       // (n_face, 3) undeformed outward normal, of which the side matters
   const double* shape;        // (n_face, n_q, 4)
   const double* weight;       // (n_face, n_q) area
   const double* offset;       // (n_face, n_q) exact surface above the facet
@@ -49,20 +52,23 @@ struct FaceBatch {  // slave faces and their quadrature points
 inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& faces, const double* u,
                                   const double* multiplier, double penalty, double opening, double reach, double limit,
                                   const Friction& friction, double* residual, const BlockRows& rows, double* gap,
-                                  double* pressure, double* place) {
+                                  double* pressure, double* place, double* moment) {
   std::int64_t missing = 0;
   for (std::int64_t k = 0; k < faces.n_face; ++k) {
     const Patch patch = patches.patch(faces.patch[k]);
-    const Vec3 face_normal(faces.normal[3 * k], faces.normal[3 * k + 1], faces.normal[3 * k + 2]);
     std::int32_t conn[8];
     std::uint8_t flip[8];
-    Vec3 corner[4];
+    Vec3 before[4], corner[4];
     for (int a = 0; a < 4; ++a) {
       conn[a] = faces.conn[4 * k + a];
       flip[a] = faces.flip[4 * k + a];
       const double* c = faces.coords + 12 * k + 3 * a;
-      corner[a] = Vec3(c[0], c[1], c[2]) + nodal(u, conn[a], flip[a]);
+      before[a] = Vec3(c[0], c[1], c[2]);
+      corner[a] = before[a] + nodal(u, conn[a], flip[a]);
     }
+    const Vec3 outward(faces.normal[3 * k], faces.normal[3 * k + 1], faces.normal[3 * k + 2]);
+    Vec3 face_normal = (corner[2] - corner[0]).cross(corner[3] - corner[1]).normalized();
+    if ((before[2] - before[0]).cross(before[3] - before[1]).dot(outward) < 0.0) face_normal = -face_normal;
     for (int q = 0; q < faces.n_q; ++q) {
       const std::int64_t kq = k * faces.n_q + q;
       const double* shape = faces.shape + 4 * kq;
@@ -88,6 +94,7 @@ inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& fa
           add_nodal(residual, conn[a], flip[a], -p * w * shape[a] * f.normal);
           add_nodal(residual, conn[4 + a], flip[4 + a], p * w * m[a] * f.normal);
         }
+        moment[k] += p * w * (f.normal[1] * f.height[0] - f.normal[0] * f.height[1]);
       }
       if (rows.values != nullptr)
         missing += add_contact_tangent(f, shape, conn, flip, w, penalty, std::min(p, limit), rows);

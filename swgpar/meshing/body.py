@@ -8,7 +8,7 @@ import numpy as np
 
 from swgpar.errors import InputError
 from swgpar.meshing.cup import attached_quads, cup_nodes
-from swgpar.meshing.quality import hex_quality
+from swgpar.meshing.quality import hex_quality, quad_quality
 from swgpar.meshing.recipe import MeshRecipe, ToothRecipe
 from swgpar.meshing.relief import relief_field
 from swgpar.meshing.sector import FlankGrid, Floats, SectorMesh
@@ -46,11 +46,11 @@ def _swept(section: CrossSection, z: Floats, relief: Floats, amount: Floats) -> 
     return coords
 
 
-def _check(gear: str, quality: dict[str, float], recipe: ToothRecipe) -> None:
+def _check(gear: str, quality: dict[str, float], recipe: ToothRecipe, unit: str) -> None:
     if not quality["min_jacobian"] > 0.0:
         raise InputError(
             f"{gear}.tip = {recipe.tip}, {gear}.flank = {recipe.flank} of the mesh recipe turn an element "
-            f"inside out (Jacobian {quality['min_jacobian']:.3g} mm3): allowed are counts, and a profile, "
+            f"inside out (Jacobian {quality['min_jacobian']:.3g} {unit}): allowed are counts, and a profile, "
             "that leave all Jacobians above 0"
         )
 
@@ -98,8 +98,8 @@ def build_sector(design: DriveDesign, recipe: MeshRecipe, gear: str) -> SectorMe
     if gear == "ring_gear":
         faces = {"outer": sweep_line(section.free[::-1], rows)}
         node_sets = {"outer": np.unique(rows[:1, section.free] if plane else faces["outer"])}
-    quality = hex_quality(coords, hexes)
-    _check(gear, quality, counts)
+    quality = quad_quality(coords, hexes[:, :4]) if plane else hex_quality(coords, hexes)
+    _check(gear, quality, counts, "mm2" if plane else "mm3")
     flanks = tuple(
         FlankGrid(np.ascontiguousarray(rows[:, nodes].T), section.s, z, side)
         for side, nodes in ((1, section.flank), (-1, section.mirror[section.flank]))

@@ -1,4 +1,7 @@
-"""Full drives in the files of other programs: VTU (ParaView), MSH (gmsh), INP (Abaqus, CalculiX)."""
+"""Full drives in the files of other programs: VTU (ParaView), MSH (gmsh), INP (Abaqus, CalculiX).
+
+The plane model is written as quadrilaterals at z = 0.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,7 @@ import meshio
 import numpy as np
 
 from swgpar.errors import InputError, OutputError
-from swgpar.meshing.quality import hex_quality, hex_volumes
+from swgpar.meshing.quality import hex_volumes
 from swgpar.meshing.sector import Floats, Ints, SectorMesh
 
 if TYPE_CHECKING:
@@ -21,25 +24,28 @@ FORMATS = ("vtu", "msh", "inp")
 
 def sector_numbers(mesh: SectorMesh) -> Ints:
     """Return the number (n_sectors, n_node) of every sector's nodes in the body; shared nodes have one."""
-    own = np.ones(len(mesh.coords), dtype=bool)
+    own = np.ones(len(mesh.coords), dtype=bool) if mesh.tied is None else mesh.tied == np.arange(len(mesh.coords))
     own[mesh.ccw_nodes] = False
     place = np.cumsum(own) - 1
     n_own = int(own.sum())
     numbers = place + np.arange(mesh.n_sectors)[:, None] * n_own
     numbers[:, mesh.ccw_nodes] = np.roll(numbers, -1, axis=0)[:, mesh.cw_nodes]
+    if mesh.tied is not None:
+        numbers = numbers[:, mesh.tied]
     return numbers.astype(np.int32)
 
 
 def whole_body(mesh: SectorMesh) -> tuple[Floats, Ints]:
-    """Return the nodes (n, 3), mm, and hexahedra (m, 8) of all sectors, numbered as by `sector_numbers`."""
+    """Return the nodes (n, 3), mm, and elements (m, 8 or 4) of all sectors, numbered as by `sector_numbers`."""
     numbers = sector_numbers(mesh)
     angle = mesh.phase + 2.0 * np.pi / mesh.n_sectors * np.arange(mesh.n_sectors)[:, None]
     x, y, z = mesh.coords.T
     coords = np.empty((int(numbers.max()) + 1, 3))
     coords[numbers, 0] = x * np.cos(angle) - y * np.sin(angle)
     coords[numbers, 1] = x * np.sin(angle) + y * np.cos(angle)
-    coords[numbers, 2] = z
-    return coords, numbers[:, mesh.hexes].reshape(-1, 8)
+    coords[numbers, 2] = z if mesh.tied is None else 0.0
+    elements = mesh.elements
+    return coords, numbers[:, elements].reshape(-1, elements.shape[1])
 
 
 def named_nodes(mesh: SectorMesh) -> dict[str, Ints]:
@@ -55,10 +61,10 @@ def whole_drive(meshes: dict[str, SectorMesh]) -> meshio.Mesh:
     points, cells, body, point_sets = [], [], [], {}
     offset = 0
     for number, mesh in enumerate(meshes.values()):
-        coords, hexes = whole_body(mesh)
+        coords, elements = whole_body(mesh)
         points.append(coords)
-        cells.append(("hexahedron", hexes + offset))
-        body.append(np.full(len(hexes), number, dtype=np.int32))
+        cells.append(("hexahedron" if mesh.tied is None else "quad", elements + offset))
+        body.append(np.full(len(elements), number, dtype=np.int32))
         point_sets |= {name: nodes + offset for name, nodes in named_nodes(mesh).items()}
         offset += len(coords)
     empty = np.empty(0, dtype=np.int64)
@@ -81,9 +87,10 @@ def _as_vtu(drive: meshio.Mesh) -> meshio.Mesh:
 
 
 def _as_msh(drive: meshio.Mesh) -> meshio.Mesh:
-    """Return the drive with its bodies as named physical volumes."""
+    """Return the drive with its bodies as named physical volumes, or surfaces in the plane."""
+    dimension = 3 if drive.cells[0].type == "hexahedron" else 2
     tags = [block + 1 for block in drive.cell_data["body"]]
-    names = {body: np.array([number + 1, 3]) for number, body in enumerate(drive.cell_sets)}
+    names = {body: np.array([number + 1, dimension]) for number, body in enumerate(drive.cell_sets)}
     data = {"gmsh:physical": tags, "gmsh:geometrical": [tag.copy() for tag in tags]}
     return meshio.Mesh(drive.points, drive.cells, cell_data=data, field_data=names)
 
@@ -94,16 +101,20 @@ def _lines(numbers: Ints) -> Iterator[str]:
         yield ", ".join(str(n) for n in numbers[start : start + 16] + 1)
 
 
-def _write_inp(path: Path, drive: meshio.Mesh) -> None:
-    """Write the drive with C3D8I elements, a type that meshio's own writer of this format does not offer."""
+def _write_inp(path: Path, drive: meshio.Mesh, thickness: float) -> None:
+    """Write the drive with C3D8I or CPS4I elements, types that meshio's own writer of this format does not offer."""
+    solid = drive.cells[0].type == "hexahedron"
     with path.open("w", encoding="ascii") as file:
-        file.write("*HEADING\nstrain wave gear drive; lengths as in the design file\n*NODE, NSET=ALL_NODES\n")
+        file.write("*HEADING\nstrain wave gear drive; lengths as in the design file\n")
+        if not solid:
+            file.write(f"** plane stress, thickness {thickness:.12g}: the data line of *SOLID SECTION\n")
+        file.write("*NODE, NSET=ALL_NODES\n")
         numbers = np.arange(1, len(drive.points) + 1)
         # CalculiX reads the first 20 characters of a field
         np.savetxt(file, np.column_stack((numbers, drive.points)), fmt="%d, %.12e, %.12e, %.12e")
         first = 1
         for body, block in zip(drive.cell_sets, drive.cells, strict=True):
-            file.write(f"*ELEMENT, TYPE=C3D8I, ELSET={body.upper()}\n")
+            file.write(f"*ELEMENT, TYPE={'C3D8I' if solid else 'CPS4I'}, ELSET={body.upper()}\n")
             table = np.column_stack((np.arange(first, first + len(block.data)), block.data + 1))
             np.savetxt(file, table, fmt="%d", delimiter=", ")
             first += len(block.data)
@@ -150,7 +161,7 @@ def write_mesh(
             elif name == "msh":
                 meshio.gmsh.write(path, _as_msh(drive), fmt_version="2.2", binary=True)
             else:
-                _write_inp(path, drive)
+                _write_inp(path, drive, design.drive.face_width)
             written.append(path)
     except OSError as error:
         raise OutputError(f"the mesh cannot be written to {folder}: {error.strerror or error}") from None
@@ -164,16 +175,16 @@ def mesh_report(meshes: dict[str, SectorMesh]) -> dict[str, dict[str, float]]:
     -------
     dict of dict
         For each body ``nodes`` and ``elements`` (all sectors), ``sector_elements``, ``volume`` (mm³) and the
-        keys of `swgpar.meshing.quality.hex_quality`.
+        mesh's quality.
     """
     report = {}
     for body, mesh in meshes.items():
-        own = len(mesh.coords) - len(mesh.ccw_nodes)
+        own = (len(mesh.coords) - len(mesh.ccw_nodes)) // (1 if mesh.tied is None else 2)
         report[body] = {
             "nodes": own * mesh.n_sectors,
             "elements": len(mesh.hexes) * mesh.n_sectors,
             "sector_elements": len(mesh.hexes),
             "volume": float(hex_volumes(mesh.coords, mesh.hexes).sum()) * mesh.n_sectors,
-            **hex_quality(mesh.coords, mesh.hexes),
+            **mesh.quality,
         }
     return report

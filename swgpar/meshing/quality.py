@@ -1,4 +1,4 @@
-"""Quality of hexahedra: Jacobians and aspect ratios."""
+"""Quality of hexahedra, and of quadrilaterals in the plane: Jacobians and aspect ratios."""
 
 from __future__ import annotations
 
@@ -11,6 +11,9 @@ CORNERS = np.array(
     dtype=float,
 )
 """Natural coordinates (8, 3) of the nodes of a hexahedron, in VTK order."""
+
+PLANE_CORNERS = CORNERS[:4, :2]
+"""Natural coordinates (4, 2) of the nodes of a quadrilateral."""
 
 GAUSS = CORNERS / np.sqrt(3.0)
 """Natural coordinates (8, 3) of the 2x2x2 Gauss points."""
@@ -72,4 +75,29 @@ def hex_quality(coords: Floats, hexes: Ints) -> dict[str, float]:
         "min_jacobian": float(gauss.min()),
         "max_jacobian": float(gauss.max()),
         "max_aspect_ratio": float(aspect_ratios(coords, hexes).max()),
+    }
+
+
+def plane_jacobian_matrices(coords: Floats, quads: Ints, points: Floats) -> Floats:
+    """Return d X / d xi, (n_elem, n_point, 2, 2) in mm, at the natural coordinates `points` (n_point, 2)."""
+    factor = 1.0 + PLANE_CORNERS * points[:, None, :]
+    gradient = 0.25 * PLANE_CORNERS * factor[:, :, ::-1]
+    return np.einsum("eai,qak->eqik", coords[quads][..., :2], gradient, optimize=True)
+
+
+def quad_quality(coords: Floats, quads: Ints) -> dict[str, float]:
+    """Return the worst quality of a plane mesh; quads : (n_elem, 4) int32, counter-clockwise.
+
+    Keys as those of `hex_quality`; the Jacobian determinants, mm², are those at the 2x2 Gauss points.
+    """
+    gauss = np.linalg.det(plane_jacobian_matrices(coords, quads, PLANE_CORNERS / np.sqrt(3.0)))
+    corner = plane_jacobian_matrices(coords, quads, PLANE_CORNERS)
+    scaled = np.linalg.det(corner) / np.linalg.norm(corner, axis=-2).prod(axis=-1)
+    x = coords[quads][..., :2]
+    lengths = np.linalg.norm(x - np.roll(x, -1, axis=1), axis=-1)
+    return {
+        "min_scaled_jacobian": float(scaled.min()),
+        "min_jacobian": float(gauss.min()),
+        "max_jacobian": float(gauss.max()),
+        "max_aspect_ratio": float((lengths.max(axis=1) / lengths.min(axis=1)).max()),
     }

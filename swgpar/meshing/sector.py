@@ -62,7 +62,7 @@ class SectorMesh:
     profile : ToothProfile or None
     quality : dict of float
         ``min_scaled_jacobian``, ``min_jacobian`` and ``max_jacobian`` (mm³, determinants at the 2x2x2 Gauss
-        points), ``max_aspect_ratio``.
+        points), ``max_aspect_ratio``; of the quadrilaterals (mm², 2x2 points) in the plane model.
     tied : (n_node,) int32 or None
         Plane model: the node of the lower layer that each node moves with; None for a solid.
     """

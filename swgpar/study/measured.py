@@ -11,7 +11,7 @@ from swgpar.results.history import UNITS
 from swgpar.run import MEANS
 
 STEPS = 4
-"""Steps 1 to 4: deflection, engagement, load, rotation."""
+"""Steps 1 to 4: deflection, engagement, load, and the rotation, whose increments go on counting in the history."""
 
 
 def names() -> list[str]:
@@ -39,5 +39,6 @@ def measured(name: str, means: Mapping[str, float], rows: Sequence[Mapping[str, 
     group, _, column = name.partition(".")
     if group == "mean":
         return means.get(column)
-    of_step = [row for row in rows if row["step"] == group.removeprefix("step")]
+    number = int(group.removeprefix("step"))
+    of_step = [row for row in rows if min(int(row["step"]), STEPS) == number]
     return float(of_step[-1][column]) if of_step else None

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from mpi4py import MPI
+from small_drive import PLANE
 
 from swgpar.assembly import create_vector
 from swgpar.design import load_design
@@ -17,11 +18,22 @@ from swgpar.steps import Scene
 DATA = Path(__file__).parent.parent / "data"
 
 
-@pytest.mark.parametrize(("half", "friction"), [("true", 0.0), ("false", 0.0), ("true", 0.2)])
-def test_tangent_is_the_derivative_of_the_residual(half: str, friction: float) -> None:
-    design = load_design(DATA / "small.toml", [f"solver.twofold_symmetry={half}", f"contact.friction={friction}"])
+@pytest.mark.parametrize(
+    "overrides",
+    [
+        (),
+        ("solver.twofold_symmetry=false",),
+        ("drive.layout=spline_fixed",),
+        PLANE,
+        (*PLANE, "solver.twofold_symmetry=false"),
+        (*PLANE, "drive.layout=spline_fixed"),
+        ("contact.friction=0.2",),
+    ],
+)
+def test_tangent_is_the_derivative_of_the_residual(overrides: tuple[str, ...]) -> None:
+    design = load_design(DATA / "small.toml", overrides)
     model = DriveModel(design, load_recipe(DATA / "tiny.toml"), MPI.COMM_WORLD)
-    equilibrium, partition = model.equilibrium, model.partition
+    equilibrium, partition, dims = model.equilibrium, model.partition, model.partition.dims
     # undeformed, the cam overlaps at the major axis; shrunk teeth overlap slightly at the minor axis
     equilibrium.scene = Scene(4, "rotate", angle=0.01, cam=-0.001, teeth=-0.02, control="torque", torque=2000.0)
     rng = np.random.default_rng(3)
@@ -33,12 +45,18 @@ def test_tangent_is_the_derivative_of_the_residual(half: str, friction: float) -
     equilibrium.rigid.pressure_limit = equilibrium.teeth.pressure_limit = np.inf
     every = 1e-5 * rng.standard_normal((partition.n_global, 3))
     way = rng.standard_normal((partition.n_global, 3))
-    way[-2:] = every[-2:] = 0.0
+    for vectors in (way, every):
+        vectors[partition.multiplier_nodes] = vectors[:, dims:] = 0.0
     x, d = equilibrium.x, create_vector(partition)
     x.array[:], d.array[:] = every[own].ravel(), way[own].ravel()
+    equilibrium._function(None, x, create_vector(partition))
+    equilibrium.teeth.hold()  # the tangent does not know how the segments' edges move
     equilibrium._jacobian(None, x, None, equilibrium.matrix)
     product = create_vector(partition)
-    equilibrium.matrix.mult(d, product)
+    into, out = equilibrium.matrix.createVecs()
+    into.array.reshape(-1, dims)[:] = d.array.reshape(-1, 3)[:, :dims]
+    equilibrium.matrix.mult(into, out)
+    product.array.reshape(-1, 3)[:, :dims] = out.array.reshape(-1, dims)
     for vector in equilibrium.ground_vectors:
         product.axpy(-vector.dot(d), vector)
     step, sides = 1e-8, []
@@ -52,11 +70,12 @@ def test_tangent_is_the_derivative_of_the_residual(half: str, friction: float) -
     difference = sides[0].copy()
     difference.axpy(-1.0, product)
     if partition.comm.rank == partition.comm.size - 1:
-        difference.array[-6:] = 0.0  # the coupling's rows are in the border, not in the matrix
+        difference.array[-partition.n_multipliers :] = 0.0  # the couplings' rows are in the border, not in the matrix
     assert equilibrium.penetration() > 0.0
-    if friction:
+    if design.contact.friction:
         law = equilibrium.teeth.friction
         slipping = 0 if law is None else np.count_nonzero(np.linalg.norm(law.now, axis=2))
         assert partition.comm.allreduce(slipping) > 0
-    # the torque's own second derivative is left out of the tangent, and contact points switch within the step
-    assert difference.norm() < 1e-4 * sides[0].norm()
+    print(f"relative difference {difference.norm() / sides[0].norm():.1e}")
+    # left out of the tangent: the second derivative of the coupling's rotation, and that flanks turn with the ring gear
+    assert difference.norm() < 1e-6 * sides[0].norm()

@@ -1,14 +1,18 @@
-"""The iterative linear solver against the factor, on the bordered system of a drive with all contacts on."""
+"""The bordered system of a drive with all contacts on: the iterative solver against the factor, the bounded border."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 import numpy as np
+import pytest
 from mpi4py import MPI
+from petsc4py import PETSc
+from small_drive import PLANE
 
 from swgpar.assembly import create_vector
 from swgpar.design import load_design
+from swgpar.equilibrium import Equilibrium
 from swgpar.incremental import DriveModel
 from swgpar.linear import Bordered
 from swgpar.meshing import load_recipe
@@ -17,17 +21,28 @@ from swgpar.steps import Scene
 DATA = Path(__file__).parent.parent / "data"
 
 
-def test_iterative_equals_direct() -> None:
-    model = DriveModel(load_design(DATA / "small.toml"), load_recipe(DATA / "tiny.toml"), MPI.COMM_WORLD)
+def system(overrides: tuple[str, ...], control: str) -> tuple[DriveModel, PETSc.Vec]:
+    """A drive with its tangent set up, and a random right side."""
+    model = DriveModel(load_design(DATA / "small.toml", overrides), load_recipe(DATA / "tiny.toml"), MPI.COMM_WORLD)
     equilibrium, partition = model.equilibrium, model.partition
-    equilibrium.scene = Scene(4, "rotate", angle=0.01, cam=-0.001, teeth=-0.02, control="rotation", rotation=1e-3)
+    equilibrium.scene = Scene(4, "rotate", angle=0.01, cam=-0.001, teeth=-0.02, control=control, rotation=1e-3)
     equilibrium.search()
+    # without the geometric terms the undeformed drive's stiffness is positive: overlaps here are beyond real pressures
+    equilibrium.rigid.pressure_limit = equilibrium.teeth.pressure_limit = 0.0
+    equilibrium._function(None, equilibrium.x, create_vector(partition))
     equilibrium._jacobian(None, equilibrium.x, equilibrium.matrix, equilibrium.matrix)
+    right, size = create_vector(partition), (partition.n_global, 3)
+    every = np.random.default_rng(1).standard_normal(size)
+    every[: partition.multiplier_nodes[0], partition.dims :] = 0.0
+    right.array[:] = every[partition.row_start : partition.row_start + partition.n_own].ravel()
+    return model, right
+
+
+@pytest.mark.parametrize("overrides", [(), PLANE])
+def test_iterative_equals_direct(overrides: tuple[str, ...]) -> None:
+    model, right = system(overrides, "rotation")
+    equilibrium, partition = model.equilibrium, model.partition
     positions = equilibrium.positions()[: partition.n_own]
-    right = create_vector(partition)
-    right.array[:] = np.random.default_rng(1).standard_normal(3 * partition.n_global)[
-        3 * partition.row_start : 3 * (partition.row_start + partition.n_own)
-    ]
     solutions = []
     for linear in ("direct", "iterative"):
         border = Bordered(partition, linear, positions, f"test_{linear}_")
@@ -41,3 +56,56 @@ def test_iterative_equals_direct() -> None:
     solutions[1].axpy(-1.0, solutions[0])
     # GMRES stops at a residual of 1e-6; the condition number is about 1e8, the right side excites stiff modes too
     assert size > 0.0 and solutions[1].norm() < 1e-4 * size
+
+
+@pytest.mark.parametrize("overrides", [(), ("drive.layout=spline_fixed",), PLANE])
+def test_the_loaded_motion_is_bounded(overrides: tuple[str, ...]) -> None:
+    """Without a bound that matters the step is that of a system without the loaded border; with one it ends there."""
+    model, right = system(overrides, "torque")
+    equilibrium, partition = model.equilibrium, model.partition
+    pc, solved = equilibrium.snes.getKSP().getPC(), equilibrium.border
+    output = solved.border[-1]
+
+    def step(border: list[PETSc.Vec], rows: list[int], bound: float | None) -> PETSc.Vec:
+        test = Bordered(partition, "direct", equilibrium.positions()[: partition.n_own], "test_")
+        test.set_system(equilibrium.matrix, equilibrium.ground_vectors, border, rows, bound)
+        test.setUp(pc)
+        x = create_vector(partition)
+        test.apply(pc, right, x)
+        return x
+
+    free = step(solved.border[:-1], solved.rows[:-1], None)
+    wide = step(solved.border, solved.rows, 1e300)
+    motion = output.dot(free)
+    assert output.dot(wide) == pytest.approx(motion, rel=1e-6)
+    wide.axpy(-1.0, free)
+    # the unused multiplier is zero in one and what the unit block of the matrix makes of it in the other
+    if partition.comm.rank == partition.comm.size - 1:
+        wide.array[-partition.n_multipliers :][solved.rows[-1]] = 0.0
+    assert wide.norm() < 1e-6 * free.norm()
+    for share in (0.5, 1e-3):
+        bound = share * abs(motion)
+        held = step(solved.border, solved.rows, bound)
+        assert output.dot(held) == pytest.approx(np.sign(motion) * bound, rel=1e-6)
+        # the rest of the drive follows: what is left of its equations points along the output's motion
+        left = _product(equilibrium, held)
+        left.aypx(-1.0, right)
+        for k, row in enumerate(solved.rows[:-1]):
+            left.axpy(-float(equilibrium.multipliers(held)[row]), solved.border[k])
+        if partition.comm.rank == partition.comm.size - 1:
+            left.array[-partition.n_multipliers :] = 0.0
+        along = output.dot(left) / output.dot(output)
+        left.axpy(-along, output)
+        assert left.norm() < 1e-6 * right.norm() and abs(along) * output.norm() > 1e-3 * left.norm()
+
+
+def _product(equilibrium: Equilibrium, x: PETSc.Vec) -> PETSc.Vec:
+    """K x without the grounding, in vectors of three unknowns per node."""
+    dims, result = equilibrium.partition.dims, create_vector(equilibrium.partition)
+    into, out = equilibrium.matrix.createVecs()
+    into.array.reshape(-1, dims)[:] = x.array_r.reshape(-1, 3)[:, :dims]
+    equilibrium.matrix.mult(into, out)
+    result.array.reshape(-1, 3)[:, :dims] = out.array.reshape(-1, dims)
+    for vector in equilibrium.ground_vectors:
+        result.axpy(-vector.dot(x), vector)
+    return result

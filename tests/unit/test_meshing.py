@@ -13,10 +13,10 @@ import pytest
 
 from swgpar.design import DriveDesign, load_design
 from swgpar.errors import InputError, OutputError
-from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes, load_recipe
+from swgpar.meshing import MeshRecipe, SectorMesh, body, build_sector_meshes, load_recipe
 from swgpar.meshing.cup import meridian
 from swgpar.meshing.export import mesh_report, whole_body, whole_drive, write_mesh
-from swgpar.meshing.quality import hex_quality, hex_volumes
+from swgpar.meshing.quality import hex_quality, hex_volumes, quad_quality
 from swgpar.meshing.sweep import axial_stations
 from swgpar.meshing.tooth import cross_section
 from swgpar.profiles import make_profile
@@ -56,6 +56,11 @@ SHIFTED = ("flexible_spline.profile.shift=0.3", "ring_gear.profile.shift=0.35", 
 @lru_cache
 def design(*overrides: str) -> DriveDesign:
     return load_design(REFERENCE, overrides)
+
+
+def plane_design(*overrides: str) -> DriveDesign:
+    straight = [f"micro_geometry.{key}=0" for key in ("wg_crowning", "wg_slope", "fs_crowning")]
+    return design(*overrides, "drive.model=plane", *straight)
 
 
 @lru_cache
@@ -371,7 +376,7 @@ def test_whole_drive_is_watertight() -> None:
         ("flank = 2", "flank = true", ("flexible_spline.flank = true", "whole number")),
         ("layers = 1", "layers = 1\nlayer_ratio = 0.5", ("flexible_spline.layer_ratio = 0.5", "1 to 3")),
         ("rim = 1\n", "", ("flexible_spline.rim is missing",)),
-        ("[face_width]\nelements = 2\n", "", ("face_width is missing",)),
+        ("[face_width]\nelements = 2\n", "[face_width]\n", ("face_width.elements is missing",)),
         ("[face_width]\nelements = 2\n", "face_width = 3\n", ("ring_gear.face_width = 3",)),
         ("[cup]", "[cup", ("not valid TOML",)),
     ],
@@ -385,6 +390,24 @@ def test_bad_recipes_are_refused_in_one_sentence(tmp_path: Path, old: str, new: 
         load_recipe(path)
     message = str(caught.value)
     assert "\n" not in message and all(word in message for word in words), message
+
+
+@pytest.mark.parametrize(
+    ("section", "text"), [("face_width", "[face_width]\nelements = 2\n"), ("cup", "[cup]\ncylinder = 2\n")]
+)
+def test_a_cup_needs_all_sections_of_a_recipe(tmp_path: Path, section: str, text: str) -> None:
+    path = tmp_path / "recipe.toml"
+    content = TINY.read_text()
+    assert text in content
+    cut = content.index(text)
+    after = content.find("\n[", cut + 1)
+    path.write_text(content[:cut] + (content[after + 1 :] if after > 0 else ""))
+    recipe = load_recipe(path)
+    assert getattr(recipe, section) is None
+    with pytest.raises(InputError) as caught:
+        build_sector_meshes(design(*SMALL), recipe)
+    assert f"[{section}] is missing" in str(caught.value) and "\n" not in str(caught.value)
+    build_sector_meshes(plane_design(*SMALL), recipe)
 
 
 def test_unreadable_recipe(tmp_path: Path) -> None:
@@ -463,3 +486,105 @@ def test_report_counts_the_full_drive() -> None:
     assert sum(entry["nodes"] for entry in report.values()) == len(drive.points)
     assert sum(entry["elements"] for entry in report.values()) == sum(len(block.data) for block in drive.cells)
     assert all(entry["min_jacobian"] > 0.0 and entry["volume"] > 0.0 for entry in report.values())
+
+
+@lru_cache
+def plane_meshes(recipe: Path, *overrides: str) -> dict[str, SectorMesh]:
+    return build_sector_meshes(plane_design(*overrides), load_recipe(recipe))
+
+
+PLANE_CASES = [pytest.param(TINY, SMALL, id="tiny")]
+PLANE_CASES += [
+    pytest.param(ROOT / "mesh" / f"{name}.toml", (), id=name) for name in ("plane", "plane_coarse", "coarse")
+]
+
+
+@pytest.mark.parametrize(("recipe", "overrides"), PLANE_CASES)
+def test_plane_sectors(recipe: Path, overrides: tuple[str, ...]) -> None:
+    """Two layers of the same nodes, of which one moves with the other; the quadrilaterals fill the exact section."""
+    case = plane_design(*overrides)
+    for gear, mesh in plane_meshes(recipe, *overrides).items():
+        lower = np.unique(mesh.tied)
+        assert np.array_equal(mesh.tied[lower], lower) and 2 * len(lower) == len(mesh.coords)
+        assert np.array_equal(mesh.coords[mesh.tied][:, :2], mesh.coords[:, :2])
+        assert np.array_equal(np.unique(mesh.elements), lower)
+        assert np.allclose(mesh.coords[lower, 2], -0.5 * case.drive.face_width)
+        assert all(np.isin(nodes, lower).all() for nodes in mesh.node_sets.values())
+        area = mesh.coords[mesh.elements][..., :2]
+        assert sum(polygon_area(quad) for quad in area) == pytest.approx(section_area(case, gear), rel=0.02)
+        quality = mesh.quality
+        assert quality == quad_quality(mesh.coords, mesh.elements)
+        assert quality["min_jacobian"] > 0.0 and quality["min_scaled_jacobian"] > 0.5
+        # of the section: the thickness does not enter
+        assert 1.0 <= quality["max_aspect_ratio"] < 15.0
+        solid = hex_quality(mesh.coords, mesh.hexes)
+        assert 0.5 * case.drive.face_width * quality["min_jacobian"] == pytest.approx(solid["min_jacobian"], rel=1e-9)
+        assert quality["min_scaled_jacobian"] == pytest.approx(solid["min_scaled_jacobian"], rel=1e-9)
+
+
+def test_quality_of_a_trapezium() -> None:
+    points = np.array([(0, 0, 0), (4, 0, 0), (3, 1, 0), (0, 1, 0)], dtype=float)
+    quality = quad_quality(points, np.array([[0, 1, 2, 3]], dtype=np.int32))
+    # half the height times half the width at eta = -+1 / sqrt(3)
+    low, high = (0.25 * (3.5 - 0.5 * eta) for eta in (1.0 / np.sqrt(3.0), -1.0 / np.sqrt(3.0)))
+    assert (quality["min_jacobian"], quality["max_jacobian"]) == pytest.approx((low, high))
+    assert quality["max_aspect_ratio"] == pytest.approx(4.0)
+    assert quality["min_scaled_jacobian"] == pytest.approx(np.sin(0.25 * np.pi))
+    assert quad_quality(points, np.array([[3, 2, 1, 0]], dtype=np.int32))["min_jacobian"] < 0.0
+
+
+def test_an_inverted_quadrilateral_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    worst = {"min_scaled_jacobian": -0.1, "min_jacobian": -0.25, "max_jacobian": 1.0, "max_aspect_ratio": 3.0}
+    monkeypatch.setattr(body, "quad_quality", lambda coords, quads: worst)
+    with pytest.raises(InputError, match="-0.25 mm2"):
+        build_sector_meshes(plane_design(*SMALL), load_recipe(TINY))
+
+
+@pytest.mark.parametrize(("name", "low", "high"), [("plane", 45_000, 49_000), ("plane_coarse", 19_000, 21_000)])
+def test_plane_recipes_have_the_announced_size(name: str, low: int, high: int) -> None:
+    both = plane_meshes(ROOT / "mesh" / f"{name}.toml")
+    assert low <= sum(len(mesh.hexes) * mesh.n_sectors for mesh in both.values()) <= high
+
+
+def test_whole_plane_drive_is_closed() -> None:
+    """Every edge inside belongs to two quadrilaterals, counter-clockwise ones; two circles of edges are left."""
+    for mesh in plane_meshes(TINY, *SMALL).values():
+        coords, quads = whole_body(mesh)
+        assert len(coords) == mesh.n_sectors * (len(mesh.coords) - len(mesh.ccw_nodes)) // 2
+        assert np.array_equal(np.unique(quads), np.arange(len(coords))) and np.all(coords[:, 2] == 0.0)
+        assert min(polygon_area(quad) for quad in coords[quads][..., :2]) > 0.0
+        edges = np.stack((quads, np.roll(quads, -1, axis=1)), axis=-1).reshape(-1, 2)
+        forward = {tuple(edge) for edge in edges.tolist()}
+        assert len(forward) == len(edges)
+        rim = [edge for edge in forward if edge[::-1] not in forward]
+        assert len(coords) - (len(edges) + len(rim)) // 2 + len(quads) == 0
+        assert sorted(a for a, _ in rim) == sorted(b for _, b in rim)
+
+
+def test_plane_exports_read_back(tmp_path: Path) -> None:
+    both = plane_meshes(TINY, *SMALL)
+    drive = whole_drive(both)
+    assert set(drive.cells_dict) == {"quad"}
+    files = write_mesh(plane_design(*SMALL), both, tmp_path / "mesh")
+    for path in files[:2]:
+        back = meshio.read(path)
+        assert np.allclose(back.points, drive.points, rtol=0.0, atol=1e-12)
+        assert np.array_equal(back.cells_dict["quad"], drive.cells_dict["quad"])
+    physical = meshio.read(files[1])
+    tags = physical.cell_data_dict["gmsh:physical"]["quad"]
+    assert np.bincount(tags)[1:].tolist() == [len(m.hexes) * m.n_sectors for m in both.values()]
+    assert {name: tuple(tag) for name, tag in physical.field_data.items()} == {GEARS[0]: (1, 2), GEARS[1]: (2, 2)}
+    lines = files[2].read_text().splitlines()
+    assert "** plane stress, thickness 10: the data line of *SOLID SECTION" in lines
+    for gear, mesh in both.items():
+        start = lines.index(f"*ELEMENT, TYPE=CPS4I, ELSET={gear.upper()}") + 1
+        end = next(k for k in range(start, len(lines)) if lines[k].startswith("*"))
+        assert end - start == len(mesh.hexes) * mesh.n_sectors
+        assert all(line.count(",") == 4 for line in lines[start:end])
+    report = mesh_report(both)
+    assert sum(entry["nodes"] for entry in report.values()) == len(drive.points)
+    assert sum(entry["elements"] for entry in report.values()) == len(drive.cells_dict["quad"])
+    for gear, entry in report.items():
+        area = both[gear].n_sectors * section_area(plane_design(*SMALL), gear)
+        assert entry["volume"] == pytest.approx(10.0 * area, rel=0.02)
+        assert entry["max_aspect_ratio"] == both[gear].quality["max_aspect_ratio"]

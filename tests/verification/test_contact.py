@@ -7,7 +7,7 @@ import pytest
 from contact_blocks import Blocks, Rows, block, master
 
 from swgpar.contact.segments import SAMPLES, bilinear, face_corners
-from swgpar.contact.teeth import Faces, PlacedFaces
+from swgpar.contact.teeth import Faces, Flanks, PlacedFaces
 from swgpar.kernel import contact_flanks
 
 PENALTY = 4e6
@@ -20,8 +20,11 @@ def shape_functions(order: int) -> tuple[np.ndarray, np.ndarray]:
     return bilinear(a, b), np.outer(w, w).ravel()
 
 
-def test_tangent_and_balance_on_a_curved_deformed_master() -> None:
-    """Master: an arc of radius 2 with random nodal displacement; slave: one tilted face pressed into it."""
+def pressed() -> tuple[Flanks, Faces, np.ndarray, np.ndarray]:
+    """Flanks, faces, places and displacements (n, 3) of all nodes, the face's four first.
+
+    Master: an arc of radius 2 with random nodal displacement; slave: one tilted face pressed into it.
+    """
     rng = np.random.default_rng(4)
     angle = np.linspace(-0.4, 0.4, 5)
     points = 2.0 * np.column_stack([np.sin(angle), np.cos(angle)])
@@ -40,17 +43,23 @@ def test_tangent_and_balance_on_a_curved_deformed_master() -> None:
         np.zeros((1, 9)),
         np.zeros(1, np.int32),
     )
-    n = 4 + flanks.conn.size
-    u = rng.uniform(-0.01, 0.01, (n, 3))
+    u = rng.uniform(-0.01, 0.01, (4 + flanks.conn.size, 3))
     u[:4, 1] -= 0.03
+    grid = np.column_stack([np.repeat(points, len(z), axis=0), np.tile(z, len(s))])
+    return flanks, faces, np.vstack([corners, grid]), u
+
+
+def test_tangent_and_balance_on_a_curved_deformed_master() -> None:
+    flanks, faces, place, u = pressed()
 
     def force(v: np.ndarray) -> np.ndarray:
         r = np.zeros_like(v)
         contact_flanks(flanks, faces, v, np.zeros((1, 9)), PENALTY, 0.0, 1.0, np.inf, r, None)
         return r
 
-    rows, r = Rows(n), np.zeros_like(u)
-    gap, pressure, _, missing = contact_flanks(flanks, faces, u, np.zeros((1, 9)), PENALTY, 0.0, 1.0, np.inf, r, rows)
+    rows, r, turning = Rows(len(u)), np.zeros_like(u), np.zeros(1)
+    settings = np.zeros((1, 9)), PENALTY, 0.0, 1.0, np.inf
+    gap, pressure, _, missing = contact_flanks(flanks, faces, u, *settings, r, rows, 0.0, turning)
     assert missing == 0 and (pressure > 0).all() and gap.max() < 0
     tangent, h = rows.matrix(), 1e-6
     difference = np.zeros_like(tangent)
@@ -62,10 +71,29 @@ def test_tangent_and_balance_on_a_curved_deformed_master() -> None:
     assert np.abs(difference - tangent).max() < 1e-6 * np.abs(tangent).max()
     # action equals reaction; the moment too, since the force acts along the line between point and foot
     assert np.abs(r.sum(axis=0)).max() < 1e-9 * np.abs(r).max()
-    grid = np.column_stack([np.repeat(points, len(z), axis=0), np.tile(z, len(s))])
-    moment = np.cross(np.vstack([corners, grid]) + u, r).sum(axis=0)
+    moment = np.cross(place + u, r).sum(axis=0)
     # the foot lies on the curved arc, the forces act at its nodes' chords: balanced up to the sagitta times the force
     assert np.abs(moment).max() < 0.01 * np.abs(r).sum()
+    # about z, the rest is what the arc's height over the chords, which turns with the body, takes: exactly
+    assert abs(moment[2]) > 1e-5 * np.abs(r).sum() > 1e4 * abs(moment[2] + turning[0])
+
+
+@pytest.mark.parametrize("angle", [0.3, 1.7, 3.0, -2.2])
+def test_contact_turns_with_both_bodies(angle: float) -> None:
+    """Turned by any angle as a whole: the same gaps and pressures, and the forces turned alike."""
+    flanks, faces, place, u = pressed()
+    c, s = np.cos(angle), np.sin(angle)
+    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    turned = (place + u) @ turn.T - place
+    before, after, results = np.zeros_like(u), np.zeros_like(u), []
+    for v, phi, r in ((u, 0.0, before), (turned, angle, after)):
+        moment = np.zeros(1)
+        settings = np.zeros((1, 9)), PENALTY, 0.0, 1.0, np.inf
+        gap, pressure, _, _ = contact_flanks(flanks, faces, v, *settings, r, None, phi, moment)
+        results.append(np.concatenate([gap.ravel() * PENALTY, pressure.ravel(), moment * PENALTY]))
+    assert results[0][9:18].min() > 0.0
+    assert np.abs(results[1] - results[0]).max() < 1e-10 * np.abs(results[0]).max()
+    assert np.abs(after - before @ turn.T).max() < 1e-10 * np.abs(before).max()
 
 
 def non_uniformity(slave: int) -> float:

@@ -1,0 +1,86 @@
+"""Whole runs of the plane model of the small drive through the command: result files, fields, figures, restart."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import pyvista
+from small_drive import PLANE, RECIPE, SHORT, assert_same_history, run_command, succeed
+
+from swgpar.meshing import load_recipe
+from swgpar.results import history
+
+OVERRIDES = (*PLANE, *SHORT)
+
+
+def plane_command(out: Path, *more: str, ranks: int = 1, overrides: tuple[str, ...] = OVERRIDES) -> list[str]:
+    return run_command(out, *more, ranks=ranks, overrides=overrides)
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("plane") / "run"
+    succeed([*plane_command(out), "output.fields=true", "output.figures=true"])
+    return out
+
+
+def test_result_files(run: Path) -> None:
+    rows = history.read_history(run / "history.csv")
+    assert [r["step"] for r in rows] == ["1", "2", "3", "4", "5"]
+    summary = json.loads((run / "summary.json").read_text(encoding="utf-8"))
+    assert summary["balance_error_Nmm"] < 1e-6 * 200.0
+    recipe = load_recipe(RECIPE).flexible_spline
+    for body in summary["bodies"].values():
+        # half of the drive is modelled; two unknowns a node, on the ring gear none on its outer circle
+        assert body["nodes_whole"] == 2 * body["nodes"] and body["elements_whole"] == 2 * body["elements"]
+        assert body["quality"]["max_aspect_ratio"] < 10.0
+    spline = summary["bodies"]["flexible_spline"]
+    assert spline["dofs"] == 2 * spline["nodes"]
+    around = 2 * (recipe.tip + recipe.layers + recipe.root)
+    ring = summary["bodies"]["ring_gear"]
+    assert ring["dofs"] == 2 * (ring["nodes"] - 21 * around)
+    for name in ("stress", "torque_and_transmission_error", "contact_pattern", "deformed_drive"):
+        assert (run / "figures" / f"{name}.png").stat().st_size > 5000
+
+
+def test_fields_open_in_paraview(run: Path) -> None:
+    """Plane stress: one principal stress is zero; both layers of nodes move alike, and not along the axis."""
+    rows = history.read_history(run / "history.csv")
+    reader = pyvista.XdmfReader(str(run / "fields.xdmf"))
+    assert reader.number_time_points == len(rows)
+    reader.set_active_time_point(len(rows) - 1)
+    for block, prefix in zip(reader.read(), ("fs", "rg")):
+        assert block.n_cells > 0 and set(block.celltypes) == {pyvista.CellType.HEXAHEDRON}
+        u = block.point_data["displacement"]
+        assert np.abs(u[:, 2]).max() == 0.0 < np.abs(u[:, :2]).max()
+        tensor = block.point_data["stress"].reshape(-1, 3, 3)
+        assert np.abs(tensor[:, 2]).max() == 0.0
+        assert np.linalg.eigvalsh(tensor)[:, 2] == pytest.approx(block.point_data["s1"], abs=1e-3)
+        assert block.point_data["vm"].max() == pytest.approx(rows[-1][f"{prefix}_vm"], rel=1e-6)
+        order = np.lexsort(np.round(block.points.T, 6))  # by z first
+        lower, upper = np.split(order, 2)
+        # points of neighbouring sectors coincide, with the same values
+        for name in ("displacement", "vm", "s1"):
+            values = block.point_data[name]
+            assert values[lower] == pytest.approx(values[upper], rel=1e-6, abs=1e-9), name
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_restart_with_more_rotation(run: Path, tmp_path: Path, ranks: int) -> None:
+    out = tmp_path / "longer"
+    succeed(plane_command(out, overrides=(*PLANE, "steps.rotation=2.0", "steps.increment=2.0")))
+    succeed(plane_command(out, "--restart", ranks=ranks))
+    assert "restarted after increment" in (out / "run.log").read_text(encoding="utf-8")
+    assert_same_history(out, run, iterations=ranks == 1)
+
+
+def test_restart_with_the_spline_fixed(tmp_path: Path) -> None:
+    layout = (*PLANE, "drive.layout=spline_fixed", "steps.increment=2.0")
+    whole, parts = tmp_path / "whole", tmp_path / "parts"
+    succeed(plane_command(whole, overrides=(*layout, "steps.rotation=4.0")))
+    succeed(plane_command(parts, overrides=(*layout, "steps.rotation=2.0")))
+    succeed(plane_command(parts, "--restart", overrides=(*layout, "steps.rotation=4.0")))
+    assert_same_history(parts, whole)
