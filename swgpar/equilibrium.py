@@ -21,8 +21,9 @@ from swgpar.log import Phases
 from swgpar.partition import LocalNodes, Partition
 from swgpar.steps import Scene
 
-NEAR, TOUCH, REACH, TIP_MARGIN = 0.25, 0.05, 0.5, 0.1
-"""Search distances as shares of the module: faces evaluated, blocks foreseen, largest gap, tip overlap."""
+NEAR, TOUCH, TIP_MARGIN = 0.25, 0.05, 0.1
+"""Search distances as shares of the module: faces evaluated (farther off in a drive with more backlash), blocks
+foreseen, tip overlap."""
 
 SOFTENING, SOFT_TOLERANCE = (1e-3, 3e-2), 1e-2
 """Shares of the penalty, and residual over contact force, of the first rough solves while contact is established."""
@@ -38,6 +39,11 @@ LONGEST, MEETING = 0.05, 2e-4
 
 FLOOR = 0.05
 """Share of the round-off that a residual can hold below which it counts as zero; 0.01 to 0.06 of it is reached."""
+
+
+def near(design: DriveDesign) -> float:
+    """Distance (mm) within which flanks are followed: under torque all those that the backlash may bring together."""
+    return max(NEAR * design.drive.module, TOUCH * design.drive.module + design.backlash)
 
 
 @dataclass(frozen=True)
@@ -79,6 +85,7 @@ class Equilibrium:
         self.share = 0.5 if images else 1.0
         self.scale = design.material.E * design.drive.module
         self.x, self.accepted = create_vector(partition), create_vector(partition)
+        self.near = near(design)
         self.scene: Scene | None = None
         self.on_iteration = None
         self.rebind(np.zeros(0, dtype=np.int64))
@@ -156,7 +163,7 @@ class Equilibrium:
                 self.teeth.numbers([])
             self.rebind(further)
             m = self.design.drive.module
-            keys = self.teeth.select(self.displacement(), NEAR * m, TOUCH * m)
+            keys = self.teeth.select(self.displacement(), self.near, TOUCH * m)
             if not self.teeth.symmetric and self.scene is not None and self.scene.step >= FIRST_STEP:
                 self.teeth.resist(self.displacement(self.accepted))
         self.rigid.reset()

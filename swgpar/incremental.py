@@ -14,7 +14,7 @@ from swgpar.contact.rigid import RigidContact
 from swgpar.contact.teeth import ToothContact
 from swgpar.couplings import Coupling, Housing
 from swgpar.design import DriveDesign
-from swgpar.equilibrium import Equilibrium
+from swgpar.equilibrium import Equilibrium, near
 from swgpar.errors import ConvergenceError
 from swgpar.kernel import reference_elements
 from swgpar.log import Phases, logger
@@ -90,7 +90,7 @@ class DriveModel:
             design.drive.face_width,
             micro.crowning_shape,
             design.penalty,
-            0.5 * design.drive.module,
+            max(0.5 * design.drive.module, near(design)),
             PRESSURE_LIMIT * design.material.E,
             design.contact.friction,
         )

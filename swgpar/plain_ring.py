@@ -45,6 +45,7 @@ class RingDesign:
     contact: Contact = Contact(wg_penalty_coef=50.0, wg_quadrature=7, penetration_tolerance=1e-4)
     solver: Solver = Solver()
     drive: Lengths = Lengths()
+    backlash: float = 0.0
 
     @property
     def outer_radius(self) -> float:
@@ -99,7 +100,7 @@ class Cylinder:
 class NoTeeth:
     """Stands for the flank contact of a body that has no flanks; scenes keep it switched off."""
 
-    penalty = 0.0
+    penalty, turn, symmetric = 0.0, 0.0, True
 
     def bind(self, local: LocalNodes) -> None:
         """There is nothing to bind."""
@@ -117,6 +118,9 @@ class NoTeeth:
 
     def augment(self) -> None:
         """There are no multipliers."""
+
+    def accept(self) -> None:
+        """There are no tractions to remember."""
 
 
 class RingModel:

@@ -138,7 +138,6 @@ def _deformed(out: Path, index: int, summary: dict, figures: Path) -> Path:
     if plane:
         plotter.enable_parallel_projection()
         plotter.view_xy()
-        plotter.camera.zoom(1.2)
     else:
         plotter.camera_position = [(60.0, 60.0, -170.0), (0.0, 0.0, 10.0), (0.0, 1.0, 0.0)]
         plotter.reset_camera()

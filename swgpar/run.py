@@ -24,7 +24,7 @@ from swgpar.design import DriveDesign
 from swgpar.errors import InputError, SwgparError
 from swgpar.incremental import DriveModel, Runner, stresses
 from swgpar.log import IncrementProgress, logger
-from swgpar.meshing import MeshRecipe
+from swgpar.meshing import MeshRecipe, require_sections
 from swgpar.results import checkpoint, history
 from swgpar.results.atomic import agreed, to_json, write_from_root
 from swgpar.results.fields import FieldWriter
@@ -229,6 +229,7 @@ def run_drive(
     """
     out, begin = Path(out_dir), time.perf_counter()
     require_parallel(comm)
+    require_sections(design, recipe)
     resumed = prepare(out, comm, restart, overwrite)
     log.start(comm, terminal=on_increment is None)
     with agreed(comm, out / "run.log"):

@@ -121,6 +121,14 @@ def build_sector(design: DriveDesign, recipe: MeshRecipe, gear: str) -> SectorMe
     )
 
 
+def require_sections(design: DriveDesign, recipe: MeshRecipe) -> None:
+    """Refuse a recipe that lacks what the model needs."""
+    if design.drive.model == "cup":
+        for name in ("face_width", "cup"):
+            if getattr(recipe, name) is None:
+                raise InputError(f'[{name}] is missing in the mesh recipe: allowed only with drive.model = "plane"')
+
+
 def build_sector_meshes(design: DriveDesign, recipe: MeshRecipe) -> dict[str, SectorMesh]:
     """Mesh one tooth sector of each gear.
 
@@ -129,8 +137,5 @@ def build_sector_meshes(design: DriveDesign, recipe: MeshRecipe) -> dict[str, Se
     dict of SectorMesh
         Keys ``flexible_spline`` (with its slice of the cup) and ``ring_gear``.
     """
-    if design.drive.model == "cup":
-        for name in ("face_width", "cup"):
-            if getattr(recipe, name) is None:
-                raise InputError(f'[{name}] is missing in the mesh recipe: allowed only with drive.model = "plane"')
+    require_sections(design, recipe)
     return {gear: build_sector(design, recipe, gear) for gear in ("flexible_spline", "ring_gear")}

@@ -77,5 +77,7 @@ def test_tangent_is_the_derivative_of_the_residual(overrides: tuple[str, ...]) -
         slipping = 0 if law is None else np.count_nonzero(np.linalg.norm(law.now, axis=2))
         assert partition.comm.allreduce(slipping) > 0
     print(f"relative difference {difference.norm() / sides[0].norm():.1e}")
-    # left out of the tangent: the second derivative of the coupling's rotation, and that flanks turn with the ring gear
-    assert difference.norm() < 1e-6 * sides[0].norm()
+    # left out of the tangent: the second derivative of the coupling's rotation, and that flanks turn with a ring gear
+    # that is the output, their height over the chord (0.01 of the radius here) times the slope of normals to it
+    tolerance = 1e-6 if design.drive.layout == "ring_fixed" else 1e-5
+    assert difference.norm() < tolerance * sides[0].norm()

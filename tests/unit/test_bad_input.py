@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -32,7 +33,9 @@ OVERRIDES = [
     ("drive.dedendum_coef=9", "drive.dedendum_coef", "2"),
     ("drive.face_width=0", "drive.face_width", "above 0"),
     ("drive.face_width=-10", "drive.face_width", "-10"),
-    ('drive.layout="sideways"', "drive.layout", "sideways"),
+    ('drive.layout="sideways"', "drive.layout", '"ring_fixed" or "spline_fixed"'),
+    ('drive.model="solid"', "drive.model", '"cup" or "plane"'),
+    ("drive.model=plane", "micro_geometry.wg_crowning", 'only 0 with drive.model = "plane"'),
     ("drive.tooth_count=3", "drive.tooth_count", "not a key"),
     ("flexible_spline.rim=0", "flexible_spline.rim", "above 0"),
     ("flexible_spline.rim=nan", "flexible_spline.rim", "finite"),
@@ -90,6 +93,29 @@ def test_one_sentence_with_key_and_reason(override: str, key: str, reason: str) 
 def test_friction_needs_the_direct_solver() -> None:
     with pytest.raises(InputError, match='solver.linear = "iterative" .* contact.friction = 0.1: allowed "direct"'):
         load_design(REFERENCE, ["contact.friction=0.1", 'solver.linear="iterative"'])
+
+
+@pytest.mark.parametrize("key", ["wg_crowning", "wg_slope", "fs_crowning"])
+def test_micro_geometry_of_the_plane_model(key: str) -> None:
+    """It has no face width along which anything could change."""
+    keys = ("wg_crowning", "wg_slope", "fs_crowning")
+    others = [f"micro_geometry.{k}=0" for k in keys if k != key]
+    with pytest.raises(InputError) as caught:
+        load_design(REFERENCE, ["drive.model=plane", f"micro_geometry.{key}=0.01", *others])
+    message = str(caught.value)
+    assert f"micro_geometry.{key} = 0.01" in message and "plane" in message and "\n" not in message
+    load_design(REFERENCE, ["drive.model=plane", f"micro_geometry.{key}=0", *others])
+
+
+def test_a_cup_drive_needs_a_cup(design_file: Callable[[dict[str, dict]], Path]) -> None:
+    path = design_file({})
+    lines = path.read_text(encoding="utf-8").splitlines()
+    path.write_text("\n".join(line for line in lines if not line.startswith("cup =")), encoding="utf-8")
+    with pytest.raises(InputError) as caught:
+        load_design(path)
+    assert str(caught.value) == 'cup is missing: allowed only with drive.model = "plane"'
+    straight = [f"micro_geometry.{key}=0" for key in ("wg_crowning", "wg_slope", "fs_crowning")]
+    assert load_design(path, ["drive.model=plane", *straight]).cup is None
 
 
 @pytest.mark.parametrize("key", ["teeth_fs", "module", "E", "face_width"])

@@ -44,6 +44,6 @@ def test_one_period(path: Path) -> None:
             continue
         drive, steps = case.design.drive, case.design.steps
         period = 360.0 / (drive.teeth_rg if drive.layout == "ring_fixed" else drive.teeth_fs)
-        assert steps.increment == pytest.approx(period / 8, rel=1e-14)
-        share = 45.0 / period % 1.0 if "45deg" in case.name else 1.0
+        share, count = (45.0 / period % 1.0, 1) if "45deg" in case.name else (1.0, 8)
         assert steps.rotation == pytest.approx(share * period, rel=1e-12)
+        assert steps.increment == pytest.approx(steps.rotation / count, rel=1e-14)
