@@ -13,8 +13,8 @@ from swgpar.contact.friction import FIRST_STEP, PairKey
 from swgpar.contact.rigid import CamPose, RigidContact
 from swgpar.contact.search import FlankPair, facing_flanks, largest
 from swgpar.contact.teeth import ToothContact
-from swgpar.couplings import ROTATION, Coupling, Housing
 from swgpar.design import DriveDesign
+from swgpar.holding import Holding
 from swgpar.line_search import SearchedStep
 from swgpar.linear import Bordered
 from swgpar.log import Phases
@@ -62,7 +62,7 @@ class Equilibrium:
     Parameters
     ----------
     design : the drive;  partition, elements : ownership and elements, bound to their local nodes
-    couplings : of the bodies that float, the output last;  housing : around the ring gear when that floats
+    holding : what holds and loads the bodies
     rigid, pins : cam and pins on the inner surface;  teeth : flank contact
     """
 
@@ -71,19 +71,15 @@ class Equilibrium:
         design: DriveDesign,
         partition: Partition,
         elements: Elements,
-        couplings: list[Coupling],
-        housing: Housing | None,
+        holding: Holding,
         rigid: RigidContact,
         pins: RigidContact,
         teeth: ToothContact,
-        images: bool,
         phases: Phases,
     ) -> None:
-        self.design, self.partition, self.elements, self.couplings = design, partition, elements, couplings
-        self.housing = housing
+        self.design, self.partition, self.elements, self.holding = design, partition, elements, holding
         self.rigid, self.pins, self.teeth, self.phases = rigid, pins, teeth, phases
-        self.share = 0.5 if images else 1.0
-        self.scale = design.material.E * design.drive.module
+        self.scale, self.share = holding.scale, holding.share
         self.x, self.accepted = create_vector(partition), create_vector(partition)
         self.near = near(design)
         self.scene: Scene | None = None
@@ -94,7 +90,6 @@ class Equilibrium:
         self.own_keys = own * partition.n_global + own
         self.round_off = 0.0
         self.softness = 1.0
-        self._grounding()
         self.snes = PETSc.SNES().create(comm=partition.comm)
         self.snes.setType(PETSc.SNES.Type.NEWTONLS)
         options = PETSc.Options()
@@ -133,7 +128,7 @@ class Equilibrium:
         self.local = LocalNodes(self.partition, self.elements.wanted, further)
         self.exchange = Exchange(self.partition, self.local.number)
         self.teeth.bind(self.local)
-        self.teeth.turn = self._ring_turn(self.displacement())
+        self.teeth.turn = self.holding.ring_turn(self.displacement())
 
     def displacement(self, x: PETSc.Vec | None = None) -> np.ndarray:
         """(n_local, 3) mm, ghosts included."""
@@ -172,11 +167,7 @@ class Equilibrium:
 
     def _facing(self, margin: float) -> list[FlankPair]:
         u = self.displacement()
-        return facing_flanks(self.partition, self.elements.bodies[0], u, self._ring_turn(u), margin)
-
-    def _ring_turn(self, u: np.ndarray) -> float:
-        """Turn (rad) of the ring gear at displacement u."""
-        return float(self.couplings[-1].evaluate(u).value[ROTATION]) if len(self.couplings) > 1 else 0.0
+        return facing_flanks(self.partition, self.elements.bodies[0], u, self.holding.ring_turn(u), margin)
 
     def _overlooked(self) -> bool:
         """Whether flanks that the search left out have come into contact."""
@@ -199,28 +190,7 @@ class Equilibrium:
                 self.matrix.destroy()
             self.matrix = create_matrix(self.partition, self.rows)
 
-    def _grounding(self) -> None:
-        stiffness = 0.1 * self.scale
-        self.grounded = []
-        self.ground_vectors = []
-        for coupling in self.couplings:
-            for support in coupling.supports():
-                vector = create_vector(self.partition)
-                array = vector.array.reshape(-1, 3)
-                for i in np.flatnonzero(np.abs(support).sum(axis=1)):
-                    direction = np.sqrt(stiffness) * support[i]
-                    array[coupling.nodes[i]] += direction
-                    self.grounded.append((coupling.nodes[i], direction))
-                self.ground_vectors.append(vector)
-
     # -- residual and tangent --------------------------------------------------------------------------
-
-    def _controls(self, scene: Scene) -> list[tuple[int, int]]:
-        """Coupling and quantity that are prescribed, in pairs."""
-        active = [(i, int(k)) for i, c in enumerate(self.couplings) for k in np.flatnonzero(c.active)]
-        if scene.control == "torque":
-            active.remove((len(self.couplings) - 1, ROTATION))
-        return active
 
     def _contact(self, u: np.ndarray, residual: np.ndarray | None, rows: BlockRows | None) -> np.ndarray:
         scene = self.scene
@@ -230,13 +200,11 @@ class Equilibrium:
             self.pins.evaluate(u, CamPose(scene.angle, inset=scene.pins), residual, rows)
         if scene.teeth is None:
             return np.zeros(0, dtype=np.int64)
-        self.teeth.turn = self._ring_turn(u)
+        self.teeth.turn = self.holding.ring_turn(u)
         missing = self.teeth.evaluate(u, scene.teeth, residual, rows)
-        if residual is not None and len(self.couplings) > 1:
+        if residual is not None:
             # the flanks' heights over their chords turn with the ring gear
-            moment = self.partition.comm.allreduce(self.teeth.moment, op=MPI.SUM)
-            ring = self.couplings[-1]
-            residual[ring.nodes] += moment * ring.evaluate(u).gradient[ROTATION]
+            self.holding.add_ring_moment(u, self.partition.comm.allreduce(self.teeth.moment, op=MPI.SUM), residual)
         return missing
 
     def _function(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
@@ -249,24 +217,12 @@ class Equilibrium:
                 self._contact(u, contact, None)
                 residual = contact.copy()
                 self.elements.assemble(u, residual, None, None)
-                if self.housing is not None:
-                    self.housing.add_forces(u, residual)
             except FloatingPointError:
                 self.failed, residual = True, contact
             if self.partition.comm.allreduce(int(self.failed), op=MPI.MAX):
                 self.failed = True
             self.reference = np.sqrt(self.partition.comm.allreduce(float(np.sum(contact[:n_own] ** 2))))
-            scene, multiplier = self.scene, self.multipliers(x)
-            motion = [coupling.evaluate(u) for coupling in self.couplings]
-            target = np.zeros((len(motion), 6))
-            target[-1, ROTATION] = scene.rotation
-            tail = self.scale * multiplier  # unused ones are zero; used ones are overwritten below
-            for i, k in self._controls(scene):
-                gradient = motion[i].gradient[k]
-                residual[self.couplings[i].nodes] += self.scale * multiplier[6 * i + k] * gradient
-                tail[6 * i + k] = self.scale * (motion[i].value[k] - target[i, k])
-            if scene.control == "torque":
-                residual[self.couplings[-1].nodes] -= self.share * scene.torque * motion[-1].gradient[ROTATION]
+            tail = self.holding.add_forces(u, self.scene, self.multipliers(x), residual)
             f.array[:] = residual[:n_own].ravel()
             if self.partition.comm.rank == self.partition.comm.size - 1:
                 f.array[-len(tail) :] = tail
@@ -282,10 +238,7 @@ class Equilibrium:
             self.rows.values[:] = 0.0
             self.elements.assemble(u, None, self.rows, self.slots)
             missing = self._contact(u, None, self.rows)
-            for node, direction in self.grounded:
-                self._add_diagonal(np.array([node]), np.outer(direction, direction))
-            if self.housing is not None:
-                self._add_diagonal(self.housing.nodes, self.housing.blocks(u))
+            self.holding.add_blocks(u, self.rows)
             add_unit_diagonal(self.rows, self.partition, self.scale)
         self.missing = missing
         # forces that follow from a last-digit error of every position
@@ -297,17 +250,9 @@ class Equilibrium:
         with self.phases("insert"):
             fill_matrix(self.matrix, self.rows)
             p.stateIncrease()
-        border, controls, bound = [], self._controls(self.scene), None
-        if self.scene.control == "torque":
-            controls.append((len(self.couplings) - 1, ROTATION))
-            bound = self.scale * self._longest_turn()
-        motion = [coupling.evaluate(u) for coupling in self.couplings]
-        for i, k in controls:
-            vector = create_vector(self.partition)
-            vector.array.reshape(-1, 3)[self.couplings[i].nodes] = self.scale * motion[i].gradient[k]
-            border.append(vector)
-        rows = [6 * i + k for i, k in controls]
-        self.border.set_system(self.matrix, self.ground_vectors, border, rows, bound)
+        bound = self.scale * self._longest_turn() if self.scene.control == "torque" else None
+        border, rows = self.holding.border(u, self.scene)
+        self.border.set_system(self.matrix, self.holding.ground_vectors, border, rows, bound)
 
     def _longest_turn(self) -> float:
         """Bound (rad) of the output's turn in a Newton step under torque control.
@@ -318,11 +263,6 @@ class Equilibrium:
         gap = -largest(self.partition.comm, -self.teeth.clearance(LOADED_SIDE)) / drive.module
         reach = 0.5 * drive.teeth_rg * drive.module + self.design.d  # no tooth is farther out
         return drive.module * (min(gap, LONGEST) + MEETING if gap > 0.0 else LONGEST) / reach
-
-    def _add_diagonal(self, nodes: np.ndarray, blocks: np.ndarray) -> None:
-        """Add blocks (n, 3, 3) N/mm to the diagonal of owned nodes (n,)."""
-        keys = (self.partition.row_start + nodes.astype(np.int64)) * (self.partition.n_global + 1)
-        self.rows.values[np.searchsorted(self.rows.keys, keys)] += blocks
 
     # -- solve -------------------------------------------------------------------------------------------
 
@@ -356,8 +296,7 @@ class Equilibrium:
         """
         self.scene = scene
         if self.partition.comm.rank == self.partition.comm.size - 1:
-            unused = np.ones(self.partition.n_multipliers, dtype=bool)
-            unused[[6 * i + k for i, k in self._controls(scene)]] = False
+            unused = self.holding.unused(scene)
             self.x.array[-len(unused) :][unused] = 0.0
         self.search()
         iterations, self.augmentations, searched = 0, 0, False
@@ -418,7 +357,7 @@ class Equilibrium:
 
     def rotation(self) -> float:
         """Turn of the output (rad)."""
-        return float(self.couplings[-1].evaluate(self.displacement()).value[ROTATION])
+        return self.holding.turn(self.displacement())
 
     def torques(self) -> dict[str, float]:
         """Torques about z (N mm): wave generator (and pins) and teeth on the flexible spline, load on the output.
@@ -443,10 +382,10 @@ class Equilibrium:
             local = -float(np.sum(x[spline, 0] * r[:, 1] - x[spline, 1] * r[:, 0]))
             return self.partition.comm.allreduce(local, op=MPI.SUM) / self.share
 
-        held = -self.scale * self.multipliers(self.x)[ROTATION::6] / self.share
+        held = self.holding.reactions(self.multipliers(self.x))
         output = scene.torque if scene.control == "torque" else float(held[-1])
         wg, teeth_torque = moment(rigid), moment(teeth)
-        if len(self.couplings) == 1:
+        if len(held) == 1:
             balance = abs(wg + teeth_torque + output)
         else:
             balance = max(abs(wg + teeth_torque + float(held[0])), abs(output - teeth_torque))

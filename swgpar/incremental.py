@@ -16,6 +16,7 @@ from swgpar.couplings import Coupling, Housing
 from swgpar.design import DriveDesign
 from swgpar.equilibrium import Equilibrium, near
 from swgpar.errors import ConvergenceError
+from swgpar.holding import Holding
 from swgpar.kernel import reference_elements
 from swgpar.log import Phases, logger
 from swgpar.meshing import MeshRecipe, build_sector_meshes
@@ -100,16 +101,15 @@ class DriveModel:
             outer = float(np.hypot(*couplings[-1].reference[:, :2].T).max(initial=0.0))
             area = 2.0 * np.pi * outer * design.drive.face_width / (2.0 if images else 1.0)
             housing = Housing(couplings[-1], area, design.penalty)
+        scale = design.material.E * design.drive.module
         self.equilibrium = Equilibrium(
             design,
             self.partition,
             self.elements,
-            couplings,
-            housing,
+            Holding(self.partition, couplings, housing, scale, 0.5 if images else 1.0),
             RigidContact(spline, *rigid),
             RigidContact(spline, *rigid),
             teeth,
-            images,
             self.phases,
         )
         self.copies = 2 if images else 1

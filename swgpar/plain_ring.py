@@ -14,6 +14,7 @@ from swgpar.couplings import Coupling
 from swgpar.design import Contact, Material, Solver
 from swgpar.equilibrium import Equilibrium
 from swgpar.errors import ConvergenceError
+from swgpar.holding import Holding
 from swgpar.incremental import PRESSURE_LIMIT
 from swgpar.kernel import reference_elements
 from swgpar.log import Phases
@@ -158,16 +159,15 @@ class RingModel:
             PRESSURE_LIMIT * material.E,
         )
         # one surface: a scene takes it as the cam, or as the pins, which move
+        couplings = [Coupling(self.partition, self.body, "bore", True)]
         self.equilibrium = Equilibrium(
             design,
             self.partition,
             self.elements,
-            [Coupling(self.partition, self.body, "bore", True)],
-            None,
+            Holding(self.partition, couplings, None, material.E * design.drive.module, 0.5),
             surface,
             surface,
             NoTeeth(),
-            True,
             Phases(),
         )
 

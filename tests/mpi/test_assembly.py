@@ -57,7 +57,7 @@ def test_tangent_is_the_derivative_of_the_residual(overrides: tuple[str, ...]) -
     into.array.reshape(-1, dims)[:] = d.array.reshape(-1, 3)[:, :dims]
     equilibrium.matrix.mult(into, out)
     product.array.reshape(-1, 3)[:, :dims] = out.array.reshape(-1, dims)
-    for vector in equilibrium.ground_vectors:
+    for vector in equilibrium.holding.ground_vectors:
         product.axpy(-vector.dot(d), vector)
     step, sides = 1e-8, []
     for sign in (1.0, -1.0):

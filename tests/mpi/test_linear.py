@@ -47,7 +47,7 @@ def test_iterative_equals_direct(overrides: tuple[str, ...]) -> None:
     for linear in ("direct", "iterative"):
         border = Bordered(partition, linear, positions, f"test_{linear}_")
         solved = equilibrium.border
-        border.set_system(equilibrium.matrix, equilibrium.ground_vectors, solved.border, solved.rows)
+        border.set_system(equilibrium.matrix, equilibrium.holding.ground_vectors, solved.border, solved.rows)
         pc = equilibrium.snes.getKSP().getPC()
         border.setUp(pc)
         solutions.append(create_vector(partition))
@@ -68,7 +68,7 @@ def test_the_loaded_motion_is_bounded(overrides: tuple[str, ...]) -> None:
 
     def step(border: list[PETSc.Vec], rows: list[int], bound: float | None) -> PETSc.Vec:
         test = Bordered(partition, "direct", equilibrium.positions()[: partition.n_own], "test_")
-        test.set_system(equilibrium.matrix, equilibrium.ground_vectors, border, rows, bound)
+        test.set_system(equilibrium.matrix, equilibrium.holding.ground_vectors, border, rows, bound)
         test.setUp(pc)
         x = create_vector(partition)
         test.apply(pc, right, x)
@@ -106,6 +106,6 @@ def _product(equilibrium: Equilibrium, x: PETSc.Vec) -> PETSc.Vec:
     into.array.reshape(-1, dims)[:] = x.array_r.reshape(-1, 3)[:, :dims]
     equilibrium.matrix.mult(into, out)
     result.array.reshape(-1, 3)[:, :dims] = out.array.reshape(-1, dims)
-    for vector in equilibrium.ground_vectors:
+    for vector in equilibrium.holding.ground_vectors:
         result.axpy(-vector.dot(x), vector)
     return result

@@ -26,6 +26,7 @@ ORDER = (
     "line_search",
     "contact",
     "steps",
+    "holding",
     "stress",
     "equilibrium",
     "incremental",
