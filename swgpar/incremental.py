@@ -194,7 +194,8 @@ class Runner:
         origin, x = self.scene, self.equilibrium.x
         if origin.control == "rotation" and target.control == "torque":
             # cut, the way begins with the torque that holds the output
-            origin = replace(origin, torque=self.equilibrium.torques()["output"])
+            held = self.equilibrium.holding.reactions(self.equilibrium.multipliers(x))
+            origin = replace(origin, torque=float(held[-1]))
         done, share, cuts = 0.0, 1.0, 0
         while done < 1.0:
             saved = x.copy()

@@ -149,7 +149,6 @@ def _figures(job: Job, folder: Path, comm: MPI.Comm) -> None:
 
 
 def _release(comm: MPI.Comm) -> None:
-    """Free the model of the last case; objects of several ranks wait for a collective call."""
+    """Free the model of the last case; PETSc keeps what Python lets go of until this collective call."""
     gc.collect()
-    if comm.size > 1:
-        PETSc.garbage_cleanup(comm)
+    PETSc.garbage_cleanup(comm)

@@ -56,6 +56,9 @@ def make_report(study: Study, results: Sequence[Result], comparisons: Sequence[C
         parts += _figures(results)
     except Exception as error:  # a picture that fails must not cost the report
         parts.append(f"<p class=bad>Figures could not be drawn: {escape(str(error))}</p>")
+    if study.section.remarks:
+        parts.append("<h2>Remarks</h2>")
+        parts += [f"<p>{escape(text)}</p>" for text in study.section.remarks.strip().split("\n\n")]
     parts += ["<h2>Study file</h2>", f"<pre>{escape(study.text)}</pre>"]
     head = f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
     return f"{head}<style>{STYLE}</style></head><body>\n{chr(10).join(parts)}\n</body></html>\n".encode()

@@ -32,6 +32,7 @@ class StudySection(Section):
     """The `[study]` without its cases."""
 
     title: str = quantity("", text="title of the report")
+    remarks: str = quantity("", text="text for the report; a blank line ends a paragraph")
     design: str = quantity(text="the design file, relative to the study file")
     meshes: list[str] = quantity(text="mesh recipes, coarse to fine, relative to the study file")
     compared: str = quantity("", text="the one of the meshes that published values are compared on; else the last")

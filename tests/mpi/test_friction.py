@@ -25,7 +25,7 @@ def loaded(friction: float, comm: MPI.Comm = WORLD) -> Runner:
     design = load_design(DATA / "small.toml", [f"contact.friction={friction}"])
     runner = Runner(DriveModel(design, load_recipe(DATA / "tiny.toml"), comm))
     for item in sequence(design):
-        if item.scene.step > 3:
+        if item.step > 3:
             break
         runner.increment(item)
     return runner

@@ -59,7 +59,7 @@ def test_tangent_and_balance_on_a_curved_deformed_master() -> None:
 
     rows, r, turning = Rows(len(u)), np.zeros_like(u), np.zeros(1)
     settings = np.zeros((1, 9)), PENALTY, 0.0, 1.0, np.inf
-    gap, pressure, _, missing = contact_flanks(flanks, faces, u, *settings, r, rows, 0.0, turning)
+    gap, pressure, _, missing = contact_flanks(flanks, faces, u, *settings, r, rows, None, 0.0, turning)
     assert missing == 0 and (pressure > 0).all() and gap.max() < 0
     tangent, h = rows.matrix(), 1e-6
     difference = np.zeros_like(tangent)
@@ -89,7 +89,7 @@ def test_contact_turns_with_both_bodies(angle: float) -> None:
     for v, phi, r in ((u, 0.0, before), (turned, angle, after)):
         moment = np.zeros(1)
         settings = np.zeros((1, 9)), PENALTY, 0.0, 1.0, np.inf
-        gap, pressure, _, _ = contact_flanks(flanks, faces, v, *settings, r, None, phi, moment)
+        gap, pressure, _, _ = contact_flanks(flanks, faces, v, *settings, r, None, None, phi, moment)
         results.append(np.concatenate([gap.ravel() * PENALTY, pressure.ravel(), moment * PENALTY]))
     assert results[0][9:18].min() > 0.0
     assert np.abs(results[1] - results[0]).max() < 1e-10 * np.abs(results[0]).max()
