@@ -204,7 +204,7 @@ class Equilibrium:
         missing = self.teeth.evaluate(u, scene.teeth, residual, rows)
         if residual is not None:
             # the flanks' heights over their chords turn with the ring gear
-            self.holding.add_ring_moment(u, self.partition.comm.allreduce(self.teeth.moment, op=MPI.SUM), residual)
+            self.holding.add_ring_moment(u, self.teeth.moment, residual)
         return missing
 
     def _function(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:

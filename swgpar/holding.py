@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from mpi4py import MPI
 from petsc4py import PETSc
 
 from swgpar.assembly import BlockRows, create_vector
@@ -64,9 +65,9 @@ class Holding:
         return self.turn(u) if len(self.couplings) > 1 else 0.0
 
     def add_ring_moment(self, u: np.ndarray, moment: float, residual: np.ndarray) -> None:
-        """Add to residual (n_local, 3) N a moment (N mm) on the turn of a ring gear that is not fixed."""
+        """Add to residual (n_local, 3) N this rank's share of a moment (N mm) on a ring gear that is not fixed."""
         if len(self.couplings) > 1:
-            ring = self.couplings[-1]
+            ring, moment = self.couplings[-1], self.partition.comm.allreduce(moment, op=MPI.SUM)
             residual[ring.nodes] += moment * ring.evaluate(u).gradient[ROTATION]
 
     def add_forces(self, u: np.ndarray, scene: Scene, multiplier: np.ndarray, residual: np.ndarray) -> np.ndarray:

@@ -77,7 +77,7 @@ class DriveModel:
             design.r_fs,
             half_width,
             design.contact.wg_quadrature,
-            design.penalty,
+            design.wg_penalty,
             np.radians(design.wave_generator.pin_half_angle),
             PRESSURE_LIMIT * design.material.E,
         )
@@ -239,11 +239,11 @@ class Runner:
         turns = [(angle - visited) / pitch for visited, _ in self.visited]
         apart = [round(abs(turn - np.rint(turn)), 6) for turn in turns]
         nearest = min(reversed(range(len(turns))), key=apart.__getitem__, default=None)
-        start = self.scene.angle
+        origin = self.scene.angle
         if nearest is not None:
-            start, x = self.visited[nearest]
+            origin, x = self.visited[nearest]
             x.copy(self.equilibrium.x)
-        predict(self.model, self.equilibrium.x, angle - start)
+        predict(self.model, self.equilibrium.x, angle - origin)
 
     def increment(self, target: Scene) -> None:
         """Do one entry of the sequence."""

@@ -145,11 +145,10 @@ class Bordered:
             return
         nb = len(self.grounding)
         load = np.array([v.dot(x) for v in self.grounding + self.border])
-        load[nb:] = self.multipliers(right)[self.rows] - load[nb:]
-        prescribed = slice(nb, len(load))
-        if self.bound is not None:
-            prescribed = slice(nb, len(load) - 1)
-            load[-1] -= self.multipliers(right)[self.rows[-1]]
+        prescribed = len(load) if self.bound is None else len(load) - 1
+        used = self.rows[: prescribed - nb]
+        load[nb:] *= -1.0
+        load[nb:prescribed] += self.multipliers(right)[used]
         answer = np.linalg.solve(self.system, load)
         if self.bound is not None:
             unit = np.linalg.solve(self.system, np.eye(len(load))[-1])
@@ -159,5 +158,4 @@ class Bordered:
         for k, column in enumerate(self.columns):
             x.axpy(answer[k] if k < nb else -answer[k], column)
         if self.partition.comm.rank == self.partition.comm.size - 1:
-            entries = x.array[-self.partition.n_multipliers :]
-            entries[self.rows[: prescribed.stop - nb]] = answer[prescribed]
+            x.array[-self.partition.n_multipliers :][used] = answer[nb:prescribed]

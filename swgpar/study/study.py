@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -120,6 +120,23 @@ def queue(jobs: Sequence[Job], statuses: Sequence[str | None]) -> list[int]:
     return sorted(range(len(jobs)), key=lambda k: (statuses[k] == "failed", jobs[k].finer, -jobs[k].increments))
 
 
+def _run_one(
+    jobs: Sequence[Job],
+    number: int,
+    out: Path,
+    comm: MPI.Comm,
+    report: Callable[[tuple[int, Outcome | None]], None],
+    restart: bool,
+    overwrite: bool,
+) -> None:
+    """Run a job and report its increments, as None, and its outcome."""
+    job = jobs[number]
+    outcome = run_job(
+        job, job.folder(out), comm, restart=restart, overwrite=overwrite, on_increment=lambda: report((number, None))
+    )
+    report((number, outcome))
+
+
 def _cases_at_once(
     jobs: Sequence[Job],
     order: Sequence[int],
@@ -132,16 +149,7 @@ def _cases_at_once(
     own = comm.Dup()
     counter, reports = Counter(own), Reports(own, book.receive if book is not None else lambda _: None)
     while (place := counter.take()) < len(order):
-        number = order[place]
-        outcome = run_job(
-            jobs[number],
-            jobs[number].folder(out),
-            MPI.COMM_SELF,
-            restart=restart,
-            overwrite=overwrite,
-            on_increment=lambda number=number: reports.send((number, None)),
-        )
-        reports.send((number, outcome))
+        _run_one(jobs, order[place], out, MPI.COMM_SELF, reports.send, restart, overwrite)
     reports.end()
     counter.free()
     own.Free()
@@ -156,17 +164,9 @@ def _one_after_the_other(
     restart: bool,
     overwrite: bool,
 ) -> None:
+    report = book.receive if book is not None else lambda _: None
     for number in order:
-        outcome = run_job(
-            jobs[number],
-            jobs[number].folder(out),
-            comm,
-            restart=restart,
-            overwrite=overwrite,
-            on_increment=lambda number=number: book.receive((number, None)) if book is not None else None,
-        )
-        if book is not None:
-            book.receive((number, outcome))
+        _run_one(jobs, number, out, comm, report, restart, overwrite)
 
 
 def _write(study: Study, results: Sequence[Result], out: Path, comm: MPI.Comm) -> None:

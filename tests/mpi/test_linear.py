@@ -9,10 +9,10 @@ import pytest
 from mpi4py import MPI
 from petsc4py import PETSc
 from small_drive import PLANE
+from stiffness import without_grounding
 
 from swgpar.assembly import create_vector
 from swgpar.design import load_design
-from swgpar.equilibrium import Equilibrium
 from swgpar.incremental import DriveModel
 from swgpar.linear import Bordered
 from swgpar.meshing import load_recipe
@@ -88,7 +88,7 @@ def test_the_loaded_motion_is_bounded(overrides: tuple[str, ...]) -> None:
         held = step(solved.border, solved.rows, bound)
         assert output.dot(held) == pytest.approx(np.sign(motion) * bound, rel=1e-6)
         # the rest of the drive follows: what is left of its equations points along the output's motion
-        left = _product(equilibrium, held)
+        left = without_grounding(equilibrium, held)
         left.aypx(-1.0, right)
         for k, row in enumerate(solved.rows[:-1]):
             left.axpy(-float(equilibrium.multipliers(held)[row]), solved.border[k])
@@ -97,15 +97,3 @@ def test_the_loaded_motion_is_bounded(overrides: tuple[str, ...]) -> None:
         along = output.dot(left) / output.dot(output)
         left.axpy(-along, output)
         assert left.norm() < 1e-6 * right.norm() and abs(along) * output.norm() > 1e-3 * left.norm()
-
-
-def _product(equilibrium: Equilibrium, x: PETSc.Vec) -> PETSc.Vec:
-    """K x without the grounding, in vectors of three unknowns per node."""
-    dims, result = equilibrium.partition.dims, create_vector(equilibrium.partition)
-    into, out = equilibrium.matrix.createVecs()
-    into.array.reshape(-1, dims)[:] = x.array_r.reshape(-1, 3)[:, :dims]
-    equilibrium.matrix.mult(into, out)
-    result.array.reshape(-1, 3)[:, :dims] = out.array.reshape(-1, dims)
-    for vector in equilibrium.holding.ground_vectors:
-        result.axpy(-vector.dot(x), vector)
-    return result

@@ -1,0 +1,58 @@
+"""Small meshes of single elements, assembled and solved by SciPy: for tests of the element kernels."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse import coo_matrix, csr_matrix
+from scipy.sparse.linalg import spsolve
+
+from swgpar.kernel import assemble_elements, recover_stress, reference_elements
+
+
+class ElementMesh:
+    """Hexahedra (n, 8), or quadrilaterals (n, 4) with a thickness; every element its own reference."""
+
+    def __init__(
+        self, points: np.ndarray, elements: np.ndarray, young: float, poisson: float, thickness: float = 1.0
+    ) -> None:
+        self.points, self.elements = points, np.ascontiguousarray(elements, dtype=np.int32)
+        n, self.m = elements.shape
+        self.reference = reference_elements(points[elements], young, poisson, thickness)
+        self.arrays = (
+            np.arange(n, dtype=np.int32),
+            np.tile([1.0, 0.0], (n, 1)),
+            self.elements,
+            np.zeros((n, self.m), np.uint8),
+        )
+        self.slot = np.arange(self.m**2 * n).reshape(n, self.m**2)
+
+    def residual(self, u: np.ndarray) -> np.ndarray:
+        out = np.zeros_like(u)
+        assemble_elements(self.reference, *self.arrays, u, out, None, None)
+        return out
+
+    def tangent(self, u: np.ndarray) -> csr_matrix:
+        """(3 n, 3 n) N/mm; rows and columns of z are zero in the plane."""
+        values = np.zeros((self.slot.size, 3, 3))
+        assemble_elements(self.reference, *self.arrays, u, None, self.slot, values)
+        row = np.repeat(self.elements, self.m, axis=1).ravel()
+        col = np.tile(self.elements, (1, self.m)).ravel()
+        axis = np.arange(3)
+        i = (3 * row[:, None, None] + axis[:, None] + 0 * axis).ravel()
+        j = (3 * col[:, None, None] + 0 * axis[:, None] + axis).ravel()
+        return coo_matrix((values.transpose(0, 2, 1).ravel(), (i, j)), shape=(u.size, u.size)).tocsr()
+
+    def stress(self, u: np.ndarray) -> np.ndarray:
+        return recover_stress(self.reference, *self.arrays, u)
+
+    def solve(self, fixed: np.ndarray, value: np.ndarray, load: np.ndarray, iterations: int = 1) -> np.ndarray:
+        """Newton's iteration; `fixed` (n, 3) bool, prescribed `value`, `load` (n, 3)."""
+        u = np.where(fixed, value, 0.0)
+        held = fixed.copy()
+        if self.m == 4:
+            held[:, 2] = True
+        free = np.flatnonzero(~held.ravel())
+        for _ in range(iterations):
+            r = (load - self.residual(u)).ravel()[free]
+            u.ravel()[free] += spsolve(self.tangent(u)[free][:, free].tocsc(), r)
+        return u
