@@ -80,7 +80,8 @@ class BodyElements:
         counted[self.owned] = True
         here = (self.number >= lo) & (self.number < hi) & counted[:, None]
         touches = here[:, elements].any(axis=2) if len(sectors) else np.zeros((0, len(elements)), dtype=bool)
-        self.sector_of, self.ref_of = (v.astype(np.int32) for v in np.nonzero(touches))
+        self.every = tuple(v.astype(np.int32) for v in np.nonzero(touches))
+        self.modelled = np.ones(len(sectors), dtype=bool)
         angle = layout.turn(layout.first_tooth + sectors)
         self.turn_of_sector = np.column_stack([np.cos(angle), np.sin(angle)]).reshape(-1, 2)
         self.local = np.zeros_like(self.number, dtype=np.int32)
@@ -88,6 +89,9 @@ class BodyElements:
     def bind(self, local: LocalNodes) -> None:
         """Look up the local indices of all nodes once the rank's local nodes are known."""
         self.local = local.index(self.number)
+        sector_of, ref_of = self.every
+        pick = self.modelled[sector_of]
+        self.sector_of, self.ref_of = sector_of[pick], ref_of[pick]
         nodes = self.layout.mesh.elements[self.ref_of]
         self.conn = np.ascontiguousarray(self.local[self.sector_of[:, None], nodes])
         self.conn_flip = np.ascontiguousarray(self.flip[self.sector_of[:, None], nodes])
@@ -107,13 +111,13 @@ class BodyElements:
     def nodal_stress(self, u: np.ndarray) -> np.ndarray:
         """Stress at the nodes of the owned sectors: extrapolated per element, averaged over the body's elements.
 
-        Returns (n_owned, n_local, 6) MPa; components xx, yy, zz, xy, yz, zx in global axes.
+        Returns (n_owned, n_local, 6) MPa; components xx, yy, zz, xy, yz, zx in global axes; zero in sectors left out.
         """
         mesh = self.layout.mesh
         elements, tied = mesh.elements, mesh.tied
         n_sectors, n_node, n_elem = len(self.sectors), len(mesh.coords), len(elements)
         sums = np.zeros((n_sectors, n_node, 6))
-        for k in range(n_sectors):
+        for k in np.flatnonzero(self.modelled):
             stress = recover_stress(
                 self.reference,
                 np.arange(n_elem, dtype=np.int32),
@@ -127,13 +131,13 @@ class BodyElements:
         count = np.bincount(elements.ravel(), minlength=n_node).astype(float)
         if tied is not None:
             sums, count = sums[:, tied], count[tied]
-        counts = np.repeat(count[None], n_sectors, axis=0)
+        counts = self.modelled[:, None] * count
         ccw, cw = mesh.ccw_nodes, mesh.cw_nodes
         total = sums[:-1, ccw] + sums[1:, cw]
         number = counts[:-1, ccw] + counts[1:, cw]
         sums[:-1, ccw], sums[1:, cw] = total, total
         counts[:-1, ccw], counts[1:, cw] = number, number
-        return (sums / counts[..., None])[self.owned]
+        return (sums / np.maximum(counts, 1.0)[..., None])[self.owned]
 
 
 class Elements:
@@ -149,8 +153,15 @@ class Elements:
         self.wanted = np.unique(np.concatenate(seen))
 
     def bind(self, local: LocalNodes) -> None:
+        """Look up local indices, and lay out the blocks of the sectors that are modelled."""
         for body in self.bodies:
             body.bind(local)
+        touched = np.zeros(local.n_own, dtype=bool)
+        for body in self.bodies:
+            touched[body.conn[(body.conn >= 0) & (body.conn < local.n_own)]] = True
+        multipliers = self.partition.multiplier_nodes - local.row_start
+        touched[multipliers[(multipliers >= 0) & (multipliers < local.n_own)]] = True
+        self.idle = np.flatnonzero(~touched)
         keys = []
         for body in self.bodies:
             number = np.where(body.conn >= 0, local.number[body.conn], -1).astype(np.int64)
@@ -270,10 +281,11 @@ def fill_matrix(mat: PETSc.Mat, rows: BlockRows) -> None:
     mat.assemble()
 
 
-def add_unit_diagonal(rows: BlockRows, partition: Partition, value: float) -> None:
-    """Put `value` on the diagonal of the multiplier blocks, which couple through the border only."""
-    for node in partition.multiplier_nodes:
-        own = node - partition.row_start
-        if 0 <= own < rows.n_own:
-            place = np.searchsorted(rows.keys, node * partition.n_global + node)
-            rows.values[place] += value * np.eye(3)
+def add_unit_diagonal(rows: BlockRows, partition: Partition, idle: np.ndarray, value: float) -> None:
+    """Put `value` on the diagonal of the multiplier blocks, which couple through the border only, and of idle nodes.
+
+    idle : (n,) own nodes without elements
+    """
+    nodes = np.concatenate([idle + partition.row_start, partition.multiplier_nodes])
+    nodes = nodes[(nodes >= partition.row_start) & (nodes < partition.row_start + rows.n_own)]
+    rows.values[np.searchsorted(rows.keys, nodes * partition.n_global + nodes)] += value * np.eye(3)

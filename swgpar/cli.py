@@ -178,6 +178,11 @@ def _print_result(result) -> None:
             f"{m['fs_vm']:.1f} MPa; ring gear von Mises {m['rg_vm']:.1f} MPa; input torque "
             f"{m['wg_torque_Nmm']:.2f} N·mm (energy balance {result.summary['wg_torque_expected_Nmm']:.2f})"
         )
+    if error := result.summary["mesh_error"]:
+        console.print(
+            f"estimated error by the mesh, under load: s1 {error['fs_s1']:.1f}, |s3| {error['fs_s3']:.1f}, "
+            f"von Mises {error['fs_vm']:.1f} MPa (from this mesh and the one of the start)"
+        )
     console.print(
         f"torque balance error {result.summary['balance_error_Nmm']:.1e} N·mm; "
         f"{result.summary['wall_s']:.0f} s on {result.summary['ranks']} ranks"

@@ -86,6 +86,15 @@ class Steps(Section):
     deflect_increments: int = quantity(1, text="increments of the deflection by the pins", ge=1, le=1000)
     engage_increments: int = quantity(1, text="increments of the engagement", ge=1, le=1000)
     load_increments: int = quantity(1, text="increments of the torque", ge=1, le=1000)
+    samples: int = quantity(
+        0,
+        text="angles computed in one period and continued by symmetry, instead of increments; 0: off",
+        ge=0,
+        le=1000,
+    )
+    start_levels: int = quantity(
+        0, text="coarser meshes on which the drive is assembled and loaded (steps 1 to 3); 0: off", ge=0, le=4
+    )
 
 
 class Solver(Section):
@@ -94,6 +103,10 @@ class Solver(Section):
     max_iterations: int = quantity(25, text="Newton iterations before an increment is cut back", ge=1, le=1000)
     max_cutbacks: int = quantity(5, text="halvings of an increment before the run ends", ge=0, le=20)
     twofold_symmetry: bool = quantity(True, text="model half of the drive when tooth numbers allow it")
+    far_teeth: Literal["left_out", "modelled"] = quantity(
+        "left_out", text="ring-gear sectors out of reach of the flexible spline, with the ring gear fixed"
+    )
+    keep_factor: bool = quantity(True, text="cup drive: use factors for later tangents while GMRES converges with them")
 
 
 class Output(Section):
@@ -144,6 +157,16 @@ class DriveDesign(Section):
         """Speed ratio, wave generator over output."""
         g = self.drive
         return (-g.teeth_fs if g.layout == "ring_fixed" else g.teeth_rg) / (g.teeth_rg - g.teeth_fs)
+
+    @property
+    def pitch(self) -> float:
+        """Period of the motion, rad of the wave generator: one pitch of the fixed gear."""
+        return 2.0 * np.pi / (self.drive.teeth_rg if self.drive.layout == "ring_fixed" else self.drive.teeth_fs)
+
+    @property
+    def periods(self) -> int:
+        """Periods that are computed with `steps.samples`: in the first of two, friction settles."""
+        return 2 if self.contact.friction else 1
 
     @property
     def backlash(self) -> float:
@@ -197,6 +220,12 @@ def check_fit(design: DriveDesign) -> None:
             _refuse("wave_generator.beta", wave.beta, f"above 0 to below {wave.pin_half_angle:g} deg (pin_half_angle)")
     elif design.b < 0.4 * design.r_fs:
         _refuse("wave_generator.C", wave.C, "values whose minor semi-axis is at least 0.4 of the spline's inner radius")
+    steps = design.steps
+    least = np.degrees(design.pitch) * design.periods
+    if steps.samples and steps.rotation < 0.999999 * least:
+        _refuse(
+            "steps.rotation", steps.rotation, f"{least:.6g} deg (periods: {design.periods}) and more with steps.samples"
+        )
     width = g.face_width
     if wave.face_width > width:
         _refuse("wave_generator.face_width", wave.face_width, f"above 0 to {width:g} mm (drive.face_width)")

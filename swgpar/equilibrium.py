@@ -14,6 +14,7 @@ from swgpar.contact.rigid import CamPose, RigidContact
 from swgpar.contact.search import FlankPair, facing_flanks, largest
 from swgpar.contact.teeth import ToothContact
 from swgpar.design import DriveDesign
+from swgpar.far_teeth import FarTeeth
 from swgpar.holding import Holding
 from swgpar.line_search import SearchedStep
 from swgpar.linear import Bordered
@@ -36,6 +37,9 @@ LOADED_SIDE = -1
 
 LONGEST, MEETING = 0.05, 2e-4
 """Largest way (modules) of the teeth in a Newton step under torque control, and how deep they meet when apart."""
+
+SECURE = 0.01
+"""Share of HOLD, tolerance and floor with a kept factor, whose steps do not square the error as Newton's own do."""
 
 FLOOR = 0.05
 """Share of the round-off that a residual can hold below which it counts as zero; 0.01 to 0.06 of it is reached."""
@@ -84,8 +88,11 @@ class Equilibrium:
         self.near = near(design)
         self.scene: Scene | None = None
         self.on_iteration = None
+        self.tried: tuple[np.ndarray, np.ndarray] | None = None
         self.rebind(np.zeros(0, dtype=np.int64))
-        self.keys = np.zeros(0, dtype=np.int64)
+        self.keys: np.ndarray | None = None
+        ring_stands = design.solver.far_teeth == "left_out" and holding.housing is None and len(elements.bodies) == 2
+        self.far = FarTeeth(partition.layouts[1].count) if ring_stands else None
         own = np.arange(partition.row_start, partition.row_start + partition.n_own)
         self.own_keys = own * partition.n_global + own
         self.round_off = 0.0
@@ -98,9 +105,9 @@ class Equilibrium:
         self.snes.setTolerances(max_it=design.solver.max_iterations)
         self.snes.setFunction(self._function, create_vector(partition))
         self.snes.setConvergenceTest(self._converged)
-        self.border = Bordered(
-            partition, design.solver.linear, self.positions()[: partition.n_own], "stiffness_", teeth.symmetric
-        )
+        keep = design.solver.keep_factor and design.solver.linear == "direct" and partition.dims == 3
+        place = self.positions()[: partition.n_own]
+        self.border = Bordered(partition, design.solver.linear, place, "stiffness_", teeth.symmetric, keep)
         ksp = self.snes.getKSP()
         ksp.setType(PETSc.KSP.Type.PREONLY)
         ksp.getPC().setType(PETSc.PC.Type.PYTHON)
@@ -117,7 +124,7 @@ class Equilibrium:
 
     def destroy(self) -> None:
         """Release the solvers, which refer to this object, and their matrices; collective."""
-        for held in (self.snes, self.border.ksp, self.border.unblocked, self.matrix):
+        for held in (self.snes, self.border.ksp, self.border.unblocked, self.border.kept, self.matrix):
             if held is not None:
                 held.destroy()
 
@@ -157,8 +164,12 @@ class Equilibrium:
             else:
                 self.teeth.numbers([])
             self.rebind(further)
-            m = self.design.drive.module
-            keys = self.teeth.select(self.displacement(), self.near, TOUCH * m)
+            keys = self.teeth.select(self.displacement(), self.near, TOUCH * self.design.drive.module)
+            if self.far is not None:
+                near = np.concatenate(self.partition.comm.allgather(self.teeth.picked_rings()))
+                if self.far.update(near, self.elements, self.local):
+                    self.keys = None
+                self.x.array.reshape(-1, 3)[self.elements.idle] = 0.0
             if not self.teeth.symmetric and self.scene is not None and self.scene.step >= FIRST_STEP:
                 self.teeth.resist(self.displacement(self.accepted))
         self.rigid.reset()
@@ -180,7 +191,7 @@ class Equilibrium:
 
     def _pattern(self, keys: np.ndarray) -> None:
         with self.phases("pattern"):
-            changed = self.matrix is None or not np.array_equal(keys, self.keys)
+            changed = self.keys is None or not np.array_equal(keys, self.keys)
             if not self.partition.comm.allreduce(int(changed), op=MPI.MAX):
                 self.rows.number = self.local.number
                 return
@@ -208,6 +219,13 @@ class Equilibrium:
         return missing
 
     def _function(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
+        tried, self.tried = self.tried, None
+        if tried is not None:
+            # SNES asks for the residual at the end of the step that was tried last
+            other = int(not np.array_equal(x.array_r, tried[0]))
+            if not self.partition.comm.allreduce(other, op=MPI.MAX):
+                f.array[:] = tried[1]
+                return
         with self.phases("residual"):
             u = self.displacement(x)
             n_own = self.partition.n_own
@@ -229,7 +247,9 @@ class Equilibrium:
 
     def _trial(self, x: PETSc.Vec, f: PETSc.Vec) -> bool:
         """Residual f at x; whether an element has collapsed there."""
+        self.tried = None
         self._function(self.snes, x, f)
+        self.tried = x.array_r.copy(), f.array_r.copy()
         return self.failed
 
     def _jacobian(self, snes: PETSc.SNES, x: PETSc.Vec, j: PETSc.Mat, p: PETSc.Mat) -> None:
@@ -239,10 +259,10 @@ class Equilibrium:
             self.elements.assemble(u, None, self.rows, self.slots)
             missing = self._contact(u, None, self.rows)
             self.holding.add_blocks(u, self.rows)
-            add_unit_diagonal(self.rows, self.partition, self.scale)
+            add_unit_diagonal(self.rows, self.partition, self.elements.idle, self.scale)
         self.missing = missing
         # forces that follow from a last-digit error of every position
-        diagonal = self.rows.values[np.searchsorted(self.rows.keys, self.own_keys)]
+        diagonal = self.rows.values[np.searchsorted(self.rows.keys, np.delete(self.own_keys, self.elements.idle))]
         squares = float(np.einsum("nkk,nkk->", diagonal, diagonal))
         squares = self.partition.comm.allreduce(squares, op=MPI.SUM)
         self.round_off = np.finfo(float).eps * self.design.r_fs * np.sqrt(squares)
@@ -275,13 +295,14 @@ class Equilibrium:
             self.on_iteration(self.scene, its, ratio)
         if self.failed or not np.isfinite(norm):
             return PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN
-        if ratio < HOLD and self.softness == 1.0:
+        secure = 1.0 if self.border.kept is None or self.border.kept.fresh else SECURE
+        if ratio < secure * HOLD and self.softness == 1.0:
             self.teeth.hold()
-        if ratio <= (self.design.solver.rtol if self.softness == 1.0 else SOFT_TOLERANCE):
+        if ratio <= (secure * self.design.solver.rtol if self.softness == 1.0 else SOFT_TOLERANCE):
             return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
         # round-off floor: what positions known to 16 digits leave of the forces, or no decrease close to it
         stalled = its > 1 and ratio > 0.3 * self.history[-2]
-        if norm <= (1.0 if stalled else FLOOR) * self.round_off:
+        if norm <= (1.0 if stalled else secure * FLOOR) * self.round_off:
             return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
         if self.stale and its > 0:
             return PETSc.SNES.ConvergedReason.CONVERGED_ITS
@@ -303,13 +324,14 @@ class Equilibrium:
         soften = list(SOFTENING) if soft else []
         tolerance = self.design.contact.penetration_tolerance * self.design.drive.module
         while True:
-            self.history, self.stale = [], False
+            self.history, self.stale, self.tried = [], False, None
             self.soften(soften.pop(0) if soften else 1.0)
             self.snes.solve(None, self.x)
             reason = self.snes.getConvergedReason()
             iterations += self.snes.getIterationNumber()
             ratio = self.history[-1] if self.history else np.inf
             if reason < 0 or iterations > 4 * self.design.solver.max_iterations:
+                self.border.renew()
                 return Solved(False, iterations, ratio, REASONS.get(reason, str(reason)))
             if reason == PETSc.SNES.ConvergedReason.CONVERGED_ITS:
                 self._pattern(np.union1d(self.keys, self.missing))
@@ -341,6 +363,8 @@ class Equilibrium:
 
     def soften(self, share: float) -> None:
         """Use this share of the contact penalty."""
+        if share != self.softness:
+            self.border.renew()
         self.softness = share
         self.rigid.penalty = self.pins.penalty = share * self.design.wg_penalty
         self.teeth.penalty = share * self.design.penalty
@@ -358,38 +382,6 @@ class Equilibrium:
     def rotation(self) -> float:
         """Turn of the output (rad)."""
         return self.holding.turn(self.displacement())
-
-    def torques(self) -> dict[str, float]:
-        """Torques about z (N mm): wave generator (and pins) and teeth on the flexible spline, load on the output.
-
-        "balance" is what is left of the largest sum that should vanish, over the bodies that are free to turn.
-        """
-        u, scene = self.displacement(), self.scene
-        body = self.elements.bodies[0]
-        rigid, teeth = np.zeros_like(u), np.zeros_like(u)
-        if scene.cam is not None:
-            self.rigid.evaluate(u, CamPose(scene.angle, scene.cam), rigid, None, owned_only=True)
-        if scene.pins is not None:
-            self.pins.evaluate(u, CamPose(scene.angle, inset=scene.pins), rigid, None, owned_only=True)
-        if scene.teeth is not None:
-            teeth = self.teeth.owned_forces(u, scene.teeth)
-        spline = np.zeros(len(u), dtype=bool)
-        spline[body.local[body.local >= 0]] = True
-        x = self.positions() + u
-
-        def moment(residual: np.ndarray) -> float:
-            r = residual[spline]
-            local = -float(np.sum(x[spline, 0] * r[:, 1] - x[spline, 1] * r[:, 0]))
-            return self.partition.comm.allreduce(local, op=MPI.SUM) / self.share
-
-        held = self.holding.reactions(self.multipliers(self.x))
-        output = scene.torque if scene.control == "torque" else float(held[-1])
-        wg, teeth_torque = moment(rigid), moment(teeth)
-        if len(held) == 1:
-            balance = abs(wg + teeth_torque + output)
-        else:
-            balance = max(abs(wg + teeth_torque + float(held[0])), abs(output - teeth_torque))
-        return {"wg": wg, "teeth": teeth_torque, "output": output, "balance": balance}
 
 
 REASONS = {value: name for name, value in vars(PETSc.SNES.ConvergedReason).items() if isinstance(value, int)}

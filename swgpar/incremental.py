@@ -24,6 +24,7 @@ from swgpar.micro_geometry import WaveGeneratorSurface
 from swgpar.partition import BodyLayout, LocalNodes, Partition
 from swgpar.steps import Scene, start
 from swgpar.stress import body_fields, maxima
+from swgpar.torques import torques
 
 LOADED = 3
 """Step from which states repeat with the period."""
@@ -159,18 +160,18 @@ def predict(model: DriveModel, x: PETSc.Vec, turn: float, slip: float = 0.0) -> 
         wanted = np.arange(first - whole - 2, end - whole + 2)
         field = read_field(partition, body, wanted, x)
         angle = layout.turn(layout.first_tooth + wanted)
-        local = _turned(field, -angle)
+        local = turned(field, -angle)
         count = end - first
         pattern = sum(w * local[k : k + count] for k, w in enumerate(weights))
         angle = layout.turn(layout.first_tooth + np.arange(first, end))
         coords = layout.mesh.coords[None]
-        values = _turned(coords + pattern, angle + drift) - _turned(np.repeat(coords, count, axis=0), angle)
+        values = turned(coords + pattern, angle + drift) - turned(np.repeat(coords, count, axis=0), angle)
         new.append((body, np.arange(first, end), values))
     for body, sectors, values in new:
         write_field(partition, body, sectors, values, x)
 
 
-def _turned(vectors: np.ndarray, angle: np.ndarray) -> np.ndarray:
+def turned(vectors: np.ndarray, angle: np.ndarray) -> np.ndarray:
     """Vectors (n, m, 3) of n sectors turned about z by angles (n,)."""
     c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
     return np.stack(
@@ -188,6 +189,12 @@ class Runner:
         self.iterations = 0
         self.residual = 0.0
         self.visited: list[tuple[float, PETSc.Vec]] = []
+
+    def reset(self) -> None:
+        """Go back to the undeformed drive."""
+        self.scene, self.visited = start(self.design), []
+        self.equilibrium.x.set(0.0)
+        self.equilibrium.resume({})
 
     def advance(self, target: Scene) -> None:
         """Solve up to `target`, halving the way when Newton's iteration fails; raises ConvergenceError at the end."""
@@ -235,8 +242,7 @@ class Runner:
 
     def _turn_to(self, angle: float) -> None:
         """Predict the state at a cam angle (rad) from the visited one that is nearest to it in the period."""
-        pitch = 2.0 * np.pi / self.model.partition.layouts[self.model.fixed_body].mesh.n_sectors
-        turns = [(angle - visited) / pitch for visited, _ in self.visited]
+        turns = [(angle - visited) / self.design.pitch for visited, _ in self.visited]
         apart = [round(abs(turn - np.rint(turn)), 6) for turn in turns]
         nearest = min(reversed(range(len(turns))), key=apart.__getitem__, default=None)
         origin = self.scene.angle
@@ -253,7 +259,7 @@ class Runner:
     def row(self) -> dict[str, float]:
         """The history row of the present state, without stresses and times."""
         equilibrium, copies = self.equilibrium, self.model.copies
-        torque = equilibrium.torques()
+        torque = torques(equilibrium)
         pairs = (
             self.model.comm.allreduce(equilibrium.teeth.touching_pairs(), op=MPI.SUM)
             if self.scene.teeth is not None

@@ -41,8 +41,10 @@ class SearchedStep:
             return
 
         def slope(t: float) -> float:
-            self.x.copy(self.trial)
-            self.trial.axpy(-t, step)
+            # rounded as SNES does it with the scaled step, so that it meets the same point
+            step.copy(self.trial)
+            self.trial.scale(t)
+            self.trial.aypx(-1.0, self.x)
             collapsed = self.residual(self.trial, self.force)
             value = self.force.dot(step) / start
             return value if np.isfinite(value) and not collapsed else -1e30

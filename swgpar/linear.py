@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from petsc4py import PETSc
 
+from swgpar.assembly import create_vector
+from swgpar.kept_factor import KeptFactor
 from swgpar.partition import Partition
 
 MUMPS_DEFAULTS = {
@@ -41,10 +43,18 @@ class Bordered:
     The last border is the motion of the output. Where it is not prescribed but loaded, its Newton step is the one at
     which its l vanishes, and it is bounded: a drive whose teeth have parted floats, and there the step has no end.
     All other unknowns follow the bounded motion.
+
+    keep : use a factor for later tangents too, see `KeptFactor`
     """
 
     def __init__(
-        self, partition: Partition, linear: str, positions: np.ndarray, options_prefix: str, symmetric: bool = True
+        self,
+        partition: Partition,
+        linear: str,
+        positions: np.ndarray,
+        options_prefix: str,
+        symmetric: bool = True,
+        keep: bool = False,
     ) -> None:
         self.partition = partition
         self.ksp = PETSc.KSP().create(comm=partition.comm)
@@ -73,6 +83,7 @@ class Bordered:
         self.border: list[PETSc.Vec] = []
         self.rows: list[int] = []
         self.columns: list[PETSc.Vec] = []
+        self.kept = KeptFactor(create_vector(partition), self.multiply, self.solve_with_factor) if keep else None
 
     def _solve(self, right: PETSc.Vec, x: PETSc.Vec) -> None:
         """x = K'^-1 right; in the plane the matrix has no z, and x gets a zero there."""
@@ -100,8 +111,23 @@ class Bordered:
         bound : of C x in the last row when that is loaded instead of prescribed
         """
         self.matrix, self.grounding, self.border, self.rows, self.bound = matrix, grounding, border, rows, bound
+        self.free = 0 if bound is None else 1
 
     def setUp(self, pc: PETSc.PC) -> None:
+        """Factorise the matrix of the last `set_system`, unless the kept factor still serves."""
+        if self.kept is None or not self.kept.serves(self._layout()):
+            self.factorise()
+
+    def _layout(self) -> tuple[int, ...]:
+        return len(self.grounding), len(self.border), self.free
+
+    def renew(self) -> None:
+        """Take no kept factor for the next system, which has little in common with the last one."""
+        if self.kept is not None:
+            self.kept.stale = True
+
+    def factorise(self) -> None:
+        """Factor, or set up, for the present matrix."""
         matrix = self.matrix
         if self.modes is not None:  # GAMG has no triangular storage
             if self.unblocked is not None:
@@ -110,7 +136,9 @@ class Bordered:
             self.unblocked.setNearNullSpace(self.modes)
             matrix = self.unblocked
         self.ksp.setOperators(matrix)
+        self.ksp.getPC().setReusePreconditioner(False)
         self.ksp.setUp()
+        self.ksp.getPC().setReusePreconditioner(self.kept is not None)  # the matrix changes below a kept factor
         sides = self.grounding + self.border
         if len(self.columns) != len(sides):
             self.columns = [vector.duplicate() for vector in sides]
@@ -130,6 +158,8 @@ class Bordered:
         system[nb:, :nb] = small[nb:, :nb]
         system[nb:, nb:] = -small[nb:, nb:]
         self.system = system
+        if self.kept is not None:
+            self.kept.renewed(self._layout())
 
     def multipliers(self, vector: PETSc.Vec) -> np.ndarray:
         """The multiplier entries of a full-length vector, on every rank."""
@@ -139,23 +169,54 @@ class Bordered:
         return values
 
     def apply(self, pc: PETSc.PC, right: PETSc.Vec, x: PETSc.Vec) -> None:
+        if self.kept is not None and not self.kept.fresh:
+            # the bound needs the answer to a unit of load, which GMRES does not give
+            if self.kept.solve(right, x) and (self.bound is None or abs(self.border[-1].dot(x)) < self.bound):
+                return
+            self.factorise()
+        self.solve_with_factor(right, x, self.bound)
+
+    def multiply(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
+        """y = [K' - B B^T, C^T; C, 0] x of the last `set_system`; multipliers that it does not use stand alone."""
+        n, last = self.partition.n_multipliers, self.partition.comm.rank == self.partition.comm.size - 1
+        used = self.rows[: len(self.border) - self.free]
+        multipliers = self.multipliers(x)
+        moved = x.copy()
+        if last:
+            moved.array[-n:] = 0.0
+        self.matrix.mult(moved, y)
+        for vector in self.grounding:
+            y.axpy(-vector.dot(moved), vector)
+        tail = multipliers.copy()
+        for vector, row in zip(self.border, used):
+            y.axpy(multipliers[row], vector)
+            tail[row] = vector.dot(moved)
+        if last:
+            y.array[-n:] = tail
+        moved.destroy()
+
+    def solve_with_factor(self, right: PETSc.Vec, x: PETSc.Vec, bound: float | None = None) -> None:
+        """Solution of the system of the factor; without `bound` the output moves freely where it is loaded."""
         self._solve(right, x)
         if self.failed or self.ksp.getConvergedReason() < 0:
             x.set(np.nan)  # the residual at such a step is not finite: the increment is cut back
             return
         nb = len(self.grounding)
-        load = np.array([v.dot(x) for v in self.grounding + self.border])
-        prescribed = len(load) if self.bound is None else len(load) - 1
+        prescribed = len(self.columns) - self.free
         used = self.rows[: prescribed - nb]
+        sides = (self.grounding + self.border)[: prescribed if bound is None else None]
+        load = np.array([v.dot(x) for v in sides])
         load[nb:] *= -1.0
         load[nb:prescribed] += self.multipliers(right)[used]
-        answer = np.linalg.solve(self.system, load)
-        if self.bound is not None:
+        if bound is None:
+            answer = np.linalg.solve(self.system[:prescribed, :prescribed], load)
+        else:
+            answer = np.linalg.solve(self.system, load)
             unit = np.linalg.solve(self.system, np.eye(len(load))[-1])
             force, stiffness = answer[-1], -unit[-1]
-            motion = force / stiffness if stiffness * self.bound > abs(force) else np.sign(force) * self.bound
+            motion = force / stiffness if stiffness * bound > abs(force) else np.sign(force) * bound
             answer += motion * unit
-        for k, column in enumerate(self.columns):
-            x.axpy(answer[k] if k < nb else -answer[k], column)
+        for k, value in enumerate(answer):
+            x.axpy(value if k < nb else -value, self.columns[k])
         if self.partition.comm.rank == self.partition.comm.size - 1:
             x.array[-self.partition.n_multipliers :][used] = answer[nb:prescribed]

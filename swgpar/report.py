@@ -28,7 +28,8 @@ def make_figures(out: Path) -> list[Path]:
     summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
     made = [_stress(rows, figures), _torque(rows, summary, figures)]
     if (out / "fields.h5").exists():
-        made += [_deformed(out, len(rows), summary, figures), _pattern(out, len(rows), summary, figures)]
+        last = summary.get("increments", len(rows))
+        made += [_deformed(out, last, summary, figures), _pattern(out, last, summary, figures)]
     return made
 
 
@@ -132,12 +133,15 @@ def _deformed(out: Path, index: int, summary: dict, figures: Path) -> Path:
             grid = pyvista.UnstructuredGrid(cells, kinds, (mesh["points"] + magnification * u) * turn)
             grid.point_data["von Mises stress (MPa)"] = vm
             grids.append(grid.extract_surface(algorithm="dataset_surface"))
+    look = {"cmap": "turbo", "clim": (0.0, limit), "smooth_shading": False}
+    beside = {"title": "von Mises, MPa", "vertical": True, "position_x": 0.9, "position_y": 0.25, "height": 0.5}
     for grid in grids:
-        plotter.add_mesh(grid, scalars="von Mises stress (MPa)", cmap="turbo", clim=(0.0, limit), smooth_shading=False)
+        plotter.add_mesh(grid, scalars="von Mises stress (MPa)", scalar_bar_args=beside, **look)
     plotter.add_text("true to scale" if plane else f"displacements x {magnification:g}", font_size=12)
     if plane:
         plotter.enable_parallel_projection()
         plotter.view_xy()
+        plotter.camera.tight(padding=0.03, adjust_render_window=False)
     else:
         plotter.camera_position = [(60.0, 60.0, -170.0), (0.0, 0.0, 10.0), (0.0, 1.0, 0.0)]
         plotter.reset_camera()

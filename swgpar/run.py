@@ -7,7 +7,7 @@ import platform
 import resource
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -21,10 +21,13 @@ from swgpar.assembly import write_field
 from swgpar.contact import friction
 from swgpar.contact.pressure import nodal_pressure
 from swgpar.design import DriveDesign
-from swgpar.errors import InputError, SwgparError
+from swgpar.error_estimate import estimate
+from swgpar.errors import ConvergenceError, InputError, SwgparError
 from swgpar.incremental import DriveModel, Runner, stresses
 from swgpar.log import IncrementProgress, logger
 from swgpar.meshing import MeshRecipe, require_sections
+from swgpar.multilevel import CoarserLevel, from_loaded, levels, start_loaded
+from swgpar.period import continued, of_period
 from swgpar.results import checkpoint, history
 from swgpar.results.atomic import agreed, to_json, write_from_root
 from swgpar.results.fields import FieldWriter
@@ -49,8 +52,9 @@ class RunSummary:
 
 
 def fingerprint(design: DriveDesign, recipe: MeshRecipe) -> str:
-    """Identity of what is computed, for restarts: everything but the output, the rotation and the linear solver."""
-    content = design.model_dump(exclude={"output": True, "steps": {"rotation"}, "solver": {"linear"}})
+    """Identity of what is computed, for restarts: all but the output, the rotation and how systems are solved."""
+    how = {"linear", "keep_factor", "far_teeth"}
+    content = design.model_dump(exclude={"output": True, "steps": {"rotation"}, "solver": how})
     return hashlib.sha256(to_json({"design": content, "recipe": recipe.model_dump()})).hexdigest()
 
 
@@ -63,6 +67,7 @@ class Recorder:
         self.rows: list[dict[str, Any]] = []
         self.done = 0
         self.names: dict[str, dict[str, int]] = {}
+        self.coarser: CoarserLevel | None = None
         self.writer = FieldWriter(out, self.comm) if model.design.output.fields else None
 
     def mesh(self) -> None:
@@ -122,6 +127,7 @@ class Recorder:
                 "multipliers": equilibrium.multipliers(equilibrium.x).tolist(),
                 "wall_s": elapsed,
                 "phases_s": model.phases.slowest(self.comm),
+                "coarser": self.coarser and asdict(self.coarser),
             }
             checkpoint.write_checkpoint(self.out, self.comm, blocks, state)
 
@@ -130,10 +136,11 @@ class Recorder:
         there = [(i + 1, row["wg_angle_deg"]) for i, row in enumerate(self.rows) if self.writer.has(i + 1)]
         self.writer.write_index(self.comm.bcast(there), self.names)
 
-    def resume(self, runner: Runner, items: list[Scene]) -> float:
-        """Bring back the state of the checkpoint, on any number of ranks; returns the wall seconds spent on it.
+    def resume(self, runner: Runner, items: list[Scene]) -> tuple[list[Scene], float]:
+        """Bring back the state of the checkpoint, on any number of ranks.
 
-        items : the sequence that is to be continued
+        items : the sequence that is to be continued. Returns those of it that the run consists of, without the first
+        steps where it started on coarser meshes, and the wall seconds spent on it.
         """
         model = self.model
         ranges = {
@@ -145,9 +152,11 @@ class Recorder:
         if state.get("identity") != self.identity:
             raise InputError(
                 f"--restart: {path} belongs to another design, recipe or solver setting; allowed are the same "
-                "ones, only steps.rotation, solver.linear and the output may differ"
+                "ones, only steps.rotation, the output, solver.linear, keep_factor and far_teeth may differ"
             )
         last = Scene(**state["scene"])
+        if state["coarser"]:
+            items = from_loaded(items)
         if state["done"] > len(items) or items[state["done"] - 1] != last:
             raise InputError(
                 f"--restart: steps.rotation = {self.model.design.steps.rotation:g} does not continue {path}, which "
@@ -166,30 +175,49 @@ class Recorder:
             rows, _ = checkpoint.read_checkpoint(path, self.comm, dict.fromkeys(friction.ROWS, every))
             model.equilibrium.resume(friction.from_rows(rows))
         self.rows, self.done, self.names = state["rows"], state["done"], state["names"]
+        self.coarser = state["coarser"] and CoarserLevel(**state["coarser"])
         runner.scene = last
         for name, value in state["phases_s"].items():
             model.phases.seconds[name] += value
         if self.writer is not None:
             self._index()
         write_from_root(self.comm, self.out / history.NAME, history.format_rows(self.rows))
-        return float(state["wall_s"])
+        return items, float(state["wall_s"])
 
 
-def summarise(model: DriveModel, rows: list[dict[str, Any]], recipe_name: str, seconds: float) -> dict[str, Any]:
-    """Content of summary.json."""
+def mesh_error(rows: list[dict[str, Any]], elements: int, coarser: CoarserLevel, dimensions: int) -> dict[str, float]:
+    """Estimated errors of the loaded state's largest stresses by the mesh, MPa: from this mesh and the next coarser."""
+    found = {
+        name: estimate(value, rows[0][name], coarser.elements, elements, dimensions)
+        for name, value in coarser.stresses.items()
+    }
+    return {name: value.error for name, value in found.items() if value is not None}
+
+
+def summarise(
+    model: DriveModel, rows: list[dict[str, Any]], coarser: CoarserLevel | None, recipe_name: str, seconds: float
+) -> dict[str, Any]:
+    """Content of summary.json.
+
+    rows : of the increments that were computed;  coarser : level that the run started from
+    """
     comm, design = model.comm, model.design
     turning = [r for r in rows if int(r["step"]) >= FIRST_ROTATION]
+    if design.steps.samples:
+        turning = of_period(design, turning)
     means = {k: float(np.mean([r[k] for r in turning])) for k in MEANS} if turning else {}
     counts = model.counts()
     memory = comm.allgather(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0)
+    elements = sum(b["elements_whole"] for b in counts.values())
     expected = 1000.0 * design.load.torque / abs(design.ratio)
     return {
         "recipe": recipe_name,
         "bodies": counts,
         "nodes": sum(b["nodes_whole"] for b in counts.values()),
-        "elements": sum(b["elements_whole"] for b in counts.values()),
+        "elements": elements,
         "dofs": sum(b["dofs"] for b in counts.values()),
         "twofold_symmetry": model.copies == 2,
+        "increments": len(rows),
         "ranks": comm.size,
         "versions": {
             "swgpar": swgpar.__version__,
@@ -201,6 +229,7 @@ def summarise(model: DriveModel, rows: list[dict[str, Any]], recipe_name: str, s
         "phases_s": {k: round(v, 3) for k, v in model.phases.slowest(comm).items()},
         "peak_memory_MB_per_rank": [round(m, 1) for m in memory],
         "means": means,
+        "mesh_error": mesh_error(rows, elements, coarser, model.partition.dims) if coarser else None,
         "newton_iterations_mean": float(np.mean([r["newton_iterations"] for r in turning])) if turning else None,
         "balance_error_Nmm": max((r["torque_balance_Nmm"] for r in rows), default=0.0),
         "wg_torque_expected_Nmm": expected,
@@ -244,6 +273,19 @@ def run_drive(
     return result
 
 
+def _start_on_coarser(runner: Runner, recipe: MeshRecipe, items: list[Scene]) -> CoarserLevel | None:
+    """Reach the loaded state by way of coarser meshes; None where the design does without, or where that fails."""
+    recipes = levels(runner.design, recipe)
+    if not recipes:
+        return None
+    try:
+        return start_loaded(runner, recipes, items)
+    except (ConvergenceError, InputError) as error:
+        logger.info("no start on coarser meshes: %s", error)
+        runner.reset()
+        return None
+
+
 def _compute(
     model: DriveModel,
     recipe: MeshRecipe,
@@ -266,25 +308,33 @@ def _compute(
         comm.size,
     )
     recorder.mesh()
-    items = list(sequence(model.design))
-    before = 0.0
+    items, before = list(sequence(model.design)), 0.0
     if resumed:
-        before = recorder.resume(runner, items)
+        items, before = recorder.resume(runner, items)
         logger.info("restarted after increment %d", recorder.done)
     elif restart:
         logger.info("no increment was saved: starting from the beginning")
+    if not resumed:
+        recorder.coarser = _start_on_coarser(runner, recipe, items)
+        if recorder.coarser is not None:
+            items = from_loaded(items)
     with IncrementProgress(comm, len(items), done=recorder.done, terminal=on_increment is None) as progress:
         model.equilibrium.on_iteration = lambda scene, its, ratio: progress.newton(
             scene.name, np.degrees(scene.angle), its, ratio
         )
         for item in items[recorder.done :]:
             start = time.perf_counter()
-            runner.increment(item)
+            if item != runner.scene:  # a start on coarser meshes ends with the first one
+                runner.increment(item)
             seconds = time.perf_counter() - start
             recorder.record(runner, seconds, before + time.perf_counter() - begin)
             progress.increment(item.name, float(np.degrees(item.angle)), runner.iterations, runner.residual, seconds)
             if on_increment is not None:
                 on_increment()
-    summary = summarise(model, recorder.rows, recipe_name, before + time.perf_counter() - begin)
+    summary = summarise(model, recorder.rows, recorder.coarser, recipe_name, before + time.perf_counter() - begin)
+    rows = recorder.rows
+    if model.design.steps.samples and summary["means"]:
+        rows = continued(model.design, rows)
+        write_from_root(comm, out / history.NAME, history.format_rows(rows))
     write_from_root(comm, out / "summary.json", to_json(summary))
-    return RunSummary(recorder.rows, summary["means"], summary)
+    return RunSummary(rows, summary["means"], summary)

@@ -99,8 +99,17 @@ def sequence(design: DriveDesign) -> Iterator[Scene]:
             yield replace(loaded, torque=torque * i / n)
     else:
         yield loaded
-    whole = steps.rotation / steps.increment
-    count = int(np.ceil(round(whole, 9)))
-    for i in range(1, count + 1):
-        angle = np.radians(min(i * steps.increment, steps.rotation))
+    for i, angle in enumerate(angles(design), start=1):
         yield replace(loaded, step=3 + i, name="rotate", angle=angle, torque=torque, rotation=angle / design.ratio)
+
+
+def angles(design: DriveDesign) -> list[float]:
+    """Angles (rad) of the wave generator at the ends of the increments of its rotation that are computed.
+
+    With `steps.samples` those of one period; with friction of two, in the first of which it settles.
+    """
+    steps = design.steps
+    if steps.samples:
+        return [design.pitch * i / steps.samples for i in range(1, design.periods * steps.samples + 1)]
+    count = int(np.ceil(round(steps.rotation / steps.increment, 9)))
+    return [float(np.radians(min(i * steps.increment, steps.rotation))) for i in range(1, count + 1)]

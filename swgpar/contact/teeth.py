@@ -228,6 +228,12 @@ class ToothContact:
             self.moment = float(moment[self.pair_owned[faces.patch]].sum())
         return result
 
+    def picked_rings(self) -> np.ndarray:
+        """Sectors of the ring gear (n,) that the faces of the last `select` may meet."""
+        if self.all is None:
+            return np.zeros(0, dtype=np.int64)
+        return np.array([self.pairs[k].ring for k in np.unique(self.all.patch[self.pick])], dtype=np.int64)
+
     def select(self, u: np.ndarray, near: float, touch: float) -> np.ndarray:
         """Choose the faces within `near` (mm) of the master and return the blocks that may couple.
 

@@ -100,6 +100,7 @@ def _expand(study: Study) -> list[Job]:
                 for key, value in varied.items():
                     table = with_value(table, key, value)
                 design = make_design(table)
+                _check_steps(design, entry)
             except InputError as error:
                 refusal = str(error)
             cases.append(Case(name, varied, design, refusal, meshes, compared, entry))
@@ -111,6 +112,13 @@ def _expand(study: Study) -> list[Job]:
         for case in cases
         for place, mesh in enumerate(case.meshes)
     ]
+
+
+def _check_steps(design: DriveDesign, case: CaseSection) -> None:
+    """Refuse published values of steps that a start on coarser meshes leaves out."""
+    for name in case.published:
+        if design.steps.start_levels and name.startswith(("step1.", "step2.")):
+            raise InputError(f"steps.start_levels = {design.steps.start_levels} leaves out {name}: allowed 0 with it")
 
 
 def combinations(vary: dict[str, list[Any]], mode: str) -> list[tuple[dict[str, Any], str]]:

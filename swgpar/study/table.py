@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from swgpar.error_estimate import Estimate, estimate
 from swgpar.study.cases import Case, Job
 from swgpar.study.job import Outcome
 from swgpar.study.measured import measured, unit
@@ -16,18 +17,7 @@ from swgpar.study.measured import measured, unit
 MEANS = ("fs_s1", "fs_s3", "fs_vm", "rg_vm", "wg_torque_Nmm")
 """Means over the rotation that the tables show."""
 
-ORDER = 2
-"""Order in the element size that the error estimate assumes."""
-
 Result = tuple[Job, Outcome]
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """Extrapolation from two meshes. converged : value without discretisation error;  error : its distance."""
-
-    converged: float
-    error: float
 
 
 @dataclass(frozen=True)
@@ -48,15 +38,6 @@ class Comparison:
     tolerance: float | None
     verdict: str
     estimate: Estimate | None
-
-
-def estimate(coarse: float, fine: float, n_coarse: int, n_fine: int, dimensions: int) -> Estimate | None:
-    """Richardson's extrapolation from element counts, h ~ n^(-1/dimensions); None unless the second is finer."""
-    if n_fine <= n_coarse:
-        return None
-    ratio = (n_fine / n_coarse) ** (1.0 / dimensions)
-    converged = fine + (fine - coarse) / (ratio**ORDER - 1.0)
-    return Estimate(converged, abs(converged - fine))
 
 
 def by_case(results: Sequence[Result]) -> list[tuple[Case, list[Outcome]]]:

@@ -123,3 +123,21 @@ def test_unwritable_folder(place: str) -> None:
     done = execute(run_command(Path(place)))
     assert done.returncode == 4
     assert place in done.stderr and "Traceback" not in done.stderr
+
+
+def test_start_on_a_coarser_mesh_and_one_period(tmp_path: Path) -> None:
+    """History from step 3 on and over the whole rotation, an error of the mesh, figures; a restart goes on in it."""
+    out = tmp_path / "run"
+    overrides = ["steps.start_levels=1", "steps.samples=2", "output.fields=true", "output.figures=true"]
+    succeed([*run_command(out), *overrides, "steps.rotation=9"])
+    rows = history.read_history(out / "history.csv")
+    assert [row["step"] for row in rows] == ["3", "4", "5"]
+    assert len(list((out / "figures").glob("*.png"))) == 4
+    summary = json.loads((out / "summary.json").read_text())
+    assert summary["increments"] == 3 and summary["phases_s"]["start"] > 0.0
+    assert 0.0 < summary["mesh_error"]["fs_s1"] < rows[0]["fs_s1"]
+    succeed([*run_command(out), *overrides, "steps.rotation=20", "--restart"])
+    longer = history.read_history(out / "history.csv")
+    assert longer[:3] == rows and [row["step"] for row in longer] == ["3", "4", "5", "6", "7"]
+    assert longer[-1]["wg_angle_deg"] == pytest.approx(2.0 * 360.0 / 42.0)
+    assert longer[-1]["fs_s1"] == rows[-1]["fs_s1"]

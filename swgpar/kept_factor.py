@@ -1,0 +1,91 @@
+"""A factor that serves later systems too: GMRES on the present one, preconditioned by the kept factor.
+
+In the cup drive one factorisation costs as much as some eighty solves with it, and from one Newton iteration to the
+next, or one increment to the next, the tangent changes by the rotation of the elements and by some contact points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from petsc4py import PETSc
+
+RTOL = 1e-4
+"""Of GMRES: a Newton step that exact loses nothing but its last, quadratic, iteration."""
+
+ENOUGH, LONGEST = 20, 40
+"""Iterations after which the factor is renewed before the next system, and at once."""
+
+Operation = Callable[[PETSc.Vec, PETSc.Vec], None]
+"""Computes its second argument from the first."""
+
+
+class KeptFactor:
+    """Whether a factor is kept, and GMRES with it.
+
+    Parameters
+    ----------
+    like : vector of the system
+    multiply, solve : with the present system; with the factor
+
+    `fresh` says that the factor is that of the present system, `stale` that it is to be renewed before its next use;
+    `iterations` are those of all solves.
+    """
+
+    def __init__(self, like: PETSc.Vec, multiply: Operation, solve: Operation) -> None:
+        self.fresh, self.stale = False, True
+        self.layout: tuple[int, ...] = ()
+        self.iterations: list[int] = []
+        operator = PETSc.Mat().createPython([like.getSizes()] * 2, _Multiply(multiply), comm=like.comm)
+        operator.setUp()
+        self.ksp = PETSc.KSP().create(comm=like.comm)
+        self.ksp.setOptionsPrefix("kept_")
+        self.ksp.setOperators(operator)
+        self.ksp.setType(PETSc.KSP.Type.GMRES)
+        self.ksp.setPCSide(PETSc.PC.Side.RIGHT)
+        self.ksp.setTolerances(rtol=RTOL, max_it=LONGEST)
+        self.ksp.setGMRESRestart(LONGEST)
+        pc = self.ksp.getPC()
+        pc.setType(PETSc.PC.Type.PYTHON)
+        pc.setPythonContext(_Solve(solve))
+        self.ksp.setFromOptions()
+
+    def destroy(self) -> None:
+        """Release GMRES, which refers to the system; collective."""
+        self.ksp.destroy()
+
+    def renewed(self, layout: tuple[int, ...]) -> None:
+        """The factor is that of the present system now. layout : what a system must share to be served"""
+        self.fresh, self.stale, self.layout = True, False, layout
+
+    def serves(self, layout: tuple[int, ...]) -> bool:
+        """Whether the factor is to be used with a new system."""
+        self.fresh = False
+        return not self.stale and self.layout == layout
+
+    def solve(self, right: PETSc.Vec, x: PETSc.Vec) -> bool:
+        """Solve the present system by GMRES; whether that converged."""
+        self.ksp.solve(right, x)
+        self.iterations.append(self.ksp.getIterationNumber())
+        self.stale = self.iterations[-1] > ENOUGH
+        return self.ksp.getConvergedReason() > 0
+
+
+class _Multiply:
+    """PETSc `Mat`."""
+
+    def __init__(self, multiply: Operation) -> None:
+        self.multiply = multiply
+
+    def mult(self, mat: PETSc.Mat, x: PETSc.Vec, y: PETSc.Vec) -> None:
+        self.multiply(x, y)
+
+
+class _Solve:
+    """PETSc `PC`."""
+
+    def __init__(self, solve: Operation) -> None:
+        self.solve = solve
+
+    def apply(self, pc: PETSc.PC, right: PETSc.Vec, x: PETSc.Vec) -> None:
+        self.solve(right, x)

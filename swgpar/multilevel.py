@@ -1,0 +1,152 @@
+"""Start on coarser meshes: pins, engagement and torque there, the loaded state interpolated onto the finer mesh.
+
+Most Newton iterations of a start find out which points touch. On a mesh with half of the elements in every direction
+they cost an eighth and less, and its loaded state is so close that a few iterations remain. Without friction the loaded
+state does not depend on the way to it, so that the result is the same to the solver's tolerance.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from petsc4py import PETSc
+from scipy.sparse import csr_matrix
+from scipy.spatial import Delaunay, cKDTree
+
+from swgpar.assembly import read_field, write_field
+from swgpar.design import DriveDesign
+from swgpar.errors import SwgparError
+from swgpar.incremental import LOADED, DriveModel, Runner, stresses, turned
+from swgpar.log import logger
+from swgpar.meshing import MeshRecipe
+from swgpar.meshing.sector import SectorMesh
+from swgpar.steps import Scene
+
+SMALLEST = {"tip": 2, "root": 2}
+"""Counts that a recipe may not go below; all others reach 1, along the face width 2."""
+
+
+def coarser(recipe: MeshRecipe) -> MeshRecipe:
+    """The recipe with half of every count, rounded up."""
+
+    def halve(section: dict) -> dict:
+        return {
+            name: max(SMALLEST.get(name, 1), -(-value // 2)) if isinstance(value, int) else value
+            for name, value in section.items()
+        }
+
+    content = {name: halve(section) for name, section in recipe.model_dump(exclude_none=True).items()}
+    if "face_width" in content:
+        content["face_width"]["elements"] = max(2, content["face_width"]["elements"])
+    return MeshRecipe.model_validate(content)
+
+
+def interpolation(coarse: SectorMesh, fine: SectorMesh) -> csr_matrix:
+    """Matrix (n_fine, n_coarse) that takes nodal values of the coarse sector to the nodes of the fine one.
+
+    Linear in the tetrahedra (triangles in the plane) between the coarse nodes; the nearest value outside of them.
+    """
+    plane = coarse.tied is not None
+    nodes = np.unique(coarse.tied) if plane else np.arange(len(coarse.coords))
+    place, wanted = coarse.coords[nodes], fine.coords
+    if plane:
+        place, wanted = place[:, :2], wanted[:, :2]
+    mesh = Delaunay(place)
+    cell = mesh.find_simplex(wanted, tol=1e-9)
+    inside, dims = cell >= 0, place.shape[1]
+    transform = mesh.transform[cell[inside]]
+    first = np.einsum("nij,nj->ni", transform[:, :dims], wanted[inside] - transform[:, dims])
+    weight = np.column_stack([first, 1.0 - first.sum(axis=1)])
+    row = np.repeat(np.flatnonzero(inside), dims + 1)
+    column = mesh.simplices[cell[inside]].ravel()
+    outside = np.flatnonzero(~inside)
+    _, nearest = cKDTree(place).query(wanted[outside])
+    entries = np.concatenate([weight.ravel(), np.ones(len(outside))])
+    where = np.concatenate([row, outside]), nodes[np.concatenate([column, nearest])]
+    return csr_matrix((entries, where), shape=(len(wanted), len(coarse.coords)))
+
+
+def transfer(coarse: DriveModel, x: PETSc.Vec, fine: DriveModel, y: PETSc.Vec) -> None:
+    """Set y of the fine model to the state x of the coarse one; both on the same ranks, sector by sector."""
+    for body, layout in enumerate(fine.partition.layouts):
+        first, end = fine.partition.owned(body)
+        sectors = np.arange(first, end)
+        angle = layout.turn(layout.first_tooth + sectors)
+        local = turned(read_field(coarse.partition, body, sectors, x), -angle)
+        matrix = interpolation(coarse.partition.layouts[body].mesh, layout.mesh)
+        values = np.stack([matrix @ sector for sector in local]) if len(local) else np.zeros((0, matrix.shape[0], 3))
+        write_field(fine.partition, body, sectors, turned(values, angle), y)
+    if fine.comm.rank == fine.comm.size - 1:
+        n = fine.partition.n_multipliers
+        y.array[-n:] = x.array_r[-n:]
+
+
+def levels(design: DriveDesign, recipe: MeshRecipe) -> list[MeshRecipe]:
+    """Recipes of the coarser meshes of a start, the coarsest first.
+
+    None with friction, under which the loaded state depends on the way to it.
+    """
+    found: list[MeshRecipe] = []
+    while len(found) < design.steps.start_levels and not design.contact.friction:
+        simpler = coarser(found[0] if found else recipe)
+        if simpler == (found[0] if found else recipe):
+            break
+        found.insert(0, simpler)
+    return found
+
+
+def from_loaded(items: list[Scene]) -> list[Scene]:
+    """The increments from the loaded state on."""
+    loaded = max(k for k, item in enumerate(items) if item.step == LOADED)
+    return items[loaded:]
+
+
+@dataclass(frozen=True)
+class CoarserLevel:
+    """The loaded state on the next coarser mesh. elements : of the whole drive;  stresses : largest ones, MPa"""
+
+    elements: int
+    stresses: dict[str, float]
+
+
+def start_loaded(runner: Runner, recipes: list[MeshRecipe], items: list[Scene]) -> CoarserLevel:
+    """Bring `runner` to the loaded state by way of coarser meshes, the coarsest of `recipes` first.
+
+    items : all increments of the run. Raises ConvergenceError or InputError where a mesh does not allow it; `runner` is
+    then to be reset.
+    """
+    target, below = runner.model, None
+    with target.phases("start"):
+        try:
+            for recipe in recipes:
+                model = DriveModel(target.design, recipe, target.comm)
+                way = Runner(model)
+                todo = [item for item in items if item.step <= LOADED]
+                if below is not None:
+                    _continue(below, way, todo[-1])
+                    todo = todo[-1:]
+                below, iterations = model, []
+                for item in todo:
+                    way.increment(item)
+                    iterations.append(way.iterations)
+                count = sum(b["elements_whole"] for b in model.counts().values())
+                counted = " + ".join(map(str, iterations))
+                logger.info("loaded on a mesh of %d elements, Newton iterations %s", count, counted)
+            level = CoarserLevel(count, stresses(below)[0])
+            transfer(below, below.equilibrium.x, target, runner.equilibrium.x)
+        except SwgparError:
+            if below is not None:
+                below.destroy()
+            raise
+        below.destroy()
+        runner.scene = todo[-1]
+        runner.increment(todo[-1])
+    return level
+
+
+def _continue(below: DriveModel, runner: Runner, loaded: Scene) -> None:
+    """Take over the loaded state of a coarser model, and release that."""
+    transfer(below, below.equilibrium.x, runner.model, runner.equilibrium.x)
+    below.destroy()
+    runner.scene = loaded

@@ -1,0 +1,126 @@
+"""What spares work: coarser recipes, interpolation between meshes, history over one period."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from small_drive import PLANE
+
+from swgpar.design import load_design
+from swgpar.errors import InputError
+from swgpar.far_teeth import LEAST, MARGIN, FarTeeth
+from swgpar.meshing import build_sector_meshes, load_recipe
+from swgpar.multilevel import coarser, interpolation, levels
+from swgpar.period import continued
+from swgpar.steps import angles, sequence
+
+DATA = Path(__file__).parent.parent / "data"
+MESH = Path(__file__).parent.parent.parent / "mesh"
+
+
+def test_coarser_recipes_halve_down_to_the_smallest() -> None:
+    recipe = load_recipe(MESH / "full.toml")
+    once = coarser(recipe)
+    assert (once.flexible_spline.flank, once.flexible_spline.root, once.face_width.elements) == (9, 2, 5)
+    assert once.cup.end_ratio == recipe.cup.end_ratio
+    for _ in range(10):
+        recipe = coarser(recipe)
+    assert coarser(recipe) == recipe
+
+
+@pytest.mark.parametrize("overrides", [(), PLANE])
+@pytest.mark.parametrize("gear", ["flexible_spline", "ring_gear"])
+def test_linear_fields_survive_the_interpolation(gear: str, overrides: tuple[str, ...]) -> None:
+    """A field linear in the coordinates is exact inside the coarse mesh; outside it takes the nearest value.
+
+    Outside are nodes on curved surfaces: root and tip arcs, the cup's fillet, the circles of rim and bore.
+    """
+    design = load_design(DATA / "small.toml", overrides)
+    fine = build_sector_meshes(design, load_recipe(DATA / "tiny.toml"))[gear]
+    coarse = build_sector_meshes(design, coarser(load_recipe(DATA / "tiny.toml")))[gear]
+    matrix = interpolation(coarse, fine)
+    assert np.abs(matrix.sum(axis=1) - 1.0).max() < 1e-9
+    dims = 2 if overrides else 3
+    error = np.abs(matrix @ coarse.coords[:, :dims] - fine.coords[:, :dims]).max(axis=1)
+    interpolated = np.diff(matrix.indptr) > 1
+    assert interpolated.mean() > 0.4
+    assert error[interpolated].max() < 1e-9
+    # the nearest node of so coarse a mesh: less than half of its longest edge away
+    edges = coarse.coords[coarse.elements] - coarse.coords[np.roll(coarse.elements, 1, axis=1)]
+    assert error.max() < 0.5 * np.linalg.norm(edges, axis=2).max()
+
+
+def test_levels() -> None:
+    recipe = load_recipe(MESH / "full.toml")
+    design = load_design(DATA / "small.toml", ["steps.start_levels=2"])
+    assert levels(design, recipe) == [coarser(coarser(recipe)), coarser(recipe)]
+    assert levels(load_design(DATA / "small.toml"), recipe) == []
+    # with friction the loaded state depends on the way
+    assert levels(load_design(DATA / "small.toml", ["steps.start_levels=2", "contact.friction=0.1"]), recipe) == []
+
+
+def test_one_period_is_continued_over_the_rotation() -> None:
+    design = load_design(DATA / "small.toml", ["steps.samples=4", "steps.rotation=30"])
+    pitch = 360.0 / 42
+    assert np.degrees(angles(design)) == pytest.approx([pitch * k / 4 for k in (1, 2, 3, 4)])
+    assert len(list(sequence(design))) == 7
+    rows = [
+        {
+            "step": str(4 + k),
+            "wg_angle_deg": np.degrees(a),
+            "output_angle_deg": 1.0 - np.degrees(a) / 20.0,
+            "fs_s1": 100.0 + k,
+            "newton_iterations": 4,
+            "wall_s": 1.0,
+        }
+        for k, a in enumerate(angles(design))
+    ]
+    history = continued(design, rows)
+    assert history[:4] == rows
+    assert len(history) == 14 and history[-1]["wg_angle_deg"] == pytest.approx(14 * pitch / 4)
+    assert [row["fs_s1"] for row in history] == [100.0 + k % 4 for k in range(14)]
+    assert [row["step"] for row in history] == [str(4 + k) for k in range(14)]
+    # the output follows the line that the rows lie on
+    expected = [1.0 - row["wg_angle_deg"] / 20.0 for row in history]
+    assert [row["output_angle_deg"] for row in history] == pytest.approx(expected)
+    assert sum(row["newton_iterations"] for row in history) == 16
+
+
+def test_with_friction_a_period_settles_first() -> None:
+    design = load_design(DATA / "small.toml", ["steps.samples=4", "steps.rotation=30", "contact.friction=0.1"])
+    assert len(angles(design)) == 8
+    with pytest.raises(InputError, match="steps.rotation = 10 is out of range: allowed 17.1429 deg"):
+        load_design(DATA / "small.toml", ["steps.samples=4", "steps.rotation=10", "contact.friction=0.1"])
+
+
+def test_less_than_a_period_is_refused() -> None:
+    with pytest.raises(InputError, match="steps.rotation = 6 is out of range: allowed 8.571"):
+        load_design(DATA / "small.toml", ["steps.samples=4"])
+
+
+class _Elements:
+    """Counts how often it was laid out anew."""
+
+    def __init__(self, count: int) -> None:
+        ring = type("Body", (), {"sectors": np.arange(-1, count + 1)})()
+        self.bodies, self.idle, self.count = [None, ring], np.zeros(0, dtype=int), 0
+
+    def bind(self, local: None) -> None:
+        self.count += 1
+
+
+def test_far_teeth_follow_the_near_ones_with_hysteresis() -> None:
+    far, elements = FarTeeth(61), _Elements(61)
+
+    def near(*sectors: int) -> bool:
+        return far.update(np.array(sectors, dtype=np.int64), elements, None)
+
+    assert near(0, 1, 60)
+    assert set(np.flatnonzero(far.modelled)) == {k % 61 for k in range(60 - MARGIN, 62 + MARGIN + 1)}
+    assert not near(0, 1, 2)  # still with the least margin inside
+    assert near(2 + MARGIN - LEAST)
+    assert elements.bodies[1].modelled.sum() == pytest.approx(far.modelled.sum(), abs=2)
+    assert near() and not far.modelled.any()  # before the teeth meet the ring gear is not there at all
+    assert elements.count == 3
