@@ -1,0 +1,89 @@
+"""Time with and without each reduction of the work, and what it changes: one run of `swgpar run` for every row.
+
+All runs start from the plain one, in which every reduction is switched off; the last row has all that apply.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+OFF = {
+    "solver.twofold_symmetry": "false",
+    "solver.far_teeth": "modelled",
+    "solver.keep_factor": "false",
+    "steps.start_levels": "0",
+    "steps.samples": "0",
+}
+ON = {
+    "twofold symmetry": {"solver.twofold_symmetry": "true"},
+    "far teeth left out": {"solver.far_teeth": "left_out"},
+    "factor kept": {"solver.keep_factor": "true"},
+    "start on a coarser mesh": {"steps.start_levels": "1"},
+    "one period": {"steps.samples": "{samples}"},
+}
+MEANS = ("fs_s1", "fs_s3", "fs_vm", "rg_vm", "wg_torque_Nmm")
+
+
+def run(arguments: argparse.Namespace, name: str, keys: dict[str, str]) -> dict[str, float | str]:
+    """One run; its row of the table."""
+    out = Path(arguments.out) / name.replace(" ", "_")
+    shutil.rmtree(out, ignore_errors=True)
+    overrides = [f"{k}={v.format(samples=arguments.samples)}" for k, v in {**OFF, **keys}.items()]
+    command = ["mpirun", "-n", str(arguments.ranks), sys.executable, "-m", "swgpar.cli", "run", arguments.design]
+    command += [
+        "--mesh",
+        arguments.mesh,
+        "--out",
+        str(out),
+        "--set",
+        *overrides,
+        "output.figures=false",
+        *arguments.set,
+    ]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
+    row: dict[str, float | str] = {"reduction": name, "seconds": round(summary["wall_s"], 1)}
+    row["increments"] = summary["increments"]
+    row["newton_mean"] = round(summary["newton_iterations_mean"], 2)
+    row["memory_MB"] = max(summary["peak_memory_MB_per_rank"])
+    return {**row, **{k: summary["means"][k] for k in MEANS}}
+
+
+def main() -> None:
+    options = argparse.ArgumentParser(description=__doc__)
+    options.add_argument("--design", default="drivers/cup_45deg.toml")
+    options.add_argument("--mesh", default="mesh/coarse.toml")
+    options.add_argument("--out", default="results/bench/reductions")
+    options.add_argument("--table", default="docs/benchmarks/reductions_cup.csv")
+    options.add_argument("--ranks", type=int, default=2)
+    options.add_argument("--samples", type=int, default=4, help="angles in a period")
+    options.add_argument("--set", nargs="+", default=[], help="further overrides, for all runs")
+    options.add_argument("--only", nargs="+", default=None, choices=[*ON, "all"], help="rows besides the plain one")
+    arguments = options.parse_args()
+    variants = {"none": {}, **ON, "all": {k: v for keys in ON.values() for k, v in keys.items()}}
+    rows: list[dict[str, float | str]] = []
+    for name, keys in variants.items():
+        if arguments.only is not None and name not in ("none", *arguments.only):
+            continue
+        rows.append(run(arguments, name, keys))
+        plain, row = rows[0], rows[-1]
+        row["speedup"] = round(plain["seconds"] / row["seconds"], 2)
+        for mean in MEANS:
+            row[f"change_{mean}"] = f"{row[mean] / plain[mean] - 1.0:+.1e}"
+        print({k: v for k, v in row.items() if k not in MEANS}, flush=True)
+        table = Path(arguments.table)
+        table.parent.mkdir(parents=True, exist_ok=True)
+        with table.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(rows)
+
+
+if __name__ == "__main__":
+    main()
