@@ -228,7 +228,7 @@ class Runner:
                 continue
             saved.copy(x)
             cuts += 1
-            if cuts > self.design.solver.max_cutbacks:
+            if cuts > self.design.solver.max_cutbacks or origin == target:  # nothing to halve
                 raise ConvergenceError(
                     f"step {target.step} ({target.name}) did not converge at a wave-generator angle of "
                     f"{np.degrees(scene.angle):.4g} degrees after {self.design.solver.max_cutbacks} cut-backs: "

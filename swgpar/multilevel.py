@@ -45,26 +45,45 @@ def coarser(recipe: MeshRecipe) -> MeshRecipe:
 def interpolation(coarse: SectorMesh, fine: SectorMesh) -> csr_matrix:
     """Matrix (n_fine, n_coarse) that takes nodal values of the coarse sector to the nodes of the fine one.
 
-    Linear in the tetrahedra (triangles in the plane) between the coarse nodes; the nearest value outside of them.
+    Linear in the tetrahedra (triangles in the plane) between the coarse nodes, in cylindrical coordinates, in which
+    rim and cup are flat. Nodes outside are extrapolated, from the cell beside them that they are least outside of.
     """
     plane = coarse.tied is not None
     nodes = np.unique(coarse.tied) if plane else np.arange(len(coarse.coords))
-    place, wanted = coarse.coords[nodes], fine.coords
-    if plane:
-        place, wanted = place[:, :2], wanted[:, :2]
-    mesh = Delaunay(place)
+    scale = float(np.hypot(*coarse.coords[:, :2].T).max())
+    place, wanted = _unrolled(coarse.coords[nodes], scale, plane), _unrolled(fine.coords, scale, plane)
+    mesh, dims = Delaunay(place), place.shape[1]
     cell = mesh.find_simplex(wanted, tol=1e-9)
-    inside, dims = cell >= 0, place.shape[1]
-    transform = mesh.transform[cell[inside]]
-    first = np.einsum("nij,nj->ni", transform[:, :dims], wanted[inside] - transform[:, dims])
-    weight = np.column_stack([first, 1.0 - first.sum(axis=1)])
-    row = np.repeat(np.flatnonzero(inside), dims + 1)
-    column = mesh.simplices[cell[inside]].ravel()
-    outside = np.flatnonzero(~inside)
-    _, nearest = cKDTree(place).query(wanted[outside])
-    entries = np.concatenate([weight.ravel(), np.ones(len(outside))])
-    where = np.concatenate([row, outside]), nodes[np.concatenate([column, nearest])]
-    return csr_matrix((entries, where), shape=(len(wanted), len(coarse.coords)))
+    volume = np.abs(np.linalg.det(place[mesh.simplices[:, 1:]] - place[mesh.simplices[:, :1]]))
+    sound = volume > 1e-3 * np.median(volume)
+    at_node = [[] for _ in place]
+    for k in np.flatnonzero(sound):
+        for node in mesh.simplices[k]:
+            at_node[node].append(k)
+    outside = np.flatnonzero((cell < 0) | ~sound[cell])
+    _, nearest = cKDTree(place).query(wanted[outside], k=4)
+    for k, around in zip(outside, nearest):
+        choice = np.unique(np.concatenate([at_node[node] for node in around]).astype(np.int64))
+        weight = _barycentric(mesh, choice, np.repeat(wanted[k : k + 1], len(choice), axis=0))
+        cell[k] = choice[weight.min(axis=1).argmax()]
+    weight = _barycentric(mesh, cell, wanted)
+    where = np.repeat(np.arange(len(wanted)), dims + 1), nodes[mesh.simplices[cell].ravel()]
+    return csr_matrix((weight.ravel(), where), shape=(len(wanted), len(coarse.coords)))
+
+
+def _unrolled(points: np.ndarray, scale: float, plane: bool) -> np.ndarray:
+    """Points (n, 3) near +y as angle times `scale`, radius and, in space, z; mm."""
+    radius = np.hypot(points[:, 0], points[:, 1])
+    around = np.arctan2(points[:, 0], points[:, 1]) * scale
+    return np.column_stack([around, radius] if plane else [around, radius, points[:, 2]])
+
+
+def _barycentric(mesh: Delaunay, cell: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Weights (n, dims + 1) of the corners of cells (n,) at points (n, dims)."""
+    dims = points.shape[1]
+    transform = mesh.transform[cell]
+    first = np.einsum("nij,nj->ni", transform[:, :dims], points - transform[:, dims])
+    return np.column_stack([first, 1.0 - first.sum(axis=1)])
 
 
 def transfer(coarse: DriveModel, x: PETSc.Vec, fine: DriveModel, y: PETSc.Vec) -> None:

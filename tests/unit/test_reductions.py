@@ -33,23 +33,18 @@ def test_coarser_recipes_halve_down_to_the_smallest() -> None:
 @pytest.mark.parametrize("overrides", [(), PLANE])
 @pytest.mark.parametrize("gear", ["flexible_spline", "ring_gear"])
 def test_linear_fields_survive_the_interpolation(gear: str, overrides: tuple[str, ...]) -> None:
-    """A field linear in the coordinates is exact inside the coarse mesh; outside it takes the nearest value.
-
-    Outside are nodes on curved surfaces: root and tip arcs, the cup's fillet, the circles of rim and bore.
-    """
+    """A field linear in angle, radius and z is exact, inside the coarse mesh as outside, where it is extrapolated."""
     design = load_design(DATA / "small.toml", overrides)
     fine = build_sector_meshes(design, load_recipe(DATA / "tiny.toml"))[gear]
     coarse = build_sector_meshes(design, coarser(load_recipe(DATA / "tiny.toml")))[gear]
     matrix = interpolation(coarse, fine)
-    assert np.abs(matrix.sum(axis=1) - 1.0).max() < 1e-9
-    dims = 2 if overrides else 3
-    error = np.abs(matrix @ coarse.coords[:, :dims] - fine.coords[:, :dims]).max(axis=1)
-    interpolated = np.diff(matrix.indptr) > 1
-    assert interpolated.mean() > 0.4
-    assert error[interpolated].max() < 1e-9
-    # the nearest node of so coarse a mesh: less than half of its longest edge away
-    edges = coarse.coords[coarse.elements] - coarse.coords[np.roll(coarse.elements, 1, axis=1)]
-    assert error.max() < 0.5 * np.linalg.norm(edges, axis=2).max()
+
+    def fields(points: np.ndarray) -> np.ndarray:
+        x, y, z = points.T
+        return np.column_stack([np.ones_like(x), np.arctan2(x, y), np.hypot(x, y), 0.0 * z if overrides else z])
+
+    assert np.abs(matrix @ fields(coarse.coords) - fields(fine.coords)).max() < 1e-9
+    assert 0.0 > matrix.min() > -0.5 and matrix.max() < 1.5  # how far this extrapolates
 
 
 def test_levels() -> None:
