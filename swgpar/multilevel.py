@@ -153,13 +153,11 @@ def start_loaded(runner: Runner, recipes: list[MeshRecipe], items: list[Scene]) 
                 counted = " + ".join(map(str, iterations))
                 logger.info("loaded on a mesh of %d elements, Newton iterations %s", count, counted)
             level = CoarserLevel(count, stresses(below)[0])
-            transfer(below, below.equilibrium.x, target, runner.equilibrium.x)
+            _continue(below, runner, todo[-1])
         except SwgparError:
             if below is not None:
                 below.destroy()
             raise
-        below.destroy()
-        runner.scene = todo[-1]
         runner.increment(todo[-1])
     return level
 

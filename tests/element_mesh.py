@@ -9,6 +9,22 @@ from scipy.sparse.linalg import spsolve
 from swgpar.kernel import assemble_elements, recover_stress, reference_elements
 
 
+def pinch(mesh: ElementMesh, angle: np.ndarray) -> tuple[float, float]:
+    """Quarter of a pinched thin ring, R = 58, t = b = 1, E = 210e3: changes of the diameters along and across the load.
+
+    angle : (n,) rad of the nodes, 0 under the force. In units of P R^3 / (E I).
+    """
+    top, side = angle < 1e-9, angle > 0.5 * np.pi - 1e-9
+    fixed = np.zeros_like(mesh.points, dtype=bool)
+    fixed[top, 0] = fixed[side, 1] = True
+    fixed[0, 2] = True
+    load, p = np.zeros_like(mesh.points), 1e-3
+    load[top, 1] = 0.5 * p / top.sum()
+    u = mesh.solve(fixed, np.zeros_like(load), load)
+    unit = p * 58.0**3 / (210e3 / 12.0)
+    return 2.0 * float(u[top, 1].mean()) / unit, -2.0 * float(u[side, 0].mean()) / unit
+
+
 class ElementMesh:
     """Hexahedra (n, 8), or quadrilaterals (n, 4) with a thickness; every element its own reference."""
 

@@ -55,12 +55,22 @@ def beam(shape: str, level: int) -> Solved:
     }
     ends = np.interp(x, [0.0, 1.0, 5.0, 6.0], [0.0, 1.0, 1.0, 0.0])  # the ends stay upright
     points[:, 0] = x + ends * sign[shape] * (y - 0.1)
-    fixed = np.repeat((x < 1e-9)[:, None], 3, axis=1)
-    tip = x > 6.0 - 1e-9
+    return cantilever(points, points, hexes, 1, (1e7, 0.3), 0.1081)
+
+
+def cantilever(
+    box: np.ndarray, points: np.ndarray, hexes: np.ndarray, axis: int, elastic: tuple[float, float], exact: float
+) -> Solved:
+    """A beam clamped at x = 0, with a unit force along `axis` on its other end: mean displacement there.
+
+    box, points : (n, 3) nodes of the straight beam and of the beam itself
+    """
+    fixed = np.repeat((box[:, 0] < 1e-9)[:, None], 3, axis=1)
+    tip = box[:, 0] > box[:, 0].max() - 1e-9
     load = np.zeros_like(points)
-    load[tip, 1] = SMALL * consistent(points[tip][:, 1:])
-    u = ElementMesh(points, hexes, 1e7, 0.3).solve(fixed, np.zeros_like(points), load)
-    return Solved(points.size, float(u[tip, 1].mean()) / SMALL, 0.1081)
+    load[tip, axis] = SMALL * consistent(box[tip][:, 1:])
+    u = ElementMesh(points, hexes, *elastic).solve(fixed, np.zeros_like(points), load)
+    return Solved(points.size, float(u[tip, axis].mean()) / SMALL, exact)
 
 
 def consistent(points: np.ndarray) -> np.ndarray:
@@ -137,12 +147,7 @@ def twisted_beam(level: int) -> Solved:
     x, y, z = points[:, 0].copy(), points[:, 1] - 0.55, points[:, 2] - 0.16
     c, s = np.cos(0.5 * np.pi * x / 12.0), np.sin(0.5 * np.pi * x / 12.0)
     turned = np.column_stack([x, c * y - s * z, s * y + c * z])
-    fixed = np.repeat((x < 1e-9)[:, None], 3, axis=1)
-    tip = x > 12.0 - 1e-9
-    load = np.zeros_like(points)
-    load[tip, 2] = SMALL * consistent(points[tip][:, 1:])
-    u = ElementMesh(turned, hexes, 29e6, 0.22).solve(fixed, np.zeros_like(points), load)
-    return Solved(points.size, float(u[tip, 2].mean()) / SMALL, 0.005424)
+    return cantilever(points, turned, hexes, 2, (29e6, 0.22), 0.005424)
 
 
 PROBLEMS: dict[str, tuple[Callable[[int], Solved], int, float | None]] = {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,12 @@ from swgpar.study.schedule import Counter, Reports
 from swgpar.study.spec import Study, load_study
 from swgpar.study.table import Result, compare, format_csv, published_rows, study_rows
 from swgpar.study.terminal import StudyProgress
+
+Report = Callable[[tuple[int, Outcome | None]], None]
+"""Takes a job's number with its outcome, or None after an increment."""
+
+Run = Callable[[int, MPI.Comm, Report], None]
+"""Runs the job of a number."""
 
 TABLE, PUBLISHED, REPORT = "study.csv", "published.csv", "study.html"
 
@@ -68,11 +75,14 @@ def run_study(
     statuses = [read_status(job.folder(out)).get("status") for job in jobs] if comm.rank == 0 else None
     order = queue(jobs, comm.bcast(statuses))
     book = _Book(jobs, out) if comm.rank == 0 else None
+    receive: Report = book.receive if book is not None else lambda _: None
+    run: Run = partial(_run_one, jobs, out, restart, overwrite)
     try:
         if study.section.parallel == "cases":
-            _cases_at_once(jobs, order, out, comm, book, restart, overwrite)
+            _cases_at_once(order, comm, receive, run)
         else:
-            _one_after_the_other(jobs, order, out, comm, book, restart, overwrite)
+            for number in order:
+                run(number, comm, receive)
     finally:
         if book is not None:
             book.progress.stop()
@@ -121,13 +131,7 @@ def queue(jobs: Sequence[Job], statuses: Sequence[str | None]) -> list[int]:
 
 
 def _run_one(
-    jobs: Sequence[Job],
-    number: int,
-    out: Path,
-    comm: MPI.Comm,
-    report: Callable[[tuple[int, Outcome | None]], None],
-    restart: bool,
-    overwrite: bool,
+    jobs: Sequence[Job], out: Path, restart: bool, overwrite: bool, number: int, comm: MPI.Comm, report: Report
 ) -> None:
     """Run a job and report its increments, as None, and its outcome."""
     job = jobs[number]
@@ -137,36 +141,14 @@ def _run_one(
     report((number, outcome))
 
 
-def _cases_at_once(
-    jobs: Sequence[Job],
-    order: Sequence[int],
-    out: Path,
-    comm: MPI.Comm,
-    book: _Book | None,
-    restart: bool,
-    overwrite: bool,
-) -> None:
+def _cases_at_once(order: Sequence[int], comm: MPI.Comm, receive: Report, run: Run) -> None:
     own = comm.Dup()
-    counter, reports = Counter(own), Reports(own, book.receive if book is not None else lambda _: None)
+    counter, reports = Counter(own), Reports(own, receive)
     while (place := counter.take()) < len(order):
-        _run_one(jobs, order[place], out, MPI.COMM_SELF, reports.send, restart, overwrite)
+        run(order[place], MPI.COMM_SELF, reports.send)
     reports.end()
     counter.free()
     own.Free()
-
-
-def _one_after_the_other(
-    jobs: Sequence[Job],
-    order: Sequence[int],
-    out: Path,
-    comm: MPI.Comm,
-    book: _Book | None,
-    restart: bool,
-    overwrite: bool,
-) -> None:
-    report = book.receive if book is not None else lambda _: None
-    for number in order:
-        _run_one(jobs, number, out, comm, report, restart, overwrite)
 
 
 def _write(study: Study, results: Sequence[Result], out: Path, comm: MPI.Comm) -> None:
