@@ -10,8 +10,12 @@ from collections.abc import Callable
 
 from petsc4py import PETSc
 
-RTOL = 1e-4
-"""Of GMRES: a Newton step that exact loses nothing but its last, quadratic, iteration."""
+RTOL, LOOSEST = 1e-4, 1e-3
+"""Of GMRES: a Newton step that exact loses nothing but its last, quadratic, iteration; and while contacts still switch,
+where a step need not be exact."""
+
+FORCING = 0.5
+"""Share of the square of the residual's last decrease that GMRES leaves (Eisenstat and Walker, 1996, choice 2)."""
 
 ENOUGH, LONGEST = 20, 40
 """Iterations after which the factor is renewed before the next system, and at once."""
@@ -36,6 +40,7 @@ class KeptFactor:
         self.fresh, self.stale = False, True
         self.layout: tuple[int, ...] = ()
         self.iterations: list[int] = []
+        self.norm = 0.0
         operator = PETSc.Mat().createPython([like.getSizes()] * 2, _Multiply(multiply), comm=like.comm)
         operator.setUp()
         self.ksp = PETSc.KSP().create(comm=like.comm)
@@ -43,7 +48,6 @@ class KeptFactor:
         self.ksp.setOperators(operator)
         self.ksp.setType(PETSc.KSP.Type.GMRES)
         self.ksp.setPCSide(PETSc.PC.Side.RIGHT)
-        self.ksp.setTolerances(rtol=RTOL, max_it=LONGEST)
         self.ksp.setGMRESRestart(LONGEST)
         pc = self.ksp.getPC()
         pc.setType(PETSc.PC.Type.PYTHON)
@@ -63,8 +67,14 @@ class KeptFactor:
         self.fresh = False
         return not self.stale and self.layout == layout
 
+    def faces(self, right: PETSc.Vec) -> None:
+        """Take note of Newton's residual, the right-hand side of the present system."""
+        before, self.norm = self.norm, right.norm()
+        forcing = FORCING * (self.norm / before) ** 2 if before > 0.0 else LOOSEST
+        self.ksp.setTolerances(rtol=min(max(forcing, RTOL), LOOSEST), max_it=LONGEST)
+
     def solve(self, right: PETSc.Vec, x: PETSc.Vec) -> bool:
-        """Solve the present system by GMRES; whether that converged."""
+        """Solve the present system by GMRES as exactly as its place in Newton's iteration asks; whether it converged."""
         self.ksp.solve(right, x)
         self.iterations.append(self.ksp.getIterationNumber())
         self.stale = self.iterations[-1] > ENOUGH

@@ -169,6 +169,8 @@ class Bordered:
         return values
 
     def apply(self, pc: PETSc.PC, right: PETSc.Vec, x: PETSc.Vec) -> None:
+        if self.kept is not None:
+            self.kept.faces(right)
         if self.kept is not None and not self.kept.fresh:
             # the bound needs the answer to a unit of load, which GMRES does not give
             if self.kept.solve(right, x) and (self.bound is None or abs(self.border[-1].dot(x)) < self.bound):

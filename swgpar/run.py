@@ -203,9 +203,8 @@ def summarise(
     """
     comm, design = model.comm, model.design
     turning = [r for r in rows if int(r["step"]) >= FIRST_ROTATION]
-    if design.steps.samples:
-        turning = of_period(design, turning)
-    means = {k: float(np.mean([r[k] for r in turning])) for k in MEANS} if turning else {}
+    sampled = of_period(design, rows) if design.steps.samples else turning
+    means = {k: float(np.mean([r[k] for r in sampled])) for k in MEANS} if sampled else {}
     counts = model.counts()
     memory = comm.allgather(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0)
     elements = sum(b["elements_whole"] for b in counts.values())

@@ -20,6 +20,7 @@ from swgpar.steps import sequence
 
 DATA = Path(__file__).parent.parent / "data"
 PHYSICAL = ("fs_s1", "fs_s3", "fs_vm", "rg_vm", "wg_torque_Nmm", "output_angle_deg")
+STATE = ("fs_s1", "fs_s3", "fs_vm", "rg_vm", "wg_torque_Nmm")
 PLAIN = ("solver.far_teeth=modelled", "solver.keep_factor=false")
 
 
@@ -96,9 +97,11 @@ def test_the_continued_history_is_that_of_a_longer_rotation() -> None:
     rows = []
     for item in sequence(design):
         runner.increment(item)
-        if item.step > 3:
+        if item.step >= 3:
             rows.append({**runner.row(), **stresses(runner.model)[0], "wall_s": 1.0})
-    following = continued(design, rows)[4]
+    again, following = continued(design, rows)[4:6]
+    assert again["wg_angle_deg"] == pytest.approx(np.degrees(design.pitch))
+    assert {k: again[k] for k in STATE} == {k: rows[0][k] for k in STATE}
     runner.advance(replace(runner.scene, angle=1.25 * design.pitch))
     computed = {**runner.row(), **stresses(runner.model)[0]}
     assert following["wg_angle_deg"] == pytest.approx(np.degrees(1.25 * design.pitch))
