@@ -74,7 +74,7 @@ class KeptFactor:
         self.ksp.setTolerances(rtol=min(max(forcing, RTOL), LOOSEST), max_it=LONGEST)
 
     def solve(self, right: PETSc.Vec, x: PETSc.Vec) -> bool:
-        """Solve the present system by GMRES as exactly as its place in Newton's iteration asks; whether it converged."""
+        """Solve the present system as exactly as its place in Newton's iteration asks; whether GMRES converged."""
         self.ksp.solve(right, x)
         self.iterations.append(self.ksp.getIterationNumber())
         self.stale = self.iterations[-1] > ENOUGH
