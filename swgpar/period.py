@@ -17,7 +17,7 @@ Row = dict[str, Any]
 
 
 def of_period(design: DriveDesign, rows: list[Row]) -> list[Row]:
-    """The last `steps.samples` rows, those that are continued; without friction that of the loaded state is the first."""
+    """The last `steps.samples` rows: those that are continued, without friction from the loaded state on."""
     return rows[-design.steps.samples :]
 
 
