@@ -1,0 +1,104 @@
+"""Cost of one Newton iteration of the cup drive over mesh sizes, solvers and numbers of ranks.
+
+Every case is a process group of its own. It turns the undeformed drive's first system, that of the pins, into numbers:
+seconds of assembly, of the factor or the set-up of the multigrid, of one solve, iterations, and peak memory.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+import resource
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+MESHES = ("tests/data/tiny.toml", "mesh/coarse.toml", "mesh/medium.toml", "mesh/full.toml")
+
+
+def measure(mesh: str, linear: str) -> None:
+    """Print the numbers of one case; run under mpirun."""
+    import petsc4py
+
+    petsc4py.init([])
+    from mpi4py import MPI
+
+    from swgpar.assembly import create_vector
+    from swgpar.design import load_design
+    from swgpar.incremental import DriveModel
+    from swgpar.meshing import load_recipe
+    from swgpar.steps import sequence
+
+    comm = MPI.COMM_WORLD
+    design = load_design("drivers/cup_45deg.toml", [f"solver.linear={linear}"])
+    model = DriveModel(design, load_recipe(mesh), comm)
+    equilibrium, border = model.equilibrium, model.equilibrium.border
+    equilibrium.scene = next(iter(sequence(design)))
+    equilibrium.search()
+    equilibrium.history = []
+    right, x = create_vector(model.partition), create_vector(model.partition)
+
+    def timed(call) -> float:
+        comm.Barrier()
+        begin = time.perf_counter()
+        call()
+        comm.Barrier()
+        return time.perf_counter() - begin
+
+    residual = timed(lambda: equilibrium.snes.computeFunction(equilibrium.x, right))
+    shell = equilibrium.snes.getJacobian()[0]
+    tangent = timed(lambda: equilibrium.snes.computeJacobian(equilibrium.x, shell))
+    row = {
+        "mesh": mesh,
+        "solver": linear,
+        "ranks": comm.size,
+        "unknowns": sum(b["dofs"] for b in model.counts().values()),
+    }
+    row |= {"assembly_s": residual + tangent, "setup_s": timed(border.factorise)}
+    row["solve_s"] = timed(lambda: border._solve(right, x))
+    row["iterations"] = border.ksp.getIterationNumber() if linear == "iterative" else 1
+    if linear == "direct":
+        row["factor_entries"] = border.ksp.getPC().getFactorMatrix().getMumpsInfog(29)
+    memory = comm.allgather(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0)
+    row["memory_MB_per_rank"] = round(max(memory))
+    if comm.rank == 0:
+        print(json.dumps({k: round(v, 4) if isinstance(v, float) else v for k, v in row.items()}))
+
+
+def main() -> None:
+    options = argparse.ArgumentParser(description=__doc__)
+    options.add_argument("--meshes", nargs="+", default=list(MESHES))
+    options.add_argument("--solvers", nargs="+", default=["direct", "iterative"], choices=["direct", "iterative"])
+    options.add_argument("--ranks", nargs="+", type=int, default=[1, 2])
+    options.add_argument("--largest-iterative", type=int, default=2, help="number of meshes GAMG is tried on")
+    options.add_argument("--table", default="docs/benchmarks/scaling.csv")
+    options.add_argument("--case", nargs=2, metavar=("MESH", "SOLVER"), help=argparse.SUPPRESS)
+    arguments = options.parse_args()
+    if arguments.case:
+        measure(*arguments.case)
+        return
+    columns = ("mesh", "solver", "ranks", "unknowns", "assembly_s", "setup_s", "solve_s", "iterations")
+    columns += ("factor_entries", "memory_MB_per_rank")
+    table = Path(arguments.table)
+    table.parent.mkdir(parents=True, exist_ok=True)
+    with table.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, columns, lineterminator="\n", restval="")
+        writer.writeheader()
+        for solver in arguments.solvers:
+            meshes = arguments.meshes if solver == "direct" else arguments.meshes[: arguments.largest_iterative]
+            for mesh in meshes:
+                for ranks in arguments.ranks:
+                    command = ["mpirun", "--oversubscribe", "-n", str(ranks), sys.executable, __file__]
+                    done = subprocess.run(
+                        [*command, "--case", mesh, solver], check=True, capture_output=True, text=True
+                    )
+                    row = json.loads(done.stdout.splitlines()[-1])
+                    print(row, flush=True)
+                    writer.writerow(row)
+                    file.flush()
+
+
+if __name__ == "__main__":
+    main()
