@@ -10,6 +10,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -125,7 +126,12 @@ def beam(shape: str, level: int, plane: bool) -> Linear:
 
 
 def cantilever(
-    box: np.ndarray, points: np.ndarray, elements: np.ndarray, axis: int, material: tuple[float, float], thickness: float
+    box: np.ndarray,
+    points: np.ndarray,
+    elements: np.ndarray,
+    axis: int,
+    material: tuple[float, float],
+    thickness: float,
 ) -> Linear:
     """A beam clamped at x = 0, with a unit force along `axis` on its other end: mean displacement there.
 
@@ -248,3 +254,37 @@ def twisted_beam(level: int, plane: bool) -> Linear:
     x, y, z = box[:, 0], box[:, 1] - 0.55, box[:, 2] - 0.16
     c, s = np.cos(0.5 * np.pi * x / 12.0), np.sin(0.5 * np.pi * x / 12.0)
     return cantilever(box, np.column_stack([x, c * y - s * z, s * y + c * z]), hexes, 2, (29e6, 0.22), 1.0)
+
+
+ELEMENTS = {"C3D8I": (False, True), "C3D8": (False, False), "CPS4I": (True, True), "CPS4": (True, False)}
+"""In the plane, with incompatible modes; by the names of Abaqus and CalculiX."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """make : of level and plane;  plane, solid : numbers of levels;  like : the problem whose limit this one shares
+
+    rates : in the element size, of the elements with incompatible modes, where theory gives them for a smooth solution:
+    2 for displacements, 1 for stresses on a boundary
+    """
+
+    make: Callable[[int, bool], Linear]
+    plane: int
+    solid: int
+    like: str | None = None
+    rates: dict[str, float] = field(default_factory=dict)
+
+
+SMOOTH = {"displacement": 2.0, "hoop stress": 1.0}
+PROBLEMS = {
+    "beam, regular": Problem(partial(beam, "regular"), 8, 5),
+    "beam, parallelogram": Problem(partial(beam, "parallelogram"), 7, 5, "beam, regular"),
+    "beam, trapezoid": Problem(partial(beam, "trapezoid"), 7, 5, "beam, regular"),
+    "pinched thin ring": Problem(pinched_ring, 6, 5, rates={"displacement": 2.0}),
+    "thick cylinder, nu = 0.3": Problem(partial(thick_cylinder, 0.3), 7, 5, rates=SMOOTH),
+    "thick cylinder, nu = 0.499": Problem(partial(thick_cylinder, 0.499), 0, 5, rates=SMOOTH),
+    "Cook's membrane": Problem(cook, 9, 0),
+    "twisted beam": Problem(twisted_beam, 0, 4),
+}
+ITERATIVE = (("thick cylinder, nu = 0.3", "C3D8I"), ("twisted beam", "C3D8I"), ("Cook's membrane", "CPS4I"))
+"""Problems and elements that are solved with GAMG too."""
