@@ -1,8 +1,8 @@
 """Error against wall time and peak memory, over mesh levels and choices: problems with known answers, and drives.
 
-Families: `elements` (linear problems), `contact` (Hertz, ring on a cam), `drives`. Of each come accuracy_<family>.csv,
-.json and log-log plots in --tables. A case that is finished is kept in --out and not computed again. Rates that theory
-gives are asserted.
+Families: `elements` (linear problems), `contact` (Hertz, ring on a cam), `drives` (over meshes), `choices` (of a drive
+on one mesh). Of each come accuracy_<family>.csv, .json and log-log plots in --tables. A case that is finished is kept
+in --out and not computed again. Rates that theory gives are asserted.
 """
 
 from __future__ import annotations
@@ -16,7 +16,12 @@ from pathlib import Path
 from accuracy_plots import plot
 from cases import Cases, Row
 
-FAMILIES = {"elements": "element_cases", "contact": "contact_cases", "drives": "drive_cases"}
+FAMILIES = {
+    "elements": "element_cases",
+    "contact": "contact_cases",
+    "drives": "drive_cases",
+    "choices": "choice_cases",
+}
 
 
 def show(row: Row) -> None:

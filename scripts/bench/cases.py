@@ -83,12 +83,12 @@ class Cases:
         assert not self.missed, "; ".join(self.missed)
 
 
-def references(solved: list[dict[str, Any]], further: str = "") -> dict[str, tuple[float, str]]:
+def references(solved: list[dict[str, Any]]) -> dict[str, tuple[float, str]]:
     """By quantity the closed form, or else the limit of the last three of `solved`."""
     exact = solved[-1]["exact"]
     return {
         quantity: (exact[quantity], "closed form")
         if quantity in exact
-        else (limit([s["values"][quantity] for s in solved]), "extrapolated" + further)
+        else (limit([s["values"][quantity] for s in solved])[0], "extrapolated")
         for quantity in solved[-1]["values"]
     }

@@ -17,7 +17,8 @@ def compute(cases: Cases) -> None:
             linear = {"": "direct"} | ({", GAMG": "iterative"} if (name, element) in ITERATIVE else {})
             for text, kind in linear.items():
                 case = {"kind": "element", "problem": name, "element": element, "linear": kind}
-                solved = [cases.solved({**case, "level": level}) for level in levels]
+                count = len(levels) if kind == "direct" else min(len(levels), ITERATIVE[name, element])
+                solved = [cases.solved({**case, "level": level}) for level in levels[:count]]
                 if problem.like is None and incompatible and kind == "direct":
                     limits[name, plane] = references(solved)
                 found = limits[problem.like or name, plane]

@@ -286,5 +286,5 @@ PROBLEMS = {
     "Cook's membrane": Problem(cook, 9, 0),
     "twisted beam": Problem(twisted_beam, 0, 4),
 }
-ITERATIVE = (("thick cylinder, nu = 0.3", "C3D8I"), ("twisted beam", "C3D8I"), ("Cook's membrane", "CPS4I"))
-"""Problems and elements that are solved with GAMG too."""
+ITERATIVE = {("thick cylinder, nu = 0.3", "C3D8I"): 5, ("twisted beam", "C3D8I"): 4, ("Cook's membrane", "CPS4I"): 8}
+"""Problems and elements that are solved with GAMG too, with the number of levels."""
