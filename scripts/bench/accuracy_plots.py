@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
 
 AXES = {"seconds": "wall seconds", "memory_MB": "peak memory (MB)"}
 FLOOR = 1e-9
@@ -21,7 +23,8 @@ def plot(rows: list[dict[str, Any]], folder: Path, family: str) -> list[Path]:
     lines = -(-len(panels) // columns)
     paths = []
     for key, text in AXES.items():
-        figure = Figure(figsize=(4.2 * columns, 3.3 * lines), layout="constrained")
+        figure = Figure(figsize=(4.2 * columns, 2.9 * lines + 0.2 * (2 + len(choices) // 4)), layout="constrained")
+        handles: dict[str, Line2D] = {}
         for place, (problem, quantity) in enumerate(panels, start=1):
             axes = figure.add_subplot(lines, columns, place)
             here = [r for r in rows if (r["problem"], r["quantity"]) == (problem, quantity)]
@@ -30,13 +33,21 @@ def plot(rows: list[dict[str, Any]], folder: Path, family: str) -> list[Path]:
                 number = choices.index(choice)
                 style = {"color": f"C{number % 10}", "marker": "os^vDPX*"[number % 8], "ms": 4, "lw": 1.2}
                 errors = np.maximum([r["error"] for r in mine], FLOOR)
-                axes.loglog([r[key] for r in mine], errors, label=choice, **style)
+                (handles[choice],) = axes.loglog([r[key] for r in mine], errors, label=choice, **style)
+                for row, error in zip(mine, errors):
+                    if isinstance(row["level"], str):
+                        axes.annotate(row["level"], (row[key], error), (3, 3), textcoords="offset points", fontsize=6)
             axes.set_title(f"{problem}: {quantity}", fontsize=9)
             axes.set_xlabel(text, fontsize=8)
             axes.set_ylabel("relative error", fontsize=8)
             axes.tick_params(labelsize=7, which="both")
+            for axis, (low, high) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+                if high < 100.0 * low:  # decades alone would leave too few labels
+                    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+                    axis.set_major_formatter(FormatStrFormatter("%g"))
+                axis.set_minor_formatter(NullFormatter())
             axes.grid(alpha=0.3)
-            axes.legend(fontsize=7)
+        figure.legend(handles.values(), handles, loc="outside lower center", ncols=4, fontsize=8)
         path = folder / f"accuracy_{family}_{key.split('_')[0]}.png"
         figure.savefig(path, dpi=110)
         paths.append(path)
