@@ -7,6 +7,8 @@ recipes with second order (`swgpar.error_estimate`), and says little for the fin
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from cases import Cases
 from convergence import limit
 from drive_runs import refined, run
@@ -23,9 +25,14 @@ SIZES = [1.5 * REFINED, REFINED, 1.0]
 """Of the spline's elements on plane, plane_fine and the refined mesh, over those of the last."""
 
 
-def compute(cases: Cases) -> None:
-    """All recipes of both drives."""
-    names = [mesh.split("/")[1].removesuffix(".toml") for mesh in PLANE_MESHES]
+def named(meshes: tuple[str, ...]) -> list[str]:
+    """Recipes by the names of their files."""
+    return [Path(mesh).stem for mesh in meshes]
+
+
+def plane(cases: Cases) -> None:
+    """The plane drive on its recipes and on a finer mesh."""
+    names = named(PLANE_MESHES)
     solved = [run(cases.out / f"plane_drive_{n}", PLANE, m, PERIOD, cases.ranks) for n, m in zip(names, PLANE_MESHES)]
     finer = refined(PLANE_MESHES[-1], REFINED, cases.out / "plane_reference.toml")
     names.append("reference")
@@ -35,15 +42,23 @@ def compute(cases: Cases) -> None:
     found = {}
     for quantity in QUANTITIES:
         value, order = limit([s["values"][quantity] for s in solved], SIZES)
-        print(f"plane drive, {quantity}: limit {value:.2f} MPa, observed order {order}")
         found[quantity] = (value, f"extrapolated, order {order:.2f}" if order else "finest mesh")
     cases.series("plane drive", "CPS4I", solved, found, {}, levels=names, ranks=cases.ranks, halved=False)
 
+
+def cup(cases: Cases) -> None:
+    """The cup drive on its recipes."""
     levels = cases.levels(len(CUP_MESHES))
-    names = [mesh.split("/")[1].removesuffix(".toml") for mesh in CUP_MESHES]
+    names = named(CUP_MESHES)
     solved = [run(cases.out / f"cup_drive_{names[k]}", CUP, CUP_MESHES[k], PERIOD, cases.ranks) for k in levels]
     found = {}
     for quantity in QUANTITIES:
-        (a, b), (m, n) = ([s["values"][quantity] for s in solved[-2:]], [s["elements"] for s in solved[-2:]])
-        found[quantity] = (estimate(a, b, m, n, 3).converged, "extrapolated, order 2")
+        (a, b), (m, n) = ([s[k] for s in solved[-2:]] for k in ("values", "elements"))
+        found[quantity] = (estimate(a[quantity], b[quantity], m, n, 3).converged, "extrapolated, order 2")
     cases.series("cup drive", "C3D8I", solved, found, {}, levels=names, ranks=cases.ranks, halved=False)
+
+
+def compute(cases: Cases) -> None:
+    """Both drives."""
+    plane(cases)
+    cup(cases)
