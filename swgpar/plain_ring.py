@@ -21,6 +21,7 @@ from swgpar.log import Phases
 from swgpar.meshing.ring import AROUND, ring_sector
 from swgpar.partition import BodyLayout, LocalNodes, Partition
 from swgpar.steps import Scene
+from swgpar.stress import body_fields, maxima
 
 
 @dataclass(frozen=True)
@@ -133,15 +134,24 @@ class RingModel:
     cam : curve of the rigid surface, which may have two parts that move along the major axis
     half_angle : rad, the ring can touch within this angle of the major axis while the parts move
     comm : communicator
+    incompatible : elements with incompatible modes
     """
 
-    def __init__(self, design: RingDesign, counts: RingCounts, cam: Cam, half_angle: float, comm: MPI.Comm) -> None:
+    def __init__(
+        self,
+        design: RingDesign,
+        counts: RingCounts,
+        cam: Cam,
+        half_angle: float,
+        comm: MPI.Comm,
+        incompatible: bool = True,
+    ) -> None:
         self.design, self.comm = design, comm
         inner, width, material = design.r_fs, design.width, design.material
         mesh = ring_sector(inner, design.outer_radius, width, counts.sectors, counts.radial, counts.axial, design.plane)
         layout = BodyLayout(mesh, 0, counts.sectors // 2, True, True, np.zeros(0, dtype=np.int32))
         self.partition = Partition([layout], comm)
-        reference = reference_elements(mesh.coords[mesh.elements], material.E, material.nu, width)
+        reference = reference_elements(mesh.coords[mesh.elements], material.E, material.nu, width, incompatible)
         self.elements = Elements(self.partition, [reference])
         self.elements.bind(LocalNodes(self.partition, self.elements.wanted))
         self.body = self.elements.bodies[0]
@@ -180,14 +190,31 @@ class RingModel:
         fresh = self.travel == 0.0
         if not fresh:
             self.equilibrium.x.scale(travel / self.travel)  # the ring bends nearly in proportion
-        solved = self.equilibrium.solve(Scene(1, "deflect", pins=-travel), soft=fresh)
+        iterations = self._solve(Scene(1, "deflect", pins=-travel), fresh)
+        self.travel = travel
+        return iterations
+
+    def mount(self) -> int:
+        """Equilibrium on the whole surface, first pushed out by its parts; returns Newton's iterations."""
+        return self._solve(Scene(1, "deflect", pins=0.0), True) + self._solve(Scene(2, "engage", cam=0.0), True)
+
+    def _solve(self, scene: Scene, soft: bool) -> int:
+        solved = self.equilibrium.solve(scene, soft=soft)
         if not solved.converged:
             raise ConvergenceError(
-                f"the ring did not converge with its supports {travel:g} mm out: PETSc says {solved.reason}, residual "
+                f"the ring did not converge ({scene}): PETSc says {solved.reason}, residual "
                 f"{solved.residual:.1e} of the contact force"
             )
-        self.travel = travel
         return solved.iterations
+
+    def stresses(self) -> dict[str, float]:
+        """Largest s1, s3 (positive in compression) and von Mises stress of the nodal averages, MPa."""
+        return maxima(self.comm, body_fields(self.body, self.equilibrium.displacement()))
+
+    def contact_force(self) -> float:
+        """Contact pressure integrated over the whole inner surface, N."""
+        surface = self.equilibrium.rigid
+        return 2.0 * self.comm.allreduce(float((surface.pressure * surface.weight)[surface.owned].sum()), op=MPI.SUM)
 
     def dial(self, angle: float, moved: float = 0.0) -> float:
         """Inward reading (mm) of a dial on the outer surface at mid-width, at `angle` (rad) from the major axis.

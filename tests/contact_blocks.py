@@ -5,14 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.sparse import coo_matrix
+from element_mesh import ElementMesh
+from scipy.sparse import block_diag, csr_matrix
 from scipy.sparse.linalg import spsolve
-from swgpar.kernel._kernel import assemble_elements, reference_elements
 
 from swgpar.contact import friction
 from swgpar.contact.segments import Segments, cut_faces
 from swgpar.contact.teeth import Faces, Flanks, PlacedFaces
 from swgpar.kernel import contact_flanks
+
+ORDERING = "MMD_AT_PLUS_A"
+"""Of SuperLU, for matrices with a symmetric pattern."""
 
 
 class Rows:
@@ -67,6 +70,7 @@ class Blocks:
     points (n, 3) mm, hexes (m, 8), the nodes of both contact surfaces among the first n_surface ones
     fixed (n, 3) : components with a given displacement;  order : Gauss points per direction of a segment
     coefficient : of friction, on the way from the displacement `before` (n, 3) with the tractions `history`
+    incompatible : elements with incompatible modes
     """
 
     points: np.ndarray
@@ -82,25 +86,17 @@ class Blocks:
     coefficient: float = 0.0
     before: np.ndarray | None = None
     history: np.ndarray | None = None
+    incompatible: bool = True
 
     def press(self, u: np.ndarray, force: np.ndarray, augmentations: int = 0) -> tuple[Faces, np.ndarray, np.ndarray]:
         """Equilibrium from u (n, 3), which is changed; its fixed components stay. Segments, pressure, contact force."""
-        hexes = self.hexes.astype(np.int32)
-        reference = reference_elements(self.points[hexes], self.young, self.poisson)
-        place = np.arange(len(hexes), dtype=np.int32), np.tile([1.0, 0.0], (len(hexes), 1))
-        arrays = (*place, hexes, np.zeros((len(hexes), 8), np.uint8))
-        slot = np.arange(64 * len(hexes)).reshape(-1, 64)
-        axis = np.arange(3)
-        i = 3 * np.repeat(hexes, 8, axis=1).ravel()[:, None, None] + axis[:, None] + 0 * axis
-        j = 3 * np.tile(hexes, (1, 8)).ravel()[:, None, None] + 0 * axis[:, None] + axis
-        surface = np.arange(3 * self.n_surface)
-        si, sj = (v.ravel() for v in np.meshgrid(surface, surface, indexing="ij"))
+        mesh = ElementMesh(self.points, self.hexes, self.young, self.poisson, incompatible=self.incompatible)
+        rest = 3 * (len(self.points) - self.n_surface)
         free, pick = np.flatnonzero(~self.fixed.ravel()), np.arange(len(self.placed.conn))
         settings, law = (self.penalty, 0.0, 0.2, np.inf), None
         for augmentation in range(augmentations + 1):
             for _ in range(40):
-                values, r, rows = np.zeros((slot.size, 3, 3)), -force, Rows(self.n_surface, self.coefficient == 0.0)
-                assemble_elements(reference, *arrays, u, r, slot, values)
+                r, rows = mesh.residual(u) - force, Rows(self.n_surface, self.coefficient == 0.0)
                 if augmentation == 0:
                     corners = self.placed.corners(pick)
                     foot = contact_flanks(self.flanks, corners, u, np.zeros((len(pick), 4)), *settings, None, None)[2]
@@ -115,10 +111,8 @@ class Blocks:
                 residual = np.abs(r.ravel()[free]).max() / np.abs(contact).max()
                 if residual < 1e-9:
                     break
-                entries = np.concatenate([values.transpose(0, 2, 1).ravel(), rows.matrix().ravel()])
-                where = np.concatenate([i.ravel(), si]), np.concatenate([j.ravel(), sj])
-                stiffness = coo_matrix((entries, where), shape=(u.size, u.size)).tocsc()
-                u.ravel()[free] -= spsolve(stiffness[free][:, free], r.ravel()[free])
+                stiffness = mesh.tangent(u) + block_diag([csr_matrix(rows.matrix()), csr_matrix((rest, rest))])
+                u.ravel()[free] -= spsolve(stiffness.tocsc()[free][:, free], r.ravel()[free], ORDERING)
             assert residual < 1e-7, (augmentation, residual)
             multiplier = pressure.copy()
         if law is not None:

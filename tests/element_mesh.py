@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import coo_matrix, csr_matrix
+from scipy.sparse import bsr_matrix, csr_matrix
 from scipy.sparse.linalg import spsolve
 
 from swgpar.kernel import assemble_elements, recover_stress, reference_elements
@@ -29,34 +29,43 @@ class ElementMesh:
     """Hexahedra (n, 8), or quadrilaterals (n, 4) with a thickness; every element its own reference."""
 
     def __init__(
-        self, points: np.ndarray, elements: np.ndarray, young: float, poisson: float, thickness: float = 1.0
+        self,
+        points: np.ndarray,
+        elements: np.ndarray,
+        young: float,
+        poisson: float,
+        thickness: float = 1.0,
+        incompatible: bool = True,
     ) -> None:
         self.points, self.elements = points, np.ascontiguousarray(elements, dtype=np.int32)
         n, self.m = elements.shape
-        self.reference = reference_elements(points[elements], young, poisson, thickness)
+        self.reference = reference_elements(points[elements], young, poisson, thickness, incompatible)
         self.arrays = (
             np.arange(n, dtype=np.int32),
             np.tile([1.0, 0.0], (n, 1)),
             self.elements,
             np.zeros((n, self.m), np.uint8),
         )
-        self.slot = np.arange(self.m**2 * n).reshape(n, self.m**2)
+        row, col = np.repeat(self.elements, self.m, axis=1), np.tile(self.elements, (1, self.m))
+        keys, slot = np.unique(row.ravel().astype(np.int64) * len(points) + col.ravel(), return_inverse=True)
+        self.slot = slot.reshape(n, self.m**2)
+        row, self.column = np.divmod(keys, len(points))
+        self.start = np.searchsorted(row, np.arange(len(points) + 1))
 
     def residual(self, u: np.ndarray) -> np.ndarray:
         out = np.zeros_like(u)
         assemble_elements(self.reference, *self.arrays, u, out, None, None)
         return out
 
+    def blocks(self, u: np.ndarray) -> np.ndarray:
+        """The tangent's blocks (n_blocks, 3, 3) N/mm, row by row as `start` and `column` say."""
+        values = np.zeros((len(self.column), 3, 3))
+        assemble_elements(self.reference, *self.arrays, u, None, self.slot, values)
+        return values.transpose(0, 2, 1)
+
     def tangent(self, u: np.ndarray) -> csr_matrix:
         """(3 n, 3 n) N/mm; rows and columns of z are zero in the plane."""
-        values = np.zeros((self.slot.size, 3, 3))
-        assemble_elements(self.reference, *self.arrays, u, None, self.slot, values)
-        row = np.repeat(self.elements, self.m, axis=1).ravel()
-        col = np.tile(self.elements, (1, self.m)).ravel()
-        axis = np.arange(3)
-        i = (3 * row[:, None, None] + axis[:, None] + 0 * axis).ravel()
-        j = (3 * col[:, None, None] + 0 * axis[:, None] + axis).ravel()
-        return coo_matrix((values.transpose(0, 2, 1).ravel(), (i, j)), shape=(u.size, u.size)).tocsr()
+        return bsr_matrix((self.blocks(u), self.column, self.start), shape=(u.size, u.size)).tocsr()
 
     def stress(self, u: np.ndarray) -> np.ndarray:
         return recover_stress(self.reference, *self.arrays, u)

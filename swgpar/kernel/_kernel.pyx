@@ -25,11 +25,11 @@ cdef extern from "element_batch.hpp" namespace "swgpar" nogil:
     int64_t stress8 "swgpar::stress<8>"(const ElementBatch&, const double* recovery, const double* u, double* out)
     int64_t stress4 "swgpar::stress<4>"(const ElementBatch&, const double* recovery, const double* u, double* out)
     int64_t solid "swgpar::reference<swgpar::Hex8i>"(int64_t n, const double* coords, double young, double poisson,
-                                                     double* stiffness, double* recovery, double* gradient,
-                                                     double* volume)
+                                                     bint incompatible, double* stiffness, double* recovery,
+                                                     double* gradient, double* volume)
     int64_t plane "swgpar::reference<swgpar::Quad4i>"(int64_t n, const double* coords, double young, double poisson,
-                                                      double* stiffness, double* recovery, double* gradient,
-                                                      double* volume, double thickness)
+                                                      bint incompatible, double* stiffness, double* recovery,
+                                                      double* gradient, double* volume, double thickness)
 
 
 class ReferenceElements(NamedTuple):
@@ -46,11 +46,12 @@ class ReferenceElements(NamedTuple):
     volume: np.ndarray
 
 
-def reference_elements(coords, double young, double poisson, double thickness=0.0):
+def reference_elements(coords, double young, double poisson, double thickness=0.0, bint incompatible=True):
     """Matrices of C3D8I-type hexahedra or of CPS4I-type quadrilaterals.
 
     coords : (n, 8, 3) mm, VTK node order, or (n, 4, 3) at one z, counter-clockwise seen against z
     young : MPa;  poisson : below 0.5;  thickness : mm, of quadrilaterals
+    incompatible : False leaves the incompatible modes out, which gives C3D8 and CPS4, for comparison
     Raises ValueError naming the first element with a non-positive Jacobian.
     """
     cdef double[:, :, ::1] x = np.ascontiguousarray(coords, dtype=np.float64)
@@ -67,9 +68,10 @@ def reference_elements(coords, double young, double poisson, double thickness=0.
     cdef double[::1] v = out.volume
     with nogil:
         if m == 4:
-            bad = plane(n, &x[0, 0, 0], young, poisson, &k[0, 0, 0], &s[0, 0, 0], &g[0, 0, 0], &v[0], thickness)
+            bad = plane(n, &x[0, 0, 0], young, poisson, incompatible, &k[0, 0, 0], &s[0, 0, 0], &g[0, 0, 0], &v[0],
+                        thickness)
         else:
-            bad = solid(n, &x[0, 0, 0], young, poisson, &k[0, 0, 0], &s[0, 0, 0], &g[0, 0, 0], &v[0])
+            bad = solid(n, &x[0, 0, 0], young, poisson, incompatible, &k[0, 0, 0], &s[0, 0, 0], &g[0, 0, 0], &v[0])
     if bad >= 0:
         raise ValueError(f"element {bad} has a non-positive Jacobian determinant")
     return out

@@ -1,6 +1,7 @@
 // Eight-node hexahedron with nine incompatible modes (Wilson, Taylor, Beresford), linear elastic, modes
-// condensed: the counterpart of C3D8I. The modes' gradients use the centre Jacobian scaled by j0 / j, so
-// that their mean over the element vanishes and the patch test passes on distorted meshes.
+// condensed: the counterpart of C3D8I; without the modes that of C3D8, for comparison. The modes' gradients use
+// the centre Jacobian scaled by j0 / j, so that their mean over the element vanishes and the patch test passes on
+// distorted meshes.
 #pragma once
 
 #include <Eigen/Dense>
@@ -53,7 +54,7 @@ struct Hex8i {
   Mat8x3 gradient;                         // dN/dX at the centre
   double volume = 0, smallest_jacobian = 0;
 
-  Hex8i(const Mat8x3& x, double young, double poisson) {
+  Hex8i(const Mat8x3& x, double young, double poisson, bool incompatible) {
     const Mat6 elastic = isotropic(young, poisson);
     const Mat8x3 center = shape_gradient(0, 0, 0);
     const Eigen::Matrix3d j0 = x.transpose() * center;  // dX/dxi
@@ -86,7 +87,8 @@ struct Hex8i {
       volume += det;
     }
     if (!(smallest_jacobian > 0)) return;
-    const Eigen::Matrix<double, 9, 24> alpha = -kaa.ldlt().solve(kau);
+    Eigen::Matrix<double, 9, 24> alpha = Eigen::Matrix<double, 9, 24>::Zero();
+    if (incompatible) alpha = -kaa.ldlt().solve(kau);
     stiffness = kuu + kau.transpose() * alpha;
     stiffness = (0.5 * (stiffness + stiffness.transpose())).eval();
     // trilinear extrapolation from the Gauss points, which sit at 1/sqrt(3) of the nodes' coordinates

@@ -1,6 +1,6 @@
 // Four-node plane-stress quadrilateral with four incompatible modes (Wilson, Taylor, Beresford), modes condensed: the
-// counterpart of CPS4I. Nodes have three components like those of the hexahedron, of which the third has no stiffness,
-// so that corotation, assembly and contact are the same.
+// counterpart of CPS4I; without the modes that of CPS4, for comparison. Nodes have three components like those of the
+// hexahedron, of which the third has no stiffness, so that corotation, assembly and contact are the same.
 #pragma once
 
 #include "hex8i.hpp"
@@ -14,7 +14,7 @@ struct Quad4i {
   Eigen::Matrix<double, 4, 3> gradient;      // dN/dX at the centre
   double volume = 0, smallest_jacobian = 0;  // mm^3; determinant in the plane
 
-  Quad4i(const Eigen::Matrix<double, 4, 3>& x, double young, double poisson, double thickness) {
+  Quad4i(const Eigen::Matrix<double, 4, 3>& x, double young, double poisson, bool incompatible, double thickness) {
     using Mat8 = Eigen::Matrix<double, 8, 8>;
     using Mat4x8 = Eigen::Matrix<double, 4, 8>;
     using Mat3x8 = Eigen::Matrix<double, 3, 8>;
@@ -59,7 +59,8 @@ struct Quad4i {
       volume += weight;
     }
     if (!(smallest_jacobian > 0)) return;
-    const Mat4x8 alpha = -kaa.ldlt().solve(kau);
+    Mat4x8 alpha = Mat4x8::Zero();
+    if (incompatible) alpha = -kaa.ldlt().solve(kau);
     Mat8 k = kuu + kau.transpose() * alpha;
     k = (0.5 * (k + k.transpose())).eval();
     stiffness.setZero();

@@ -1,0 +1,53 @@
+"""Runs of `swgpar run` for the accuracy benchmark, kept by their folders."""
+
+from __future__ import annotations
+
+import csv
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+from swgpar.meshing import MeshRecipe, load_recipe
+
+QUIET = ("output.figures=false", "output.fields=false")
+
+
+def run(folder: Path, design: str, mesh: str | Path, overrides: list[str], ranks: int) -> dict[str, Any]:
+    """Unknowns, values, seconds and memory (MB, all ranks) of a run, in the form of accuracy_case.py.
+
+    values : means over the rotation by their names in summary.json, and columns of the last row of history.csv, with
+    `last.` before their names
+    """
+    if not (folder / "summary.json").exists():  # a run that ended before is begun anew
+        shutil.rmtree(folder, ignore_errors=True)
+        command = ["mpirun", "-n", str(ranks), sys.executable, "-m", "swgpar.cli", "run", design, "--mesh", str(mesh)]
+        subprocess.run(
+            [*command, "--out", str(folder), "--set", *QUIET, *overrides], check=True, stdout=subprocess.DEVNULL
+        )
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    with (folder / "history.csv").open(encoding="utf-8") as file:
+        last = list(csv.DictReader(file))[-1]
+    return {
+        "unknowns": summary["dofs"],
+        "elements": summary["elements"],
+        "values": summary["means"] | {f"last.{key}": float(value) for key, value in last.items()},
+        "exact": {},
+        "seconds": summary["wall_s"],
+        "memory_MB": sum(summary["peak_memory_MB_per_rank"]),
+    }
+
+
+def refined(mesh: str, factor: int, path: Path) -> Path:
+    """Write a recipe with `factor` times as many elements in every direction."""
+    recipe = load_recipe(mesh).model_dump(exclude_none=True)
+    lines = []
+    for section, keys in recipe.items():
+        lines.append(f"[{section}]")
+        lines += [f"{key} = {factor * value if isinstance(value, int) else value}" for key, value in keys.items()]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    MeshRecipe.model_validate(load_recipe(path).model_dump())
+    return path
