@@ -19,15 +19,21 @@ class SearchedStep:
     the minimum of the potential on the line. The full step is tried first and kept near the solution. (PETSc's own
     line searches judge by the residual's norm, which grows while contact is being established, or take one secant
     step; petsc4py 3.18 cannot replace them, hence the scaling inside the preconditioner.)
+
+    A point that comes to stick changes the slope over a hundred-thousandth of a usual way, so that many trials may be
+    needed: without them the slip of such points changes its sign in every step.
+
+    `descend` lets the search end only where the potential still falls, see `swgpar.cycling`.
     """
 
-    TARGET, TRIALS = 0.5, 8
+    TARGET, TRIALS = 0.5, 16
 
     def __init__(
         self, border: Bordered, residual: Callable[[PETSc.Vec, PETSc.Vec], bool], x: PETSc.Vec, phases: Phases
     ) -> None:
         self.border, self.residual, self.x, self.phases = border, residual, x, phases
         self.trial, self.force = x.duplicate(), x.duplicate()
+        self.descend = False
 
     def setUp(self, pc: PETSc.PC) -> None:
         with self.phases("factor"):
@@ -52,7 +58,7 @@ class SearchedStep:
         low, low_value, high, high_value = 0.0, 1.0, 1.0, slope(1.0)
         t, value = 1.0, high_value
         for _ in range(self.TRIALS):
-            if abs(value) <= self.TARGET or (t == 1.0 and value > 0.0):
+            if (0.0 if self.descend else -self.TARGET) <= value <= self.TARGET or (t == 1.0 and value > 0.0):
                 break
             t = low + (high - low) * float(np.clip(low_value / (low_value - high_value), 0.1, 0.9))
             value = slope(t)
@@ -60,4 +66,4 @@ class SearchedStep:
                 low, low_value, high_value = t, value, 0.5 * high_value
             else:
                 high, high_value, low_value = t, value, 0.5 * low_value
-        step.scale(t)
+        step.scale(low if self.descend and value < 0.0 else t)

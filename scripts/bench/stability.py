@@ -27,7 +27,8 @@ from elements import element_rows  # noqa: E402
 from small_drive import PLANE, environment, on_ranks, run_command  # noqa: E402
 
 Row = dict[str, Any]
-COLUMNS = ("group", "case", "status", "newton_max", "newton_all", "cutbacks", "unbalanced", "drift", "wall_s", "reason")
+COLUMNS = ("group", "case", "status", "newton_max", "newton_all", "cutbacks", "cycles", "unbalanced", "drift", "wall_s")
+COLUMNS += ("reason",)
 REPEATED = ("fs_s1", "fs_s3", "fs_vm", "wg_torque_Nmm")
 """Columns of the history that repeat after one period."""
 
@@ -46,13 +47,14 @@ def study_text(name: str, group: Group) -> str:
     return "\n\n".join(text) + "\n"
 
 
-def run_group(name: str, group: Group, out: Path, ranks: int) -> list[Row]:
-    """Run one group as a study; a row for every case."""
+def run_group(name: str, group: Group, out: Path, ranks: int, restart: bool) -> list[Row]:
+    """Run one group as a study, or continue it; a row for every case."""
     folder = out / "".join(c if c.isalnum() else "_" for c in name)
     folder.mkdir(parents=True, exist_ok=True)
     study, result = folder / "study.toml", folder / "results"
     study.write_text(study_text(name, group), encoding="utf-8")
-    command = [sys.executable, "-m", "swgpar.cli", "study", str(study), "--out", str(result), "--overwrite"]
+    command = [sys.executable, "-m", "swgpar.cli", "study", str(study), "--out", str(result)]
+    command.append("--restart" if restart else "--overwrite")
     with (folder / "log.txt").open("w") as log:
         subprocess.run([*on_ranks(ranks), *command], stdout=log, stderr=log, env=environment())
     with (result / "study.csv").open(encoding="utf-8") as file:
@@ -84,11 +86,12 @@ def measured(folder: Path, case: dict[str, Any]) -> Row:
         "newton_max": max(newton, default=""),
         "newton_all": sum(newton),
         "cutbacks": log.count("cut back to"),
+        "cycles": log.count("return without progress"),
     }
     torque = max((abs(r["output_torque_Nmm"]) for r in rows), default=0.0)
     if torque:
         out["unbalanced"] = max(r["torque_balance_Nmm"] for r in rows) / torque
-    turned = [r for r in rows if r["step"] >= 4]
+    turned = [r for r in rows if int(r["step"]) >= 4]
     if not case.get("contact.friction") and len(turned) == 3:
         out["drift"] = drift(turned[0], turned[-1])
     return out
@@ -132,10 +135,11 @@ def line(name: str, rows: list[Row]) -> str:
 
     newton = max((int(r["newton_max"]) for r in rows if r.get("newton_max", "") != ""), default=0)
     cuts = sum(int(r.get("cutbacks") or 0) for r in rows)
-    return f"{name:40s}{counted}{newton:7d}{cuts:10d}{largest('unbalanced')}{largest('drift')}"
+    cycles = sum(int(r.get("cycles") or 0) for r in rows)
+    return f"{name:40s}{counted}{newton:7d}{cuts:10d}{cycles:7d}{largest('unbalanced')}{largest('drift')}"
 
 
-HEADER = f"{'group':40s}{'converged':>10s}{'refused':>10s}{'failed':>10s}{'Newton':>7s}{'cut-backs':>10s}"
+HEADER = f"{'group':40s}{'converged':>10s}{'refused':>10s}{'failed':>10s}{'Newton':>7s}{'cut-backs':>10s}{'cycles':>7s}"
 HEADER += f"{'unbalanced':>11s}{'drift':>11s}"
 
 
@@ -143,10 +147,11 @@ def main() -> None:
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--out", default="results/bench/stability")
     options.add_argument("--tables", default="docs/benchmarks")
-    options.add_argument("--ranks", type=int, default=2, help="cases that are computed at once")
+    options.add_argument("--at-once", type=int, default=2, help="cases that are computed at once")
     options.add_argument("--most-ranks", type=int, default=8, help="largest number of ranks on one case")
     options.add_argument("--random", type=int, default=200, help="number of random plane designs")
     options.add_argument("--seed", type=int, default=1)
+    options.add_argument("--restart", action="store_true", help="keep the cases that an earlier call has finished")
     options.add_argument("--only", nargs="+", default=None, help="words of the names of the groups to run")
     arguments = options.parse_args()
     out, tables = Path(arguments.out).resolve(), Path(arguments.tables)
@@ -154,7 +159,7 @@ def main() -> None:
     numbers = [n for n in (1, 2, 3, 4, 8) if n <= arguments.most_ranks]
     work = {"elements": element_rows, "ranks": lambda: run_on_ranks(out, numbers)}
     for name, group in groups(arguments.random, arguments.seed).items():
-        work[name] = lambda name=name, group=group: run_group(name, group, out, arguments.ranks)
+        work[name] = lambda name=name, group=group: run_group(name, group, out, arguments.at_once, arguments.restart)
     table = tables / "stability.csv"
     rows: list[Row] = []
     if table.exists():  # groups that do not run now keep their rows

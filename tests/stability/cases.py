@@ -171,7 +171,7 @@ def _draw(rng: np.random.Generator) -> Case:
     def number(low: float, high: float) -> float:
         return round(float(rng.uniform(low, high)), 4)
 
-    teeth = 2 * int(rng.integers(20, 120))
+    teeth = 2 * int(rng.integers(10, 60))
     module = float(rng.choice([0.3, 0.5, 1.0, 2.0]))
     kind = rng.choice(["quadruple_arc", "double_arc", "involute"], p=[0.6, 0.2, 0.2])
     profile = {
