@@ -4,7 +4,7 @@ Newton's iteration on contact is one over sets: which points of cam, pins and fl
 slip. It cycles when a set returns although the residual has not fallen meanwhile. It cannot go on for ever in any case:
 an increment has at most `solver.max_iterations` of them, and is halved at most `solver.max_cutbacks` times.
 
-The way out is a line search that ends on the descending side (`SearchedStep.descend`). Without friction residual and
+The way out is a line search that ends on the descending side (`SearchedStep.careful`). Without friction residual and
 tangent are the derivatives of a potential, and for given segments and a convex potential that ends every cycle:
 
 1. Along a Newton step s from x the slope of the potential starts at -F . s < 0 and only grows, by convexity.

@@ -309,9 +309,9 @@ class Equilibrium:
             return PETSc.SNES.ConvergedReason.CONVERGED_ITS
         if its >= self.design.solver.max_iterations:
             return PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT
-        if not self.step.descend and self.visited.returns(fingerprint(self.partition.comm, self._active_sets()), ratio):
+        if not self.step.careful and self.visited.returns(fingerprint(self.partition.comm, self._active_sets()), ratio):
             logger.info("   contacts of Newton iteration %d return without progress: careful line search", its)
-            self.step.descend = True
+            self.step.careful = True
         return None
 
     def _active_sets(self) -> list[np.ndarray]:
@@ -334,7 +334,7 @@ class Equilibrium:
         tolerance = self.design.contact.penetration_tolerance * self.design.drive.module
         while True:
             self.history, self.stale, self.tried = [], False, None
-            self.visited, self.step.descend = VisitedSets(), False
+            self.visited, self.step.careful = VisitedSets(), False
             self.soften(soften.pop(0) if soften else 1.0)
             self.snes.solve(None, self.x)
             reason = self.snes.getConvergedReason()

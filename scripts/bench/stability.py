@@ -22,15 +22,13 @@ from swgpar.results import history
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests/stability")]
-from cases import MESH, Group, groups, toml_value  # noqa: E402
+from cases import MESH, Group, drift, groups, toml_value  # noqa: E402
 from elements import element_rows  # noqa: E402
 from small_drive import PLANE, environment, on_ranks, run_command  # noqa: E402
 
 Row = dict[str, Any]
 COLUMNS = ("group", "case", "status", "newton_max", "newton_all", "cutbacks", "cycles", "unbalanced", "drift", "wall_s")
 COLUMNS += ("reason",)
-REPEATED = ("fs_s1", "fs_s3", "fs_vm", "wg_torque_Nmm")
-"""Columns of the history that repeat after one period."""
 
 
 def study_text(name: str, group: Group) -> str:
@@ -95,11 +93,6 @@ def measured(folder: Path, case: dict[str, Any]) -> Row:
     if not case.get("contact.friction") and len(turned) == 3:
         out["drift"] = drift(turned[0], turned[-1])
     return out
-
-
-def drift(first: Row, last: Row) -> float:
-    """Largest relative difference of two rows of a history that should agree."""
-    return max(abs(last[k] - first[k]) / max(abs(first[k]), 1e-300) for k in REPEATED)
 
 
 def run_on_ranks(out: Path, numbers: Iterable[int]) -> list[Row]:

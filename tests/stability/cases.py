@@ -6,7 +6,7 @@ Groups serve the tests of this folder and `scripts/bench/stability`. All run on 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -219,6 +219,15 @@ def _draw(rng: np.random.Generator) -> Case:
         "load.torque": number(0.0, 4.0) * module**3 * teeth / 120,
         "contact.friction": float(rng.choice([0.0, 0.0, 0.1, 0.3])),
     }
+
+
+REPEATED = ("fs_s1", "fs_s3", "fs_vm", "wg_torque_Nmm")
+"""Columns of the history that repeat after one period."""
+
+
+def drift(first: Mapping[str, Any], last: Mapping[str, Any]) -> float:
+    """Largest relative difference of two rows of histories that should agree."""
+    return max(abs(last[k] - first[k]) / max(abs(first[k]), 1e-300) for k in REPEATED)
 
 
 DECADES = (0.5, 5.0, 50.0, 500.0, 5000.0)
