@@ -4,8 +4,8 @@ Every group of `tests/stability/cases.py` is a study on a small mesh, a case at 
 of three ways: it converges, it is refused by one sentence before anything is computed, or it fails (does not converge).
 stability.csv has a row for every case: Newton iterations (largest number in one increment, and all), cut-backs, the
 torque that is left unbalanced over the output's torque, and how far the state has moved after one period (stresses and
-input torque, relative; without friction, which needs a period to settle). Further groups: elements by themselves, and
-numbers of ranks, on which the drift is the difference from one rank.
+input torque, relative; without friction, which needs a period to settle). The drift of other systems of units and of
+more ranks is the difference from the first ones. stability.md has the table by group.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from swgpar.results import history
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests/stability")]
-from cases import MESH, Group, drift, groups, toml_value  # noqa: E402
+from cases import MESH, REPEATED, UNITS, UNITS_GROUP, Group, drift, groups, toml_value  # noqa: E402
 from elements import element_rows  # noqa: E402
 from small_drive import PLANE, environment, on_ranks, run_command  # noqa: E402
 
@@ -58,10 +58,23 @@ def run_group(name: str, group: Group, out: Path, ranks: int, restart: bool) -> 
     with (result / "study.csv").open(encoding="utf-8") as file:
         outcomes = list(csv.DictReader(file))
     cases = group.cases()
-    return [
+    rows = [
         {"group": name, "case": o["case"], **verdict(o), **measured(result / "cases" / o["case"], cases[o["case"]])}
         for o in outcomes
     ]
+    if name == UNITS_GROUP:
+        compare_units(result / "cases", rows)
+    return rows
+
+
+def compare_units(folder: Path, rows: list[Row]) -> None:
+    """Replace the drift by the difference from the first system of units, of the last increment."""
+    scaled = {}
+    for name, length, force in UNITS:
+        last = history.read_history(next((folder / name).rglob(history.NAME)))[-1]
+        scaled[name] = {k: last[k] / (force * length if "torque" in k else force / length**2) for k in REPEATED}
+    for row in rows:
+        row["drift"] = drift(scaled[UNITS[0][0]], scaled[row["case"]])
 
 
 def verdict(outcome: dict[str, str]) -> Row:
@@ -118,22 +131,40 @@ def run_on_ranks(out: Path, numbers: Iterable[int]) -> list[Row]:
 SHORT = ("steps.rotation=2.0", "steps.increment=2.0")
 
 
-def line(name: str, rows: list[Row]) -> str:
-    """One line of the table of groups."""
-    counted = "".join(f"{sum(r['status'] == s for r in rows):10d}" for s in ("converged", "refused", "failed"))
+def counted(name: str, rows: list[Row]) -> list[str]:
+    """The group's row of the table of groups."""
+
+    def values(key: str) -> list[float]:
+        return [float(r[key]) for r in rows if r.get(key, "") != ""]
 
     def largest(key: str) -> str:
-        values = [float(r[key]) for r in rows if r.get(key, "") != ""]
-        return f"{max(values):11.1e}" if values else f"{'':11s}"
+        return f"{max(values(key)):.1e}" if values(key) else ""
 
-    newton = max((int(r["newton_max"]) for r in rows if r.get("newton_max", "") != ""), default=0)
-    cuts = sum(int(r.get("cutbacks") or 0) for r in rows)
-    cycles = sum(int(r.get("cycles") or 0) for r in rows)
-    return f"{name:40s}{counted}{newton:7d}{cuts:10d}{cycles:7d}{largest('unbalanced')}{largest('drift')}"
+    numbers = [sum(r["status"] == status for r in rows) for status in ("converged", "refused", "failed")]
+    numbers += [max(values("newton_max"), default=0), sum(values("cutbacks")), sum(values("cycles"))]
+    return [name, *(f"{n:.0f}" for n in numbers), largest("unbalanced"), largest("drift")]
 
 
-HEADER = f"{'group':40s}{'converged':>10s}{'refused':>10s}{'failed':>10s}{'Newton':>7s}{'cut-backs':>10s}{'cycles':>7s}"
-HEADER += f"{'unbalanced':>11s}{'drift':>11s}"
+HEADER = ["group", "converged", "refused", "failed", "Newton", "cut-backs", "cycles", "unbalanced", "drift"]
+
+
+def line(cells: list[str]) -> str:
+    return f"{cells[0]:40s}" + "".join(f"{cell:>11s}" for cell in cells[1:])
+
+
+BEGIN, END = "<!-- table -->", "<!-- end of table -->"
+
+
+def write_page(page: Path, rows: list[Row]) -> None:
+    """Put the table of groups, and the cases that did not converge, between the page's marks."""
+    names = list(dict.fromkeys(row["group"] for row in rows))
+    table = [HEADER, ["---"] * len(HEADER), *(counted(n, [r for r in rows if r["group"] == n]) for n in names)]
+    text = "\n".join("| " + " | ".join(cells) + " |" for cells in table) + "\n"
+    others = [f"- {r['group']}, {r['case']}: {r['status']}: {r['reason']}" for r in rows if r["status"] != "converged"]
+    text += "\n" + "\n".join(others) + "\n" if others else ""
+    old = page.read_text(encoding="utf-8") if page.exists() else f"# Stability\n\n{BEGIN}\n{END}\n"
+    head, tail = old.partition(BEGIN)[0], old.partition(END)[2]
+    page.write_text(f"{head}{BEGIN}\n{text}{END}{tail}", encoding="utf-8")
 
 
 def main() -> None:
@@ -158,17 +189,18 @@ def main() -> None:
     if table.exists():  # groups that do not run now keep their rows
         with table.open(encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
-    print(HEADER, flush=True)
+    print(line(HEADER), flush=True)
     for name, run in work.items():
         if arguments.only and not any(word in name for word in arguments.only):
             continue
         found = run()
-        rows = [row for row in rows if row["group"] != name] + found
-        print(line(name, found), flush=True)
+        rows = sorted([r for r in rows if r["group"] != name] + found, key=lambda r: list(work).index(r["group"]))
+        print(line(counted(name, found)), flush=True)
         with table.open("w", newline="", encoding="utf-8") as file:
             writer = csv.DictWriter(file, COLUMNS, restval="", lineterminator="\n")
             writer.writeheader()
-            writer.writerows(sorted(rows, key=lambda row: list(work).index(row["group"])))
+            writer.writerows(rows)
+        write_page(table.with_suffix(".md"), rows)
 
 
 if __name__ == "__main__":

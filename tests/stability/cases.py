@@ -107,6 +107,7 @@ def units(design: Path = SMALL) -> Cases:
     return cases
 
 
+UNITS_GROUP = "units, cup"
 UNITS = (
     ("mm_N", 1.0, 1.0),
     ("m_N", 1e-3, 1.0),
@@ -152,13 +153,13 @@ def cams() -> Cases:
     return {name: {"wave_generator": {**table, "face_width": 10.0}} for name, table in wave.items()}
 
 
-def random_designs(count: int, seed: int) -> Cases:
-    """Plane drives with any profile and cam, some with friction, backlash or the other layout, that can be built."""
+def random_designs(count: int, seed: int, model: str = "plane") -> Cases:
+    """Drives with any profile and cam, some with friction, backlash or the other layout, that can be built."""
     rng, cases = np.random.default_rng(seed), {}
     recipe, drawn = load_recipe(MESH), 0
     while len(cases) < count:
         drawn += 1
-        case = _draw(rng)
+        case = _draw(rng, model)
         try:
             build_sector_meshes(make_design(table_of(PLANE, case)), recipe)
         except InputError:
@@ -167,7 +168,7 @@ def random_designs(count: int, seed: int) -> Cases:
     return cases
 
 
-def _draw(rng: np.random.Generator) -> Case:
+def _draw(rng: np.random.Generator, model: str) -> Case:
     def number(low: float, high: float) -> float:
         return round(float(rng.uniform(low, high)), 4)
 
@@ -202,13 +203,30 @@ def _draw(rng: np.random.Generator) -> Case:
     cam_kind = str(rng.choice(list(cam)))
     wave = {"type": cam_kind, **cam[cam_kind](), "face_width": width}
     c_l = 0.0 if kind == "double_arc" else 0.5
+    rim, torque = number(0.5, 1.6) * module * teeth / 120, number(0.0, 4.0) * module**3 * teeth / 120
+    cup: Case = {}
+    if model == "cup":
+        torque *= 10.0
+        cup["cup"] = {
+            "length": number(0.5, 1.5) * a,
+            "thickness_coef": number(0.5, 0.95),
+            "fillet_radius": number(1.0, 3.0) * rim,
+            "inner_radius": number(0.2, 0.5) * a,
+        }
+        cup["micro_geometry"] = {
+            "wg_crowning": number(0.0, 0.1) * module,
+            "wg_slope": number(0.0, 0.1) * module,
+            "fs_crowning": number(0.0, 0.05) * module,
+        }
     return {
+        **cup,
+        "drive.model": model,
         "drive.teeth_fs": teeth,
         "drive.teeth_rg": teeth + 2,
         "drive.module": module,
         "drive.face_width": width,
         "drive.layout": str(rng.choice(["ring_fixed", "spline_fixed"])),
-        "flexible_spline.rim": number(0.5, 1.6) * module * teeth / 120,
+        "flexible_spline.rim": rim,
         "ring_gear.rim": 2.0 * module,
         "ring_gear.c_P": 1.0 if kind == "involute" else number(0.85, 1.0),
         "flexible_spline.profile": profile,
@@ -216,7 +234,7 @@ def _draw(rng: np.random.Generator) -> Case:
         "flexible_spline.c_l": c_l,
         "ring_gear.c_l": c_l,
         "wave_generator": wave,
-        "load.torque": number(0.0, 4.0) * module**3 * teeth / 120,
+        "load.torque": torque,
         "contact.friction": float(rng.choice([0.0, 0.0, 0.1, 0.3])),
     }
 
@@ -241,7 +259,7 @@ def groups(count: int, seed: int) -> dict[str, Group]:
     tolerances = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
     return {
         "Poisson's ratio, cup": Group(SMALL, lambda: each("material.nu", (0.0, 0.3, 0.45, 0.49, 0.499))),
-        "units, cup": Group(SMALL, units),
+        UNITS_GROUP: Group(SMALL, units),
         "penalty of the flanks, cup": Group(SMALL, lambda: each("contact.penalty_coef", DECADES)),
         "penalty of the cam, cup": Group(SMALL, lambda: each("contact.wg_penalty_coef", [c / 10.0 for c in DECADES])),
         "penalty without augmentation, plane": Group(
@@ -278,4 +296,5 @@ def groups(count: int, seed: int) -> dict[str, Group]:
         "cams, plane": Group(PLANE, cams),
         "face width (aspect ratio), cup": Group(SMALL, lambda: widths((0.2, 1.0, 4.0, 20.0, 60.0, 200.0, 1000.0))),
         "random designs, plane": Group(PLANE, lambda: random_designs(count, seed)),
+        "random designs, cup": Group(PLANE, lambda: random_designs(count // 10, seed, "cup")),
     }
