@@ -120,6 +120,10 @@ class DriveModel:
         """Release the solver and its factor, which Python cannot: PETSc holds references in a circle. Collective."""
         self.equilibrium.destroy()
 
+    def elements_whole(self) -> int:
+        """Elements of the whole drive."""
+        return sum(b["elements_whole"] for b in self.counts().values())
+
     def counts(self) -> dict[str, Any]:
         """Nodes, elements and unknowns per body, modelled and of the whole drive."""
         out = {}
@@ -195,6 +199,11 @@ class Runner:
         self.scene, self.visited = start(self.design), []
         self.equilibrium.x.set(0.0)
         self.equilibrium.resume({})
+
+    def take(self, scene: Scene) -> None:
+        """Take the model's present state as that of `scene`."""
+        self.scene = scene
+        self.visited = [(scene.angle, self.equilibrium.x.copy())]
 
     def advance(self, target: Scene) -> None:
         """Solve up to `target`, halving the way when Newton's iteration fails; raises ConvergenceError at the end."""

@@ -10,11 +10,19 @@ from collections.abc import Callable
 
 from petsc4py import PETSc
 
-RTOL = 1e-4
-"""Of GMRES: a Newton step that exact loses nothing but its last, quadratic, iteration."""
+RTOL, LOOSEST = 1e-4, 1e-3
+"""Of GMRES: a Newton step that exact loses nothing but its last, quadratic, iteration; and while contacts still switch,
+where a step need not be exact."""
 
-ENOUGH, LONGEST = 20, 40
-"""Iterations after which the factor is renewed before the next system, and at once."""
+FORCING = 0.5
+"""Share of the square of the residual's last decrease that GMRES leaves (Eisenstat and Walker, 1996, choice 2)."""
+
+PRICE, LONGEST = 30, 40
+"""Iterations that cost as much as a factorisation, and those after which one is made at once.
+
+The factor is renewed when the iterations that it cost beyond those of its best solve have reached its price: whatever
+follows, this takes at most twice the time of the best choice.
+"""
 
 Operation = Callable[[PETSc.Vec, PETSc.Vec], None]
 """Computes its second argument from the first."""
@@ -36,6 +44,7 @@ class KeptFactor:
         self.fresh, self.stale = False, True
         self.layout: tuple[int, ...] = ()
         self.iterations: list[int] = []
+        self.norm, self.least, self.lost = 0.0, LONGEST, 0
         operator = PETSc.Mat().createPython([like.getSizes()] * 2, _Multiply(multiply), comm=like.comm)
         operator.setUp()
         self.ksp = PETSc.KSP().create(comm=like.comm)
@@ -43,7 +52,6 @@ class KeptFactor:
         self.ksp.setOperators(operator)
         self.ksp.setType(PETSc.KSP.Type.GMRES)
         self.ksp.setPCSide(PETSc.PC.Side.RIGHT)
-        self.ksp.setTolerances(rtol=RTOL, max_it=LONGEST)
         self.ksp.setGMRESRestart(LONGEST)
         pc = self.ksp.getPC()
         pc.setType(PETSc.PC.Type.PYTHON)
@@ -57,17 +65,27 @@ class KeptFactor:
     def renewed(self, layout: tuple[int, ...]) -> None:
         """The factor is that of the present system now. layout : what a system must share to be served"""
         self.fresh, self.stale, self.layout = True, False, layout
+        self.least, self.lost = LONGEST, 0
 
     def serves(self, layout: tuple[int, ...]) -> bool:
         """Whether the factor is to be used with a new system."""
         self.fresh = False
         return not self.stale and self.layout == layout
 
+    def faces(self, right: PETSc.Vec) -> None:
+        """Take note of Newton's residual, the right-hand side of the present system."""
+        before, self.norm = self.norm, right.norm()
+        forcing = FORCING * (self.norm / before) ** 2 if before > 0.0 else LOOSEST
+        self.ksp.setTolerances(rtol=min(max(forcing, RTOL), LOOSEST), max_it=LONGEST)
+
     def solve(self, right: PETSc.Vec, x: PETSc.Vec) -> bool:
-        """Solve the present system by GMRES; whether that converged."""
+        """Solve the present system as exactly as its place in Newton's iteration asks; whether GMRES converged."""
         self.ksp.solve(right, x)
-        self.iterations.append(self.ksp.getIterationNumber())
-        self.stale = self.iterations[-1] > ENOUGH
+        count = self.ksp.getIterationNumber()
+        self.iterations.append(count)
+        self.least = min(self.least, count)
+        self.lost += count - self.least
+        self.stale = self.lost >= PRICE
         return self.ksp.getConvergedReason() > 0
 
 

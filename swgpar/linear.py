@@ -142,14 +142,7 @@ class Bordered:
         sides = self.grounding + self.border
         if len(self.columns) != len(sides):
             self.columns = [vector.duplicate() for vector in sides]
-        self.ksp.setInitialGuessNonzero(self.modes is not None)  # those of the last tangent
-        self.failed = False
-        for vector, solution in zip(sides, self.columns):
-            self._solve(vector, solution)
-            if self.ksp.getConvergedReason() < 0:
-                self.failed = True
-                solution.set(0.0)  # nothing to start the next tangent's from
-        self.ksp.setInitialGuessNonzero(False)
+        self._solve_sides(sides)
         b, c, nb = self.grounding, self.border, len(self.grounding)
         small = np.array([[left.dot(right) for right in self.columns] for left in b + c]).reshape(len(b + c), -1)
         system = np.zeros_like(small)
@@ -161,6 +154,31 @@ class Bordered:
         if self.kept is not None:
             self.kept.renewed(self._layout())
 
+    def _solve_sides(self, sides: list[PETSc.Vec]) -> None:
+        """Columns Z, the solutions for the borders."""
+        self.failed = False
+        if self.modes is None and self.ksp.getConvergedReason() >= 0:
+            # all at once: a solve is bound by reading the factor
+            dims, (n, rows) = self.partition.dims, self.matrix.getSizes()[0]
+            into = PETSc.Mat().createDense([[n, rows], [None, len(sides)]], comm=self.partition.comm)
+            into.setUp()
+            for k, vector in enumerate(sides):
+                into.getDenseArray()[:, k] = vector.array_r.reshape(-1, 3)[:, :dims].ravel()
+            into.assemble()
+            out = into.duplicate()
+            self.ksp.getPC().getFactorMatrix().matSolve(into, out)
+            for k, solution in enumerate(self.columns):
+                solution.set(0.0)
+                solution.array.reshape(-1, 3)[:, :dims] = out.getDenseArray()[:, k].reshape(-1, dims)
+            return
+        self.ksp.setInitialGuessNonzero(self.modes is not None)  # those of the last tangent
+        for vector, solution in zip(sides, self.columns):
+            self._solve(vector, solution)
+            if self.ksp.getConvergedReason() < 0:
+                self.failed = True
+                solution.set(0.0)  # nothing to start the next tangent's from
+        self.ksp.setInitialGuessNonzero(False)
+
     def multipliers(self, vector: PETSc.Vec) -> np.ndarray:
         """The multiplier entries of a full-length vector, on every rank."""
         comm, last, n = self.partition.comm, self.partition.comm.size - 1, self.partition.n_multipliers
@@ -169,6 +187,8 @@ class Bordered:
         return values
 
     def apply(self, pc: PETSc.PC, right: PETSc.Vec, x: PETSc.Vec) -> None:
+        if self.kept is not None:
+            self.kept.faces(right)
         if self.kept is not None and not self.kept.fresh:
             # the bound needs the answer to a unit of load, which GMRES does not give
             if self.kept.solve(right, x) and (self.bound is None or abs(self.border[-1].dot(x)) < self.bound):

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from mpi4py import MPI
 from petsc4py import PETSc
 from scipy.sparse import csr_matrix
 from scipy.spatial import Delaunay, cKDTree
@@ -129,6 +130,39 @@ class CoarserLevel:
     stresses: dict[str, float]
 
 
+def level_of(model: DriveModel) -> CoarserLevel:
+    """Elements and stresses of a model in its loaded state."""
+    return CoarserLevel(model.elements_whole(), stresses(model)[0])
+
+
+def load(
+    design: DriveDesign, recipe: MeshRecipe, items: list[Scene], comm: MPI.Comm, below: DriveModel | None = None
+) -> DriveModel:
+    """The drive on one mesh in its loaded state, continued from that of the coarser model `below`, which is released.
+
+    items : all increments of the run. Raises ConvergenceError or InputError where a mesh does not allow it.
+    """
+    way = None
+    try:
+        way = Runner(DriveModel(design, recipe, comm))
+        todo = [item for item in items if item.step <= LOADED]
+        if below is not None:
+            take_over(below, way, todo[-1])
+            below, todo = None, todo[-1:]
+        iterations = []
+        for item in todo:
+            way.increment(item)
+            iterations.append(way.iterations)
+    except SwgparError:
+        for model in (below, way and way.model):
+            if model is not None:
+                model.destroy()
+        raise
+    counted = " + ".join(map(str, iterations))
+    logger.info("loaded on a mesh of %d elements, Newton iterations %s", way.model.elements_whole(), counted)
+    return way.model
+
+
 def start_loaded(runner: Runner, recipes: list[MeshRecipe], items: list[Scene]) -> CoarserLevel:
     """Bring `runner` to the loaded state by way of coarser meshes, the coarsest of `recipes` first.
 
@@ -136,33 +170,17 @@ def start_loaded(runner: Runner, recipes: list[MeshRecipe], items: list[Scene]) 
     then to be reset.
     """
     target, below = runner.model, None
+    loaded = from_loaded(items)[0]
     with target.phases("start"):
-        try:
-            for recipe in recipes:
-                model = DriveModel(target.design, recipe, target.comm)
-                way = Runner(model)
-                todo = [item for item in items if item.step <= LOADED]
-                if below is not None:
-                    _continue(below, way, todo[-1])
-                    todo = todo[-1:]
-                below, iterations = model, []
-                for item in todo:
-                    way.increment(item)
-                    iterations.append(way.iterations)
-                count = sum(b["elements_whole"] for b in model.counts().values())
-                counted = " + ".join(map(str, iterations))
-                logger.info("loaded on a mesh of %d elements, Newton iterations %s", count, counted)
-            level = CoarserLevel(count, stresses(below)[0])
-            _continue(below, runner, todo[-1])
-        except SwgparError:
-            if below is not None:
-                below.destroy()
-            raise
-        runner.increment(todo[-1])
+        for recipe in recipes:
+            below = load(target.design, recipe, items, target.comm, below)
+        level = level_of(below)
+        take_over(below, runner, loaded)
+        runner.increment(loaded)
     return level
 
 
-def _continue(below: DriveModel, runner: Runner, loaded: Scene) -> None:
+def take_over(below: DriveModel, runner: Runner, loaded: Scene) -> None:
     """Take over the loaded state of a coarser model, and release that."""
     transfer(below, below.equilibrium.x, runner.model, runner.equilibrium.x)
     below.destroy()

@@ -17,8 +17,18 @@ Row = dict[str, Any]
 
 
 def of_period(design: DriveDesign, rows: list[Row]) -> list[Row]:
-    """The last `steps.samples` rows: those that are continued, the last period computed."""
+    """The last `steps.samples` rows: those that are continued, without friction from the loaded state on."""
     return rows[-design.steps.samples :]
+
+
+def sampling_error(design: DriveDesign, rows: list[Row], names: tuple[str, ...]) -> dict[str, float]:
+    """How far the means over the period are from those of every second sample; empty for odd numbers of samples."""
+    if design.steps.samples % 2:
+        return {}
+    period = of_period(design, rows)
+    return {
+        name: abs(float(np.mean([r[name] for r in period]) - np.mean([r[name] for r in period[::2]]))) for name in names
+    }
 
 
 def continued(design: DriveDesign, rows: list[Row]) -> list[Row]:

@@ -17,6 +17,7 @@ from petsc4py import PETSc
 
 import swgpar
 from swgpar import log
+from swgpar.accuracy import Chosen, choose, with_accuracy
 from swgpar.assembly import write_field
 from swgpar.contact import friction
 from swgpar.contact.pressure import nodal_pressure
@@ -25,9 +26,10 @@ from swgpar.error_estimate import estimate
 from swgpar.errors import ConvergenceError, InputError, SwgparError
 from swgpar.incremental import DriveModel, Runner, stresses
 from swgpar.log import IncrementProgress, logger
-from swgpar.meshing import MeshRecipe, require_sections
+from swgpar.meshing import MeshRecipe, load_recipe, require_sections
+from swgpar.meshing.recipe import to_toml
 from swgpar.multilevel import CoarserLevel, from_loaded, levels, start_loaded
-from swgpar.period import continued, of_period
+from swgpar.period import continued, of_period, sampling_error
 from swgpar.results import checkpoint, history
 from swgpar.results.atomic import agreed, to_json, write_from_root
 from swgpar.results.fields import FieldWriter
@@ -37,6 +39,9 @@ from swgpar.steps import Scene, sequence
 
 FIRST_ROTATION = 4
 """Step number of the first rotation increment: means are taken from there on."""
+
+RECIPE = "recipe.toml"
+"""File of a results folder: the mesh recipe that was chosen for an accuracy."""
 
 MEANS = ("fs_s1", "fs_s3", "fs_vm", "rg_s1", "rg_s3", "rg_vm", "wg_torque_Nmm")
 """Columns of the history whose means over the rotation are taken."""
@@ -203,12 +208,11 @@ def summarise(
     """
     comm, design = model.comm, model.design
     turning = [r for r in rows if int(r["step"]) >= FIRST_ROTATION]
-    if design.steps.samples:
-        turning = of_period(design, turning)
-    means = {k: float(np.mean([r[k] for r in turning])) for k in MEANS} if turning else {}
+    sampled = of_period(design, rows) if design.steps.samples else turning
+    means = {k: float(np.mean([r[k] for r in sampled])) for k in MEANS} if sampled else {}
     counts = model.counts()
     memory = comm.allgather(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0)
-    elements = sum(b["elements_whole"] for b in counts.values())
+    elements = model.elements_whole()
     expected = 1000.0 * design.load.torque / abs(design.ratio)
     return {
         "recipe": recipe_name,
@@ -230,6 +234,7 @@ def summarise(
         "peak_memory_MB_per_rank": [round(m, 1) for m in memory],
         "means": means,
         "mesh_error": mesh_error(rows, elements, coarser, model.partition.dims) if coarser else None,
+        "sampling_error": sampling_error(design, rows, MEANS) if design.steps.samples and means else None,
         "newton_iterations_mean": float(np.mean([r["newton_iterations"] for r in turning])) if turning else None,
         "balance_error_Nmm": max((r["torque_balance_Nmm"] for r in rows), default=0.0),
         "wg_torque_expected_Nmm": expected,
@@ -247,10 +252,12 @@ def run_drive(
     overwrite: bool = False,
     comm: MPI.Comm = MPI.COMM_WORLD,
     recipe_name: str = "",
+    accuracy: float | None = None,
     on_increment: Callable[[], None] | None = None,
 ) -> RunSummary:
     """Run a design and write its results to `out_dir`; collective.
 
+    accuracy : estimated relative error of the largest tensile stress up to which `recipe` is refined (`choose`)
     on_increment : called after every increment, instead of a report on the terminal
 
     Raises InputError, OutputError or ConvergenceError on all ranks. After a ConvergenceError everything up to the
@@ -263,9 +270,18 @@ def run_drive(
     log.start(comm, terminal=on_increment is None)
     with agreed(comm, out / "run.log"):
         log.to_file(out / "run.log", comm)
-    model = DriveModel(design, recipe, comm)
+    chosen = None
+    if accuracy is not None:
+        design = with_accuracy(design, accuracy)
+        if resumed:
+            recipe = load_recipe(out / RECIPE)
+        else:
+            chosen = choose(design, recipe, list(sequence(design)), accuracy, comm)
+            recipe = chosen.recipe
+            write_from_root(comm, out / RECIPE, to_toml(recipe).encode())
+    model = DriveModel(design, recipe, comm) if chosen is None else chosen.model
     try:
-        result = _compute(model, recipe, out, resumed, restart, begin, recipe_name, on_increment)
+        result = _compute(model, recipe, out, resumed, restart, begin, recipe_name, chosen, on_increment)
     except SwgparError:
         model.destroy()  # collective: not after an error that perhaps this rank alone has met
         raise
@@ -294,6 +310,7 @@ def _compute(
     restart: bool,
     begin: float,
     recipe_name: str,
+    chosen: Chosen | None,
     on_increment: Callable[[], None] | None,
 ) -> RunSummary:
     comm = model.comm
@@ -301,7 +318,7 @@ def _compute(
     counts = model.counts()
     logger.info(
         "%d elements, %d nodes in the whole drive; %d unknowns modelled%s; %d ranks",
-        sum(b["elements_whole"] for b in counts.values()),
+        model.elements_whole(),
         sum(b["nodes_whole"] for b in counts.values()),
         sum(b["dofs"] for b in counts.values()),
         " (half of it, by symmetry)" if model.copies == 2 else "",
@@ -314,10 +331,13 @@ def _compute(
         logger.info("restarted after increment %d", recorder.done)
     elif restart:
         logger.info("no increment was saved: starting from the beginning")
-    if not resumed:
+    if chosen is not None:
+        recorder.coarser = chosen.below
+        runner.take(from_loaded(items)[0])
+    elif not resumed:
         recorder.coarser = _start_on_coarser(runner, recipe, items)
-        if recorder.coarser is not None:
-            items = from_loaded(items)
+    if not resumed and recorder.coarser is not None:
+        items = from_loaded(items)
     with IncrementProgress(comm, len(items), done=recorder.done, terminal=on_increment is None) as progress:
         model.equilibrium.on_iteration = lambda scene, its, ratio: progress.newton(
             scene.name, np.degrees(scene.angle), its, ratio

@@ -106,10 +106,12 @@ def sequence(design: DriveDesign) -> Iterator[Scene]:
 def angles(design: DriveDesign) -> list[float]:
     """Angles (rad) of the wave generator at the ends of the increments of its rotation that are computed.
 
-    With `steps.samples` those of one period; with friction of two, in the first of which it settles.
+    With `steps.samples` those of one period, whose last angle is left out, as the drive is there in its loaded state
+    again; with friction those of two periods, in the first of which it settles.
     """
     steps = design.steps
     if steps.samples:
-        return [design.pitch * i / steps.samples for i in range(1, design.periods * steps.samples + 1)]
+        count = 2 * steps.samples if design.contact.friction else steps.samples - 1
+        return [design.pitch * i / steps.samples for i in range(1, count + 1)]
     count = int(np.ceil(round(steps.rotation / steps.increment, 9)))
     return [float(np.radians(min(i * steps.increment, steps.rotation))) for i in range(1, count + 1)]

@@ -73,3 +73,11 @@ def load_recipe(path: str | Path) -> MeshRecipe:
         return validate(MeshRecipe, table)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
+
+
+def to_toml(recipe: MeshRecipe) -> str:
+    """The recipe as `load_recipe` reads it."""
+    sections = recipe.model_dump(exclude_none=True).items()
+    return "\n".join(
+        f"[{name}]\n" + "".join(f"{key} = {value}\n" for key, value in section.items()) for name, section in sections
+    )

@@ -12,6 +12,7 @@ import pytest
 import pyvista
 from small_drive import (
     DESIGN,
+    PLANE,
     RECIPE,
     SHORT,
     assert_same_history,
@@ -22,6 +23,7 @@ from small_drive import (
     succeed,
 )
 
+from swgpar.meshing import load_recipe
 from swgpar.results import history
 
 CUP_ROTATION = Path(__file__).parents[2] / "drivers" / "cup_rotation.py"
@@ -134,10 +136,29 @@ def test_start_on_a_coarser_mesh_and_one_period(tmp_path: Path) -> None:
     assert [row["step"] for row in rows] == ["3", "4", "5"]
     assert len(list((out / "figures").glob("*.png"))) == 4
     summary = json.loads((out / "summary.json").read_text())
-    assert summary["increments"] == 3 and summary["phases_s"]["start"] > 0.0
+    assert summary["increments"] == 2 and summary["phases_s"]["start"] > 0.0
     assert 0.0 < summary["mesh_error"]["fs_s1"] < rows[0]["fs_s1"]
     succeed([*run_command(out), *overrides, "steps.rotation=20", "--restart"])
     longer = history.read_history(out / "history.csv")
     assert longer[:3] == rows and [row["step"] for row in longer] == ["3", "4", "5", "6", "7"]
     assert longer[-1]["wg_angle_deg"] == pytest.approx(2.0 * 360.0 / 42.0)
     assert longer[-1]["fs_s1"] == rows[-1]["fs_s1"]
+
+
+def test_an_accuracy_is_reached_by_refinement(tmp_path: Path) -> None:
+    """The estimate of the mesh that the run ends with is below what was asked for; a restart keeps that mesh."""
+    out = tmp_path / "run"
+    asked, pitch = 0.03, 360.0 / 42.0
+    command = run_command(out, "--accuracy", str(asked), overrides=[*PLANE, "steps.rotation=9"])
+    succeed(command)
+    summary = json.loads((out / "summary.json").read_text())
+    recipe = load_recipe(out / "recipe.toml")
+    print(f"{summary['elements']} elements, {summary['mesh_error']}")
+    assert recipe.flexible_spline.flank > load_recipe(RECIPE).flexible_spline.flank
+    rows = history.read_history(out / "history.csv")
+    assert summary["mesh_error"]["fs_s1"] < asked / (1.0 - asked) * rows[0]["fs_s1"]
+    assert set(summary["sampling_error"]) == set(summary["means"])
+    succeed([word.replace("rotation=9", f"rotation={2.1 * pitch}") for word in command] + ["--restart"])
+    longer = json.loads((out / "summary.json").read_text())
+    assert longer["elements"] == summary["elements"] and longer["means"] == summary["means"]
+    assert len(history.read_history(out / "history.csv")) > len(rows)

@@ -38,6 +38,7 @@ ORDER = (
     "multilevel",
     "plain_ring",
     "error_estimate",
+    "accuracy",
     "results",
     "report",
     "run",

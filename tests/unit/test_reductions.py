@@ -59,24 +59,24 @@ def test_levels() -> None:
 def test_one_period_is_continued_over_the_rotation() -> None:
     design = load_design(DATA / "small.toml", ["steps.samples=4", "steps.rotation=30"])
     pitch = 360.0 / 42
-    assert np.degrees(angles(design)) == pytest.approx([pitch * k / 4 for k in (1, 2, 3, 4)])
-    assert len(list(sequence(design))) == 7
+    assert np.degrees(angles(design)) == pytest.approx([pitch * k / 4 for k in (1, 2, 3)])
+    assert len(list(sequence(design))) == 6
     rows = [
         {
-            "step": str(4 + k),
+            "step": str(3 + k),
             "wg_angle_deg": np.degrees(a),
             "output_angle_deg": 1.0 - np.degrees(a) / 20.0,
             "fs_s1": 100.0 + k,
             "newton_iterations": 4,
             "wall_s": 1.0,
         }
-        for k, a in enumerate(angles(design))
+        for k, a in enumerate([0.0, *angles(design)])  # the loaded state is the first of the period
     ]
     history = continued(design, rows)
     assert history[:4] == rows
-    assert len(history) == 14 and history[-1]["wg_angle_deg"] == pytest.approx(14 * pitch / 4)
-    assert [row["fs_s1"] for row in history] == [100.0 + k % 4 for k in range(14)]
-    assert [row["step"] for row in history] == [str(4 + k) for k in range(14)]
+    assert len(history) == 15 and history[-1]["wg_angle_deg"] == pytest.approx(14 * pitch / 4)
+    assert [row["fs_s1"] for row in history] == [100.0 + k % 4 for k in range(15)]
+    assert [row["step"] for row in history] == [str(3 + k) for k in range(15)]
     # the output follows the line that the rows lie on
     expected = [1.0 - row["wg_angle_deg"] / 20.0 for row in history]
     assert [row["output_angle_deg"] for row in history] == pytest.approx(expected)

@@ -1,0 +1,112 @@
+"""A mesh for an accuracy: refined until the estimated error of the largest tensile stress is below what is asked for.
+
+The drive is assembled and loaded on a mesh with few elements; every finer one starts from the state before. The error
+of the loaded state is estimated from the last two meshes (`error_estimate`), so that the time goes into one mesh that
+suffices. Compressive stress is no measure: where edges carry, its largest value has no limit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from mpi4py import MPI
+
+from swgpar.design import DriveDesign
+from swgpar.error_estimate import estimate
+from swgpar.errors import InputError
+from swgpar.incremental import DriveModel
+from swgpar.log import logger
+from swgpar.meshing import MeshRecipe
+from swgpar.multilevel import CoarserLevel, coarser, level_of, load
+from swgpar.steps import Scene
+
+MEASURE = "fs_s1"
+"""Stress whose accuracy is asked for."""
+
+LOWEST, HIGHEST = 1e-3, 0.2
+"""Accuracies that may be asked for."""
+
+SAMPLES = ((0.02, 4), (0.005, 8), (0.0, 16))
+"""Angles in a period for accuracies from the first number on: see docs/benchmarks."""
+
+RTOL = 1e-5
+"""Newton's tolerance: its part in the error of the stresses is below the lowest accuracy by decades."""
+
+STEPS = (1.5, 2.0)
+"""Refinements of all counts to choose from."""
+
+LARGEST = {2: 400_000, 3: 700_000}
+"""Elements of the whole drive, plane and solid, beyond which no finer mesh is taken: some 20 GB."""
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """The model on the mesh chosen, in its loaded state, and the level below it. error : relative, estimated"""
+
+    model: DriveModel
+    recipe: MeshRecipe
+    below: CoarserLevel
+    error: float
+
+
+def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
+    """The design with the angles and the tolerance that suit an accuracy, where it does not say them itself.
+
+    Raises InputError where the accuracy is out of range or cannot be had.
+    """
+    if not LOWEST <= accuracy <= HIGHEST:
+        raise InputError(f"--accuracy {accuracy:g} is out of range: allowed {LOWEST:g} to {HIGHEST:g}")
+    if design.contact.friction:
+        raise InputError(
+            f"--accuracy needs contact.friction = 0, not {design.contact.friction:g}: with friction the loaded state "
+            "depends on the way to it and cannot be taken over from a coarser mesh"
+        )
+    changes = {}
+    whole_period = design.steps.rotation >= np.degrees(design.pitch)
+    if "samples" not in design.steps.model_fields_set and whole_period:
+        samples = next(count for least, count in SAMPLES if accuracy >= least)
+        changes["steps"] = design.steps.model_copy(update={"samples": samples})
+    if "rtol" not in design.solver.model_fields_set:
+        changes["solver"] = design.solver.model_copy(update={"rtol": RTOL})
+    return design.model_copy(update=changes)
+
+
+def refined(recipe: MeshRecipe, factor: float) -> MeshRecipe:
+    """The recipe with every count times `factor`, rounded up, gradings as they are; raises InputError beyond bounds."""
+    content = {
+        name: {key: -int(-factor * value // 1) if isinstance(value, int) else value for key, value in section.items()}
+        for name, section in recipe.model_dump(exclude_none=True).items()
+    }
+    return MeshRecipe.model_validate(content)
+
+
+def choose(design: DriveDesign, recipe: MeshRecipe, items: list[Scene], accuracy: float, comm: MPI.Comm) -> Chosen:
+    """Refine `recipe` until the estimated relative error of the largest tensile stress is at most `accuracy`.
+
+    items : all increments of the run. Ends with the finest mesh below the largest size where the accuracy is out of
+    reach, and says so. Raises ConvergenceError or InputError like a run on one of the meshes.
+    """
+    model, below = load(design, coarser(recipe), items, comm), None
+    while True:
+        last, below = model, level_of(model)
+        model = load(design, recipe, items, comm, last)
+        here = level_of(model)
+        dimensions = model.partition.dims
+        found = estimate(below.stresses[MEASURE], here.stresses[MEASURE], below.elements, here.elements, dimensions)
+        error = abs(found.error / found.converged) if found is not None else 1.0
+        logger.info(
+            "%d elements: s1 %.1f MPa under load, estimated error %.2g %%",
+            here.elements,
+            here.stresses[MEASURE],
+            100.0 * error,
+        )
+        factor = STEPS[0] if error <= STEPS[0] ** 2 * accuracy else STEPS[1]
+        full = here.elements * STEPS[0] ** dimensions > LARGEST[dimensions]
+        if error <= accuracy or full:
+            if error > accuracy:
+                logger.info("no finer mesh is taken beyond %d elements", LARGEST[dimensions])
+            return Chosen(model, recipe, below, error)
+        if here.elements * factor**dimensions > LARGEST[dimensions]:
+            factor = STEPS[0]
+        recipe = refined(recipe, factor)
