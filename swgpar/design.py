@@ -197,6 +197,10 @@ class DriveDesign(Section):
         return self.contact.wg_penalty_coef * self.material.E / self.drive.module
 
 
+BULGE_POINTS = 2000
+"""Points of the cam's outline at which it is checked."""
+
+
 def _refuse(key: str, value: float, allowed: str) -> None:
     raise InputError(f"{key} = {value:g} is out of range: allowed {allowed}")
 
@@ -275,7 +279,12 @@ def make_design(table: dict[str, Any]) -> DriveDesign:
     """Check the content of a design file; every problem is an `InputError` of one sentence."""
     design = validate(DriveDesign, table)
     check_fit(design)
-    for gear in ("flexible_spline", "ring_gear"):
-        make_profile(design, gear)
-    make_cam(design)
+    spline, ring = (make_profile(design, gear) for gear in ("flexible_spline", "ring_gear"))
+    bulge = float(np.linalg.norm(make_cam(design).outline(BULGE_POINTS), axis=1).max()) - design.a
+    clearance = max(ring.r_root_circle - spline.r_tip_circle - 0.5 * design.d, 1e-6 * design.a)
+    if bulge > clearance:
+        raise InputError(
+            f"wave_generator ({design.wave_generator.type}) bulges {bulge:.3g} mm beyond its major semi-axis: "
+            f"allowed up to {clearance:.3g} mm, where the flexible spline's teeth meet the ring gear's root circle"
+        )
     return design

@@ -13,12 +13,13 @@ from swgpar.contact.friction import FIRST_STEP, PairKey
 from swgpar.contact.rigid import CamPose, RigidContact
 from swgpar.contact.search import FlankPair, facing_flanks, largest
 from swgpar.contact.teeth import ToothContact
+from swgpar.cycling import VisitedSets, fingerprint
 from swgpar.design import DriveDesign
 from swgpar.far_teeth import FarTeeth
 from swgpar.holding import Holding
 from swgpar.line_search import SearchedStep
 from swgpar.linear import Bordered
-from swgpar.log import Phases
+from swgpar.log import Phases, logger
 from swgpar.partition import LocalNodes, Partition
 from swgpar.steps import Scene
 
@@ -111,8 +112,8 @@ class Equilibrium:
         ksp = self.snes.getKSP()
         ksp.setType(PETSc.KSP.Type.PREONLY)
         ksp.getPC().setType(PETSc.PC.Type.PYTHON)
-        step = SearchedStep(self.border, self._trial, self.x, phases)
-        ksp.getPC().setPythonContext(step)
+        self.step = SearchedStep(self.border, self._trial, self.x, phases)
+        ksp.getPC().setPythonContext(self.step)
         self.snes.setFromOptions()
         self.matrix: PETSc.Mat | None = None
         # SNES sees vectors of three unknowns per node, the matrix may have two: it is known to the border alone
@@ -308,7 +309,15 @@ class Equilibrium:
             return PETSc.SNES.ConvergedReason.CONVERGED_ITS
         if its >= self.design.solver.max_iterations:
             return PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT
+        if not self.step.careful and self.visited.returns(fingerprint(self.partition.comm, self._active_sets()), ratio):
+            logger.info("   contacts of Newton iteration %d return without progress: careful line search", its)
+            self.step.careful = True
         return None
+
+    def _active_sets(self) -> list[np.ndarray]:
+        scene = self.scene
+        sets = [c.pressure > 0.0 for c, on in ((self.rigid, scene.cam), (self.pins, scene.pins)) if on is not None]
+        return sets if scene.teeth is None else sets + self.teeth.active_set()
 
     def solve(self, scene: Scene, soft: bool = False) -> Solved:
         """Solve for equilibrium from the present x; x is the solution, or garbage when not converged.
@@ -325,6 +334,7 @@ class Equilibrium:
         tolerance = self.design.contact.penetration_tolerance * self.design.drive.module
         while True:
             self.history, self.stale, self.tried = [], False, None
+            self.visited, self.step.careful = VisitedSets(), False
             self.soften(soften.pop(0) if soften else 1.0)
             self.snes.solve(None, self.x)
             reason = self.snes.getConvergedReason()

@@ -1,245 +1,206 @@
-"""Drives under numerical stress: every group is a study of designs on a small mesh; out comes what converged.
+"""Drives and elements under numerical stress: what converges, what is refused, and how far the invariants drift.
 
-A case ends in one of three ways: it converges, it is refused by one sentence before anything is computed, or it fails
-(does not converge). The table has, by group, their numbers, the largest mean of Newton's iterations per increment, and
-the largest torque that is left unbalanced over the output's torque; cases.csv has every case, failures with their
-sentence. Random designs are drawn by seed, until as many as asked for can be built.
+Every group of `tests/stability/cases.py` is a study on a small mesh, a case at a time on every rank. A case ends in one
+of three ways: it converges, it is refused by one sentence before anything is computed, or it fails (does not converge).
+stability.csv has a row for every case: Newton iterations (largest number in one increment, and all), cut-backs, the
+torque that is left unbalanced over the output's torque, and how far the state has moved after one period (stresses and
+input torque, relative; without friction, which needs a period to settle). The drift of other systems of units and of
+more ranks is the difference from the first ones. stability.md has the table by group.
 """
 
 from __future__ import annotations
 
 import argparse
 import csv
-import json
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from swgpar.design import make_design
-from swgpar.design_file import apply_overrides, read_toml
-from swgpar.errors import InputError
-from swgpar.meshing import build_sector_meshes, load_recipe
+from swgpar.results import history
 
 ROOT = Path(__file__).resolve().parents[2]
-PLANE, CUP = ROOT / "drivers/plane_half_turn.toml", ROOT / "tests/data/small.toml"
-MESH = ROOT / "tests/data/tiny.toml"
-SHORT = ("steps.rotation=2.0", "steps.increment=1.0")
+sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests/stability")]
+from cases import MESH, REPEATED, UNITS, UNITS_GROUP, Group, drift, groups, toml_value  # noqa: E402
+from elements import element_rows  # noqa: E402
+from small_drive import PLANE, environment, on_ranks, run_command  # noqa: E402
 
-Cases = dict[str, list[str]]
-
-
-def each(key: str, values: list[float]) -> Cases:
-    return {f"{key.rpartition('.')[2]}={value:g}": [f"{key}={value}"] for value in values}
-
-
-def units() -> Cases:
-    """The same drive in mm and N, m and N, inch and pound; torques are a thousandth of the unit of the stresses."""
-    table, cases = read_toml(CUP), {}
-    lengths = [
-        *(f"{s}.{k}" for s, k in (("drive", "module"), ("drive", "face_width"), ("wave_generator", "face_width"))),
-        *(f"cup.{k}" for k in ("length", "fillet_radius", "inner_radius")),
-        *(f"micro_geometry.{k}" for k in ("wg_crowning", "wg_slope", "fs_crowning")),
-        *(f"{g}.profile.{k}" for g in ("flexible_spline", "ring_gear") for k in table[g]["profile"] if k != "type"),
-        "flexible_spline.rim",
-        "ring_gear.rim",
-    ]
-    for name, length, force in (
-        ("mm_N", 1.0, 1.0),
-        ("m_N", 1e-3, 1.0),
-        ("inch_lbf", 1 / 25.4, 1 / 4.448222),
-        ("km_MN", 1e-6, 1e-6),
-    ):
-        overrides = []
-        for key in lengths:
-            value: Any = table
-            for part in key.split("."):
-                value = value[part]
-            overrides.append(f"{key}={value * length!r}")
-        overrides.append(f"material.E={table['material']['E'] * force / length**2!r}")
-        overrides.append(f"load.torque={table['load']['torque'] * force * length!r}")
-        cases[name] = overrides
-    return cases
+Row = dict[str, Any]
+COLUMNS = ("group", "case", "status", "newton_max", "newton_all", "cutbacks", "cycles", "unbalanced", "drift", "wall_s")
+COLUMNS += ("reason",)
 
 
-def random_designs(count: int, seed: int) -> Cases:
-    """Plane drives with any profile and cam, some with friction, backlash or the other layout."""
-    rng, cases = np.random.default_rng(seed), {}
-    recipe, base = load_recipe(MESH), read_toml(PLANE)
-    drawn = 0
-    while len(cases) < count:
-        drawn += 1
-        overrides = _draw(rng)
-        try:
-            design = make_design(apply_overrides(base, overrides))
-            build_sector_meshes(design, recipe)
-        except InputError:
-            continue
-        cases[f"r{drawn:04d}"] = overrides
-    print(f"{drawn} designs drawn for {count} that can be built", flush=True)
-    return cases
-
-
-def _draw(rng: np.random.Generator) -> list[str]:
-    def number(low: float, high: float) -> float:
-        return round(float(rng.uniform(low, high)), 4)
-
-    teeth = 2 * int(rng.integers(20, 120))
-    module = float(rng.choice([0.3, 0.5, 1.0, 2.0]))
-    kind = rng.choice(["quadruple_arc", "double_arc", "involute"], p=[0.6, 0.2, 0.2])
-    profile = {
-        "quadruple_arc": lambda: {
-            "type": "quadruple_arc",
-            "r_tip": number(0.2, 0.5) * module,
-            "r_addendum": number(0.9, 2.0) * module,
-            "straight_l": number(0.0, 0.3) * module,
-            "r_dedendum": number(0.8, 20.0) * module,
-            "r_root": number(0.2, 0.6) * module,
-        },
-        "double_arc": lambda: {
-            "type": "double_arc",
-            "r_addendum": number(0.9, 2.0) * module,
-            "r_dedendum": number(0.3, 0.7) * module,
-        },
-        "involute": lambda: {"type": "involute", "cutter_radius": number(0.1, 0.25) * module},
-    }[kind]()
-    ring = {**profile, "cutter_teeth": teeth // 2} if kind == "involute" else profile
-    width = 10.0 * module
-    a = 0.5 * teeth * module
-    cam = {
-        "elliptical": lambda: {"C": number(0.9, 1.0)},
-        "simplified": lambda: {"C": number(0.85, 0.98)},
-        "parabolic": lambda: {"C": 1.0, "a_p": number(0.4, 0.6) / a, "C_p": number(0.3, 0.55), "r_c": 0.17 * a},
-        "four_roller": lambda: {"beta": number(10.0, 25.0), "r_4": number(0.1, 0.16) * a},
-    }
-    cam_kind = str(rng.choice(list(cam)))
-    wave = {"type": cam_kind, **cam[cam_kind](), "face_width": width}
-    return [
-        f"drive.teeth_fs={teeth}",
-        f"drive.teeth_rg={teeth + 2}",
-        f"drive.module={module}",
-        f"drive.face_width={width}",
-        f"drive.layout={rng.choice(['ring_fixed', 'spline_fixed'])}",
-        f"flexible_spline.rim={number(0.5, 1.6) * module * teeth / 120}",
-        f"ring_gear.rim={2.0 * module}",
-        f"ring_gear.c_P={1.0 if kind == 'involute' else number(0.85, 1.0)}",
-        f"flexible_spline.profile={_inline(profile)}",
-        f"ring_gear.profile={_inline(ring)}",
-        f"flexible_spline.c_l={0.0 if kind == 'double_arc' else 0.5}",
-        f"ring_gear.c_l={0.0 if kind == 'double_arc' else 0.5}",
-        *(f"wave_generator.{k}={json.dumps(v)}" for k, v in wave.items()),
-        f"load.torque={number(0.0, 4.0) * module**3 * teeth / 120}",
-        f"contact.friction={float(rng.choice([0.0, 0.0, 0.1, 0.3]))}",
-    ]
-
-
-def _inline(table: dict[str, Any]) -> str:
-    return "{ " + ", ".join(f"{key} = {json.dumps(value)}" for key, value in table.items()) + " }"
-
-
-def groups(count: int, seed: int) -> dict[str, tuple[Path, Callable[[], Cases]]]:
-    """Design and cases of every group."""
-    decades = [0.5, 5.0, 50.0, 500.0, 5000.0]
-    rotations = [0.1, 0.3, 1.0, 3.0, 10.0]
-    return {
-        "Poisson's ratio, cup": (CUP, lambda: each("material.nu", [0.0, 0.3, 0.45, 0.49, 0.499])),
-        "units, cup": (CUP, units),
-        "penalty of the flanks, cup": (CUP, lambda: each("contact.penalty_coef", decades)),
-        "penalty of the cam, cup": (CUP, lambda: each("contact.wg_penalty_coef", [c / 10.0 for c in decades])),
-        "penalty without augmentation, plane": (
-            PLANE,
-            lambda: {k: [*v, "contact.max_augmentations=0"] for k, v in each("contact.penalty_coef", decades).items()},
-        ),
-        "increments, plane": (
-            PLANE,
-            lambda: {f"increment={a:g}": [f"steps.increment={a}", f"steps.rotation={2 * a}"] for a in rotations},
-        ),
-        "backlash, plane": (PLANE, lambda: each("ring_gear.c_P", [0.8, 0.85, 0.9, 0.95, 0.98, 1.0, 1.01])),
-        "friction, plane": (PLANE, lambda: each("contact.friction", [0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5])),
-        "friction, cup": (CUP, lambda: each("contact.friction", [0.0, 0.1, 0.3, 0.5])),
-        "rim, plane": (PLANE, lambda: each("flexible_spline.rim", [0.18, 0.3, 0.5, 1.0, 1.5, 2.0, 3.0])),
-        "torque, plane": (PLANE, lambda: each("load.torque", [0.0, 0.01, 1.0, 10.0, 50.0, 100.0, 200.0, 500.0])),
-        "teeth, plane": (
-            PLANE,
-            lambda: {
-                f"teeth={n}": [f"drive.teeth_fs={n}", f"drive.teeth_rg={n + 2}", f"flexible_spline.rim={n / 120}"]
-                for n in (20, 30, 40, 60, 80, 120, 160, 200, 320)
-            },
-        ),
-        "face width (aspect ratio), cup": (
-            CUP,
-            lambda: {
-                f"width={w:g}": [f"drive.face_width={w}", f"wave_generator.face_width={w}"]
-                for w in (0.2, 1.0, 4.0, 20.0, 60.0, 200.0)
-            },
-        ),
-        "random designs, plane": (PLANE, lambda: random_designs(count, seed)),
-    }
-
-
-def run_group(name: str, design: Path, cases: Cases, out: Path, ranks: int) -> list[dict[str, Any]]:
-    """Run one group as a study; a row for every case."""
-    folder = out / name.replace(" ", "_").replace(",", "").replace("'", "")
-    folder.mkdir(parents=True, exist_ok=True)
-    extra = ["output.fields=false"]
+def study_text(name: str, group: Group) -> str:
+    """The group as a study file."""
     text = [
-        f"[study]\ntitle = {json.dumps(name)}\ndesign = {json.dumps(str(design))}\nmeshes = {json.dumps([str(MESH)])}"
+        f"[study]\ntitle = {toml_value(name)}\ndesign = {toml_value(str(group.design))}\n"
+        f"meshes = [{toml_value(str(MESH))}]"
     ]
-    for case, overrides in cases.items():
-        steps = [] if any(o.startswith("steps.") for o in overrides) else SHORT
-        text.append(f"[[study.case]]\nname = {json.dumps(case)}\nset = {json.dumps([*overrides, *steps, *extra])}")
-    study = folder / "study.toml"
-    study.write_text("\n\n".join(text) + "\n", encoding="utf-8")
-    command = ["mpirun", "-n", str(ranks), sys.executable, "-m", "swgpar.cli", "study", str(study)]
-    result = folder / "results"
+    for case, values in group.cases().items():
+        lines = [f"[[study.case]]\nname = {toml_value(case)}"]
+        lines += [f"section.{key} = {toml_value(value)}" for key, value in values.items() if "." not in key]
+        overrides = [f"{key}={toml_value(value)}" for key, value in values.items() if "." in key]
+        text.append("\n".join([*lines, f"set = {toml_value(overrides)}"]))
+    return "\n\n".join(text) + "\n"
+
+
+def run_group(name: str, group: Group, out: Path, ranks: int, restart: bool) -> list[Row]:
+    """Run one group as a study, or continue it; a row for every case."""
+    folder = out / "".join(c if c.isalnum() else "_" for c in name)
+    folder.mkdir(parents=True, exist_ok=True)
+    study, result = folder / "study.toml", folder / "results"
+    study.write_text(study_text(name, group), encoding="utf-8")
+    command = [sys.executable, "-m", "swgpar.cli", "study", str(study), "--out", str(result)]
+    command.append("--restart" if restart else "--overwrite")
     with (folder / "log.txt").open("w") as log:
-        subprocess.run([*command, "--out", str(result), "--overwrite"], stdout=log, stderr=log)
-    rows = []
+        subprocess.run([*on_ranks(ranks), *command], stdout=log, stderr=log, env=environment())
     with (result / "study.csv").open(encoding="utf-8") as file:
-        for row in csv.DictReader(file):
-            found = {"group": name, "case": row["case"], "status": row["status"], "newton_mean": row["newton_mean"]}
-            found |= {"fs_s1": row["mean.fs_s1"], "wall_s": row["wall_s"], "balance": "", "reason": row["reason"]}
-            if row["status"] == "failed":
-                found["status"] = "refused" if "allowed" in row["reason"] else "failed"
-            else:
-                summary = json.loads(next((result / "cases" / row["case"]).rglob("summary.json")).read_text())
-                torque = max(1000.0 * summary["design"]["load"]["torque"], 1e-300)
-                found["balance"] = summary["balance_error_Nmm"] / torque if torque > 1e-200 else ""
-            rows.append(found)
+        outcomes = list(csv.DictReader(file))
+    cases = group.cases()
+    rows = [
+        {"group": name, "case": o["case"], **verdict(o), **measured(result / "cases" / o["case"], cases[o["case"]])}
+        for o in outcomes
+    ]
+    if name == UNITS_GROUP:
+        compare_units(result / "cases", rows)
     return rows
+
+
+def compare_units(folder: Path, rows: list[Row]) -> None:
+    """Replace the drift by the difference from the first system of units, of the last increment."""
+    scaled = {}
+    for name, length, force in UNITS:
+        last = history.read_history(next((folder / name).rglob(history.NAME)))[-1]
+        scaled[name] = {k: last[k] / (force * length if "torque" in k else force / length**2) for k in REPEATED}
+    for row in rows:
+        row["drift"] = drift(scaled[UNITS[0][0]], scaled[row["case"]])
+
+
+def verdict(outcome: dict[str, str]) -> Row:
+    """How a case of a study ended."""
+    status, reason = outcome["status"], outcome["reason"]
+    if status == "failed" and "allowed" in reason:
+        status = "refused"
+    return {"status": "converged" if status == "finished" else status, "wall_s": outcome["wall_s"], "reason": reason}
+
+
+def measured(folder: Path, case: dict[str, Any]) -> Row:
+    """Iterations and drift from the files of a run."""
+    found = sorted(folder.rglob(history.NAME))
+    if not found:
+        return {}
+    rows = history.read_history(found[0])
+    newton = [int(r["newton_iterations"]) for r in rows]
+    log = (found[0].parent / "run.log").read_text(encoding="utf-8")
+    out: Row = {
+        "newton_max": max(newton, default=""),
+        "newton_all": sum(newton),
+        "cutbacks": log.count("cut back to"),
+        "cycles": log.count("return without progress"),
+    }
+    torque = max((abs(r["output_torque_Nmm"]) for r in rows), default=0.0)
+    if torque:
+        out["unbalanced"] = max(r["torque_balance_Nmm"] for r in rows) / torque
+    turned = [r for r in rows if int(r["step"]) >= 4]
+    if not case.get("contact.friction") and len(turned) == 3:
+        out["drift"] = drift(turned[0], turned[-1])
+    return out
+
+
+def run_on_ranks(out: Path, numbers: Iterable[int]) -> list[Row]:
+    """The small drives on several numbers of ranks, more than the machine has cores included."""
+    rows: list[Row] = []
+    for model, overrides in (("cup", ()), ("plane", PLANE), ("plane, friction", (*PLANE, "contact.friction=0.1"))):
+        alone: Row = {}
+        for ranks in numbers:
+            folder = out / "ranks" / f"{model.replace(', ', '_')}_{ranks}"
+            command = run_command(folder, "--overwrite", ranks=ranks, overrides=(*SHORT, *overrides))
+            done = subprocess.run(command, capture_output=True, text=True, env=environment(), cwd=ROOT)
+            row = {"group": "ranks", "case": f"{model}, {ranks} ranks", "status": "converged", "reason": ""}
+            if done.returncode:
+                row |= {"status": "failed", "reason": (done.stdout + done.stderr).strip().splitlines()[-1]}
+            else:
+                last = history.read_history(folder / history.NAME)[-1]
+                alone = alone or last
+                row |= measured(folder, {}) | {"drift": drift(alone, last)}
+            rows.append(row)
+    return rows
+
+
+SHORT = ("steps.rotation=2.0", "steps.increment=2.0")
+
+
+def counted(name: str, rows: list[Row]) -> list[str]:
+    """The group's row of the table of groups."""
+
+    def values(key: str) -> list[float]:
+        return [float(r[key]) for r in rows if r.get(key, "") != ""]
+
+    def largest(key: str) -> str:
+        return f"{max(values(key)):.1e}" if values(key) else ""
+
+    numbers = [sum(r["status"] == status for r in rows) for status in ("converged", "refused", "failed")]
+    numbers += [max(values("newton_max"), default=0), sum(values("cutbacks")), sum(values("cycles"))]
+    return [name, *(f"{n:.0f}" for n in numbers), largest("unbalanced"), largest("drift")]
+
+
+HEADER = ["group", "converged", "refused", "failed", "Newton", "cut-backs", "cycles", "unbalanced", "drift"]
+
+
+def line(cells: list[str]) -> str:
+    return f"{cells[0]:40s}" + "".join(f"{cell:>11s}" for cell in cells[1:])
+
+
+BEGIN, END = "<!-- table -->", "<!-- end of table -->"
+
+
+def write_page(page: Path, rows: list[Row]) -> None:
+    """Put the table of groups, and the cases that did not converge, between the page's marks."""
+    names = list(dict.fromkeys(row["group"] for row in rows))
+    table = [HEADER, ["---"] * len(HEADER), *(counted(n, [r for r in rows if r["group"] == n]) for n in names)]
+    text = "\n".join("| " + " | ".join(cells) + " |" for cells in table) + "\n"
+    others = [f"- {r['group']}, {r['case']}: {r['status']}: {r['reason']}" for r in rows if r["status"] != "converged"]
+    text += "\n" + "\n".join(others) + "\n" if others else ""
+    old = page.read_text(encoding="utf-8") if page.exists() else f"# Stability\n\n{BEGIN}\n{END}\n"
+    head, tail = old.partition(BEGIN)[0], old.partition(END)[2]
+    page.write_text(f"{head}{BEGIN}\n{text}{END}{tail}", encoding="utf-8")
 
 
 def main() -> None:
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--out", default="results/bench/stability")
     options.add_argument("--tables", default="docs/benchmarks")
-    options.add_argument("--ranks", type=int, default=2)
-    options.add_argument("--random", type=int, default=200, help="number of random designs")
+    options.add_argument("--at-once", type=int, default=2, help="cases that are computed at once")
+    options.add_argument("--most-ranks", type=int, default=8, help="largest number of ranks on one case")
+    options.add_argument("--random", type=int, default=200, help="number of random plane designs")
     options.add_argument("--seed", type=int, default=1)
+    options.add_argument("--restart", action="store_true", help="keep the cases that an earlier call has finished")
     options.add_argument("--only", nargs="+", default=None, help="words of the names of the groups to run")
     arguments = options.parse_args()
-    rows: list[dict[str, Any]] = []
-    tables = Path(arguments.tables)
+    out, tables = Path(arguments.out).resolve(), Path(arguments.tables)
     tables.mkdir(parents=True, exist_ok=True)
-    header = "".join(f"{word:>9s}" for word in ("converged", "refused", "failed"))
-    print(f"{'group':40s}{header} {'Newton':>7s} {'unbalanced':>11s}")
-    for name, (design, make) in groups(arguments.random, arguments.seed).items():
+    numbers = [n for n in (1, 2, 3, 4, 8) if n <= arguments.most_ranks]
+    work = {"elements": element_rows, "ranks": lambda: run_on_ranks(out, numbers)}
+    for name, group in groups(arguments.random, arguments.seed).items():
+        work[name] = lambda name=name, group=group: run_group(name, group, out, arguments.at_once, arguments.restart)
+    table = tables / "stability.csv"
+    rows: list[Row] = []
+    if table.exists():  # groups that do not run now keep their rows
+        with table.open(encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+    print(line(HEADER), flush=True)
+    for name, run in work.items():
         if arguments.only and not any(word in name for word in arguments.only):
             continue
-        found = run_group(name, design, make(), Path(arguments.out).resolve(), arguments.ranks)
-        rows += found
-        count = {s: sum(r["status"] == s for r in found) for s in ("finished", "refused", "failed")}
-        newton = max((float(r["newton_mean"]) for r in found if r["newton_mean"]), default=0.0)
-        balance = max((float(r["balance"]) for r in found if r["balance"] != ""), default=0.0)
-        counted = "".join(f"{count[s]:9d}" for s in count)
-        print(f"{name:40s}{counted} {newton:7.1f} {balance:11.1e}", flush=True)
-        with (tables / "stability.csv").open("w", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
+        found = run()
+        rows = sorted([r for r in rows if r["group"] != name] + found, key=lambda r: list(work).index(r["group"]))
+        print(line(counted(name, found)), flush=True)
+        with table.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.DictWriter(file, COLUMNS, restval="", lineterminator="\n")
             writer.writeheader()
             writer.writerows(rows)
+        write_page(table.with_suffix(".md"), rows)
 
 
 if __name__ == "__main__":

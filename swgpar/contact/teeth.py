@@ -358,6 +358,17 @@ class ToothContact:
             self._contact(faces, u, np.ascontiguousarray(self.multiplier[mine]), opening, residual, None, law)
         return residual
 
+    def active_set(self) -> list[np.ndarray]:
+        """Faces with pressure, and those with points that slip, of the last evaluation on this rank; their numbers."""
+        if self.faces is None:
+            return []
+        touching = self.pressure > 0.0
+        sets = [touching]
+        if self.friction is not None:
+            limit = 0.99 * self.coefficient * self.pressure  # base vectors are of unit length but for the strain
+            sets.append(touching & (np.linalg.norm(self.friction.now, axis=2) >= limit))
+        return [np.unique(self.segments.parent[points.any(axis=1)]) for points in sets]
+
     def touching_pairs(self) -> int:
         """Flank pairs with pressure whose flexible-spline tooth this rank owns."""
         if self.faces is None:

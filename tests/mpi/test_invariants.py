@@ -11,6 +11,7 @@ import pytest
 from mpi4py import MPI
 from small_drive import PLANE
 
+from swgpar import cycling
 from swgpar.contact.pressure import nodal_pressure
 from swgpar.contact.rigid import CamPose
 from swgpar.design import DriveDesign, load_design
@@ -243,6 +244,16 @@ def test_enforcement_does_not_show(
     assert (runner.equilibrium.augmentations > 0) == augmented
     for name in (f"{gear}_{stress}" for gear in gears for stress in ("s1", "s3", "vm")):
         assert other[name] == pytest.approx(r[name], rel=5e-3), name
+
+
+@both_models
+def test_careful_line_search_reaches_the_same_state(model: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every active set taken for one that returns, so that all steps are searched for carefully."""
+    _, r = base(model)
+    monkeypatch.setattr(cycling.VisitedSets, "returns", lambda *_: True)
+    runner, careful = loaded(small(model))
+    assert runner.equilibrium.step.careful
+    assert_same(careful, r, 1e-6)
 
 
 @both_models

@@ -25,6 +25,7 @@ ORDER = (
     "kept_factor",
     "linear",
     "line_search",
+    "cycling",
     "contact",
     "steps",
     "period",

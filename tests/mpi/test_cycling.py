@@ -1,0 +1,91 @@
+"""Active sets that return: found, and left by the careful line search."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from swgpar.cycling import VisitedSets, fingerprint
+from swgpar.line_search import SearchedStep
+from swgpar.log import Phases
+
+WORLD = MPI.COMM_WORLD
+
+
+@dataclass
+class Block:
+    """A block on a spring that sticks to the ground: k x + mu min(1, |x| / width) sign(x) = f, a convex potential.
+
+    Below mu it sticks, and slipping either way the tangent k of the slip sends it to slip the other way.
+    """
+
+    width: float
+    k: float = 1.0
+    mu: float = 1.0
+    f: float = 0.9
+
+    def __post_init__(self) -> None:
+        self.x = PETSc.Vec().createSeq(1, comm=MPI.COMM_SELF)
+        self.x.array[:] = 2.0
+
+    def sticks(self) -> bool:
+        return bool(abs(self.x.array_r[0]) < self.width)
+
+    def sets(self) -> list[np.ndarray]:
+        return [np.array([self.sticks()]), np.sign(self.x.array_r)]
+
+    def residual(self, x: PETSc.Vec, force: PETSc.Vec) -> bool:
+        force.array[:] = self.k * x.array_r + self.mu * np.clip(x.array_r / self.width, -1.0, 1.0) - self.f
+        return False
+
+    def apply(self, pc: None, right: PETSc.Vec, step: PETSc.Vec) -> None:
+        step.array[:] = right.array_r / (self.k + (self.mu / self.width if self.sticks() else 0.0))
+
+
+def newton(block: Block, watch: bool) -> tuple[float, int, bool]:
+    """Last residual, iterations, and whether active sets have returned."""
+    search, visited = SearchedStep(block, block.residual, block.x, Phases()), VisitedSets()
+    force, step, returned, k = block.x.duplicate(), block.x.duplicate(), False, 0
+    block.residual(block.x, force)
+    while force.norm() > 1e-12 and k < 50:
+        returned = visited.returns(fingerprint(MPI.COMM_SELF, block.sets()), force.norm()) or returned
+        search.careful = watch and returned
+        search.apply(None, force, step)
+        block.x.axpy(-1.0, step)
+        block.residual(block.x, force)
+        k += 1
+    return force.norm(), k, returned
+
+
+def test_block_that_sticks_within_reach_needs_no_care() -> None:
+    residual, iterations, returned = newton(Block(width=1e-2), watch=False)
+    assert residual < 1e-12 and iterations < 10 and not returned
+
+
+def test_cycle_is_found_and_left() -> None:
+    """Where sticking takes a trillionth of the step, the usual search slips to and fro for ever."""
+    residual, iterations, returned = newton(Block(width=1e-12), watch=False)
+    assert residual > 0.1 and iterations == 50 and returned
+    residual, iterations, _ = newton(Block(width=1e-12), watch=True)
+    assert residual < 1e-12 and iterations < 15
+
+
+def test_sets_that_return() -> None:
+    visited = VisitedSets()
+    assert [visited.returns(*seen) for seen in ((1, 5.0), (1, 6.0), (2, 9.0), (1, 4.0), (2, 8.0))] == [False] * 5
+    assert visited.returns(1, 4.0)  # left meanwhile, and no smaller residual than before
+    assert not visited.returns(2, 7.0)
+
+
+def test_fingerprint_is_that_of_all_ranks() -> None:
+    points = np.arange(12) % 3 == 0
+    first = fingerprint(WORLD, [points, points[:5]])
+    assert first == fingerprint(WORLD, [points.copy(), points[:5]])
+    assert len(set(WORLD.allgather(first))) == 1
+    assert first != fingerprint(WORLD, [points[:5], points])
+    changed = points.copy()
+    changed[-1] ^= WORLD.rank == WORLD.size - 1  # on one rank only
+    assert first != fingerprint(WORLD, [changed, points[:5]])

@@ -1,0 +1,300 @@
+"""Drives under numerical stress, by group: designs whose one key, or few, go to where the numbers get hard.
+
+Groups serve the tests of this folder and `scripts/bench/stability`. All run on the smallest mesh.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from swgpar.design import make_design
+from swgpar.design_file import read_toml, with_value
+from swgpar.errors import InputError
+from swgpar.meshing import build_sector_meshes, load_recipe
+
+ROOT = Path(__file__).resolve().parents[2]
+PLANE, SMALL, CUP = (
+    ROOT / p for p in ("drivers/plane_half_turn.toml", "tests/data/small.toml", "drivers/cup_45deg.toml")
+)
+"""The plane reference drive, the small cup drive of 40 teeth, and the cup reference drive."""
+
+MESH = ROOT / "tests/data/tiny.toml"
+
+Case = dict[str, Any]
+"""Values of the design file that a case replaces: by "section.key", or by "section" for a whole one."""
+
+Cases = dict[str, Case]
+"""Cases by name."""
+
+
+def table_of(design: Path, case: Case) -> dict[str, Any]:
+    """Content of the design file with the values of the case."""
+    table = read_toml(design)
+    for key, value in case.items():
+        table = with_value(table, key, value)
+    return table
+
+
+@dataclass(frozen=True)
+class Group:
+    """design : file that the cases override;  make : draws them up;  steps : whether the cases set their own"""
+
+    design: Path
+    make: Callable[[], Cases]
+    steps: bool = False
+
+    def cases(self) -> Cases:
+        """All cases; the wave generator turns through one and a half pitches in three increments."""
+        return {name: {**self.period(case), **case} for name, case in self.make().items()}
+
+    def period(self, case: Case) -> Case:
+        """Increments of half a pitch, of which the first and the last then end in the same state."""
+        if self.steps:
+            return {}
+        try:
+            pitch = float(np.degrees(make_design(table_of(self.design, case)).pitch))
+        except InputError:  # it is the run that is to refuse the design
+            return {}
+        return {"steps.increment": 0.5 * pitch, "steps.rotation": 1.5 * pitch}
+
+
+def each(key: str, values: Iterable[float], more: Case | None = None) -> Cases:
+    """A case for every value of a key; `more` goes into all of them."""
+    return {f"{key.rpartition('.')[2]}={value:g}": {key: value, **(more or {})} for value in values}
+
+
+def crossed(cases: Cases, others: Cases) -> Cases:
+    """Every case with every other."""
+    return {f"{a}_{b}": {**one, **other} for a, one in cases.items() for b, other in others.items()}
+
+
+def toml_value(value: Any) -> str:
+    """A value, list or table as TOML on one line."""
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{k} = {toml_value(v)}" for k, v in value.items()) + " }"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(toml_value, value)) + "]"
+    return json.dumps(value)
+
+
+def units(design: Path = SMALL) -> Cases:
+    """A cup drive in mm and N, m and N, inch and pound; torques are a thousandth of the unit of the stresses."""
+    table, cases = read_toml(design), {}
+    lengths = [
+        *(f"{s}.{k}" for s, k in (("drive", "module"), ("drive", "face_width"), ("wave_generator", "face_width"))),
+        *(f"cup.{k}" for k in ("length", "fillet_radius", "inner_radius")),
+        *(f"micro_geometry.{k}" for k in ("wg_crowning", "wg_slope", "fs_crowning")),
+        *(f"{g}.profile.{k}" for g in ("flexible_spline", "ring_gear") for k in table[g]["profile"] if k != "type"),
+        "flexible_spline.rim",
+        "ring_gear.rim",
+    ]
+    for name, length, force in UNITS:
+        case: Case = {}
+        for key in lengths:
+            value: Any = table
+            for part in key.split("."):
+                value = value[part]
+            case[key] = value * length
+        case["material.E"] = table["material"]["E"] * force / length**2
+        case["load.torque"] = table["load"]["torque"] * force * length
+        cases[name] = case
+    return cases
+
+
+UNITS_GROUP = "units, cup"
+UNITS = (
+    ("mm_N", 1.0, 1.0),
+    ("m_N", 1e-3, 1.0),
+    ("inch_lbf", 1 / 25.4, 1 / 4.4482216152605),
+    ("km_MN", 1e-6, 1e-6),
+)
+"""Systems of units: name, unit of length over mm, unit of force over N."""
+
+
+def teeth(numbers: Iterable[int]) -> Cases:
+    """The plane drive with other numbers of teeth, its rim in proportion."""
+    return {
+        f"teeth={n}": {"drive.teeth_fs": n, "drive.teeth_rg": n + 2, "flexible_spline.rim": n / 120} for n in numbers
+    }
+
+
+def widths(values: Iterable[float]) -> Cases:
+    """The small cup drive with another face width on the same number of elements: aspect ratios to a thousand."""
+    return {f"width={w:g}": {"drive.face_width": w, "wave_generator.face_width": w} for w in values}
+
+
+def cams() -> Cases:
+    """Every kind of cam, some beside the published ones."""
+    improved = {"a_p": 0.0097, "C_p": 0.51, "r_c": 10.0}
+    wave = {
+        "simplified,C=0.8": {"type": "simplified", "C": 0.8},
+        "simplified,C=0.95": {"type": "simplified", "C": 0.95},
+        "elliptical,C=0.9": {"type": "elliptical", "C": 0.9},
+        "parabolic": {"type": "parabolic", "C": 1.0, **improved},
+        "four_roller": {"type": "four_roller", "beta": 25.0, "r_4": 15.0},
+    }
+    for angle in (-0.5, 0.5):
+        wave[f"turned_parabolas={angle}"] = {"type": "asymmetric_parabolic", "rotational_angle": angle}
+    sides: dict[str, dict[str, float]] = {}
+    for side in ("right", "left"):
+        for key, values in (("a_p", (0.0095, 0.0099)), ("C_p", (0.45, 0.55)), ("r_c", (8.0, 12.0))):
+            for value in values:
+                name = f"{side}_{key}={value:g}"
+                wave[name], sides[name] = {"type": "asymmetric_parabolic"}, {side: {**improved, key: value}}
+    for name, table in wave.items():
+        if table["type"] == "asymmetric_parabolic":
+            table |= {"C": 1.0, "right": improved, "left": improved, **sides.get(name, {})}
+    return {name: {"wave_generator": {**table, "face_width": 10.0}} for name, table in wave.items()}
+
+
+def random_designs(count: int, seed: int, model: str = "plane") -> Cases:
+    """Drives with any profile and cam, some with friction, backlash or the other layout, that can be built."""
+    rng, cases = np.random.default_rng(seed), {}
+    recipe, drawn = load_recipe(MESH), 0
+    while len(cases) < count:
+        drawn += 1
+        case = _draw(rng, model)
+        try:
+            build_sector_meshes(make_design(table_of(PLANE, case)), recipe)
+        except InputError:
+            continue
+        cases[f"r{drawn:04d}"] = case
+    return cases
+
+
+def _draw(rng: np.random.Generator, model: str) -> Case:
+    def number(low: float, high: float) -> float:
+        return round(float(rng.uniform(low, high)), 4)
+
+    teeth = 2 * int(rng.integers(10, 60))
+    module = float(rng.choice([0.3, 0.5, 1.0, 2.0]))
+    kind = rng.choice(["quadruple_arc", "double_arc", "involute"], p=[0.6, 0.2, 0.2])
+    profile = {
+        "quadruple_arc": lambda: {
+            "type": "quadruple_arc",
+            "r_tip": number(0.2, 0.5) * module,
+            "r_addendum": number(0.9, 2.0) * module,
+            "straight_l": number(0.0, 0.3) * module,
+            "r_dedendum": number(0.8, 20.0) * module,
+            "r_root": number(0.2, 0.6) * module,
+        },
+        "double_arc": lambda: {
+            "type": "double_arc",
+            "r_addendum": number(0.9, 2.0) * module,
+            "r_dedendum": number(0.3, 0.7) * module,
+        },
+        "involute": lambda: {"type": "involute", "cutter_radius": number(0.1, 0.25) * module},
+    }[kind]()
+    ring = {**profile, "cutter_teeth": teeth // 2} if kind == "involute" else profile
+    width = 10.0 * module
+    a = 0.5 * teeth * module
+    cam = {
+        "elliptical": lambda: {"C": number(0.9, 1.0)},
+        "simplified": lambda: {"C": number(0.85, 0.98)},
+        "parabolic": lambda: {"C": 1.0, "a_p": number(0.4, 0.6) / a, "C_p": number(0.3, 0.55), "r_c": 0.17 * a},
+        "four_roller": lambda: {"beta": number(10.0, 25.0), "r_4": number(0.1, 0.16) * a},
+    }
+    cam_kind = str(rng.choice(list(cam)))
+    wave = {"type": cam_kind, **cam[cam_kind](), "face_width": width}
+    c_l = 0.0 if kind == "double_arc" else 0.5
+    rim, torque = number(0.5, 1.6) * module * teeth / 120, number(0.0, 4.0) * module**3 * teeth / 120
+    cup: Case = {}
+    if model == "cup":
+        torque *= 10.0
+        cup["cup"] = {
+            "length": number(0.5, 1.5) * a,
+            "thickness_coef": number(0.5, 0.95),
+            "fillet_radius": number(1.0, 3.0) * rim,
+            "inner_radius": number(0.2, 0.5) * a,
+        }
+        cup["micro_geometry"] = {
+            "wg_crowning": number(0.0, 0.1) * module,
+            "wg_slope": number(0.0, 0.1) * module,
+            "fs_crowning": number(0.0, 0.05) * module,
+        }
+    return {
+        **cup,
+        "drive.model": model,
+        "drive.teeth_fs": teeth,
+        "drive.teeth_rg": teeth + 2,
+        "drive.module": module,
+        "drive.face_width": width,
+        "drive.layout": str(rng.choice(["ring_fixed", "spline_fixed"])),
+        "flexible_spline.rim": rim,
+        "ring_gear.rim": 2.0 * module,
+        "ring_gear.c_P": 1.0 if kind == "involute" else number(0.85, 1.0),
+        "flexible_spline.profile": profile,
+        "ring_gear.profile": ring,
+        "flexible_spline.c_l": c_l,
+        "ring_gear.c_l": c_l,
+        "wave_generator": wave,
+        "load.torque": torque,
+        "contact.friction": float(rng.choice([0.0, 0.0, 0.1, 0.3])),
+    }
+
+
+REPEATED = ("fs_s1", "fs_s3", "fs_vm", "wg_torque_Nmm")
+"""Columns of the history that repeat after one period."""
+
+
+def drift(first: Mapping[str, Any], last: Mapping[str, Any]) -> float:
+    """Largest relative difference of two rows of histories that should agree."""
+    return max(abs(last[k] - first[k]) / max(abs(first[k]), 1e-300) for k in REPEATED)
+
+
+DECADES = (0.5, 5.0, 50.0, 500.0, 5000.0)
+FRICTION = (0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5)
+
+
+def groups(count: int, seed: int) -> dict[str, Group]:
+    """All groups. count, seed : number of random designs, and what they are drawn from."""
+    torques = (0.0, 0.01, 1.0, 10.0, 50.0, 100.0, 200.0, 500.0)
+    soft = {"contact.penalty_coef": 5.0, "contact.max_augmentations": 50}
+    tolerances = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
+    return {
+        "Poisson's ratio, cup": Group(SMALL, lambda: each("material.nu", (0.0, 0.3, 0.45, 0.49, 0.499))),
+        UNITS_GROUP: Group(SMALL, units),
+        "penalty of the flanks, cup": Group(SMALL, lambda: each("contact.penalty_coef", DECADES)),
+        "penalty of the cam, cup": Group(SMALL, lambda: each("contact.wg_penalty_coef", [c / 10.0 for c in DECADES])),
+        "penalty without augmentation, plane": Group(
+            PLANE, lambda: each("contact.penalty_coef", DECADES, {"contact.max_augmentations": 0})
+        ),
+        "augmentation, plane": Group(
+            PLANE,
+            lambda: each("contact.penetration_tolerance", tolerances, soft),
+        ),
+        "increments, plane": Group(
+            PLANE,
+            lambda: {
+                f"increment={a:g}": {"steps.increment": a, "steps.rotation": 2 * a} for a in (0.1, 0.3, 1.0, 3.0, 10.0)
+            },
+            steps=True,
+        ),
+        "gaps, plane": Group(PLANE, lambda: each("ring_gear.c_P", (0.5, 0.7, 0.8, 0.85, 0.9, 0.95, 0.98))),
+        "overlap, plane": Group(PLANE, lambda: each("ring_gear.c_P", (1.0, 1.01, 1.02, 1.05, 1.1))),
+        "cam's slope (gaps and overlap), cup": Group(
+            SMALL, lambda: each("micro_geometry.wg_slope", (-0.2, -0.1, 0.0, 0.1, 0.2, 0.4))
+        ),
+        "gaps and torque, cup": Group(
+            SMALL,
+            lambda: crossed(each("ring_gear.c_P", (0.8, 0.9, 1.0)), each("load.torque", (0.01, 1.0, 20.0))),
+        ),
+        "friction, plane": Group(PLANE, lambda: each("contact.friction", FRICTION)),
+        "friction under 50 N·m, plane": Group(PLANE, lambda: each("contact.friction", FRICTION, {"load.torque": 50.0})),
+        "friction, cup": Group(SMALL, lambda: each("contact.friction", FRICTION)),
+        "rim, plane": Group(PLANE, lambda: each("flexible_spline.rim", (0.18, 0.3, 0.5, 1.0, 1.5, 2.0, 3.0))),
+        "rim, cup": Group(CUP, lambda: each("flexible_spline.rim", (0.18, 0.3, 0.5, 1.0, 1.5, 2.0, 3.0))),
+        "torque, plane": Group(PLANE, lambda: each("load.torque", torques)),
+        "torque, cup": Group(CUP, lambda: each("load.torque", torques)),
+        "teeth, plane": Group(PLANE, lambda: teeth((20, 30, 40, 60, 80, 120, 160, 200, 320))),
+        "cams, plane": Group(PLANE, cams),
+        "face width (aspect ratio), cup": Group(SMALL, lambda: widths((0.2, 1.0, 4.0, 20.0, 60.0, 200.0, 1000.0))),
+        "random designs, plane": Group(PLANE, lambda: random_designs(count, seed)),
+        "random designs, cup": Group(PLANE, lambda: random_designs(count // 10, seed, "cup")),
+    }

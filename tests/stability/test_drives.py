@@ -1,0 +1,75 @@
+"""Drives at the limits of their keys: the hardest cases of the groups, and some random ones; the rest is the bench's.
+
+On any number of ranks; every case turns through one and a half pitches of the fixed gear: the state repeats.
+"""
+
+from __future__ import annotations
+
+import pytest
+from cases import MESH, drift, groups, table_of
+from mpi4py import MPI
+from small_drive import PLANE, assert_same_history, run_command, succeed
+
+from swgpar.design import make_design
+from swgpar.errors import InputError
+from swgpar.incremental import DriveModel, Runner, stresses
+from swgpar.meshing import load_recipe
+from swgpar.steps import sequence
+
+WORLD = MPI.COMM_WORLD
+ALL = groups(count=4, seed=7)
+HARDEST = [
+    ("rim, plane", "rim=0.18"),
+    ("teeth, plane", "teeth=20"),
+    ("torque, plane", "torque=0.01"),
+    ("friction, plane", "friction=0.5"),
+    ("gaps, plane", "c_P=0.5"),
+    ("overlap, plane", "c_P=1.1"),
+    ("penalty without augmentation, plane", "penalty_coef=5000"),
+    ("cams, plane", "right_C_p=0.55"),
+]
+
+
+def run(group: str, case: str) -> None:
+    """Every increment converges, torques balance, and without friction the state repeats."""
+    design = make_design(table_of(ALL[group].design, ALL[group].cases()[case]))
+    runner = Runner(DriveModel(design, load_recipe(MESH), WORLD))
+    rows = []
+    try:
+        for scene in sequence(design):
+            runner.increment(scene)
+            rows.append({**runner.row(), **stresses(runner.model)[0]})
+    finally:
+        runner.model.destroy()
+    torque = 1000.0 * design.load.torque
+    for row in rows[2:]:
+        assert abs(row["output_torque_Nmm"]) == pytest.approx(torque)
+        assert row["torque_balance_Nmm"] < 1e-5 * torque
+    if not design.contact.friction:
+        assert drift(rows[3], rows[5]) < 1e-6
+
+
+@pytest.mark.parametrize(("group", "case"), HARDEST)
+def test_hardest(group: str, case: str) -> None:
+    run(group, case)
+
+
+@pytest.mark.parametrize("number", range(4))
+def test_random_design(number: int) -> None:
+    run("random designs, plane", sorted(ALL["random designs, plane"].make())[number])
+
+
+def test_bulging_cam_is_refused() -> None:
+    """A parabola too flat for its width drives the spline's teeth through the ring gear's root circle."""
+    flat = {"type": "parabolic", "C": 1.0, "a_p": 0.008, "C_p": 0.5, "r_c": 10.0, "face_width": 10.0}
+    with pytest.raises(InputError, match="bulges .* mm beyond .* allowed up to 0.2 mm"):
+        make_design(table_of(ALL["rim, plane"].design, {"wave_generator": flat}))
+
+
+@pytest.mark.skipif(WORLD.size > 1, reason="starts mpirun itself")
+def test_more_ranks_than_cores(tmp_path) -> None:
+    """The same on one rank and on four, whatever the machine has."""
+    for ranks in (1, 4):
+        overrides = (*PLANE, "steps.rotation=2", "steps.increment=2")
+        succeed(run_command(tmp_path / str(ranks), ranks=ranks, overrides=overrides))
+    assert_same_history(tmp_path / "4", tmp_path / "1", 1e-8, iterations=False)
