@@ -43,7 +43,7 @@ PROBLEMS = {
     "contact: ring on the halves of a cam": Problem(travel=1.0),
 }
 
-LEVELS = ((160, 2, 8), (240, 3, 14), (320, 4, 20))
+LEVELS = ((80, 1, 4), (160, 2, 8), (240, 3, 14), (320, 4, 20), (400, 5, 26))
 """Sectors of two elements around the ring, elements through the thickness and along the width."""
 
 
