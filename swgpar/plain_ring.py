@@ -152,9 +152,7 @@ class RingBody:
         scale = self.design.material.E * self.design.drive.module
         share = 0.5 if self.halved else 1.0
         holding = Holding(self.partition, couplings, None, scale, share)
-        return Equilibrium(
-            self.design, self.partition, self.elements, holding, surface, surface, NoTeeth(), Phases()
-        )
+        return Equilibrium(self.design, self.partition, self.elements, holding, surface, surface, NoTeeth(), Phases())
 
 
 class RingModel:

@@ -43,7 +43,9 @@ class Cost:
     memory: float
 
 
-def timed(command: list[str], folder: Path, log: Path, environment: dict[str, str]) -> tuple[Cost, resource.struct_rusage]:
+def timed(
+    command: list[str], folder: Path, log: Path, environment: dict[str, str]
+) -> tuple[Cost, resource.struct_rusage]:
     """Run a command to its end; its memory is that of its largest process."""
     begin = time.perf_counter()
     with log.open("w") as file:

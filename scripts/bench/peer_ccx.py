@@ -18,6 +18,7 @@ CAM_FACETS = 4
 CAM_DEPTH = 2.0
 """mm, thickness of the layer of elements that carries the cam's surface."""
 
+
 @dataclass(frozen=True)
 class Answer:
     """displacement : (n, 3) mm;  s1 : (n,) MPa
@@ -76,8 +77,12 @@ def write_job(problem: Problem, mesh: SectorMesh, folder: Path) -> None:
         job += cam(CAM_FACETS * int(2 * mesh.n_sectors * CAM_HALF_ANGLE / 180.0), len(coords) + 1, len(elements) + 1)
         job += ["*BOUNDARY"] + [f"CAM_{half}, {k}, {k}" for half in ("UPPER", "LOWER") for k in (1, 3)]
         job += ["*SURFACE INTERACTION, NAME=STIFF", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR"]
-        job += [f"{PENALTY * STEEL.E:g}", "*CONTACT PAIR, INTERACTION=STIFF, TYPE=SURFACE TO SURFACE", "RING_INNER, CAM"]
-    job += ["*STEP" if problem.linear else "*STEP, NLGEOM, INC=1000", "*STATIC"]
+        job += [
+            f"{PENALTY * STEEL.E:g}",
+            "*CONTACT PAIR, INTERACTION=STIFF, TYPE=SURFACE TO SURFACE",
+            "RING_INNER, CAM",
+        ]
+    job += ["*STEP", "*STATIC"] if problem.linear else ["*STEP, NLGEOM, INC=1000", "*STATIC", "1., 1."]
     if problem.travel:
         job += ["*BOUNDARY"] + [f"CAM_{half}, 2, 2, {s * problem.travel}" for half, s in (("UPPER", 1), ("LOWER", -1))]
     else:
