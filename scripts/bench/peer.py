@@ -12,7 +12,6 @@ import argparse
 import csv
 import json
 import os
-import resource
 import shutil
 import subprocess
 import sys
@@ -43,10 +42,8 @@ class Cost:
     memory: float
 
 
-def timed(
-    command: list[str], folder: Path, log: Path, environment: dict[str, str]
-) -> tuple[Cost, resource.struct_rusage]:
-    """Run a command to its end; its memory is that of its largest process."""
+def timed(command: list[str], folder: Path, log: Path, environment: dict[str, str]) -> Cost:
+    """Run a command to its end; the memory is that of its largest process."""
     begin = time.perf_counter()
     with log.open("w") as file:
         process = subprocess.Popen(command, cwd=folder, stdout=file, stderr=file, env=os.environ | environment)
@@ -145,6 +142,8 @@ def main() -> None:
         "--levels", nargs="+", type=int, default=list(range(len(LEVELS))), help="meshes, from 0; other rows are kept"
     )
     arguments = options.parse_args()
+    if shutil.which("ccx") is None:
+        options.error("CalculiX (ccx) is not installed: on Debian apt-get install calculix-ccx")
     tables = Path(arguments.tables)
     kept = tables / "peer.json"
     rows: list[Row] = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else []

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from peer_problems import CAM, CAM_HALF_ANGLE, INNER, OUTER, PENALTY, STEEL, WIDTH, Problem, line
+from peer_problems import CAM, CAM_HALF_ANGLE, PENALTY, STEEL, WIDTH, Problem, line
 
 from swgpar.meshing import SectorMesh
 from swgpar.meshing.export import named_surfaces, whole_body, whole_drive

@@ -53,7 +53,7 @@ def sector(counts: tuple[int, int, int]) -> SectorMesh:
 
 
 def line(coords: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes of the cross-section on the axis x = 0, y > 0 among `coords` (n, 3), and their shares of its uniform load."""
+    """Nodes of the cross-section at x = 0, y > 0 among `coords` (n, 3), and their shares of a load spread over it."""
     nodes = np.flatnonzero((np.abs(coords[:, 0]) < 1e-9) & (coords[:, 1] > 0.0))
     share = np.ones(len(nodes))
     for values in (coords[nodes, 1], coords[nodes, 2]):
