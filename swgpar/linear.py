@@ -98,6 +98,23 @@ class Bordered:
         x.array.reshape(-1, 3)[:, :dims] = out.array_r.reshape(-1, dims)
         x.array.reshape(-1, 3)[:, dims:] = 0.0
 
+    def _solve_block(self, sides: list[PETSc.Vec], columns: list[PETSc.Vec]) -> None:
+        """columns = K'^-1 sides by the factor, which is read once for all of them."""
+        dims, n_own = self.partition.dims, self.partition.n_own
+        right = PETSc.Mat().createDense(((dims * n_own, None), (None, len(sides))), comm=self.partition.comm)
+        right.setUp()
+        for value, side in zip(right.getDenseArray().T, sides):
+            value[:] = side.array_r.reshape(-1, 3)[:, :dims].ravel()
+        right.assemble()
+        out = right.duplicate()
+        self.ksp.getPC().getFactorMatrix().matSolve(right, out)
+        for value, column in zip(out.getDenseArray().T, columns):
+            field = column.array.reshape(-1, 3)
+            field[:] = 0.0
+            field[:, :dims] = value.reshape(-1, dims)
+        right.destroy()
+        out.destroy()
+
     def set_system(
         self,
         matrix: PETSc.Mat,
@@ -144,11 +161,15 @@ class Bordered:
             self.columns = [vector.duplicate() for vector in sides]
         self.ksp.setInitialGuessNonzero(self.modes is not None)  # those of the last tangent
         self.failed = False
-        for vector, solution in zip(sides, self.columns):
+        by_factor = self.ksp.getType() == "preonly" and self.ksp.getPC().getType() in ("cholesky", "lu")
+        single = 1 if by_factor else len(sides)  # the first tells whether the factor is good
+        for vector, solution in zip(sides[:single], self.columns):
             self._solve(vector, solution)
             if self.ksp.getConvergedReason() < 0:
                 self.failed = True
                 solution.set(0.0)  # nothing to start the next tangent's from
+        if len(sides) > single and not self.failed:
+            self._solve_block(sides[single:], self.columns[single:])
         self.ksp.setInitialGuessNonzero(False)
         b, c, nb = self.grounding, self.border, len(self.grounding)
         small = np.array([[left.dot(right) for right in self.columns] for left in b + c]).reshape(len(b + c), -1)
