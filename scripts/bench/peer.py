@@ -16,6 +16,7 @@ import shutil
 import subprocess
 import sys
 import time
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -107,7 +108,8 @@ def compare(name: str, counts: tuple[int, int, int], out: Path, cores: int) -> R
     row["displacement_difference"] = a / b - 1.0
     row["field_difference"] = float(np.linalg.norm(u - v, axis=1).max() / np.linalg.norm(v, axis=1).max())
     row["s1_difference"] = row["swgpar_s1_MPa"] / row["ccx_s1_MPa"] - 1.0
-    row["times_faster"] = round(row["ccx_seconds"] / row["swgpar_seconds"], 2)
+    row["times_faster"] = row["ccx_seconds"] / row["swgpar_seconds"]
+    row["times_less_cpu"] = row["ccx_cpu_seconds"] / row["swgpar_cpu_seconds"]
     return row
 
 
@@ -120,16 +122,27 @@ def write(rows: list[Row], tables: Path) -> None:
         writer.writerows({k: f"{v:.6g}" if isinstance(v, float) else v for k, v in row.items()} for row in rows)
 
 
-def show(row: Row) -> None:
-    print(f"{row['problem']}, {row['dofs']} dofs")
-    for program in ("swgpar", "ccx"):
-        u, s1, n, seconds, cpu, memory = (row[f"{program}_{column}"] for column in COLUMNS)
-        print(f"  {program:7s}u {u:.6g} mm  s1 {s1:.6g} MPa  {n} iterations  {seconds} s  cpu {cpu} s  {memory} MB")
-    print(
-        f"  difference of u {row['displacement_difference']:+.2e}, anywhere {row['field_difference']:.2e}, "
-        f"of s1 {row['s1_difference']:+.2e};  {row['times_faster']} times faster",
-        flush=True,
-    )
+HEAD = (
+    "problem", "dofs", "cores", "displacement mm: swgpar", "CalculiX", "largest difference anywhere",
+    "s1 MPa: swgpar", "CalculiX", "Newton iterations", "seconds: swgpar", "CalculiX", "CPU seconds",
+    "MB: swgpar", "CalculiX", "times faster", "by CPU",
+)  # fmt: skip
+
+
+def line_of(row: Row) -> list[str]:
+    """The cells of a row."""
+
+    def both(column: str, form: str = "") -> list[str]:
+        return [f"{row[f'{program}_{column}']:{form}}" for program in ("swgpar", "ccx")]
+
+    cells = [row["problem"], f"{row['dofs']:,}", str(row["cores"]), *both("displacement_mm", ".5g")]
+    cells += [f"{row['field_difference']:.3%}", *both("s1_MPa", ".5g"), " / ".join(both("iterations"))]
+    cells += [*both("seconds", ".3g"), " / ".join(both("cpu_seconds", ".3g")), *both("memory_MB")]
+    return [*cells, f"{row['times_faster']:.2g}", f"{row['times_less_cpu']:.2g}"]
+
+
+def markdown(cells: Iterable[str]) -> str:
+    return "| " + " | ".join(cells) + " |"
 
 
 def main() -> None:
@@ -148,14 +161,15 @@ def main() -> None:
     kept = tables / "peer.json"
     rows: list[Row] = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else []
     order = list(PROBLEMS)
+    print(markdown(HEAD), markdown("---" for _ in HEAD), sep="\n")
     for name in order:
         if not any(name.startswith(word) for word in arguments.only):
             continue
         for level in arguments.levels:
             row = compare(name, LEVELS[level], Path(arguments.out).resolve(), arguments.cores)
-            show(row)
-            rows = [r for r in rows if (r["problem"], r["dofs"]) != (row["problem"], row["dofs"])] + [row]
-            rows.sort(key=lambda r: (order.index(r["problem"]), r["dofs"]))
+            print(markdown(line_of(row)), flush=True)
+            rows = [r for r in rows if any(r[k] != row[k] for k in ("problem", "dofs", "cores"))] + [row]
+            rows.sort(key=lambda r: (r["cores"], order.index(r["problem"]), r["dofs"]))
             write(rows, tables)
     print(f"written {tables}/peer.csv, peer.json")
 
