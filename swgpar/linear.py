@@ -170,6 +170,8 @@ class Bordered:
             for k, solution in enumerate(self.columns):
                 solution.set(0.0)
                 solution.array.reshape(-1, 3)[:, :dims] = out.getDenseArray()[:, k].reshape(-1, dims)
+            into.destroy()
+            out.destroy()
             return
         self.ksp.setInitialGuessNonzero(self.modes is not None)  # those of the last tangent
         for vector, solution in zip(sides, self.columns):

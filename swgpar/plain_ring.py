@@ -125,16 +125,48 @@ class NoTeeth:
         """There are no tractions to remember."""
 
 
-class RingModel:
-    """Half of a ring that equals itself turned by 180 degrees, on a rigid surface; its mean rotation is held.
+class RingBody:
+    """A ring's mesh, ownership and elements; its mean motion is held.
 
     Parameters
     ----------
     design, counts : the ring and its mesh
+    comm : communicator
+    halved : model half of it, which equals itself turned by 180 degrees
+    incompatible : elements with incompatible modes
+    """
+
+    def __init__(
+        self, design: RingDesign, counts: RingCounts, comm: MPI.Comm, halved: bool, incompatible: bool = True
+    ) -> None:
+        self.design, self.halved = design, halved
+        inner, width, material = design.r_fs, design.width, design.material
+        mesh = ring_sector(inner, design.outer_radius, width, counts.sectors, counts.radial, counts.axial, design.plane)
+        count = counts.sectors // 2 if halved else counts.sectors
+        layout = BodyLayout(mesh, 0, count, True, halved, np.zeros(0, dtype=np.int32))
+        self.mesh, self.partition = mesh, Partition([layout], comm)
+        reference = reference_elements(mesh.coords[mesh.elements], material.E, material.nu, width, incompatible)
+        self.elements = Elements(self.partition, [reference])
+        self.elements.bind(LocalNodes(self.partition, self.elements.wanted))
+        self.body = self.elements.bodies[0]
+
+    def equilibrium(self, surface: RigidContact) -> Equilibrium:
+        """Equilibrium of the ring on one surface: a scene takes it as the cam, or as the pins, which move."""
+        couplings = [Coupling(self.partition, self.body, "bore", self.halved)]
+        scale = self.design.material.E * self.design.drive.module
+        share = 0.5 if self.halved else 1.0
+        holding = Holding(self.partition, couplings, None, scale, share)
+        return Equilibrium(self.design, self.partition, self.elements, holding, surface, surface, NoTeeth(), Phases())
+
+
+class RingModel:
+    """A ring on a rigid surface.
+
+    Parameters
+    ----------
+    design, counts, comm, halved, incompatible : of `RingBody`
     cam : curve of the rigid surface, which may have two parts that move along the major axis
     half_angle : rad, the ring can touch within this angle of the major axis while the parts move
-    comm : communicator
-    incompatible : elements with incompatible modes
     """
 
     def __init__(
@@ -144,42 +176,26 @@ class RingModel:
         cam: Cam,
         half_angle: float,
         comm: MPI.Comm,
+        halved: bool = True,
         incompatible: bool = True,
     ) -> None:
         self.design, self.comm = design, comm
-        inner, width, material = design.r_fs, design.width, design.material
-        mesh = ring_sector(inner, design.outer_radius, width, counts.sectors, counts.radial, counts.axial, design.plane)
-        layout = BodyLayout(mesh, 0, counts.sectors // 2, True, True, np.zeros(0, dtype=np.int32))
-        self.partition = Partition([layout], comm)
-        reference = reference_elements(mesh.coords[mesh.elements], material.E, material.nu, width, incompatible)
-        self.elements = Elements(self.partition, [reference])
-        self.elements.bind(LocalNodes(self.partition, self.elements.wanted))
-        self.body = self.elements.bodies[0]
+        self.ring = RingBody(design, counts, comm, halved, incompatible)
+        self.body, mesh = self.ring.body, self.ring.mesh
         layers = mesh.node_sets["outer"].reshape(-1, AROUND + 1)
         self.outline = layers[np.abs(mesh.coords[layers[:, 0], 2]).argmin()]  # counter-clockwise
         self.travel = 0.0
         surface = RigidContact(
             self.body,
             Cylinder(cam),
-            inner,
-            0.5 * width * (1.0 + 1e-9),
+            design.r_fs,
+            0.5 * design.width * (1.0 + 1e-9),
             design.contact.wg_quadrature,
             design.wg_penalty,
             half_angle,
-            PRESSURE_LIMIT * material.E,
+            PRESSURE_LIMIT * design.material.E,
         )
-        # one surface: a scene takes it as the cam, or as the pins, which move
-        couplings = [Coupling(self.partition, self.body, "bore", True)]
-        self.equilibrium = Equilibrium(
-            design,
-            self.partition,
-            self.elements,
-            Holding(self.partition, couplings, None, material.E * design.drive.module, 0.5),
-            surface,
-            surface,
-            NoTeeth(),
-            Phases(),
-        )
+        self.equilibrium = self.ring.equilibrium(surface)
 
     def destroy(self) -> None:
         """Release the solver; collective."""
@@ -214,7 +230,8 @@ class RingModel:
     def contact_force(self) -> float:
         """Contact pressure integrated over the whole inner surface, N."""
         surface = self.equilibrium.rigid
-        return 2.0 * self.comm.allreduce(float((surface.pressure * surface.weight)[surface.owned].sum()), op=MPI.SUM)
+        copies = 2.0 if self.ring.halved else 1.0
+        return copies * self.comm.allreduce(float((surface.pressure * surface.weight)[surface.owned].sum()), op=MPI.SUM)
 
     def dial(self, angle: float, moved: float = 0.0) -> float:
         """Inward reading (mm) of a dial on the outer surface at mid-width, at `angle` (rad) from the major axis.

@@ -5,7 +5,7 @@ The plane model is written as quadrilaterals at z = 0.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,6 +13,7 @@ import meshio
 import numpy as np
 
 from swgpar.errors import InputError, OutputError
+from swgpar.meshing.inp import element_faces, write_inp
 from swgpar.meshing.quality import hex_volumes
 from swgpar.meshing.sector import Floats, Ints, SectorMesh
 
@@ -51,9 +52,29 @@ def whole_body(mesh: SectorMesh) -> tuple[Floats, Ints]:
 def named_nodes(mesh: SectorMesh) -> dict[str, Ints]:
     """Return node sets of the whole body: its surfaces, its flanks and its node sets."""
     sets = {name: np.unique(faces) for name, faces in mesh.faces.items()} | dict(mesh.node_sets)
-    sets["flanks"] = np.unique(np.concatenate([flank.nodes.ravel() for flank in mesh.flanks]))
+    if mesh.flanks:
+        sets["flanks"] = np.unique(np.concatenate([flank.nodes.ravel() for flank in mesh.flanks]))
     numbers = sector_numbers(mesh)
     return {f"{mesh.body}_{name}": np.unique(numbers[:, nodes]) for name, nodes in sets.items()}
+
+
+def named_surfaces(meshes: dict[str, SectorMesh]) -> dict[str, Ints]:
+    """Return element and face (n, 2), both from 0, of the surfaces of all bodies, numbered one after another."""
+    surfaces, first = {}, 0
+    for mesh in meshes.values():
+        quads = dict(mesh.faces)
+        if mesh.flanks:
+            grids = [flank.nodes for flank in mesh.flanks]
+            corners = [np.stack([g[:-1, :-1], g[1:, :-1], g[1:, 1:], g[:-1, 1:]], axis=-1) for g in grids]
+            quads["flanks"] = np.concatenate([corner.reshape(-1, 4) for corner in corners])
+        n = len(mesh.elements)
+        for name, facets in quads.items():
+            faces = element_faces(mesh, facets)
+            every = np.repeat(faces[None], mesh.n_sectors, axis=0)
+            every[..., 0] += first + n * np.arange(mesh.n_sectors, dtype=np.int32)[:, None]
+            surfaces[f"{mesh.body}_{name}"] = every.reshape(-1, 2)
+        first += n * mesh.n_sectors
+    return surfaces
 
 
 def whole_drive(meshes: dict[str, SectorMesh]) -> meshio.Mesh:
@@ -95,34 +116,6 @@ def _as_msh(drive: meshio.Mesh) -> meshio.Mesh:
     return meshio.Mesh(drive.points, drive.cells, cell_data=data, field_data=names)
 
 
-def _lines(numbers: Ints) -> Iterator[str]:
-    """Yield the 1-based `numbers`, 16 to a line."""
-    for start in range(0, len(numbers), 16):
-        yield ", ".join(str(n) for n in numbers[start : start + 16] + 1)
-
-
-def _write_inp(path: Path, drive: meshio.Mesh, thickness: float) -> None:
-    """Write the drive with C3D8I or CPS4I elements, types that meshio's own writer of this format does not offer."""
-    solid = drive.cells[0].type == "hexahedron"
-    with path.open("w", encoding="ascii") as file:
-        file.write("*HEADING\nstrain wave gear drive; lengths as in the design file\n")
-        if not solid:
-            file.write(f"** plane stress, thickness {thickness:.12g}: the data line of *SOLID SECTION\n")
-        file.write("*NODE, NSET=ALL_NODES\n")
-        numbers = np.arange(1, len(drive.points) + 1)
-        # CalculiX reads the first 20 characters of a field
-        np.savetxt(file, np.column_stack((numbers, drive.points)), fmt="%d, %.12e, %.12e, %.12e")
-        first = 1
-        for body, block in zip(drive.cell_sets, drive.cells, strict=True):
-            file.write(f"*ELEMENT, TYPE={'C3D8I' if solid else 'CPS4I'}, ELSET={body.upper()}\n")
-            table = np.column_stack((np.arange(first, first + len(block.data)), block.data + 1))
-            np.savetxt(file, table, fmt="%d", delimiter=", ")
-            first += len(block.data)
-        for name, nodes in drive.point_sets.items():
-            file.write(f"*NSET, NSET={name.upper()}\n")
-            file.writelines(f"{line}\n" for line in _lines(nodes))
-
-
 def write_mesh(
     design: DriveDesign,
     meshes: dict[str, SectorMesh],
@@ -161,7 +154,7 @@ def write_mesh(
             elif name == "msh":
                 meshio.gmsh.write(path, _as_msh(drive), fmt_version="2.2", binary=True)
             else:
-                _write_inp(path, drive, design.drive.face_width)
+                write_inp(path, drive, named_surfaces(meshes), design.material, design.drive.face_width)
             written.append(path)
     except OSError as error:
         raise OutputError(f"the mesh cannot be written to {folder}: {error.strerror or error}") from None

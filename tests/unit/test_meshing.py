@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
-import subprocess
 from functools import lru_cache
 from pathlib import Path
 
@@ -448,37 +446,6 @@ def test_export_failures_are_clear(tmp_path: Path) -> None:
         write_mesh(design(*SMALL), both, tmp_path, ("stl",))
 
 
-@pytest.mark.skipif(
-    shutil.which("ccx") is None, reason="CalculiX (ccx), the independent reader of the file, is missing"
-)
-def test_calculix_accepts_the_drive(tmp_path: Path) -> None:
-    case = design(*SMALL)
-    path = write_mesh(case, meshes(TINY, *SMALL), tmp_path, ("inp",))[0]
-    # a turn of the bore by 1e-4 rad about z with the ring gear held: the cup follows it rigidly
-    deck = [f"*INCLUDE, INPUT={path.name}", "*MATERIAL, NAME=STEEL", "*ELASTIC", "210000.0, 0.29"]
-    deck += [f"*SOLID SECTION, ELSET={gear.upper()}, MATERIAL=STEEL" for gear in GEARS]
-    deck += ["*BOUNDARY", "RING_GEAR_OUTER, 1, 3", "*STEP", "*STATIC", "*BOUNDARY"]
-    drive = whole_drive(meshes(TINY, *SMALL))
-    for node in drive.point_sets["flexible_spline_bore"]:
-        x, y, _ = drive.points[node]
-        deck += [
-            f"{node + 1}, 1, 1, {-1e-4 * y:.12e}",
-            f"{node + 1}, 2, 2, {1e-4 * x:.12e}",
-            f"{node + 1}, 3, 3",
-        ]
-    deck += ["*NODE PRINT, NSET=FLEXIBLE_SPLINE_FLANKS", "U", "*END STEP"]
-    (tmp_path / "job.inp").write_text("\n".join(deck) + "\n")
-    run = subprocess.run(["ccx", "job"], cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False)
-    assert run.returncode == 0 and "*ERROR" not in run.stdout, run.stdout[-2000:]
-    rows = [line.split() for line in (tmp_path / "job.dat").read_text().splitlines()]
-    table = np.array([[float(v) for v in row] for row in rows if len(row) == 4 and row[0].isdigit()])
-    nodes = table[:, 0].astype(int) - 1
-    assert np.array_equal(np.sort(nodes), drive.point_sets["flexible_spline_flanks"])
-    x, y, _ = drive.points[nodes].T
-    exact = 1e-4 * np.stack((-y, x, np.zeros_like(x)), axis=-1)
-    assert np.abs(table[:, 1:] - exact).max() < 1e-4 * np.abs(exact).max()
-
-
 def test_report_counts_the_full_drive() -> None:
     both = meshes(TINY, *SMALL)
     report = mesh_report(both)
@@ -575,12 +542,13 @@ def test_plane_exports_read_back(tmp_path: Path) -> None:
     assert np.bincount(tags)[1:].tolist() == [len(m.hexes) * m.n_sectors for m in both.values()]
     assert {name: tuple(tag) for name, tag in physical.field_data.items()} == {GEARS[0]: (1, 2), GEARS[1]: (2, 2)}
     lines = files[2].read_text().splitlines()
-    assert "** plane stress, thickness 10: the data line of *SOLID SECTION" in lines
     for gear, mesh in both.items():
-        start = lines.index(f"*ELEMENT, TYPE=CPS4I, ELSET={gear.upper()}") + 1
+        start = lines.index(f"*ELEMENT, TYPE=CPS4, ELSET={gear.upper()}") + 1
         end = next(k for k in range(start, len(lines)) if lines[k].startswith("*"))
         assert end - start == len(mesh.hexes) * mesh.n_sectors
         assert all(line.count(",") == 4 for line in lines[start:end])
+        section = lines.index(f"*SOLID SECTION, ELSET={gear.upper()}, MATERIAL=GEAR_MATERIAL")
+        assert lines[section + 1] == "10"
     report = mesh_report(both)
     assert sum(entry["nodes"] for entry in report.values()) == len(drive.points)
     assert sum(entry["elements"] for entry in report.values()) == len(drive.cells_dict["quad"])

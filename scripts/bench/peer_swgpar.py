@@ -1,0 +1,97 @@
+"""One of the peer problems by this program, under mpirun: fields of every rank, its memory and Newton's iterations.
+
+mpirun -n 2 python scripts/bench/peer_swgpar.py "linear: pinched ring" 160 2 8 OUT
+"""
+
+from __future__ import annotations
+
+import json
+import resource
+import sys
+from pathlib import Path
+
+import numpy as np
+from mpi4py import MPI
+from peer_problems import CAM, CAM_HALF_ANGLE, INNER, OUTER, PENALTY, PROBLEMS, STEEL, WIDTH, Problem, line
+
+from swgpar.assembly import BlockRows, BodyElements
+from swgpar.cams import EllipticalCam
+from swgpar.contact.rigid import CamPose
+from swgpar.design import Contact
+from swgpar.line_search import SearchedStep
+from swgpar.plain_ring import RingBody, RingCounts, RingDesign, RingModel
+from swgpar.steps import Scene
+from swgpar.stress import body_fields
+
+
+class DeadLoad:
+    """Forces on nodes in the place of a rigid surface, so that convergence is judged by them."""
+
+    penalty = 0.0
+
+    def __init__(self, nodes: np.ndarray, force: np.ndarray) -> None:
+        """nodes : (n,) local;  force : (n, 3) N"""
+        self.nodes, self.force = nodes, force
+
+    def evaluate(self, u: np.ndarray, pose: CamPose, residual: np.ndarray | None, rows: BlockRows | None) -> None:
+        if residual is not None:
+            residual[self.nodes] -= self.force
+
+    def reset(self) -> None:
+        """There are no multipliers."""
+
+    def augment(self) -> None:
+        """There are no multipliers."""
+
+    def penetration(self) -> float:
+        return 0.0
+
+
+def pinched(design: RingDesign, counts: RingCounts, force: float) -> tuple[BodyElements, np.ndarray, int]:
+    """The ring under two forces (N): its elements, displacements (n_local, 3) mm and the iterations it took."""
+    ring = RingBody(design, counts, MPI.COMM_WORLD, halved=False)
+    nodes, share = line(ring.mesh.coords)
+    sectors = ring.body.sectors[ring.body.owned]
+    local, forces = [np.zeros(0, dtype=np.int64)], [np.zeros((0, 3))]
+    for place, direction in ((0, -1.0), (counts.sectors // 2, 1.0)):
+        for k in np.flatnonzero(sectors == place):
+            local.append(ring.body.local[ring.body.owned][k, nodes])
+            forces.append(force * direction * share[:, None] * (0.0, 1.0, 0.0))
+    # the search is made for contact: in bending without it a full step, which stretches the ring, is the way out
+    SearchedStep.TRIALS = 0
+    equilibrium = ring.equilibrium(DeadLoad(np.concatenate(local), np.concatenate(forces)))
+    solved = equilibrium.solve(Scene(1, "load", cam=0.0))
+    if not solved.converged:
+        raise SystemExit(f"not converged: {solved}")
+    return ring.body, equilibrium.displacement(), solved.iterations
+
+
+def main() -> None:
+    name, *numbers, folder = sys.argv[1:]
+    problem: Problem = PROBLEMS[name]
+    counts = RingCounts(*map(int, numbers))
+    contact = Contact(wg_penalty_coef=PENALTY, wg_quadrature=7, penetration_tolerance=1e-4)
+    design = RingDesign(2.0 * OUTER, OUTER - INNER, WIDTH, False, STEEL, contact)
+    if problem.travel:
+        cam = EllipticalCam(*CAM)
+        model = RingModel(design, counts, cam, np.radians(CAM_HALF_ANGLE), MPI.COMM_WORLD, halved=False)
+        iterations, body = model.spread(problem.travel), model.body
+        u = model.equilibrium.displacement()
+    else:
+        body, u, iterations = pinched(design, counts, problem.force)
+    fields = body_fields(body, u)
+    out, comm = Path(folder), MPI.COMM_WORLD
+    np.savez(
+        out / f"rank{comm.rank}.npz",
+        sectors=body.sectors[body.owned],
+        displacement=fields["displacement"],
+        s1=fields["s1"],
+    )
+    memory = comm.allgather(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0)
+    if comm.rank == 0:
+        summary = {"iterations": iterations, "memory_MB": memory}
+        (out / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

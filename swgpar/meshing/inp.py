@@ -1,0 +1,90 @@
+"""The mesh as an input file of CalculiX or Abaqus: what a job needs besides supports, loads and steps.
+
+Nodes, elements, node sets, element-face surfaces for contact, the material and the sections: a job names the file by
+*INCLUDE and goes on with its *BOUNDARY and *STEP.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import meshio
+import numpy as np
+
+from swgpar.meshing.sector import Ints, SectorMesh
+
+if TYPE_CHECKING:
+    from swgpar.design import Material
+
+MATERIAL = "GEAR_MATERIAL"
+"""Name of the one material in the file."""
+
+HEX_FACES = np.array([[0, 1, 2, 3], [4, 7, 6, 5], [0, 4, 5, 1], [1, 5, 6, 2], [2, 6, 7, 3], [3, 7, 4, 0]])
+QUAD_FACES = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
+"""Nodes of the faces S1, S2, ... of an element of these programs, a hexahedron's clockwise seen from outside."""
+
+
+def element_faces(mesh: SectorMesh, quads: Ints) -> Ints:
+    """Element and face (n, 2), both from 0, of surface quadrilaterals (n, 4) of one sector.
+
+    In the plane, where a quadrilateral spans both layers of nodes, the face is an edge of the element.
+    """
+    if mesh.tied is not None:
+        quads = mesh.tied[quads]
+        quads = np.array([np.unique(quad) for quad in quads], dtype=np.int32).reshape(-1, 2)
+    table = HEX_FACES if mesh.tied is None else QUAD_FACES
+    faces = np.sort(mesh.elements[:, table], axis=-1)
+    place = {tuple(nodes): (k, f) for k, row in enumerate(faces.tolist()) for f, nodes in enumerate(row)}
+    return np.array([place[tuple(quad)] for quad in np.sort(quads, axis=1).tolist()], dtype=np.int32).reshape(-1, 2)
+
+
+def _lines(numbers: Ints) -> Iterator[str]:
+    """Yield the 1-based `numbers`, 16 to a line."""
+    for start in range(0, len(numbers), 16):
+        yield ", ".join(str(n) for n in numbers[start : start + 16] + 1)
+
+
+def write_inp(path: Path, drive: meshio.Mesh, surfaces: dict[str, Ints], material: Material, thickness: float) -> None:
+    """Write bodies that are the cell sets of `drive`: C3D8I elements, or CPS4 in the plane.
+
+    Parameters
+    ----------
+    path : Path
+    drive : meshio.Mesh
+        Its point sets are written as node sets, in capitals.
+    surfaces : dict of (n, 2) int32
+        Element and face of every facet, both from 0.
+    material : Material
+    thickness : float, mm
+        Of the plane model.
+
+    meshio's own writer of this format has neither these element types nor surfaces.
+    """
+    solid = drive.cells[0].type == "hexahedron"
+    with path.open("w", encoding="ascii") as file:
+        file.write("*HEADING\nstrain wave gear drive; lengths as in the design file\n")
+        if not solid:
+            file.write("** the elements of swgpar have incompatible modes: CPS4I of Abaqus; CalculiX has CPS4 only\n")
+        file.write("*NODE, NSET=ALL_NODES\n")
+        numbers = np.arange(1, len(drive.points) + 1)
+        # CalculiX reads the first 20 characters of a field
+        np.savetxt(file, np.column_stack((numbers, drive.points)), fmt="%d, %.12e, %.12e, %.12e")
+        first = 1
+        for body, block in zip(drive.cell_sets, drive.cells, strict=True):
+            file.write(f"*ELEMENT, TYPE={'C3D8I' if solid else 'CPS4'}, ELSET={body.upper()}\n")
+            table = np.column_stack((np.arange(first, first + len(block.data)), block.data + 1))
+            np.savetxt(file, table, fmt="%d", delimiter=", ")
+            first += len(block.data)
+        for name, nodes in drive.point_sets.items():
+            file.write(f"*NSET, NSET={name.upper()}\n")
+            file.writelines(f"{line}\n" for line in _lines(nodes))
+        for name, faces in surfaces.items():
+            file.write(f"*SURFACE, NAME={name.upper()}, TYPE=ELEMENT\n")
+            np.savetxt(file, faces + 1, fmt="%d, S%d")
+        file.write(f"*MATERIAL, NAME={MATERIAL}\n*ELASTIC\n{material.E:.12g}, {material.nu:.12g}\n")
+        for body in drive.cell_sets:
+            file.write(f"*SOLID SECTION, ELSET={body.upper()}, MATERIAL={MATERIAL}\n")
+            if not solid:
+                file.write(f"{thickness:.12g}\n")
