@@ -280,10 +280,31 @@ class Equilibrium:
 
         Flanks close no faster than their radius times the turn: up to contact there is no overshoot.
         """
-        drive = self.design.drive
-        gap = -largest(self.partition.comm, -self.teeth.clearance(LOADED_SIDE)) / drive.module
-        reach = 0.5 * drive.teeth_rg * drive.module + self.design.d  # no tooth is farther out
-        return drive.module * (min(gap, LONGEST) + MEETING if gap > 0.0 else LONGEST) / reach
+        module = self.design.drive.module
+        gap = self._clearance() / module
+        return module * (min(gap, LONGEST) + MEETING if gap > 0.0 else LONGEST) / self._reach
+
+    @property
+    def _reach(self) -> float:
+        """Radius (mm) that no tooth is farther out than."""
+        return 0.5 * self.design.drive.teeth_rg * self.design.drive.module + self.design.d
+
+    def _clearance(self) -> float:
+        return -largest(self.partition.comm, -self.teeth.clearance(LOADED_SIDE))
+
+    def closing_turn(self, scene: Scene) -> float:
+        """Turn (rad) of the output, the way the torque of `scene` acts, by which its flanks do not meet yet.
+
+        0 where they are so close that a Newton step does the rest, or where none is near.
+        """
+        self.scene = scene
+        self.search()
+        u = self.displacement()
+        self.teeth.turn = self.holding.ring_turn(u)
+        self.teeth.evaluate(u, scene.teeth, None, None)
+        gap = self._clearance()
+        apart = MEETING * self.design.drive.module < gap < np.inf
+        return float(np.copysign(gap / self._reach, scene.torque)) if apart else 0.0
 
     # -- solve -------------------------------------------------------------------------------------------
 

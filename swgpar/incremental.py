@@ -32,6 +32,9 @@ LOADED = 3
 MEMORY = 40
 """States of the rotation that are kept to predict the next ones from."""
 
+CLOSING = 10
+"""Turns in which a backlash is closed: each leaves some eighth of it, by the pressure angle."""
+
 PRESSURE_LIMIT = 0.02
 """Bound of contact pressures in the tangent's geometric terms, as a share of E: above any real pressure."""
 
@@ -212,6 +215,7 @@ class Runner:
             # cut, the way begins with the torque that holds the output
             held = self.equilibrium.holding.reactions(self.equilibrium.multipliers(x))
             origin = replace(origin, torque=float(held[-1]))
+            self._close_backlash(target)
         done, share, cuts = 0.0, 1.0, 0
         while done < 1.0:
             saved = x.copy()
@@ -248,6 +252,18 @@ class Runner:
             logger.info(
                 "   cut back to %.3g of the increment (%s, residual %.1e)", share, solved.reason, solved.residual
             )
+
+    def _close_backlash(self, target: Scene) -> None:
+        """Turn the output until the flanks that are to carry nearly meet.
+
+        The drive's pattern turns along, past the cam: Newton's steps turn the spline straight ahead, which lifts it off
+        the cam, so that a turn by a fraction of the backlash costs them several iterations.
+        """
+        for _ in range(CLOSING):
+            turn = self.equilibrium.closing_turn(target)
+            if turn == 0.0:
+                break
+            predict(self.model, self.equilibrium.x, 0.0, turn)
 
     def _turn_to(self, angle: float) -> None:
         """Predict the state at a cam angle (rad) from the visited one that is nearest to it in the period."""
