@@ -78,7 +78,7 @@ def ring_on_cam(
     cam = EllipticalCam(INNER + 0.5 * DEFLECTION, INNER - 0.5 * DEFLECTION)
     model = RingModel(design, counts, cam, HALF_ANGLE, comm, incompatible=incompatible)
     model.mount()
-    unknowns = model.ring.partition.dims * (model.partition.n_global - len(model.partition.multiplier_nodes))
+    unknowns = model.ring.partition.dims * (model.ring.partition.n_global - len(model.ring.partition.multiplier_nodes))
     values = {"s1": model.stresses()["s1"], "contact force": model.contact_force()}
     model.destroy()
     return unknowns, values
