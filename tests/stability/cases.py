@@ -12,9 +12,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from small_drive import PLANE as SMALL_PLANE
 
 from swgpar.design import make_design
-from swgpar.design_file import read_toml, with_value
+from swgpar.design_file import parse_value, read_toml, with_value
 from swgpar.errors import InputError
 from swgpar.meshing import build_sector_meshes, load_recipe
 
@@ -253,31 +254,28 @@ FRICTION = (0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5)
 
 
 def groups(count: int, seed: int) -> dict[str, Group]:
-    """All groups. count, seed : number of random designs, and what they are drawn from."""
-    torques = (0.0, 0.01, 1.0, 10.0, 50.0, 100.0, 200.0, 500.0)
+    """All groups. count, seed : number of random plane designs, and what they are drawn from."""
+    flat = dict(override.split("=") for override in SMALL_PLANE)
+    flat = {key: parse_value(value) for key, value in flat.items()}
+
+    def small_plane(cases: Cases, steps: bool = False) -> Group:
+        return Group(SMALL, lambda: {name: {**flat, **case} for name, case in cases.items()}, steps)
+
     soft = {"contact.penalty_coef": 5.0, "contact.max_augmentations": 50}
-    tolerances = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
+    rims, torques = (0.18, 0.3, 0.5, 1.0, 1.5, 2.0, 3.0), (0.0, 0.01, 1.0, 10.0, 50.0, 100.0, 200.0, 500.0)
+    turns = {f"increment={a:g}": {"steps.increment": a, "steps.rotation": 2 * a} for a in (0.1, 0.3, 1.0, 3.0, 10.0)}
     return {
         "Poisson's ratio, cup": Group(SMALL, lambda: each("material.nu", (0.0, 0.3, 0.45, 0.49, 0.499))),
         UNITS_GROUP: Group(SMALL, units),
         "penalty of the flanks, cup": Group(SMALL, lambda: each("contact.penalty_coef", DECADES)),
         "penalty of the cam, cup": Group(SMALL, lambda: each("contact.wg_penalty_coef", [c / 10.0 for c in DECADES])),
-        "penalty without augmentation, plane": Group(
-            PLANE, lambda: each("contact.penalty_coef", DECADES, {"contact.max_augmentations": 0})
+        "penalty without augmentation, plane": small_plane(
+            each("contact.penalty_coef", DECADES, {"contact.max_augmentations": 0})
         ),
-        "augmentation, plane": Group(
-            PLANE,
-            lambda: each("contact.penetration_tolerance", tolerances, soft),
-        ),
-        "increments, plane": Group(
-            PLANE,
-            lambda: {
-                f"increment={a:g}": {"steps.increment": a, "steps.rotation": 2 * a} for a in (0.1, 0.3, 1.0, 3.0, 10.0)
-            },
-            steps=True,
-        ),
-        "gaps, plane": Group(PLANE, lambda: each("ring_gear.c_P", (0.5, 0.7, 0.8, 0.85, 0.9, 0.95, 0.98))),
-        "overlap, plane": Group(PLANE, lambda: each("ring_gear.c_P", (1.0, 1.01, 1.02, 1.05, 1.1))),
+        "augmentation, plane": small_plane(each("contact.penetration_tolerance", (1e-2, 1e-3, 1e-4, 1e-5, 1e-6), soft)),
+        "increments, plane": small_plane(turns, steps=True),
+        "gaps, plane": small_plane(each("ring_gear.c_P", (0.6, 0.7, 0.8, 0.85, 0.9, 0.95, 0.98))),
+        "overlap, plane": small_plane(each("ring_gear.c_P", (1.0, 1.01, 1.02, 1.05, 1.1))),
         "cam's slope (gaps and overlap), cup": Group(
             SMALL, lambda: each("micro_geometry.wg_slope", (-0.2, -0.1, 0.0, 0.1, 0.2, 0.4))
         ),
@@ -285,15 +283,17 @@ def groups(count: int, seed: int) -> dict[str, Group]:
             SMALL,
             lambda: crossed(each("ring_gear.c_P", (0.8, 0.9, 1.0)), each("load.torque", (0.01, 1.0, 20.0))),
         ),
-        "friction, plane": Group(PLANE, lambda: each("contact.friction", FRICTION)),
-        "friction under 50 N·m, plane": Group(PLANE, lambda: each("contact.friction", FRICTION, {"load.torque": 50.0})),
+        "friction, plane": small_plane(each("contact.friction", FRICTION)),
         "friction, cup": Group(SMALL, lambda: each("contact.friction", FRICTION)),
-        "rim, plane": Group(PLANE, lambda: each("flexible_spline.rim", (0.18, 0.3, 0.5, 1.0, 1.5, 2.0, 3.0))),
-        "rim, cup": Group(CUP, lambda: each("flexible_spline.rim", (0.18, 0.3, 0.5, 1.0, 1.5, 2.0, 3.0))),
-        "torque, plane": Group(PLANE, lambda: each("load.torque", torques)),
-        "torque, cup": Group(CUP, lambda: each("load.torque", torques)),
-        "teeth, plane": Group(PLANE, lambda: teeth((20, 30, 40, 60, 80, 120, 160, 200, 320))),
-        "cams, plane": Group(PLANE, cams),
+        "friction under 50 N·m, plane reference": Group(
+            PLANE, lambda: each("contact.friction", FRICTION, {"load.torque": 50.0})
+        ),
+        "rim, plane reference": Group(PLANE, lambda: each("flexible_spline.rim", rims)),
+        "rim, cup reference": Group(CUP, lambda: each("flexible_spline.rim", (0.18, 0.3, 1.0, 3.0))),
+        "torque, plane reference": Group(PLANE, lambda: each("load.torque", torques)),
+        "torque, cup reference": Group(CUP, lambda: each("load.torque", (0.01, 20.0, 100.0, 500.0))),
+        "teeth, plane reference": Group(PLANE, lambda: teeth((20, 30, 40, 60, 80, 120, 160, 200, 320))),
+        "cams, plane reference": Group(PLANE, cams),
         "face width (aspect ratio), cup": Group(SMALL, lambda: widths((0.2, 1.0, 4.0, 20.0, 60.0, 200.0, 1000.0))),
         "random designs, plane": Group(PLANE, lambda: random_designs(count, seed)),
         "random designs, cup": Group(PLANE, lambda: random_designs(count // 10, seed, "cup")),

@@ -19,14 +19,14 @@ from swgpar.steps import sequence
 WORLD = MPI.COMM_WORLD
 ALL = groups(count=4, seed=7)
 HARDEST = [
-    ("rim, plane", "rim=0.18"),
-    ("teeth, plane", "teeth=20"),
-    ("torque, plane", "torque=0.01"),
+    ("rim, plane reference", "rim=0.18"),
+    ("teeth, plane reference", "teeth=20"),
+    ("torque, plane reference", "torque=0.01"),
     ("friction, plane", "friction=0.5"),
-    ("gaps, plane", "c_P=0.5"),
-    ("overlap, plane", "c_P=1.1"),
+    ("gaps, plane", "c_P=0.7"),
+    ("overlap, plane", "c_P=1.05"),
+    ("increments, plane", "increment=10"),
     ("penalty without augmentation, plane", "penalty_coef=5000"),
-    ("cams, plane", "right_C_p=0.55"),
 ]
 
 
@@ -45,7 +45,7 @@ def run(group: str, case: str) -> None:
     for row in rows[2:]:
         assert abs(row["output_torque_Nmm"]) == pytest.approx(torque)
         assert row["torque_balance_Nmm"] < 1e-5 * torque
-    if not design.contact.friction:
+    if not design.contact.friction and not ALL[group].steps:
         assert drift(rows[3], rows[5]) < 1e-6
 
 
@@ -63,7 +63,7 @@ def test_bulging_cam_is_refused() -> None:
     """A parabola too flat for its width drives the spline's teeth through the ring gear's root circle."""
     flat = {"type": "parabolic", "C": 1.0, "a_p": 0.008, "C_p": 0.5, "r_c": 10.0, "face_width": 10.0}
     with pytest.raises(InputError, match="bulges .* mm beyond .* allowed up to 0.2 mm"):
-        make_design(table_of(ALL["rim, plane"].design, {"wave_generator": flat}))
+        make_design(table_of(ALL["rim, plane reference"].design, {"wave_generator": flat}))
 
 
 @pytest.mark.skipif(WORLD.size > 1, reason="starts mpirun itself")
