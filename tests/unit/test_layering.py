@@ -38,6 +38,7 @@ ORDER = (
     "plain_ring",
     "error_estimate",
     "results",
+    "gear_trains",
     "report",
     "run",
     "study",
