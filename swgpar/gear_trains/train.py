@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,7 @@ import swgpar
 from swgpar import log
 from swgpar.design_file import apply_overrides, read_toml, validate
 from swgpar.errors import InputError
-from swgpar.gear_trains import cascade
+from swgpar.gear_trains import cascade, gear_pair
 from swgpar.gear_trains.keys import TrainDesign
 from swgpar.gear_trains.published import Quantities, check_published, compare
 from swgpar.gear_trains.result import TrainResult, write
@@ -46,15 +47,13 @@ class TrainModel:
     draw: Callable[[Path, dict[str, Any]], list[Path]]
 
 
+def _model(package: ModuleType, design: type[TrainDesign]) -> TrainModel:
+    return TrainModel(design, package.check_fit, package.quantities, package.derived, package.compute, package.draw)
+
+
 MODELS = {
-    "cascade": TrainModel(
-        cascade.CascadeDesign,
-        cascade.check_fit,
-        cascade.quantities,
-        cascade.derived,
-        cascade.compute,
-        cascade.draw,
-    ),
+    "cascade": _model(cascade, cascade.CascadeDesign),
+    "gear_pair": _model(gear_pair, gear_pair.GearPairDesign),
 }
 
 

@@ -15,10 +15,10 @@ from swgpar.gear_trains.train import is_gear_train, load_train, model_of
 from swgpar.results.table import format_columns, read_columns
 
 DRIVERS = Path(__file__).parents[2] / "drivers"
-CASCADE = DRIVERS / "cascade.toml"
+CASCADE, GEAR_PAIR = DRIVERS / "cascade.toml", DRIVERS / "gear_pair.toml"
 
 REFUSED = [
-    (CASCADE, "gear_train.model=belt", 'gear_train.model = "belt" is not available: allowed "cascade"'),
+    (CASCADE, "gear_train.model=belt", 'gear_train.model = "belt" is not available: allowed "cascade" or "gear_pair"'),
     (CASCADE, "gear_train.seed=-1", "gear_train.seed = -1 is out of range: allowed 0 to inf"),
     (CASCADE, "rack.mass=0", "rack.mass = 0 is out of range: allowed above 0 to inf kg"),
     (CASCADE, "g2.teeth=20.5", "g2.teeth = 20.5 is not a whole number"),
@@ -32,6 +32,12 @@ REFUSED = [
     (CASCADE, "published.static_B_12=1", "published.static_B_12 is not a quantity of this gear train: did you mean"),
     (CASCADE, "published.braked_B=1", "published.braked_B = 1 is not a list of 8 numbers"),
     (CASCADE, "published.overloaded_static=many", 'published.overloaded_static = "many" is not one number'),
+    (GEAR_PAIR, "gear_1.radius=0", "gear_1.radius = 0 is out of range: allowed above 0 to inf mm"),
+    (GEAR_PAIR, "mesh.contact_ratio=2.5", "mesh.contact_ratio = 2.5 is out of range: allowed 1 to 2"),
+    (GEAR_PAIR, "load.output=[1.0]", "load.output = [1.0] is out of range: allowed 3 torques (load.input)"),
+    (GEAR_PAIR, "load.input=[1.0, -1.0, 1.0]", "load.input = -1 is out of range"),
+    (GEAR_PAIR, "time.step=1", "time.step = 1 is out of range: allowed above 0 to 0.02 s (time.end)"),
+    (GEAR_PAIR, "monte_carlo.samples=1", "monte_carlo.samples = 1 is out of range: allowed 2 to 100000000"),
 ]
 
 
@@ -49,7 +55,7 @@ def test_drives_are_no_gear_trains() -> None:
         load_train(DRIVERS / "cup_45deg.toml")
 
 
-@pytest.mark.parametrize("file", [CASCADE])
+@pytest.mark.parametrize("file", [CASCADE, GEAR_PAIR])
 def test_derived_values_are_finite(file: Path) -> None:
     design = load_train(file)
     values = model_of(design).derived(design)

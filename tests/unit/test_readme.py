@@ -11,6 +11,7 @@ from pydantic.fields import FieldInfo
 
 from swgpar.design import DriveDesign
 from swgpar.gear_trains.cascade import CascadeDesign
+from swgpar.gear_trains.gear_pair import GearPairDesign
 from swgpar.quantities import Section, allowed
 
 ROOT = Path(__file__).parents[2]
@@ -77,6 +78,7 @@ def expected(design: type[Section], alike: dict[str, str]) -> list[str]:
     ("file", "place", "design", "alike"),
     [
         ("README.md", 0, DriveDesign, {"ring_gear": "flexible_spline"}),
+        ("docs/gear_trains.md", 1, GearPairDesign, {"gear_2": "gear_1"}),
         (
             "docs/gear_trains.md",
             0,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from pathlib import Path
 
 import numpy as np
@@ -237,7 +238,7 @@ def test_implicit_steps_are_of_second_order(design: CascadeDesign) -> None:
         _, x_end, _ = box.simulate(force, start, end / count, count)
         off.append(np.abs(x_end - x[-1]).max())
     assert off[-1] < 1e-7
-    for coarse, fine in zip(off, off[1:], strict=False):
+    for coarse, fine in itertools.pairwise(off):
         assert np.log2(coarse / fine) == pytest.approx(2.0, abs=0.3)
 
 
