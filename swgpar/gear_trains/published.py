@@ -15,6 +15,11 @@ Quantities = Mapping[str, tuple[str, int]]
 """What a model computes: name -> meaning with its unit, number of values."""
 
 
+def label(value: float) -> str:
+    """A number in the name of a quantity."""
+    return f"{value:g}".replace(".", "p").replace("+", "")
+
+
 def check_published(published: Mapping[str, Any], known: Quantities) -> None:
     """Refuse names that are no quantity, and values that are not as many numbers as the quantity has."""
     for name, given in published.items():

@@ -16,9 +16,14 @@ from swgpar.results.table import format_columns, read_columns
 
 DRIVERS = Path(__file__).parents[2] / "drivers"
 CASCADE, GEAR_PAIR = DRIVERS / "cascade.toml", DRIVERS / "gear_pair.toml"
+RING, RING_MODES = DRIVERS / "ring_moving_load.toml", DRIVERS / "ring_modes.toml"
 
 REFUSED = [
-    (CASCADE, "gear_train.model=belt", 'gear_train.model = "belt" is not available: allowed "cascade" or "gear_pair"'),
+    (
+        CASCADE,
+        "gear_train.model=belt",
+        'gear_train.model = "belt" is not available: allowed "cascade" or "gear_pair"',
+    ),
     (CASCADE, "gear_train.seed=-1", "gear_train.seed = -1 is out of range: allowed 0 to inf"),
     (CASCADE, "rack.mass=0", "rack.mass = 0 is out of range: allowed above 0 to inf kg"),
     (CASCADE, "g2.teeth=20.5", "g2.teeth = 20.5 is not a whole number"),
@@ -38,6 +43,14 @@ REFUSED = [
     (GEAR_PAIR, "load.input=[1.0, -1.0, 1.0]", "load.input = -1 is out of range"),
     (GEAR_PAIR, "time.step=1", "time.step = 1 is out of range: allowed above 0 to 0.02 s (time.end)"),
     (GEAR_PAIR, "monte_carlo.samples=1", "monte_carlo.samples = 1 is out of range: allowed 2 to 100000000"),
+    (RING, "ring.inner_radius=520", "ring.inner_radius = 520 is out of range: allowed above 0 to below 520 mm"),
+    (RING, "supports.count=5", "supports.count = 5 is out of range: allowed divisors of 36 (ring.elements)"),
+    (RING, "ring.elements=6", "ring.elements = 6 is out of range: allowed at least 12, for a node between two"),
+    (RING, "moving_load.steps=700", "moving_load.steps = 700 is out of range: allowed multiples of 3"),
+    (RING, "moving_load.sweep=[3.0]", "moving_load.sweep = [3.0] is out of range: allowed two speeds"),
+    (RING_MODES, "moving_load.force=1", "moving_load.damping_mass is missing: give a number"),
+    (RING_MODES, "teeth.count=63", "teeth.count = 63 is out of range: allowed divisors of 64 (ring.elements)"),
+    (RING_MODES, "ring.modes=65", "ring.modes = 65 is out of range: allowed 1 to 64 (ring.elements)"),
 ]
 
 
@@ -55,7 +68,7 @@ def test_drives_are_no_gear_trains() -> None:
         load_train(DRIVERS / "cup_45deg.toml")
 
 
-@pytest.mark.parametrize("file", [CASCADE, GEAR_PAIR])
+@pytest.mark.parametrize("file", [CASCADE, GEAR_PAIR, RING, RING_MODES])
 def test_derived_values_are_finite(file: Path) -> None:
     design = load_train(file)
     values = model_of(design).derived(design)

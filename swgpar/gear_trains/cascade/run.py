@@ -16,7 +16,7 @@ from swgpar.gear_trains.cascade.motion import Period, braked_shares, one_period
 from swgpar.gear_trains.cascade.population import Shares, populations
 from swgpar.gear_trains.cascade.static import MESHES, even_pinions, first_crossing, path_gaps, static_sharing
 from swgpar.gear_trains.cascade.tolerances import contributions, stack_ups, standard_deviation
-from swgpar.gear_trains.published import Quantities
+from swgpar.gear_trains.published import Quantities, label
 from swgpar.gear_trains.result import Table, TrainResult
 from swgpar.gear_trains.sampling import share_out
 from swgpar.log import logger
@@ -28,11 +28,6 @@ CURVE_END = 2.5
 RANKS = ("pitch deviation pinion", "runout pinion", "pitch deviation rack", "runout rack", "position pinion")
 RANKS = (*RANKS, "axle angle pinion")
 """Tolerances of the rack and the pinions, in the order of Table 2."""
-
-
-def label(force: float) -> str:
-    """A rack force in kN in the name of a quantity."""
-    return f"{force:g}".replace(".", "p")
 
 
 def quantities(design: CascadeDesign) -> Quantities:
