@@ -27,6 +27,7 @@ EXAMPLES = """examples:
   mpirun -n 2 swgpar run drivers/cup_45deg.toml --mesh mesh/full.toml --out results/full --restart
   swgpar mesh drivers/cup_45deg.toml --mesh mesh/coarse.toml --out results/mesh --format vtu inp
   swgpar report results/full
+  mpirun -n 2 swgpar run drivers/cascade.toml --out results/cascade
 """
 
 STUDY = """A study computes many designs and compares them: a grid or a sweep over any keys of the design file, on one
@@ -58,7 +59,7 @@ def parser() -> argparse.ArgumentParser:
     """Argument parser of all subcommands."""
     top = _Parser(
         prog="swgpar",
-        description="Contact finite-element analysis of strain wave gears.",
+        description="Contact finite-element analysis of strain wave gears, and models of the gear trains around them.",
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -81,7 +82,7 @@ def parser() -> argparse.ArgumentParser:
         return command
 
     run = design_command("run", "simulate a drive; what is not known here is handed to PETSc")
-    run.add_argument("--mesh", required=True, help="mesh recipe (TOML)")
+    run.add_argument("--mesh", help="mesh recipe (TOML); gear trains have none")
     run.add_argument(
         "--accuracy",
         type=float,
@@ -131,10 +132,16 @@ def _run(arguments: argparse.Namespace) -> None:
     from mpi4py import MPI
 
     from swgpar.design import load_design
+    from swgpar.gear_trains.train import is_gear_train
     from swgpar.meshing import load_recipe
     from swgpar.run import run_drive
 
     comm = MPI.COMM_WORLD
+    if _on_all(comm, lambda: is_gear_train(arguments.design)):
+        _run_train(arguments, comm)
+        return
+    if arguments.mesh is None:
+        raise InputError("the following arguments are required: --mesh (see swgpar run --help)")
     design = _on_all(comm, lambda: load_design(arguments.design, arguments.overrides))
     recipe = _on_all(comm, lambda: load_recipe(arguments.mesh))
     result = run_drive(
@@ -149,6 +156,22 @@ def _run(arguments: argparse.Namespace) -> None:
     )
     if comm.rank == 0:
         _print_result(result)
+        if design.output.figures:
+            _figures(arguments.out)
+    comm.Barrier()
+
+
+def _run_train(arguments: argparse.Namespace, comm: MPI.Comm) -> None:
+    from swgpar.gear_trains.terminal import print_compared
+    from swgpar.gear_trains.train import load_train, run_train
+
+    for option in ("mesh", "accuracy", "restart"):
+        if getattr(arguments, option):
+            raise InputError(f"--{option} has no meaning for a gear train: leave it out")
+    design = _on_all(comm, lambda: load_train(arguments.design, arguments.overrides))
+    compared = run_train(design, arguments.out, overwrite=arguments.overwrite, comm=comm)
+    if comm.rank == 0:
+        print_compared(compared)
         if design.output.figures:
             _figures(arguments.out)
     comm.Barrier()
@@ -255,10 +278,15 @@ def _mesh(arguments: argparse.Namespace) -> None:
 
 def _check(arguments: argparse.Namespace) -> None:
     from swgpar.design import load_design
+    from swgpar.gear_trains.train import is_gear_train, load_train, model_of
     from swgpar.geometry_check import derived_geometry
 
-    design = load_design(arguments.design, arguments.overrides)
-    for name, value in derived_geometry(design).items():
+    if is_gear_train(arguments.design):
+        train = load_train(arguments.design, arguments.overrides)
+        values = model_of(train).derived(train)
+    else:
+        values = derived_geometry(load_design(arguments.design, arguments.overrides))
+    for name, value in values.items():
         print(f"{name:40s} {value:.6g}")
 
 

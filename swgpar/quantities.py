@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import json
 from collections.abc import Callable, Sequence
-from typing import Any, get_args
+from typing import Any, get_args, get_origin
 
 import annotated_types
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
@@ -156,6 +156,8 @@ def sentence(model: type[Section], error: ValidationError) -> str:
         limits, noun = allowed(field), "a whole number" if field.annotation is int else "a number"
     elif field.annotation in PLURALS:
         limits, noun = f"allowed {field.description}", PLURALS[field.annotation]
+    elif get_origin(field.annotation) is list:
+        limits, noun = f"allowed {field.description}", "a list of that many numbers"
     elif field.annotation is str:
         limits, noun = f"allowed {field.description}", "a text"
     else:

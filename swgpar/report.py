@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from swgpar.errors import OutputError
+from swgpar.gear_trains.train import SECTION, train_figures
 from swgpar.results import history
 from swgpar.results.fields import FOLDER, MESH, increment_name
 from swgpar.results.parallel_hdf5 import h5py
@@ -24,8 +25,10 @@ def make_figures(out: Path) -> list[Path]:
             raise OutputError(f"{out} has no {name}: figures are drawn from the files of a finished run")
     figures = out / "figures"
     figures.mkdir(exist_ok=True)
-    rows = history.read_history(out / history.NAME)
     summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
+    if SECTION in summary["design"]:
+        return train_figures(out, summary)
+    rows = history.read_history(out / history.NAME)
     made = [_stress(rows, figures), _torque(rows, summary, figures)]
     if (out / "fields.h5").exists():
         last = summary.get("increments", len(rows))

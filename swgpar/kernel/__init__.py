@@ -1,9 +1,14 @@
-"""C++ kernels behind Cython: elements and contact."""
+"""C++ kernels behind Cython: elements, contact, gear trains."""
 
 from swgpar.kernel._contact import add_face_blocks, contact_flanks
+from swgpar.kernel._gear_trains import MESH, MESH_ERROR, SHAFT, GearboxKernel
 from swgpar.kernel._kernel import ReferenceElements, assemble_elements, recover_stress, reference_elements
 
 __all__ = [
+    "MESH",
+    "MESH_ERROR",
+    "SHAFT",
+    "GearboxKernel",
     "ReferenceElements",
     "add_face_blocks",
     "assemble_elements",

@@ -11,10 +11,15 @@ from swgpar.results import checkpoint, history
 from swgpar.results.atomic import TEMPORARY, agreed, discard, write_file
 from swgpar.results.fields import FOLDER
 
+TABLES = "tables"
+"""Folder of the tables that a gear train adds to its history."""
+
 RESULTS = (
     history.NAME,
     checkpoint.NAME,
     "summary.json",
+    "published.csv",
+    f"{TABLES}/*.csv",
     "fields.xdmf",
     "fields.h5",
     f"{FOLDER}/*.h5",

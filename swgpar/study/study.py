@@ -14,12 +14,13 @@ from swgpar import log
 from swgpar.errors import InputError, OutputError
 from swgpar.results.atomic import agreed, first_reason, write_from_root
 from swgpar.results.folder import prepare
+from swgpar.results.table import format_csv
 from swgpar.study.cases import Job, expand
 from swgpar.study.job import STATUS, Outcome, read_status, run_job
 from swgpar.study.report import make_report
 from swgpar.study.schedule import Counter, Reports
 from swgpar.study.spec import Study, load_study
-from swgpar.study.table import Result, compare, format_csv, published_rows, study_rows
+from swgpar.study.table import Result, compare, published_rows, study_rows
 from swgpar.study.terminal import StudyProgress
 
 Report = Callable[[tuple[int, Outcome | None]], None]

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -128,13 +126,3 @@ def published_rows(comparisons: Iterable[Comparison]) -> list[dict[str, Any]]:
         }
         for c in comparisons
     ]
-
-
-def format_csv(rows: Sequence[Mapping[str, Any]]) -> bytes:
-    """A CSV file; floats as the shortest text that reads back the same, empty where there is no value."""
-    text = io.StringIO()
-    writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
-    writer.writeheader()
-    for row in rows:
-        writer.writerow({k: repr(v) if isinstance(v, float) else v for k, v in row.items()})
-    return text.getvalue().encode()

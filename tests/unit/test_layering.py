@@ -40,6 +40,7 @@ ORDER = (
     "error_estimate",
     "accuracy",
     "results",
+    "gear_trains",
     "report",
     "run",
     "study",

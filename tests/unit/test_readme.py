@@ -1,4 +1,4 @@
-"""The README's table of keys says what the design file's sections say."""
+"""The tables of keys in the documentation say what the design files' sections say."""
 
 from __future__ import annotations
 
@@ -6,12 +6,16 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Literal, get_args, get_origin
 
+import pytest
 from pydantic.fields import FieldInfo
 
 from swgpar.design import DriveDesign
+from swgpar.gear_trains.cascade import CascadeDesign
+from swgpar.gear_trains.gear_pair import GearPairDesign
+from swgpar.gear_trains.ring import RingDesign
 from swgpar.quantities import Section, allowed
 
-README = Path(__file__).parents[2] / "README.md"
+ROOT = Path(__file__).parents[2]
 
 
 def sections(field: FieldInfo) -> list[type[Section]]:
@@ -30,6 +34,8 @@ def cells(field: FieldInfo) -> tuple[str, str, str]:
         values = " or ".join(get_args(field.annotation))
     elif field.annotation is bool:
         values = "true or false"
+    elif get_origin(field.annotation) in (list, dict):
+        values = "numbers" if get_origin(field.annotation) is list else "a table"
     else:
         values = allowed(field).removeprefix("allowed ")
     return str(field.description), default if field.default is not None else "none", values
@@ -57,15 +63,39 @@ def table(prefix: str, choices: list[type[Section]], only: str = "") -> Iterator
                 yield f"{prefix}{name}", owners_among(same) + row[0], row[1], row[2]
 
 
-def expected() -> list[str]:
-    rows = [f"| `{key}` | {' | '.join(row)} |" for key, *row in table("", [DriveDesign])]
-    # the ring gear has the keys of the flexible spline, and one of its own cutter
-    known = {row.replace("`flexible_spline.", "`ring_gear.") for row in rows if "`flexible_spline." in row}
+def expected(design: type[Section], alike: dict[str, str]) -> list[str]:
+    """Rows of a design file. alike : section -> another, whose rows are not repeated for it"""
+    rows = [f"| `{key}` | {' | '.join(row)} |" for key, *row in table("", [design])]
+    known = {
+        row.replace(f"`{other}.", f"`{section}.")
+        for section, other in alike.items()
+        for row in rows
+        if f"`{other}." in row
+    }
     return [row for row in rows if row not in known]
 
 
-def test_the_table_lists_every_key() -> None:
-    lines = README.read_text(encoding="utf-8").splitlines()
-    first = lines.index("| key | meaning (unit) | default | allowed |") + 2
+@pytest.mark.parametrize(
+    ("file", "place", "design", "alike"),
+    [
+        ("README.md", 0, DriveDesign, {"ring_gear": "flexible_spline"}),
+        ("docs/gear_trains.md", 1, GearPairDesign, {"gear_2": "gear_1"}),
+        ("docs/gear_trains.md", 2, RingDesign, {}),
+        (
+            "docs/gear_trains.md",
+            0,
+            CascadeDesign,
+            {
+                **dict.fromkeys(("g1", "g2", "g3", "g4"), "pinion"),
+                **dict.fromkeys(("g1_g1", "g1_g2", "g3_g4"), "rack_pinion"),
+            },
+        ),
+    ],
+)
+def test_the_table_lists_every_key(file: str, place: int, design: type[Section], alike: dict[str, str]) -> None:
+    """place : of the table in the file"""
+    lines = (ROOT / file).read_text(encoding="utf-8").splitlines()
+    first = [i for i, line in enumerate(lines) if line == "| key | meaning (unit) | default | allowed |"][place] + 2
     last = next(i for i in range(first, len(lines)) if not lines[i].startswith("|"))
-    assert lines[first:last] == expected(), "write these rows:\n" + "\n".join(expected())
+    rows = expected(design, alike)
+    assert lines[first:last] == rows, "write these rows:\n" + "\n".join(rows)

@@ -13,13 +13,14 @@ from mpi4py import MPI
 
 from swgpar.error_estimate import estimate
 from swgpar.errors import InputError
+from swgpar.results.table import format_csv
 from swgpar.study.cases import Job, expand
 from swgpar.study.figures import over_angle, over_key
 from swgpar.study.job import Outcome, read_status, run_job
 from swgpar.study.report import make_report
 from swgpar.study.spec import load_study
 from swgpar.study.study import queue
-from swgpar.study.table import compare, format_csv, study_rows
+from swgpar.study.table import compare, study_rows
 
 DATA = Path(__file__).parent.parent / "data"
 ROOT = Path(__file__).parents[2]

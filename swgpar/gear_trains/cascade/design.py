@@ -1,0 +1,142 @@
+"""Design file of a cascade gearbox. The source gives few of its data: the others are inputs with plausible values."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from annotated_types import Len
+
+from swgpar.errors import InputError
+from swgpar.gear_trains.keys import Output, Positive, TrainDesign
+from swgpar.quantities import Section, quantity
+
+PINIONS = 8
+Ratios = Annotated[list[Positive], Len(PINIONS, PINIONS)]
+Forces = Annotated[list[Positive], Len(1)]
+GRADES = {"ge": 0.0, "le": 12.0}
+
+
+class Train(Section):
+    model: Literal["cascade"] = quantity(text="the gear train")
+    seed: int = quantity(1, text="seed of all random samples", ge=0)
+
+
+class Rack(Section):
+    mass: float = quantity(unit="kg", text="mass of the rack", gt=0.0)
+    length: float = quantity(unit="m", text="toothed length, taken as the pitch circle in its tolerances", gt=0.0)
+    pitch_grade: float = quantity(text="ISO 1328 grade of the pitch deviation", **GRADES)
+    runout_grade: float = quantity(text="ISO 1328 grade of the runout", **GRADES)
+
+
+class Gear(Section):
+    teeth: int = quantity(text="number of teeth", ge=6, le=1000)
+    inertia: float = quantity(unit="kg·m²", text="moment of inertia", gt=0.0)
+    face_width: float = quantity(unit="mm", text="face width", gt=0.0)
+    pitch_grade: float = quantity(text="ISO 1328 grade of the pitch deviation", **GRADES)
+    runout_grade: float = quantity(text="ISO 1328 grade of the runout", **GRADES)
+    position: float = quantity(unit="mm", text="tolerance of the shaft's position, plus or minus", ge=0.0)
+    axle_angle: float = quantity(unit="mrad", text="tolerance of the shaft's direction, plus or minus", ge=0.0)
+
+
+class Mesh(Section):
+    module: float = quantity(unit="mm", text="module", gt=0.0)
+    stiffness: float = quantity(unit="N/m", text="mean mesh stiffness", gt=0.0)
+    variation: float = quantity(0.0, text="amplitude of the mesh stiffness over its mean", ge=0.0, lt=1.0)
+    gap_A: float = quantity(0.0, unit="mm", text="way at the pitch line before the flanks of direction A meet", ge=0.0)
+    gap_B: float = quantity(0.0, unit="mm", text="way at the pitch line before the flanks of direction B meet", ge=0.0)
+
+
+class FlexUnit(Section):
+    ratio: Ratios = quantity(text="stiffness over the mean of all units, of pinions 1 to 8 (Table 3); each above 0")
+    stiffness: float = quantity(unit="N·m/deg", text="mean stiffness beyond `linear_above`", gt=0.0)
+    linear_above: float = quantity(unit="mm", text="deformation beyond which the stiffness is constant", gt=0.0)
+    initial_stiffness: float = quantity(unit="N·m/deg", text="mean stiffness at no deformation", gt=0.0)
+    radius: float = quantity(unit="mm", text="radius at which the deformation is measured", gt=0.0)
+
+
+class Shafts(Section):
+    g2_g3: float = quantity(unit="N·m/rad", text="stiffness of a shaft between G2 and G3", gt=0.0)
+    g4_flywheel: float = quantity(unit="N·m/rad", text="stiffness of the shaft between G4 and flywheel", gt=0.0)
+
+
+class Flywheel(Section):
+    inertia: float = quantity(unit="kg·m²", text="moment of inertia with the generator", gt=0.0)
+    generator: float = quantity(unit="N·m·s/rad", text="torque of the generator over its speed", gt=0.0)
+
+
+class Damping(Section):
+    metal: float = quantity(unit="s", text="damping over stiffness of meshes in contact and of shafts", ge=0.0)
+    flex: float = quantity(unit="s", text="damping over stiffness of the flexible units", ge=0.0)
+    contact_ramp: float = quantity(
+        unit="µm", text="approach of the flanks over which their damping sets in (the S-shaped step of eq. 10)", gt=0.0
+    )
+
+
+class Load(Section):
+    forces: Forces = quantity(text="rack forces that load shares are given for (kN), each above 0")
+    peak: float = quantity(unit="kN", text="largest rack force, of the period and the populations", gt=0.0)
+    period: float = quantity(unit="s", text="period of the rack force; direction B comes first", gt=0.0)
+    braked: float = quantity(unit="kN", text="rack force against the flywheel held by its brake", gt=0.0)
+    overload: float = quantity(text="share of the whole load above 1/8 that a pinion may carry", ge=0.0, lt=0.875)
+
+
+class Tolerances(Section):
+    samples: int = quantity(text="samples of the stack-up", ge=10, le=10_000_000)
+    limit: float = quantity(3.0, unit="standard deviations", text="where the tolerance limits lie", gt=0.0)
+
+
+class Population(Section):
+    gearboxes: int = quantity(text="gearboxes with random errors", ge=1, le=1_000_000)
+    ramp: float = quantity(unit="s", text="time in which the rack force of the dynamic population rises", gt=0.0)
+    hold: float = quantity(unit="s", text="time for which it is held, over which load shares are averaged", gt=0.0)
+    step: float = quantity(unit="s", text="time step of the dynamic population", gt=0.0)
+
+
+class CascadeDesign(TrainDesign):
+    """A cascade gearbox, its load and its tolerances. Attributes are the sections of the design file."""
+
+    gear_train: Train
+    rack: Rack
+    pinion: Gear
+    g1: Gear
+    g2: Gear
+    g3: Gear
+    g4: Gear
+    rack_pinion: Mesh
+    g1_g1: Mesh
+    g1_g2: Mesh
+    g3_g4: Mesh
+    flex_unit: FlexUnit
+    shafts: Shafts
+    flywheel: Flywheel
+    damping: Damping
+    load: Load
+    tolerances: Tolerances
+    population: Population
+    output: Output = Output()
+
+    def radius(self, gear: str) -> float:
+        """Pitch radius of a gear, m."""
+        return 0.5e-3 * getattr(self, gear).teeth * getattr(self, MODULE_OF[gear]).module
+
+    @property
+    def ratio(self) -> float:
+        """Speed of the flywheel over that of the pinions."""
+        return self.g1.teeth / self.g2.teeth * self.g3.teeth / self.g4.teeth
+
+
+MODULE_OF = {"pinion": "rack_pinion", "g1": "g1_g2", "g2": "g1_g2", "g3": "g3_g4", "g4": "g3_g4"}
+"""The mesh whose module a gear has."""
+
+
+def check_fit(design: CascadeDesign) -> None:
+    """Refuse values that do not fit each other."""
+    if design.g1_g1.module != design.g1_g2.module:
+        raise InputError(
+            f"g1_g1.module = {design.g1_g1.module:g} is out of range: allowed {design.g1_g2.module:g} mm (g1_g2.module)"
+        )
+    if design.population.step > design.population.hold:
+        raise InputError(
+            f"population.step = {design.population.step:g} is out of range: "
+            f"allowed above 0 to {design.population.hold:g} s (population.hold)"
+        )

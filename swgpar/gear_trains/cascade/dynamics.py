@@ -1,0 +1,126 @@
+"""Motion of the cascade gearbox: meshes with backlash and errors, flexible units, shafts, generator.
+
+The equations follow from the energy of meshes and shafts, so that their matrices are symmetric (kernel/gearbox.hpp).
+In print (eqs 9 to 23) the backlash and the errors are moved into an alternating force, and the contact function
+multiplies stiffness and force once each; here a mesh simply has the force
+
+    f = k g(p) + h(g) c dp/dt,    p = x_driver - x_driven - e,
+
+g the approach of the flanks beyond the gap, h the S-shaped step of eq. (10). Further deviations from print:
+
+- gaps of the two directions are given separately: the source's geometric difference lies in one of them;
+- the phase of stiffness and error follows the way of the driven gear, not a constant frequency times the time: the rack
+  stops and turns back. Tooth cycle and pitch error are parameters of the motion, as in print: their derivatives with
+  respect to the way are no part of the force;
+- G4 and flywheel are always coupled.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.linalg import eigh
+
+from swgpar.errors import ConvergenceError
+from swgpar.gear_trains.cascade.design import PINIONS, CascadeDesign
+from swgpar.gear_trains.cascade.layout import DOFS, FLYWHEEL, N_MESHES, RACK, masses, meshes, shafts
+from swgpar.kernel import MESH_ERROR, GearboxKernel
+
+Force = Callable[[np.ndarray], np.ndarray]
+"""Rack forces in N at times in s, any shape."""
+
+
+class Gearbox:
+    """A gearbox that moves. braked : the flywheel is held"""
+
+    def __init__(self, design: CascadeDesign, *, braked: bool = False) -> None:
+        self.mass, self.braked = masses(design), braked
+        self.pinion_radius = design.radius("pinion")
+        self.kernel = GearboxKernel(
+            self.mass,
+            meshes(design),
+            shafts(design),
+            1e-6 * design.damping.contact_ramp,
+            design.flywheel.generator / design.radius("g4") ** 2,
+            braked,
+        )
+
+    def integrate(
+        self, force: Force, v: np.ndarray, times: np.ndarray, *, errors: np.ndarray | None = None, rtol: float = 1e-5
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Ways (m) and velocities (m/s), (n, 23), at `times` (n,) s by SciPy's LSODA, with the exact matrices.
+
+        v : (23,) velocities at the first of the times, where all ways are zero
+        errors : (18,) of the kernel's MESH_ERROR, none by default
+        """
+        errors = no_errors() if errors is None else errors
+        inverse = 1.0 / self.mass
+        inverse[FLYWHEEL] *= not self.braked
+
+        def rates(t: float, y: np.ndarray) -> np.ndarray:
+            pull = -self.kernel.forces(errors, y[:DOFS], y[DOFS:])
+            pull[RACK] += force(t)
+            return np.concatenate([y[DOFS:], inverse * pull])
+
+        def jacobian(_: float, y: np.ndarray) -> np.ndarray:
+            matrices = self.kernel.matrices(errors, y[:DOFS], y[DOFS:])
+            return np.vstack([np.eye(DOFS, 2 * DOFS, DOFS), -inverse[:, None] * np.hstack(matrices)])
+
+        atol = np.repeat([1e-9, 1e-5], DOFS)
+        start = np.concatenate([np.zeros(DOFS), v])
+        done = solve_ivp(
+            rates, (times[0], times[-1]), start, method="LSODA", t_eval=times, rtol=rtol, atol=atol, jac=jacobian
+        )
+        if not done.success:
+            raise ConvergenceError(f"the motion of the gearbox could not be integrated: {done.message}")
+        return done.y[:DOFS].T, done.y[DOFS:].T
+
+    def simulate(
+        self, force: Force, v: np.ndarray, step: float, count: int, *, errors: np.ndarray | None = None
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Move on by `count` implicit steps of `step` s from no way and velocities v (23,).
+
+        Returns the pinion forces after each step, (count, 8) N, and ways and velocities at the end, (23,).
+        """
+        x, v = np.zeros(DOFS), np.array(v, dtype=float)
+        errors = no_errors() if errors is None else errors
+        rack = np.ascontiguousarray(force(step * np.arange(count + 1)), dtype=float)
+        torque = self.kernel.simulate(errors, rack, step, x, v)
+        if len(torque) < count:
+            raise ConvergenceError(f"the motion of a gearbox did not converge at {step * len(torque):g} s")
+        return torque[:, :PINIONS] / self.pinion_radius, x, v
+
+    def pinion_forces(self, x: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Forces (n, 8) in N at the pitch lines of the pinions that their flexible units pass on (eq. 23).
+
+        x, v : (n, 23) ways and velocities
+        """
+        ways, rates = np.ascontiguousarray(x), np.ascontiguousarray(v)
+        return self.kernel.torques(ways, rates)[:, :PINIONS] / self.pinion_radius
+
+
+def no_errors() -> np.ndarray:
+    """Meshes without errors and all in phase, (18,) of the kernel's MESH_ERROR."""
+    return np.zeros(N_MESHES, dtype=MESH_ERROR)
+
+
+def natural_frequencies(design: CascadeDesign) -> np.ndarray:
+    """Frequencies in Hz (23,) of small vibrations with all meshes in contact, at their mean stiffness (eq. 25).
+
+    The flywheel is free, so that the first is zero.
+    """
+    stiffness = np.zeros((DOFS, DOFS))
+    for mesh in meshes(design):
+        _add(stiffness, mesh["driver"], mesh["driven"], 1.0, -1.0, mesh["stiffness"])
+    for shaft in shafts(design):
+        ways = 1.0 / shaft["first_radius"], -1.0 / shaft["second_radius"]
+        _add(stiffness, shaft["first"], shaft["second"], *ways, shaft["stiffness"])
+    squares = eigh(stiffness, np.diag(masses(design)), eigvals_only=True)
+    return np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi)
+
+
+def _add(matrix: np.ndarray, i: int, j: int, bi: float, bj: float, stiffness: float) -> None:
+    b = np.array([bi, bj])
+    matrix[np.ix_((i, j), (i, j))] += stiffness * np.outer(b, b)

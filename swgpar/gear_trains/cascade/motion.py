@@ -1,0 +1,86 @@
+"""The gearbox without errors in motion: one period of the rack force, and the flywheel held by its brake."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from swgpar.gear_trains.cascade.design import CascadeDesign
+from swgpar.gear_trains.cascade.dynamics import Gearbox
+from swgpar.gear_trains.cascade.layout import DOFS, RACK
+from swgpar.gear_trains.cascade.static import Direction, even_pinions
+
+ROWS = 4000
+"""Of the history of one period."""
+
+WINDOW = 0.02
+"""Half width, as a share of the peak force, of the range that load shares at a force are averaged over."""
+
+FITTED = 0.25
+"""Share of the peak above which the crossing of load shares is sought: below it the units are not linear."""
+
+BRAKED_RAMP, BRAKED_END = 0.2, 0.4
+"""Seconds in which the rack force rises against the brake, and at which it ends: the second half is averaged."""
+
+
+@dataclass(frozen=True)
+class Period:
+    """time : (n,) s;  rack_force : (n,) N;  way, velocity : (n,) of the rack, m and m/s;  pinion_forces : (n, 8) N"""
+
+    time: np.ndarray
+    rack_force: np.ndarray
+    way: np.ndarray
+    velocity: np.ndarray
+    pinion_forces: np.ndarray
+
+    @property
+    def shares(self) -> np.ndarray:
+        """Load shares (n, 8) (eq. 24); NaN where the pinions carry less than 1 % of the largest rack force."""
+        carried = self.pinion_forces.sum(axis=1, keepdims=True)
+        loaded = np.abs(carried) > 0.01 * np.abs(self.rack_force).max()
+        return self.pinion_forces / np.where(loaded, carried, np.nan)
+
+    def shares_at(self, force: float) -> np.ndarray:
+        """Mean load shares (8,) while the rack force in direction B is about `force` N."""
+        near = np.abs(self.rack_force - force) < WINDOW * self.rack_force.max()
+        carried = self.pinion_forces[near].sum(axis=0)
+        return carried / carried.sum()
+
+    def first_crossing(self) -> float:
+        """Lowest rack force in N at which the shares of an odd and an even pinion cross; NaN when none do.
+
+        Where the flexible units are linear, shares are a + b / F: fitted, so that the tooth cycles do not matter.
+        """
+        loaded = (self.rack_force > FITTED * self.rack_force.max()) & np.isfinite(self.shares).all(axis=1)
+        terms = np.stack([np.ones(loaded.sum()), 1.0 / self.rack_force[loaded]], axis=1)
+        a, b = np.linalg.lstsq(terms, self.shares[loaded], rcond=None)[0]
+        even = even_pinions()
+        constant, falling = a[even][:, None] - a[~even], b[even][:, None] - b[~even]
+        with np.errstate(divide="ignore"):
+            roots = -falling / constant
+        inside = (roots > FITTED * self.rack_force.max()) & (roots < self.rack_force.max())
+        return float(roots[inside].min()) if inside.any() else float("nan")
+
+
+def one_period(design: CascadeDesign) -> Period:
+    """From rest through one period of the rack force, direction B first."""
+    box, peak = Gearbox(design), 1e3 * design.load.peak
+    time = np.linspace(0.0, design.load.period, ROWS + 1)
+
+    def force(t: np.ndarray) -> np.ndarray:
+        return peak * np.sin(2.0 * np.pi * t / design.load.period)
+
+    x, v = box.integrate(force, np.zeros(DOFS), time)
+    return Period(time, force(time), x[:, RACK], v[:, RACK], box.pinion_forces(x, v))
+
+
+def braked_shares(design: CascadeDesign, direction: Direction) -> np.ndarray:
+    """Load shares (8,) at the braked force, the flywheel held: the source's comparison with measurements."""
+    box, sign = Gearbox(design, braked=True), 1.0 if direction == "B" else -1.0
+    time = np.linspace(0.0, BRAKED_END, 401)
+    x, v = box.integrate(
+        lambda t: sign * 1e3 * design.load.braked * np.minimum(t / BRAKED_RAMP, 1.0), np.zeros(DOFS), time
+    )
+    carried = box.pinion_forces(x, v)[time > 0.5 * (BRAKED_RAMP + BRAKED_END)].sum(axis=0)
+    return carried / carried.sum()

@@ -1,0 +1,119 @@
+"""Load sharing at rest: rigid gears with gaps, flexible units, the flywheel held.
+
+The gears only turn, and every mesh can push but not pull. With the flywheel held, the energy of the flexible units has
+its minimum where each unit is twisted by the rack's way less all gaps between rack and flywheel on its own path: the
+path of an odd pinion runs over its G1, G2, G3 and G4, that of an even one over the G1 of its odd neighbour as well. A
+mesh that several paths share closes as soon as one of them carries load, and none can open it again. So the
+over-determined contact needs no search, and a pinion carries nothing until its own path is closed. (The source moves
+the gears in small steps instead and finds the contacts by rules.)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Literal
+
+import numpy as np
+
+from swgpar.gear_trains.cascade.design import PINIONS, CascadeDesign
+from swgpar.gear_trains.cascade.flex_unit import FlexUnits
+
+Direction = Literal["A", "B"]
+PAIRS, SIDES = PINIONS // 2, 2
+MESHES = {"rack_pinion": PINIONS, "g1_g1": PAIRS, "g1_g2": PAIRS, "g3_g4": SIDES}
+"""Meshes of the gearbox by kind: rack with pinions 1 to 8; even with odd G1 of a pair; odd G1 with G2; G3 with G4."""
+
+
+def even_pinions() -> np.ndarray:
+    """(8,) bool"""
+    return np.arange(PINIONS) % 2 == 1
+
+
+def path_gaps(design: CascadeDesign, direction: Direction, errors: dict[str, np.ndarray] | None = None) -> np.ndarray:
+    """Twist of the pinions that the gaps on their paths take, rad, (..., 8).
+
+    errors : by kind of mesh (..., number of its meshes), m; they add to the gaps at the pitch line
+    """
+    gaps = {}
+    for kind, count in MESHES.items():
+        nominal = 1e-3 * getattr(getattr(design, kind), f"gap_{direction}")
+        gaps[kind] = nominal + (errors[kind] if errors else np.zeros(count))
+    pinion = np.arange(PINIONS)
+    pair, side = pinion // 2, pinion // 4
+    g1, per_g2 = design.radius("g1"), design.g2.teeth / design.g1.teeth
+    twist = gaps["rack_pinion"] / design.radius("pinion")
+    twist = twist + np.where(even_pinions(), gaps["g1_g1"][..., pair], 0.0) / g1
+    twist = twist + gaps["g1_g2"][..., pair] / g1
+    return twist + gaps["g3_g4"][..., side] / design.radius("g3") * per_g2
+
+
+@dataclass(frozen=True)
+class StaticSharing:
+    """Pinion forces at given rack forces.
+
+    units : the flexible units;  radius : of the pinions, m;  gaps : (..., 8) from `path_gaps`
+    """
+
+    units: FlexUnits
+    radius: float
+    gaps: np.ndarray
+
+    def forces(self, travel: np.ndarray) -> np.ndarray:
+        """Pinion forces (..., 8) in N at the rack's travel (...) in m."""
+        twist = np.maximum(travel[..., None] / self.radius - self.gaps, 0.0)
+        return self.units.ratios * self.units.torque(twist) / self.radius
+
+    def travel(self, force: np.ndarray | float) -> np.ndarray:
+        """Travel of the rack in m at rack forces in N, by bisection of a growing function to the last digit."""
+        force = np.asarray(force, dtype=float)
+        # the unit that is softest of all, behind the largest gap, would be twisted by no more than that
+        softest = min(self.units.stiffness, self.units.initial) * self.units.ratios.sum()
+        low = self.radius * self.gaps.min(axis=-1) + np.zeros_like(force)
+        high = self.radius * (self.gaps.max(axis=-1) + force * self.radius / softest)
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            above = self.forces(middle).sum(axis=-1) > force
+            low, high = np.where(above, low, middle), np.where(above, middle, high)
+        return 0.5 * (low + high)
+
+    def shares(self, force: np.ndarray | float) -> np.ndarray:
+        """Load shares (..., 8) at rack forces in N (eq. 8); they sum to one."""
+        carried = self.forces(self.travel(force))
+        return carried / carried.sum(axis=-1, keepdims=True)
+
+
+def static_sharing(
+    design: CascadeDesign,
+    direction: Direction,
+    *,
+    errors: dict[str, np.ndarray] | None = None,
+    equal_units: bool = False,
+) -> StaticSharing:
+    """The static model of a design; with `equal_units` without the units' stiffness ratios."""
+    units = FlexUnits.of(design)
+    if equal_units:
+        units = FlexUnits(units.stiffness, units.initial, units.end, np.ones(PINIONS))
+    return StaticSharing(units, design.radius("pinion"), path_gaps(design, direction, errors))
+
+
+def first_crossing(sharing: StaticSharing, highest: float) -> float:
+    """Lowest rack force in N at which the shares of two pinions cross; NaN when none do below `highest`.
+
+    sharing : of one gearbox, gaps (8,)
+    """
+    force = np.linspace(0.0, highest, 4001)[1:]
+    share = sharing.shares(force)
+    found = []
+    for i, j in combinations(range(PINIONS), 2):
+        difference = share[:, i] - share[:, j]
+        both = (share[:-1, i] > 0.0) & (share[:-1, j] > 0.0)
+        turns = np.flatnonzero((difference[:-1] * difference[1:] < 0.0) & both)
+        if len(turns):
+            found.append(np.interp(0.0, *_rising(difference[turns[0] : turns[0] + 2], force[turns[0] : turns[0] + 2])))
+    return float(min(found, default=np.nan))
+
+
+def _rising(difference: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    order = np.argsort(difference)
+    return difference[order], force[order]

@@ -1,0 +1,82 @@
+"""Tolerance stack-up of every kind of mesh by Monte Carlo, with Spearman's rank correlation (sections 2.2 to 2.4, 3.1).
+
+Each tolerance is a normal variable whose limits lie at a given number of standard deviations (eq. 1), turned into a
+displacement of the flanks along the pitch line:
+
+- pitch deviation E_pu = (0.3 m_n + 1.25 sqrt(d) + 7) 2^(0.5 (Q - 5)) µm (eq. 4; the 7 and both signs are lost in the
+  text and are those of ISO 1328-1, of which the printed factors are), as it is;
+- runout E_r = (0.24 m_n + sqrt(d) + 5.6) 2^(0.5 (Q - 5)) µm (eq. 5, likewise), radial: times tan 20°;
+- position of a shaft along the line of action: over cos 20°;
+- direction of a shaft: times half of the face width.
+
+The rack has the tolerances of a gear whose pitch circle is as long as the rack, and no shaft.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.stats import spearmanr
+
+from swgpar.gear_trains.cascade.design import CascadeDesign
+from swgpar.gear_trains.cascade.static import MESHES
+from swgpar.gear_trains.sampling import blocks, generator
+
+PRESSURE_ANGLE = np.radians(20.0)
+BLOCK = 10_000
+STREAM = 0
+"""First number of the keys of these samples' streams."""
+
+GEARS = {"rack_pinion": ("rack", "pinion"), "g1_g1": ("g1", "g1"), "g1_g2": ("g1", "g2"), "g3_g4": ("g3", "g4")}
+
+
+def pitch_deviation(module: float, diameter: float, grade: float) -> float:
+    """Equation (4), m; module and diameter in mm."""
+    return 1e-6 * (0.3 * module + 1.25 * np.sqrt(diameter) + 7.0) * 2.0 ** (0.5 * (grade - 5.0))
+
+
+def runout(module: float, diameter: float, grade: float) -> float:
+    """Equation (5), m; module and diameter in mm."""
+    return 1e-6 * (0.24 * module + np.sqrt(diameter) + 5.6) * 2.0 ** (0.5 * (grade - 5.0))
+
+
+def contributions(design: CascadeDesign, kind: str) -> dict[str, float]:
+    """Limits of all tolerances of a kind of mesh as displacements of its flanks along the pitch line, m, by name."""
+    module, limits = getattr(design, kind).module, {}
+    first, second = GEARS[kind]
+    for place, gear in enumerate((first, second)):
+        section = getattr(design, gear)
+        name = f"{gear} {place + 1}" if first == second else gear
+        diameter = 1e3 * section.length / np.pi if gear == "rack" else section.teeth * module
+        limits[f"pitch deviation {name}"] = pitch_deviation(module, diameter, section.pitch_grade)
+        limits[f"runout {name}"] = runout(module, diameter, section.runout_grade) * np.tan(PRESSURE_ANGLE)
+        if gear != "rack":
+            limits[f"position {name}"] = 1e-3 * section.position / np.cos(PRESSURE_ANGLE)
+            limits[f"axle angle {name}"] = 1e-3 * section.axle_angle * 0.5e-3 * section.face_width
+    return limits
+
+
+def standard_deviation(design: CascadeDesign, kind: str) -> float:
+    """Of the whole stack-up of a kind of mesh, m."""
+    return float(np.sqrt(sum(limit**2 for limit in contributions(design, kind).values())) / design.tolerances.limit)
+
+
+def stack_up(design: CascadeDesign, kind: str) -> tuple[np.ndarray, dict[str, float]]:
+    """Samples of the stack-up (n,), m, and Spearman's rank of each tolerance with it (eq. 2)."""
+    limits = contributions(design, kind)
+    sizes = np.array(list(limits.values())) / design.tolerances.limit
+    number = list(MESHES).index(kind)
+    parts = np.concatenate(
+        [
+            generator(design.gear_train.seed, STREAM, number, block).standard_normal((size, len(sizes)))
+            for block, size in enumerate(blocks(design.tolerances.samples, BLOCK))
+        ]
+    )
+    total = parts @ sizes
+    return total, {name: float(spearmanr(parts[:, k], total).statistic) for k, name in enumerate(limits)}
+
+
+def stack_ups(design: CascadeDesign) -> list[Callable[[], tuple[np.ndarray, dict[str, float]]]]:
+    """Tasks for the stack-ups of all kinds of meshes, in the order of MESHES."""
+    return [lambda kind=kind: stack_up(design, kind) for kind in MESHES]

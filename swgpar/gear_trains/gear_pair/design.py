@@ -1,0 +1,98 @@
+"""Design file of a gear pair."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from annotated_types import Len
+
+from swgpar.errors import InputError
+from swgpar.gear_trains.keys import Output, Positive, TrainDesign
+from swgpar.quantities import Section, quantity, show
+
+Torques = Annotated[list[Positive], Len(1)]
+
+
+class Train(Section):
+    model: Literal["gear_pair"] = quantity(text="the gear train")
+    seed: int = quantity(1, text="seed of all random samples", ge=0)
+
+
+class Gear(Section):
+    mass: float = quantity(unit="kg", text="mass", gt=0.0)
+    inertia: float = quantity(unit="kg·m²", text="moment of inertia", gt=0.0)
+    radius: float = quantity(unit="mm", text="pitch radius", gt=0.0)
+    bearing: float = quantity(unit="N/m", text="stiffness of the bearings along the line of action", gt=0.0)
+
+
+class Mesh(Section):
+    stiffness: float = quantity(unit="N/m", text="mean mesh stiffness", gt=0.0)
+    half_backlash: float = quantity(unit="µm", text="half of the backlash", ge=0.0)
+    variation: float = quantity(0.0, text="amplitude of the mesh stiffness over its mean", ge=0.0, le=0.4)
+    contact_ratio: float = quantity(1.5, text="contact ratio", ge=1.0, le=2.0)
+    frequency: float = quantity(0.0, unit="rad/s", text="mesh frequency", ge=0.0)
+    harmonics: int = quantity(3, text="Fourier terms of the mesh stiffness", ge=1, le=100)
+
+
+class Damping(Section):
+    mass: float = quantity(unit="1/s", text="damping over mass", ge=0.0)
+    stiffness: float = quantity(unit="s", text="damping over stiffness of bearings and mean mesh", ge=0.0)
+
+
+class Load(Section):
+    input: Torques = quantity(text="torques on the first gear, one for each case (N·m), each above 0")
+    output: Torques = quantity(text="torques on the second gear, one for each case (N·m), each above 0")
+    noise: float = quantity(unit="N", text="amplitude of the white noise on the relative rotation", ge=0.0)
+    spectral_density: float = quantity(1.0, text="two-sided spectral density of the noise of amplitude 1", gt=0.0)
+
+
+class Time(Section):
+    end: float = quantity(unit="s", text="end of the simulation; densities belong to it", gt=0.0)
+    step: float = quantity(unit="s", text="time step", gt=0.0)
+    rows: int = quantity(100, text="moments of time that are kept", ge=1, le=100_000)
+
+
+class MonteCarlo(Section):
+    samples: int = quantity(text="simulations of each case", ge=2, le=100_000_000)
+
+
+class GearPairDesign(TrainDesign):
+    """A gear pair and its load. Attributes are the sections of the design file."""
+
+    gear_train: Train
+    gear_1: Gear
+    gear_2: Gear
+    mesh: Mesh
+    damping: Damping
+    load: Load
+    time: Time
+    monte_carlo: MonteCarlo
+    output: Output = Output()
+
+    @property
+    def steps(self) -> int:
+        """Number of time steps, a multiple of `every`."""
+        return self.time.rows * self.every
+
+    @property
+    def every(self) -> int:
+        """Steps from one row to the next."""
+        return max(1, round(self.time.end / self.time.step / self.time.rows))
+
+    @property
+    def step(self) -> float:
+        """The time step that ends at the end, s."""
+        return self.time.end / self.steps
+
+
+def check_fit(design: GearPairDesign) -> None:
+    """Refuse values that do not fit each other."""
+    cases = len(design.load.input)
+    if len(design.load.output) != cases:
+        raise InputError(
+            f"load.output = {show(design.load.output)} is out of range: allowed {cases} torques (load.input)"
+        )
+    if design.time.step > design.time.end:
+        raise InputError(
+            f"time.step = {show(design.time.step)} is out of range: allowed above 0 to {design.time.end:g} s (time.end)"
+        )

@@ -1,0 +1,79 @@
+"""Equations of motion of a gear pair with bearings along the line of action (eqs 4.1 to 4.18).
+
+Coordinates q = (y1, y2, z), z = r1 θ1 - r2 θ2; the way of the mesh is d = y1 - y2 + z, so that its force enters with
+w = (1, -1, 1). (Print has +f in all three rows of eq. 4.16 and the right signs in eqs 4.1 to 4.7.) The two rotations
+become one by
+
+    m_c z'' + f = m_c (T1 r1 / I1 + T2 r2 / I2),    m_c = 1 / (r1² / I1 + r2² / I2).
+
+Equation (4.7) has T1 / r1 on the right, which is the same only when the torques are in the ratio of the radii: those of
+the source are so to 0.4 %. The noise of amplitude w0 and spectral density S0 has the intensity 2 pi S0 w0².
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.linalg import eigh
+
+from swgpar.gear_trains.gear_pair.design import GearPairDesign
+from swgpar.gear_trains.mesh_stiffness import MeshStiffness
+from swgpar.gear_trains.meshed_system import MeshedSystem
+
+COORDINATES = ("y1", "y2", "z")
+WAY = np.array([[1.0, -1.0, 1.0]])
+
+
+def combined_mass(design: GearPairDesign) -> float:
+    """m_c, kg."""
+    g1, g2 = design.gear_1, design.gear_2
+    return 1.0 / ((1e-3 * g1.radius) ** 2 / g1.inertia + (1e-3 * g2.radius) ** 2 / g2.inertia)
+
+
+def mesh_force(design: GearPairDesign, case: int) -> float:
+    """The force that the mesh carries at rest under the torques of a case, N."""
+    g1, g2 = design.gear_1, design.gear_2
+    first = design.load.input[case] * 1e-3 * g1.radius / g1.inertia
+    second = design.load.output[case] * 1e-3 * g2.radius / g2.inertia
+    return combined_mass(design) * (first + second)
+
+
+def system(design: GearPairDesign, case: int) -> MeshedSystem:
+    """The equations of motion under the torques of a case."""
+    mesh = design.mesh
+    mass = np.diag([design.gear_1.mass, design.gear_2.mass, combined_mass(design)])
+    bearings = np.diag([design.gear_1.bearing, design.gear_2.bearing, 0.0])
+    damping = design.damping.mass * mass + design.damping.stiffness * (bearings + mesh.stiffness * WAY.T @ WAY)
+    stiffness = MeshStiffness(
+        np.array([mesh.stiffness]),
+        np.array([mesh.variation * mesh.stiffness]),
+        np.array([mesh.contact_ratio]),
+        mesh.frequency,
+        mesh.harmonics,
+        np.zeros(1),
+    )
+    noise = design.load.noise * np.sqrt(2.0 * np.pi * design.load.spectral_density)
+    return MeshedSystem(
+        mass=mass,
+        damping=damping,
+        stiffness=bearings,
+        ways=lambda t: WAY,
+        mesh_stiffness=stiffness.at,
+        half_backlash=np.array([1e-6 * mesh.half_backlash]),
+        force=np.array([0.0, 0.0, mesh_force(design, case)]),
+        noise=np.array([[0.0], [0.0], [noise]]),
+    )
+
+
+def at_rest(design: GearPairDesign, case: int) -> np.ndarray:
+    """Coordinates (3,) in m where the pair rests under the steady torques: simulations start there."""
+    force, stiffness = mesh_force(design, case), system(design, case).mesh_stiffness(0.0)[0]
+    y1, y2 = -force / design.gear_1.bearing, force / design.gear_2.bearing
+    return np.array([y1, y2, 1e-6 * design.mesh.half_backlash + force / stiffness - y1 + y2])
+
+
+def natural_modes(design: GearPairDesign) -> tuple[np.ndarray, np.ndarray]:
+    """Natural frequencies (3,) in rad/s of the pair in contact, and their damping ratios (3,)."""
+    pair = system(design, 0)
+    squares, shapes = eigh(pair.linear_stiffness(0.0, np.array([design.mesh.stiffness])), pair.mass)
+    frequencies = np.sqrt(squares)
+    return frequencies, np.einsum("ji,jk,ki->i", shapes, pair.damping, shapes) / (2.0 * frequencies)

@@ -1,0 +1,54 @@
+"""Published values in a design file beside the computed ones: section [published], quantities by name."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from swgpar.errors import InputError
+from swgpar.quantities import show
+
+Quantities = Mapping[str, tuple[str, int]]
+"""What a model computes: name -> meaning with its unit, number of values."""
+
+
+def label(value: float) -> str:
+    """A number in the name of a quantity."""
+    return f"{value:g}".replace(".", "p").replace("+", "")
+
+
+def check_published(published: Mapping[str, Any], known: Quantities) -> None:
+    """Refuse names that are no quantity, and values that are not as many numbers as the quantity has."""
+    for name, given in published.items():
+        if name not in known:
+            near = difflib.get_close_matches(name, known, n=1)
+            hint = f"did you mean {near[0]}?" if near else f"allowed {', '.join(known)}"
+            raise InputError(f"published.{name} is not a quantity of this gear train: {hint}")
+        values = given if isinstance(given, list) else [given]
+        numbers = all(isinstance(v, (int, float)) and not isinstance(v, bool) and np.isfinite(v) for v in values)
+        if not numbers or len(values) != known[name][1]:
+            wanted = "one number" if known[name][1] == 1 else f"a list of {known[name][1]} numbers"
+            raise InputError(f"published.{name} = {show(given)} is not {wanted}: allowed {known[name][0]}")
+
+
+def compare(
+    published: Mapping[str, Any], computed: Mapping[str, float | Sequence[float]], known: Quantities
+) -> list[dict[str, Any]]:
+    """Rows of published.csv; the difference is in percent of the published value, empty where that is 0."""
+    rows = []
+    for name, given in published.items():
+        there, here = np.atleast_1d(given), np.atleast_1d(computed[name])
+        for place, (old, new) in enumerate(zip(there.tolist(), here.tolist(), strict=True), start=1):
+            rows.append(
+                {
+                    "quantity": name if len(there) == 1 else f"{name}[{place}]",
+                    "meaning": known[name][0],
+                    "published": float(old),
+                    "computed": float(new),
+                    "difference_percent": 100.0 * (new - old) / abs(old) if old else None,
+                }
+            )
+    return rows

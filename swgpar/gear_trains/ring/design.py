@@ -1,0 +1,102 @@
+"""Design file of an elastic ring."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from annotated_types import Len
+
+from swgpar.errors import InputError
+from swgpar.gear_trains.keys import Output, Positive, TrainDesign
+from swgpar.quantities import Section, quantity
+
+Speeds = Annotated[list[Positive], Len(1)]
+
+
+class Train(Section):
+    model: Literal["ring"] = quantity(text="the gear train")
+    seed: int = quantity(1, text="seed of all random samples", ge=0)
+
+
+class Body(Section):
+    E: float = quantity(unit="GPa", text="modulus of elasticity", gt=0.0)
+    density: float = quantity(unit="kg/m³", text="density", gt=0.0)
+    outer_radius: float = quantity(unit="mm", text="outer radius", gt=0.0)
+    inner_radius: float = quantity(unit="mm", text="inner radius", gt=0.0)
+    face_width: float = quantity(unit="mm", text="face width", gt=0.0)
+    elements: int = quantity(text="curved-beam elements", ge=3, le=2000)
+    modes: int = quantity(6, text="bending modes that are listed", ge=1, le=100)
+
+
+class Supports(Section):
+    count: int = quantity(text="equally spaced supports; the first at angle 0", ge=1)
+    radial: float = quantity(unit="N/m", text="radial stiffness of each", ge=0.0)
+    tangential: float = quantity(unit="N/m", text="tangential stiffness of each", ge=0.0)
+    torsional: float = quantity(unit="N·m/rad", text="torsional stiffness of each", ge=0.0)
+
+
+class Teeth(Section):
+    count: int = quantity(text="equally spaced teeth", ge=1)
+    mass: float = quantity(unit="kg", text="mass of each", ge=0.0)
+    inertia: float = quantity(unit="kg·m²", text="moment of inertia of each", ge=0.0)
+
+
+class MovingLoad(Section):
+    loads: int = quantity(3, text="equally spaced loads", ge=1, le=100)
+    pressure_angle: float = quantity(20.0, unit="deg", text="pressure angle", ge=0.0, lt=90.0)
+    force: float = quantity(unit="N", text="mean force of each", ge=0.0)
+    harmonic: float = quantity(0.0, unit="N", text="amplitude of its harmonic part", ge=0.0)
+    frequency: float = quantity(0.0, unit="rad/s", text="frequency of the harmonic part", ge=0.0)
+    noise: float = quantity(0.0, unit="N·√s", text="amplitude of the white noise of each", ge=0.0)
+    damping_mass: float = quantity(unit="1/s", text="damping over mass", ge=0.0)
+    damping_stiffness: float = quantity(unit="s", text="damping over stiffness", ge=0.0)
+    speeds: Speeds = quantity(text="speeds of the loads (rad/s), each above 0; the first is the reference")
+    sweep: Speeds = quantity(text="first and last speed of the curve of critical speeds (rad/s), each above 0")
+    sweep_speeds: int = quantity(120, text="speeds of that curve", ge=2, le=10_000)
+    revolutions: int = quantity(2, text="revolutions of the loads; results are those of the last", ge=1, le=1000)
+    steps: int = quantity(720, text="time steps of a revolution", ge=36, le=10_000_000)
+    samples: int = quantity(200, text="Monte Carlo simulations at the first speed", ge=2, le=1_000_000)
+
+
+class RingDesign(TrainDesign):
+    """A ring, what holds it and what moves in it. Attributes are the sections of the design file."""
+
+    gear_train: Train
+    ring: Body
+    supports: Supports | None = None
+    teeth: Teeth | None = None
+    moving_load: MovingLoad | None = None
+    output: Output = Output()
+
+
+def check_fit(design: RingDesign) -> None:
+    """Refuse values that do not fit each other."""
+    body, load = design.ring, design.moving_load
+    if body.inner_radius >= body.outer_radius:
+        raise InputError(
+            f"ring.inner_radius = {body.inner_radius:g} is out of range: "
+            f"allowed above 0 to below {body.outer_radius:g} mm (ring.outer_radius)"
+        )
+    for name in ("supports", "teeth"):
+        section = getattr(design, name)
+        if section is not None and body.elements % section.count:
+            raise InputError(
+                f"{name}.count = {section.count} is out of range: allowed divisors of {body.elements} (ring.elements)"
+            )
+    if body.modes > body.elements:
+        raise InputError(f"ring.modes = {body.modes} is out of range: allowed 1 to {body.elements} (ring.elements)")
+    if load is None:
+        return
+    if design.supports is None:
+        raise InputError("supports is missing: allowed only without moving_load, which would carry the ring away")
+    if body.elements // design.supports.count < 2:
+        raise InputError(
+            f"ring.elements = {body.elements} is out of range: allowed at least {2 * design.supports.count}, "
+            "for a node between two supports"
+        )
+    if load.steps % load.loads:
+        raise InputError(
+            f"moving_load.steps = {load.steps} is out of range: allowed multiples of {load.loads} (moving_load.loads)"
+        )
+    if len(load.sweep) != 2 or load.sweep[0] >= load.sweep[1]:
+        raise InputError(f"moving_load.sweep = {load.sweep} is out of range: allowed two speeds, the lower one first")

@@ -1,0 +1,44 @@
+"""Random samples that do not depend on the number of ranks, and tasks dealt over the ranks.
+
+Samples are drawn block by block. Every block has a counter-based stream of its own (Philox, keyed by the seed and the
+block's number), so that it does not matter who draws it or when.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+
+from swgpar.errors import ConvergenceError
+from swgpar.results.atomic import first_reason
+
+
+def generator(seed: int, *key: int) -> np.random.Generator:
+    """The stream of a seed and a key, such as the number of a block."""
+    return np.random.Generator(np.random.Philox(np.random.SeedSequence(seed, spawn_key=key)))
+
+
+def blocks(count: int, size: int) -> list[int]:
+    """Sizes of the blocks that `count` samples are drawn in."""
+    return [min(size, count - first) for first in range(0, count, size)]
+
+
+def share_out(comm: MPI.Comm, tasks: Sequence[Callable[[], Any]]) -> list[Any]:
+    """Results of all tasks, in order and on every rank; each task runs on one rank only. Collective.
+
+    A ConvergenceError of a task is raised on all ranks.
+    """
+    done, reason = {}, None
+    try:
+        for number in range(comm.rank, len(tasks), comm.size):
+            done[number] = tasks[number]()
+    except ConvergenceError as error:
+        reason = str(error)
+    reason = first_reason(comm, reason)
+    if reason is not None:
+        raise ConvergenceError(reason)
+    merged = {number: result for part in comm.allgather(done) for number, result in part.items()}
+    return [merged[number] for number in range(len(tasks))]

@@ -1,0 +1,40 @@
+"""CSV tables: floats as the shortest text that reads back the same, empty where there is no value."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+
+def format_csv(rows: Sequence[Mapping[str, Any]]) -> bytes:
+    """The text of a table given by its rows; the columns are those of the first."""
+    text = io.StringIO()
+    writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
+    writer.writeheader()
+    for row in rows:
+        writer.writerow({k: repr(v) if isinstance(v, float) else v for k, v in row.items()})
+    return text.getvalue().encode()
+
+
+def format_columns(columns: Mapping[str, Sequence[Any] | np.ndarray]) -> bytes:
+    """The text of a table given by its columns, all of one length of at least one."""
+    lists = [c.tolist() if isinstance(c, np.ndarray) else list(c) for c in columns.values()]
+    return format_csv([dict(zip(columns, row)) for row in zip(*lists, strict=True)])
+
+
+def read_columns(path: Path) -> dict[str, np.ndarray]:
+    """Columns of a table: float64 where every value is a number, else text."""
+    with open(path, newline="", encoding="utf-8") as file:
+        header, *rows = csv.reader(file)
+    columns = {}
+    for name, values in zip(header, zip(*rows, strict=True)):
+        try:
+            columns[name] = np.array(values, dtype=float)
+        except ValueError:
+            columns[name] = np.array(values)
+    return columns

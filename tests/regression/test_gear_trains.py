@@ -1,0 +1,74 @@
+"""Whole runs of gear trains through the command: result files, any number of ranks, refusals."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from small_drive import execute, on_ranks, succeed, swgpar
+
+from swgpar.results.table import read_columns
+
+DRIVERS = Path(__file__).parents[2] / "drivers"
+SMALL = {
+    "cascade": ("population.gearboxes=30", "population.hold=0.01", "load.period=0.05", "tolerances.samples=100"),
+    "gear_pair": ("monte_carlo.samples=5000", "time.end=0.0005", "time.rows=10"),
+    "ring_moving_load": (
+        "ring.elements=12",
+        "moving_load.steps=36",
+        "moving_load.sweep_speeds=4",
+        "moving_load.samples=60",
+    ),
+}
+FILES = {
+    "cascade": ("population", "static", "stack_up"),
+    "gear_pair": ("density_1", "density_2", "density_3"),
+    "ring_moving_load": ("modes", "mode_shapes", "critical_speeds", "monte_carlo"),
+}
+
+
+def run(name: str, out: Path, *more: str, ranks: int = 1) -> list[str]:
+    design = DRIVERS / f"{name}.toml"
+    return on_ranks(ranks) + swgpar("run", design, "--out", out, *more, "--set", *SMALL[name])
+
+
+@pytest.mark.parametrize("name", SMALL)
+def test_results_are_the_same_on_any_number_of_ranks(name: str, tmp_path: Path) -> None:
+    one, two = tmp_path / "one", tmp_path / "two"
+    done = succeed(run(name, one))
+    succeed(run(name, two, ranks=2))
+    assert "published against computed" in done.stdout and "Warning" not in done.stderr + done.stdout
+    for file in ("history.csv", "published.csv", *(f"tables/{table}.csv" for table in FILES[name])):
+        assert (one / file).read_bytes() == (two / file).read_bytes(), file
+    summary = json.loads((two / "summary.json").read_text(encoding="utf-8"))
+    assert summary["ranks"] == 2 and summary["design"]["gear_train"]["model"] == name.removesuffix("_moving_load")
+    rows = read_columns(one / "published.csv")
+    assert len(rows["quantity"]) >= 3
+    figures = list((one / "figures").glob("*.png"))
+    assert len(figures) > 3 and min(figure.stat().st_size for figure in figures) > 5000
+    figures[0].unlink()
+    succeed(swgpar("report", one))
+    assert figures[0].exists()
+    again = execute(run(name, one))
+    assert again.returncode == 4 and "already holds results" in again.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        (("--restart",), "--restart has no meaning for a gear train"),
+        (("--mesh", "x.toml"), "--mesh has no meaning for a gear train"),
+        (("--set", "gear_train.model=belt"), 'gear_train.model = "belt" is not available'),
+    ],
+)
+def test_refused_on_all_ranks(arguments: tuple[str, ...], reason: str, tmp_path: Path) -> None:
+    out = tmp_path / "run"
+    done = execute(on_ranks(2) + swgpar("run", DRIVERS / "cascade.toml", "--out", out, *arguments), timeout=120.0)
+    assert done.returncode == 2 and reason in done.stderr and len(done.stderr.splitlines()) == 1
+    assert not out.exists()
+
+
+def test_a_drive_needs_its_mesh(tmp_path: Path) -> None:
+    done = execute(swgpar("run", DRIVERS / "cup_45deg.toml", "--out", tmp_path / "run"), timeout=120.0)
+    assert done.returncode == 2 and "arguments are required: --mesh" in done.stderr

@@ -1,0 +1,111 @@
+"""Design files of gear trains, published values in them, samples that do not depend on the ranks."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from swgpar.errors import ConvergenceError, InputError
+from swgpar.gear_trains.published import check_published, compare
+from swgpar.gear_trains.sampling import blocks, generator, share_out
+from swgpar.gear_trains.train import is_gear_train, load_train, model_of
+from swgpar.results.table import format_columns, read_columns
+
+DRIVERS = Path(__file__).parents[2] / "drivers"
+CASCADE, GEAR_PAIR = DRIVERS / "cascade.toml", DRIVERS / "gear_pair.toml"
+RING, RING_MODES = DRIVERS / "ring_moving_load.toml", DRIVERS / "ring_modes.toml"
+
+REFUSED = [
+    (
+        CASCADE,
+        "gear_train.model=belt",
+        'gear_train.model = "belt" is not available: allowed "cascade" or "gear_pair"',
+    ),
+    (CASCADE, "gear_train.seed=-1", "gear_train.seed = -1 is out of range: allowed 0 to inf"),
+    (CASCADE, "rack.mass=0", "rack.mass = 0 is out of range: allowed above 0 to inf kg"),
+    (CASCADE, "g2.teeth=20.5", "g2.teeth = 20.5 is not a whole number"),
+    (CASCADE, "g5.teeth=20", "g5 = a table is not a key of the design file: did you mean g"),
+    (CASCADE, "g1_g1.variation=1", "g1_g1.variation = 1 is out of range: allowed 0 to below 1"),
+    (CASCADE, "g1_g1.module=5", "g1_g1.module = 5 is out of range: allowed 4 mm (g1_g2.module)"),
+    (CASCADE, "flex_unit.ratio=[1, 1]", "flex_unit.ratio = [1, 1] is not a list of that many numbers"),
+    (CASCADE, "flex_unit.ratio=[1, 1, 1, 1, 1, 1, 1, 0]", "flex_unit.ratio = 0 is out of range: allowed stiffness"),
+    (CASCADE, "load.forces=[]", "load.forces = [] is not a list of that many numbers"),
+    (CASCADE, "population.step=1", "population.step = 1 is out of range: allowed above 0 to 0.4 s (population.hold)"),
+    (CASCADE, "published.static_B_12=1", "published.static_B_12 is not a quantity of this gear train: did you mean"),
+    (CASCADE, "published.braked_B=1", "published.braked_B = 1 is not a list of 8 numbers"),
+    (CASCADE, "published.overloaded_static=many", 'published.overloaded_static = "many" is not one number'),
+    (GEAR_PAIR, "gear_1.radius=0", "gear_1.radius = 0 is out of range: allowed above 0 to inf mm"),
+    (GEAR_PAIR, "mesh.contact_ratio=2.5", "mesh.contact_ratio = 2.5 is out of range: allowed 1 to 2"),
+    (GEAR_PAIR, "load.output=[1.0]", "load.output = [1.0] is out of range: allowed 3 torques (load.input)"),
+    (GEAR_PAIR, "load.input=[1.0, -1.0, 1.0]", "load.input = -1 is out of range"),
+    (GEAR_PAIR, "time.step=1", "time.step = 1 is out of range: allowed above 0 to 0.02 s (time.end)"),
+    (GEAR_PAIR, "monte_carlo.samples=1", "monte_carlo.samples = 1 is out of range: allowed 2 to 100000000"),
+    (RING, "ring.inner_radius=520", "ring.inner_radius = 520 is out of range: allowed above 0 to below 520 mm"),
+    (RING, "supports.count=5", "supports.count = 5 is out of range: allowed divisors of 36 (ring.elements)"),
+    (RING, "ring.elements=6", "ring.elements = 6 is out of range: allowed at least 12, for a node between two"),
+    (RING, "moving_load.steps=700", "moving_load.steps = 700 is out of range: allowed multiples of 3"),
+    (RING, "moving_load.sweep=[3.0]", "moving_load.sweep = [3.0] is out of range: allowed two speeds"),
+    (RING_MODES, "moving_load.force=1", "moving_load.damping_mass is missing: give a number"),
+    (RING_MODES, "teeth.count=63", "teeth.count = 63 is out of range: allowed divisors of 64 (ring.elements)"),
+    (RING_MODES, "ring.modes=65", "ring.modes = 65 is out of range: allowed 1 to 64 (ring.elements)"),
+]
+
+
+@pytest.mark.parametrize(("file", "override", "reason"), REFUSED)
+def test_one_sentence_with_key_and_reason(file: Path, override: str, reason: str) -> None:
+    with pytest.raises(InputError) as caught:
+        load_train(file, [override])
+    message = str(caught.value)
+    assert "\n" not in message and reason in message, message
+
+
+def test_drives_are_no_gear_trains() -> None:
+    assert is_gear_train(CASCADE) and not is_gear_train(DRIVERS / "cup_45deg.toml")
+    with pytest.raises(InputError, match="gear_train.model is missing"):
+        load_train(DRIVERS / "cup_45deg.toml")
+
+
+@pytest.mark.parametrize("file", [CASCADE, GEAR_PAIR, RING, RING_MODES])
+def test_derived_values_are_finite(file: Path) -> None:
+    design = load_train(file)
+    values = model_of(design).derived(design)
+    assert values and np.isfinite(list(values.values())).all()
+
+
+def test_published_beside_computed() -> None:
+    known = {"share": ("shares", 2), "count": ("a count", 1)}
+    published = {"share": [0.5, 0.25], "count": 0}
+    check_published(published, known)
+    rows = compare(published, {"share": [0.55, 0.25], "count": 1.0}, known)
+    assert [row["quantity"] for row in rows] == ["share[1]", "share[2]", "count"]
+    assert [row["difference_percent"] for row in rows] == [pytest.approx(10.0), 0.0, None]
+
+
+def test_streams_are_independent_of_the_order_of_their_use() -> None:
+    assert blocks(7, 3) == [3, 3, 1]
+    first = generator(5, 0, 1).standard_normal(4)
+    generator(5, 0, 0).standard_normal(100)
+    assert (generator(5, 0, 1).standard_normal(4) == first).all()
+    assert (generator(5, 0, 2).standard_normal(4) != first).all()
+    assert (generator(6, 0, 1).standard_normal(4) != first).all()
+
+
+def test_tasks_come_back_in_order_and_their_errors_too() -> None:
+    def fail() -> None:
+        raise ConvergenceError("no")
+
+    assert share_out(MPI.COMM_WORLD, [lambda k=k: k * k for k in range(5)]) == [0, 1, 4, 9, 16]
+    with pytest.raises(ConvergenceError, match="no"):
+        share_out(MPI.COMM_WORLD, [lambda: 1, fail])
+
+
+def test_tables_read_back_to_the_last_bit(tmp_path: Path) -> None:
+    table = {"x": np.array([0.1, np.nan, 1e-300]), "n": np.array([1, 2, 3]), "name": np.array(["a", "b,c", "d"])}
+    (tmp_path / "t.csv").write_bytes(format_columns(table))
+    back = read_columns(tmp_path / "t.csv")
+    assert list(back) == list(table) and (back["name"] == table["name"]).all()
+    for name in ("x", "n"):
+        np.testing.assert_array_equal(back[name], table[name])
