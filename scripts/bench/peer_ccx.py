@@ -51,7 +51,7 @@ def cam(facets: int, first_node: int, first_element: int) -> list[str]:
         sets.append(f"*NSET, NSET=CAM_{half}, GENERATE\n{start}, {first_node + len(nodes) - 1}")
         n = facets + 1
         outer, inner = start + np.arange(facets), start + 2 * n + np.arange(facets)
-        # counter-clockwise seen from +z: inward to outward is the second direction; the outer face is S5
+        # outward, then counter-clockwise: a positive volume, of which S4 is the outer face
         elements += [(i, o, o + 1, i + 1, i + n, o + n, o + 1 + n, i + 1 + n) for i, o in zip(inner, outer)]
     lines.append("*NODE")
     lines += [f"{first_node + k}, {x:.12e}, {y:.12e}, {z:.12e}" for k, (x, y, z) in enumerate(nodes)]
