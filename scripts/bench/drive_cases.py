@@ -1,12 +1,14 @@
-"""The plane drive and the cup drive on their recipes: means over a period of the largest stresses of the spline.
+"""Drives over meshes: means over a period of the largest stresses of the spline.
 
-The limit of the plane drive is extrapolated, with the order that is observed, from its two finest recipes and a mesh
-with twice as many elements in every direction as the finest. That of the cup drive is extrapolated from its two finest
-recipes with second order (`swgpar.error_estimate`), and says little for the finest one.
+The plane drive, and the plane section of the cup drive, are refined in all directions beyond their finest recipe: the
+limit is extrapolated from the last three meshes with the order that they show. The cup drive itself is too large for
+that: its limit is extrapolated from its two finest recipes with the order of `swgpar.error_estimate`, and says little
+for the finest one; what the recipes leave out in the section says more.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from cases import Cases
@@ -19,46 +21,82 @@ PLANE, CUP = "drivers/plane_half_turn.toml", "drivers/cup_45deg.toml"
 PLANE_MESHES = ("mesh/plane_coarse.toml", "mesh/plane.toml", "mesh/plane_fine.toml")
 CUP_MESHES = ("mesh/coarse.toml", "mesh/medium.toml", "mesh/full.toml")
 PERIOD = ["steps.samples=4", "steps.start_levels=1"]
+FINER = ["steps.samples=4", "steps.start_levels=3"]
 QUANTITIES = ("fs_s1", "fs_s3", "fs_vm")
-REFINED = 2
-SIZES = [1.5 * REFINED, REFINED, 1.0]
-"""Of the spline's elements on plane, plane_fine and the refined mesh, over those of the last."""
+
+SECTION = [
+    "drive.model=plane",
+    "load.torque=2",
+    *(f"micro_geometry.{key}=0" for key in ("wg_crowning", "wg_slope", "fs_crowning")),
+]
+"""Overrides that make the plane drive of the cup drive's section, under a tenth of the torque."""
+
+PLANE_FACTORS, SECTION_FACTORS = (1, 2, 3), (1, 2, 4)
+"""Of the finest recipe's counts: the meshes from which limits are extrapolated."""
+
+COUNTS = {
+    "root x 2": ("flexible_spline.root",),
+    "under, rim x 2": ("flexible_spline.under", "flexible_spline.rim"),
+    "root, under, rim x 2": ("flexible_spline.root", "flexible_spline.under", "flexible_spline.rim"),
+    "flank, layers x 2": ("flexible_spline.flank", "flexible_spline.layers", "ring_gear.flank", "ring_gear.layers"),
+}
+"""Keys of the middle plane recipe that are doubled, to see which are worth it."""
 
 
-def named(meshes: tuple[str, ...]) -> list[str]:
-    """Recipes by the names of their files."""
-    return [Path(mesh).stem for mesh in meshes]
-
-
-def plane(cases: Cases) -> None:
-    """The plane drive on its recipes and on a finer mesh."""
-    names = named(PLANE_MESHES)
-    solved = [run(cases.out / f"plane_drive_{n}", PLANE, m, PERIOD, cases.ranks) for n, m in zip(names, PLANE_MESHES)]
-    finer = refined(PLANE_MESHES[-1], REFINED, cases.out / "plane_reference.toml")
-    names.append("reference")
-    solved.append(
-        run(cases.out / "plane_drive_reference", PLANE, finer, [*PERIOD, "steps.start_levels=3"], cases.ranks)
-    )
+def refinements(
+    cases: Cases,
+    problem: str,
+    choice: str,
+    design: str,
+    meshes: Sequence[str],
+    factors: tuple[int, ...],
+    keys: list[str],
+) -> dict[str, tuple[float, str]]:
+    """Rows of a plane drive on its recipes and on refinements of the last one; returns the limits."""
+    name = problem.replace(" ", "_")
+    runs = [(Path(mesh).stem, Path(mesh), [*PERIOD, *keys]) for mesh in meshes]
+    for factor in factors[1:]:
+        label = f"{Path(meshes[-1]).stem} x {factor}"
+        path = cases.out / f"{name}_x{factor}.toml"
+        runs.append((label, refined(meshes[-1], path, factor), [*FINER, *keys]))
+    solved = [run(cases.out / f"{name}_{label.replace(' ', '')}", design, m, k, cases.ranks) for label, m, k in runs]
     found = {}
     for quantity in QUANTITIES:
-        value, order = limit([s["values"][quantity] for s in solved], SIZES)
+        value, order = limit([s["values"][quantity] for s in solved], [1.0 / factor for factor in factors])
         found[quantity] = (value, f"extrapolated, order {order:.2f}" if order else "finest mesh")
-    cases.series("plane drive", "CPS4I", solved, found, {}, levels=names, ranks=cases.ranks, halved=False)
+    labels = [label for label, *_ in runs]
+    cases.series(problem, choice, solved, found, {}, levels=labels, ranks=cases.ranks, halved=False)
+    return found
+
+
+def counts(cases: Cases, found: dict[str, tuple[float, str]]) -> None:
+    """Rows of the plane drive on its middle recipe with some counts doubled."""
+    for text, keys in COUNTS.items():
+        path = refined(PLANE_MESHES[1], cases.out / f"plane_{text.replace(' ', '').replace(',', '_')}.toml", 2, keys)
+        one = run(cases.out / path.stem, PLANE, path, PERIOD, cases.ranks)
+        cases.series("plane drive", f"plane, {text}", [one], found, {}, [""], cases.ranks, halved=False)
 
 
 def cup(cases: Cases) -> None:
-    """The cup drive on its recipes."""
+    """Rows of the cup drive on its recipes."""
     levels = cases.levels(len(CUP_MESHES))
-    names = named(CUP_MESHES)
+    names = [Path(mesh).stem for mesh in CUP_MESHES]
     solved = [run(cases.out / f"cup_drive_{names[k]}", CUP, CUP_MESHES[k], PERIOD, cases.ranks) for k in levels]
     found = {}
     for quantity in QUANTITIES:
         (a, b), (m, n) = ([s[k] for s in solved[-2:]] for k in ("values", "elements"))
-        found[quantity] = (estimate(a[quantity], b[quantity], m, n, 3).converged, "extrapolated, order 2")
+        found[quantity] = (estimate(a[quantity], b[quantity], m, n, 3).converged, "extrapolated, assumed order")
     cases.series("cup drive", "C3D8I", solved, found, {}, levels=names, ranks=cases.ranks, halved=False)
 
 
+def plane(cases: Cases) -> None:
+    """Both plane drives."""
+    found = refinements(cases, "plane drive", "CPS4I", PLANE, PLANE_MESHES, PLANE_FACTORS, [])
+    counts(cases, found)
+    refinements(cases, "section of the cup drive", "CPS4I", CUP, CUP_MESHES, SECTION_FACTORS, SECTION)
+
+
 def compute(cases: Cases) -> None:
-    """Both drives."""
+    """All drives."""
     plane(cases)
     cup(cases)

@@ -7,10 +7,11 @@ import json
 import shutil
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from swgpar.meshing import MeshRecipe, load_recipe
+from swgpar.meshing import load_recipe
 
 QUIET = ("output.figures=false", "output.fields=false")
 
@@ -40,14 +41,15 @@ def run(folder: Path, design: str, mesh: str | Path, overrides: list[str], ranks
     }
 
 
-def refined(mesh: str, factor: int, path: Path) -> Path:
-    """Write a recipe with `factor` times as many elements in every direction."""
+def refined(mesh: str, path: Path, factor: int, keys: Sequence[str] = ()) -> Path:
+    """Write a recipe with `factor` times as many elements: by the given keys (section.key), or in every direction."""
     recipe = load_recipe(mesh).model_dump(exclude_none=True)
     lines = []
-    for section, keys in recipe.items():
+    for section, content in recipe.items():
         lines.append(f"[{section}]")
-        lines += [f"{key} = {factor * value if isinstance(value, int) else value}" for key, value in keys.items()]
+        for key, value in content.items():
+            more = isinstance(value, int) and (not keys or f"{section}.{key}" in keys)
+            lines.append(f"{key} = {factor * value if more else value}")
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    MeshRecipe.model_validate(load_recipe(path).model_dump())
     return path

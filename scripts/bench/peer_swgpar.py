@@ -27,7 +27,7 @@ from swgpar.stress import body_fields
 class DeadLoad:
     """Forces on nodes in the place of a rigid surface, so that convergence is judged by them."""
 
-    penalty = 0.0
+    penalty, pressure = 0.0, np.zeros(0)
 
     def __init__(self, nodes: np.ndarray, force: np.ndarray) -> None:
         """nodes : (n,) local;  force : (n, 3) N"""
