@@ -18,7 +18,7 @@ import swgpar
 from swgpar import log
 from swgpar.design_file import apply_overrides, read_toml, validate
 from swgpar.errors import InputError
-from swgpar.gear_trains import cascade, gear_pair, ring
+from swgpar.gear_trains import cascade, gear_pair, planetary, ring
 from swgpar.gear_trains.keys import TrainDesign
 from swgpar.gear_trains.published import Quantities, check_published, compare
 from swgpar.gear_trains.result import TrainResult, write
@@ -54,6 +54,7 @@ def _model(package: ModuleType, design: type[TrainDesign]) -> TrainModel:
 MODELS = {
     "cascade": _model(cascade, cascade.CascadeDesign),
     "gear_pair": _model(gear_pair, gear_pair.GearPairDesign),
+    "planetary": _model(planetary, planetary.PlanetaryDesign),
     "ring": _model(ring, ring.RingDesign),
 }
 

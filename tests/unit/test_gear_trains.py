@@ -17,6 +17,7 @@ from swgpar.results.table import format_columns, read_columns
 DRIVERS = Path(__file__).parents[2] / "drivers"
 CASCADE, GEAR_PAIR = DRIVERS / "cascade.toml", DRIVERS / "gear_pair.toml"
 RING, RING_MODES = DRIVERS / "ring_moving_load.toml", DRIVERS / "ring_modes.toml"
+PLANETARY = DRIVERS / "planetary.toml"
 
 REFUSED = [
     (
@@ -48,6 +49,11 @@ REFUSED = [
     (RING, "ring.elements=6", "ring.elements = 6 is out of range: allowed at least 12, for a node between two"),
     (RING, "moving_load.steps=700", "moving_load.steps = 700 is out of range: allowed multiples of 3"),
     (RING, "moving_load.sweep=[3.0]", "moving_load.sweep = [3.0] is out of range: allowed two speeds"),
+    (PLANETARY, "planet.count=1", "planet.count = 1 is out of range: allowed 2 to 12"),
+    (PLANETARY, "ring.supports=5", "ring.supports = 5 is out of range: allowed divisors of 18 (ring.elements)"),
+    (PLANETARY, "time.steps=10001", "time.steps = 10001 is out of range: allowed multiples of 200 (time.rows)"),
+    (PLANETARY, "wind.power_coefficient=0.6", "wind.power_coefficient = 0.6 is out of range: allowed above 0 to"),
+    (PLANETARY, "rims=1", '--set "rims=1" cannot be read'),
     (RING_MODES, "moving_load.force=1", "moving_load.damping_mass is missing: give a number"),
     (RING_MODES, "teeth.count=63", "teeth.count = 63 is out of range: allowed divisors of 64 (ring.elements)"),
     (RING_MODES, "ring.modes=65", "ring.modes = 65 is out of range: allowed 1 to 64 (ring.elements)"),
@@ -68,7 +74,7 @@ def test_drives_are_no_gear_trains() -> None:
         load_train(DRIVERS / "cup_45deg.toml")
 
 
-@pytest.mark.parametrize("file", [CASCADE, GEAR_PAIR, RING, RING_MODES])
+@pytest.mark.parametrize("file", [CASCADE, GEAR_PAIR, RING, RING_MODES, PLANETARY])
 def test_derived_values_are_finite(file: Path) -> None:
     design = load_train(file)
     values = model_of(design).derived(design)

@@ -12,6 +12,7 @@ from pydantic.fields import FieldInfo
 from swgpar.design import DriveDesign
 from swgpar.gear_trains.cascade import CascadeDesign
 from swgpar.gear_trains.gear_pair import GearPairDesign
+from swgpar.gear_trains.planetary import PlanetaryDesign
 from swgpar.gear_trains.ring import RingDesign
 from swgpar.quantities import Section, allowed
 
@@ -81,6 +82,7 @@ def expected(design: type[Section], alike: dict[str, str]) -> list[str]:
         ("README.md", 0, DriveDesign, {"ring_gear": "flexible_spline"}),
         ("docs/gear_trains.md", 1, GearPairDesign, {"gear_2": "gear_1"}),
         ("docs/gear_trains.md", 2, RingDesign, {}),
+        ("docs/gear_trains.md", 3, PlanetaryDesign, {}),
         (
             "docs/gear_trains.md",
             0,

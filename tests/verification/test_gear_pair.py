@@ -13,10 +13,11 @@ from scipy.linalg import eigh, expm, solve_continuous_lyapunov
 from swgpar.gear_trains import backlash
 from swgpar.gear_trains.gear_pair.design import GearPairDesign
 from swgpar.gear_trains.gear_pair.model import WAY, at_rest, combined_mass, natural_modes, system
-from swgpar.gear_trains.gear_pair.monte_carlo import Sums, simulate
+from swgpar.gear_trains.gear_pair.monte_carlo import simulate
 from swgpar.gear_trains.linearisation import Moments, linearised
 from swgpar.gear_trains.mesh_stiffness import MeshStiffness
 from swgpar.gear_trains.sampling import generator
+from swgpar.gear_trains.sums import Sums
 from swgpar.gear_trains.train import load_train
 
 DRIVER = Path(__file__).parents[2] / "drivers" / "gear_pair.toml"

@@ -54,7 +54,7 @@ def test_free_ring(bolted: RingDesign) -> None:
     for coarse, fine in itertools.pairwise(errors):
         # the error of the first mode is near that of the eigenvalue solver
         assert np.log2(coarse / fine)[1:] == pytest.approx(np.full(3, 4.0), abs=0.3)
-    frequencies, _ = Ring(free(bolted, 36)).modes()
+    frequencies, _ = Ring.of(free(bolted, 36)).modes()
     assert (frequencies[:3] < 1e-3 * frequencies[3]).all()
 
 
@@ -71,7 +71,7 @@ def test_shape_functions_are_exact_at_rest(bolted: RingDesign) -> None:
     """Two opposite forces on a free ring: the same with 4 elements as with 64, and 0.14878 F R³ / (E I) when thin."""
     found = []
     for elements in (4, 16, 64):
-        ring = Ring(changed(free(bolted, elements), "ring", inner_radius=519.0))
+        ring = Ring.of(changed(free(bolted, elements), "ring", inner_radius=519.0))
         load = ring.at(0.0)[0] + ring.at(np.pi)[0]
         u = np.linalg.lstsq(ring.stiffness, load, rcond=1e-12)[0]
         s = ring.section
@@ -81,7 +81,7 @@ def test_shape_functions_are_exact_at_rest(bolted: RingDesign) -> None:
 
 
 def test_rigid_motions_cost_nothing(bolted: RingDesign) -> None:
-    ring = Ring(free(bolted, 12))
+    ring = Ring.of(free(bolted, 12))
     assert np.abs(ring.stiffness - ring.stiffness.T).max() < 1e-9 * np.abs(ring.stiffness).max()
     angle = 2.0 * np.pi * np.arange(12) / 12
     along_x = np.stack([np.cos(angle), -np.sin(angle), 0.0 * angle], axis=1).ravel()
@@ -177,7 +177,7 @@ def test_moving_load_against_newmark(bolted: RingDesign) -> None:
     """Mean and covariance by the exact steps against the stochastic Newmark scheme with small ones, second order."""
     design = small(bolted, steps=36, damping_stiffness=1e-4)
     speed = 2000.0  # rad/s: the loads pass a support within a period of the ring
-    loads, ring, load = MovingLoads(design), Ring(design), design.moving_load
+    loads, ring, load = MovingLoads(design), Ring.of(design), design.moving_load
     fine = MovingLoads(small(bolted, steps=3600, damping_stiffness=1e-4)).respond(speed, covariance=True)
     alpha = np.radians(load.pressure_angle)
     direction = np.array([np.sin(alpha), np.cos(alpha), 0.0])
@@ -249,7 +249,7 @@ def test_patterns_in_a_revolution(bolted: RingDesign) -> None:
     loads = MovingLoads(bolted)
     found = loads.respond(2.8, covariance=False)
     assert _cycles(found) == {"cycles_moving_point": 6.0, "cycles_middle_node": 3.0}
-    ring, load = Ring(bolted), bolted.moving_load
+    ring, load = Ring.of(bolted), bolted.moving_load
     h = 2.0 * np.pi / 2.8 / load.steps
     for step in (100, 333, 600):
         force = loads.forces(step, (step + load.steps) * h, 2.8)

@@ -7,43 +7,14 @@ product of a constant matrix with (state, noise, f0, f1) of all samples per step
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from swgpar.gear_trains.backlash import dead_zone, force
 from swgpar.gear_trains.gear_pair.model import WAY
 from swgpar.gear_trains.meshed_system import MeshedSystem
+from swgpar.gear_trains.sums import Sums
 
 BLOCK = 2000
-
-
-@dataclass(frozen=True)
-class Sums:
-    """Samples of some blocks added up: count; means and squares about them (rows, 4) of y1, y2, z and d.
-
-    Attributes
-    ----------
-    last : (count,) d at the end, m
-    """
-
-    count: int
-    mean: np.ndarray
-    squares: np.ndarray
-    last: np.ndarray
-
-    def with_more(self, other: Sums) -> Sums:
-        """Both together (Chan, Golub and LeVeque 1979)."""
-        count = self.count + other.count
-        apart = other.mean - self.mean
-        mean = self.mean + apart * (other.count / count)
-        squares = self.squares + other.squares + apart**2 * (self.count * other.count / count)
-        return Sums(count, mean, squares, np.concatenate([self.last, other.last]))
-
-    @property
-    def deviation(self) -> np.ndarray:
-        """Standard deviations (rows, 4), m (eq. 4.66)."""
-        return np.sqrt(self.squares / (self.count - 1))
 
 
 def simulate(

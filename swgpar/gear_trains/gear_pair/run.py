@@ -13,11 +13,12 @@ from scipy.stats import norm
 
 from swgpar.gear_trains.gear_pair.design import GearPairDesign
 from swgpar.gear_trains.gear_pair.model import COORDINATES, WAY, at_rest, mesh_force, natural_modes, system
-from swgpar.gear_trains.gear_pair.monte_carlo import BLOCK, Sums, simulate
+from swgpar.gear_trains.gear_pair.monte_carlo import BLOCK, simulate
 from swgpar.gear_trains.linearisation import EQUIVALENT, Moments, linearised
 from swgpar.gear_trains.published import Quantities
 from swgpar.gear_trains.result import Table, TrainResult
 from swgpar.gear_trains.sampling import blocks, generator, share_out
+from swgpar.gear_trains.sums import Sums
 from swgpar.log import logger
 
 METHODS = (*EQUIVALENT, "monte_carlo")

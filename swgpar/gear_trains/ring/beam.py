@@ -112,22 +112,43 @@ class Element:
 
 
 class Ring:
-    """The ring of a design: nodes at equal angles from 0, three unknowns (u, w, r) each, supports and tooth masses."""
+    """A ring: nodes at equal angles from 0 with three unknowns (u, w, r) each, supports and tooth masses.
 
-    def __init__(self, design: RingDesign) -> None:
-        self.elements = design.ring.elements
-        self.section = Section.of(design)
-        self.element = Element.over(self.section, 2.0 * np.pi / self.elements)
+    Parameters
+    ----------
+    section : its cross-section
+    elements : their number
+    supports : number of equally spaced ones from angle 0, and the stiffnesses (u, w, r) of each
+    teeth : number of equally spaced ones from angle 0, and the masses (u, w, r) of each
+    """
+
+    def __init__(
+        self,
+        section: Section,
+        elements: int,
+        supports: tuple[int, tuple[float, float, float]] | None = None,
+        teeth: tuple[int, tuple[float, float, float]] | None = None,
+    ) -> None:
+        self.section, self.elements = section, elements
+        self.element = Element.over(section, 2.0 * np.pi / elements)
         self.bending = self._assembled(self.element.bending)
-        self.stiffness = self.bending + self._assembled(self.element.stretching)
-        self.elastic = self.stiffness.copy()
+        self.elastic = self.bending + self._assembled(self.element.stretching)
+        self.stiffness = self.elastic.copy()
         self.mass = self._assembled(self.element.mass)
-        if design.supports is not None:
-            s = design.supports
-            self._add(self.stiffness, s.count, (s.radial, s.tangential, s.torsional))
-        if design.teeth is not None:
-            t = design.teeth
-            self._add(self.mass, t.count, (t.mass, t.mass, t.inertia))
+        for matrix, added in ((self.stiffness, supports), (self.mass, teeth)):
+            if added is not None:
+                self._add(matrix, *added)
+
+    @classmethod
+    def of(cls, design: RingDesign) -> Ring:
+        """The ring of a design."""
+        s, t = design.supports, design.teeth
+        return cls(
+            Section.of(design),
+            design.ring.elements,
+            (s.count, (s.radial, s.tangential, s.torsional)) if s is not None else None,
+            (t.count, (t.mass, t.mass, t.inertia)) if t is not None else None,
+        )
 
     @property
     def size(self) -> int:

@@ -44,7 +44,7 @@ class MovingLoads:
     """Loads on the modes of a ring."""
 
     def __init__(self, design: RingDesign) -> None:
-        self.load, ring = design.moving_load, Ring(design)
+        self.load, ring = design.moving_load, Ring.of(design)
         self.frequencies, self.shapes = ring.modes()
         alpha, n = np.radians(self.load.pressure_angle), self.load.steps
         direction = np.array([np.sin(alpha), np.cos(alpha), 0.0])

@@ -52,7 +52,7 @@ def quantities(design: RingDesign) -> Quantities:
 
 def distinct_frequencies(design: RingDesign, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Lowest bending frequencies (count,) in Hz, equal ones once, and a mode of each (unknowns, count)."""
-    ring = Ring(design)
+    ring = Ring.of(design)
     rate, shapes = ring.modes()
     bent = (rate > RIGID * free_frequencies(ring.section, 2)[0]) & (ring.bending_share(shapes) > 0.5)
     number = np.flatnonzero(bent)
@@ -158,7 +158,7 @@ def _peaks(curve: Table) -> list[float]:
 
 def _shapes(design: RingDesign, shapes: np.ndarray) -> Table:
     """Outward and tangential displacement around the ring, each mode with its largest displacement 1."""
-    ring, angle = Ring(design), np.linspace(0.0, 2.0 * np.pi, AROUND)
+    ring, angle = Ring.of(design), np.linspace(0.0, 2.0 * np.pi, AROUND)
     values = np.array([ring.at(a)[:2] @ shapes for a in angle])
     values /= np.abs(values).max(axis=(0, 1))
     out = {"angle_rad": angle}

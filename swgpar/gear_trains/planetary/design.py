@@ -1,0 +1,131 @@
+"""Design file of a planetary gear train."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal
+
+from annotated_types import Len
+
+from swgpar.errors import InputError
+from swgpar.gear_trains.keys import Output, Positive, TrainDesign
+from swgpar.quantities import Section, quantity
+
+Thicknesses = Annotated[list[Positive], Len(1)]
+
+
+class Train(Section):
+    model: Literal["planetary"] = quantity(text="the gear train")
+    seed: int = quantity(1, text="seed of all random samples", ge=0)
+
+
+class Sun(Section):
+    mass: float = quantity(unit="kg", text="mass", gt=0.0)
+    inertia: float = quantity(unit="kg·m²", text="moment of inertia", gt=0.0)
+    pitch_diameter: float = quantity(unit="mm", text="pitch diameter", gt=0.0)
+    bearing: float = quantity(unit="N/m", text="stiffness of the bearing", ge=0.0)
+    torsional: float = quantity(unit="N·m/rad", text="torsional stiffness of the shaft", gt=0.0)
+
+
+class Planet(Section):
+    count: int = quantity(3, text="equally spaced planets", ge=2, le=12)
+    mass: float = quantity(unit="kg", text="mass of each", gt=0.0)
+    inertia: float = quantity(unit="kg·m²", text="moment of inertia of each", gt=0.0)
+    pitch_diameter: float = quantity(unit="mm", text="pitch diameter", gt=0.0)
+    bearing: float = quantity(unit="N/m", text="stiffness of the bearing of each on the carrier", gt=0.0)
+
+
+class Carrier(Section):
+    mass: float = quantity(unit="kg", text="mass", gt=0.0)
+    inertia: float = quantity(unit="kg·m²", text="moment of inertia", gt=0.0)
+    bearing: float = quantity(unit="N/m", text="stiffness of the bearing", gt=0.0)
+    speed: float = quantity(unit="rad/s", text="speed", gt=0.0)
+
+
+class RingGear(Section):
+    teeth: int = quantity(text="number of teeth", ge=10, le=2000)
+    E: float = quantity(unit="GPa", text="modulus of elasticity", gt=0.0)
+    density: float = quantity(unit="kg/m³", text="density", gt=0.0)
+    root_radius: float = quantity(unit="mm", text="root radius, the inner radius of the rim", gt=0.0)
+    rim: float = quantity(unit="mm", text="rim thickness", gt=0.0)
+    face_width: float = quantity(unit="mm", text="face width", gt=0.0)
+    elements: int = quantity(text="curved-beam elements", ge=3, le=200)
+    supports: int = quantity(text="equally spaced supports; the first at angle 0", ge=1)
+    radial: float = quantity(unit="N/m", text="radial stiffness of each support", ge=0.0)
+    tangential: float = quantity(unit="N/m", text="tangential stiffness of each support", gt=0.0)
+    torsional: float = quantity(unit="N·m/rad", text="torsional stiffness of each support", ge=0.0)
+
+
+class Meshes(Section):
+    sun_stiffness: float = quantity(unit="N/m", text="mean stiffness of sun and planet", gt=0.0)
+    ring_stiffness: float = quantity(unit="N/m", text="mean stiffness of ring and planet", gt=0.0)
+    pressure_angle: float = quantity(20.0, unit="deg", text="pressure angle", gt=0.0, lt=45.0)
+    half_backlash: float = quantity(unit="µm", text="half of the backlash of all meshes", ge=0.0)
+    variation: float = quantity(text="amplitude of the mesh stiffness over its mean", ge=0.0, le=0.4)
+    sun_contact_ratio: float = quantity(text="contact ratio of sun and planet", ge=1.0, le=2.0)
+    ring_contact_ratio: float = quantity(text="contact ratio of ring and planet", ge=1.0, le=2.0)
+    phase: float = quantity(0.0, unit="cycles", text="phase of ring meshes behind sun meshes", ge=-1.0, le=1.0)
+    harmonics: int = quantity(3, text="Fourier terms of the mesh stiffness", ge=1, le=100)
+
+
+class Damping(Section):
+    mass: float = quantity(unit="1/s", text="damping over mass", ge=0.0)
+    stiffness: float = quantity(unit="s", text="damping over stiffness, of meshes over their mean stiffness", ge=0.0)
+
+
+class Wind(Section):
+    speed: float = quantity(unit="km/h", text="mean speed", gt=0.0)
+    turbulence: float = quantity(text="standard deviation over the mean of the speed", ge=0.0, le=1.0)
+    length: float = quantity(unit="m", text="length of the turbulence", gt=0.0)
+    a1: float = quantity(0.4, text="constant of the turbulence filter", ge=0.0)
+    a2: float = quantity(0.25, text="constant of the turbulence filter", gt=0.0)
+    air_density: float = quantity(1.225, unit="kg/m³", text="density of the air", gt=0.0)
+    rotor_radius: float = quantity(unit="m", text="radius of the rotor", gt=0.0)
+    power_coefficient: float = quantity(text="power coefficient", gt=0.0, le=0.593)
+
+
+class Time(Section):
+    revolutions: float = quantity(1.0, text="carrier revolutions that are computed", gt=0.0, le=1000.0)
+    steps: int = quantity(text="time steps in all", ge=10, le=10_000_000)
+    linearised_steps: int = quantity(text="time steps of the linearisation", ge=10, le=10_000_000)
+    rows: int = quantity(200, text="moments of time that are kept", ge=1, le=100_000)
+
+
+class MonteCarlo(Section):
+    samples: int = quantity(text="simulations", ge=2, le=100_000_000)
+
+
+class PlanetaryDesign(TrainDesign):
+    """A planetary gear train and its wind. Attributes are the sections of the design file."""
+
+    gear_train: Train
+    sun: Sun
+    planet: Planet
+    carrier: Carrier
+    ring: RingGear
+    mesh: Meshes
+    damping: Damping
+    wind: Wind
+    time: Time
+    monte_carlo: MonteCarlo
+    rims: Thicknesses = quantity([87.0], text="rim thicknesses that are compared (mm), each above 0")
+    output: Output = Output()
+
+    @property
+    def end(self) -> float:
+        """End of the simulation, s."""
+        return 2.0 * math.pi / self.carrier.speed * self.time.revolutions
+
+
+def check_fit(design: PlanetaryDesign) -> None:
+    """Refuse values that do not fit each other."""
+    ring, time = design.ring, design.time
+    if ring.elements % ring.supports:
+        raise InputError(
+            f"ring.supports = {ring.supports} is out of range: allowed divisors of {ring.elements} (ring.elements)"
+        )
+    for name in ("steps", "linearised_steps"):
+        if getattr(time, name) % time.rows:
+            raise InputError(
+                f"time.{name} = {getattr(time, name)} is out of range: allowed multiples of {time.rows} (time.rows)"
+            )

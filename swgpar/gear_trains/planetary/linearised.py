@@ -1,0 +1,111 @@
+"""Statistical linearisation of the planetary gear train: mean and covariance over time (sections 3.4 and 3.5).
+
+Force-based, as `linearisation.py`, by the steps of `Steps`: a step of the covariance S is that of the linear train on
+the columns of S and, transposed, on the columns of what comes out. Mean, covariance and equivalent stiffnesses of a
+step are solved together.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from swgpar.errors import ConvergenceError
+from swgpar.gear_trains.backlash import mean_force_and_stiffness, mean_stiffness
+from swgpar.gear_trains.planetary.steps import States, Steps
+from swgpar.gear_trains.planetary.watched import watched
+from swgpar.gear_trains.planetary.wind import Wind
+
+TOLERANCE, MAX_ITERATIONS = 1e-6, 50
+"""Change of mean forces and equivalent stiffnesses in the last iteration of a step, relative; how many it may take."""
+
+
+@dataclass(frozen=True)
+class Moments:
+    """mean, deviation : (rows, watched);  force : (rows, 2) mean forces of the watched meshes, N
+
+    least : smallest eigenvalue of the covariance at the end over its largest
+    """
+
+    mean: np.ndarray
+    deviation: np.ndarray
+    force: np.ndarray
+    least: float
+
+
+class _Linear:
+    """Steps of the linear train with its wind on columns (q, y, c, c'), (2 n + 2, any)."""
+
+    def __init__(self, steps: Steps, wind: Wind) -> None:
+        self.steps, self.wind, self.n = steps, wind, steps.train.size
+
+    def __call__(self, step: int, columns: np.ndarray, before: np.ndarray, after: np.ndarray) -> np.ndarray:
+        """Columns after a step whose meshes have stiffnesses (m,) at its start and end."""
+        n, steps, wind = self.n, self.steps, self.wind
+        q, y, turbulence = columns[:n], columns[n : 2 * n], columns[2 * n :]
+        push = steps.push(step - 1, q, y, before[:, None] * (steps.ways[step - 1] @ q))
+        moved = wind.moved @ turbulence
+        return self._end(step, States(q, y, push), wind.turbulent @ (turbulence + moved), moved, after)
+
+    def noise(self, step: int, after: np.ndarray) -> np.ndarray:
+        """What the noise of a step adds: (2 n + 2, 2) per standard normal number."""
+        zero = np.zeros((self.n, 2))
+        return self._end(step, States(zero, zero, zero), self.wind.turbulent @ self.wind.root, self.wind.root, after)
+
+    def _end(
+        self, step: int, states: States, torques: np.ndarray, turbulence: np.ndarray, stiffness: np.ndarray
+    ) -> np.ndarray:
+        trial = self.steps.trial(step, states, torques)
+        ways = self.steps.linear(step, stiffness, trial.ways)
+        self.steps.finish(step, states, trial, ways, stiffness[:, None] * ways)
+        return np.vstack([states.q, states.y, turbulence])
+
+
+def linearised(steps: Steps, wind: Wind, every: int) -> Moments:
+    """Moments from rest under the steady wind, at every so many steps."""
+    train, n, half = steps.train, steps.train.size, steps.train.half
+    linear = _Linear(steps, wind)
+    states, _ = steps.at_rest(wind.steady)
+    mean = steps.ways[0] @ states.q[:, 0]
+    spread = np.zeros((2 * n + 2, 2 * n + 2))
+    deviation = np.zeros(len(steps.stiffness[0]))
+    spring = mean_stiffness(steps.stiffness[0], mean, deviation, half)
+    torque, rows = np.array([2.0 * wind.steady]), []
+    for step in range(1, steps.count + 1):
+        k, ways = steps.stiffness[step], steps.ways[step]
+        trial, before = steps.trial(step, states, torque), spring
+        for _ in range(MAX_ITERATIONS):
+            mean = _mean_ways(steps, step, trial.ways[:, 0], mean, deviation)
+            used_pull, used = mean_force_and_stiffness(k, mean, deviation, half)
+            half_way = linear(step, spread, before, used)
+            added = linear.noise(step, used)
+            new = linear(step, np.ascontiguousarray(half_way.T), before, used) + added @ added.T
+            deviation = np.sqrt(np.maximum(((ways @ new[:n, :n]) * ways).sum(axis=1), 0.0))
+            pull, spring = mean_force_and_stiffness(k, mean, deviation, half)
+            if max(np.abs((spring - used) / k).max(), np.abs(pull / used_pull - 1.0).max()) < TOLERANCE:
+                break
+        else:
+            raise ConvergenceError(f"the linearisation did not converge at {step * steps.h:g} s")
+        steps.finish(step, states, trial, mean[:, None], pull[:, None])
+        spread = 0.5 * (new + new.T)
+        if step % every == 0:
+            values = watched(train, steps, step)
+            variance = np.einsum("pi,ij,pj->p", values, spread[:n, :n], values)
+            meshes = pull[[0, train.design.planet.count]]
+            rows.append((values @ states.q[:, 0], np.sqrt(np.maximum(variance, 0.0)), meshes))
+    eigenvalues = np.linalg.eigvalsh(spread[:n, :n])
+    means, deviations, forces = (np.array(column) for column in zip(*rows, strict=True))
+    return Moments(means, deviations, forces, float(eigenvalues[0] / max(eigenvalues[-1], 1e-300)))
+
+
+def _mean_ways(steps: Steps, step: int, right: np.ndarray, ways: np.ndarray, deviation: np.ndarray) -> np.ndarray:
+    """Mean ways (m,) at the end of a step by Newton's method."""
+    k, half, give, damped = steps.stiffness[step], steps.train.half, steps.give[step], steps.damped[step]
+    for _ in range(MAX_ITERATIONS):
+        pull, slope = mean_force_and_stiffness(k, ways, deviation, half)
+        change = np.linalg.solve(damped + give * slope, damped @ ways + give @ pull - right)
+        ways = ways - change
+        if np.abs(change).max() <= 1e-9 * np.abs(ways).max():
+            return ways
+    raise ConvergenceError("the mean of the linearised gear train did not converge")

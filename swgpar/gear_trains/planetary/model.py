@@ -1,0 +1,151 @@
+"""Equations of motion of the planetary gear train, from its energy.
+
+Coordinates: sun (x, y, u), each planet (ξ, η, u), carrier (x, y, u), then the nodes of the ring (outward, along the
+motion, rotation). Sun, carrier and planets move in the frame that turns with the carrier, gyroscopic terms left out as
+in print; u is the turn times the base radius (sun, planet) or times the radius of the planets' centres (carrier). With
+the angle ψ of a planet and the pressure angle a, the ways of its meshes are
+
+    sun   d = -x sin(ψ - a) + y cos(ψ - a) + u_s - ξ sin a - η cos a + u_p                              (eq. 3.2)
+    ring  d = ξ sin a - η cos a - u_p - v sin a + w cos a,    v outward, w along the motion of the ring
+
+and its bearing's stretches are ξ - x_c cos ψ - y_c sin ψ and η + x_c sin ψ - y_c cos ψ - u_c. Deviations from print,
+which is no derivative of an energy at these places: eq. 3.16 exchanges sine and cosine of v and w against eqs 3.21 and
+3.82; eqs 3.9 to 3.11 and 3.79, 3.80 have an unsymmetric carrier row; eqs 3.25 and 3.26 hold the planet to the ground as
+well as to the carrier; eq. 3.28 has the wind's speed squared in its linear part.
+
+The ring meshes move along the ring. All time dependence is in their six ways and in the mesh stiffnesses: the rest is
+constant, and its modes separate mass, stiffness and damping. `Train` holds everything in these modes.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.linalg import eigh
+
+from swgpar.gear_trains.mesh_stiffness import MeshStiffness
+from swgpar.gear_trains.planetary.design import PlanetaryDesign
+from swgpar.gear_trains.ring.beam import Ring, Section
+
+SUN = 0
+
+
+def planet(number: int) -> int:
+    """First coordinate of a planet."""
+    return 3 + 3 * number
+
+
+def carrier(design: PlanetaryDesign) -> int:
+    """First coordinate of the carrier."""
+    return 3 + 3 * design.planet.count
+
+
+def nodes(design: PlanetaryDesign) -> int:
+    """First coordinate of the ring."""
+    return carrier(design) + 3
+
+
+def radii(design: PlanetaryDesign) -> tuple[float, float, float]:
+    """Base radii of sun and planets, and radius of the planets' centres, m."""
+    cosine = np.cos(np.radians(design.mesh.pressure_angle))
+    sun, planets = 0.5e-3 * design.sun.pitch_diameter, 0.5e-3 * design.planet.pitch_diameter
+    return sun * cosine, planets * cosine, sun + planets
+
+
+def elastic_ring(design: PlanetaryDesign) -> Ring:
+    """The ring of a design."""
+    r = design.ring
+    thickness, width = 1e-3 * r.rim, 1e-3 * r.face_width
+    radius = 1e-3 * (r.root_radius + 0.5 * r.rim)
+    section = Section(1e9 * r.E, r.density, radius, width * thickness, width * thickness**3 / 12.0)
+    return Ring(section, r.elements, (r.supports, (r.radial, r.tangential, r.torsional)))
+
+
+class Train:
+    """The gear train in the modes of all but its meshes.
+
+    Attributes
+    ----------
+    shapes : (n, n), columns are modes;  stiffness, damping : (n,) of unit modal masses
+    mesh : MeshStiffness of the meshes, sun meshes first;  mesh_damping : (m,) N·s/m
+    half : half backlash, m;  torque_push : (n,) modal forces of a unit torque on the carrier
+    """
+
+    def __init__(self, design: PlanetaryDesign) -> None:
+        self.design, self.ring = design, elastic_ring(design)
+        self.mass, self.constant = self._matrices()
+        squares, self.shapes = eigh(self.constant, self.mass)
+        self.stiffness = squares.clip(0.0)
+        self.damping = design.damping.mass + design.damping.stiffness * self.stiffness
+        count, m = design.planet.count, design.mesh
+        mean = np.repeat([m.sun_stiffness, m.ring_stiffness], count)
+        self.mesh = MeshStiffness(
+            mean,
+            m.variation * mean,
+            np.repeat([m.sun_contact_ratio, m.ring_contact_ratio], count),
+            design.carrier.speed * design.ring.teeth,
+            m.harmonics,
+            2.0 * np.pi * np.repeat([0.0, m.phase], count),
+        )
+        self.mesh_damping = design.damping.stiffness * mean
+        self.half = 1e-6 * m.half_backlash
+        push = np.zeros(self.size)
+        push[carrier(design) + 2] = 1.0 / radii(design)[2]
+        self.torque_push = self.shapes.T @ push
+        self._fixed_ways = self._lumped_ways()
+
+    @property
+    def size(self) -> int:
+        """n"""
+        return len(self.mass)
+
+    def _matrices(self) -> tuple[np.ndarray, np.ndarray]:
+        """Mass and stiffness (n, n) without meshes."""
+        design, first = self.design, nodes(self.design)
+        n = first + self.ring.size
+        mass, stiffness = np.zeros((n, n)), np.zeros((n, n))
+        sun_radius, planet_radius, centres = radii(design)
+        lumped = [(SUN, design.sun, sun_radius), (carrier(design), design.carrier, centres)]
+        lumped += [(planet(k), design.planet, planet_radius) for k in range(design.planet.count)]
+        for place, section, radius in lumped:
+            at = place + np.arange(3)
+            mass[at, at] = section.mass, section.mass, section.inertia / radius**2
+        for place, section in ((SUN, design.sun), (carrier(design), design.carrier)):
+            at = place + np.arange(2)
+            stiffness[at, at] = section.bearing
+        stiffness[SUN + 2, SUN + 2] = design.sun.torsional / sun_radius**2
+        for k, psi in enumerate(self.angles):
+            stretches = np.zeros((2, n))
+            c = carrier(design)
+            stretches[0, [planet(k), c, c + 1]] = 1.0, -np.cos(psi), -np.sin(psi)
+            stretches[1, [planet(k) + 1, c, c + 1, c + 2]] = 1.0, np.sin(psi), -np.cos(psi), -1.0
+            stiffness += design.planet.bearing * stretches.T @ stretches
+        mass[first:, first:], stiffness[first:, first:] = self.ring.mass, self.ring.stiffness
+        return mass, stiffness
+
+    @property
+    def angles(self) -> np.ndarray:
+        """Angles of the planets in the carrier's frame, (planets,) rad (eq. 3.3)."""
+        return 2.0 * np.pi * np.arange(self.design.planet.count) / self.design.planet.count
+
+    def _lumped_ways(self) -> np.ndarray:
+        """Ways (m, n) of the meshes without the ring's part."""
+        count, a = self.design.planet.count, np.radians(self.design.mesh.pressure_angle)
+        ways = np.zeros((2 * count, self.size))
+        for k, psi in enumerate(self.angles):
+            ways[k, SUN : SUN + 3] = -np.sin(psi - a), np.cos(psi - a), 1.0
+            ways[k, planet(k) : planet(k) + 3] = -np.sin(a), -np.cos(a), 1.0
+            ways[count + k, planet(k) : planet(k) + 3] = np.sin(a), -np.cos(a), -1.0
+        return ways
+
+    def ways(self, t: float) -> np.ndarray:
+        """Ways (m, n) of the meshes per coordinate at a time in s."""
+        out, count = self._fixed_ways.copy(), self.design.planet.count
+        a = np.radians(self.design.mesh.pressure_angle)
+        for k, psi in enumerate(self.angles):
+            along = self.ring.at(self.design.carrier.speed * t + psi)
+            out[count + k, nodes(self.design) :] = np.cos(a) * along[1] - np.sin(a) * along[0]
+        return out
+
+    def modal_ways(self, times: np.ndarray) -> np.ndarray:
+        """Ways (times, m, n) per mode."""
+        return np.array([self.ways(t) for t in times]) @ self.shapes

@@ -1,0 +1,177 @@
+"""All computations of a planetary gear train: what `swgpar run` and `swgpar check` do with one."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from functools import partial, reduce
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+
+from swgpar.gear_trains.backlash import force
+from swgpar.gear_trains.planetary.design import PlanetaryDesign
+from swgpar.gear_trains.planetary.linearised import Moments, linearised
+from swgpar.gear_trains.planetary.model import Train, elastic_ring, radii
+from swgpar.gear_trains.planetary.monte_carlo import BLOCK, simulate
+from swgpar.gear_trains.planetary.steps import Steps
+from swgpar.gear_trains.planetary.watched import NAMES
+from swgpar.gear_trains.planetary.wind import Wind
+from swgpar.gear_trains.published import Quantities, label
+from swgpar.gear_trains.result import Table, TrainResult
+from swgpar.gear_trains.sampling import blocks, generator, share_out
+from swgpar.gear_trains.sums import Sums
+from swgpar.log import logger
+
+SLOWEST_WAVE = 18
+"""Largest number of cycles in a revolution that counts as slow: tooth meshes come faster."""
+
+
+def quantities(design: PlanetaryDesign) -> Quantities:
+    """What can be compared with published values."""
+    known = {
+        "cycles_contact": ("dominant slow cycles of the ring under planet 1 in a carrier revolution", 1),
+        "cycles_node": ("dominant slow cycles of a node of the ring in a carrier revolution", 1),
+        "out_of_contact": ("share of steps and samples in which a mesh is not on its loaded flank", 1),
+    }
+    for rim in design.rims:
+        for name in NAMES:
+            known[f"mean_{name}_{label(rim)}"] = (f"largest mean of {name} with a rim of {rim:g} mm (m)", 1)
+            known[f"deviation_{name}_{label(rim)}"] = (f"largest deviation of it with a rim of {rim:g} mm (m)", 1)
+    return known
+
+
+def derived(design: PlanetaryDesign) -> dict[str, float]:
+    """What follows from the design file at once, for `swgpar check`."""
+    step = design.end / design.time.steps
+    train, wind = Train(design), Wind.over(design, step)
+    start, sides = Steps(train, step, 1).at_rest(wind.steady)
+    ways, k = train.modal_ways(np.zeros(1))[0], train.mesh.at(0.0)
+    forces = force(k, ways @ start.q[:, 0], train.half)
+    whole = np.diag(train.stiffness) + ways.T @ (k[:, None] * ways)
+    frequencies = np.sqrt(np.linalg.eigvalsh(whole).clip(0.0)) / (2.0 * np.pi)
+    sun, planets, centres = radii(design)
+    return {
+        "coordinates": train.size,
+        "base radius of the sun (mm)": 1e3 * sun,
+        "base radius of the planets (mm)": 1e3 * planets,
+        "radius of the planets' centres (mm)": 1e3 * centres,
+        "radius of the ring's centre line (mm)": 1e3 * elastic_ring(design).section.radius,
+        "carrier period (s)": 2.0 * np.pi / design.carrier.speed,
+        "mesh frequency (rad/s)": train.mesh.frequency,
+        "time step (s)": step,
+        "steady torque of the wind (N·m)": wind.steady,
+        "flank that carries the load": float(sides[0]),
+        "largest mesh force at rest (N)": float(np.abs(forces).max()),
+        "lowest natural frequency above 1 Hz, all meshes touching (Hz)": float(frequencies[frequencies > 1.0][0]),
+        "highest natural frequency (Hz)": float(frequencies[-1]),
+    }
+
+
+class _Case:
+    """A gear train with its steps, made where and when it is needed: its matrices fill some ten megabytes."""
+
+    def __init__(self, design: PlanetaryDesign, rim: float, count: int) -> None:
+        self.design = design.model_copy(update={"ring": design.ring.model_copy(update={"rim": rim})})
+        self.count, self._made = count, None
+
+    def made(self) -> tuple[Steps, Wind]:
+        if self._made is None:
+            h = self.design.end / self.count
+            self._made = Steps(Train(self.design), h, self.count), Wind.over(self.design, h)
+        return self._made
+
+
+def _linearised(case: _Case) -> tuple[Moments, float]:
+    begin = time.perf_counter()
+    return linearised(*case.made(), case.count // case.design.time.rows), time.perf_counter() - begin
+
+
+def _simulated(case: _Case, block: int, size: int) -> tuple[tuple[Sums, int], float]:
+    begin, design = time.perf_counter(), case.design
+    random = generator(design.gear_train.seed, block)
+    return simulate(*case.made(), case.count // design.time.rows, size, random), time.perf_counter() - begin
+
+
+def compute(design: PlanetaryDesign, comm: MPI.Comm) -> TrainResult:
+    """All results of a design, the same on all ranks; collective."""
+    rims = list(dict.fromkeys([design.ring.rim, *design.rims]))
+    whole = _Case(design, design.ring.rim, design.time.steps)
+    tasks: list[Callable[[], Any]] = [
+        partial(_linearised, _Case(design, r, design.time.linearised_steps)) for r in rims
+    ]
+    sizes = blocks(design.monte_carlo.samples, BLOCK)
+    logger.info(
+        "planetary gear train: %d coordinates, %d steps of %.3g s, %d simulations, %d rims; %d ranks",
+        Train(design).size,
+        design.time.steps,
+        design.end / design.time.steps,
+        design.monte_carlo.samples,
+        len(rims),
+        comm.size,
+    )
+    done = share_out(comm, [*tasks, *(partial(_simulated, whole, b, size) for b, size in enumerate(sizes))])
+    moments = dict(zip(rims, (result for result, _ in done[: len(rims)]), strict=True))
+    simulated = [result for result, _ in done[len(rims) :]]
+    sums = reduce(Sums.with_more, (part for part, _ in simulated))
+    here = moments[design.ring.rim]
+    values: dict[str, float | list[float]] = {
+        "cycles_contact": _cycles(here.mean[:, NAMES.index("contact_v")], design.time.revolutions),
+        "cycles_node": _cycles(here.mean[:, NAMES.index("node_w")], design.time.revolutions),
+        "out_of_contact": sum(lost for _, lost in simulated) / (design.time.steps * design.monte_carlo.samples),
+    }
+    for rim in design.rims:
+        for k, name in enumerate(NAMES):
+            values[f"mean_{name}_{label(rim)}"] = float(np.abs(moments[rim].mean[:, k]).max())
+            values[f"deviation_{name}_{label(rim)}"] = float(moments[rim].deviation[:, k].max())
+    summary = {
+        "errors_percent": {
+            "mean": _errors(here.mean, sums.mean),
+            "deviation": _errors(here.deviation, sums.deviation),
+        },
+        "sampling_error_percent": 100.0 / np.sqrt(2.0 * sums.count),
+        "least_eigenvalue_over_largest": here.least,
+        "cpu_s": {"linearised": [s for _, s in done[: len(rims)]], "monte_carlo": sum(s for _, s in done[len(rims) :])},
+    }
+    return TrainResult(_history(design, here, sums), {"rims": _rims(design, moments)}, values, summary)
+
+
+def _errors(here: np.ndarray, there: np.ndarray) -> dict[str, float]:
+    """Percent by which values (rows, watched) differ from others over the second half of the time."""
+    later = slice(len(here) // 2, None)
+    return dict(
+        zip(NAMES, (100.0 * (here[later].mean(axis=0) / there[later].mean(axis=0) - 1.0)).tolist(), strict=True)
+    )
+
+
+def _cycles(mean: np.ndarray, revolutions: float) -> float:
+    """Number of slow cycles in a revolution with the largest amplitude."""
+    amplitude = np.abs(np.fft.rfft(mean))[: int(SLOWEST_WAVE * revolutions) + 1]
+    return float((1 + np.argmax(amplitude[1:])) / revolutions)
+
+
+def _times(design: PlanetaryDesign) -> np.ndarray:
+    return design.end * np.arange(1, design.time.rows + 1) / design.time.rows
+
+
+def _history(design: PlanetaryDesign, moments: Moments, sums: Sums) -> Table:
+    """Means and deviations in µm, and mean forces of the meshes of planet 1."""
+    out = {"time_s": _times(design)}
+    for k, name in enumerate(NAMES):
+        out |= {
+            f"linearised_mean_{name}_um": 1e6 * moments.mean[:, k],
+            f"linearised_deviation_{name}_um": 1e6 * moments.deviation[:, k],
+            f"monte_carlo_mean_{name}_um": 1e6 * sums.mean[:, k],
+            f"monte_carlo_deviation_{name}_um": 1e6 * sums.deviation[:, k],
+        }
+    return out | {"mean_sun_force_N": moments.force[:, 0], "mean_ring_force_N": moments.force[:, 1]}
+
+
+def _rims(design: PlanetaryDesign, moments: dict[float, Moments]) -> Table:
+    """Means and deviations of the linearisation for all rims, rim below rim."""
+    out = {"rim_mm": np.repeat(design.rims, design.time.rows), "time_s": np.tile(_times(design), len(design.rims))}
+    for k, name in enumerate(NAMES):
+        out[f"mean_{name}_um"] = 1e6 * np.concatenate([moments[r].mean[:, k] for r in design.rims])
+        out[f"deviation_{name}_um"] = 1e6 * np.concatenate([moments[r].deviation[:, k] for r in design.rims])
+    return out

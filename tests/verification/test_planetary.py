@@ -1,0 +1,277 @@
+"""The planetary gear train: statics, steps and statistics against independent formulations and each other."""
+
+from __future__ import annotations
+
+import itertools
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from swgpar.gear_trains.backlash import force
+from swgpar.gear_trains.planetary.design import PlanetaryDesign
+from swgpar.gear_trains.planetary.linearised import Moments, linearised
+from swgpar.gear_trains.planetary.model import Train, carrier, nodes, planet, radii
+from swgpar.gear_trains.planetary.monte_carlo import simulate
+from swgpar.gear_trains.planetary.run import _cycles
+from swgpar.gear_trains.planetary.steps import States, Steps
+from swgpar.gear_trains.planetary.watched import NAMES, watched
+from swgpar.gear_trains.planetary.wind import Wind
+from swgpar.gear_trains.sampling import generator
+from swgpar.gear_trains.train import load_train
+
+DRIVER = Path(__file__).parents[2] / "drivers" / "planetary.toml"
+
+
+@pytest.fixture(scope="module")
+def design() -> PlanetaryDesign:
+    return load_train(DRIVER)
+
+
+def changed(design: PlanetaryDesign, section: str, **values: object) -> PlanetaryDesign:
+    return design.model_copy(update={section: getattr(design, section).model_copy(update=values)})
+
+
+@pytest.fixture(scope="module")
+def small(design: PlanetaryDesign) -> PlanetaryDesign:
+    """Six elements, and stronger turbulence of a shorter memory."""
+    return changed(changed(design, "ring", elements=6), "wind", length=2.0)
+
+
+def physical(train: Train, t: float) -> tuple[np.ndarray, np.ndarray]:
+    """Damping (n, n) and ways (m, n) at a time, in the coordinates of the parts."""
+    ways, section = train.ways(t), train.design.damping
+    damping = section.mass * train.mass + section.stiffness * train.constant
+    return damping + ways.T @ (train.mesh_damping[:, None] * ways), ways
+
+
+# --- equations
+
+
+def test_kinematics(design: PlanetaryDesign) -> None:
+    """A turn of the carrier and the sun's by 1 + 99/21 of it, in a ring at rest, is no way of any mesh or bearing."""
+    train = Train(design)
+    sun, planets, centres = radii(design)
+    x = np.zeros(train.size)
+    turn, ratio = 1e-3, 1.0 + design.ring.teeth / 21.0
+    x[2], x[carrier(design) + 2] = sun * ratio * turn, centres * turn
+    for k in range(design.planet.count):
+        # a planet turns backwards by the ring's teeth over its own, less the carrier's turn
+        x[planet(k) + 1 : planet(k) + 3] = centres * turn, -planets * centres / (planets / np.cos(np.pi / 9.0)) * turn
+    assert np.abs(train.ways(0.7) @ x).max() < 1e-4 * centres * turn
+    shaft = x[2] * train.constant[2, 2] * x[2]
+    assert x @ train.constant @ x == pytest.approx(shaft, rel=1e-9)
+    assert np.abs(train.constant - train.constant.T).max() < 1e-12 * np.abs(train.constant).max()
+    assert ratio == pytest.approx(2.0 * centres / (1e-3 * 0.5 * design.sun.pitch_diameter), rel=1e-3)
+
+
+def test_statics(design: PlanetaryDesign) -> None:
+    """The carrier's torque is that of all mesh forces; the sun's shaft takes its part, the ring's supports the rest."""
+    train = Train(design)
+    steps, torque = Steps(train, 1e-3, 1), 1e5
+    start, sides = steps.at_rest(torque)
+    q = train.shapes @ start.q[:, 0]
+    f = force(steps.stiffness[0], train.ways(0.0) @ q, train.half)
+    sun, _, centres = radii(design)
+    cosine = np.cos(np.radians(design.mesh.pressure_angle))
+    assert (sides == -1.0).all()
+    np.testing.assert_allclose(f, -torque / (2.0 * design.planet.count * centres * cosine), rtol=1e-9)
+    turn = q[2] / sun
+    assert design.sun.torsional * turn == pytest.approx(-3.0 * f[0] * sun, rel=1e-9)
+    # virtual work of a turn of the ring: what its supports hold
+    first, radius = nodes(design), train.ring.section.radius
+    rigid = np.tile([0.0, 1.0, 1.0 / radius], design.ring.elements)
+    held = rigid @ train.ring.stiffness @ q[first:]
+    assert held == pytest.approx(-design.planet.count * f[3] * cosine, rel=1e-6)
+
+
+def test_modes_hold_the_matrices(small: PlanetaryDesign) -> None:
+    train = Train(small)
+    s = train.shapes
+    np.testing.assert_allclose(s.T @ train.mass @ s, np.eye(train.size), atol=1e-8)
+    np.testing.assert_allclose(
+        s.T @ train.constant @ s, np.diag(train.stiffness), atol=1e-9 * np.abs(train.stiffness).max()
+    )
+
+
+# --- steps
+
+
+def states_of(train: Train, h: float, q: np.ndarray, v: np.ndarray, steps: Steps, forces: np.ndarray) -> States:
+    modal = np.linalg.solve(train.shapes, np.column_stack([q, v]))
+    y = 2.0 / h * modal[:, :1] + modal[:, 1:]
+    return States(modal[:, :1], y, steps.push(0, modal[:, :1], y, forces[:, None]))
+
+
+def test_a_step_is_the_trapezoidal_rule(small: PlanetaryDesign) -> None:
+    """Against the whole matrices of all parts, meshes without backlash, from a random state."""
+    design = changed(small, "mesh", half_backlash=0.0)
+    train, h = Train(design), 2e-3
+    steps, random = Steps(train, h, 1), np.random.default_rng(0)
+    q, v, torque = 1e-5 * random.standard_normal(train.size), 1e-4 * random.standard_normal(train.size), 3e4
+    (c0, w0), (c1, w1) = (physical(train, t) for t in (0.0, h))
+    k0, k1 = (train.constant + w.T @ (k[:, None] * w) for w, k in zip((w0, w1), steps.stiffness, strict=True))
+    push = np.linalg.solve(train.shapes.T, train.torque_push) * torque
+    # M (v1 - v0) + h/2 (C0 v0 + C1 v1 + K0 q0 + K1 q1) = h F with q1 = q0 + h/2 (v0 + v1)
+    left = train.mass + 0.5 * h * c1 + 0.25 * h * h * k1
+    right = train.mass @ v - 0.5 * h * (c0 @ v + k0 @ q + k1 @ (q + 0.5 * h * v)) + h * push
+    v1 = np.linalg.solve(left, right)
+    q1 = q + 0.5 * h * (v + v1)
+    states = states_of(train, h, q, v, steps, steps.stiffness[0] * (w0 @ q))
+    trial = steps.trial(1, states, np.array([2.0 * torque]))
+    ways = steps.linear(1, steps.stiffness[1], trial.ways)
+    steps.finish(1, states, trial, ways, steps.stiffness[1][:, None] * ways)
+    np.testing.assert_allclose(train.shapes @ states.q[:, 0], q1, atol=1e-8 * np.abs(q1).max())
+    np.testing.assert_allclose(train.shapes @ (states.y - 2.0 / h * states.q)[:, 0], v1, atol=1e-6 * np.abs(v1).max())
+    sides = np.sign(trial.ways[:, 0])
+    again, _ = steps.with_backlash(1, sides, trial.ways)
+    np.testing.assert_allclose(again, ways, atol=1e-9 * np.abs(ways).max())
+
+
+def test_load_reversal(small: PlanetaryDesign) -> None:
+    """The torque turns round: all meshes cross their backlash. Against SciPy's Radau, second order in the step."""
+    train, end, torque = Train(small), 0.6, 1e5
+    push = np.linalg.solve(train.shapes.T, train.torque_push)
+    inverse = np.linalg.inv(train.mass)
+
+    def load(t: float) -> float:
+        return torque * np.cos(np.pi * t / end)
+
+    def rates(t: float, y: np.ndarray) -> np.ndarray:
+        q, v = np.split(y, 2)
+        damping, ways = physical(train, t)
+        pull = train.constant @ q + damping @ v + ways.T @ force(train.mesh.at(t), ways @ q, train.half)
+        return np.concatenate([v, inverse @ (push * load(t) - pull)])
+
+    def jacobian(t: float, y: np.ndarray) -> np.ndarray:
+        damping, ways = physical(train, t)
+        touching = np.abs(ways @ y[: train.size]) > train.half
+        k = train.constant + ways.T @ ((train.mesh.at(t) * touching)[:, None] * ways)
+        return np.block([[np.zeros_like(k), np.eye(train.size)], [-inverse @ k, -inverse @ damping]])
+
+    start, _ = Steps(train, 1e-3, 1).at_rest(torque)
+    q = train.shapes @ start.q[:, 0]
+    exact = solve_ivp(
+        rates, (0.0, end), np.concatenate([q, 0.0 * q]), method="Radau", rtol=1e-7, atol=1e-12, jac=jacobian
+    )
+    expected = np.linalg.solve(train.shapes, exact.y[: train.size, -1])
+    off = []
+    for count in (150, 300, 600):
+        h = end / count
+        steps = Steps(train, h, count)
+        states, sides = steps.at_rest(torque)
+        lost = 0
+        for step in range(1, count + 1):
+            torques = np.array([load((step - 1) * h) + load(step * h)])
+            trial = steps.trial(step, states, torques)
+            ways, apart = steps.with_backlash(step, sides, trial.ways)
+            lost += apart
+            steps.finish(step, states, trial, ways, force(steps.stiffness[step][:, None], ways, train.half))
+        values = watched(train, steps, count)
+        off.append(np.abs(values @ states.q[:, 0] / (values @ expected) - 1.0).max())
+    assert lost > count / 4
+    assert off[-1] < 0.01
+    assert off[0] / off[1] > 2.5 and off[1] / off[2] > 2.5
+
+
+# --- wind
+
+
+def test_wind(design: PlanetaryDesign) -> None:
+    h, section = 0.1, design.wind
+    wind = Wind.over(design, h)
+    spread = np.zeros((2, 2))
+    for _ in range(3000):
+        spread = wind.moved @ spread @ wind.moved.T + wind.root @ wind.root.T
+    # dT = factor V0 dV, and the steady part is factor V0² / 2
+    deviation = np.sqrt(wind.turbulent @ spread @ wind.turbulent)
+    assert deviation == pytest.approx(2.0 * section.turbulence * wind.steady, rel=1e-6)
+    half = Wind.over(design, 0.5 * h)
+    twice = half.moved @ half.root @ half.root.T @ half.moved.T + half.root @ half.root.T
+    np.testing.assert_allclose(twice, wind.root @ wind.root.T, rtol=1e-9)
+    v0, area = section.speed / 3.6, np.pi * section.rotor_radius**2
+    ratio = design.carrier.speed * section.rotor_radius / v0
+    torque = 0.5 * section.air_density * area * section.rotor_radius * section.power_coefficient / ratio * v0**2
+    assert wind.steady == pytest.approx(torque)
+
+
+# --- statistics
+
+
+def moments(design: PlanetaryDesign, h: float, count: int, every: int) -> tuple[Steps, Wind, Moments]:
+    steps, wind = Steps(Train(design), h, count), Wind.over(design, h)
+    return steps, wind, linearised(steps, wind, every)
+
+
+def test_covariance_by_whole_matrices(small: PlanetaryDesign) -> None:
+    """Without backlash the linearisation is the linear train: S = T S T^T + B B^T with whole matrices."""
+    design = changed(small, "mesh", half_backlash=0.0)
+    h, count = 2e-3, 8
+    steps, wind, found = moments(design, h, count, count)
+    train = steps.train
+    n = train.size
+    push = np.linalg.solve(train.shapes.T, train.torque_push)[:, None]
+    spread = np.zeros((2 * n + 2, 2 * n + 2))
+    for step in range(1, count + 1):
+        (c0, w0), (c1, w1) = (physical(train, t) for t in ((step - 1) * h, step * h))
+        k0, k1 = (train.constant + w.T @ (steps.stiffness[s][:, None] * w) for w, s in ((w0, step - 1), (w1, step)))
+        turbulent = push @ wind.turbulent[None]
+        eye = np.eye(n)
+        left = np.block([[0.5 * h * k1, train.mass + 0.5 * h * c1], [eye, -0.5 * h * eye]])
+        right = np.block([[-0.5 * h * k0, train.mass - 0.5 * h * c0], [eye, 0.5 * h * eye]])
+        of_state = np.linalg.solve(left, right)
+        of_wind = np.linalg.solve(left, np.vstack([0.5 * h * turbulent, 0.0 * turbulent]))
+        of_wind, of_noise = of_wind @ (np.eye(2) + wind.moved), of_wind @ wind.root
+        moved = np.block([[of_state, of_wind], [np.zeros((2, 2 * n)), wind.moved]])
+        added = np.vstack([of_noise, wind.root])
+        spread = moved @ spread @ moved.T + added @ added.T
+    values = np.linalg.solve(train.shapes.T, watched(train, steps, count).T).T
+    expected = np.sqrt(np.einsum("pi,ij,pj->p", values, spread[:n, :n], values))
+    np.testing.assert_allclose(found.deviation[-1], expected, rtol=1e-5)
+
+
+def test_linearisation_does_not_depend_on_the_step(small: PlanetaryDesign) -> None:
+    """With backlash and tooth cycles: second order; the covariance is positive semi-definite to round-off."""
+    end, results = 0.4, []
+    for count in (50, 100, 200):
+        _, _, found = moments(small, end / count, count, count)
+        results.append(np.concatenate([found.mean[-1], found.deviation[-1]]))
+        assert found.least > -1e-12
+    steps = [np.abs(fine / coarse - 1.0).max() for coarse, fine in itertools.pairwise(results)]
+    assert steps[1] < 2e-3
+    assert np.log2(steps[0] / steps[1]) > 1.6
+
+
+def test_linearised_against_simulated(small: PlanetaryDesign) -> None:
+    """No impact: means and deviations within 2 %; 16,000 samples know a deviation to 0.6 %."""
+    steps, wind, found = moments(changed(small, "wind", turbulence=0.05), 8e-3, 100, 50)
+    sums, lost = simulate(steps, wind, 50, 16_000, generator(5))
+    assert lost == 0
+    np.testing.assert_allclose(found.mean, sums.mean, rtol=0.02)
+    np.testing.assert_allclose(found.deviation, sums.deviation, rtol=0.02)
+
+
+def test_impacts_spoil_the_mesh(small: PlanetaryDesign) -> None:
+    """With strong turbulence meshes lose contact: the ways' deviations go wrong, the turns' hardly."""
+    steps, wind, found = moments(changed(small, "wind", turbulence=0.6), 5e-3, 200, 50)
+    sums, lost = simulate(steps, wind, 50, 2000, generator(6))
+    assert lost > 0.02 * 200 * 2000
+    off = np.abs(found.deviation[-1] / sums.deviation[-1] - 1.0)
+    ways, turns = NAMES.index("sun_mesh"), NAMES.index("carrier_u")
+    assert off[ways] > 0.1 > off[turns]
+
+
+def test_patterns_and_rims(design: PlanetaryDesign) -> None:
+    """Six cycles under a planet (six supports), three at a node (three planets); a thicker rim moves all but the sun."""
+    count, largest = 400, {}
+    for rim in (87.0, 168.0):
+        steps, wind, found = moments(changed(design, "ring", rim=rim), design.end / count, count, 2)
+        largest[rim] = np.concatenate([np.abs(found.mean).max(axis=0), found.deviation.max(axis=0)])
+        assert _cycles(found.mean[:, NAMES.index("contact_v")], 1.0) == 6.0
+        assert _cycles(found.mean[:, NAMES.index("node_w")], 1.0) == 3.0
+        assert steps.train.size == 69 and wind.steady > 0.0
+    change = dict(zip(NAMES, largest[168.0][: len(NAMES)] / largest[87.0][: len(NAMES)], strict=True))
+    assert change["contact_v"] < 0.5 and change["node_w"] < 0.8
+    assert 0.95 < change["carrier_u"] < 1.0 and 0.95 < change["planet_eta"] < 1.0
+    assert change["sun_u"] == pytest.approx(1.0, abs=1e-5)
