@@ -263,7 +263,7 @@ def test_impacts_spoil_the_mesh(small: PlanetaryDesign) -> None:
 
 
 def test_patterns_and_rims(design: PlanetaryDesign) -> None:
-    """Six cycles under a planet (six supports), three at a node; a thicker rim moves all but the sun."""
+    """Six cycles under a planet (six supports), three at a node (three planets); rims move all but the sun."""
     count, largest = 400, {}
     for rim in (87.0, 168.0):
         steps, wind, found = moments(changed(design, "ring", rim=rim), design.end / count, count, 2)

@@ -48,6 +48,7 @@ class RingGear(Section):
     density: float = quantity(unit="kg/m³", text="density", gt=0.0)
     root_radius: float = quantity(unit="mm", text="root radius, the inner radius of the rim", gt=0.0)
     rim: float = quantity(unit="mm", text="rim thickness", gt=0.0)
+    rims: Thicknesses = quantity(text="rim thicknesses that are compared by linearisation (mm), each above 0")
     face_width: float = quantity(unit="mm", text="face width", gt=0.0)
     elements: int = quantity(text="curved-beam elements", ge=3, le=200)
     supports: int = quantity(text="equally spaced supports; the first at angle 0", ge=1)
@@ -108,7 +109,6 @@ class PlanetaryDesign(TrainDesign):
     wind: Wind
     time: Time
     monte_carlo: MonteCarlo
-    rims: Thicknesses = quantity([87.0], text="rim thicknesses that are compared (mm), each above 0")
     output: Output = Output()
 
     @property

@@ -35,7 +35,7 @@ def quantities(design: PlanetaryDesign) -> Quantities:
         "cycles_node": ("dominant slow cycles of a node of the ring in a carrier revolution", 1),
         "out_of_contact": ("share of steps and samples in which a mesh is not on its loaded flank", 1),
     }
-    for rim in design.rims:
+    for rim in design.ring.rims:
         for name in NAMES:
             known[f"mean_{name}_{label(rim)}"] = (f"largest mean of {name} with a rim of {rim:g} mm (m)", 1)
             known[f"deviation_{name}_{label(rim)}"] = (f"largest deviation of it with a rim of {rim:g} mm (m)", 1)
@@ -96,7 +96,7 @@ def _simulated(case: _Case, block: int, size: int) -> tuple[tuple[Sums, int], fl
 
 def compute(design: PlanetaryDesign, comm: MPI.Comm) -> TrainResult:
     """All results of a design, the same on all ranks; collective."""
-    rims = list(dict.fromkeys([design.ring.rim, *design.rims]))
+    rims = list(dict.fromkeys([design.ring.rim, *design.ring.rims]))
     whole = _Case(design, design.ring.rim, design.time.steps)
     tasks: list[Callable[[], Any]] = [
         partial(_linearised, _Case(design, r, design.time.linearised_steps)) for r in rims
@@ -121,7 +121,7 @@ def compute(design: PlanetaryDesign, comm: MPI.Comm) -> TrainResult:
         "cycles_node": _cycles(here.mean[:, NAMES.index("node_w")], design.time.revolutions),
         "out_of_contact": sum(lost for _, lost in simulated) / (design.time.steps * design.monte_carlo.samples),
     }
-    for rim in design.rims:
+    for rim in design.ring.rims:
         for k, name in enumerate(NAMES):
             values[f"mean_{name}_{label(rim)}"] = float(np.abs(moments[rim].mean[:, k]).max())
             values[f"deviation_{name}_{label(rim)}"] = float(moments[rim].deviation[:, k].max())
@@ -170,8 +170,11 @@ def _history(design: PlanetaryDesign, moments: Moments, sums: Sums) -> Table:
 
 def _rims(design: PlanetaryDesign, moments: dict[float, Moments]) -> Table:
     """Means and deviations of the linearisation for all rims, rim below rim."""
-    out = {"rim_mm": np.repeat(design.rims, design.time.rows), "time_s": np.tile(_times(design), len(design.rims))}
+    out = {
+        "rim_mm": np.repeat(design.ring.rims, design.time.rows),
+        "time_s": np.tile(_times(design), len(design.ring.rims)),
+    }
     for k, name in enumerate(NAMES):
-        out[f"mean_{name}_um"] = 1e6 * np.concatenate([moments[r].mean[:, k] for r in design.rims])
-        out[f"deviation_{name}_um"] = 1e6 * np.concatenate([moments[r].deviation[:, k] for r in design.rims])
+        out[f"mean_{name}_um"] = 1e6 * np.concatenate([moments[r].mean[:, k] for r in design.ring.rims])
+        out[f"deviation_{name}_um"] = 1e6 * np.concatenate([moments[r].deviation[:, k] for r in design.ring.rims])
     return out
