@@ -107,7 +107,7 @@ struct Foot {
   int i = 0, j = 0;
   double eta = 0.5, zeta = 0.5, gap = 0.0;
   Vec3 x, x_eta, x_zeta, x_etaeta, x_etazeta, normal;
-  Vec2 height;  // of the curve over its chord
+  Vec2 height, height_eta;  // of the curve over its chord, and its derivative
   bool found = false;
 };
 
@@ -119,7 +119,8 @@ inline void evaluate(const Patch& p, const double* u, Foot& f) {
   const Vec2 chord = b - a;
   f.height = p.carried((3 * t2 - 2 * t3 - t) * chord + (t3 - 2 * t2 + t) * ta + (t3 - t2) * tb);
   const Vec2 x = a + t * chord + f.height;
-  const Vec2 d = chord + p.carried((6 * t - 6 * t2 - 1) * chord + (3 * t2 - 4 * t + 1) * ta + (3 * t2 - 2 * t) * tb);
+  f.height_eta = p.carried((6 * t - 6 * t2 - 1) * chord + (3 * t2 - 4 * t + 1) * ta + (3 * t2 - 2 * t) * tb);
+  const Vec2 d = chord + f.height_eta;
   const Vec2 dd = p.carried((6 - 12 * t) * chord + (6 * t - 4) * ta + (6 * t - 2) * tb);
   const double z0 = p.z[j], dz = p.z[j + 1] - z0, e = f.eta, q = f.zeta;
   const Vec3 u00 = nodal(u, p.node(i, j), p.image(i, j)), u10 = nodal(u, p.node(i + 1, j), p.image(i + 1, j));

@@ -105,6 +105,7 @@ inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& fa
       if (residual != nullptr) {
         const Eigen::Matrix<double, 24, 1> force = w * motion.foot.transpose() * (motion.x.transpose() * t.value);
         for (int a = 0; a < 8; ++a) add_nodal(residual, conn[a], flip[a], force.segment<3>(3 * a));
+        moment[k] += w * motion.by_turn(f).dot(motion.x.transpose() * t.value);
       }
       if (rows.values != nullptr)
         missing += add_friction_tangent(f, t, motion, patch.bent(f.i), conn, flip, w, penalty, p,

@@ -87,6 +87,12 @@ struct Motion {
         f.x_zeta.transpose() * relative + f.gap * f.normal.transpose() * u_zeta;
     foot = inverse * drive;
   }
+
+  // Motion of the foot by the turn of the master body: its height over the chord turns, the nodes do not.
+  Vec2 by_turn(const Foot& f) const {
+    const Vec3 turned(-f.height[1], f.height[0], 0), turned_eta(-f.height_eta[1], f.height_eta[0], 0);
+    return inverse * Vec2(f.gap * f.normal.dot(turned_eta) - f.x_eta.dot(turned), -f.x_zeta.dot(turned));
+  }
 };
 
 // Adds w times the derivative of the nodal forces T . x_a foot_a. `share` bounds the geometric terms as the pressure's
