@@ -1,7 +1,8 @@
 """Drives and elements under numerical stress: what converges, what is refused, and how far the invariants drift.
 
-Every group of `tests/stability/drive_groups.py` is a study on a small mesh, a case at a time on every rank. A case ends in one
-of three ways: it converges, it is refused by one sentence before anything is computed, or it fails (does not converge).
+Every group of `tests/stability/drive_groups.py` is a study on a small mesh, a case at a time on every rank. A case ends
+in one of three ways: it converges, it is refused by one sentence before anything is computed, or it fails (does not
+converge).
 stability.csv has a row for every case: Newton iterations (largest number in one increment, and all), cut-backs, the
 torque that is left unbalanced over the output's torque, and how far the state has moved after one period (stresses and
 input torque, relative; without friction, which needs a period to settle). The drift of other systems of units and of
