@@ -85,7 +85,7 @@ class Bordered:
         self.columns: list[PETSc.Vec] = []
         self.kept = KeptFactor(create_vector(partition), self.multiply, self.solve_with_factor) if keep else None
 
-    def _solve(self, right: PETSc.Vec, x: PETSc.Vec) -> None:
+    def solve_grounded(self, right: PETSc.Vec, x: PETSc.Vec) -> None:
         """x = K'^-1 right; in the plane the matrix has no z, and x gets a zero there."""
         dims = self.partition.dims
         if dims == 3:
@@ -126,8 +126,8 @@ class Bordered:
         if self.kept is not None:
             self.kept.stale = True
 
-    def factorise(self) -> None:
-        """Factor, or set up, for the present matrix."""
+    def prepare(self) -> None:
+        """Factor, or the set-up of the multigrid, of the present matrix."""
         matrix = self.matrix
         if self.modes is not None:  # GAMG has no triangular storage
             if self.unblocked is not None:
@@ -139,6 +139,10 @@ class Bordered:
         self.ksp.getPC().setReusePreconditioner(False)
         self.ksp.setUp()
         self.ksp.getPC().setReusePreconditioner(self.kept is not None)  # the matrix changes below a kept factor
+
+    def factorise(self) -> None:
+        """Factor, or set up, for the present matrix, and solve for the borders."""
+        self.prepare()
         sides = self.grounding + self.border
         if len(self.columns) != len(sides):
             self.columns = [vector.duplicate() for vector in sides]
@@ -175,7 +179,7 @@ class Bordered:
             return
         self.ksp.setInitialGuessNonzero(self.modes is not None)  # those of the last tangent
         for vector, solution in zip(sides, self.columns):
-            self._solve(vector, solution)
+            self.solve_grounded(vector, solution)
             if self.ksp.getConvergedReason() < 0:
                 self.failed = True
                 solution.set(0.0)  # nothing to start the next tangent's from
@@ -219,7 +223,7 @@ class Bordered:
 
     def solve_with_factor(self, right: PETSc.Vec, x: PETSc.Vec, bound: float | None = None) -> None:
         """Solution of the system of the factor; without `bound` the output moves freely where it is loaded."""
-        self._solve(right, x)
+        self.solve_grounded(right, x)
         if self.failed or self.ksp.getConvergedReason() < 0:
             x.set(np.nan)  # the residual at such a step is not finite: the increment is cut back
             return
