@@ -4,8 +4,9 @@ Newton's iteration on contact is one over sets: which points of cam, pins and fl
 slip. It cycles when a set returns although the residual has not fallen meanwhile. It cannot go on for ever in any case:
 an increment has at most `solver.max_iterations` of them, and is halved at most `solver.max_cutbacks` times.
 
-The way out is a line search that ends on the descending side (`SearchedStep.careful`). Without friction residual and
-tangent are the derivatives of a potential, and for given segments and a convex potential that ends every cycle:
+The way out is a line search that ends on the descending side (`SearchedStep.careful`), on segments of the flanks that
+are kept as they are; where that ends they are cut anew, and the iteration goes on from there. Without friction residual
+and tangent are the derivatives of a potential, and for given segments and a convex potential that ends every cycle:
 
 1. Along a Newton step s from x the slope of the potential starts at -F . s < 0 and only grows, by convexity.
 2. The step is kept where the slope is still negative, so that it was negative all along: the potential falls.

@@ -83,7 +83,8 @@ class Contact(Section):
 class Steps(Section):
     rotation: float = quantity(45.0, unit="deg", text="rotation of the wave generator", ge=0.0, le=36000.0)
     increment: float = quantity(5.0, unit="deg", text="increment of that rotation", ge=0.01, le=45.0)
-    deflect_increments: int = quantity(1, text="increments of the deflection by the pins", ge=1, le=1000)
+    pins: bool = quantity(True, text="deflect the spline by pins before the cam is there; false: by the growing cam")
+    deflect_increments: int = quantity(1, text="increments of the deflection (step 1)", ge=1, le=1000)
     engage_increments: int = quantity(1, text="increments of the engagement", ge=1, le=1000)
     load_increments: int = quantity(1, text="increments of the torque", ge=1, le=1000)
     samples: int = quantity(
@@ -233,6 +234,11 @@ def check_fit(design: DriveDesign) -> None:
     width = g.face_width
     if wave.face_width > width:
         _refuse("wave_generator.face_width", wave.face_width, f"above 0 to {width:g} mm (drive.face_width)")
+    if design.contact.friction > 0.0 and design.solver.linear == "iterative":
+        raise InputError(
+            f'solver.linear = "iterative" is not available with contact.friction = {design.contact.friction:g}: '
+            'allowed "direct" with friction'
+        )
     if g.model == "plane":
         for key in ("wg_crowning", "wg_slope", "fs_crowning"):
             if getattr(micro, key) != 0.0:
@@ -250,11 +256,6 @@ def check_fit(design: DriveDesign) -> None:
             "cup.inner_radius",
             cup.inner_radius,
             f"above 0 to below {outer - cup.fillet_radius:g} mm (the closed end inside cup.fillet_radius)",
-        )
-    if design.contact.friction > 0.0 and design.solver.linear == "iterative":
-        raise InputError(
-            f'solver.linear = "iterative" is not available with contact.friction = {design.contact.friction:g}: '
-            'allowed "direct" with friction'
         )
     if micro.wg_crowning > 0.5 * design.d:
         _refuse("micro_geometry.wg_crowning", micro.wg_crowning, f"0 to {0.5 * design.d:g} mm (half the deflection)")

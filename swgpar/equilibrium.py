@@ -30,9 +30,13 @@ foreseen, tip overlap."""
 SOFTENING, SOFT_TOLERANCE = (1e-3, 3e-2), 1e-2
 """Shares of the penalty, and residual over contact force, of the first rough solves while contact is established."""
 
-HOLD = 1e-4
-"""Residual over contact force below which segments of the flanks are kept: Newton's iteration is then quadratic. At
-1e-3 the state depends on the way to it, by 4e-5 of the input torque where teeth are wedged; later costs iterations."""
+HOLD = 0.5
+"""Power of the tolerance: residual over contact force below which segments of the flanks are kept. Newton's iteration
+is then quadratic: the next step or the one after it ends. Kept at 1e-3, segments make the state depend on the way to it
+by 4e-5 of the input torque where teeth are wedged, at 1e-4 by 1e-6; kept later, a solve takes some iterations more."""
+
+SEARCHES = 3
+"""Further contact searches of a solve, at states in which flanks touch that the last one left out."""
 
 LOADED_SIDE = -1
 """Flanks that carry: the load turns the flexible spline counter-clockwise against the ring gear."""
@@ -319,7 +323,7 @@ class Equilibrium:
         if self.failed or not np.isfinite(norm):
             return PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN
         secure = 1.0 if self.border.kept is None or self.border.kept.fresh else SECURE
-        if ratio < HOLD and self.softness == 1.0:
+        if ratio < self.design.solver.rtol**HOLD and self.softness == 1.0:
             self.teeth.hold()
         if ratio <= (secure * self.design.solver.rtol if self.softness == 1.0 else SOFT_TOLERANCE):
             return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
@@ -334,6 +338,9 @@ class Equilibrium:
         if not self.step.careful and self.visited.returns(fingerprint(self.partition.comm, self._active_sets()), ratio):
             logger.info("   contacts of Newton iteration %d return without progress: careful line search", its)
             self.step.careful = True
+            if not self.teeth.frozen:
+                self.teeth.hold()  # for given segments no cycle survives the careful search
+                self.held_early = True
         return None
 
     def _active_sets(self) -> list[np.ndarray]:
@@ -351,12 +358,12 @@ class Equilibrium:
             unused = self.holding.unused(scene)
             self.x.array[-len(unused) :][unused] = 0.0
         self.search()
-        iterations, self.augmentations, searched = 0, 0, False
+        iterations, self.augmentations, searches = 0, 0, 0
         soften = list(SOFTENING) if soft else []
         tolerance = self.design.contact.penetration_tolerance * self.design.drive.module
         while True:
             self.history, self.stale, self.tried = [], False, None
-            self.visited, self.step.careful = VisitedSets(), False
+            self.visited, self.step.careful, self.held_early = VisitedSets(), False, False
             self.soften(soften.pop(0) if soften else 1.0)
             self.snes.solve(None, self.x)
             reason = self.snes.getConvergedReason()
@@ -364,19 +371,30 @@ class Equilibrium:
             ratio = self.history[-1] if self.history else np.inf
             if reason < 0 or iterations > 4 * self.design.solver.max_iterations:
                 self.border.renew()
-                return Solved(False, iterations, ratio, REASONS.get(reason, str(reason)))
+                text = REASONS.get(reason, str(reason)) if reason < 0 else f"{iterations} iterations in all"
+                return Solved(False, iterations, ratio, text)
             if reason == PETSc.SNES.ConvergedReason.CONVERGED_ITS:
                 self._pattern(np.union1d(self.keys, self.missing))
                 soften.insert(0, self.softness)
                 continue
             if self.softness != 1.0:
                 continue
-            if not searched and self._overlooked():
-                # the state searched at was too far off: the found one is close to the solution
-                self.search()
-                searched = True
+            if self.held_early:
+                self.teeth.release()
                 continue
-            if self.penetration() <= tolerance or self.augmentations >= self.design.contact.max_augmentations:
+            if self._overlooked():
+                # the state searched at was too far off: the found one is closer to the solution
+                if searches == SEARCHES:
+                    return Solved(False, iterations, ratio, f"contact outside of {SEARCHES + 1} searches")
+                self.search()
+                searches += 1
+                continue
+            penetration = self.penetration()
+            if penetration <= tolerance or self.augmentations >= self.design.contact.max_augmentations:
+                if penetration > tolerance and self.design.contact.max_augmentations:
+                    logger.warning(
+                        "   penetration of %.2g mm remains after %d augmentations", penetration, self.augmentations
+                    )
                 self.accept()
                 return Solved(True, iterations, ratio, "converged")
             self.augmentations += 1

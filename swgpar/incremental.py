@@ -226,9 +226,9 @@ class Runner:
             elif scene.control == "rotation" and scene.rotation != self.scene.rotation:
                 predict(self.model, x, 0.0, scene.rotation - self.scene.rotation)
             elif scene.name == "deflect" and self.scene.name == "deflect":
-                # the ring bends in proportion to the pins' travel
-                travel = start(self.design).pins
-                x.scale((travel - scene.pins) / (travel - self.scene.pins))
+                # the ring bends in proportion to the travel of the pins, or to the growth of the cam
+                first, old, new = (s.cam if s.pins is None else s.pins for s in (start(self.design), self.scene, scene))
+                x.scale((first - new) / (first - old))
             contacts = [value is not None for value in (scene.cam, scene.pins, scene.teeth)]
             before = [value is not None for value in (self.scene.cam, self.scene.pins, self.scene.teeth)]
             fresh = self.scene.step == 0 or any(new and not old for new, old in zip(contacts, before))
@@ -244,9 +244,8 @@ class Runner:
             if cuts > self.design.solver.max_cutbacks or origin == target:  # nothing to halve
                 raise ConvergenceError(
                     f"step {target.step} ({target.name}) did not converge at a wave-generator angle of "
-                    f"{np.degrees(scene.angle):.4g} degrees after {self.design.solver.max_cutbacks} cut-backs: "
-                    f"PETSc says {solved.reason}, residual {solved.residual:.1e} of the contact force; the last "
-                    "converged state is saved"
+                    f"{np.degrees(scene.angle):.4g} degrees after {cuts - 1} cut-backs: {solved.reason}, residual "
+                    f"{solved.residual:.1e} of the contact force"
                 )
             share *= 0.5
             logger.info(

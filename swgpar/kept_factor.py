@@ -1,6 +1,6 @@
 """A factor that serves later systems too: GMRES on the present one, preconditioned by the kept factor.
 
-In the cup drive one factorisation costs as much as some eighty solves with it, and from one Newton iteration to the
+In the cup drive one factorisation costs as much as some thirty solves with it, and from one Newton iteration to the
 next, or one increment to the next, the tangent changes by the rotation of the elements and by some contact points.
 """
 
@@ -21,7 +21,8 @@ PRICE, LONGEST = 30, 40
 """Iterations that cost as much as a factorisation, and those after which one is made at once.
 
 The factor is renewed when the iterations that it cost beyond those of its best solve have reached its price: whatever
-follows, this takes at most twice the time of the best choice.
+follows, this takes at most twice the time of the best choice (where a factorisation has that price: on the full mesh,
+25 s and 0.8 s on 2 ranks; on the medium one 20 iterations).
 """
 
 Operation = Callable[[PETSc.Vec, PETSc.Vec], None]

@@ -7,6 +7,7 @@ from petsc4py import PETSc
 
 from swgpar.assembly import create_vector
 from swgpar.kept_factor import KeptFactor
+from swgpar.log import logger
 from swgpar.partition import Partition
 
 MUMPS_DEFAULTS = {
@@ -14,6 +15,9 @@ MUMPS_DEFAULTS = {
     "mat_mumps_icntl_13": 1,  # no ScaLAPACK root: its Cholesky refuses the indefinite tangents of early iterations
     "mat_mumps_icntl_14": 60,  # per cent of memory above the estimate
 }
+
+MORE_MEMORY, OUT_OF_ESTIMATE = (120, 240, 480), (-8, -9)
+"""Per cent above MUMPS' estimate that are tried after these errors of its INFOG(1)."""
 
 GAMG_DEFAULTS = {
     "ksp_rtol": 1e-6,
@@ -138,7 +142,24 @@ class Bordered:
         self.ksp.setOperators(matrix)
         self.ksp.getPC().setReusePreconditioner(False)
         self.ksp.setUp()
+        if self.modes is None:
+            self._mend_factor(matrix)
         self.ksp.getPC().setReusePreconditioner(self.kept is not None)  # the matrix changes below a kept factor
+
+    def _mend_factor(self, matrix: PETSc.Mat) -> None:
+        """Factorise again with more memory where MUMPS ran out of what it had estimated (users' guide, section 8)."""
+        pc, options = self.ksp.getPC(), PETSc.Options(self.ksp.getOptionsPrefix())
+        for more in MORE_MEMORY:
+            if pc.getFactorMatrix().getMumpsInfog(1) not in OUT_OF_ESTIMATE:
+                break
+            logger.info("   MUMPS needs more memory than it had estimated: %d %% above it", more)
+            options["mat_mumps_icntl_14"] = more
+            pc.reset()
+            self.ksp.setOperators(matrix)
+            self.ksp.setUp()
+        error, detail = (pc.getFactorMatrix().getMumpsInfog(k) for k in (1, 2))
+        if error < 0:
+            logger.warning("   MUMPS cannot factorise: INFOG(1) = %d, INFOG(2) = %d", error, detail)
 
     def factorise(self) -> None:
         """Factor, or set up, for the present matrix, and solve for the borders."""

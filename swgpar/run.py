@@ -17,7 +17,7 @@ from petsc4py import PETSc
 
 import swgpar
 from swgpar import log
-from swgpar.accuracy import Chosen, choose, with_accuracy
+from swgpar.accuracy import MEASURE, Chosen, choose, relative_error, with_accuracy
 from swgpar.assembly import write_field
 from swgpar.contact import friction
 from swgpar.contact.pressure import nodal_pressure
@@ -31,17 +31,14 @@ from swgpar.meshing.recipe import to_toml
 from swgpar.multilevel import CoarserLevel, from_loaded, levels, start_loaded
 from swgpar.period import continued, of_period, sampling_error
 from swgpar.results import checkpoint, history
-from swgpar.results.atomic import agreed, to_json, write_from_root
+from swgpar.results.atomic import agreed, on_all, to_json, write_from_root
 from swgpar.results.fields import FieldWriter
-from swgpar.results.folder import prepare
+from swgpar.results.folder import RECIPE, prepare
 from swgpar.results.parallel_hdf5 import require_parallel
 from swgpar.steps import Scene, sequence
 
 FIRST_ROTATION = 4
 """Step number of the first rotation increment: means are taken from there on."""
-
-RECIPE = "recipe.toml"
-"""File of a results folder: the mesh recipe that was chosen for an accuracy."""
 
 MEANS = ("fs_s1", "fs_s3", "fs_vm", "rg_s1", "rg_s3", "rg_vm", "wg_torque_Nmm")
 """Columns of the history whose means over the rotation are taken."""
@@ -56,19 +53,20 @@ class RunSummary:
     summary: dict[str, Any]
 
 
-def fingerprint(design: DriveDesign, recipe: MeshRecipe) -> str:
-    """Identity of what is computed, for restarts: all but the output, the rotation and how systems are solved."""
+def identity(design: DriveDesign, recipe: MeshRecipe, accuracy: float | None) -> str:
+    """What is computed, for restarts: all but the output, the rotation and how systems are solved."""
     how = {"linear", "keep_factor", "far_teeth"}
     content = design.model_dump(exclude={"output": True, "steps": {"rotation"}, "solver": how})
-    return hashlib.sha256(to_json({"design": content, "recipe": recipe.model_dump()})).hexdigest()
+    content = {"design": content, "recipe": recipe.model_dump(), "accuracy": accuracy}
+    return hashlib.sha256(to_json(content)).hexdigest()
 
 
 class Recorder:
     """Keeps a run's results on disk, complete after every increment."""
 
-    def __init__(self, out: Path, model: DriveModel, recipe: MeshRecipe) -> None:
+    def __init__(self, out: Path, model: DriveModel, identity: str) -> None:
         self.out, self.model, self.comm = out, model, model.comm
-        self.identity = fingerprint(model.design, recipe)
+        self.identity = identity
         self.rows: list[dict[str, Any]] = []
         self.done = 0
         self.names: dict[str, dict[str, int]] = {}
@@ -156,8 +154,8 @@ class Recorder:
         _, state = checkpoint.read_checkpoint(path, self.comm)
         if state.get("identity") != self.identity:
             raise InputError(
-                f"--restart: {path} belongs to another design, recipe or solver setting; allowed are the same "
-                "ones, only steps.rotation, the output, solver.linear, keep_factor and far_teeth may differ"
+                f"--restart: {path} belongs to another design, recipe, --accuracy or solver setting; allowed are the "
+                "same ones, only steps.rotation, the output, solver.linear, keep_factor and far_teeth may differ"
             )
         last = Scene(**state["scene"])
         if state["coarser"]:
@@ -200,7 +198,12 @@ def mesh_error(rows: list[dict[str, Any]], elements: int, coarser: CoarserLevel,
 
 
 def summarise(
-    model: DriveModel, rows: list[dict[str, Any]], coarser: CoarserLevel | None, recipe_name: str, seconds: float
+    model: DriveModel,
+    rows: list[dict[str, Any]],
+    coarser: CoarserLevel | None,
+    recipe_name: str,
+    accuracy: float | None,
+    seconds: float,
 ) -> dict[str, Any]:
     """Content of summary.json.
 
@@ -214,6 +217,10 @@ def summarise(
     memory = comm.allgather(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0)
     elements = model.elements_whole()
     expected = 1000.0 * design.load.torque / abs(design.ratio)
+    reached = None
+    if accuracy is not None:
+        error = relative_error(coarser, rows[0][MEASURE], elements, model.partition.dims)
+        reached = {"asked": accuracy, "estimated": error, "reached": error <= accuracy}
     return {
         "recipe": recipe_name,
         "bodies": counts,
@@ -233,6 +240,7 @@ def summarise(
         "phases_s": {k: round(v, 3) for k, v in model.phases.slowest(comm).items()},
         "peak_memory_MB_per_rank": [round(m, 1) for m in memory],
         "means": means,
+        "accuracy": reached,
         "mesh_error": mesh_error(rows, elements, coarser, model.partition.dims) if coarser else None,
         "sampling_error": sampling_error(design, rows, MEANS) if design.steps.samples and means else None,
         "newton_iterations_mean": float(np.mean([r["newton_iterations"] for r in turning])) if turning else None,
@@ -266,24 +274,28 @@ def run_drive(
     out, begin = Path(out_dir), time.perf_counter()
     require_parallel(comm)
     require_sections(design, recipe)
+    if accuracy is not None:
+        design = with_accuracy(design, accuracy)
     resumed = prepare(out, comm, restart, overwrite)
     log.start(comm, terminal=on_increment is None)
     with agreed(comm, out / "run.log"):
         log.to_file(out / "run.log", comm)
     chosen = None
-    if accuracy is not None:
-        design = with_accuracy(design, accuracy)
-        if resumed:
-            recipe = load_recipe(out / RECIPE)
-        else:
-            chosen = choose(design, recipe, list(sequence(design)), accuracy, comm)
-            recipe = chosen.recipe
-            write_from_root(comm, out / RECIPE, to_toml(recipe).encode())
+    if accuracy is not None and not resumed:
+        chosen = choose(design, recipe, list(sequence(design)), accuracy, comm)
+        recipe = chosen.recipe
+    elif accuracy is not None:
+        recipe = on_all(comm, lambda: load_recipe(out / RECIPE))
     model = DriveModel(design, recipe, comm) if chosen is None else chosen.model
+    recorder = Recorder(out, model, identity(design, recipe, accuracy))
     try:
-        result = _compute(model, recipe, out, resumed, restart, begin, recipe_name, chosen, on_increment)
-    except SwgparError:
+        if chosen is not None:
+            write_from_root(comm, out / RECIPE, to_toml(recipe).encode())
+        result = _compute(model, recipe, recorder, resumed, restart, begin, recipe_name, accuracy, chosen, on_increment)
+    except SwgparError as error:
         model.destroy()  # collective: not after an error that perhaps this rank alone has met
+        if isinstance(error, ConvergenceError) and recorder.done:
+            raise ConvergenceError(f"{error}; {recorder.done} increments are saved in {out}") from None
         raise
     model.destroy()
     return result
@@ -305,16 +317,16 @@ def _start_on_coarser(runner: Runner, recipe: MeshRecipe, items: list[Scene]) ->
 def _compute(
     model: DriveModel,
     recipe: MeshRecipe,
-    out: Path,
+    recorder: Recorder,
     resumed: bool,
     restart: bool,
     begin: float,
     recipe_name: str,
+    accuracy: float | None,
     chosen: Chosen | None,
     on_increment: Callable[[], None] | None,
 ) -> RunSummary:
-    comm = model.comm
-    runner, recorder = Runner(model), Recorder(out, model, recipe)
+    comm, out, runner = model.comm, recorder.out, Runner(model)
     counts = model.counts()
     logger.info(
         "%d elements, %d nodes in the whole drive; %d unknowns modelled%s; %d ranks",
@@ -351,8 +363,8 @@ def _compute(
             progress.increment(item.name, float(np.degrees(item.angle)), runner.iterations, runner.residual, seconds)
             if on_increment is not None:
                 on_increment()
-    summary = summarise(model, recorder.rows, recorder.coarser, recipe_name, before + time.perf_counter() - begin)
-    rows = recorder.rows
+    rows, seconds = recorder.rows, before + time.perf_counter() - begin
+    summary = summarise(model, rows, recorder.coarser, recipe_name, accuracy, seconds)
     if model.design.steps.samples and summary["means"]:
         rows = continued(model.design, rows)
         write_from_root(comm, out / history.NAME, history.format_rows(rows))

@@ -1,10 +1,10 @@
 """What is active when: the sequence pins, engagement, torque, rotation (sections 3.4.5 and 3.5.5).
 
 1 the pins, the halves of the cam, push the flexible spline outward by d / 2 each (more for a cam that bulges beside
-its tips); 2 the wave generator grows into place while the pins are drawn back, and the teeth may touch; 3 the torque
-is applied, and the output turns until the teeth carry it; 4 ... the wave generator turns in increments. Without a
-torque a drive with backlash has no definite output angle: the output is then held at its kinematic angle, and the
-torque this takes is reported.
+its tips), or without `steps.pins` the cam grows out of the circle; 2 the wave generator grows into place while the pins
+are drawn back, and the teeth may touch; 3 the torque is applied, and the output turns until the teeth carry it; 4 ...
+the wave generator turns in increments. Without a torque a drive with backlash has no definite output angle: the output
+is then held at its kinematic angle, and the torque this takes is reported.
 """
 
 from __future__ import annotations
@@ -70,27 +70,31 @@ class Scene:
 
 
 def start(design: DriveDesign) -> Scene:
-    """Undeformed drive, pins touching the inner surface."""
-    return Scene(step=0, name="start", pins=pin_travel(make_cam(design), design.r_fs))
+    """Undeformed drive; pins, or the shrunk cam, touch the inner surface."""
+    travel = pin_travel(make_cam(design), design.r_fs)
+    return Scene(step=0, name="start", pins=travel) if design.steps.pins else Scene(step=0, name="start", cam=travel)
 
 
 def sequence(design: DriveDesign) -> Iterator[Scene]:
     """All increments of a run, in order."""
     d, steps, module = design.d, design.steps, design.drive.module
     torque = -np.copysign(1000.0 * design.load.torque, design.ratio)
-    travel = start(design).pins
+    origin = start(design)
     n = steps.deflect_increments
     for i in range(1, n + 1):
-        yield Scene(1, "deflect", pins=travel * (1.0 - i / n))
+        if steps.pins:
+            yield Scene(1, "deflect", pins=origin.pins * (1.0 - i / n))
+        else:
+            yield Scene(1, "deflect", cam=origin.cam * (1.0 - i / n))
     n = steps.engage_increments
     for i in range(1, n + 1):
         t = i / n
         yield Scene(
             2,
             "engage",
-            cam=CAM_START * module * (1.0 - t),
+            cam=CAM_START * module * (1.0 - t) if steps.pins else 0.0,
             teeth=TEETH_START * module * (1.0 - t),
-            pins=None if i == n else PINS_BACK * d * t,
+            pins=PINS_BACK * d * t if steps.pins and i < n else None,
         )
     loaded = Scene(3, "load", cam=0.0, teeth=0.0, control="torque" if torque else "rotation")
     if torque:

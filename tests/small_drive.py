@@ -39,7 +39,7 @@ def on_ranks(ranks: int) -> list[str]:
 
 
 def swgpar(*arguments: object) -> list[str]:
-    return [sys.executable, "-m", "swgpar.cli", *map(str, arguments)]
+    return [sys.executable, "-P", "-m", "swgpar.cli", *map(str, arguments)]
 
 
 def run_command(out: Path, *more: str, ranks: int = 1, overrides: Sequence[str] = SHORT) -> list[str]:

@@ -15,6 +15,7 @@ from pathlib import Path
 
 from accuracy_plots import plot
 from cases import Cases, Row
+from page import markdown, put
 
 FAMILIES = {
     "elements": "element_cases",
@@ -44,6 +45,38 @@ def write(rows: list[Row], tables: Path, family: str) -> None:
         print(f"written {path}")
 
 
+HEAD = (
+    "problem",
+    "choice",
+    "quantity",
+    "first within 1 %: unknowns",
+    "s",
+    "MB",
+    "finest: unknowns",
+    "error %",
+    "order",
+    "s",
+)
+
+
+def summary(rows: list[Row]) -> str:
+    """A row for every problem, choice and quantity: what one per cent costs, and the finest mesh."""
+    series: dict[tuple[str, ...], list[Row]] = {}
+    for row in rows:
+        series.setdefault(tuple(row[k] for k in ("problem", "choice", "quantity")), []).append(row)
+    lines = []
+    for names, found in series.items():
+        within = next((row for row in found if row["error"] <= 0.01), None)
+        cost = ["", "", ""]
+        if within is not None:
+            cost = [f"{within['unknowns']:,}", f"{within['seconds']:.2g}", f"{within['memory_MB']:.0f}"]
+        last = found[-1]
+        order = "" if last["rate"] is None else f"{last['rate']:.2f}"
+        finest = [f"{last['unknowns']:,}", f"{100 * last['error']:.2g}", order, f"{last['seconds']:.3g}"]
+        lines.append([*names, *cost, *finest])
+    return markdown([HEAD, *lines])
+
+
 def main() -> None:
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("--out", default="results/bench/accuracy", help="finished cases")
@@ -58,6 +91,7 @@ def main() -> None:
         cases = Cases(Path(arguments.out) / family, arguments.ranks, arguments.finest, show)
         importlib.import_module(FAMILIES[family]).compute(cases)
         write(cases.rows, tables, family)
+        put(tables / "accuracy.md", family, summary(cases.rows))
         cases.check()
 
 

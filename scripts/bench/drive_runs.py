@@ -24,7 +24,19 @@ def run(folder: Path, design: str, mesh: str | Path, overrides: list[str], ranks
     """
     if not (folder / "summary.json").exists():  # a run that ended before is begun anew
         shutil.rmtree(folder, ignore_errors=True)
-        command = ["mpirun", "-n", str(ranks), sys.executable, "-m", "swgpar.cli", "run", design, "--mesh", str(mesh)]
+        command = [
+            "mpirun",
+            "-n",
+            str(ranks),
+            sys.executable,
+            "-P",
+            "-m",
+            "swgpar.cli",
+            "run",
+            design,
+            "--mesh",
+            str(mesh),
+        ]
         subprocess.run(
             [*command, "--out", str(folder), "--set", *QUIET, *overrides], check=True, stdout=subprocess.DEVNULL
         )

@@ -19,12 +19,14 @@ OFF = {
     "solver.keep_factor": "false",
     "steps.start_levels": "0",
     "steps.samples": "0",
+    "steps.pins": "true",
 }
 ON = {
     "twofold symmetry": {"solver.twofold_symmetry": "true"},
     "far teeth left out": {"solver.far_teeth": "left_out"},
     "factor kept": {"solver.keep_factor": "true"},
     "start on a coarser mesh": {"steps.start_levels": "1"},
+    "no pins": {"steps.pins": "false"},
     "one period": {"steps.samples": "{samples}"},
 }
 MEANS = ("fs_s1", "fs_s3", "fs_vm", "rg_vm", "wg_torque_Nmm")
@@ -35,7 +37,7 @@ def run(arguments: argparse.Namespace, name: str, keys: dict[str, str]) -> dict[
     out = Path(arguments.out) / name.replace(" ", "_")
     shutil.rmtree(out, ignore_errors=True)
     overrides = [f"{k}={v.format(samples=arguments.samples)}" for k, v in {**OFF, **keys}.items()]
-    command = ["mpirun", "-n", str(arguments.ranks), sys.executable, "-m", "swgpar.cli", "run", arguments.design]
+    command = ["mpirun", "-n", str(arguments.ranks), sys.executable, "-P", "-m", "swgpar.cli", "run", arguments.design]
     command += [
         "--mesh",
         arguments.mesh,

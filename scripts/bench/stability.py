@@ -19,6 +19,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+from page import markdown, put
+
 from swgpar.results import history
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -52,7 +54,7 @@ def run_group(name: str, group: Group, out: Path, ranks: int, restart: bool) -> 
     folder.mkdir(parents=True, exist_ok=True)
     study, result = folder / "study.toml", folder / "results"
     study.write_text(study_text(name, group), encoding="utf-8")
-    command = [sys.executable, "-m", "swgpar.cli", "study", str(study), "--out", str(result)]
+    command = [sys.executable, "-P", "-m", "swgpar.cli", "study", str(study), "--out", str(result)]
     command.append("--restart" if restart else "--overwrite")
     with (folder / "log.txt").open("w") as log:
         subprocess.run([*on_ranks(ranks), *command], stdout=log, stderr=log, env=environment())
@@ -153,22 +155,15 @@ def line(cells: list[str]) -> str:
     return f"{cells[0]:40s}" + "".join(f"{cell:>11s}" for cell in cells[1:])
 
 
-BEGIN, END = "<!-- table -->", "<!-- end of table -->"
-
-
 def write_page(page: Path, rows: list[Row]) -> None:
     """Put the table of groups, and the cases that did not converge, between the page's marks."""
     names = list(dict.fromkeys(row["group"] for row in rows))
-    table = [HEADER, ["---"] * len(HEADER), *(counted(n, [r for r in rows if r["group"] == n]) for n in names)]
-    text = "\n".join("| " + " | ".join(cells) + " |" for cells in table) + "\n"
+    text = markdown([HEADER, *(counted(n, [r for r in rows if r["group"] == n]) for n in names)])
     others = [f"- {r['group']}, {r['case']}: {r['status']}: {r['reason']}" for r in rows if r["status"] != "converged"]
-    text += "\n" + "\n".join(others) + "\n" if others else ""
-    old = page.read_text(encoding="utf-8") if page.exists() else f"# Stability\n\n{BEGIN}\n{END}\n"
-    head, tail = old.partition(BEGIN)[0], old.partition(END)[2]
-    page.write_text(f"{head}{BEGIN}\n{text}{END}{tail}", encoding="utf-8")
+    put(page, "table", text + ("\n" + "\n".join(others) + "\n" if others else ""))
 
 
-def main() -> None:
+def main() -> int:
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--out", default="results/bench/stability")
     options.add_argument("--tables", default="docs/benchmarks")
@@ -202,7 +197,10 @@ def main() -> None:
             writer.writeheader()
             writer.writerows(rows)
         write_page(table.with_suffix(".md"), rows)
+    failed = sum(row["status"] == "failed" for row in rows)
+    print(f"{failed} of {len(rows)} cases failed; written {table} and {table.with_suffix('.md')}")
+    return 1 if failed else 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -321,6 +321,10 @@ class ToothContact:
         """Keep the segments of the last evaluation until the next search."""
         self.frozen = self.faces is not None
 
+    def release(self) -> None:
+        """Cut the faces anew in every evaluation again."""
+        self.frozen = False
+
     def augment(self) -> None:
         """Take the pressures of the last evaluation as multipliers; their points stay where they are from now on."""
         self.multiplier = self.pressure.copy()

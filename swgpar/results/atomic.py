@@ -8,15 +8,17 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.errors import OutputError
+from swgpar.errors import InputError, OutputError
+
+T = TypeVar("T")
 
 TEMPORARY = ".tmp"
 """Suffix of files being written; left-overs of a killed run are removed by the next one."""
@@ -32,6 +34,19 @@ def sentence(error: BaseException) -> str:
 def first_reason(comm: MPI.Comm, reason: str | None) -> str | None:
     """The reason of the first rank that has one, None where all went well; collective."""
     return next((r for r in comm.allgather(reason) if r is not None), None)
+
+
+def on_all(comm: MPI.Comm, read: Callable[[], T]) -> T:
+    """What `read` returns; raises InputError on all ranks when one cannot read it, so that none waits for another."""
+    value, reason = None, None
+    try:
+        value = read()
+    except InputError as error:
+        reason = str(error)
+    reason = first_reason(comm, reason)
+    if reason is not None:
+        raise InputError(reason)
+    return value
 
 
 @contextmanager

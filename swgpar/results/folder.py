@@ -11,6 +11,9 @@ from swgpar.results import checkpoint, history
 from swgpar.results.atomic import TEMPORARY, agreed, discard, write_file
 from swgpar.results.fields import FOLDER
 
+RECIPE = "recipe.toml"
+"""The mesh recipe that was chosen for an accuracy."""
+
 TABLES = "tables"
 """Folder of the tables that a gear train adds to its history."""
 
@@ -19,6 +22,7 @@ RESULTS = (
     checkpoint.NAME,
     "summary.json",
     "published.csv",
+    RECIPE,
     f"{TABLES}/*.csv",
     "fields.xdmf",
     "fields.h5",

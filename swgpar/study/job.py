@@ -19,7 +19,7 @@ from swgpar.log import logger
 from swgpar.report import make_figures
 from swgpar.results import history
 from swgpar.results.atomic import agreed, sentence, to_json, write_file, write_from_root
-from swgpar.run import fingerprint, run_drive
+from swgpar.run import identity, run_drive
 from swgpar.study.cases import Job
 
 STATUS = "status.json"
@@ -72,7 +72,7 @@ def run_job(
     try:
         if job.case.design is None:
             raise InputError(job.case.refusal)
-        record = {"identity": fingerprint(job.case.design, job.recipe), "rotation": job.case.design.steps.rotation}
+        record = {"identity": identity(job.case.design, job.recipe, None), "rotation": job.case.design.steps.rotation}
         old = comm.bcast(read_status(folder) if comm.rank == 0 else None)
         same = old.get("identity", record["identity"]) == record["identity"]
         if restart and old.get("status") == "finished":

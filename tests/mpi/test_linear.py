@@ -15,6 +15,7 @@ from swgpar.assembly import create_vector
 from swgpar.design import load_design
 from swgpar.incremental import DriveModel
 from swgpar.linear import Bordered
+from swgpar.log import logger
 from swgpar.meshing import load_recipe
 from swgpar.steps import Scene
 
@@ -56,6 +57,25 @@ def test_iterative_equals_direct(overrides: tuple[str, ...]) -> None:
     solutions[1].axpy(-1.0, solutions[0])
     # GMRES stops at a residual of 1e-6; the condition number is about 1e8, the right side excites stiff modes too
     assert size > 0.0 and solutions[1].norm() < 1e-4 * size
+
+
+@pytest.mark.parametrize(("option", "value", "word"), [("14", -99, "more memory"), ("23", 1, "cannot factorise")])
+def test_mumps_out_of_memory(option: str, value: int, word: str, monkeypatch) -> None:
+    """An estimate that is too small is raised; what is forbidden gives a step that is not finite, and is named."""
+    model, right = system(PLANE, "rotation")
+    equilibrium, partition = model.equilibrium, model.partition
+    PETSc.Options()[f"short_{option}_mat_mumps_icntl_{option}"] = value
+    border = Bordered(partition, "direct", equilibrium.positions()[: partition.n_own], f"short_{option}_")
+    solved, pc = equilibrium.border, equilibrium.snes.getKSP().getPC()
+    border.set_system(equilibrium.matrix, equilibrium.holding.ground_vectors, solved.border, solved.rows)
+    x = create_vector(partition)
+    said: list[str] = []
+    for level in ("info", "warning"):
+        monkeypatch.setattr(logger, level, lambda text, *values: said.append(text % values))
+    border.setUp(pc)
+    border.apply(pc, right, x)
+    assert np.isfinite(x.norm()) == (option == "14")
+    assert len(said) == 1 and word in said[0]
 
 
 @pytest.mark.parametrize("overrides", [(), ("drive.layout=spline_fixed",), PLANE])

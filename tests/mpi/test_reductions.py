@@ -10,6 +10,7 @@ import pytest
 from mpi4py import MPI
 from small_drive import PLANE
 
+import swgpar.equilibrium
 from swgpar.design import load_design
 from swgpar.incremental import DriveModel, Runner, stresses
 from swgpar.kept_factor import LONGEST, PRICE
@@ -56,6 +57,33 @@ def test_a_kept_factor_changes_nothing(plain: dict[str, float]) -> None:
     counts = runner.equilibrium.border.kept.iterations
     print(f"GMRES iterations {counts}")
     assert np.mean(np.array(counts) < LONGEST) > 0.8 and np.median(counts) < PRICE
+    assert_same(row, plain, 1e-6)
+
+
+def test_a_factor_renewed_at_once_changes_nothing(plain: dict[str, float], monkeypatch) -> None:
+    monkeypatch.setattr("swgpar.kept_factor.PRICE", 2)
+    _, row = rotated("solver.far_teeth=modelled")
+    assert_same(row, plain, 1e-6)
+
+
+@pytest.mark.parametrize("overrides", [(), PLANE])
+def test_a_start_without_pins_changes_nothing(overrides: tuple[str, ...]) -> None:
+    _, pinned = rotated(*PLAIN, *overrides)
+    _, row = rotated(*PLAIN, *overrides, "steps.pins=false")
+    assert_same(row, pinned, 1e-6)
+
+
+def test_search_over_candidate_teeth_only(plain: dict[str, float], monkeypatch) -> None:
+    """Flanks as far as five modules apart instead of those that can meet."""
+    margin = swgpar.equilibrium.TIP_MARGIN
+    monkeypatch.setattr("swgpar.equilibrium.TIP_MARGIN", 5.0)
+    runner, row = rotated(*PLAIN)
+    wide = len(runner.equilibrium.teeth.pairs)
+    monkeypatch.setattr("swgpar.equilibrium.TIP_MARGIN", margin)
+    runner.equilibrium.search()
+    near = len(runner.equilibrium.teeth.pairs)
+    print(f"{near} of {wide} pairs of flanks")
+    assert near < wide
     assert_same(row, plain, 1e-6)
 
 

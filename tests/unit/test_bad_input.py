@@ -90,9 +90,10 @@ def test_one_sentence_with_key_and_reason(override: str, key: str, reason: str) 
     assert caught.value.exit_code == 2
 
 
-def test_friction_needs_the_direct_solver() -> None:
+@pytest.mark.parametrize("design", [REFERENCE, REFERENCE.with_name("plane_half_turn.toml")], ids=["cup", "plane"])
+def test_friction_needs_the_direct_solver(design: Path) -> None:
     with pytest.raises(InputError, match='solver.linear = "iterative" .* contact.friction = 0.1: allowed "direct"'):
-        load_design(REFERENCE, ["contact.friction=0.1", 'solver.linear="iterative"'])
+        load_design(design, ["contact.friction=0.1", 'solver.linear="iterative"'])
 
 
 @pytest.mark.parametrize("key", ["wg_crowning", "wg_slope", "fs_crowning"])
@@ -142,7 +143,7 @@ def test_unreadable_files(tmp_path: Path) -> None:
 
 
 def test_exit_code_and_no_traceback() -> None:
-    command = [sys.executable, "-m", "swgpar.cli", "check", str(REFERENCE), "--set", "load.torque=-3"]
+    command = [sys.executable, "-P", "-m", "swgpar.cli", "check", str(REFERENCE), "--set", "load.torque=-3"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, cwd=REFERENCE.parent)
     assert done.returncode == 2
     assert "load.torque = -3" in done.stderr and "Traceback" not in done.stderr

@@ -1,0 +1,22 @@
+"""Tables of a benchmark in the middle of a page that people write."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+
+def markdown(rows: Iterable[Sequence[str]]) -> str:
+    """Rows of cells, the first of which is the head."""
+    first, *others = rows
+    return "\n".join("| " + " | ".join(cells) + " |" for cells in [first, ["---"] * len(first), *others]) + "\n"
+
+
+def put(page: Path, name: str, text: str) -> None:
+    """Put `text` between the marks `<!-- name -->` and `<!-- end of name -->`, at the end where there are none."""
+    begin, end = f"<!-- {name} -->", f"<!-- end of {name} -->"
+    old = page.read_text(encoding="utf-8") if page.exists() else ""
+    if begin not in old:
+        old += f"\n{begin}\n{end}\n"
+    head, tail = old.partition(begin)[0], old.partition(end)[2]
+    page.write_text(f"{head}{begin}\n{text}{end}{tail}", encoding="utf-8")
