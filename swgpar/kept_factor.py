@@ -1,7 +1,8 @@
 """A factor that serves later systems too: GMRES on the present one, preconditioned by the kept factor.
 
-In the cup drive one factorisation costs as much as some thirty solves with it, and from one Newton iteration to the
-next, or one increment to the next, the tangent changes by the rotation of the elements and by some contact points.
+In the cup drive one factorisation costs as much as 5 (mesh/coarse.toml) to 30 (mesh/full.toml) solves with it, and from
+one Newton iteration to the next, or one increment to the next, the tangent changes by the rotation of the elements and
+by some contact points.
 """
 
 from __future__ import annotations
@@ -17,13 +18,21 @@ where a step need not be exact."""
 FORCING = 0.5
 """Share of the square of the residual's last decrease that GMRES leaves (Eisenstat and Walker, 1996, choice 2)."""
 
-PRICE, LONGEST = 30, 40
-"""Iterations that cost as much as a factorisation, and those after which one is made at once.
+LONGEST = 40
+"""Iterations of GMRES after which a factor is made at once."""
 
-The factor is renewed when the iterations that it cost beyond those of its best solve have reached its price: whatever
-follows, this takes at most twice the time of the best choice (where a factorisation has that price: on the full mesh,
-25 s and 0.8 s on 2 ranks; on the medium one 20 iterations).
-"""
+INTENSITY = 40.0
+"""Operations on an entry of the factor, of a factorisation that takes as long as a solve with it: 23 to 45 on meshes of
+60,000 to 920,000 unknowns (docs/benchmarks/scaling.csv), the most on large ones."""
+
+
+def price(operations: float, entries: float) -> float:
+    """Solves that take as long as a factorisation, from its counts of floating-point operations and of entries.
+
+    A count, and no clock: a run takes the same way every time.
+    """
+    return operations / (INTENSITY * entries)
+
 
 Operation = Callable[[PETSc.Vec, PETSc.Vec], None]
 """Computes its second argument from the first."""
@@ -45,7 +54,7 @@ class KeptFactor:
         self.fresh, self.stale = False, True
         self.layout: tuple[int, ...] = ()
         self.iterations: list[int] = []
-        self.norm, self.least, self.lost = 0.0, LONGEST, 0
+        self.norm, self.price, self.least, self.lost = 0.0, 0.0, LONGEST, 0
         operator = PETSc.Mat().createPython([like.getSizes()] * 2, _Multiply(multiply), comm=like.comm)
         operator.setUp()
         self.ksp = PETSc.KSP().create(comm=like.comm)
@@ -63,9 +72,12 @@ class KeptFactor:
         """Release GMRES, which refers to the system; collective."""
         self.ksp.destroy()
 
-    def renewed(self, layout: tuple[int, ...]) -> None:
-        """The factor is that of the present system now. layout : what a system must share to be served"""
-        self.fresh, self.stale, self.layout = True, False, layout
+    def renewed(self, layout: tuple[int, ...], price: float) -> None:
+        """The factor is that of the present system now.
+
+        layout : what a system must share to be served;  price : of the factor, in iterations
+        """
+        self.fresh, self.stale, self.layout, self.price = True, False, layout, price
         self.least, self.lost = LONGEST, 0
 
     def serves(self, layout: tuple[int, ...]) -> bool:
@@ -80,13 +92,17 @@ class KeptFactor:
         self.ksp.setTolerances(rtol=min(max(forcing, RTOL), LOOSEST), max_it=LONGEST)
 
     def solve(self, right: PETSc.Vec, x: PETSc.Vec) -> bool:
-        """Solve the present system as exactly as its place in Newton's iteration asks; whether GMRES converged."""
+        """Solve the present system as exactly as its place in Newton's iteration asks; whether GMRES converged.
+
+        The factor is renewed when the iterations beyond those of its best solve have cost its price, which takes at
+        most twice the time of the best choice, or when one solve has cost more than that.
+        """
         self.ksp.solve(right, x)
         count = self.ksp.getIterationNumber()
         self.iterations.append(count)
         self.least = min(self.least, count)
         self.lost += count - self.least
-        self.stale = self.lost >= PRICE
+        self.stale = max(self.lost, count) > self.price
         return self.ksp.getConvergedReason() > 0
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from petsc4py import PETSc
 
 from swgpar.assembly import create_vector
-from swgpar.kept_factor import KeptFactor
+from swgpar.kept_factor import KeptFactor, price
 from swgpar.log import logger
 from swgpar.partition import Partition
 
@@ -161,6 +161,12 @@ class Bordered:
         if error < 0:
             logger.warning("   MUMPS cannot factorise: INFOG(1) = %d, INFOG(2) = %d", error, detail)
 
+    def _price(self) -> float:
+        """Solves that take as long as the factorisation."""
+        factor = self.ksp.getPC().getFactorMatrix()
+        entries = factor.getMumpsInfog(29)  # in millions where it is negative
+        return price(factor.getMumpsRinfog(3), entries if entries > 0 else -1e6 * entries)
+
     def factorise(self) -> None:
         """Factor, or set up, for the present matrix, and solve for the borders."""
         self.prepare()
@@ -177,7 +183,7 @@ class Bordered:
         system[nb:, nb:] = -small[nb:, nb:]
         self.system = system
         if self.kept is not None:
-            self.kept.renewed(self._layout())
+            self.kept.renewed(self._layout(), self._price())
 
     def _solve_sides(self, sides: list[PETSc.Vec]) -> None:
         """Columns Z, the solutions for the borders."""

@@ -17,7 +17,7 @@ from petsc4py import PETSc
 
 import swgpar
 from swgpar import log
-from swgpar.accuracy import MEASURE, Chosen, choose, relative_error, with_accuracy
+from swgpar.accuracy import Chosen, choose, with_accuracy
 from swgpar.assembly import write_field
 from swgpar.contact import friction
 from swgpar.contact.pressure import nodal_pressure
@@ -42,6 +42,15 @@ FIRST_ROTATION = 4
 
 MEANS = ("fs_s1", "fs_s3", "fs_vm", "rg_s1", "rg_s3", "rg_vm", "wg_torque_Nmm")
 """Columns of the history whose means over the rotation are taken."""
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """Of the largest tensile stress under load, relative: asked for, estimated, and whether that suffices."""
+
+    asked: float
+    estimated: float
+    reached: bool
 
 
 @dataclass(frozen=True)
@@ -71,6 +80,7 @@ class Recorder:
         self.done = 0
         self.names: dict[str, dict[str, int]] = {}
         self.coarser: CoarserLevel | None = None
+        self.accuracy: Accuracy | None = None
         self.writer = FieldWriter(out, self.comm) if model.design.output.fields else None
 
     def mesh(self) -> None:
@@ -131,6 +141,7 @@ class Recorder:
                 "wall_s": elapsed,
                 "phases_s": model.phases.slowest(self.comm),
                 "coarser": self.coarser and asdict(self.coarser),
+                "accuracy": self.accuracy and asdict(self.accuracy),
             }
             checkpoint.write_checkpoint(self.out, self.comm, blocks, state)
 
@@ -179,6 +190,7 @@ class Recorder:
             model.equilibrium.resume(friction.from_rows(rows))
         self.rows, self.done, self.names = state["rows"], state["done"], state["names"]
         self.coarser = state["coarser"] and CoarserLevel(**state["coarser"])
+        self.accuracy = state["accuracy"] and Accuracy(**state["accuracy"])
         runner.scene = last
         for name, value in state["phases_s"].items():
             model.phases.seconds[name] += value
@@ -202,12 +214,13 @@ def summarise(
     rows: list[dict[str, Any]],
     coarser: CoarserLevel | None,
     recipe_name: str,
-    accuracy: float | None,
+    accuracy: Accuracy | None,
     seconds: float,
 ) -> dict[str, Any]:
     """Content of summary.json.
 
     rows : of the increments that were computed;  coarser : level that the run started from
+    accuracy : what was asked for and reached
     """
     comm, design = model.comm, model.design
     turning = [r for r in rows if int(r["step"]) >= FIRST_ROTATION]
@@ -217,10 +230,6 @@ def summarise(
     memory = comm.allgather(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0)
     elements = model.elements_whole()
     expected = 1000.0 * design.load.torque / abs(design.ratio)
-    reached = None
-    if accuracy is not None:
-        error = relative_error(coarser, rows[0][MEASURE], elements, model.partition.dims)
-        reached = {"asked": accuracy, "estimated": error, "reached": error <= accuracy}
     return {
         "recipe": recipe_name,
         "bodies": counts,
@@ -240,7 +249,7 @@ def summarise(
         "phases_s": {k: round(v, 3) for k, v in model.phases.slowest(comm).items()},
         "peak_memory_MB_per_rank": [round(m, 1) for m in memory],
         "means": means,
-        "accuracy": reached,
+        "accuracy": None if accuracy is None else asdict(accuracy),
         "mesh_error": mesh_error(rows, elements, coarser, model.partition.dims) if coarser else None,
         "sampling_error": sampling_error(design, rows, MEANS) if design.steps.samples and means else None,
         "newton_iterations_mean": float(np.mean([r["newton_iterations"] for r in turning])) if turning else None,
@@ -345,6 +354,7 @@ def _compute(
         logger.info("no increment was saved: starting from the beginning")
     if chosen is not None:
         recorder.coarser = chosen.below
+        recorder.accuracy = Accuracy(accuracy, chosen.error, chosen.error <= accuracy)
         runner.take(from_loaded(items)[0])
     elif not resumed:
         recorder.coarser = _start_on_coarser(runner, recipe, items)
@@ -364,7 +374,7 @@ def _compute(
             if on_increment is not None:
                 on_increment()
     rows, seconds = recorder.rows, before + time.perf_counter() - begin
-    summary = summarise(model, rows, recorder.coarser, recipe_name, accuracy, seconds)
+    summary = summarise(model, rows, recorder.coarser, recipe_name, recorder.accuracy, seconds)
     if model.design.steps.samples and summary["means"]:
         rows = continued(model.design, rows)
         write_from_root(comm, out / history.NAME, history.format_rows(rows))

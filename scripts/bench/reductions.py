@@ -13,6 +13,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from page import markdown, put
+
 OFF = {
     "solver.twofold_symmetry": "false",
     "solver.far_teeth": "modelled",
@@ -57,6 +59,15 @@ def run(arguments: argparse.Namespace, name: str, keys: dict[str, str]) -> dict[
     return {**row, **{k: summary["means"][k] for k in MEANS}}
 
 
+HEAD = ("reduction", "s", "times faster", "increments", "Newton", "MB a rank", "s1", "s3", "vm", "ring vm", "torque")
+
+
+def cells(row: dict[str, float | str]) -> list[str]:
+    """The row of the page's table; from `s1` on the changes of the means."""
+    numbers = [f"{row[k]}" for k in ("reduction", "seconds", "speedup", "increments", "newton_mean", "memory_MB")]
+    return [*numbers, *(f"{row[f'change_{mean}']}" for mean in MEANS)]
+
+
 def main() -> None:
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--design", default="drivers/cup_45deg.toml")
@@ -85,6 +96,7 @@ def main() -> None:
             writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
             writer.writeheader()
             writer.writerows(rows)
+        put(table.with_name("reductions.md"), table.stem, markdown([HEAD, *map(cells, rows)]))
 
 
 if __name__ == "__main__":

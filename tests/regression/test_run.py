@@ -10,7 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import pyvista
+from mpi4py import MPI
 from small_drive import (
+    DATA,
     DESIGN,
     PLANE,
     RECIPE,
@@ -23,8 +25,12 @@ from small_drive import (
     succeed,
 )
 
+from swgpar.accuracy import refined
+from swgpar.design import load_design
 from swgpar.meshing import load_recipe
+from swgpar.multilevel import level_of, load
 from swgpar.results import history
+from swgpar.steps import sequence
 
 CUP_ROTATION = Path(__file__).parents[2] / "drivers" / "cup_rotation.py"
 
@@ -148,17 +154,30 @@ def test_start_on_a_coarser_mesh_and_one_period(tmp_path: Path) -> None:
 def test_an_accuracy_is_reached_by_refinement(tmp_path: Path) -> None:
     """The estimate of the mesh that the run ends with is below what was asked for; a restart keeps that mesh."""
     out = tmp_path / "run"
-    asked, pitch = 0.03, 360.0 / 42.0
-    command = run_command(out, "--accuracy", str(asked), overrides=[*PLANE, "steps.rotation=9"])
+    asked, pitch = 0.1, 360.0 / 42.0
+    first = DATA.parent.parent / "mesh" / "plane_coarse.toml"
+    more = ("--mesh", str(first), "--accuracy", str(asked))
+    command = run_command(out, *more, overrides=[*PLANE, "steps.rotation=9"])
     succeed(command)
     summary = json.loads((out / "summary.json").read_text())
     recipe = load_recipe(out / "recipe.toml")
     print(f"{summary['elements']} elements, {summary['mesh_error']}")
-    assert recipe.flexible_spline.flank > load_recipe(RECIPE).flexible_spline.flank
+    assert recipe.flexible_spline.flank > load_recipe(first).flexible_spline.flank
     rows = history.read_history(out / "history.csv")
+    assert summary["accuracy"]["asked"] == asked and summary["accuracy"]["reached"]
     assert summary["mesh_error"]["fs_s1"] < asked / (1.0 - asked) * rows[0]["fs_s1"]
+    # and so is the distance from a mesh with twice the elements in both directions, and a good half of the error
+    design = load_design(DESIGN, [*PLANE, "steps.rotation=9", "solver.rtol=1e-5"])
+    finer = load(design, refined(recipe, 2.0), list(sequence(design)), MPI.COMM_SELF)
+    reference = level_of(finer).stresses["fs_s1"]
+    finer.destroy()
+    print(f"s1 {rows[0]['fs_s1']:.2f} MPa, {reference:.2f} on the reference mesh")
+    assert abs(rows[0]["fs_s1"] / reference - 1.0) < 0.6 * asked
     assert set(summary["sampling_error"]) == set(summary["means"])
-    succeed([word.replace("rotation=9", f"rotation={2.1 * pitch}") for word in command] + ["--restart"])
+    restart = [word.replace("rotation=9", f"rotation={2.1 * pitch}") for word in command] + ["--restart"]
+    other = execute([word.replace(str(asked), "0.15") for word in restart])
+    assert other.returncode == 2 and "belongs to another design, recipe, --accuracy" in other.stderr
+    succeed(restart)
     longer = json.loads((out / "summary.json").read_text())
     assert longer["elements"] == summary["elements"] and longer["means"] == summary["means"]
     assert len(history.read_history(out / "history.csv")) > len(rows)

@@ -7,11 +7,12 @@ from pathlib import Path
 import pytest
 from small_drive import DATA, PLANE
 
-from swgpar.accuracy import RTOL, refined, with_accuracy
+from swgpar.accuracy import RTOL, refined, relative_error, with_accuracy
 from swgpar.design import load_design
 from swgpar.errors import InputError
 from swgpar.meshing import load_recipe
 from swgpar.meshing.recipe import to_toml
+from swgpar.multilevel import CoarserLevel
 
 
 def test_every_count_is_refined_and_no_grading() -> None:
@@ -46,3 +47,21 @@ def test_accuracies_that_cannot_be_had() -> None:
             with_accuracy(design, accuracy)
     with pytest.raises(InputError, match="--accuracy needs contact.friction = 0, not 0.1"):
         with_accuracy(load_design(DATA / "small.toml", [*PLANE, "contact.friction=0.1"]), 0.01)
+
+
+def level(elements: int, stress: float) -> CoarserLevel:
+    return CoarserLevel(elements, {"fs_s1": stress})
+
+
+@pytest.mark.parametrize("dimensions", [2, 3])
+def test_error_of_a_stress_of_the_first_order(dimensions: int) -> None:
+    levels = [level(n, 300.0 - 700.0 * n ** (-1.0 / dimensions)) for n in (1000, 3375, 27000)]
+    assert relative_error(levels, dimensions) == pytest.approx(1.0 - levels[-1].stresses["fs_s1"] / 300.0)
+    assert relative_error(levels[:1], dimensions) == 1.0
+
+
+def test_a_difference_that_is_small_by_chance_is_no_convergence() -> None:
+    """The larger one of the last two slopes counts, and meshes that are not finer than the one before say nothing."""
+    chance = [level(100, 280.0), level(400, 260.0), level(1600, 260.1)]
+    assert relative_error(chance, 2) == pytest.approx(10.0 / 270.1)
+    assert relative_error([*chance, level(1600, 260.1)], 2) == 1.0
