@@ -11,7 +11,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from swgpar.meshing import load_recipe
+from swgpar import accuracy
+from swgpar.meshing import MeshRecipe, load_recipe
+from swgpar.meshing.recipe import to_toml
 
 QUIET = ("output.figures=false", "output.fields=false")
 
@@ -55,13 +57,13 @@ def run(folder: Path, design: str, mesh: str | Path, overrides: list[str], ranks
 
 def refined(mesh: str, path: Path, factor: int, keys: Sequence[str] = ()) -> Path:
     """Write a recipe with `factor` times as many elements: by the given keys (section.key), or in every direction."""
-    recipe = load_recipe(mesh).model_dump(exclude_none=True)
-    lines = []
-    for section, content in recipe.items():
-        lines.append(f"[{section}]")
-        for key, value in content.items():
-            more = isinstance(value, int) and (not keys or f"{section}.{key}" in keys)
-            lines.append(f"{key} = {factor * value if more else value}")
+    recipe = load_recipe(mesh)
+    finer = accuracy.refined(recipe, factor)
+    if keys:
+        content = recipe.model_dump(exclude_none=True)
+        for section, name in (key.split(".") for key in keys):
+            content[section][name] = getattr(getattr(finer, section), name)
+        finer = MeshRecipe.model_validate(content)
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    path.write_text(to_toml(finer), encoding="utf-8")
     return path
