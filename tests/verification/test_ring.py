@@ -104,10 +104,10 @@ def test_supported_ring() -> None:
     assert 2.0 * np.pi * found * unit == pytest.approx(design.published["dimensionless"], rel=0.01)
     rate, _ = ring.modes()
     assert [(np.abs(rate / (2.0 * np.pi * f) - 1.0) < 1e-6).sum() for f in found] == [2, 1, 2]
-    # the whole ring turns freely, but for round-off of the stiff springs; ten times as stiff ones change nothing
+    # the whole ring turns freely, but for round-off of the stiff springs; softer ones change nothing
     assert rate[0] < 0.01 * rate[1]
-    stiffer, _ = distinct_frequencies(changed(design, "supports", radial=1e13), 3)
-    assert stiffer == pytest.approx(found, rel=1e-5)
+    softer, _ = distinct_frequencies(changed(design, "supports", radial=1e9), 3)
+    assert softer == pytest.approx(found, rel=1e-5)
 
 
 def test_supported_ring_of_the_source() -> None:
