@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import itertools
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from swgpar.errors import ConvergenceError
 from swgpar.gear_trains.backlash import force
 from swgpar.gear_trains.planetary.design import PlanetaryDesign
 from swgpar.gear_trains.planetary.linearised import Moments, linearised
@@ -20,6 +22,7 @@ from swgpar.gear_trains.planetary.watched import NAMES, watched
 from swgpar.gear_trains.planetary.wind import Wind
 from swgpar.gear_trains.sampling import generator
 from swgpar.gear_trains.train import load_train
+from swgpar.kernel import TrainKernel
 
 DRIVER = Path(__file__).parents[2] / "drivers" / "planetary.toml"
 
@@ -101,11 +104,11 @@ def test_modes_hold_the_matrices(small: PlanetaryDesign) -> None:
 def states_of(train: Train, h: float, q: np.ndarray, v: np.ndarray, steps: Steps, forces: np.ndarray) -> States:
     modal = np.linalg.solve(train.shapes, np.column_stack([q, v]))
     y = 2.0 / h * modal[:, :1] + modal[:, 1:]
-    return States(modal[:, :1], y, steps.push(0, modal[:, :1], y, forces[:, None]))
+    return States(modal[:, :1].copy(), y, steps.push(0, modal[:, :1], y, forces[:, None]))
 
 
 def test_a_step_is_the_trapezoidal_rule(small: PlanetaryDesign) -> None:
-    """Against the whole matrices of all parts, meshes without backlash, from a random state."""
+    """Against the whole matrices of all parts, meshes without backlash, from a random state; linear and simulated."""
     design = changed(small, "mesh", half_backlash=0.0)
     train, h = Train(design), 2e-3
     steps, random = Steps(train, h, 1), np.random.default_rng(0)
@@ -118,15 +121,40 @@ def test_a_step_is_the_trapezoidal_rule(small: PlanetaryDesign) -> None:
     right = train.mass @ v - 0.5 * h * (c0 @ v + k0 @ q + k1 @ (q + 0.5 * h * v)) + h * push
     v1 = np.linalg.solve(left, right)
     q1 = q + 0.5 * h * (v + v1)
-    states = states_of(train, h, q, v, steps, steps.stiffness[0] * (w0 @ q))
-    trial = steps.trial(1, states, np.array([2.0 * torque]))
-    ways = steps.linear(1, steps.stiffness[1], trial.ways)
-    steps.finish(1, states, trial, ways, steps.stiffness[1][:, None] * ways)
+    for backlash in (False, True):
+        states = states_of(train, h, q, v, steps, steps.stiffness[0] * (w0 @ q))
+        torques = np.array([2.0 * torque])
+        if backlash:
+            # one state of many, that do not fill the kernel's lanes; all on the wrong flank at first
+            states = States(*(np.repeat(part, 19, axis=1) for part in (states.q, states.y, states.push)))
+            sides = -np.sign(w1 @ q1)
+            assert steps.simulate(0, states, np.repeat(torques[None], 19, axis=1), sides) == 19
+            assert (states.q == states.q[:, :1]).all()
+        else:
+            steps.linear(1, states, torques, steps.stiffness[1])
+        moved = train.shapes @ states.q[:, 0]
+        velocities = train.shapes @ (states.y - 2.0 / h * states.q)[:, 0]
+        np.testing.assert_allclose(moved, q1, atol=1e-8 * np.abs(q1).max())
+        np.testing.assert_allclose(velocities, v1, atol=1e-6 * np.abs(v1).max())
+    # forces that are given, as those of the linearised mean are
+    states, forces = states_of(train, h, q, v, steps, steps.stiffness[0] * (w0 @ q)), steps.stiffness[1] * (w1 @ q1)
+    free = steps.free_ways(1, states, torques)[:, 0]
+    np.testing.assert_allclose(
+        steps.damped[1] @ (w1 @ q1) + steps.give[1] @ forces, free, atol=1e-8 * np.abs(free).max()
+    )
+    steps.linear(1, states, torques, np.zeros_like(forces), forces)
     np.testing.assert_allclose(train.shapes @ states.q[:, 0], q1, atol=1e-8 * np.abs(q1).max())
-    np.testing.assert_allclose(train.shapes @ (states.y - 2.0 / h * states.q)[:, 0], v1, atol=1e-6 * np.abs(v1).max())
-    sides = np.sign(trial.ways[:, 0])
-    again, _ = steps.with_backlash(1, sides, trial.ways)
-    np.testing.assert_allclose(again, ways, atol=1e-9 * np.abs(ways).max())
+
+
+def test_a_step_that_does_not_converge() -> None:
+    """One mode and one mesh that pulls where it should push: d = 1.5 in contact asks for 0.5, in the gap, and back."""
+    one, zero = np.ones(1), np.zeros(1)
+    kernel = TrainKernel(1e-3, 1.0, one, zero, zero, zero, np.ones((2, 1, 1)), np.full((2, 1, 1), -2.0), zero)
+    train = SimpleNamespace(half=1.0)
+    steps = SimpleNamespace(h=1e-3, kernel=kernel, train=train, stiffness=np.ones((2, 1)), touching=np.ones((2, 1, 1)))
+    states = States(np.full((1, 1), 1.5), np.zeros((1, 1)), np.zeros((1, 1)))
+    with pytest.raises(ConvergenceError, match=r"did not converge at 0\.001 s"):
+        Steps.simulate(steps, 0, states, np.zeros((1, 1)), -one)
 
 
 def test_load_reversal(small: PlanetaryDesign) -> None:
@@ -163,11 +191,8 @@ def test_load_reversal(small: PlanetaryDesign) -> None:
         states, sides = steps.at_rest(torque)
         lost = 0
         for step in range(1, count + 1):
-            torques = np.array([load((step - 1) * h) + load(step * h)])
-            trial = steps.trial(step, states, torques)
-            ways, apart = steps.with_backlash(step, sides, trial.ways)
-            lost += apart
-            steps.finish(step, states, trial, ways, force(steps.stiffness[step][:, None], ways, train.half))
+            torques = np.array([[load((step - 1) * h) + load(step * h)]])
+            lost += steps.simulate(step - 1, states, torques, sides)
         values = watched(train, steps, count)
         off.append(np.abs(values @ states.q[:, 0] / (values @ expected) - 1.0).max())
     assert lost > count / 4

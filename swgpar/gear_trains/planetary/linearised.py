@@ -23,15 +23,19 @@ TOLERANCE, MAX_ITERATIONS = 1e-6, 50
 
 @dataclass(frozen=True)
 class Moments:
-    """mean, deviation : (rows, watched);  force : (rows, 2) mean forces of the watched meshes, N
+    """mean, deviation : (rows, watched);  force, square : (rows, 2) mean forces of the watched meshes and the mean
+    squares of their deviations from them, N and N²
 
-    least : smallest eigenvalue of the covariance at the end over its largest
+    least, skew : over all rows, the smallest eigenvalue of the matrix of correlations of all 2 n + 2 unknowns over its
+    largest, and its largest difference from its transpose, before the covariance is made symmetric
     """
 
     mean: np.ndarray
     deviation: np.ndarray
     force: np.ndarray
+    square: np.ndarray
     least: float
+    skew: float
 
 
 class _Linear:
@@ -46,19 +50,17 @@ class _Linear:
         q, y, turbulence = columns[:n], columns[n : 2 * n], columns[2 * n :]
         push = steps.push(step - 1, q, y, before[:, None] * (steps.ways[step - 1] @ q))
         moved = wind.moved @ turbulence
-        return self._end(step, States(q, y, push), wind.turbulent @ (turbulence + moved), moved, after)
+        return self._end(step, States(q.copy(), y.copy(), push), wind.turbulent @ (turbulence + moved), moved, after)
 
     def noise(self, step: int, after: np.ndarray) -> np.ndarray:
         """What the noise of a step adds: (2 n + 2, 2) per standard normal number."""
-        zero = np.zeros((self.n, 2))
-        return self._end(step, States(zero, zero, zero), self.wind.turbulent @ self.wind.root, self.wind.root, after)
+        rest = States(*np.zeros((3, self.n, 2)))
+        return self._end(step, rest, self.wind.turbulent @ self.wind.root, self.wind.root, after)
 
     def _end(
         self, step: int, states: States, torques: np.ndarray, turbulence: np.ndarray, stiffness: np.ndarray
     ) -> np.ndarray:
-        trial = self.steps.trial(step, states, torques)
-        ways = self.steps.linear(step, stiffness, trial.ways)
-        self.steps.finish(step, states, trial, ways, stiffness[:, None] * ways)
+        self.steps.linear(step, states, torques, stiffness)
         return np.vstack([states.q, states.y, turbulence])
 
 
@@ -74,20 +76,21 @@ def linearised(steps: Steps, wind: Wind, every: int) -> Moments:
     torque, rows = np.array([2.0 * wind.steady]), []
     for step in range(1, steps.count + 1):
         k, ways = steps.stiffness[step], steps.ways[step]
-        trial, before = steps.trial(step, states, torque), spring
+        free, before = steps.free_ways(step, states, torque)[:, 0], spring
         for _ in range(MAX_ITERATIONS):
-            mean = _mean_ways(steps, step, trial.ways[:, 0], mean, deviation)
+            mean = _mean_ways(steps, step, free, mean, deviation)
             used_pull, used = mean_force_and_stiffness(k, mean, deviation, half)
             half_way = linear(step, spread, before, used)
             added = linear.noise(step, used)
             new = linear(step, np.ascontiguousarray(half_way.T), before, used) + added @ added.T
             deviation = np.sqrt(np.maximum(((ways @ new[:n, :n]) * ways).sum(axis=1), 0.0))
             pull, spring = mean_force_and_stiffness(k, mean, deviation, half)
-            if max(np.abs((spring - used) / k).max(), np.abs(pull / used_pull - 1.0).max()) < TOLERANCE:
+            change = np.abs(pull - used_pull).max() / (k * half + np.abs(pull)).max()
+            if max(np.abs((spring - used) / k).max(), change) < TOLERANCE:
                 break
         else:
             raise ConvergenceError(f"the linearisation did not converge at {step * steps.h:g} s")
-        steps.finish(step, states, trial, mean[:, None], pull[:, None])
+        steps.linear(step, states, torque, np.zeros_like(pull), pull)
         spread = 0.5 * (new + new.T)
         if step % every == 0:
             values = watched(train, steps, step)
