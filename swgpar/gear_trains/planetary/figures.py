@@ -50,8 +50,9 @@ def _rims(out: Path, name: str) -> Path:
 
 def _forces(out: Path) -> Path:
     table = read_columns(out / history.NAME)
-    figure, (axis,) = axes("mean forces of the meshes of planet 1", "time (s)", "force (kN)")
+    figure, panels = axes("linearised forces of the meshes of planet 1", "time (s)", "mean (kN)", "mean square (kN²)")
     for name, label in (("sun", "with the sun"), ("ring", "with the ring")):
-        axis.plot(table["time_s"], 1e-3 * table[f"mean_{name}_force_N"], label=label)
-    axis.legend(fontsize=8)
+        panels[0].plot(table["time_s"], 1e-3 * table[f"mean_{name}_force_N"], label=label)
+        panels[1].plot(table["time_s"], 1e-6 * table[f"mean_square_{name}_force_N2"])
+    panels[0].legend(fontsize=8)
     return save(figure, out, "mesh_forces")

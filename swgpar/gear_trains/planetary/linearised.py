@@ -23,11 +23,10 @@ TOLERANCE, MAX_ITERATIONS = 1e-6, 50
 
 @dataclass(frozen=True)
 class Moments:
-    """mean, deviation : (rows, watched);  force, square : (rows, 2) mean forces of the watched meshes and the mean
-    squares of their deviations from them, N and N²
+    """mean, deviation : (rows, watched);  force, square : (rows, 2) mean and mean square of the linearised forces of
+    the watched meshes, N and N²
 
-    least, skew : over all rows, the smallest eigenvalue of the matrix of correlations of all 2 n + 2 unknowns over its
-    largest, and its largest difference from its transpose, before the covariance is made symmetric
+    least, skew : over all rows, `_flaws` of the covariance of all 2 n + 2 unknowns before it is made symmetric
     """
 
     mean: np.ndarray
@@ -73,7 +72,7 @@ def linearised(steps: Steps, wind: Wind, every: int) -> Moments:
     spread = np.zeros((2 * n + 2, 2 * n + 2))
     deviation = np.zeros(len(steps.stiffness[0]))
     spring = mean_stiffness(steps.stiffness[0], mean, deviation, half)
-    torque, rows = np.array([2.0 * wind.steady]), []
+    torque, rows, least, skew = np.array([2.0 * wind.steady]), [], np.inf, 0.0
     for step in range(1, steps.count + 1):
         k, ways = steps.stiffness[step], steps.ways[step]
         free, before = steps.free_ways(step, states, torque)[:, 0], spring
@@ -91,15 +90,32 @@ def linearised(steps: Steps, wind: Wind, every: int) -> Moments:
         else:
             raise ConvergenceError(f"the linearisation did not converge at {step * steps.h:g} s")
         steps.linear(step, states, torque, np.zeros_like(pull), pull)
+        if step % every == 0:
+            lowest, turned = _flaws(new)
+            least, skew = min(least, lowest), max(skew, turned)
         spread = 0.5 * (new + new.T)
         if step % every == 0:
             values = watched(train, steps, step)
             variance = np.einsum("pi,ij,pj->p", values, spread[:n, :n], values)
-            meshes = pull[[0, train.design.planet.count]]
-            rows.append((values @ states.q[:, 0], np.sqrt(np.maximum(variance, 0.0)), meshes))
-    eigenvalues = np.linalg.eigvalsh(spread[:n, :n])
-    means, deviations, forces = (np.array(column) for column in zip(*rows, strict=True))
-    return Moments(means, deviations, forces, float(eigenvalues[0] / max(eigenvalues[-1], 1e-300)))
+            square = pull**2 + (spring * deviation) ** 2
+            meshes = [0, train.design.planet.count]
+            rows.append((values @ states.q[:, 0], np.sqrt(np.maximum(variance, 0.0)), pull[meshes], square[meshes]))
+    return Moments(*(np.array(column) for column in zip(*rows, strict=True)), least, skew)
+
+
+def _flaws(covariance: np.ndarray) -> tuple[float, float]:
+    """Smallest eigenvalue of a covariance over the largest, and its largest difference from its transpose: round-off.
+
+    Displacements q, their y and the wind's c and c', (2 n + 2) in all, each over the largest deviation of its kind.
+    """
+    n, variances = len(covariance) // 2 - 1, np.diag(covariance)
+    kinds = [slice(0, n), slice(n, 2 * n), slice(2 * n, 2 * n + 1), slice(2 * n + 1, 2 * n + 2)]
+    size = (
+        np.concatenate([np.full(len(part), max(part.max(), 1e-300)) for part in (variances[k] for k in kinds)]) ** 0.5
+    )
+    scaled = covariance / size / size[:, None]
+    eigenvalues = np.linalg.eigvalsh(0.5 * (scaled + scaled.T))
+    return float(eigenvalues[0] / eigenvalues[-1]), float(np.abs(scaled - scaled.T).max())
 
 
 def _mean_ways(steps: Steps, step: int, right: np.ndarray, ways: np.ndarray, deviation: np.ndarray) -> np.ndarray:

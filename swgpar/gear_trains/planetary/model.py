@@ -13,6 +13,10 @@ which is no derivative of an energy at these places: eq. 3.16 exchanges sine and
 3.82; eqs 3.9 to 3.11 and 3.79, 3.80 have an unsymmetric carrier row; eqs 3.25 and 3.26 hold the planet to the ground as
 well as to the carrier; eq. 3.28 has the wind's speed squared in its linear part.
 
+In the tooth cycle a planet at the angle ψ is z_r ψ ahead at the ring, and z_s ψ behind at the sun, whose teeth pass it
+the other way; as z_s + z_r is a multiple of the number of planets, both are one phase, z_s ψ. Sun and ring meshes of a
+planet are `mesh.phase` apart.
+
 The ring meshes move along the ring. All time dependence is in their six ways and in the mesh stiffnesses: the rest is
 constant, and its modes separate mass, stiffness and damping. `Train` holds everything in these modes.
 """
@@ -84,7 +88,7 @@ class Train:
             np.repeat([m.sun_contact_ratio, m.ring_contact_ratio], count),
             design.carrier.speed * design.ring.teeth,
             m.harmonics,
-            2.0 * np.pi * np.repeat([0.0, m.phase], count),
+            2.0 * np.pi * np.repeat([0.0, m.phase], count) + np.tile(design.sun.teeth * self.angles, 2),
         )
         self.mesh_damping = design.damping.stiffness * mean
         self.half = 1e-6 * m.half_backlash

@@ -132,6 +132,7 @@ def compute(design: PlanetaryDesign, comm: MPI.Comm) -> TrainResult:
         },
         "sampling_error_percent": 100.0 / np.sqrt(2.0 * sums.count),
         "least_eigenvalue_over_largest": here.least,
+        "asymmetry_of_correlations": here.skew,
         "cpu_s": {"linearised": [s for _, s in done[: len(rims)]], "monte_carlo": sum(s for _, s in done[len(rims) :])},
     }
     return TrainResult(_history(design, here, sums), {"rims": _rims(design, moments)}, values, summary)
@@ -165,7 +166,9 @@ def _history(design: PlanetaryDesign, moments: Moments, sums: Sums) -> Table:
             f"monte_carlo_mean_{name}_um": 1e6 * sums.mean[:, k],
             f"monte_carlo_deviation_{name}_um": 1e6 * sums.deviation[:, k],
         }
-    return out | {"mean_sun_force_N": moments.force[:, 0], "mean_ring_force_N": moments.force[:, 1]}
+    for k, name in enumerate(("sun", "ring")):
+        out |= {f"mean_{name}_force_N": moments.force[:, k], f"mean_square_{name}_force_N2": moments.square[:, k]}
+    return out
 
 
 def _rims(design: PlanetaryDesign, moments: dict[float, Moments]) -> Table:
