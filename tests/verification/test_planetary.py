@@ -12,11 +12,11 @@ from scipy.integrate import solve_ivp
 
 from swgpar.errors import ConvergenceError
 from swgpar.gear_trains.backlash import force
+from swgpar.gear_trains.cycles import slow_cycles
 from swgpar.gear_trains.planetary.design import PlanetaryDesign
 from swgpar.gear_trains.planetary.linearised import Moments, linearised
 from swgpar.gear_trains.planetary.model import Train, carrier, nodes, planet, radii
 from swgpar.gear_trains.planetary.monte_carlo import simulate
-from swgpar.gear_trains.planetary.run import _cycles
 from swgpar.gear_trains.planetary.steps import States, Steps
 from swgpar.gear_trains.planetary.watched import NAMES, watched
 from swgpar.gear_trains.planetary.wind import Wind
@@ -311,8 +311,8 @@ def test_patterns_and_rims(design: PlanetaryDesign) -> None:
     for rim in (87.0, 168.0):
         steps, wind, found = moments(changed(design, "ring", rim=rim), design.end / count, count, 2)
         largest[rim] = np.concatenate([np.abs(found.mean).max(axis=0), found.deviation.max(axis=0)])
-        assert _cycles(found.mean[:, NAMES.index("contact_v")], 1.0) == 6.0
-        assert _cycles(found.mean[:, NAMES.index("node_w")], 1.0) == 3.0
+        assert slow_cycles(found.mean[:, NAMES.index("contact_v")], 1.0) == 6.0
+        assert slow_cycles(found.mean[:, NAMES.index("node_w")], 1.0) == 3.0
         assert steps.train.size == 69 and wind.steady > 0.0
     change = dict(zip(NAMES, largest[168.0][: len(NAMES)] / largest[87.0][: len(NAMES)], strict=True))
     assert change["contact_v"] < 0.5 and change["node_w"] < 0.8

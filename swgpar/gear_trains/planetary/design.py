@@ -9,6 +9,7 @@ from annotated_types import Len
 
 from swgpar.errors import InputError
 from swgpar.gear_trains.keys import Output, Positive, TrainDesign
+from swgpar.gear_trains.ring.design import held
 from swgpar.quantities import Section, quantity
 
 Thicknesses = Annotated[list[Positive], Len(1)]
@@ -139,6 +140,12 @@ def check_fit(design: PlanetaryDesign) -> None:
     if ring.elements % ring.supports:
         raise InputError(
             f"ring.supports = {ring.supports} is out of range: allowed divisors of {ring.elements} (ring.elements)"
+        )
+    radius = 1e-3 * (ring.root_radius + 0.5 * ring.rim)
+    if not held(ring.supports, ring.radial, ring.tangential, ring.torsional, radius):
+        raise InputError(
+            f"ring.supports = {ring.supports} is out of range: allowed supports whose stiffnesses hold the ring "
+            "against every shift and turn"
         )
     for name in ("steps", "linearised_steps"):
         if getattr(time, name) % time.rows:

@@ -11,6 +11,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.gear_trains.backlash import force
+from swgpar.gear_trains.cycles import slow_cycles
 from swgpar.gear_trains.planetary.design import PlanetaryDesign
 from swgpar.gear_trains.planetary.linearised import Moments, linearised
 from swgpar.gear_trains.planetary.model import Train, elastic_ring, radii
@@ -23,9 +24,6 @@ from swgpar.gear_trains.result import Table, TrainResult
 from swgpar.gear_trains.sampling import blocks, generator, share_out
 from swgpar.gear_trains.sums import Sums
 from swgpar.log import logger
-
-SLOWEST_WAVE = 18
-"""Largest number of cycles in a revolution that counts as slow: tooth meshes come faster."""
 
 
 def quantities(design: PlanetaryDesign) -> Quantities:
@@ -117,8 +115,8 @@ def compute(design: PlanetaryDesign, comm: MPI.Comm) -> TrainResult:
     sums = reduce(Sums.with_more, (part for part, _ in simulated))
     here = moments[design.ring.rim]
     values: dict[str, float | list[float]] = {
-        "cycles_contact": _cycles(here.mean[:, NAMES.index("contact_v")], design.time.revolutions),
-        "cycles_node": _cycles(here.mean[:, NAMES.index("node_w")], design.time.revolutions),
+        "cycles_contact": slow_cycles(here.mean[:, NAMES.index("contact_v")], design.time.revolutions),
+        "cycles_node": slow_cycles(here.mean[:, NAMES.index("node_w")], design.time.revolutions),
         "out_of_contact": sum(lost for _, lost in simulated) / (design.time.steps * design.monte_carlo.samples),
     }
     for rim in design.ring.rims:
@@ -144,12 +142,6 @@ def _errors(here: np.ndarray, there: np.ndarray) -> dict[str, float]:
     return dict(
         zip(NAMES, (100.0 * (here[later].mean(axis=0) / there[later].mean(axis=0) - 1.0)).tolist(), strict=True)
     )
-
-
-def _cycles(mean: np.ndarray, revolutions: float) -> float:
-    """Number of slow cycles in a revolution with the largest amplitude."""
-    amplitude = np.abs(np.fft.rfft(mean))[: int(SLOWEST_WAVE * revolutions) + 1]
-    return float((1 + np.argmax(amplitude[1:])) / revolutions)
 
 
 def _times(design: PlanetaryDesign) -> np.ndarray:

@@ -18,6 +18,7 @@ from scipy.linalg import expm
 
 from swgpar.gear_trains.ring.beam import Ring
 from swgpar.gear_trains.ring.design import RingDesign
+from swgpar.gear_trains.sums import Sums
 
 
 @dataclass(frozen=True)
@@ -27,12 +28,12 @@ class Response:
     Attributes
     ----------
     angle : (rows,) rad, of the first load
-    mean : (rows, 2) m;  deviation : (rows, 2) m, or None where it was not asked for
+    mean, deviation : (rows, 2) m
     """
 
     angle: np.ndarray
     mean: np.ndarray
-    deviation: np.ndarray | None
+    deviation: np.ndarray
 
 
 def middle_node(design: RingDesign) -> int:
@@ -69,7 +70,7 @@ class MovingLoads:
         count = len(self.push)
         return (half_steps + number * count // self.load.loads) % count
 
-    def respond(self, speed: float, *, covariance: bool) -> Response:
+    def respond(self, speed: float) -> Response:
         """Go round at a speed (rad/s), from rest at the steady deflection under the loads at their first places."""
         load, n = self.load, self.load.steps
         h = 2.0 * np.pi / speed / n
@@ -81,24 +82,33 @@ class MovingLoads:
         for step in range(1, load.revolutions * n + 1):
             before, force = force, self.forces(step % n, step * h, speed)
             q, v = modes.step(q, v, before, force)
-            if covariance:
-                spread = modes.spread(spread, self.noises(step % n))
+            spread = modes.spread(spread, self.noises(step % n))
             row = step - (load.revolutions - 1) * n - 1
             if row >= 0:
                 watched = np.stack([self.outward[step % n], self.middle])
                 mean[row] = watched @ q
                 deviation[row] = np.sqrt(np.maximum(np.einsum("pi,ij,pj->p", watched, spread[0, 0], watched), 0.0))
-        return Response(2.0 * np.pi * np.arange(1, n + 1) / n, mean, deviation if covariance else None)
+        return Response(2.0 * np.pi * np.arange(1, n + 1) / n, mean, deviation)
 
-    def simulate(self, speed: float, samples: int, random: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-        """Mean and deviation (rows, 2) of `samples` simulations at a speed, as in `Response`; noise alone varies."""
+    def at_rest(self, speed: float) -> np.ndarray:
+        """Mean displacements (rows, 2), m, as in `Response` of a ring without inertia and damping."""
+        load, n = self.load, self.load.steps
+        h, mean = 2.0 * np.pi / speed / n, np.empty((n, 2))
+        for row in range(n):
+            step = (load.revolutions - 1) * n + row + 1
+            force = self.forces(step % n, step * h, speed)
+            mean[row] = np.stack([self.outward[step % n], self.middle]) @ (force / self.frequencies**2)
+        return mean
+
+    def simulate(self, speed: float, samples: int, random: np.random.Generator) -> Sums:
+        """The displacements (rows, 2) of `Response` in `samples` simulations at a speed; noise alone varies."""
         load, n = self.load, self.load.steps
         h = 2.0 * np.pi / speed / n
         modes = Modes(self.frequencies**2, load.damping_mass + load.damping_stiffness * self.frequencies**2, h)
         root = modes.noise_root()
         force = self.forces(0, 0.0, speed)
         q, v = np.tile(force / modes.k, (samples, 1)), np.zeros((samples, len(force)))
-        mean, deviation = np.empty((n, 2)), np.empty((n, 2))
+        mean, squares = np.empty((n, 2)), np.empty((n, 2))
         for step in range(1, load.revolutions * n + 1):
             before, force = force, self.forces(step % n, step * h, speed)
             q, v = modes.step(q, v, before, force)
@@ -109,8 +119,8 @@ class MovingLoads:
             row = step - (load.revolutions - 1) * n - 1
             if row >= 0:
                 values = q @ np.stack([self.outward[step % n], self.middle]).T
-                mean[row], deviation[row] = values.mean(axis=0), values.std(axis=0, ddof=1)
-        return mean, deviation
+                mean[row], squares[row] = values.mean(axis=0), values.var(axis=0) * samples
+        return Sums(samples, mean, squares, values[:, 1])
 
 
 class Modes:
