@@ -16,7 +16,7 @@ from swgpar.gear_trains.cycles import slow_cycles
 from swgpar.gear_trains.meshed_system import MeshedSystem
 from swgpar.gear_trains.ring.beam import Ring, Section, free_frequencies
 from swgpar.gear_trains.ring.design import RingDesign
-from swgpar.gear_trains.ring.moving_load import MovingLoads, middle_node
+from swgpar.gear_trains.ring.moving_load import Modes, MovingLoads, middle_node
 from swgpar.gear_trains.ring.run import distinct_frequencies
 from swgpar.gear_trains.sampling import generator
 from swgpar.gear_trains.train import load_train
@@ -248,6 +248,21 @@ def test_moving_load_against_newmark(bolted: RingDesign) -> None:
     for k in (0, 1):
         assert np.log2(off[0][k] / off[1][k]) == pytest.approx(2.0, abs=0.35)
     assert loads.frequencies[0] > 0.0
+
+
+def test_covariance_stays_positive(bolted: RingDesign) -> None:
+    """Of displacements and velocities of all modes, each kind over its largest deviation, in every step of a turn."""
+    loads, load = MovingLoads(small(bolted, steps=36)), bolted.moving_load
+    squares, n = loads.frequencies**2, len(loads.frequencies)
+    modes = Modes(squares, load.damping_mass + load.damping_stiffness * squares, 2.0 * np.pi / 200.0 / 36)
+    spread = np.zeros((2, 2, n, n))
+    for step in range(36):
+        spread = modes.spread(spread, loads.noises(step))
+        size = np.sqrt([np.diag(spread[k, k]).max() for k in (0, 1)]).repeat(n)
+        whole = spread.transpose(0, 2, 1, 3).reshape(2 * n, 2 * n) / size / size[:, None]
+        assert np.abs(whole - whole.T).max() < 1e-12
+        values = np.linalg.eigvalsh(whole)
+        assert values[0] > -1e-11 * values[-1]
 
 
 def test_steps_of_the_loads(bolted: RingDesign) -> None:

@@ -131,7 +131,10 @@ def compute(design: PlanetaryDesign, comm: MPI.Comm) -> TrainResult:
         "sampling_error_percent": 100.0 / np.sqrt(2.0 * sums.count),
         "least_eigenvalue_over_largest": here.least,
         "asymmetry_of_correlations": here.skew,
-        "cpu_s": {"linearised": [s for _, s in done[: len(rims)]], "monte_carlo": sum(s for _, s in done[len(rims) :])},
+        "task_s": {
+            "linearised": [s for _, s in done[: len(rims)]],
+            "monte_carlo": sum(s for _, s in done[len(rims) :]),
+        },
     }
     return TrainResult(_history(design, here, sums), {"rims": _rims(design, moments)}, values, summary)
 
