@@ -89,6 +89,10 @@ def test_statics(design: PlanetaryDesign) -> None:
     rigid = np.tile([0.0, 1.0, 1.0 / radius], design.ring.elements)
     held = rigid @ train.ring.stiffness @ q[first:]
     assert held == pytest.approx(-design.planet.count * f[3] * cosine, rel=1e-6)
+    # flanks push apart: forces on the sun away from planet 1, on planet 1 outward by the sun, on the ring outward
+    ways, outward = train.ways(0.0), first
+    assert -f[0] * ways[0, 0] < 0.0 < -f[0] * ways[0, planet(0)]
+    assert -f[3] * ways[3, planet(0)] < 0.0 < -f[3] * ways[3, outward]
 
 
 def test_planets_out_of_phase(design: PlanetaryDesign) -> None:

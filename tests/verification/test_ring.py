@@ -178,16 +178,21 @@ def toothed_ring(design: RingDesign, recipe: str) -> np.ndarray:
 def test_tooth_masses_against_a_solid_ring() -> None:
     """Tooth masses without the teeth's stiffness: 3 to 9 % too low; the smooth ring to the pitch circle: half as high.
 
-    The printed frequencies of the solid ring are those of the printed radii times 1.98, all of them.
+    The printed frequencies of the solid ring are those of the printed radii times 1.98 to 1.99. Two meshes,
+    the coarse one within 0.6 % of the fine one. `pytest -s` prints the table of docs/gear_trains.md.
     """
     design = load_train(MODES)
-    solid = toothed_ring(design, "plane_coarse.toml")[:5]
+    coarse, solid = (toothed_ring(design, f"plane{level}.toml")[:5] for level in ("_coarse", ""))
     with_masses, _ = distinct_frequencies(design, 5)
     smooth, _ = distinct_frequencies(changed(design, "ring", inner_radius=176.0).model_copy(update={"teeth": None}), 5)
+    printed = np.array([590.0, 1650.0, 3129.0, 4977.0, 7166.0])
+    rows = {"smooth": smooth, "masses": with_masses, "coarse": coarse, "solid": solid, "printed/solid": printed / solid}
+    for name, row in rows.items():
+        print(f"{name:14s}", *(f"{value:9.3f}" for value in row))
+    assert (coarse > solid).all() and (coarse / solid < 1.006).all()
     assert (with_masses / solid > 0.91).all() and (with_masses / solid < 0.97).all()
     assert (smooth / solid > 1.45).all()
-    printed = np.array([590.0, 1650.0, 3129.0, 4977.0, 7166.0])
-    assert printed / solid == pytest.approx(np.full(5, 1.98), rel=0.005)
+    assert printed / solid == pytest.approx(np.full(5, 1.986), rel=0.005)
 
 
 # --- moving loads
