@@ -11,10 +11,10 @@ the angle ψ of a planet and the pressure angle a, the ways of its meshes are
 and its bearing's stretches are ξ - x_c cos ψ - y_c sin ψ and η + x_c sin ψ - y_c cos ψ - u_c. Deviations from print,
 which is no derivative of an energy at these places: eq. 3.16 exchanges sine and cosine of v and w against eqs 3.21 and
 3.82; eqs 3.9 to 3.11 and 3.79, 3.80 have an unsymmetric carrier row; eqs 3.25 and 3.26 hold the planet to the ground as
-well as to the carrier; eq. 3.28 has the wind's speed squared in its linear part. In print a has the other sign, and
-with it the flanks that the wind's torque presses together (those of negative ways) would pull the ring inward and the
-sun towards the planets: flanks push apart. The other flanks, which only a load that turns round meets, keep this line
-of action, and the meshes' dampers act inside the gap too, both as in print.
+well as to the carrier; eq. 3.28 has the wind's speed squared in its linear part. In print a has the other sign (eqs
+3.25, 3.26): forces that push the gears apart drive the planet forward there, and under the wind's torque, which they
+resist, flanks would pull. The other flanks, which only a load that turns round meets, keep this line of action, and the
+meshes' dampers act inside the gap too, both as in print.
 
 In the tooth cycle a planet at the angle ψ is z_r ψ ahead at the ring, and z_s ψ behind at the sun, whose teeth pass it
 the other way; as z_s + z_r is a multiple of the number of planets, both are one phase, z_s ψ. Sun and ring meshes of a

@@ -2,10 +2,13 @@
 
 Each load is F0 + f sin(w t) + b W(t) with a white noise W of its own, of unit intensity; the harmonic part of load k is
 that of the first at the time when the first comes to its place (eq. 6.16). It pushes outward by the sine and along the
-motion by the cosine of the pressure angle. Damping is proportional, so that the modes of the ring separate; all of them
-are kept. A step is then exact for forces that are linear in it and noises that keep their place, and has to resolve the
-way of the loads alone. The source takes the stochastic Newmark scheme (eqs 6.28 to 6.32), whose variance depends on the
-step unless that resolves the ring's vibrations: it is the check of this (tests/verification/test_ring.py).
+motion by the cosine of the pressure angle, as in eq. 3.21 (eq. 6.14 has it against the motion; but the planets drive
+the ring along). Damping is proportional, so that the modes of the ring separate; all of them are kept. A step is then
+exact for forces that are linear in it and noises that keep their place, and has to resolve the way of the loads alone.
+
+The source takes the stochastic Newmark scheme (eqs 6.28 to 6.32; P. Bernard, G. Fleury, Stochastic Newmark scheme,
+Probabilistic Engineering Mechanics 17 (2002) 45-61), whose variance depends on the step unless that resolves the ring's
+vibrations: it is the check of this (tests/verification/test_ring.py).
 """
 
 from __future__ import annotations
