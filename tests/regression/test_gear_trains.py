@@ -30,9 +30,10 @@ FILES = {
 }
 
 
-def run(name: str, out: Path, *more: str, ranks: int = 1) -> list[str]:
+def run(name: str, out: Path, *, ranks: int = 1) -> list[str]:
     design = DRIVERS / f"{name}.toml"
-    return on_ranks(ranks) + swgpar("run", design, "--out", out, *more, "--set", *SMALL[name])
+    figures = "output.figures=true" if ranks == 1 else "output.figures=false"
+    return on_ranks(ranks) + swgpar("run", design, "--out", out, "--set", *SMALL[name], figures)
 
 
 @pytest.mark.parametrize("name", SMALL)
