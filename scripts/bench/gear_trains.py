@@ -29,7 +29,7 @@ ONE_RIM = ["ring.rims=[87.0]"]
 RUNS: dict[str, tuple[str, list[str]]] = {
     "cascade": ("cascade", []),
     "gear_pair": ("gear_pair", []),
-    "planetary_linearised": ("planetary", [*ONE_RIM, "monte_carlo.samples=2", "time.steps=200"]),
+    "planetary_linearised": ("planetary", [*ONE_RIM, "monte_carlo.samples=2", "time.steps=500"]),
     "planetary": ("planetary", [*ONE_RIM, "monte_carlo.samples=100000"]),
 }
 """Driver and overrides by run."""
@@ -44,7 +44,7 @@ ROWS = [
     ("planetary", "simulation", "100,000 planetary trains", 223 * HOUR, 900.0),
     ("planetary", "run", "100,000 planetary trains and the linearisation", None, 900.0),
 ]
-STEPS = (600, 1200, 2400, 4800, 9600)
+STEPS = (625, 1250, 2500, 5000, 10_000)
 """Of the linearised planetary revolution."""
 
 INTRODUCTION = """# Seconds of the gear trains
@@ -125,7 +125,7 @@ def step_study(out: Path) -> list[dict[str, Any]]:
     """
     found, taken = [], []
     for count in STEPS:
-        overrides = [*RUNS["planetary_linearised"][1], f"time.linearised_steps={count}"]
+        overrides = [*RUNS["planetary_linearised"][1], f"time.linearised_steps={count}", "time.rows=125"]
         summary = run("planetary", overrides, out / f"steps_{count}", 1)
         found.append(read_columns(out / f"steps_{count}" / "history.csv"))
         taken.append(max(summary["task_s"]["linearised"]))

@@ -77,7 +77,7 @@ REFUSED = [
         "ring.supports = 1 is out of range: allowed supports",
     ),
     (PLANETARY, "ring.supports=5", "ring.supports = 5 is out of range: allowed divisors of 18 (ring.elements)"),
-    (PLANETARY, "time.steps=10001", "time.steps = 10001 is out of range: allowed multiples of 200 (time.rows)"),
+    (PLANETARY, "time.steps=10001", "time.steps = 10001 is out of range: allowed multiples of 500 (time.rows)"),
     (PLANETARY, "wind.power_coefficient=0.6", "wind.power_coefficient = 0.6 is out of range: allowed above 0 to"),
     (PLANETARY, "rims=1", '--set "rims=1" cannot be read'),
     (RING_MODES, "moving_load.force=1", "moving_load.damping_mass is missing: give a number"),

@@ -152,7 +152,7 @@ def test_a_step_is_the_trapezoidal_rule(small: PlanetaryDesign) -> None:
             assert steps.simulate(0, states, np.repeat(torques[None], 19, axis=1), sides) == 19
             assert (states.q == states.q[:, :1]).all()
         else:
-            steps.linear(1, states, torques, steps.stiffness[1])
+            steps.linear(1, states, torques, steps.law(1, steps.stiffness[1]))
         moved = train.shapes @ states.q[:, 0]
         velocities = train.shapes @ (states.y - 2.0 / h * states.q)[:, 0]
         np.testing.assert_allclose(moved, q1, atol=1e-8 * np.abs(q1).max())
@@ -163,7 +163,7 @@ def test_a_step_is_the_trapezoidal_rule(small: PlanetaryDesign) -> None:
     np.testing.assert_allclose(
         steps.damped[1] @ (w1 @ q1) + steps.give[1] @ forces, free, atol=1e-8 * np.abs(free).max()
     )
-    steps.linear(1, states, torques, np.zeros_like(forces), forces)
+    steps.linear(1, states, torques, steps.law(1, np.zeros_like(forces), forces))
     np.testing.assert_allclose(train.shapes @ states.q[:, 0], q1, atol=1e-8 * np.abs(q1).max())
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from swgpar.errors import ConvergenceError
 from swgpar.gear_trains.backlash import mean_force_and_stiffness, mean_stiffness
-from swgpar.gear_trains.planetary.steps import States, Steps
+from swgpar.gear_trains.planetary.steps import Law, States, Steps
 from swgpar.gear_trains.planetary.watched import watched
 from swgpar.gear_trains.planetary.wind import Wind
 
@@ -21,12 +21,16 @@ TOLERANCE, MAX_ITERATIONS = 1e-6, 50
 """Change of mean forces and equivalent stiffnesses in the last iteration of a step, relative; how many it may take."""
 
 
+CHECKS = 100
+"""Moments of time at which the covariance is examined, at least where there are as many rows."""
+
+
 @dataclass(frozen=True)
 class Moments:
     """mean, deviation : (rows, watched);  force, square : (rows, 2) mean and mean square of the linearised forces of
     the watched meshes, N and N²
 
-    least, skew : over all rows, `_flaws` of the covariance of all 2 n + 2 unknowns before it is made symmetric
+    least, skew : the worst `_flaws` of the covariance of all 2 n + 2 unknowns before it is made symmetric, CHECKS times
     """
 
     mean: np.ndarray
@@ -43,23 +47,21 @@ class _Linear:
     def __init__(self, steps: Steps, wind: Wind) -> None:
         self.steps, self.wind, self.n = steps, wind, steps.train.size
 
-    def __call__(self, step: int, columns: np.ndarray, before: np.ndarray, after: np.ndarray) -> np.ndarray:
-        """Columns after a step whose meshes have stiffnesses (m,) at its start and end."""
+    def __call__(self, step: int, columns: np.ndarray, before: np.ndarray, after: Law) -> np.ndarray:
+        """Columns after a step whose meshes have stiffnesses (m,) at its start, and a law at its end."""
         n, steps, wind = self.n, self.steps, self.wind
         q, y, turbulence = columns[:n], columns[n : 2 * n], columns[2 * n :]
         push = steps.push(step - 1, q, y, before[:, None] * (steps.ways[step - 1] @ q))
         moved = wind.moved @ turbulence
         return self._end(step, States(q.copy(), y.copy(), push), wind.turbulent @ (turbulence + moved), moved, after)
 
-    def noise(self, step: int, after: np.ndarray) -> np.ndarray:
+    def noise(self, step: int, after: Law) -> np.ndarray:
         """What the noise of a step adds: (2 n + 2, 2) per standard normal number."""
         rest = States(*np.zeros((3, self.n, 2)))
         return self._end(step, rest, self.wind.turbulent @ self.wind.root, self.wind.root, after)
 
-    def _end(
-        self, step: int, states: States, torques: np.ndarray, turbulence: np.ndarray, stiffness: np.ndarray
-    ) -> np.ndarray:
-        self.steps.linear(step, states, torques, stiffness)
+    def _end(self, step: int, states: States, torques: np.ndarray, turbulence: np.ndarray, after: Law) -> np.ndarray:
+        self.steps.linear(step, states, torques, after)
         return np.vstack([states.q, states.y, turbulence])
 
 
@@ -77,11 +79,11 @@ def linearised(steps: Steps, wind: Wind, every: int) -> Moments:
         k, ways = steps.stiffness[step], steps.ways[step]
         free, before = steps.free_ways(step, states, torque)[:, 0], spring
         for _ in range(MAX_ITERATIONS):
-            mean = _mean_ways(steps, step, free, mean, deviation)
-            used_pull, used = mean_force_and_stiffness(k, mean, deviation, half)
-            half_way = linear(step, spread, before, used)
-            added = linear.noise(step, used)
-            new = linear(step, np.ascontiguousarray(half_way.T), before, used) + added @ added.T
+            mean, used_pull, used = _mean_ways(steps, step, free, mean, deviation)
+            law = steps.law(step, used)
+            half_way = linear(step, spread, before, law)
+            added = linear.noise(step, law)
+            new = linear(step, np.ascontiguousarray(half_way.T), before, law) + added @ added.T
             deviation = np.sqrt(np.maximum(((ways @ new[:n, :n]) * ways).sum(axis=1), 0.0))
             pull, spring = mean_force_and_stiffness(k, mean, deviation, half)
             change = np.abs(pull - used_pull).max() / (k * half + np.abs(pull)).max()
@@ -89,8 +91,8 @@ def linearised(steps: Steps, wind: Wind, every: int) -> Moments:
                 break
         else:
             raise ConvergenceError(f"the linearisation did not converge at {step * steps.h:g} s")
-        steps.linear(step, states, torque, np.zeros_like(pull), pull)
-        if step % every == 0:
+        steps.linear(step, states, torque, steps.law(step, np.zeros_like(pull), pull))
+        if step % (every * max(1, steps.count // every // CHECKS)) == 0:
             lowest, turned = _flaws(new)
             least, skew = min(least, lowest), max(skew, turned)
         spread = 0.5 * (new + new.T)
@@ -118,13 +120,15 @@ def _flaws(covariance: np.ndarray) -> tuple[float, float]:
     return float(eigenvalues[0] / eigenvalues[-1]), float(np.abs(scaled - scaled.T).max())
 
 
-def _mean_ways(steps: Steps, step: int, right: np.ndarray, ways: np.ndarray, deviation: np.ndarray) -> np.ndarray:
-    """Mean ways (m,) at the end of a step by Newton's method."""
+def _mean_ways(
+    steps: Steps, step: int, right: np.ndarray, ways: np.ndarray, deviation: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Mean ways (m,) at the end of a step by Newton's method, with the mean forces and stiffnesses there."""
     k, half, give, damped = steps.stiffness[step], steps.train.half, steps.give[step], steps.damped[step]
     for _ in range(MAX_ITERATIONS):
         pull, slope = mean_force_and_stiffness(k, ways, deviation, half)
         change = np.linalg.solve(damped + give * slope, damped @ ways + give @ pull - right)
-        ways = ways - change
         if np.abs(change).max() <= 1e-9 * np.abs(ways).max():
-            return ways
+            return ways, pull, slope
+        ways = ways - change
     raise ConvergenceError("the mean of the linearised gear train did not converge")

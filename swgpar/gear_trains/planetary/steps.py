@@ -24,6 +24,9 @@ from swgpar.gear_trains.backlash import force
 from swgpar.gear_trains.planetary.model import Train
 from swgpar.kernel import TrainKernel
 
+Law = tuple[np.ndarray, np.ndarray, np.ndarray]
+"""Of the meshes at the end of a step: (1, m, m) from their forces to their ways; springs and constants (1, m)."""
+
 
 @dataclass
 class States:
@@ -84,16 +87,16 @@ class Steps:
             raise ConvergenceError(f"the motion of the gear train did not converge at {-lost * self.h:g} s")
         return lost
 
-    def linear(
-        self, step: int, states: States, torques: np.ndarray, spring: np.ndarray, constant: np.ndarray | None = None
-    ) -> None:
-        """Move states on by step number `step` for mesh forces spring d + constant, (m,) N/m and N.
+    def law(self, step: int, spring: np.ndarray, constant: np.ndarray | None = None) -> Law:
+        """Mesh forces spring d + constant at the end of a step, (m,) N/m and N."""
+        constant = np.zeros_like(spring) if constant is None else constant
+        return np.linalg.inv(self.damped[step] + self.give[step] * spring)[None], spring[None], constant[None]
+
+    def linear(self, step: int, states: States, torques: np.ndarray, law: Law) -> None:
+        """Move states on by step number `step` for mesh forces of a `law` there.
 
         torques : (states,) N·m, those at the start and the end added up
         """
-        solve = np.linalg.inv(self.damped[step] + self.give[step] * spring)
-        constant = np.zeros_like(spring) if constant is None else constant
-        law = solve[None], spring[None], constant[None]
         self.kernel.advance(step - 1, states.q, states.y, states.push, torques[None], *law)
 
     def free_ways(self, step: int, states: States, torques: np.ndarray) -> np.ndarray:
