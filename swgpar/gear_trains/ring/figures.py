@@ -83,5 +83,5 @@ def _critical(out: Path) -> Path:
         upper.plot(table["speed_rad_s"], mean / mean[0], f"C{k}", lw=1.0, label=label)
         upper.plot(table["speed_rad_s"], still / mean[0], "k:", lw=0.9, label=None if k else "without inertia")
         lower.plot(table["speed_rad_s"], deviation / deviation[0], f"C{k}", lw=1.0)
-    upper.legend(fontsize=8)
+    upper.legend(fontsize=8, ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1.0))  # the curves fill the panel
     return save(figure, out, "critical_speeds")
