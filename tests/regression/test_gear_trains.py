@@ -25,7 +25,7 @@ SMALL = {
 FILES = {
     "cascade": ("population", "static", "stack_up"),
     "gear_pair": ("density_1", "density_2", "density_3"),
-    "planetary": ("rims",),
+    "planetary": ("rims", "mesh_forces"),
     "ring_moving_load": ("modes", "mode_shapes", "critical_speeds", "monte_carlo"),
 }
 

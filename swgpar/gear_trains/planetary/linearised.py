@@ -27,8 +27,8 @@ CHECKS = 100
 
 @dataclass(frozen=True)
 class Moments:
-    """mean, deviation : (rows, watched);  force, square : (rows, 2) mean and mean square of the linearised forces of
-    the watched meshes, N and N²
+    """mean, deviation : (rows, watched);  force, square : (steps, 2) mean and mean square of the linearised forces of
+    the watched meshes, N and N²: rows may be too few for the tooth cycle
 
     least, skew : the worst `_flaws` of the covariance of all 2 n + 2 unknowns before it is made symmetric, CHECKS times
     """
@@ -74,7 +74,8 @@ def linearised(steps: Steps, wind: Wind, every: int) -> Moments:
     spread = np.zeros((2 * n + 2, 2 * n + 2))
     deviation = np.zeros(len(steps.stiffness[0]))
     spring = mean_stiffness(steps.stiffness[0], mean, deviation, half)
-    torque, rows, least, skew = np.array([2.0 * wind.steady]), [], np.inf, 0.0
+    torque, rows, forces, least, skew = np.array([2.0 * wind.steady]), [], [], np.inf, 0.0
+    meshes = [0, train.design.planet.count]
     for step in range(1, steps.count + 1):
         k, ways = steps.stiffness[step], steps.ways[step]
         free, before = steps.free_ways(step, states, torque)[:, 0], spring
@@ -99,10 +100,10 @@ def linearised(steps: Steps, wind: Wind, every: int) -> Moments:
         if step % every == 0:
             values = watched(train, steps, step)
             variance = np.einsum("pi,ij,pj->p", values, spread[:n, :n], values)
-            square = pull**2 + (spring * deviation) ** 2
-            meshes = [0, train.design.planet.count]
-            rows.append((values @ states.q[:, 0], np.sqrt(np.maximum(variance, 0.0)), pull[meshes], square[meshes]))
-    return Moments(*(np.array(column) for column in zip(*rows, strict=True)), least, skew)
+            rows.append((values @ states.q[:, 0], np.sqrt(np.maximum(variance, 0.0))))
+        forces.append((pull[meshes], (pull**2 + (spring * deviation) ** 2)[meshes]))
+    columns = (np.array(column) for table in (rows, forces) for column in zip(*table, strict=True))
+    return Moments(*columns, least, skew)
 
 
 def _flaws(covariance: np.ndarray) -> tuple[float, float]:

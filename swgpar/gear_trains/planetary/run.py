@@ -136,7 +136,8 @@ def compute(design: PlanetaryDesign, comm: MPI.Comm) -> TrainResult:
             "monte_carlo": sum(s for _, s in done[len(rims) :]),
         },
     }
-    return TrainResult(_history(design, here, sums), {"rims": _rims(design, moments)}, values, summary)
+    tables = {"rims": _rims(design, moments), "mesh_forces": _forces(design, here)}
+    return TrainResult(_history(design, here, sums), tables, values, summary)
 
 
 def _errors(here: np.ndarray, there: np.ndarray) -> dict[str, float]:
@@ -152,7 +153,7 @@ def _times(design: PlanetaryDesign) -> np.ndarray:
 
 
 def _history(design: PlanetaryDesign, moments: Moments, sums: Sums) -> Table:
-    """Means and deviations in µm, and mean forces of the meshes of planet 1."""
+    """Means and deviations in µm."""
     out = {"time_s": _times(design)}
     for k, name in enumerate(NAMES):
         out |= {
@@ -161,6 +162,13 @@ def _history(design: PlanetaryDesign, moments: Moments, sums: Sums) -> Table:
             f"monte_carlo_mean_{name}_um": 1e6 * sums.mean[:, k],
             f"monte_carlo_deviation_{name}_um": 1e6 * sums.deviation[:, k],
         }
+    return out
+
+
+def _forces(design: PlanetaryDesign, moments: Moments) -> Table:
+    """Mean and mean square of the linearised forces of the meshes of planet 1 after every step."""
+    steps = len(moments.force)
+    out = {"time_s": design.end * np.arange(1, steps + 1) / steps}
     for k, name in enumerate(("sun", "ring")):
         out |= {f"mean_{name}_force_N": moments.force[:, k], f"mean_square_{name}_force_N2": moments.square[:, k]}
     return out
