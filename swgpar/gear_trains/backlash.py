@@ -32,7 +32,7 @@ def energy(stiffness: Array, way: Array, half: Array) -> np.ndarray:
 def _beyond(mean: Array, deviation: Array, half: Array) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Expectations of 1, of x and of x² over x = d - b where d > b and over x = -d - b where d < -b, (2, ...)."""
     m, s = np.asarray(mean, dtype=float), np.asarray(deviation, dtype=float)
-    x = np.stack(np.broadcast_arrays(m - half, -m - half))
+    x = np.array([m - half, -m - half])
     ratio = x / np.where(s > 0.0, s, 1.0)
     share = np.where(s > 0.0, ndtr(ratio), x > 0.0)
     tail = s * np.exp(-0.5 * np.minimum(ratio**2, 1400.0)) / np.sqrt(2.0 * np.pi)

@@ -31,7 +31,10 @@ TOLERANCE, MAX_ITERATIONS = 1e-10, 60
 
 @dataclass(frozen=True)
 class Moments:
-    """mean : (rows, n) of the coordinates, m;  covariance : (rows, n, n) m²;  time : (rows,) s"""
+    """time : (rows,) s;  mean : (rows, n) of the coordinates, m
+
+    covariance : (rows, 2 n, 2 n) of coordinates and velocities, m and m/s, symmetric but for round-off
+    """
 
     time: np.ndarray
     mean: np.ndarray
@@ -45,7 +48,7 @@ def linearised(
     n, half, equivalent = system.size, system.half_backlash, EQUIVALENT[criterion]
     q, v, covariance = start.astype(float), np.zeros(n), np.zeros((2 * n, 2 * n))
     noise = system.noise_of_step(h)
-    rows = [(0.0, q, covariance[:n, :n])]
+    rows = [(0.0, q, covariance)]
     stiffness, ways = system.mesh_stiffness(0.0), system.ways(0.0)
     deviation = np.zeros(len(half))
     pull = mean_force(stiffness, ways @ q, deviation, half)
@@ -80,7 +83,7 @@ def linearised(
         q, v = moved, 2.0 / h * (moved - before) - v
         covariance = 0.5 * (new + new.T)
         if step % every == 0:
-            rows.append((t, q, covariance[:n, :n]))
+            rows.append((t, q, new))
     time, mean, covariances = (np.array(column) for column in zip(*rows, strict=True))
     return Moments(time, mean, covariances)
 

@@ -80,6 +80,11 @@ def expand(study: Study) -> list[Job]:
 def _expand(study: Study) -> list[Job]:
     folder, section = study.path.parent, study.section
     base = read_toml(folder / section.design)
+    if "gear_train" in base:
+        raise InputError(
+            f"study.design = {show(section.design)} is a gear train: allowed is a drive, as studies go over meshes; "
+            "vary a gear train by swgpar run with --set"
+        )
     base = apply_overrides(base, [*OUTPUT, *section.set])
     recipes: dict[Path, MeshRecipe] = {}
     cases: list[Case] = []

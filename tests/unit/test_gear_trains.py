@@ -13,6 +13,8 @@ from swgpar.gear_trains.published import check_published, compare
 from swgpar.gear_trains.sampling import blocks, generator, share_out
 from swgpar.gear_trains.train import is_gear_train, load_train, model_of
 from swgpar.results.table import format_columns, read_columns
+from swgpar.study.cases import expand
+from swgpar.study.spec import load_study
 
 DRIVERS = Path(__file__).parents[2] / "drivers"
 CASCADE, GEAR_PAIR = DRIVERS / "cascade.toml", DRIVERS / "gear_pair.toml"
@@ -34,6 +36,7 @@ REFUSED = [
     (CASCADE, "flex_unit.ratio=[1, 1]", "flex_unit.ratio = [1, 1] is not a list of that many numbers"),
     (CASCADE, "flex_unit.ratio=[1, 1, 1, 1, 1, 1, 1, 0]", "flex_unit.ratio = 0 is out of range: allowed stiffness"),
     (CASCADE, "load.forces=[]", "load.forces = [] is not a list of that many numbers"),
+    (CASCADE, "load.peak=200", "load.forces = 207 is out of range: allowed above 0 to 200 kN (load.peak)"),
     (CASCADE, "population.step=1", "population.step = 1 is out of range: allowed above 0 to 0.4 s (population.hold)"),
     (CASCADE, "published.static_B_12=1", "published.static_B_12 is not a quantity of this gear train: did you mean"),
     (CASCADE, "published.braked_B=1", "published.braked_B = 1 is not a list of 8 numbers"),
@@ -42,16 +45,39 @@ REFUSED = [
     (GEAR_PAIR, "mesh.contact_ratio=2.5", "mesh.contact_ratio = 2.5 is out of range: allowed 1 to 2"),
     (GEAR_PAIR, "load.output=[1.0]", "load.output = [1.0] is out of range: allowed 3 torques (load.input)"),
     (GEAR_PAIR, "load.input=[1.0, -1.0, 1.0]", "load.input = -1 is out of range"),
-    (GEAR_PAIR, "time.step=1", "time.step = 1 is out of range: allowed above 0 to 0.02 s (time.end)"),
+    (GEAR_PAIR, "time.step=1", "time.step = 1 is out of range: allowed above 0 to 0.03 s (time.end)"),
     (GEAR_PAIR, "monte_carlo.samples=1", "monte_carlo.samples = 1 is out of range: allowed 2 to 100000000"),
     (RING, "ring.inner_radius=520", "ring.inner_radius = 520 is out of range: allowed above 0 to below 520 mm"),
     (RING, "supports.count=5", "supports.count = 5 is out of range: allowed divisors of 36 (ring.elements)"),
     (RING, "ring.elements=6", "ring.elements = 6 is out of range: allowed at least 12, for a node between two"),
     (RING, "moving_load.steps=700", "moving_load.steps = 700 is out of range: allowed multiples of 3"),
+    (
+        RING,
+        "supports.tangential=0 supports.torsional=0",
+        "supports.tangential = 0 is out of range: allowed stiffnesses",
+    ),
+    (
+        RING,
+        "supports.count=1 supports.radial=0 supports.torsional=0",
+        "is out of range: allowed stiffnesses of the supp",
+    ),
+    (
+        RING,
+        "moving_load.damping_mass=0 moving_load.damping_stiffness=0",
+        "moving_load.damping_stiffness = 0 is out of range: allowed above 0 to inf s without moving_load.damping_mass",
+    ),
     (RING, "moving_load.sweep=[3.0]", "moving_load.sweep = [3.0] is out of range: allowed two speeds"),
     (PLANETARY, "planet.count=1", "planet.count = 1 is out of range: allowed 2 to 12"),
+    (PLANETARY, "planet.count=7", "planet.count = 7 is out of range: allowed divisors of 120 (sun.teeth + ring.teeth)"),
+    (PLANETARY, "ring.teeth=100", "ring.teeth = 100 is out of range: allowed 21 (sun.teeth) and twice a planet's"),
+    (PLANETARY, "sun.teeth=27", "planet.pitch_diameter = 400.4 is out of range: allowed 287.467 mm within 0.1 %"),
+    (
+        PLANETARY,
+        "ring.supports=1 ring.radial=0 ring.torsional=0",
+        "ring.supports = 1 is out of range: allowed supports",
+    ),
     (PLANETARY, "ring.supports=5", "ring.supports = 5 is out of range: allowed divisors of 18 (ring.elements)"),
-    (PLANETARY, "time.steps=10001", "time.steps = 10001 is out of range: allowed multiples of 200 (time.rows)"),
+    (PLANETARY, "time.steps=10001", "time.steps = 10001 is out of range: allowed multiples of 500 (time.rows)"),
     (PLANETARY, "wind.power_coefficient=0.6", "wind.power_coefficient = 0.6 is out of range: allowed above 0 to"),
     (PLANETARY, "rims=1", '--set "rims=1" cannot be read'),
     (RING_MODES, "moving_load.force=1", "moving_load.damping_mass is missing: give a number"),
@@ -63,9 +89,16 @@ REFUSED = [
 @pytest.mark.parametrize(("file", "override", "reason"), REFUSED)
 def test_one_sentence_with_key_and_reason(file: Path, override: str, reason: str) -> None:
     with pytest.raises(InputError) as caught:
-        load_train(file, [override])
+        load_train(file, override.split() if override.count("=") > 1 else [override])
     message = str(caught.value)
     assert "\n" not in message and reason in message, message
+
+
+def test_studies_go_over_meshes(tmp_path: Path) -> None:
+    file = tmp_path / "study.toml"
+    file.write_text(f'[study]\ndesign = "{RING_MODES}"\nmeshes = ["none.toml"]\n', encoding="utf-8")
+    with pytest.raises(InputError, match=r"ring_modes.toml\" is a gear train: allowed is a drive"):
+        expand(load_study(file))
 
 
 def test_drives_are_no_gear_trains() -> None:
@@ -74,7 +107,7 @@ def test_drives_are_no_gear_trains() -> None:
         load_train(DRIVERS / "cup_45deg.toml")
 
 
-@pytest.mark.parametrize("file", [CASCADE, GEAR_PAIR, RING, RING_MODES, PLANETARY])
+@pytest.mark.parametrize("file", [CASCADE, GEAR_PAIR, RING, RING_MODES, DRIVERS / "ring_supported.toml", PLANETARY])
 def test_derived_values_are_finite(file: Path) -> None:
     design = load_train(file)
     values = model_of(design).derived(design)

@@ -263,7 +263,7 @@ def test_braked_shares(design: CascadeDesign, direction: str) -> None:
 
 def test_population(design: CascadeDesign) -> None:
     """None overloaded; errors spread the shares, more at rest (a constant error) than as means over a turn."""
-    shares = block_shares(design, 0, 10)
+    shares = block_shares(design, 0, 25)
     assert max(shares.static.max(), shares.largest.max()) < 0.15
     assert (shares.static.std(axis=0) > shares.mean.std(axis=0)).all()
     many = static_shares(design, random_errors(design, 1, 100_000))

@@ -77,11 +77,14 @@ class Load(Section):
     peak: float = quantity(unit="kN", text="largest rack force, of the period and the populations", gt=0.0)
     period: float = quantity(unit="s", text="period of the rack force; direction B comes first", gt=0.0)
     braked: float = quantity(unit="kN", text="rack force against the flywheel held by its brake", gt=0.0)
+    braked_ramp: float = quantity(0.2, unit="s", text="time in which the rack force rises against the brake", gt=0.0)
+    braked_hold: float = quantity(0.2, unit="s", text="time for which it is held; its second half is averaged", gt=0.0)
     overload: float = quantity(text="share of the whole load above 1/8 that a pinion may carry", ge=0.0, lt=0.875)
 
 
 class Tolerances(Section):
     samples: int = quantity(text="samples of the stack-up", ge=10, le=10_000_000)
+    pressure_angle: float = quantity(20.0, unit="deg", text="pressure angle of all meshes", gt=0.0, lt=45.0)
     limit: float = quantity(3.0, unit="standard deviations", text="where the tolerance limits lie", gt=0.0)
 
 
@@ -135,6 +138,11 @@ def check_fit(design: CascadeDesign) -> None:
         raise InputError(
             f"g1_g1.module = {design.g1_g1.module:g} is out of range: allowed {design.g1_g2.module:g} mm (g1_g2.module)"
         )
+    for force in design.load.forces:
+        if force > design.load.peak:
+            raise InputError(
+                f"load.forces = {force:g} is out of range: allowed above 0 to {design.load.peak:g} kN (load.peak)"
+            )
     if design.population.step > design.population.hold:
         raise InputError(
             f"population.step = {design.population.step:g} is out of range: "

@@ -6,7 +6,9 @@ multiplies stiffness and force once each; here a mesh simply has the force
 
     f = k g(p) + h(g) c dp/dt,    p = x_driver - x_driven - e,
 
-g the approach of the flanks beyond the gap, h the S-shaped step of eq. (10). Further deviations from print:
+g the approach of the flanks beyond the gap, h the S-shaped step of eq. (10). While flanks part fast, the damper may
+make f pull, as in print; load shares with f cut off at zero are the same to 1e-5 from 120 kN on (docs/gear_trains.md).
+Further deviations from print:
 
 - gaps of the two directions are given separately: the source's geometric difference lies in one of them;
 - the phase of stiffness and error follows the way of the driven gear, not a constant frequency times the time: the rack

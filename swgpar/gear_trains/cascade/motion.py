@@ -20,9 +20,6 @@ WINDOW = 0.02
 FITTED = 0.25
 """Share of the peak above which the crossing of load shares is sought: below it the units are not linear."""
 
-BRAKED_RAMP, BRAKED_END = 0.2, 0.4
-"""Seconds in which the rack force rises against the brake, and at which it ends: the second half is averaged."""
-
 
 @dataclass(frozen=True)
 class Period:
@@ -78,9 +75,8 @@ def one_period(design: CascadeDesign) -> Period:
 def braked_shares(design: CascadeDesign, direction: Direction) -> np.ndarray:
     """Load shares (8,) at the braked force, the flywheel held: the source's comparison with measurements."""
     box, sign = Gearbox(design, braked=True), 1.0 if direction == "B" else -1.0
-    time = np.linspace(0.0, BRAKED_END, 401)
-    x, v = box.integrate(
-        lambda t: sign * 1e3 * design.load.braked * np.minimum(t / BRAKED_RAMP, 1.0), np.zeros(DOFS), time
-    )
-    carried = box.pinion_forces(x, v)[time > 0.5 * (BRAKED_RAMP + BRAKED_END)].sum(axis=0)
+    ramp, hold, size = design.load.braked_ramp, design.load.braked_hold, sign * 1e3 * design.load.braked
+    time = np.linspace(0.0, ramp + hold, 401)
+    x, v = box.integrate(lambda t: size * np.minimum(t / ramp, 1.0), np.zeros(DOFS), time)
+    carried = box.pinion_forces(x, v)[time > ramp + 0.5 * hold].sum(axis=0)
     return carried / carried.sum()

@@ -5,8 +5,9 @@ displacement of the flanks along the pitch line:
 
 - pitch deviation E_pu = (0.3 m_n + 1.25 sqrt(d) + 7) 2^(0.5 (Q - 5)) µm (eq. 4; the 7 and both signs are lost in the
   text and are those of ISO 1328-1, of which the printed factors are), as it is;
-- runout E_r = (0.24 m_n + sqrt(d) + 5.6) 2^(0.5 (Q - 5)) µm (eq. 5, likewise), radial: times tan 20°;
-- position of a shaft along the line of action: over cos 20°;
+- runout E_r = (0.24 m_n + sqrt(d) + 5.6) 2^(0.5 (Q - 5)) µm (eq. 5, likewise), radial: times the tangent of the
+  pressure angle;
+- position of a shaft along the line of action: over its cosine;
 - direction of a shaft: times half of the face width.
 
 The rack has the tolerances of a gear whose pitch circle is as long as the rack, and no shaft.
@@ -23,7 +24,6 @@ from swgpar.gear_trains.cascade.design import CascadeDesign
 from swgpar.gear_trains.cascade.static import MESHES
 from swgpar.gear_trains.sampling import blocks, generator
 
-PRESSURE_ANGLE = np.radians(20.0)
 BLOCK = 10_000
 STREAM = 0
 """First number of the keys of these samples' streams."""
@@ -45,14 +45,15 @@ def contributions(design: CascadeDesign, kind: str) -> dict[str, float]:
     """Limits of all tolerances of a kind of mesh as displacements of its flanks along the pitch line, m, by name."""
     module, limits = getattr(design, kind).module, {}
     first, second = GEARS[kind]
+    angle = np.radians(design.tolerances.pressure_angle)
     for place, gear in enumerate((first, second)):
         section = getattr(design, gear)
         name = f"{gear} {place + 1}" if first == second else gear
         diameter = 1e3 * section.length / np.pi if gear == "rack" else section.teeth * module
         limits[f"pitch deviation {name}"] = pitch_deviation(module, diameter, section.pitch_grade)
-        limits[f"runout {name}"] = runout(module, diameter, section.runout_grade) * np.tan(PRESSURE_ANGLE)
+        limits[f"runout {name}"] = runout(module, diameter, section.runout_grade) * np.tan(angle)
         if gear != "rack":
-            limits[f"position {name}"] = 1e-3 * section.position / np.cos(PRESSURE_ANGLE)
+            limits[f"position {name}"] = 1e-3 * section.position / np.cos(angle)
             limits[f"axle angle {name}"] = 1e-3 * section.axle_angle * 0.5e-3 * section.face_width
     return limits
 

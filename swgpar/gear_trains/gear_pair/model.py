@@ -7,7 +7,8 @@ become one by
     m_c z'' + f = m_c (T1 r1 / I1 + T2 r2 / I2),    m_c = 1 / (r1² / I1 + r2² / I2).
 
 Equation (4.7) has T1 / r1 on the right, which is the same only when the torques are in the ratio of the radii: those of
-the source are so to 0.4 %. The noise of amplitude w0 and spectral density S0 has the intensity 2 pi S0 w0².
+the source are so to 0.4 %. The mesh's damper acts inside the gap too, as in print.
+The noise of amplitude w0 and spectral density S0 has the intensity 2 pi S0 w0².
 """
 
 from __future__ import annotations

@@ -104,7 +104,7 @@ def compute(design: GearPairDesign, comm: MPI.Comm) -> TrainResult:
     summary = {
         "errors_percent": _errors(statistics, len(cases)),
         "sampling_error_percent": 100.0 / np.sqrt(2.0 * design.monte_carlo.samples),
-        "cpu_s": {"linearised": seconds[: len(tasks)], "monte_carlo": sum(seconds[len(tasks) :])},
+        "task_s": {"linearised": seconds[: len(tasks)], "monte_carlo": sum(seconds[len(tasks) :])},
         "half_backlash_um": design.mesh.half_backlash,
     }
     tables = {f"density_{case + 1}": _density(sums[case], case, moments) for case in cases}
@@ -113,8 +113,8 @@ def compute(design: GearPairDesign, comm: MPI.Comm) -> TrainResult:
 
 def _statistics(moments: Moments) -> tuple[np.ndarray, np.ndarray]:
     """Means and deviations (rows, 4) of coordinates and mesh, without the start."""
-    ways = np.vstack([np.eye(len(COORDINATES)), WAY])
-    variances = np.einsum("ki,tij,kj->tk", ways, moments.covariance[1:], ways)
+    n, ways = len(COORDINATES), np.vstack([np.eye(len(COORDINATES)), WAY])
+    variances = np.einsum("ki,tij,kj->tk", ways, moments.covariance[1:, :n, :n], ways)
     return moments.mean[1:] @ ways.T, np.sqrt(np.maximum(variances, 0.0))
 
 

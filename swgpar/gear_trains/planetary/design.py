@@ -9,6 +9,7 @@ from annotated_types import Len
 
 from swgpar.errors import InputError
 from swgpar.gear_trains.keys import Output, Positive, TrainDesign
+from swgpar.gear_trains.ring.design import held
 from swgpar.quantities import Section, quantity
 
 Thicknesses = Annotated[list[Positive], Len(1)]
@@ -20,6 +21,7 @@ class Train(Section):
 
 
 class Sun(Section):
+    teeth: int = quantity(text="number of teeth", ge=6, le=1000)
     mass: float = quantity(unit="kg", text="mass", gt=0.0)
     inertia: float = quantity(unit="kg·m²", text="moment of inertia", gt=0.0)
     pitch_diameter: float = quantity(unit="mm", text="pitch diameter", gt=0.0)
@@ -119,10 +121,31 @@ class PlanetaryDesign(TrainDesign):
 
 def check_fit(design: PlanetaryDesign) -> None:
     """Refuse values that do not fit each other."""
-    ring, time = design.ring, design.time
+    ring, time, sun = design.ring, design.time, design.sun
+    if (ring.teeth - sun.teeth) % 2 or ring.teeth <= sun.teeth:
+        raise InputError(
+            f"ring.teeth = {ring.teeth} is out of range: allowed {sun.teeth} (sun.teeth) and twice a planet's teeth"
+        )
+    if (ring.teeth + sun.teeth) % design.planet.count:
+        raise InputError(
+            f"planet.count = {design.planet.count} is out of range: allowed divisors of {ring.teeth + sun.teeth} "
+            "(sun.teeth + ring.teeth), or equally spaced planets do not fit in"
+        )
+    fitting = sun.pitch_diameter * (ring.teeth - sun.teeth) / (2.0 * sun.teeth)
+    if abs(design.planet.pitch_diameter / fitting - 1.0) > 1e-3:
+        raise InputError(
+            f"planet.pitch_diameter = {design.planet.pitch_diameter:g} is out of range: allowed {fitting:g} mm within "
+            "0.1 % (module of the sun, and teeth between sun and ring)"
+        )
     if ring.elements % ring.supports:
         raise InputError(
             f"ring.supports = {ring.supports} is out of range: allowed divisors of {ring.elements} (ring.elements)"
+        )
+    radius = 1e-3 * (ring.root_radius + 0.5 * ring.rim)
+    if not held(ring.supports, ring.radial, ring.tangential, ring.torsional, radius):
+        raise InputError(
+            f"ring.supports = {ring.supports} is out of range: allowed supports whose stiffnesses hold the ring "
+            "against every shift and turn"
         )
     for name in ("steps", "linearised_steps"):
         if getattr(time, name) % time.rows:

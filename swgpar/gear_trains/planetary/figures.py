@@ -49,9 +49,10 @@ def _rims(out: Path, name: str) -> Path:
 
 
 def _forces(out: Path) -> Path:
-    table = read_columns(out / history.NAME)
-    figure, (axis,) = axes("mean forces of the meshes of planet 1", "time (s)", "force (kN)")
-    for name, label in (("sun", "with the sun"), ("ring", "with the ring")):
-        axis.plot(table["time_s"], 1e-3 * table[f"mean_{name}_force_N"], label=label)
-    axis.legend(fontsize=8)
+    table = read_table(out, "mesh_forces")
+    title, labels = "linearised forces of the meshes of planet 1", ("mean (kN)", "mean square (kN²)")
+    figure, panels = axes(title, "time (s)", *(f"{name}: {label}" for name in ("sun", "ring") for label in labels))
+    for k, name in enumerate(("sun", "ring")):
+        panels[2 * k].plot(table["time_s"], 1e-3 * table[f"mean_{name}_force_N"], lw=0.6)
+        panels[2 * k + 1].plot(table["time_s"], 1e-6 * table[f"mean_square_{name}_force_N2"], lw=0.6)
     return save(figure, out, "mesh_forces")

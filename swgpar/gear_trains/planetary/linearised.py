@@ -13,7 +13,7 @@ import numpy as np
 
 from swgpar.errors import ConvergenceError
 from swgpar.gear_trains.backlash import mean_force_and_stiffness, mean_stiffness
-from swgpar.gear_trains.planetary.steps import States, Steps
+from swgpar.gear_trains.planetary.steps import Law, States, Steps
 from swgpar.gear_trains.planetary.watched import watched
 from swgpar.gear_trains.planetary.wind import Wind
 
@@ -21,17 +21,24 @@ TOLERANCE, MAX_ITERATIONS = 1e-6, 50
 """Change of mean forces and equivalent stiffnesses in the last iteration of a step, relative; how many it may take."""
 
 
+CHECKS = 100
+"""Moments of time at which the covariance is examined, at least where there are as many rows."""
+
+
 @dataclass(frozen=True)
 class Moments:
-    """mean, deviation : (rows, watched);  force : (rows, 2) mean forces of the watched meshes, N
+    """mean, deviation : (rows, watched);  force, square : (steps, 2) mean and mean square of the linearised forces of
+    the watched meshes, N and N²: rows may be too few for the tooth cycle
 
-    least : smallest eigenvalue of the covariance at the end over its largest
+    least, skew : the worst `_flaws` of the covariance of all 2 n + 2 unknowns before it is made symmetric, CHECKS times
     """
 
     mean: np.ndarray
     deviation: np.ndarray
     force: np.ndarray
+    square: np.ndarray
     least: float
+    skew: float
 
 
 class _Linear:
@@ -40,25 +47,21 @@ class _Linear:
     def __init__(self, steps: Steps, wind: Wind) -> None:
         self.steps, self.wind, self.n = steps, wind, steps.train.size
 
-    def __call__(self, step: int, columns: np.ndarray, before: np.ndarray, after: np.ndarray) -> np.ndarray:
-        """Columns after a step whose meshes have stiffnesses (m,) at its start and end."""
+    def __call__(self, step: int, columns: np.ndarray, before: np.ndarray, after: Law) -> np.ndarray:
+        """Columns after a step whose meshes have stiffnesses (m,) at its start, and a law at its end."""
         n, steps, wind = self.n, self.steps, self.wind
         q, y, turbulence = columns[:n], columns[n : 2 * n], columns[2 * n :]
         push = steps.push(step - 1, q, y, before[:, None] * (steps.ways[step - 1] @ q))
         moved = wind.moved @ turbulence
-        return self._end(step, States(q, y, push), wind.turbulent @ (turbulence + moved), moved, after)
+        return self._end(step, States(q.copy(), y.copy(), push), wind.turbulent @ (turbulence + moved), moved, after)
 
-    def noise(self, step: int, after: np.ndarray) -> np.ndarray:
+    def noise(self, step: int, after: Law) -> np.ndarray:
         """What the noise of a step adds: (2 n + 2, 2) per standard normal number."""
-        zero = np.zeros((self.n, 2))
-        return self._end(step, States(zero, zero, zero), self.wind.turbulent @ self.wind.root, self.wind.root, after)
+        rest = States(*np.zeros((3, self.n, 2)))
+        return self._end(step, rest, self.wind.turbulent @ self.wind.root, self.wind.root, after)
 
-    def _end(
-        self, step: int, states: States, torques: np.ndarray, turbulence: np.ndarray, stiffness: np.ndarray
-    ) -> np.ndarray:
-        trial = self.steps.trial(step, states, torques)
-        ways = self.steps.linear(step, stiffness, trial.ways)
-        self.steps.finish(step, states, trial, ways, stiffness[:, None] * ways)
+    def _end(self, step: int, states: States, torques: np.ndarray, turbulence: np.ndarray, after: Law) -> np.ndarray:
+        self.steps.linear(step, states, torques, after)
         return np.vstack([states.q, states.y, turbulence])
 
 
@@ -71,41 +74,62 @@ def linearised(steps: Steps, wind: Wind, every: int) -> Moments:
     spread = np.zeros((2 * n + 2, 2 * n + 2))
     deviation = np.zeros(len(steps.stiffness[0]))
     spring = mean_stiffness(steps.stiffness[0], mean, deviation, half)
-    torque, rows = np.array([2.0 * wind.steady]), []
+    torque, rows, forces, least, skew = np.array([2.0 * wind.steady]), [], [], np.inf, 0.0
+    meshes = [0, train.design.planet.count]
     for step in range(1, steps.count + 1):
         k, ways = steps.stiffness[step], steps.ways[step]
-        trial, before = steps.trial(step, states, torque), spring
+        free, before = steps.free_ways(step, states, torque)[:, 0], spring
         for _ in range(MAX_ITERATIONS):
-            mean = _mean_ways(steps, step, trial.ways[:, 0], mean, deviation)
-            used_pull, used = mean_force_and_stiffness(k, mean, deviation, half)
-            half_way = linear(step, spread, before, used)
-            added = linear.noise(step, used)
-            new = linear(step, np.ascontiguousarray(half_way.T), before, used) + added @ added.T
+            mean, used_pull, used = _mean_ways(steps, step, free, mean, deviation)
+            law = steps.law(step, used)
+            half_way = linear(step, spread, before, law)
+            added = linear.noise(step, law)
+            new = linear(step, np.ascontiguousarray(half_way.T), before, law) + added @ added.T
             deviation = np.sqrt(np.maximum(((ways @ new[:n, :n]) * ways).sum(axis=1), 0.0))
             pull, spring = mean_force_and_stiffness(k, mean, deviation, half)
-            if max(np.abs((spring - used) / k).max(), np.abs(pull / used_pull - 1.0).max()) < TOLERANCE:
+            change = np.abs(pull - used_pull).max() / (k * half + np.abs(pull)).max()
+            if max(np.abs((spring - used) / k).max(), change) < TOLERANCE:
                 break
         else:
             raise ConvergenceError(f"the linearisation did not converge at {step * steps.h:g} s")
-        steps.finish(step, states, trial, mean[:, None], pull[:, None])
+        steps.linear(step, states, torque, steps.law(step, np.zeros_like(pull), pull))
+        if step % (every * max(1, steps.count // every // CHECKS)) == 0:
+            lowest, turned = _flaws(new)
+            least, skew = min(least, lowest), max(skew, turned)
         spread = 0.5 * (new + new.T)
         if step % every == 0:
             values = watched(train, steps, step)
             variance = np.einsum("pi,ij,pj->p", values, spread[:n, :n], values)
-            meshes = pull[[0, train.design.planet.count]]
-            rows.append((values @ states.q[:, 0], np.sqrt(np.maximum(variance, 0.0)), meshes))
-    eigenvalues = np.linalg.eigvalsh(spread[:n, :n])
-    means, deviations, forces = (np.array(column) for column in zip(*rows, strict=True))
-    return Moments(means, deviations, forces, float(eigenvalues[0] / max(eigenvalues[-1], 1e-300)))
+            rows.append((values @ states.q[:, 0], np.sqrt(np.maximum(variance, 0.0))))
+        forces.append((pull[meshes], (pull**2 + (spring * deviation) ** 2)[meshes]))
+    columns = (np.array(column) for table in (rows, forces) for column in zip(*table, strict=True))
+    return Moments(*columns, least, skew)
 
 
-def _mean_ways(steps: Steps, step: int, right: np.ndarray, ways: np.ndarray, deviation: np.ndarray) -> np.ndarray:
-    """Mean ways (m,) at the end of a step by Newton's method."""
+def _flaws(covariance: np.ndarray) -> tuple[float, float]:
+    """Smallest eigenvalue of a covariance over the largest, and its largest difference from its transpose: round-off.
+
+    Displacements q, their y and the wind's c and c', (2 n + 2) in all, each over the largest deviation of its kind.
+    """
+    n, variances = len(covariance) // 2 - 1, np.diag(covariance)
+    kinds = [slice(0, n), slice(n, 2 * n), slice(2 * n, 2 * n + 1), slice(2 * n + 1, 2 * n + 2)]
+    size = (
+        np.concatenate([np.full(len(part), max(part.max(), 1e-300)) for part in (variances[k] for k in kinds)]) ** 0.5
+    )
+    scaled = covariance / size / size[:, None]
+    eigenvalues = np.linalg.eigvalsh(0.5 * (scaled + scaled.T))
+    return float(eigenvalues[0] / eigenvalues[-1]), float(np.abs(scaled - scaled.T).max())
+
+
+def _mean_ways(
+    steps: Steps, step: int, right: np.ndarray, ways: np.ndarray, deviation: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Mean ways (m,) at the end of a step by Newton's method, with the mean forces and stiffnesses there."""
     k, half, give, damped = steps.stiffness[step], steps.train.half, steps.give[step], steps.damped[step]
     for _ in range(MAX_ITERATIONS):
         pull, slope = mean_force_and_stiffness(k, ways, deviation, half)
         change = np.linalg.solve(damped + give * slope, damped @ ways + give @ pull - right)
-        ways = ways - change
         if np.abs(change).max() <= 1e-9 * np.abs(ways).max():
-            return ways
+            return ways, pull, slope
+        ways = ways - change
     raise ConvergenceError("the mean of the linearised gear train did not converge")

@@ -5,13 +5,20 @@ motion, rotation). Sun, carrier and planets move in the frame that turns with th
 in print; u is the turn times the base radius (sun, planet) or times the radius of the planets' centres (carrier). With
 the angle ψ of a planet and the pressure angle a, the ways of its meshes are
 
-    sun   d = -x sin(ψ - a) + y cos(ψ - a) + u_s - ξ sin a - η cos a + u_p                              (eq. 3.2)
-    ring  d = ξ sin a - η cos a - u_p - v sin a + w cos a,    v outward, w along the motion of the ring
+    sun   d = -x sin(ψ + a) + y cos(ψ + a) + u_s + ξ sin a - η cos a + u_p                              (eq. 3.2)
+    ring  d = -ξ sin a - η cos a - u_p + v sin a + w cos a,    v outward, w along the motion of the ring
 
 and its bearing's stretches are ξ - x_c cos ψ - y_c sin ψ and η + x_c sin ψ - y_c cos ψ - u_c. Deviations from print,
 which is no derivative of an energy at these places: eq. 3.16 exchanges sine and cosine of v and w against eqs 3.21 and
 3.82; eqs 3.9 to 3.11 and 3.79, 3.80 have an unsymmetric carrier row; eqs 3.25 and 3.26 hold the planet to the ground as
-well as to the carrier; eq. 3.28 has the wind's speed squared in its linear part.
+well as to the carrier; eq. 3.28 has the wind's speed squared in its linear part. In print a has the other sign (eqs
+3.25, 3.26): forces that push the gears apart drive the planet forward there, and under the wind's torque, which they
+resist, flanks would pull. The other flanks, which only a load that turns round meets, keep this line of action, and the
+meshes' dampers act inside the gap too, both as in print.
+
+In the tooth cycle a planet at the angle ψ is z_r ψ ahead at the ring, and z_s ψ behind at the sun, whose teeth pass it
+the other way; as z_s + z_r is a multiple of the number of planets, both are one phase, z_s ψ. Sun and ring meshes of a
+planet are `mesh.phase` apart.
 
 The ring meshes move along the ring. All time dependence is in their six ways and in the mesh stiffnesses: the rest is
 constant, and its modes separate mass, stiffness and damping. `Train` holds everything in these modes.
@@ -84,7 +91,7 @@ class Train:
             np.repeat([m.sun_contact_ratio, m.ring_contact_ratio], count),
             design.carrier.speed * design.ring.teeth,
             m.harmonics,
-            2.0 * np.pi * np.repeat([0.0, m.phase], count),
+            2.0 * np.pi * np.repeat([0.0, m.phase], count) + np.tile(design.sun.teeth * self.angles, 2),
         )
         self.mesh_damping = design.damping.stiffness * mean
         self.half = 1e-6 * m.half_backlash
@@ -132,9 +139,9 @@ class Train:
         count, a = self.design.planet.count, np.radians(self.design.mesh.pressure_angle)
         ways = np.zeros((2 * count, self.size))
         for k, psi in enumerate(self.angles):
-            ways[k, SUN : SUN + 3] = -np.sin(psi - a), np.cos(psi - a), 1.0
-            ways[k, planet(k) : planet(k) + 3] = -np.sin(a), -np.cos(a), 1.0
-            ways[count + k, planet(k) : planet(k) + 3] = np.sin(a), -np.cos(a), -1.0
+            ways[k, SUN : SUN + 3] = -np.sin(psi + a), np.cos(psi + a), 1.0
+            ways[k, planet(k) : planet(k) + 3] = np.sin(a), -np.cos(a), 1.0
+            ways[count + k, planet(k) : planet(k) + 3] = -np.sin(a), -np.cos(a), -1.0
         return ways
 
     def ways(self, t: float) -> np.ndarray:
@@ -143,7 +150,7 @@ class Train:
         a = np.radians(self.design.mesh.pressure_angle)
         for k, psi in enumerate(self.angles):
             along = self.ring.at(self.design.carrier.speed * t + psi)
-            out[count + k, nodes(self.design) :] = np.cos(a) * along[1] - np.sin(a) * along[0]
+            out[count + k, nodes(self.design) :] = np.cos(a) * along[1] + np.sin(a) * along[0]
         return out
 
     def modal_ways(self, times: np.ndarray) -> np.ndarray:

@@ -11,6 +11,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.gear_trains.backlash import force
+from swgpar.gear_trains.cycles import slow_cycles
 from swgpar.gear_trains.planetary.design import PlanetaryDesign
 from swgpar.gear_trains.planetary.linearised import Moments, linearised
 from swgpar.gear_trains.planetary.model import Train, elastic_ring, radii
@@ -23,9 +24,6 @@ from swgpar.gear_trains.result import Table, TrainResult
 from swgpar.gear_trains.sampling import blocks, generator, share_out
 from swgpar.gear_trains.sums import Sums
 from swgpar.log import logger
-
-SLOWEST_WAVE = 18
-"""Largest number of cycles in a revolution that counts as slow: tooth meshes come faster."""
 
 
 def quantities(design: PlanetaryDesign) -> Quantities:
@@ -117,8 +115,8 @@ def compute(design: PlanetaryDesign, comm: MPI.Comm) -> TrainResult:
     sums = reduce(Sums.with_more, (part for part, _ in simulated))
     here = moments[design.ring.rim]
     values: dict[str, float | list[float]] = {
-        "cycles_contact": _cycles(here.mean[:, NAMES.index("contact_v")], design.time.revolutions),
-        "cycles_node": _cycles(here.mean[:, NAMES.index("node_w")], design.time.revolutions),
+        "cycles_contact": slow_cycles(here.mean[:, NAMES.index("contact_v")], design.time.revolutions),
+        "cycles_node": slow_cycles(here.mean[:, NAMES.index("node_w")], design.time.revolutions),
         "out_of_contact": sum(lost for _, lost in simulated) / (design.time.steps * design.monte_carlo.samples),
     }
     for rim in design.ring.rims:
@@ -132,9 +130,14 @@ def compute(design: PlanetaryDesign, comm: MPI.Comm) -> TrainResult:
         },
         "sampling_error_percent": 100.0 / np.sqrt(2.0 * sums.count),
         "least_eigenvalue_over_largest": here.least,
-        "cpu_s": {"linearised": [s for _, s in done[: len(rims)]], "monte_carlo": sum(s for _, s in done[len(rims) :])},
+        "asymmetry_of_correlations": here.skew,
+        "task_s": {
+            "linearised": [s for _, s in done[: len(rims)]],
+            "monte_carlo": sum(s for _, s in done[len(rims) :]),
+        },
     }
-    return TrainResult(_history(design, here, sums), {"rims": _rims(design, moments)}, values, summary)
+    tables = {"rims": _rims(design, moments), "mesh_forces": _forces(design, here)}
+    return TrainResult(_history(design, here, sums), tables, values, summary)
 
 
 def _errors(here: np.ndarray, there: np.ndarray) -> dict[str, float]:
@@ -145,18 +148,12 @@ def _errors(here: np.ndarray, there: np.ndarray) -> dict[str, float]:
     )
 
 
-def _cycles(mean: np.ndarray, revolutions: float) -> float:
-    """Number of slow cycles in a revolution with the largest amplitude."""
-    amplitude = np.abs(np.fft.rfft(mean))[: int(SLOWEST_WAVE * revolutions) + 1]
-    return float((1 + np.argmax(amplitude[1:])) / revolutions)
-
-
 def _times(design: PlanetaryDesign) -> np.ndarray:
     return design.end * np.arange(1, design.time.rows + 1) / design.time.rows
 
 
 def _history(design: PlanetaryDesign, moments: Moments, sums: Sums) -> Table:
-    """Means and deviations in µm, and mean forces of the meshes of planet 1."""
+    """Means and deviations in µm."""
     out = {"time_s": _times(design)}
     for k, name in enumerate(NAMES):
         out |= {
@@ -165,7 +162,16 @@ def _history(design: PlanetaryDesign, moments: Moments, sums: Sums) -> Table:
             f"monte_carlo_mean_{name}_um": 1e6 * sums.mean[:, k],
             f"monte_carlo_deviation_{name}_um": 1e6 * sums.deviation[:, k],
         }
-    return out | {"mean_sun_force_N": moments.force[:, 0], "mean_ring_force_N": moments.force[:, 1]}
+    return out
+
+
+def _forces(design: PlanetaryDesign, moments: Moments) -> Table:
+    """Mean and mean square of the linearised forces of the meshes of planet 1 after every step."""
+    steps = len(moments.force)
+    out = {"time_s": design.end * np.arange(1, steps + 1) / steps}
+    for k, name in enumerate(("sun", "ring")):
+        out |= {f"mean_{name}_force_N": moments.force[:, k], f"mean_square_{name}_force_N2": moments.square[:, k]}
+    return out
 
 
 def _rims(design: PlanetaryDesign, moments: dict[float, Moments]) -> Table:

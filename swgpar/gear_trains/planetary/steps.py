@@ -9,8 +9,8 @@ W their ways then. Multiplied by W this is a system for the m ways d1 alone,
 
     (1 + 2/h G c) d1 + G f(d1) = d,    G = h/2 W D⁻¹ Wᵀ,
 
-whose matrices are the same for all states. So a step costs a few products with W and some sums over the modes. Instead
-of the velocities v the states hold y = 2/h q + v: then y1 = 4/h q1 - y0.
+whose matrices are the same for all states. So a step costs a few products with W and some sums over the modes: they are
+compiled (kernel/planetary.hpp). Instead of the velocities v the states hold y = 2/h q + v: then y1 = 4/h q1 - y0.
 """
 
 from __future__ import annotations
@@ -19,10 +19,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from swgpar.errors import ConvergenceError
 from swgpar.gear_trains.backlash import force
 from swgpar.gear_trains.planetary.model import Train
+from swgpar.kernel import TrainKernel
 
-MAX_ITERATIONS = 50
+Law = tuple[np.ndarray, np.ndarray, np.ndarray]
+"""Of the meshes at the end of a step: (1, m, m) from their forces to their ways; springs and constants (1, m)."""
 
 
 @dataclass
@@ -32,15 +35,6 @@ class States:
     q: np.ndarray
     y: np.ndarray
     push: np.ndarray
-
-
-@dataclass(frozen=True)
-class Trial:
-    """A step without the forces of the meshes at its end: D⁻¹ r (n, states), W y and d (m, states)."""
-
-    modes: np.ndarray
-    rate: np.ndarray
-    ways: np.ndarray
 
 
 class Steps:
@@ -59,64 +53,64 @@ class Steps:
         self.ways = train.modal_ways(times)
         self.stiffness = np.array([train.mesh.at(t) for t in times])
         inverse = 1.0 / (2.0 / h + train.damping + 0.5 * h * train.stiffness)
-        self.of_q = (inverse * (train.damping - 2.0 / h - 0.5 * h * train.stiffness))[:, None]
-        self.of_y = 2.0 * inverse[:, None]
-        self.of_torque = (0.5 * h * inverse * train.torque_push)[:, None]
-        self.pushes = 0.5 * h * inverse[:, None] * self.ways.transpose(0, 2, 1)
-        self.give = self.ways @ self.pushes
+        self.of_q = inverse * (train.damping - 2.0 / h - 0.5 * h * train.stiffness)
+        self.of_y = 2.0 * inverse
+        self.of_torque = 0.5 * h * inverse * train.torque_push
+        self.scale = 0.5 * h * inverse
+        self.give = (self.ways * self.scale) @ self.ways.transpose(0, 2, 1)
         self.damped = np.eye(self.ways.shape[1]) + 2.0 / h * self.give * train.mesh_damping
         self.touching = np.linalg.inv(self.damped + self.give * self.stiffness[:, None, :])
-        self.damping = train.mesh_damping[:, None]
+        self.kernel = TrainKernel(
+            h,
+            train.half,
+            self.of_q,
+            self.of_y,
+            self.of_torque,
+            self.scale,
+            self.ways,
+            self.give,
+            train.mesh_damping,
+        )
 
-    def trial(self, step: int, states: States, torques: np.ndarray) -> Trial:
-        """The trial of step `step`; torques : (states,) N·m, those at its start and end added up."""
-        w = self.ways[step]
-        modes = self.of_q * states.q
-        modes += self.of_y * states.y
-        modes -= states.push
-        modes += self.of_torque * torques
-        rate = w @ states.y
-        return Trial(modes, rate, w @ modes + self.give[step] @ (self.damping * rate))
+    def simulate(self, first: int, states: States, torques: np.ndarray, sides: np.ndarray) -> int:
+        """Move states on by the steps after number `first`, one for each row of torques, meshes with backlash.
 
-    def finish(self, step: int, states: States, trial: Trial, ways: np.ndarray, forces: np.ndarray) -> None:
-        """Turn the states into those at the end of a step, where the meshes have given ways and forces (m, states)."""
-        states.push = self.pushes[step] @ (forces + self.damping * (2.0 / self.h * ways - trial.rate))
-        states.q = np.subtract(trial.modes, states.push, out=trial.modes)
-        states.y = 4.0 / self.h * states.q - states.y
-
-    def linear(self, step: int, stiffness: np.ndarray, right: np.ndarray) -> np.ndarray:
-        """Ways (m, states) at the end of a step for f = stiffness d; right : d of the trial (m, states)."""
-        return np.linalg.solve(self.damped[step] + self.give[step] * stiffness, right)
-
-    def with_backlash(self, step: int, sides: np.ndarray, right: np.ndarray) -> tuple[np.ndarray, int]:
-        """Ways (m, states) at the end of a step for meshes with backlash, and in how many states one does not touch.
-
+        torques : (steps, states) N·m, those at the start and the end of each step added up
         sides : (m,) 1 or -1, the flanks that carry the steady load; states whose meshes all touch there need one
-        product, the others Newton's method on the pieces of f
+        product, the others Newton's method on the pieces of f. Returns in how many steps of how many states that was.
         """
-        k, half = self.stiffness[step], self.train.half
-        ways = self.touching[step] @ (right + (self.give[step] @ (k * sides * half))[:, None])
-        left = np.flatnonzero((sides[:, None] * ways < half).any(axis=0))
-        if len(left):
-            ways[:, left] = self._pieces(step, ways[:, left], right[:, left])
-        return ways, len(left)
+        rows = slice(first + 1, first + 1 + len(torques))
+        k = self.stiffness[rows]
+        law = self.touching[rows], k, -self.train.half * k * sides
+        lost = self.kernel.advance(first, states.q, states.y, states.push, torques, *law, sides)
+        if lost < 0:
+            raise ConvergenceError(f"the motion of the gear train did not converge at {-lost * self.h:g} s")
+        return lost
 
-    def _pieces(self, step: int, ways: np.ndarray, right: np.ndarray) -> np.ndarray:
-        k, half = self.stiffness[step][:, None], self.train.half
-        give, damped = self.give[step], self.damped[step]
-        pieces = np.sign(ways) * (np.abs(ways) > half)
-        for _ in range(MAX_ITERATIONS):
-            matrix = damped + give * (k * np.abs(pieces)).T[:, None, :]
-            ways = np.linalg.solve(matrix, (right + give @ (k * half * pieces)).T[..., None])[..., 0].T
-            before, pieces = pieces, np.sign(ways) * (np.abs(ways) > half)
-            if (pieces == before).all():
-                break
-        return ways
+    def law(self, step: int, spring: np.ndarray, constant: np.ndarray | None = None) -> Law:
+        """Mesh forces spring d + constant at the end of a step, (m,) N/m and N."""
+        constant = np.zeros_like(spring) if constant is None else constant
+        return np.linalg.inv(self.damped[step] + self.give[step] * spring)[None], spring[None], constant[None]
+
+    def linear(self, step: int, states: States, torques: np.ndarray, law: Law) -> None:
+        """Move states on by step number `step` for mesh forces of a `law` there.
+
+        torques : (states,) N·m, those at the start and the end added up
+        """
+        self.kernel.advance(step - 1, states.q, states.y, states.push, torques[None], *law)
+
+    def free_ways(self, step: int, states: States, torques: np.ndarray) -> np.ndarray:
+        """d (m, states): what the ways would be at the end of a step but for the meshes' forces there."""
+        q, y, push = states.q, states.y, states.push
+        modes = self.of_q[:, None] * q + self.of_y[:, None] * y - push + self.of_torque[:, None] * torques
+        w, c = self.ways[step], self.train.mesh_damping[:, None]
+        return w @ modes + self.give[step] @ (c * (w @ y))
 
     def push(self, step: int, q: np.ndarray, y: np.ndarray, forces: np.ndarray) -> np.ndarray:
         """The push (n, states) of meshes with forces (m, states) in states (q, y) at the end of a step."""
         w = self.ways[step]
-        return self.pushes[step] @ (forces + self.damping * (w @ y - 2.0 / self.h * (w @ q)))
+        damping = self.train.mesh_damping[:, None] * (w @ y - 2.0 / self.h * (w @ q))
+        return self.scale[:, None] * (w.T @ (forces + damping))
 
     def at_rest(self, torque: float) -> tuple[States, np.ndarray]:
         """The state (one column) at rest under a steady torque at the start, and the sides (m,) the meshes touch on.

@@ -6,8 +6,9 @@ its cross-section. The energy is that of Flügge's thin ring,
     U = 1/2 ∫ (E A e² + E I k²) R da,    e = (w' + u) / R,    k = (u + u'') / R²,
 
 with the kinetic energy of u, w and r. Its exact solutions without load are six functions of a; they are the source's
-(eqs 3.17 to 3.19 and 6.1 to 6.3, with its radial displacement inward), the stretching one with J = 1 + I / (A R²).
-Stiffness and mass follow from the energy and are symmetric. Deviations from print:
+(eqs 3.17 to 3.19 and 6.1 to 6.3, with its radial displacement inward; J.-S. Wu, L.-K. Chiang, Dynamic analysis of an
+arch due to a moving load, Journal of Sound and Vibration 269 (2004) 511-534), the stretching one with
+J = 1 + I / (A R²). Stiffness and mass follow from the energy and are symmetric. Deviations from print:
 
 - shape functions are P(a) Q⁻¹, not P Qᵀ (eqs 3.67, 6.5); eq. 3.18 lacks the G4 term and has one of G3 for it;
 - the stiffness is Q⁻ᵀ (∫ of the strains' products) Q⁻¹; the printed V Q⁻¹ (eqs 5.3, 6.21; D of eq. 3.61) has signs and

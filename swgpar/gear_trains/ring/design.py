@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
+import numpy as np
 from annotated_types import Len
 
 from swgpar.errors import InputError
@@ -69,6 +70,17 @@ class RingDesign(TrainDesign):
     output: Output = Output()
 
 
+def held(supports: int, radial: float, tangential: float, torsional: float, radius: float) -> bool:
+    """Whether equally spaced supports (N/m, N/m, N·m/rad) hold a ring of some radius (m) against all rigid motions."""
+    angle = 2.0 * np.pi * np.arange(supports) / supports
+    none, one = np.zeros(supports), np.ones(supports)
+    motions = (np.cos(angle), np.sin(angle), none), (-np.sin(angle), np.cos(angle), one), (none, none, one)
+    springs = radial, tangential, torsional / radius**2
+    stiffness = sum(k * np.array(m) @ np.array(m).T for k, m in zip(springs, motions, strict=True))
+    lowest, _, highest = np.linalg.eigvalsh(stiffness)
+    return bool(lowest > 1e-12 * highest)
+
+
 def check_fit(design: RingDesign) -> None:
     """Refuse values that do not fit each other."""
     body, load = design.ring, design.moving_load
@@ -89,6 +101,17 @@ def check_fit(design: RingDesign) -> None:
         return
     if design.supports is None:
         raise InputError("supports is missing: allowed only without moving_load, which would carry the ring away")
+    s, radius = design.supports, 0.5e-3 * (body.inner_radius + body.outer_radius)
+    if not held(s.count, s.radial, s.tangential, s.torsional, radius):
+        raise InputError(
+            f"supports.tangential = {s.tangential:g} is out of range: allowed stiffnesses of the supports that "
+            "hold the ring under moving_load against every shift and turn"
+        )
+    if load.damping_mass + load.damping_stiffness <= 0.0:
+        raise InputError(
+            f"moving_load.damping_stiffness = {load.damping_stiffness:g} is out of range: allowed above 0 to inf s "
+            "without moving_load.damping_mass, or noise would add up for ever"
+        )
     if body.elements // design.supports.count < 2:
         raise InputError(
             f"ring.elements = {body.elements} is out of range: allowed at least {2 * design.supports.count}, "

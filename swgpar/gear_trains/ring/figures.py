@@ -69,16 +69,19 @@ def _monte_carlo(out: Path, point: str) -> Path:
     figure, panels = axes(title, "angle of the first load (rad)", "mean (µm)", "standard deviation (µm)")
     for axis, kind in zip(panels, ("mean", "deviation"), strict=True):
         axis.plot(simulated["angle_rad"], 1e6 * simulated[f"{kind}_{point}_m"], "k", lw=0.7, label="Monte Carlo")
-        axis.plot(table["angle_rad"][rows], 1e6 * table[f"{kind}_{point}_m"][rows], "C0--", label="stochastic Newmark")
+        axis.plot(table["angle_rad"][rows], 1e6 * table[f"{kind}_{point}_m"][rows], "C0--", label="mean and covariance")
     panels[0].legend(fontsize=8)
     return save(figure, out, f"monte_carlo_{point}")
 
 
 def _critical(out: Path) -> Path:
     table = read_table(out, "critical_speeds")
-    figure, (axis,) = axes("largest mean displacement against the speed", "speed (rad/s)", "over that of the first")
-    for point, label in POINTS.items():
-        values = table[f"mean_{point}_m"]
-        axis.plot(table["speed_rad_s"], values / values[0], label=label)
-    axis.legend(fontsize=8)
+    panels = ("mean over that of the first", "deviation over that of the first")
+    figure, (upper, lower) = axes("largest displacements against the speed", "speed (rad/s)", *panels)
+    for k, (point, label) in enumerate(POINTS.items()):
+        mean, deviation, still = (table[f"{n}_{point}_m"] for n in ("mean", "deviation", "without_inertia"))
+        upper.plot(table["speed_rad_s"], mean / mean[0], f"C{k}", lw=1.0, label=label)
+        upper.plot(table["speed_rad_s"], still / mean[0], "k:", lw=0.9, label=None if k else "without inertia")
+        lower.plot(table["speed_rad_s"], deviation / deviation[0], f"C{k}", lw=1.0)
+    upper.legend(fontsize=8, ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1.0))  # the curves fill the panel
     return save(figure, out, "critical_speeds")

@@ -2,10 +2,13 @@
 
 Each load is F0 + f sin(w t) + b W(t) with a white noise W of its own, of unit intensity; the harmonic part of load k is
 that of the first at the time when the first comes to its place (eq. 6.16). It pushes outward by the sine and along the
-motion by the cosine of the pressure angle. Damping is proportional, so that the modes of the ring separate; all of them
-are kept. A step is then exact for forces that are linear in it and noises that keep their place, and has to resolve the
-way of the loads alone. The source takes the stochastic Newmark scheme (eqs 6.28 to 6.32), whose variance depends on the
-step unless that resolves the ring's vibrations: it is the check of this (tests/verification/test_ring.py).
+motion by the cosine of the pressure angle, as in eq. 3.21 (eq. 6.14 has it against the motion; but the planets drive
+the ring along). Damping is proportional, so that the modes of the ring separate; all of them are kept. A step is then
+exact for forces that are linear in it and noises that keep their place, and has to resolve the way of the loads alone.
+
+The source takes the stochastic Newmark scheme (eqs 6.28 to 6.32; P. Bernard, G. Fleury, Stochastic Newmark scheme,
+Probabilistic Engineering Mechanics 17 (2002) 45-61), whose variance depends on the step unless that resolves the ring's
+vibrations: it is the check of this (tests/verification/test_ring.py).
 """
 
 from __future__ import annotations
@@ -18,6 +21,7 @@ from scipy.linalg import expm
 
 from swgpar.gear_trains.ring.beam import Ring
 from swgpar.gear_trains.ring.design import RingDesign
+from swgpar.gear_trains.sums import Sums
 
 
 @dataclass(frozen=True)
@@ -27,12 +31,12 @@ class Response:
     Attributes
     ----------
     angle : (rows,) rad, of the first load
-    mean : (rows, 2) m;  deviation : (rows, 2) m, or None where it was not asked for
+    mean, deviation : (rows, 2) m
     """
 
     angle: np.ndarray
     mean: np.ndarray
-    deviation: np.ndarray | None
+    deviation: np.ndarray
 
 
 def middle_node(design: RingDesign) -> int:
@@ -69,7 +73,7 @@ class MovingLoads:
         count = len(self.push)
         return (half_steps + number * count // self.load.loads) % count
 
-    def respond(self, speed: float, *, covariance: bool) -> Response:
+    def respond(self, speed: float) -> Response:
         """Go round at a speed (rad/s), from rest at the steady deflection under the loads at their first places."""
         load, n = self.load, self.load.steps
         h = 2.0 * np.pi / speed / n
@@ -81,24 +85,33 @@ class MovingLoads:
         for step in range(1, load.revolutions * n + 1):
             before, force = force, self.forces(step % n, step * h, speed)
             q, v = modes.step(q, v, before, force)
-            if covariance:
-                spread = modes.spread(spread, self.noises(step % n))
+            spread = modes.spread(spread, self.noises(step % n))
             row = step - (load.revolutions - 1) * n - 1
             if row >= 0:
                 watched = np.stack([self.outward[step % n], self.middle])
                 mean[row] = watched @ q
                 deviation[row] = np.sqrt(np.maximum(np.einsum("pi,ij,pj->p", watched, spread[0, 0], watched), 0.0))
-        return Response(2.0 * np.pi * np.arange(1, n + 1) / n, mean, deviation if covariance else None)
+        return Response(2.0 * np.pi * np.arange(1, n + 1) / n, mean, deviation)
 
-    def simulate(self, speed: float, samples: int, random: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-        """Mean and deviation (rows, 2) of `samples` simulations at a speed, as in `Response`; noise alone varies."""
+    def at_rest(self, speed: float) -> np.ndarray:
+        """Mean displacements (rows, 2), m, as in `Response` of a ring without inertia and damping."""
+        load, n = self.load, self.load.steps
+        h, mean = 2.0 * np.pi / speed / n, np.empty((n, 2))
+        for row in range(n):
+            step = (load.revolutions - 1) * n + row + 1
+            force = self.forces(step % n, step * h, speed)
+            mean[row] = np.stack([self.outward[step % n], self.middle]) @ (force / self.frequencies**2)
+        return mean
+
+    def simulate(self, speed: float, samples: int, random: np.random.Generator) -> Sums:
+        """The displacements (rows, 2) of `Response` in `samples` simulations at a speed; noise alone varies."""
         load, n = self.load, self.load.steps
         h = 2.0 * np.pi / speed / n
         modes = Modes(self.frequencies**2, load.damping_mass + load.damping_stiffness * self.frequencies**2, h)
         root = modes.noise_root()
         force = self.forces(0, 0.0, speed)
         q, v = np.tile(force / modes.k, (samples, 1)), np.zeros((samples, len(force)))
-        mean, deviation = np.empty((n, 2)), np.empty((n, 2))
+        mean, squares = np.empty((n, 2)), np.empty((n, 2))
         for step in range(1, load.revolutions * n + 1):
             before, force = force, self.forces(step % n, step * h, speed)
             q, v = modes.step(q, v, before, force)
@@ -109,8 +122,8 @@ class MovingLoads:
             row = step - (load.revolutions - 1) * n - 1
             if row >= 0:
                 values = q @ np.stack([self.outward[step % n], self.middle]).T
-                mean[row], deviation[row] = values.mean(axis=0), values.std(axis=0, ddof=1)
-        return mean, deviation
+                mean[row], squares[row] = values.mean(axis=0), values.var(axis=0) * samples
+        return Sums(samples, mean, squares, values[:, 1])
 
 
 class Modes:

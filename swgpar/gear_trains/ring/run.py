@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
+from functools import partial, reduce
 from typing import Any
 
 import numpy as np
 from mpi4py import MPI
 
+from swgpar.gear_trains.cycles import slow_cycles
 from swgpar.gear_trains.published import Quantities, label
 from swgpar.gear_trains.result import Table, TrainResult
 from swgpar.gear_trains.ring.beam import Ring, Section, free_frequencies
 from swgpar.gear_trains.ring.design import RingDesign
 from swgpar.gear_trains.ring.moving_load import MovingLoads, Response
 from swgpar.gear_trains.sampling import blocks, generator, share_out
+from swgpar.gear_trains.sums import Sums
 from swgpar.log import logger
 
 POINTS = ("moving_point", "middle_node")
@@ -27,9 +29,6 @@ SHAPES, AROUND = 6, 361
 BLOCK = 50
 RIGID = 1e-3
 """Modes below this share of the first free bending frequency are rigid motions."""
-
-SLOWEST_WAVE = 18
-"""Largest number of cycles in a revolution that counts as slow: tooth meshes come faster."""
 
 
 def quantities(design: RingDesign) -> Quantities:
@@ -92,9 +91,8 @@ def compute(design: RingDesign, comm: MPI.Comm) -> TrainResult:
     if design.moving_load is None:
         return TrainResult(modes, tables, values)
     responses, curve, simulated = _moving(design, comm)
-    values |= (
-        _extremes(design.moving_load.speeds, responses) | _cycles(responses[0]) | {"critical_speeds": _peaks(curve)}
-    )
+    values |= _extremes(design.moving_load.speeds, responses) | {"critical_speeds": _peaks(curve)}
+    values |= {f"cycles_{point}": slow_cycles(responses[0].mean[:, k]) for k, point in enumerate(POINTS)}
     tables |= {"critical_speeds": curve, "monte_carlo": simulated}
     return TrainResult(_history(design, responses), tables, values)
 
@@ -105,28 +103,26 @@ def _moving(design: RingDesign, comm: MPI.Comm) -> tuple[list[Response], Table, 
     loads = MovingLoads(design)
     sweep = np.linspace(*load.sweep, load.sweep_speeds)
     sizes = blocks(load.samples, BLOCK)
-    tasks: list[Callable[[], Any]] = [partial(loads.respond, speed, covariance=True) for speed in load.speeds]
-    tasks += [partial(loads.respond, float(speed), covariance=False) for speed in sweep]
+    tasks: list[Callable[[], Any]] = [partial(loads.respond, float(speed)) for speed in (*load.speeds, *sweep)]
     simulations = [
         partial(loads.simulate, load.speeds[0], size, generator(design.gear_train.seed, block))
         for block, size in enumerate(sizes)
     ]
     done = share_out(comm, [*tasks, *simulations])
     responses, parts = done[: len(load.speeds)], done[len(load.speeds) : len(tasks)]
-    largest = np.array([np.abs(part.mean).max(axis=0) for part in parts])
-    curve = {"speed_rad_s": sweep} | {f"mean_{p}_m": largest[:, k] for k, p in enumerate(POINTS)}
-    counts = np.array(sizes, dtype=float)
-    means, deviations = (np.array([d[k] for d in done[len(tasks) :]]) for k in (0, 1))
-    mean = np.average(means, axis=0, weights=counts)
-    squares = ((counts - 1)[:, None, None] * deviations**2).sum(axis=0) + (
-        counts[:, None, None] * (means - mean) ** 2
-    ).sum(axis=0)
-    deviation = np.sqrt(squares / (load.samples - 1))
+    curve = {"speed_rad_s": sweep}
+    for k, point in enumerate(POINTS):
+        curve |= {
+            f"mean_{point}_m": np.array([np.abs(part.mean[:, k]).max() for part in parts]),
+            f"deviation_{point}_m": np.array([part.deviation[:, k].max() for part in parts]),
+            f"without_inertia_{point}_m": np.array([np.abs(loads.at_rest(s)[:, k]).max() for s in sweep]),
+        }
+    sums = reduce(Sums.with_more, done[len(tasks) :])
     every = max(1, load.steps // ROWS)
     rows = slice(every - 1, None, every)
     simulated = {"angle_rad": responses[0].angle[rows]}
     for k, point in enumerate(POINTS):
-        simulated |= {f"mean_{point}_m": mean[rows, k], f"deviation_{point}_m": deviation[rows, k]}
+        simulated |= {f"mean_{point}_m": sums.mean[rows, k], f"deviation_{point}_m": sums.deviation[rows, k]}
     return responses, curve, simulated
 
 
@@ -136,15 +132,6 @@ def _extremes(speeds: list[float], responses: list[Response]) -> dict[str, float
         for k, point in enumerate(POINTS):
             out[f"mean_{point}_{label(speed)}"] = float(np.abs(response.mean[:, k]).max())
             out[f"deviation_{point}_{label(speed)}"] = float(response.deviation[:, k].max())
-    return out
-
-
-def _cycles(response: Response) -> dict[str, float]:
-    """Number of slow cycles in a revolution with the largest amplitude in the mean."""
-    out = {}
-    for k, point in enumerate(POINTS):
-        amplitude = np.abs(np.fft.rfft(response.mean[:, k]))[: SLOWEST_WAVE + 1]
-        out[f"cycles_{point}"] = float(1 + np.argmax(amplitude[1:]))
     return out
 
 
