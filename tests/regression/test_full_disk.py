@@ -83,7 +83,7 @@ def test_small_disk(plain: Path, disk: Disk, ranks: int) -> None:
     assert_readable(out, plain, fields=True)
     disk.grow(64 * 1024)
     succeed([*run_command(out, "--restart", ranks=ranks), "output.fields=true"])
-    assert_same_history(out, plain, iterations=ranks == 1)
+    assert_same_history(out, plain, iterations=False)  # a restart makes its first factor anew
     assert size(out) > 0.9 * needed
 
 
@@ -103,4 +103,4 @@ def test_something_else_fills_the_disk(plain: Path, disk: Disk) -> None:
     assert len(history.read_history(out / history.NAME)) == 5
     (disk.place / "ballast").unlink()
     succeed(run_command(out, "--restart"))
-    assert_same_history(out, plain)
+    assert_same_history(out, plain, iterations=False)
