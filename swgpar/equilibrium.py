@@ -338,9 +338,9 @@ class Equilibrium:
         if not self.step.careful and self.visited.returns(fingerprint(self.partition.comm, self._active_sets()), ratio):
             logger.info("   contacts of Newton iteration %d return without progress: careful line search", its)
             self.step.careful = True
-            if not self.teeth.frozen:
+            if self.may_hold and not self.teeth.frozen:
                 self.teeth.hold()  # for given segments no cycle survives the careful search
-                self.held_early = True
+                self.held_early, self.may_hold = self.teeth.frozen, False
         return None
 
     def _active_sets(self) -> list[np.ndarray]:
@@ -359,6 +359,7 @@ class Equilibrium:
             self.x.array[-len(unused) :][unused] = 0.0
         self.search()
         iterations, self.augmentations, searches = 0, 0, 0
+        self.may_hold = True  # once: afterwards the faces are cut anew, and the iteration starts close to the solution
         soften = list(SOFTENING) if soft else []
         tolerance = self.design.contact.penetration_tolerance * self.design.drive.module
         while True:
