@@ -16,12 +16,12 @@ import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from page import markdown, put
 from peer_ccx import read_answer, write_job
 from peer_problems import LEVELS, PROBLEMS, sector, side
 
@@ -120,6 +120,7 @@ def write(rows: list[Row], tables: Path) -> None:
         writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
         writer.writeheader()
         writer.writerows({k: f"{v:.6g}" if isinstance(v, float) else v for k, v in row.items()} for row in rows)
+    put(tables / "peer.md", "table", markdown([HEAD, *map(line_of, rows)]))
 
 
 HEAD = (
@@ -141,10 +142,6 @@ def line_of(row: Row) -> list[str]:
     return [*cells, f"{row['times_faster']:.2g}", f"{row['times_less_cpu']:.2g}"]
 
 
-def markdown(cells: Iterable[str]) -> str:
-    return "| " + " | ".join(cells) + " |"
-
-
 def main() -> None:
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--out", default="results/bench/peer", help="jobs and logs")
@@ -161,13 +158,13 @@ def main() -> None:
     kept = tables / "peer.json"
     rows: list[Row] = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else []
     order = list(PROBLEMS)
-    print(markdown(HEAD), markdown("---" for _ in HEAD), sep="\n")
+    print(" | ".join(HEAD))
     for name in order:
         if not any(name.startswith(word) for word in arguments.only):
             continue
         for level in arguments.levels:
             row = compare(name, LEVELS[level], Path(arguments.out).resolve(), arguments.cores)
-            print(markdown(line_of(row)), flush=True)
+            print(" | ".join(line_of(row)), flush=True)
             rows = [r for r in rows if any(r[k] != row[k] for k in ("problem", "dofs", "cores"))] + [row]
             rows.sort(key=lambda r: (r["cores"], order.index(r["problem"]), r["dofs"]))
             write(rows, tables)
