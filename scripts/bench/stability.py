@@ -21,6 +21,7 @@ from typing import Any
 
 from page import markdown, put
 
+from swgpar.incremental import LOADED
 from swgpar.results import history
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -85,6 +86,7 @@ def verdict(outcome: dict[str, str]) -> Row:
     status, reason = outcome["status"], outcome["reason"]
     if status == "failed" and "allowed" in reason:
         status = "refused"
+    reason = reason.partition("; ")[0]  # what follows says where the results are
     return {"status": "converged" if status == "finished" else status, "wall_s": outcome["wall_s"], "reason": reason}
 
 
@@ -102,9 +104,10 @@ def measured(folder: Path, case: dict[str, Any]) -> Row:
         "cutbacks": log.count("cut back to"),
         "cycles": log.count("return without progress"),
     }
-    torque = max((abs(r["output_torque_Nmm"]) for r in rows), default=0.0)
+    loaded = [r for r in rows if int(r["step"]) >= LOADED]
+    torque = max((abs(r["output_torque_Nmm"]) for r in loaded), default=0.0)
     if torque:
-        out["unbalanced"] = max(r["torque_balance_Nmm"] for r in rows) / torque
+        out["unbalanced"] = max(r["torque_balance_Nmm"] for r in loaded) / torque
     turned = [r for r in rows if int(r["step"]) >= 4]
     if not case.get("contact.friction") and len(turned) == 3:
         out["drift"] = drift(turned[0], turned[-1])
