@@ -33,7 +33,7 @@ SOFTENING, SOFT_TOLERANCE = (1e-3, 3e-2), 1e-2
 HOLD = 0.55
 """Power of the tolerance: residual over contact force below which segments of the flanks are kept. Newton's iteration
 is then quadratic: the next step or the one after it ends. Kept at 1e-3, segments make the state depend on the way to it
-by 4e-5 of the input torque where teeth are wedged, at 1e-4 and 3e-5 by 1e-6; kept later, a solve takes some iterations more."""
+by 4e-5 of the input torque where teeth are wedged, at 1e-4 by 1e-6; kept later, a solve takes some iterations more."""
 
 SEARCHES = 3
 """Further contact searches of a solve, at states in which flanks touch that the last one left out."""
