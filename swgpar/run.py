@@ -17,7 +17,7 @@ from petsc4py import PETSc
 
 import swgpar
 from swgpar import log
-from swgpar.accuracy import Chosen, choose, with_accuracy
+from swgpar.accuracy import choose, with_accuracy
 from swgpar.assembly import write_field
 from swgpar.contact import friction
 from swgpar.contact.pressure import nodal_pressure
@@ -300,7 +300,9 @@ def run_drive(
     try:
         if chosen is not None:
             write_from_root(comm, out / RECIPE, to_toml(recipe).encode())
-        result = _compute(model, recipe, recorder, resumed, restart, begin, recipe_name, accuracy, chosen, on_increment)
+            recorder.coarser = chosen.below
+            recorder.accuracy = Accuracy(accuracy, chosen.error, chosen.error <= accuracy)
+        result = _compute(model, recipe, recorder, resumed, restart, begin, recipe_name, on_increment)
     except SwgparError as error:
         model.destroy()  # collective: not after an error that perhaps this rank alone has met
         if isinstance(error, ConvergenceError) and recorder.done:
@@ -331,8 +333,6 @@ def _compute(
     restart: bool,
     begin: float,
     recipe_name: str,
-    accuracy: float | None,
-    chosen: Chosen | None,
     on_increment: Callable[[], None] | None,
 ) -> RunSummary:
     comm, out, runner = model.comm, recorder.out, Runner(model)
@@ -352,9 +352,7 @@ def _compute(
         logger.info("restarted after increment %d", recorder.done)
     elif restart:
         logger.info("no increment was saved: starting from the beginning")
-    if chosen is not None:
-        recorder.coarser = chosen.below
-        recorder.accuracy = Accuracy(accuracy, chosen.error, chosen.error <= accuracy)
+    if recorder.accuracy is not None and not resumed:  # the model has been loaded on the way to its mesh
         runner.take(from_loaded(items)[0])
     elif not resumed:
         recorder.coarser = _start_on_coarser(runner, recipe, items)
