@@ -101,7 +101,9 @@ class Steps(Section):
 class Solver(Section):
     linear: Literal["direct", "iterative"] = quantity("direct", text="linear solver: MUMPS, or GMRES with GAMG")
     rtol: float = quantity(1e-9, text="residual over contact force at convergence", gt=0.0, le=1e-3)
-    max_iterations: int = quantity(25, text="Newton iterations before an increment is cut back", ge=1, le=1000)
+    max_iterations: int = quantity(
+        25, text="Newton iterations before a cut-back, unless the residual falls", ge=1, le=1000
+    )
     max_cutbacks: int = quantity(5, text="halvings of an increment before the run ends", ge=0, le=20)
     twofold_symmetry: bool = quantity(True, text="model half of the drive when tooth numbers allow it")
     far_teeth: Literal["left_out", "modelled"] = quantity(

@@ -13,7 +13,18 @@ from swgpar.contact.friction import FIRST_STEP, PairKey
 from swgpar.contact.rigid import CamPose, RigidContact
 from swgpar.contact.search import FlankPair, facing_flanks, largest
 from swgpar.contact.teeth import ToothContact
-from swgpar.cycling import VisitedSets, fingerprint
+from swgpar.cycling import (
+    AGREEMENT,
+    MOST,
+    PATIENCE,
+    PROGRESS,
+    ROUNDS,
+    VisitedSets,
+    WayOut,
+    exhausted,
+    falls,
+    fingerprint,
+)
 from swgpar.design import DriveDesign
 from swgpar.far_teeth import FarTeeth
 from swgpar.holding import Holding
@@ -43,6 +54,9 @@ LOADED_SIDE = -1
 
 LONGEST, MEETING = 0.05, 2e-4
 """Largest way (modules) of the teeth in a Newton step under torque control, and how deep they meet when apart."""
+
+FARTHEST = 0.2
+"""Largest way (modules) of a node in any Newton step: tangents are no guide over the clearance of the teeth."""
 
 SECURE = 0.01
 """Share of tolerance and floor with a kept factor, whose steps do not square the error as Newton's own do."""
@@ -108,7 +122,7 @@ class Equilibrium:
         options = PETSc.Options()
         if not options.hasName("snes_linesearch_type"):
             options["snes_linesearch_type"] = "basic"
-        self.snes.setTolerances(max_it=design.solver.max_iterations)
+        self.snes.setTolerances(max_it=MOST * design.solver.max_iterations)
         self.snes.setFunction(self._function, create_vector(partition))
         self.snes.setConvergenceTest(self._converged)
         keep = design.solver.keep_factor and design.solver.linear == "direct" and partition.dims == 3
@@ -117,7 +131,7 @@ class Equilibrium:
         ksp = self.snes.getKSP()
         ksp.setType(PETSc.KSP.Type.PREONLY)
         ksp.getPC().setType(PETSc.PC.Type.PYTHON)
-        self.step = SearchedStep(self.border, self._trial, self.x, phases)
+        self.step = SearchedStep(self.border, self._trial, self.x, phases, FARTHEST * design.drive.module)
         ksp.getPC().setPythonContext(self.step)
         self.snes.setFromOptions()
         self.matrix: PETSc.Mat | None = None
@@ -323,7 +337,7 @@ class Equilibrium:
         if self.failed or not np.isfinite(norm):
             return PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN
         secure = 1.0 if self.border.kept is None or self.border.kept.fresh else SECURE
-        if ratio < self.design.solver.rtol**HOLD and self.softness == 1.0:
+        if (self.way_out.kept or ratio < self.design.solver.rtol**HOLD) and self.softness == 1.0:
             self.teeth.hold()
         if ratio <= (secure * self.design.solver.rtol if self.softness == 1.0 else SOFT_TOLERANCE):
             return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
@@ -333,15 +347,21 @@ class Equilibrium:
             return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
         if self.stale and its > 0:
             return PETSc.SNES.ConvergedReason.CONVERGED_ITS
-        if its >= self.design.solver.max_iterations:
+        if exhausted(self.history, self.design.solver.max_iterations):
             return PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT
-        if not self.step.careful and self.visited.returns(fingerprint(self.partition.comm, self._active_sets()), ratio):
+        if not self.step.careful and self._unsettled(ratio):
             logger.info("   contacts of Newton iteration %d return without progress: careful line search", its)
             self.step.careful = True
-            if self.may_hold and not self.teeth.frozen:
-                self.teeth.hold()  # for given segments no cycle survives the careful search
-                self.held_early, self.may_hold = self.teeth.frozen, False
+            if not self.way_out.tried and not self.teeth.frozen:
+                self.teeth.hold()
+                self.teeth.lag()
+                self.way_out.active = self.way_out.tried = self.teeth.frozen
         return None
+
+    def _unsettled(self, ratio: float) -> bool:
+        """Whether active sets come back, or the residual does not fall."""
+        returns = self.visited.returns(fingerprint(self.partition.comm, self._active_sets()), ratio)
+        return returns or not falls(self.history, PATIENCE, PROGRESS)
 
     def _active_sets(self) -> list[np.ndarray]:
         scene = self.scene
@@ -359,19 +379,25 @@ class Equilibrium:
             self.x.array[-len(unused) :][unused] = 0.0
         self.search()
         iterations, self.augmentations, searches = 0, 0, 0
-        self.may_hold = True  # once: afterwards the faces are cut anew, and the iteration starts close to the solution
+        self.way_out = way_out = WayOut()
         soften = list(SOFTENING) if soft else []
         tolerance = self.design.contact.penetration_tolerance * self.design.drive.module
         while True:
             self.history, self.stale, self.tried = [], False, None
-            self.visited, self.step.careful, self.held_early = VisitedSets(), False, False
+            self.visited, self.step.careful = VisitedSets(), way_out.active
             self.soften(soften.pop(0) if soften else 1.0)
             self.snes.solve(None, self.x)
             reason = self.snes.getConvergedReason()
             iterations += self.snes.getIterationNumber()
             ratio = self.history[-1] if self.history else np.inf
-            if reason < 0 or iterations > 4 * self.design.solver.max_iterations:
+            if reason < 0 or iterations > MOST * self.design.solver.max_iterations:
                 self.border.renew()
+                if reason < 0 and way_out.solution is not None and not way_out.kept:
+                    logger.info("   segments of the flanks are kept: cut anew they do not settle")
+                    way_out.solution.copy(self.x)
+                    way_out.kept = True
+                    self.search()
+                    continue
                 text = REASONS.get(reason, str(reason)) if reason < 0 else f"{iterations} iterations in all"
                 return Solved(False, iterations, ratio, text)
             if reason == PETSc.SNES.ConvergedReason.CONVERGED_ITS:
@@ -379,8 +405,14 @@ class Equilibrium:
                 soften.insert(0, self.softness)
                 continue
             if self.softness != 1.0:
+                self.way_out = way_out = WayOut()
+                self.teeth.release()
                 continue
-            if self.held_early:
+            if way_out.active:
+                if way_out.rounds < ROUNDS and largest(self.partition.comm, self.teeth.lag()) > AGREEMENT:
+                    way_out.rounds += 1
+                    continue
+                way_out.active, way_out.solution = False, self.x.copy()
                 self.teeth.release()
                 continue
             if self._overlooked():

@@ -5,10 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+from mpi4py import MPI
 from petsc4py import PETSc
 
 from swgpar.linear import Bordered
 from swgpar.log import Phases
+
+MET = 0.1
+"""Share of the slope that constraints may have for it to be that of the potential."""
 
 
 class SearchedStep:
@@ -23,16 +27,58 @@ class SearchedStep:
     A point of the flanks that comes to stick changes the slope over a ten-thousandth of a usual way: with few trials
     its slip changes the sign in every step instead. `careful` lets the search end only where the potential still
     falls, with trials down to the last digit, see `swgpar.cycling`.
+
+    The tangent is indefinite where a thin rim gives way between contacts. A step along which the potential grows is
+    then taken the other way, unless the residual halves along it all the same, as it does near a solution.
+
+    longest : mm, of a node's way in a step
     """
 
     TARGET, TRIALS, CAREFUL = 0.5, 16, 60
 
     def __init__(
-        self, border: Bordered, residual: Callable[[PETSc.Vec, PETSc.Vec], bool], x: PETSc.Vec, phases: Phases
+        self,
+        border: Bordered,
+        residual: Callable[[PETSc.Vec, PETSc.Vec], bool],
+        x: PETSc.Vec,
+        phases: Phases,
+        longest: float,
     ) -> None:
-        self.border, self.residual, self.x, self.phases = border, residual, x, phases
+        self.border, self.residual, self.x, self.phases, self.longest = border, residual, x, phases, longest
         self.trial, self.force = x.duplicate(), x.duplicate()
         self.careful = False
+
+    def _residual(self, step: PETSc.Vec, t: float) -> bool:
+        """Put the residual after t times the step into `force`; whether an element has collapsed there."""
+        # rounded as SNES does it with the scaled step, so that it meets the same point
+        step.copy(self.trial)
+        self.trial.scale(t)
+        self.trial.aypx(-1.0, self.x)
+        return self.residual(self.trial, self.force)
+
+    def _halves(self, right: PETSc.Vec, step: PETSc.Vec) -> bool:
+        """Whether the full step halves the residual."""
+        return not self._residual(step, 1.0) and self.force.norm() < 0.5 * right.norm()
+
+    def _own(self, vector: PETSc.Vec) -> np.ndarray:
+        """What this rank has of a vector without the multipliers behind it."""
+        partition = self.border.partition
+        last = partition.comm.rank == partition.comm.size - 1
+        return vector.array_r[: -partition.n_multipliers] if last else vector.array_r
+
+    def _grows(self, right: PETSc.Vec, step: PETSc.Vec) -> bool:
+        """Whether the potential grows along a step whose slope is negative.
+
+        It is no measure of a step towards constraints that are not met yet, the multipliers' part of the slope.
+        """
+        slope = self.border.partition.comm.allreduce(float(self._own(right) @ self._own(step)), op=MPI.SUM)
+        return abs(right.dot(step) - slope) < MET * abs(slope)
+
+    def _bound(self, step: PETSc.Vec) -> None:
+        """Shorten the step to the longest way of a node."""
+        way = self.border.partition.comm.allreduce(float(np.abs(self._own(step)).max(initial=0.0)), op=MPI.MAX)
+        if way > self.longest:
+            step.scale(self.longest / way)
 
     def setUp(self, pc: PETSc.PC) -> None:
         with self.phases("factor"):
@@ -41,16 +87,16 @@ class SearchedStep:
     def apply(self, pc: PETSc.PC, right: PETSc.Vec, step: PETSc.Vec) -> None:
         with self.phases("solve"):
             self.border.apply(pc, right, step)
+        self._bound(step)
         start = right.dot(step)
-        if not start > 0.0:  # no descent: leave it to the plain Newton step
+        if start < 0.0 and self._grows(right, step) and not self._halves(right, step):
+            step.scale(-1.0)
+            start = -start
+        elif not start > 0.0:
             return
 
         def slope(t: float) -> float:
-            # rounded as SNES does it with the scaled step, so that it meets the same point
-            step.copy(self.trial)
-            self.trial.scale(t)
-            self.trial.aypx(-1.0, self.x)
-            collapsed = self.residual(self.trial, self.force)
+            collapsed = self._residual(step, t)
             value = self.force.dot(step) / start
             return value if np.isfinite(value) and not collapsed else -1e30
 

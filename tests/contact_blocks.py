@@ -100,7 +100,7 @@ class Blocks:
                 if augmentation == 0:
                     corners = self.placed.corners(pick)
                     foot = contact_flanks(self.flanks, corners, u, np.zeros((len(pick), 4)), *settings, None, None)[2]
-                    segments = cut_faces(foot, self.flanks.s, self.flanks.z, self.order)
+                    segments = cut_faces(foot, self.placed.size, self.flanks.s, self.flanks.z, self.order)
                     faces = self.placed.cut(pick, segments)
                     multiplier = np.zeros(faces.weight.shape)
                     if self.coefficient > 0.0:

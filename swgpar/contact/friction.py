@@ -37,6 +37,7 @@ class Friction:
     place (n_face, n_q, 2) mm, gap (n_face, n_q) mm : of the last converged state, nan and inf without a foot
     traction (n_face, n_q, 2) MPa : of the last converged state
     now (n_face, n_q, 2) MPa : set by the kernel
+    lagged (n_face, n_q) MPa : pressures that stand for the present ones in the law, or None
     """
 
     coefficient: float
@@ -45,11 +46,13 @@ class Friction:
     gap: np.ndarray
     traction: np.ndarray
     now: np.ndarray
+    lagged: np.ndarray | None = None
 
     def picked(self, rows: np.ndarray) -> Friction:
         """The same of some of the faces."""
         arrays = (self.place, self.gap, self.traction, self.now)
-        return Friction(self.coefficient, self.stiffness, *(np.ascontiguousarray(a[rows]) for a in arrays))
+        lagged = None if self.lagged is None else np.ascontiguousarray(self.lagged[rows])
+        return Friction(self.coefficient, self.stiffness, *(np.ascontiguousarray(a[rows]) for a in arrays), lagged)
 
 
 def begin(coefficient: float, place: np.ndarray, gap: np.ndarray, traction: np.ndarray) -> Friction:

@@ -102,14 +102,29 @@ class Segments:
     share: np.ndarray
 
 
-def cut_faces(place: np.ndarray, s: np.ndarray, z: np.ndarray, order: int) -> Segments:
+def _ends(place: np.ndarray, corners: tuple[list[int], list[int]], length: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Places (n,) of both ends of faces on the master, from `place` (n, 4) of their corners.
+
+    length : (n,) of the faces along the master, with sign; a foot beyond the end of the flank is taken that far from
+    the other end's: the face is cut where the flank ends, so that what touches it changes continuously.
+    """
+    low, high = (
+        np.where(np.isnan(a), b, np.where(np.isnan(b), a, 0.5 * (a + b))) for a, b in (place[:, c].T for c in corners)
+    )
+    return np.where(np.isnan(low), high - length, low), np.where(np.isnan(high), low + length, high)
+
+
+def cut_faces(place: np.ndarray, size: np.ndarray, s: np.ndarray, z: np.ndarray, order: int) -> Segments:
     """Cut faces along the lines s and z of the master's nodes.
 
     place : (n_face, 4, 2) mm, foot points of the corners on the master, nan where there is none
+    size : (n_face, 2) mm of the faces along arc length, which runs the other way on the master, and z
     s, z : lines, ascending;  order : Gauss points per direction of a segment
     """
-    along = [_cuts(place[:, [0, 3], 0].mean(axis=1), place[:, [1, 2], 0].mean(axis=1), s)]
-    along.append(_cuts(place[:, [0, 1], 1].mean(axis=1), place[:, [2, 3], 1].mean(axis=1), z))
+    along = [
+        _cuts(*_ends(place[..., 0], ([0, 3], [1, 2]), -size[:, 0]), s),
+        _cuts(*_ends(place[..., 1], ([0, 1], [3, 2]), size[:, 1]), z),
+    ]
     width = [np.diff(ends, axis=1) for ends in along]
     parent, i, j = np.nonzero((width[0] > 1e-12)[:, :, None] & (width[1] > 1e-12)[:, None, :])
     t, w = np.polynomial.legendre.leggauss(order)

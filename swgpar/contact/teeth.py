@@ -211,7 +211,7 @@ class ToothContact:
         faces = self.all.corners(self.pick)
         zero = np.zeros(faces.weight.shape)
         _, _, place, _ = self._contact(faces, u, zero, 0.0, None, None)
-        segments = cut_faces(place, self.flanks.s, self.flanks.z, self.order)
+        segments = cut_faces(place, self.all.size[self.pick], self.flanks.s, self.flanks.z, self.order)
         self.faces = self.all.cut(self.pick, segments)
         self.segments = replace(segments, parent=self.pick[segments.parent])
         self.multiplier = np.zeros_like(self.faces.weight)
@@ -324,6 +324,17 @@ class ToothContact:
     def release(self) -> None:
         """Cut the faces anew in every evaluation again."""
         self.frozen = False
+
+    def lag(self) -> float:
+        """Give the law of friction the pressures of the last evaluation, on segments that are held.
+
+        Returns the largest change to those given before, over the largest pressure; 0 without friction.
+        """
+        if self.friction is None or not self.frozen:
+            return 0.0
+        before, self.friction.lagged = self.friction.lagged, self.pressure.copy()
+        top = self.pressure.max(initial=0.0)
+        return 1.0 if before is None else float(np.abs(self.pressure - before).max(initial=0.0) / (top or 1.0))
 
     def augment(self) -> None:
         """Take the pressures of the last evaluation as multipliers; their points stay where they are from now on."""

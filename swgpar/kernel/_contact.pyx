@@ -46,6 +46,7 @@ cdef extern from "contact_batch.hpp" namespace "swgpar" nogil:
         const double* gap
         const double* traction
         double* now
+        const double* lagged
     int64_t flank_contact(const FlankBatch&, const FaceBatch&, const double* u, const double* multiplier,
                           double penalty, double opening, double reach, double limit, const Friction& friction,
                           double* residual, const BlockRows& rows, double* gap, double* pressure, double* place,
@@ -65,11 +66,18 @@ cdef Friction friction_of(law, int64_t n_face, int64_t n_q) except *:
     cdef const double[:, :, ::1] place = law.place, traction = law.traction
     cdef const double[:, ::1] gap = law.gap
     cdef double[:, :, ::1] now = law.now
-    for array in (law.place, law.traction, law.gap, law.now):
+    for array in (law.place, law.traction, law.gap, law.now, law.gap if law.lagged is None else law.lagged):
         if array.shape[0] != n_face or array.shape[1] != n_q:
             raise ValueError("contact_flanks: arrays of the friction have another shape than the faces")
     law.now[...] = 0.0  # also where the last evaluation had contact and this one has not
-    return Friction(law.coefficient, law.stiffness, &place[0, 0, 0], &gap[0, 0], &traction[0, 0, 0], &now[0, 0, 0])
+    cdef Friction made = Friction(
+        law.coefficient, law.stiffness, &place[0, 0, 0], &gap[0, 0], &traction[0, 0, 0], &now[0, 0, 0], NULL
+    )
+    cdef const double[:, ::1] lagged
+    if law.lagged is not None:
+        lagged = law.lagged
+        made.lagged = &lagged[0, 0]
+    return made
 
 
 def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] multiplier, double penalty,

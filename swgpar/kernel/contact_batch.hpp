@@ -80,8 +80,9 @@ inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& fa
       place[2 * kq + 1] = patch.z[f.j] + f.zeta * (patch.z[f.j + 1] - patch.z[f.j]);
       gap[kq] = f.gap - faces.offset[kq] + opening;
       const double p = multiplier[kq] - penalty * gap[kq];
-      if (p <= 0.0) continue;
-      pressure[kq] = p;
+      const double bounding = friction.lagged == nullptr ? p : friction.lagged[kq];
+      if (p <= 0.0 && bounding <= 0.0) continue;
+      if (p > 0.0) pressure[kq] = p;
       const double e = f.eta, z = f.zeta, w = faces.weight[kq];
       const double m[4] = {(1 - e) * (1 - z), e * (1 - z), (1 - e) * z, e * z};
       const int di[4] = {0, 1, 0, 1}, dj[4] = {0, 0, 1, 1};
@@ -89,18 +90,19 @@ inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& fa
         conn[4 + a] = patch.node(f.i + di[a], f.j + dj[a]);
         flip[4 + a] = patch.image(f.i + di[a], f.j + dj[a]);
       }
-      if (residual != nullptr) {
+      if (p > 0.0 && residual != nullptr) {
         for (int a = 0; a < 4; ++a) {
           add_nodal(residual, conn[a], flip[a], -p * w * shape[a] * f.normal);
           add_nodal(residual, conn[4 + a], flip[4 + a], p * w * m[a] * f.normal);
         }
         moment[k] += p * w * (f.normal[1] * f.height[0] - f.normal[0] * f.height[1]);
       }
-      if (rows.values != nullptr)
+      if (p > 0.0 && rows.values != nullptr)
         missing += add_contact_tangent(f, shape, conn, flip, w, penalty, std::min(p, limit), rows);
-      if (friction.coefficient == 0.0) continue;
+      if (friction.coefficient == 0.0 || bounding <= 0.0) continue;
       const Vec2 length(patch.s[f.i + 1] - patch.s[f.i], patch.z[f.j + 1] - patch.z[f.j]);
-      const Traction t = traction(f, length, Vec2(place[2 * kq], place[2 * kq + 1]), friction, kq, p, penalty);
+      const Traction t = traction(f, length, Vec2(place[2 * kq], place[2 * kq + 1]), friction, kq, bounding, penalty);
+      if (!t.acts) continue;
       const Motion motion(f, shape);
       if (residual != nullptr) {
         const Eigen::Matrix<double, 24, 1> force = w * motion.foot.transpose() * (motion.x.transpose() * t.value);
@@ -108,8 +110,8 @@ inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& fa
         moment[k] += w * motion.by_turn(f).dot(motion.x.transpose() * t.value);
       }
       if (rows.values != nullptr)
-        missing += add_friction_tangent(f, t, motion, patch.bent(f.i), conn, flip, w, penalty, p,
-                                        std::min(1.0, limit / p), friction, rows);
+        missing += add_friction_tangent(f, t, motion, patch.bent(f.i), conn, flip, w, penalty, bounding,
+                                        std::min(1.0, limit / bounding), friction, rows);
     }
   }
   return missing;

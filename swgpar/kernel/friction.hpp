@@ -23,6 +23,7 @@ struct Friction {  // of all quadrature points; coefficient 0: off
   const double* gap = nullptr;       // (n_face, n_q) g_n
   const double* traction = nullptr;  // (n_face, n_q, 2) t_n
   double* now = nullptr;             // (n_face, n_q, 2) t
+  const double* lagged = nullptr;    // (n_face, n_q) pressure that stands for p in the law; null: p itself
 };
 
 using Mat32 = Eigen::Matrix<double, 3, 2>;
@@ -33,10 +34,10 @@ using Mat24x24 = Eigen::Matrix<double, 24, 24>;
 // Traction at a foot point, and what its variation needs; components are those of the facet's (eta, zeta).
 struct Traction {
   Vec3 value = Vec3::Zero(), trial = Vec3::Zero();
-  Vec2 way = Vec2::Zero();  // xi - xi_n
-  Vec2 coefficient;         // T_trial = coefficient_a x_a
-  double phi = 1.0, phi_p = 0.0;
-  bool slips = false;
+  Vec2 way = Vec2::Zero();          // xi - xi_n
+  Vec2 coefficient = Vec2::Zero();  // T_trial = coefficient_a x_a
+  double phi = 0.0, phi_p = 0.0;
+  bool acts = false, slips = false;  // a point that had no foot carries none in this increment
 };
 
 inline Traction traction(const Foot& f, const Vec2& length, const Vec2& xi, const Friction& law, std::int64_t kq,
@@ -44,6 +45,7 @@ inline Traction traction(const Foot& f, const Vec2& length, const Vec2& xi, cons
   Traction t;
   const Vec2 before(law.place[2 * kq], law.place[2 * kq + 1]);
   if (!(before[0] == before[0])) return t;
+  t.acts = true;
   const double gap = std::max(0.0, law.gap[kq]), depth = pressure / penalty;
   t.phi = depth / (gap + depth);
   t.phi_p = gap / ((gap + depth) * (gap + depth) * penalty);
@@ -102,7 +104,8 @@ inline int add_friction_tangent(const Foot& f, const Traction& t, const Motion& 
                                 double pressure, double share, const Friction& law, const BlockRows& rows) {
   using Row = Eigen::Matrix<double, 1, 24>;
   const Vec3& n = f.normal;
-  const Row dg = n.transpose() * v.relative, dp = -penalty * dg;
+  const Row dg = n.transpose() * v.relative;
+  const Row dp = law.lagged == nullptr ? Row(-penalty * dg) : Row::Zero();
   const Mat3x24 d_eta = v.u_eta + f.x_etaeta * v.foot.row(0) + f.x_etazeta * v.foot.row(1);
   const Mat3x24 d_zeta = v.u_zeta + f.x_etazeta * v.foot.row(0);
   Mat3x24 dt = law.stiffness * (t.phi * v.x * v.foot + t.phi_p * (v.x * t.way).eval() * dp);

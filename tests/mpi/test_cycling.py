@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from types import SimpleNamespace
 
 import numpy as np
+import pytest
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from swgpar.cycling import VisitedSets, fingerprint
+from swgpar.cycling import VisitedSets, exhausted, fingerprint
 from swgpar.line_search import SearchedStep
 from swgpar.log import Phases
 
@@ -20,6 +22,7 @@ class Block:
     """A block on a spring that sticks to the ground: k x + mu min(1, |x| / width) sign(x) = f, a convex potential.
 
     Below mu it sticks, and slipping either way the tangent k of the slip sends it to slip the other way.
+    Stands for the linear solver too (`swgpar.linear.Bordered`), with a multiplier that nothing uses.
     """
 
     width: float
@@ -28,26 +31,28 @@ class Block:
     f: float = 0.9
 
     def __post_init__(self) -> None:
-        self.x = PETSc.Vec().createSeq(1, comm=MPI.COMM_SELF)
-        self.x.array[:] = 2.0
+        self.partition = SimpleNamespace(comm=MPI.COMM_SELF, n_multipliers=1)
+        self.x = PETSc.Vec().createSeq(2, comm=MPI.COMM_SELF)
+        self.x.array[:] = 2.0, 0.0
 
     def sticks(self) -> bool:
         return bool(abs(self.x.array_r[0]) < self.width)
 
     def sets(self) -> list[np.ndarray]:
-        return [np.array([self.sticks()]), np.sign(self.x.array_r)]
+        return [np.array([self.sticks()]), np.sign(self.x.array_r[:1])]
 
     def residual(self, x: PETSc.Vec, force: PETSc.Vec) -> bool:
-        force.array[:] = self.k * x.array_r + self.mu * np.clip(x.array_r / self.width, -1.0, 1.0) - self.f
+        way = x.array_r[0]
+        force.array[:] = self.k * way + self.mu * np.clip(way / self.width, -1.0, 1.0) - self.f, 0.0
         return False
 
     def apply(self, pc: None, right: PETSc.Vec, step: PETSc.Vec) -> None:
         step.array[:] = right.array_r / (self.k + (self.mu / self.width if self.sticks() else 0.0))
 
 
-def newton(block: Block, watch: bool) -> tuple[float, int, bool]:
+def newton(block: Block, watch: bool, longest: float = 1e9) -> tuple[float, int, bool]:
     """Last residual, iterations, and whether active sets have returned."""
-    search, visited = SearchedStep(block, block.residual, block.x, Phases()), VisitedSets()
+    search, visited = SearchedStep(block, block.residual, block.x, Phases(), longest), VisitedSets()
     force, step, returned, k = block.x.duplicate(), block.x.duplicate(), False, 0
     block.residual(block.x, force)
     while force.norm() > 1e-12 and k < 50:
@@ -71,6 +76,49 @@ def test_cycle_is_found_and_left() -> None:
     assert residual > 0.1 and iterations == 50 and returned
     residual, iterations, _ = newton(Block(width=1e-12), watch=True)
     assert residual < 1e-12 and iterations < 15
+
+
+@dataclass
+class Valleys(Block):
+    """A potential x^4 / 4 - x^2 / 2: concave between its minima at -1 and 1."""
+
+    def residual(self, x: PETSc.Vec, force: PETSc.Vec) -> bool:
+        force.array[:] = x.array_r[0] ** 3 - x.array_r[0], 0.0
+        return False
+
+    def apply(self, pc: None, right: PETSc.Vec, step: PETSc.Vec) -> None:
+        step.array[:] = right.array_r / (3.0 * self.x.array_r[0] ** 2 - 1.0)
+
+
+@pytest.mark.parametrize(("start", "end"), [(0.45, 1.0), (-0.45, -1.0), (0.55, 1.0)])
+def test_indefinite_tangent_leads_down_all_the_same(start: float, end: float) -> None:
+    """Newton's own steps go uphill and across; a bounded one the other way ends in the valley it starts above."""
+    valleys = Valleys(width=1.0)
+    valleys.x.array[0] = start
+    residual, iterations, _ = newton(valleys, watch=False, longest=0.2)
+    assert residual < 1e-12 and iterations < 15
+    assert valleys.x.array_r[0] == pytest.approx(end)
+
+
+def test_longest_way_of_a_node() -> None:
+    block = Block(width=1e-2)
+    before = block.x.array_r[0]
+    search, force, step = (
+        SearchedStep(block, block.residual, block.x, Phases(), 0.25),
+        block.x.duplicate(),
+        block.x.duplicate(),
+    )
+    block.residual(block.x, force)
+    search.apply(None, force, step)
+    assert abs(force.array_r[0]) > 1.0 and before == 2.0
+    assert step.array_r[0] == pytest.approx(0.25)
+
+
+def test_residuals_that_fall_get_more_iterations() -> None:
+    slow = [0.9**k for k in range(40)]  # halves within seven
+    stuck = slow[:20] + [slow[19]] * 20
+    assert not any(exhausted(slow[:k], 10) for k in range(1, 40))
+    assert exhausted(stuck, 10) and not exhausted(stuck, 40) and not exhausted(stuck[:22], 10)
 
 
 def test_sets_that_return() -> None:

@@ -54,10 +54,8 @@ class Arc:
         return r
 
 
-@pytest.mark.parametrize("coefficient", [0.3, 1e3])
-@pytest.mark.parametrize("gap_before", [-0.01, 0.02])
-def test_tangent_in_slip_and_stick(coefficient: float, gap_before: float) -> None:
-    arc = Arc(coefficient, gap_before)
+def checked_tangent(arc: Arc) -> tuple[np.ndarray, np.ndarray]:
+    """Forces and tangent, which is that of differences of the forces."""
     rows, h = Rows(len(arc.u), symmetric=False), 1e-7
     r = arc.force(arc.u, rows)
     tangent = rows.matrix()
@@ -68,9 +66,50 @@ def test_tangent_in_slip_and_stick(coefficient: float, gap_before: float) -> Non
         step = step.reshape(arc.u.shape)
         difference[:, k] = (arc.force(arc.u + step) - arc.force(arc.u - step)).ravel() / (2 * h)
     assert np.abs(difference - tangent).max() < 1e-6 * np.abs(tangent).max()
+    return r, tangent
+
+
+@pytest.mark.parametrize("coefficient", [0.3, 1e3])
+@pytest.mark.parametrize("gap_before", [-0.01, 0.02])
+def test_tangent_in_slip_and_stick(coefficient: float, gap_before: float) -> None:
+    r, tangent = checked_tangent(Arc(coefficient, gap_before))
     # unlike the tangent without friction this one is not symmetric: the test above sees the friction
     assert np.abs(tangent - tangent.T).max() > 0.02 * np.abs(tangent).max()
     assert np.abs(r.sum(axis=0)).max() < 1e-9 * np.abs(r).max()
+
+
+def test_points_that_had_no_foot_carry_no_friction() -> None:
+    """Neither in the forces nor in the tangent, which kept an increment from converging when it did."""
+    arc = Arc(0.3, 0.02)
+    arc.law.place[0, 4:] = np.nan
+    arc.law.gap[0, 4:] = np.inf
+    checked_tangent(arc)
+    assert not arc.law.now[0, 4:].any() and arc.law.now[0, :4].any()
+    arc.law.place[:] = np.nan
+    _, tangent = checked_tangent(arc)
+    assert np.abs(tangent - tangent.T).max() < 1e-9 * np.abs(tangent).max()
+
+
+@pytest.mark.parametrize("coefficient", [0.3, 1e3])
+def test_given_pressures_in_the_law(coefficient: float) -> None:
+    """They bound the tractions, also where the surfaces have parted."""
+    arc = Arc(coefficient, 0.02)
+    r, _ = checked_tangent(arc)
+    pressure = contact_flanks(arc.flanks, arc.faces, arc.u, *SETTINGS, None, None)[1]
+    traction = arc.law.now.copy()
+    arc.law.lagged = pressure
+    again, _ = checked_tangent(arc)
+    assert np.abs(again - r).max() < 1e-12 * np.abs(r).max()
+    arc.law.lagged = 0.5 * pressure
+    checked_tangent(arc)
+    if coefficient == 0.3:
+        slips = np.linalg.norm(traction, axis=2) > 0.99 * 0.3 * pressure
+        assert slips.any()
+        np.testing.assert_allclose(arc.law.now[slips], 0.5 * traction[slips], rtol=0.02)
+    arc.u[:4, 1] += 0.1
+    parted, _ = checked_tangent(arc)
+    assert not contact_flanks(arc.flanks, arc.faces, arc.u, *SETTINGS, None, None)[1].any()
+    assert np.abs(parted).max() > 0.01 * np.abs(r).max()
 
 
 @pytest.mark.parametrize("coefficient", [0.3, 1e3])
