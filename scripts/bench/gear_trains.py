@@ -114,7 +114,7 @@ def timings(names: list[str], out: Path, ranks: int) -> list[dict[str, Any]]:
                     }
                 )
         print(name, [row["seconds"] for row in rows if row["run"] == name], flush=True)
-        for key in ("errors_percent", "least_eigenvalue_over_largest", "asymmetry_of_correlations", "quantities"):
+        for key in ("least_eigenvalue_over_largest", "asymmetry_of_correlations", "quantities"):
             print(f"  {key}: {json.dumps(summary.get(key))}", flush=True)
     return rows
 

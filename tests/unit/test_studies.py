@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 
 from swgpar.meshing import build_sector_meshes
-from swgpar.study.cases import Job, expand
+from swgpar.study.cases import expand
 from swgpar.study.spec import load_study
+from swgpar.study.system import Job
 
 ROOT = Path(__file__).parents[2]
 FILES = sorted((ROOT / "drivers" / "studies").glob("*.toml"))
