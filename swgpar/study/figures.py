@@ -30,6 +30,9 @@ PANELS = 12
 LETTERS = 160
 """Letters of a legend's row."""
 
+DECADES = 30.0
+"""Largest over smallest value of a key from which its axis is logarithmic."""
+
 TITLE_LETTERS = 48
 """Letters of a row of a panel's title."""
 
@@ -73,6 +76,8 @@ def over_key(results: Sequence[Result], key: str, *, in_step: bool) -> Iterator[
     drawn = [(label, sorted(points, key=lambda point: point[0])) for label, points in lines.items()]
     if not any(len(points) > 1 for _, points in drawn):
         return
+    values = [x for _, points in drawn for x, _ in points]
+    scale = "log" if min(values) > 0.0 and max(values) >= DECADES * min(values) else "linear"
     for panels in _parts(list(shown_quantities(results).items()), PANELS):
         for part in _parts(drawn):
             figure, axes = _axes(len(panels))
@@ -81,6 +86,7 @@ def over_key(results: Sequence[Result], key: str, *, in_step: bool) -> Iterator[
                     there = [(x, o.values[name]) for x, o in points if name in o.values]
                     place.plot([x for x, _ in there], [y for _, y in there], label=label, **_style(k))
                 _name(place, quantity.meaning, _label(name, quantity), key)
+                place.set_xscale(scale)
             yield _png(figure, axes)
 
 

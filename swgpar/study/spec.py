@@ -100,15 +100,17 @@ def _case(number: int, table: dict[str, Any]) -> CaseSection:
 
 
 def _numbers(table: dict[str, Any]) -> dict[str, Any]:
-    """`published` and `tolerance` by single numbers: a list gives name[1], name[2].., its tolerance all of them."""
-    out = {key: flat(table[key]) for key in ("published", "tolerance") if isinstance(table.get(key), dict)}
-    lists = {name: given for name, given in out.get("published", {}).items() if isinstance(given, list)}
-    for name, given in lists.items():
-        for values in out.values():
-            if name in values:
-                value = values.pop(name)
-                places = value if isinstance(value, list) else [value] * len(given)
-                values.update({f"{name}[{k}]": item for k, item in enumerate(places, start=1)})
+    """`published` and `tolerance` by single numbers: a list gives name[1], name[2].., its tolerance stands for all."""
+    given = {key: flat(table[key]) for key in ("published", "tolerance") if isinstance(table.get(key), dict)}
+    lengths = {name: len(value) for name, value in given.get("published", {}).items() if isinstance(value, list)}
+    out: dict[str, Any] = {key: {} for key in given}
+    for key, values in given.items():
+        for name, value in values.items():
+            if name in lengths:
+                numbers = value if isinstance(value, list) else [value] * lengths[name]
+                out[key] |= {f"{name}[{place}]": number for place, number in enumerate(numbers, start=1)}
+            else:
+                out[key][name] = value
     return out
 
 

@@ -18,7 +18,7 @@ from swgpar.gear_trains.planetary.linearised import Moments, linearised
 from swgpar.gear_trains.planetary.model import Train, elastic_ring, radii
 from swgpar.gear_trains.planetary.monte_carlo import BLOCK, simulate
 from swgpar.gear_trains.planetary.steps import Steps
-from swgpar.gear_trains.planetary.watched import NAMES
+from swgpar.gear_trains.planetary.watched import NAMES, WATCHED
 from swgpar.gear_trains.planetary.wind import Wind
 from swgpar.gear_trains.published import KINDS, Quantities, label
 from swgpar.gear_trains.result import Table, TrainResult
@@ -34,11 +34,11 @@ def quantities(design: PlanetaryDesign) -> Quantities:
         "cycles_node": ("dominant slow cycles of a node of the ring in a carrier revolution", 1),
         "out_of_contact": ("share of steps and samples in which a mesh is not on its loaded flank", 1),
     }
-    for kind, name in product(KINDS, NAMES):
-        known[f"{kind}_{name}"] = (f"largest {kind} of {name} (m)", 1)
-        known[f"error_{kind}_{name}"] = (f"difference of the linearised {kind} of {name} from Monte Carlo's (%)", 1)
-    for rim, kind, name in product(design.ring.rims, KINDS, NAMES):
-        known[f"{kind}_{name}_{label(rim)}"] = (f"largest {kind} of {name} with a rim of {rim:g} mm (m)", 1)
+    for kind, (name, what) in product(KINDS, WATCHED.items()):
+        known[f"{kind}_{name}"] = (f"largest {kind} of {what} (m)", 1)
+        known[f"error_{kind}_{name}"] = (f"difference of the linearised {kind} of {what} from Monte Carlo's (%)", 1)
+    for rim, kind, (name, what) in product(design.ring.rims, KINDS, WATCHED.items()):
+        known[f"{kind}_{name}_{label(rim)}"] = (f"largest {kind} of {what} with a rim of {rim:g} mm (m)", 1)
     return known
 
 
