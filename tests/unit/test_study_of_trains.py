@@ -182,3 +182,13 @@ def test_what_a_train_does_not_have_is_left_out(study_file: Write, tmp_path: Pat
     (tmp_path / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
     found = job.case.system.read(job, tmp_path)
     assert found.values == {"critical_speeds[1]": 30.0, "cycles_moving_point": 6.0} and found.wall_s == 2.0
+
+
+def test_the_example_of_the_documentation(tmp_path: Path) -> None:
+    text = (DRIVERS.parent / "docs" / "studies.md").read_text(encoding="utf-8")
+    example = text.partition("## Gear trains")[2].partition("```toml\n")[2].partition("```")[0]
+    path = tmp_path / "study.toml"
+    path.write_text(example.replace("../", f"{DRIVERS}/"), encoding="utf-8")
+    jobs = jobs_of(path)
+    assert [job.case.name for job in jobs] == [f"{n}_gap_B={g}" for n in ("stiff", "source") for g in (0.3, 0.4, 0.482)]
+    assert all(job.case.design is not None and len(job.case.shown) == 3 for job in jobs)
