@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import pickle
 from collections.abc import Callable
 from pathlib import Path
 
@@ -65,6 +66,8 @@ def test_cases_have_no_meshes(study_file: Write) -> None:
 )
 def test_quantities_are_those_of_the_train(study_file: Write, design: str, name: str, unit: str) -> None:
     (job,) = jobs_of(study_file(design))
+    # rank 0 reads the study, and sends the jobs to the others
+    assert pickle.loads(pickle.dumps(job)).case.design == job.case.design
     assert job.case.name == design and job.case.shown == tuple(job.case.known)
     assert job.case.known[name].unit == unit
     assert "(" not in job.case.known[name].meaning.replace("2 pi sqrt(density A R⁴ / (E I))", "")
