@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import subprocess
 import sys
@@ -19,7 +20,8 @@ def run(
     command = ["mpirun", "-n", str(ranks), sys.executable, "-P", "-m", "swgpar.cli", "run", str(design)]
     command += ["--out", str(folder), *(["--mesh", str(mesh)] if mesh is not None else [])]
     command += ["--set", "output.figures=false", *overrides]
-    done = subprocess.run(command, capture_output=True, text=True)
+    # not what MPI has put into the environment of this process since its start: mpirun would take itself for a rank
+    done = subprocess.run(command, capture_output=True, text=True, env=dict(os.environ))
     if done.returncode:
         raise SystemExit(f"{folder.name}: {done.stderr or done.stdout}")
     return json.loads((folder / "summary.json").read_text(encoding="utf-8"))
