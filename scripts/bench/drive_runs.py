@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import csv
 import json
-import shutil
-import subprocess
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import program
+
 from swgpar import accuracy
 from swgpar.meshing import MeshRecipe, load_recipe
 from swgpar.meshing.recipe import to_toml
-
-QUIET = ("output.figures=false", "output.fields=false")
 
 
 def run(folder: Path, design: str, mesh: str | Path, overrides: list[str], ranks: int) -> dict[str, Any]:
@@ -24,25 +21,10 @@ def run(folder: Path, design: str, mesh: str | Path, overrides: list[str], ranks
     values : means over the rotation by their names in summary.json, and columns of the last row of history.csv, with
     `last.` before their names
     """
-    if not (folder / "summary.json").exists():  # a run that ended before is begun anew
-        shutil.rmtree(folder, ignore_errors=True)
-        command = [
-            "mpirun",
-            "-n",
-            str(ranks),
-            sys.executable,
-            "-P",
-            "-m",
-            "swgpar.cli",
-            "run",
-            design,
-            "--mesh",
-            str(mesh),
-        ]
-        subprocess.run(
-            [*command, "--out", str(folder), "--set", *QUIET, *overrides], check=True, stdout=subprocess.DEVNULL
-        )
-    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    if (folder / "summary.json").exists():
+        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    else:  # a run that ended before is begun anew
+        summary = program.run(folder, design, ["output.fields=false", *overrides], ranks, mesh)
     with (folder / "history.csv").open(encoding="utf-8") as file:
         last = list(csv.DictReader(file))[-1]
     return {

@@ -12,13 +12,12 @@ from __future__ import annotations
 
 import argparse
 import json
-import subprocess
-import sys
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import program
 
 from swgpar.results.table import format_csv, read_columns
 
@@ -71,13 +70,7 @@ over the largest value of the quantity.
 
 def run(driver: str, overrides: list[str], folder: Path, ranks: int) -> dict[str, Any]:
     """Run a driver and return its summary."""
-    design = ROOT / "drivers" / f"{driver}.toml"
-    command = ["mpirun", "-n", str(ranks), sys.executable, "-m", "swgpar.cli", "run", str(design), "--out", str(folder)]
-    command += ["--overwrite", "--set", "output.figures=false", *overrides]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT)
-    if done.returncode:
-        raise SystemExit(f"{folder.name}: {done.stderr or done.stdout}")
-    return json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    return program.run(folder, ROOT / "drivers" / f"{driver}.toml", overrides, ranks)
 
 
 def seconds(summary: dict[str, Any], name: str, part: str) -> float:
@@ -114,7 +107,7 @@ def timings(names: list[str], out: Path, ranks: int) -> list[dict[str, Any]]:
                     }
                 )
         print(name, [row["seconds"] for row in rows if row["run"] == name], flush=True)
-        for key in ("errors_percent", "least_eigenvalue_over_largest", "asymmetry_of_correlations", "quantities"):
+        for key in ("least_eigenvalue_over_largest", "asymmetry_of_correlations", "quantities"):
             print(f"  {key}: {json.dumps(summary.get(key))}", flush=True)
     return rows
 

@@ -7,12 +7,9 @@ from __future__ import annotations
 
 import argparse
 import csv
-import json
-import shutil
-import subprocess
-import sys
 from pathlib import Path
 
+import program
 from page import markdown, put
 
 OFF = {
@@ -37,21 +34,8 @@ MEANS = ("fs_s1", "fs_s3", "fs_vm", "rg_vm", "wg_torque_Nmm")
 def run(arguments: argparse.Namespace, name: str, keys: dict[str, str]) -> dict[str, float | str]:
     """One run; its row of the table."""
     out = Path(arguments.out) / name.replace(" ", "_")
-    shutil.rmtree(out, ignore_errors=True)
     overrides = [f"{k}={v.format(samples=arguments.samples)}" for k, v in {**OFF, **keys}.items()]
-    command = ["mpirun", "-n", str(arguments.ranks), sys.executable, "-P", "-m", "swgpar.cli", "run", arguments.design]
-    command += [
-        "--mesh",
-        arguments.mesh,
-        "--out",
-        str(out),
-        "--set",
-        *overrides,
-        "output.figures=false",
-        *arguments.set,
-    ]
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
-    summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
+    summary = program.run(out, arguments.design, [*overrides, *arguments.set], arguments.ranks, arguments.mesh)
     row: dict[str, float | str] = {"reduction": name, "seconds": round(summary["wall_s"], 1)}
     row["increments"] = summary["increments"]
     row["newton_mean"] = round(summary["newton_iterations_mean"], 2)

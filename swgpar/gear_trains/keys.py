@@ -18,5 +18,21 @@ class TrainDesign(Section):
     published: dict[str, Any] = quantity({}, text="published values by quantity")
 
 
+class GearTrain(Section):
+    """Every design narrows `model` to the one name of its own."""
+
+    model: str = quantity(text="the gear train")
+    seed: int = quantity(1, text="seed of all random samples", ge=0)
+
+
+class Damping(Section):
+    mass: float = quantity(unit="1/s", text="damping over mass", ge=0.0)
+    stiffness: float = quantity(unit="s", text="damping over stiffness, of meshes over their mean stiffness", ge=0.0)
+
+
+class MonteCarlo(Section):
+    samples: int = quantity(text="simulations of each case", ge=2, le=100_000_000)
+
+
 class Output(Section):
     figures: bool = quantity(True, text="draw the figures")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -13,6 +14,20 @@ from swgpar.quantities import show
 
 Quantities = Mapping[str, tuple[str, int]]
 """What a model computes: name -> meaning with its unit, number of values."""
+
+KINDS = ("mean", "deviation")
+"""Of what varies at random."""
+
+
+def meaning_and_unit(text: str) -> tuple[str, str]:
+    """Meaning of a quantity without its unit, and the unit, which stands at the end in brackets; empty for a number."""
+    found = re.fullmatch(r"(.*) \(([^()]*)\)", text)
+    return (found[1], found[2]) if found else (text, "")
+
+
+def numbered(name: str, count: int) -> list[str]:
+    """Names of the single numbers of a quantity: its own, or with the place of each in brackets."""
+    return [name] if count == 1 else [f"{name}[{place}]" for place in range(1, count + 1)]
 
 
 def label(value: float) -> str:
@@ -41,10 +56,10 @@ def compare(
     rows = []
     for name, given in published.items():
         there, here = np.atleast_1d(given), np.atleast_1d(computed[name])
-        for place, (old, new) in enumerate(zip(there.tolist(), here.tolist(), strict=True), start=1):
+        for title, old, new in zip(numbered(name, len(there)), there.tolist(), here.tolist(), strict=True):
             rows.append(
                 {
-                    "quantity": name if len(there) == 1 else f"{name}[{place}]",
+                    "quantity": title,
                     "meaning": known[name][0],
                     "published": float(old),
                     "computed": float(new),

@@ -66,7 +66,11 @@ def is_gear_train(path: str | Path) -> bool:
 
 def load_train(path: str | Path, overrides: Sequence[str] = ()) -> TrainDesign:
     """Read and check the design file of a gear train; every problem is an `InputError` of one sentence."""
-    table = apply_overrides(read_toml(path), overrides)
+    return make_train(apply_overrides(read_toml(path), overrides))
+
+
+def make_train(table: dict[str, Any]) -> TrainDesign:
+    """A checked design from the content of its file; every problem is an `InputError` of one sentence."""
     section = table.get(SECTION)
     name = section.get("model") if isinstance(section, dict) else None
     choices = " or ".join(f'"{name}"' for name in MODELS)

@@ -5,61 +5,18 @@ from __future__ import annotations
 import itertools
 import re
 from collections import Counter
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from swgpar.design import DriveDesign, make_design
 from swgpar.design_file import apply_overrides, read_toml, with_value
 from swgpar.errors import InputError
+from swgpar.gear_trains.train import SECTION
 from swgpar.meshing import MeshRecipe, load_recipe
 from swgpar.quantities import show
-from swgpar.steps import sequence
-from swgpar.study.spec import CaseSection, Study
-
-OUTPUT = ("output.fields=false", "output.figures=false")
-"""What a study changes in every design: fields of many runs fill the disk. Its own `set` comes later."""
-
-
-@dataclass(frozen=True)
-class Case:
-    """A design of the study.
-
-    varied : value of every varied key as the study file has it
-    design : None when it is refused, for the reason in `refusal`
-    meshes : recipes, coarse to fine;  compared : place of the one that published values are compared on
-    """
-
-    name: str
-    varied: dict[str, Any]
-    design: DriveDesign | None
-    refusal: str
-    meshes: tuple[Path, ...]
-    compared: int
-    section: CaseSection
-
-
-@dataclass(frozen=True)
-class Job:
-    """A case on one of its meshes. finer : number of finer meshes of the case."""
-
-    case: Case
-    mesh: Path
-    recipe: MeshRecipe
-    finer: int
-
-    @property
-    def title(self) -> str:
-        return f"{self.case.name} {self.mesh.stem}"
-
-    @property
-    def increments(self) -> int:
-        """Increments of the whole run."""
-        return sum(1 for _ in sequence(self.case.design)) if self.case.design is not None else 0
-
-    def folder(self, out: Path) -> Path:
-        """Results folder of this job below that of the study."""
-        return out / "cases" / self.case.name / self.mesh.stem
+from swgpar.study.drives import DRIVES
+from swgpar.study.spec import Study
+from swgpar.study.system import Case, Job, Quantity, System, named, not_known
+from swgpar.study.trains import GEAR_TRAINS
 
 
 def expand(study: Study) -> list[Job]:
@@ -78,52 +35,59 @@ def expand(study: Study) -> list[Job]:
 
 
 def _expand(study: Study) -> list[Job]:
-    folder, section = study.path.parent, study.section
-    base = read_toml(folder / section.design)
-    if "gear_train" in base:
-        raise InputError(
-            f"study.design = {show(section.design)} is a gear train: allowed is a drive, as studies go over meshes; "
-            "vary a gear train by swgpar run with --set"
-        )
-    base = apply_overrides(base, [*OUTPUT, *section.set])
+    section = study.section
+    table = read_toml(study.path.parent / section.design)
+    system: System = GEAR_TRAINS if SECTION in table else DRIVES
+    base = apply_overrides(system.base(table), section.set)
     recipes: dict[Path, MeshRecipe] = {}
     cases: list[Case] = []
     for entry in study.cases:
-        meshes = tuple(folder / mesh for mesh in entry.meshes or section.meshes)
-        stems = [mesh.stem for mesh in meshes]
-        wanted = Path(section.compared).stem
+        meshes = system.meshes(study, entry)
+        stems, wanted = [mesh.stem for mesh in meshes], Path(section.compared).stem
         compared = stems.index(wanted) if wanted in stems else len(stems) - 1
-        if len(set(stems)) < len(stems):
-            raise InputError(f"meshes = {show(stems)} have a name twice: allowed are recipes of different names")
         recipes.update({mesh: load_recipe(mesh) for mesh in meshes if mesh not in recipes})
         for varied, suffix in combinations(section.vary, section.mode):
             name = "_".join(part for part in (entry.name, suffix) if part) or Path(section.design).stem
-            design, refusal = None, ""
+            design, refusal, known = None, "", {}
             try:
-                table = {**base, **entry.section}
-                table = apply_overrides(table, entry.set)
+                table = apply_overrides({**base, **entry.section}, entry.set)
                 for key, value in varied.items():
                     table = with_value(table, key, value)
-                design = make_design(table)
-                _check_steps(design, entry)
+                design = system.make(table, entry)
+                known = system.quantities(design)
             except InputError as error:
                 refusal = str(error)
-            cases.append(Case(name, varied, design, refusal, meshes, compared, entry))
-    twice = [name for name, count in Counter(case.name for case in cases).items() if count > 1]
-    if twice:
-        raise InputError(f"{show(twice[0])} is the name of two cases: allowed are different names and values")
+            shown = _shown(section.quantities, known, system)
+            cases.append(Case(name, varied, design, refusal, known, shown, meshes, compared, entry, system))
+    _check_names(study, cases)
     return [
-        Job(case, mesh, recipes[mesh], len(case.meshes) - 1 - place)
+        Job(case, mesh, recipes.get(mesh), max(len(case.meshes) - 1 - place, 0))
         for case in cases
-        for place, mesh in enumerate(case.meshes)
+        for place, mesh in enumerate(case.meshes or (None,))
     ]
 
 
-def _check_steps(design: DriveDesign, case: CaseSection) -> None:
-    """Refuse published values of steps that a start on coarser meshes leaves out."""
-    for name in case.published:
-        if design.steps.start_levels and name.startswith(("step1.", "step2.")):
-            raise InputError(f"steps.start_levels = {design.steps.start_levels} leaves out {name}: allowed 0 with it")
+def _shown(names: list[str], known: dict[str, Quantity], system: System) -> tuple[str, ...]:
+    """The quantities that the study asks for, as far as the case has them."""
+    if not names:
+        return system.shown(known)
+    return tuple(dict.fromkeys(number for name in names for number in named(name, known)))
+
+
+def _check_names(study: Study, cases: list[Case]) -> None:
+    """Refuse cases of one name, and names of quantities that no case has or a compared case has not."""
+    twice = [name for name, count in Counter(case.name for case in cases).items() if count > 1]
+    if twice:
+        raise InputError(f"{show(twice[0])} is the name of two cases: allowed are different names and values")
+    designed = [case for case in cases if case.design is not None]
+    for case in designed:
+        for name in case.section.published:
+            if name not in case.known:
+                raise not_known(f"study.case {show(case.section.name)}: published.", case.known, case.system, name)
+    together = {name: quantity for case in designed for name, quantity in case.known.items()}
+    for name in study.section.quantities if designed else ():
+        if not named(name, together):
+            raise not_known("study.quantities = ", together, designed[0].system, name)
 
 
 def combinations(vary: dict[str, list[Any]], mode: str) -> list[tuple[dict[str, Any], str]]:
@@ -145,6 +109,7 @@ def labels(values: list[Any]) -> list[str]:
     texts = []
     for place, value in enumerate(values, start=1):
         text = value.get("type", str(place)) if isinstance(value, dict) else value
+        text = ",".join(show(item) for item in text) if isinstance(text, list) else text
         texts.append(re.sub(r"[^A-Za-z0-9_.,+=-]", "-", text if isinstance(text, str) else show(text)))
     count = Counter(texts)
     of_tables = [isinstance(value, dict) for value in values]

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import io
+import textwrap
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from swgpar.results import history
 from swgpar.results.history import UNITS
 from swgpar.run import FIRST_ROTATION
-from swgpar.study.cases import Case
-from swgpar.study.job import Outcome
-from swgpar.study.table import MEANS, by_case, shown
+from swgpar.study.drives import MEANINGS
+from swgpar.study.system import Case, Outcome, Quantity
+from swgpar.study.table import by_case, shown, shown_quantities
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -19,19 +20,21 @@ if TYPE_CHECKING:
 
     from swgpar.study.table import Result
 
-TITLES = {
-    "fs_s1": "flexible spline, tensile s1",
-    "fs_s3": "flexible spline, compressive |s3|",
-    "fs_vm": "flexible spline, von Mises",
-    "rg_vm": "ring gear, von Mises",
-    "wg_torque_Nmm": "torque of the wave generator",
-}
 OVER_ANGLE = ("fs_s1", "fs_s3", "fs_vm")
 LINES = 12
 """Lines in one figure: more of them cannot be told apart."""
 
+PANELS = 12
+"""In one figure."""
+
 LETTERS = 160
 """Letters of a legend's row."""
+
+DECADES = 30.0
+"""Largest over smallest value of a key from which its axis is logarithmic."""
+
+TITLE_LETTERS = 48
+"""Letters of a row of a panel's title."""
 
 MARKERS = "os^vDP"
 
@@ -48,7 +51,7 @@ def over_angle(results: Sequence[Result]) -> Iterator[bytes]:
         for name, place in zip(OVER_ANGLE, axes):
             for k, (label, rows) in enumerate(part):
                 place.plot(history.column(rows, "wg_angle_deg"), history.column(rows, name), label=label, **_style(k))
-            _name(place, name, "angle of the wave generator (degrees)")
+            _name(place, MEANINGS[name], f"stress ({UNITS[name]})", "angle of the wave generator (degrees)")
         yield _png(figure, axes)
 
 
@@ -58,36 +61,55 @@ def turning(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     return loaded[-1:] + [row for row in rows if int(row["step"]) >= FIRST_ROTATION]
 
 
-def over_key(results: Sequence[Result], key: str) -> Iterator[bytes]:
-    """Means over the rotation against a varied key; a line for each combination of all else. None without numbers."""
+def over_key(results: Sequence[Result], key: str, *, in_step: bool) -> Iterator[bytes]:
+    """Quantities against a varied key; a line for each combination of all else. None without numbers.
+
+    in_step : whether the other varied keys change with this one, so that they make no lines of their own
+    """
     lines: dict[str, list[tuple[float, Outcome]]] = {}
     for case, outcomes in by_case(results):
-        value = case.varied.get(key)
-        if not isinstance(value, (int, float)) or isinstance(value, bool):
+        value = single(case.varied.get(key))
+        if value is None:
             return
-        if outcomes[-1].means:
-            lines.setdefault(_rest(case, key), []).append((float(value), outcomes[-1]))
+        if outcomes[-1].values:
+            lines.setdefault(_rest(case, key, in_step), []).append((value, outcomes[-1]))
     drawn = [(label, sorted(points, key=lambda point: point[0])) for label, points in lines.items()]
     if not any(len(points) > 1 for _, points in drawn):
         return
-    for part in _parts(drawn):
-        figure, axes = _axes(len(MEANS))
-        for name, place in zip(MEANS, axes):
-            for k, (label, points) in enumerate(part):
-                place.plot([x for x, _ in points], [o.means[name] for _, o in points], label=label, **_style(k))
-            _name(place, name, key)
-        yield _png(figure, axes)
+    values = [x for _, points in drawn for x, _ in points]
+    scale = "log" if min(values) > 0.0 and max(values) >= DECADES * min(values) else "linear"
+    for panels in _parts(list(shown_quantities(results).items()), PANELS):
+        for part in _parts(drawn):
+            figure, axes = _axes(len(panels))
+            for (name, quantity), place in zip(panels, axes):
+                for k, (label, points) in enumerate(part):
+                    there = [(x, o.values[name]) for x, o in points if name in o.values]
+                    place.plot([x for x, _ in there], [y for _, y in there], label=label, **_style(k))
+                _name(place, quantity.meaning, _label(name, quantity), key)
+                place.set_xscale(scale)
+            yield _png(figure, axes)
 
 
-def _rest(case: Case, key: str) -> str:
+def single(value: Any) -> float | None:
+    """The number that a varied value is, or that a list of one number holds."""
+    if isinstance(value, list) and len(value) == 1:
+        value = value[0]
+    return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else None
+
+
+def _label(name: str, quantity: Quantity) -> str:
+    return f"{name} ({quantity.unit})" if quantity.unit else name
+
+
+def _rest(case: Case, key: str, in_step: bool) -> str:
     """What tells a line of a figure over `key` from the others."""
-    others = [f"{k} = {shown(v)}" for k, v in case.varied.items() if k != key]
+    others = [f"{k} = {shown(v)}" for k, v in case.varied.items() if k != key and not in_step]
     return ", ".join(text for text in [case.section.name, *others] if text)
 
 
-def _parts(lines: Sequence[Any]) -> Iterator[Sequence[Any]]:
-    for first in range(0, len(lines), LINES):
-        yield lines[first : first + LINES]
+def _parts(items: Sequence[Any], size: int = LINES) -> Iterator[Sequence[Any]]:
+    for first in range(0, len(items), size):
+        yield items[first : first + size]
 
 
 def _style(k: int) -> dict[str, Any]:
@@ -103,9 +125,9 @@ def _axes(count: int) -> tuple[Figure, list[Axes]]:
     return figure, [figure.add_subplot(rows, columns, k + 1) for k in range(count)]
 
 
-def _name(axes: Axes, column: str, xlabel: str) -> None:
-    axes.set(xlabel=xlabel, ylabel=f"{'torque' if 'torque' in column else 'stress'} ({UNITS[column]})")
-    axes.set_title(TITLES[column], fontsize=10)
+def _name(axes: Axes, title: str, ylabel: str, xlabel: str) -> None:
+    axes.set(xlabel=xlabel, ylabel=ylabel)
+    axes.set_title(textwrap.fill(title, TITLE_LETTERS), fontsize=9)
     axes.grid(alpha=0.3)
     axes.ticklabel_format(axis="y", useOffset=False)
 

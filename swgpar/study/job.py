@@ -1,4 +1,4 @@
-"""One case on one mesh: run it, keep what went wrong in its folder, continue it after a restart."""
+"""One job of a study: run it, keep what went wrong in its folder, continue it after a restart."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import gc
 import json
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,32 +17,11 @@ from swgpar import log
 from swgpar.errors import InputError, SwgparError
 from swgpar.log import logger
 from swgpar.report import make_figures
-from swgpar.results import history
 from swgpar.results.atomic import agreed, sentence, to_json, write_file, write_from_root
-from swgpar.run import identity, run_drive
-from swgpar.study.cases import Job
+from swgpar.study.system import Job, Outcome
 
 STATUS = "status.json"
 """In the folder of a job: status ("started", "failed", "finished"), identity of what is computed, reason."""
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """What became of a job.
-
-    status : "finished" or "failed";  reason : one sentence, empty when finished
-    means, rows : as in summary.json and history.csv; empty when failed
-    kept : whether an earlier call of the study had finished it
-    """
-
-    status: str
-    reason: str = ""
-    elements: int | None = None
-    means: dict[str, float] = field(default_factory=dict)
-    newton_mean: float | None = None
-    wall_s: float | None = None
-    rows: list[dict[str, Any]] = field(default_factory=list)
-    kept: bool = False
 
 
 def read_status(folder: Path) -> dict[str, Any]:
@@ -63,39 +42,32 @@ def run_job(
     overwrite: bool = False,
     on_increment: Callable[[], None] = lambda: None,
 ) -> Outcome:
-    """Run a case on one mesh; collective. Failures are returned, and recorded in the job's folder.
+    """Run a job; collective. Failures are returned, and recorded in the job's folder.
 
     Only an error that swgpar does not know is raised when several ranks share the case: one rank may have met it
     alone, and the others then wait for it.
     """
-    record = {"identity": "", "rotation": 0.0}
+    record: dict[str, Any] = {"identity": ""}
     try:
         if job.case.design is None:
             raise InputError(job.case.refusal)
-        record = {"identity": identity(job.case.design, job.recipe, None), "rotation": job.case.design.steps.rotation}
+        record = job.case.system.identity(job)
         old = comm.bcast(read_status(folder) if comm.rank == 0 else None)
         same = old.get("identity", record["identity"]) == record["identity"]
         if restart and old.get("status") == "finished":
             if not same:
                 return Outcome("failed", f"{folder} holds results of another design: rename the case, or --overwrite")
             whole = comm.bcast((folder / "summary.json").exists() if comm.rank == 0 else None)
-            if whole and old["rotation"] == record["rotation"]:
-                return replace(_finished(folder, comm), kept=True)
+            if whole and all(old.get(key) == value for key, value in record.items()):
+                return replace(_finished(job, folder, comm), kept=True)
         if comm.rank == 0:
             with suppress(OSError):  # whether the folder can be written is found out below, by all ranks
                 folder.mkdir(parents=True, exist_ok=True)
         write_from_root(comm, folder / STATUS, to_json({"status": "started", **record}))
-        run_drive(
-            job.case.design,
-            job.recipe,
-            folder,
-            restart=restart and same,
-            overwrite=overwrite or not same,
-            comm=comm,
-            recipe_name=str(job.mesh),
-            on_increment=on_increment,
+        job.case.system.run(
+            job, folder, comm, restart=restart and same, overwrite=overwrite or not same, on_increment=on_increment
         )
-        outcome = _finished(folder, comm)
+        outcome = _finished(job, folder, comm)
         _figures(job, folder, comm)
     except SwgparError as error:
         logger.error("%s", error)
@@ -123,20 +95,12 @@ def _record(folder: Path, comm: MPI.Comm, status: dict[str, Any]) -> None:
         write_from_root(comm, folder / STATUS, to_json(status))
 
 
-def _finished(folder: Path, comm: MPI.Comm) -> Outcome:
+def _finished(job: Job, folder: Path, comm: MPI.Comm) -> Outcome:
     """Outcome from the files of a finished run; collective."""
     outcome = None
     with agreed(comm, folder / "summary.json", "read"):
         if comm.rank == 0:
-            summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-            outcome = Outcome(
-                "finished",
-                elements=summary["elements"],
-                means=summary["means"],
-                newton_mean=summary["newton_iterations_mean"],
-                wall_s=summary["wall_s"],
-                rows=history.read_history(folder / history.NAME),
-            )
+            outcome = job.case.system.read(job, folder)
     return comm.bcast(outcome)
 
 

@@ -11,7 +11,15 @@ from typing import Any
 import swgpar
 from swgpar.study import figures
 from swgpar.study.spec import Study
-from swgpar.study.table import MEANS, Comparison, Result, by_case, estimate_of, study_rows
+from swgpar.study.table import (
+    Comparison,
+    Result,
+    by_case,
+    estimate_of,
+    published_rows,
+    shown_quantities,
+    study_rows,
+)
 
 STYLE = """
 body { font: 15px/1.45 sans-serif; margin: 2em auto; max-width: 84em; padding: 0 1em; color: #222; }
@@ -28,7 +36,7 @@ pre { background: #f4f4f4; padding: .8em; overflow-x: auto; }
 ESTIMATE = (
     "The error estimate is Richardson's extrapolation from the last two meshes of a case: with element sizes "
     "h1 &gt; h2 that follow from the numbers of elements (n<sup>-1/3</sup>, in plane models n<sup>-1/2</sup>) and an "
-    "error that falls with h², converged = f2 + (f2 - f1) / ((h1/h2)² - 1), and the estimate is |converged - f2|. It "
+    "error that falls with h, converged = f2 + (f2 - f1) / (h1/h2 - 1), and the estimate is |converged - f2|. It "
     "holds when both meshes resolve the stress and all directions were refined alike. Under edge contact (no "
     "micro-geometry) and for |s3| below the tooth contact it means nothing: the stress then grows with the mesh."
 )
@@ -44,16 +52,16 @@ def make_report(study: Study, results: Sequence[Result], comparisons: Sequence[C
         parts += ["<h2>Published values</h2>", _comparisons(comparisons)]
     parts += [
         "<h2>Cases</h2>",
-        "<p>Means over the rotation of the largest nodal averages of each gear (MPa; s3 as a positive number) and of "
-        "the wave generator's torque (N·mm).</p>",
         _cases(results),
+        "<h2>Quantities</h2>",
+        _meanings(results),
     ]
     estimates = _estimates(results)
     if estimates or any(c.estimate for c in comparisons):
         parts += ["<h2>Error estimates from meshes</h2>", f"<p>{ESTIMATE}</p>", estimates]
     parts += _failures(results, out)
     try:
-        parts += _figures(results)
+        parts += _figures(study, results)
     except Exception as error:  # a picture that fails must not cost the report
         parts.append(f"<p class=bad>Figures could not be drawn: {escape(str(error))}</p>")
     if study.section.remarks:
@@ -100,30 +108,24 @@ def _cases(results: Sequence[Result]) -> str:
 
 
 def _comparisons(comparisons: Sequence[Comparison]) -> str:
-    header = ["case", "mesh", "quantity", "unit", "published", "computed", "difference %", "tolerance %", ""]
-    header += ["converged", "error estimate"]
-    return table(
-        header,
-        (
-            (
-                [c.case, c.mesh, c.quantity, c.unit, c.published, c.computed, c.difference, c.tolerance, c.verdict]
-                + [c.estimate.converged if c.estimate else None, c.estimate.error if c.estimate else None],
-                c.verdict == "MISS",
-            )
-            for c in comparisons
-        ),
-    )
+    rows = published_rows(comparisons)
+    return table(list(rows[0]), ((list(row.values()), row["verdict"] == "MISS") for row in rows))
+
+
+def _meanings(results: Sequence[Result]) -> str:
+    rows = [([name, q.meaning, q.unit], False) for name, q in shown_quantities(results).items()]
+    return table(["quantity", "meaning", "unit"], rows)
 
 
 def _estimates(results: Sequence[Result]) -> str:
     rows = []
     for case, outcomes in by_case(results):
-        for name in MEANS:
-            found = estimate_of(case, outcomes, f"mean.{name}")
+        for name in case.shown:
+            found = estimate_of(case, outcomes, name)
             if found:
-                values = [outcome.means[name] for outcome in outcomes[-2:]]
+                values = [outcome.values[name] for outcome in outcomes[-2:]]
                 percent = 100.0 * found.error / abs(values[1]) if values[1] else None
-                rows.append(([case.name, f"mean.{name}", *values, found.converged, found.error, percent], False))
+                rows.append(([case.name, name, *values, found.converged, found.error, percent], False))
     header = ["case", "quantity", "coarser mesh", "finest mesh", "converged", "error estimate", "%"]
     return table(header, rows) if rows else ""
 
@@ -140,14 +142,15 @@ def _failures(results: Sequence[Result], out: Path) -> list[str]:
     return ["<h2>Failures</h2>", *parts] if parts else []
 
 
-def _figures(results: Sequence[Result]) -> list[str]:
+def _figures(study: Study, results: Sequence[Result]) -> list[str]:
     parts = [_image(png, "stresses against angle") for png in figures.over_angle(results)]
     if parts:
         parts.insert(0, "<h2>Stresses against the angle of the wave generator</h2>")
     for key in dict.fromkeys(key for job, _ in results for key in job.case.varied):
-        images = [_image(png, f"means against {key}") for png in figures.over_key(results, key)]
+        drawn = figures.over_key(results, key, in_step=study.section.mode == "sweep")
+        images = [_image(png, f"quantities against {key}") for png in drawn]
         if images:
-            parts += [f"<h2>Means over the rotation against {escape(key)}</h2>", *images]
+            parts += [f"<h2>Against {escape(key)}</h2>", *images]
     return parts
 
 

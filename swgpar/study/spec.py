@@ -1,4 +1,4 @@
-"""The study file: which designs are computed, on which meshes, and what they are compared with."""
+"""The study file: which designs are computed, drives on which meshes, and what they are compared with."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from typing import Any, Literal
 from swgpar.design_file import read_toml, split_override, validate
 from swgpar.errors import InputError
 from swgpar.quantities import Section, quantity, show
-from swgpar.study.measured import refuse_unknown
 
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.,+=-]*")
 """Names of cases are names of folders."""
@@ -34,8 +33,9 @@ class StudySection(Section):
     title: str = quantity("", text="title of the report")
     remarks: str = quantity("", text="text for the report; a blank line ends a paragraph")
     design: str = quantity(text="the design file, relative to the study file")
-    meshes: list[str] = quantity(text="mesh recipes, coarse to fine, relative to the study file")
+    meshes: list[str] = quantity([], text="mesh recipes of a drive, coarse to fine, relative to the study file")
     compared: str = quantity("", text="the one of the meshes that published values are compared on; else the last")
+    quantities: list[str] = quantity([], text="quantities in tables and figures; else the usual ones")
     set: list[str] = quantity([], text='"section.key=value" for all cases')
     parallel: Literal["cases", "ranks"] = quantity(
         "cases", text="every rank works on cases of its own, or all on one case after the other"
@@ -93,11 +93,25 @@ def load_study(path: str | Path) -> Study:
 def _case(number: int, table: dict[str, Any]) -> CaseSection:
     try:
         if isinstance(table, dict):
-            dotted = {k: flat(v) for k, v in table.items() if k in ("published", "tolerance") and isinstance(v, dict)}
-            table = {**table, **dotted}
+            table = {**table, **_numbers(table)}
         return validate(_CaseFile, {"case": table}).case
     except InputError as error:
         raise InputError(f"[[study.case]] {number}: {error}") from None
+
+
+def _numbers(table: dict[str, Any]) -> dict[str, Any]:
+    """`published` and `tolerance` by single numbers: a list gives name[1], name[2].., its tolerance stands for all."""
+    given = {key: flat(table[key]) for key in ("published", "tolerance") if isinstance(table.get(key), dict)}
+    lengths = {name: len(value) for name, value in given.get("published", {}).items() if isinstance(value, list)}
+    out: dict[str, Any] = {key: {} for key in given}
+    for key, values in given.items():
+        for name, value in values.items():
+            if name in lengths:
+                numbers = value if isinstance(value, list) else [value] * lengths[name]
+                out[key] |= {f"{name}[{place}]": number for place, number in enumerate(numbers, start=1)}
+            else:
+                out[key][name] = value
+    return out
 
 
 def flat(table: dict[str, Any], above: str = "") -> dict[str, Any]:
@@ -109,10 +123,6 @@ def flat(table: dict[str, Any], above: str = "") -> dict[str, Any]:
 
 
 def _check_study(study: StudySection) -> None:
-    if not study.meshes:
-        raise InputError("study.meshes = [] is empty: allowed one mesh recipe or more, coarse to fine")
-    if study.compared and study.compared not in study.meshes:
-        raise InputError(f"study.compared = {show(study.compared)} is none of study.meshes = {show(study.meshes)}")
     for override in study.set:
         split_override(override)
     for key, values in study.vary.items():
@@ -143,8 +153,6 @@ def _check_case(case: CaseSection, study: StudySection) -> None:
     for name, value in case.section.items():
         if not isinstance(value, dict):
             raise InputError(f"{where}: section.{name} = {show(value)} is not a section: allowed a table")
-    for name in case.published:
-        refuse_unknown(f"{where}: published", name)
     for name, percent in case.tolerance.items():
         if name not in case.published:
             raise InputError(f"{where}: tolerance.{name} has no published value: allowed {', '.join(case.published)}")

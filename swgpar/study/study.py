@@ -15,11 +15,12 @@ from swgpar.errors import InputError, OutputError
 from swgpar.results.atomic import agreed, first_reason, write_from_root
 from swgpar.results.folder import prepare
 from swgpar.results.table import format_csv
-from swgpar.study.cases import Job, expand
-from swgpar.study.job import STATUS, Outcome, read_status, run_job
+from swgpar.study.cases import expand
+from swgpar.study.job import STATUS, read_status, run_job
 from swgpar.study.report import make_report
 from swgpar.study.schedule import Counter, Reports
 from swgpar.study.spec import Study, load_study
+from swgpar.study.system import Job, Outcome
 from swgpar.study.table import Result, compare, published_rows, study_rows
 from swgpar.study.terminal import StudyProgress
 
@@ -119,7 +120,7 @@ def _prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> None:
         if comm.rank == 0:
             (out / "cases").mkdir(parents=True, exist_ok=True)
             if overwrite and not restart:
-                for status in out.glob(f"cases/*/*/{STATUS}"):
+                for status in [*out.glob(f"cases/**/{STATUS}")]:
                     prepare(status.parent, MPI.COMM_SELF, restart=False, overwrite=True)
                     status.unlink()
                 for name in (TABLE, PUBLISHED, REPORT):

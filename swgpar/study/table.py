@@ -1,4 +1,4 @@
-"""The numbers of a study: a row per case and mesh, published values, error estimates from two meshes."""
+"""The numbers of a study: a row per job, published values, error estimates from two meshes."""
 
 from __future__ import annotations
 
@@ -8,21 +8,20 @@ from dataclasses import dataclass
 from typing import Any
 
 from swgpar.error_estimate import Estimate, estimate
-from swgpar.study.cases import Case, Job
-from swgpar.study.job import Outcome
-from swgpar.study.measured import measured, unit
-
-MEANS = ("fs_s1", "fs_s3", "fs_vm", "rg_vm", "wg_torque_Nmm")
-"""Means over the rotation that the tables show."""
+from swgpar.study.system import Case, Job, Outcome, Quantity
 
 Result = tuple[Job, Outcome]
+
+OF_MESHES = ("mesh", "converged", "error_estimate")
+"""Columns of published.csv."""
 
 
 @dataclass(frozen=True)
 class Comparison:
     """A published value beside the computed one.
 
-    mesh : the one it was computed on;  estimate : from the two finest meshes, its error that of the computed value
+    mesh : the one it was computed on, or empty
+    estimate : from the two finest meshes, its error that of the computed value
     difference : percent of the published value;  verdict : "inside", "MISS", or empty without a tolerance
     """
 
@@ -46,9 +45,14 @@ def by_case(results: Sequence[Result]) -> list[tuple[Case, list[Outcome]]]:
     return list(groups.values())
 
 
+def shown_quantities(results: Sequence[Result]) -> dict[str, Quantity]:
+    """The quantities in tables and figures, of all cases."""
+    return {name: job.case.known[name] for job, _ in results for name in job.case.shown if name in job.case.known}
+
+
 def estimate_of(case: Case, outcomes: Sequence[Outcome], name: str) -> Estimate | None:
     """Error estimate of a quantity from the last two meshes; None without two values."""
-    pair = [(measured(name, o.means, o.rows), o.elements) for o in outcomes[-2:]]
+    pair = [(o.values.get(name), o.elements) for o in outcomes[-2:]]
     if len(pair) < 2 or any(value is None for value, _ in pair):
         return None
     (coarse, n_coarse), (fine, n_fine) = pair
@@ -62,7 +66,7 @@ def compare(results: Sequence[Result]) -> list[Comparison]:
     for case, outcomes in by_case(results):
         for name, published in case.section.published.items():
             outcome = outcomes[case.compared]
-            computed = measured(name, outcome.means, outcome.rows)
+            computed = outcome.values.get(name)
             difference = None
             if computed is not None and published != 0.0:
                 difference = 100.0 * (computed - published) / abs(published)
@@ -72,11 +76,10 @@ def compare(results: Sequence[Result]) -> list[Comparison]:
             found = estimate_of(case, outcomes, name)
             if found is not None and computed is not None:
                 found = Estimate(found.converged, abs(found.converged - computed))
-            mesh = case.meshes[case.compared].stem
+            mesh = case.meshes[case.compared].stem if case.meshes else ""
+            unit = case.known[name].unit if name in case.known else ""
             rows.append(
-                Comparison(
-                    case.name, mesh, name, unit(name), published, computed, difference, tolerance, verdict, found
-                )
+                Comparison(case.name, mesh, name, unit, published, computed, difference, tolerance, verdict, found)
             )
     return rows
 
@@ -84,13 +87,16 @@ def compare(results: Sequence[Result]) -> list[Comparison]:
 def study_rows(results: Sequence[Result]) -> list[dict[str, Any]]:
     """Rows of study.csv."""
     keys = list(dict.fromkeys(key for job, _ in results for key in job.case.varied))
+    names = list(dict.fromkeys(name for job, _ in results for name in job.case.shown))
     rows = []
     for job, outcome in results:
-        row: dict[str, Any] = {"case": job.case.name, "mesh": job.mesh.stem, "elements": outcome.elements}
+        details = {"mesh": job.mesh_name, "elements": outcome.elements, "newton_mean": outcome.newton_mean}
+        row: dict[str, Any] = {"case": job.case.name}
+        row.update({name: details[name] for name in job.case.system.details})
         row.update({key: shown(job.case.varied.get(key)) for key in keys})
         row["status"] = outcome.status
-        row.update({f"mean.{name}": outcome.means.get(name) for name in MEANS})
-        row.update(newton_mean=outcome.newton_mean, wall_s=outcome.wall_s, reason=outcome.reason)
+        row.update({name: outcome.values.get(name) for name in names})
+        row.update(wall_s=outcome.wall_s, reason=outcome.reason)
         rows.append(row)
     return rows
 
@@ -109,8 +115,8 @@ def _toml(value: Any) -> str:
 
 
 def published_rows(comparisons: Iterable[Comparison]) -> list[dict[str, Any]]:
-    """Rows of published.csv."""
-    return [
+    """Rows of published.csv; without what follows from meshes where there are none."""
+    rows = [
         {
             "case": c.case,
             "mesh": c.mesh,
@@ -126,3 +132,6 @@ def published_rows(comparisons: Iterable[Comparison]) -> list[dict[str, Any]]:
         }
         for c in comparisons
     ]
+    if any(row["mesh"] for row in rows):
+        return rows
+    return [{name: value for name, value in row.items() if name not in OF_MESHES} for row in rows]

@@ -9,9 +9,11 @@ from rich import box
 from rich.table import Table
 
 from swgpar.log import console, progress_bar
-from swgpar.study.cases import Job
-from swgpar.study.job import Outcome
-from swgpar.study.table import Comparison, Result
+from swgpar.study.system import Job, Outcome
+from swgpar.study.table import Comparison, Result, shown_quantities
+
+COLUMNS = 5
+"""Quantities that the table on the terminal shows: study.csv has all of them."""
 
 
 class StudyProgress:
@@ -66,21 +68,21 @@ class StudyProgress:
 
 
 def print_results(results: Sequence[Result], comparisons: Sequence[Comparison]) -> None:
-    """Print the means of all cases, then published beside computed values."""
-    title = "means over the rotation (MPa, nodal averages); torque in N·mm"
-    cases = Table(title=title, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))  # long names are folded into 80 columns
+    """Print the first quantities of all cases, then published beside computed values."""
+    quantities = list(shown_quantities(results).items())[:COLUMNS]
+    cases = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))  # long names are folded into 80 columns
     cases.add_column("case", overflow="fold")
-    cases.add_column("mesh", overflow="fold")
-    columns = {"fs_s1": "fs s1", "fs_s3": "fs |s3|", "fs_vm": "fs vm", "rg_vm": "rg vm", "wg_torque_Nmm": "torque"}
-    for name in (*columns.values(), "s"):
-        cases.add_column(name, justify="right", no_wrap=True)
+    for name, quantity in quantities:
+        unit = f" {quantity.unit}" if quantity.unit else ""
+        cases.add_column(f"{name}{unit}", justify="right", overflow="fold")
+    cases.add_column("s", justify="right", no_wrap=True)
     for job, outcome in results:
         if outcome.status == "finished":
-            numbers = [*(outcome.means.get(name) for name in columns), outcome.wall_s]
-            texts = ["" if value is None else f"{value:.1f}" for value in numbers]
+            numbers = [*(outcome.values.get(name) for name, _ in quantities), outcome.wall_s]
+            texts = ["" if value is None else f"{value:.5g}" for value in numbers]
         else:
             texts = ["failed"]
-        cases.add_row(job.case.name, job.mesh.stem, *texts)
+        cases.add_row(job.title, *texts)
     console.print(cases)
     if not comparisons:
         return
@@ -92,6 +94,6 @@ def print_results(results: Sequence[Result], comparisons: Sequence[Comparison]) 
     for c in comparisons:
         numbers = [c.published, c.computed, c.difference, c.estimate.error if c.estimate else None]
         published.add_row(
-            c.case, c.quantity, *("" if value is None else f"{value:.2f}" for value in numbers), c.verdict
+            c.case, c.quantity, *("" if value is None else f"{value:.5g}" for value in numbers), c.verdict
         )
     console.print(published)

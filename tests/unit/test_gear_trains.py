@@ -13,8 +13,6 @@ from swgpar.gear_trains.published import check_published, compare
 from swgpar.gear_trains.sampling import blocks, generator, share_out
 from swgpar.gear_trains.train import is_gear_train, load_train, model_of
 from swgpar.results.table import format_columns, read_columns
-from swgpar.study.cases import expand
-from swgpar.study.spec import load_study
 
 DRIVERS = Path(__file__).parents[2] / "drivers"
 CASCADE, GEAR_PAIR = DRIVERS / "cascade.toml", DRIVERS / "gear_pair.toml"
@@ -92,13 +90,6 @@ def test_one_sentence_with_key_and_reason(file: Path, override: str, reason: str
         load_train(file, override.split() if override.count("=") > 1 else [override])
     message = str(caught.value)
     assert "\n" not in message and reason in message, message
-
-
-def test_studies_go_over_meshes(tmp_path: Path) -> None:
-    file = tmp_path / "study.toml"
-    file.write_text(f'[study]\ndesign = "{RING_MODES}"\nmeshes = ["none.toml"]\n', encoding="utf-8")
-    with pytest.raises(InputError, match=r"ring_modes.toml\" is a gear train: allowed is a drive"):
-        expand(load_study(file))
 
 
 def test_drives_are_no_gear_trains() -> None:

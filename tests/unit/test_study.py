@@ -14,12 +14,14 @@ from mpi4py import MPI
 from swgpar.error_estimate import estimate
 from swgpar.errors import InputError
 from swgpar.results.table import format_csv
-from swgpar.study.cases import Job, expand
+from swgpar.study.cases import expand
+from swgpar.study.drives import values
 from swgpar.study.figures import over_angle, over_key
-from swgpar.study.job import Outcome, read_status, run_job
+from swgpar.study.job import read_status, run_job
 from swgpar.study.report import make_report
 from swgpar.study.spec import load_study
 from swgpar.study.study import queue
+from swgpar.study.system import Job, Outcome
 from swgpar.study.table import compare, study_rows
 
 DATA = Path(__file__).parent.parent / "data"
@@ -190,7 +192,7 @@ def test_an_unforeseen_error_is_the_case_s_own(
     def broken(*_: object, **__: object) -> None:
         raise ZeroDivisionError("by nothing")
 
-    monkeypatch.setattr("swgpar.study.job.run_drive", broken)
+    monkeypatch.setattr("swgpar.study.drives.run_drive", broken)
     (job,) = jobs_of(study_file())
     found = run_job(job, tmp_path / "a" / "b", MPI.COMM_SELF, restart=False)
     assert (found.status, found.reason) == ("failed", "ZeroDivisionError: by nothing")
@@ -213,7 +215,7 @@ def outcome(fs_s1: float, elements: int) -> Outcome:
     row = {"step": "1", "wg_angle_deg": 0.0, "fs_s1": 2.0 * fs_s1, "fs_s3": 1.0, "fs_vm": 1.0}
     means = dict.fromkeys(("fs_s1", "fs_s3", "fs_vm", "rg_s1", "rg_s3", "rg_vm", "wg_torque_Nmm"), fs_s1)
     rows = [row, {**row, "fs_s1": 3.0 * fs_s1}, {**row, "step": "3"}, {**row, "step": "4", "wg_angle_deg": 2.0}]
-    return Outcome("finished", elements=elements, means=means, newton_mean=5.0, wall_s=1.0, rows=rows)
+    return Outcome("finished", values=values(means, rows), elements=elements, newton_mean=5.0, wall_s=1.0, rows=rows)
 
 
 def test_published_values(study_file: Write) -> None:
@@ -261,8 +263,8 @@ def test_many_lines_take_several_figures(study_file: Write) -> None:
     jobs = jobs_of(study_file("[study.vary]\nload.torque = [1.0, 2.0]\nmaterial.nu = [" + list_of(15) + "]\n"))
     results = [(job, outcome(100.0, 10)) for job in jobs]
     assert len(list(over_angle(results))) == 3
-    assert len(list(over_key(results, "load.torque"))) == 2
-    assert len(list(over_key(results, "material.nu"))) == 1
+    assert len(list(over_key(results, "load.torque", in_step=False))) == 2
+    assert len(list(over_key(results, "material.nu", in_step=False))) == 1
 
 
 def list_of(count: int) -> str:

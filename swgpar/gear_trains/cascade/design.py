@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from annotated_types import Len
 
 from swgpar.errors import InputError
-from swgpar.gear_trains.keys import Output, Positive, TrainDesign
+from swgpar.gear_trains.keys import GearTrain, Output, Positive, TrainDesign
 from swgpar.quantities import Section, quantity
 
 PINIONS = 8
@@ -16,9 +16,8 @@ Forces = Annotated[list[Positive], Len(1)]
 GRADES = {"ge": 0.0, "le": 12.0}
 
 
-class Train(Section):
+class Train(GearTrain):
     model: Literal["cascade"] = quantity(text="the gear train")
-    seed: int = quantity(1, text="seed of all random samples", ge=0)
 
 
 class Rack(Section):

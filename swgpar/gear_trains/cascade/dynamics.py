@@ -34,6 +34,11 @@ Force = Callable[[np.ndarray], np.ndarray]
 """Rack forces in N at times in s, any shape."""
 
 
+def ramp(size: float, duration: float) -> Force:
+    """A rack force in N that rises for some time in s, and is held."""
+    return lambda t: size * np.minimum(t / duration, 1.0)
+
+
 class Gearbox:
     """A gearbox that moves. braked : the flywheel is held"""
 

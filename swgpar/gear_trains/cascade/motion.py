@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from swgpar.gear_trains.cascade.design import CascadeDesign
-from swgpar.gear_trains.cascade.dynamics import Gearbox
+from swgpar.gear_trains.cascade.dynamics import Gearbox, ramp
 from swgpar.gear_trains.cascade.layout import DOFS, RACK
 from swgpar.gear_trains.cascade.static import Direction, even_pinions
 
@@ -75,8 +75,8 @@ def one_period(design: CascadeDesign) -> Period:
 def braked_shares(design: CascadeDesign, direction: Direction) -> np.ndarray:
     """Load shares (8,) at the braked force, the flywheel held: the source's comparison with measurements."""
     box, sign = Gearbox(design, braked=True), 1.0 if direction == "B" else -1.0
-    ramp, hold, size = design.load.braked_ramp, design.load.braked_hold, sign * 1e3 * design.load.braked
-    time = np.linspace(0.0, ramp + hold, 401)
-    x, v = box.integrate(lambda t: size * np.minimum(t / ramp, 1.0), np.zeros(DOFS), time)
-    carried = box.pinion_forces(x, v)[time > ramp + 0.5 * hold].sum(axis=0)
+    rising, hold, size = design.load.braked_ramp, design.load.braked_hold, sign * 1e3 * design.load.braked
+    time = np.linspace(0.0, rising + hold, 401)
+    x, v = box.integrate(ramp(size, rising), np.zeros(DOFS), time)
+    carried = box.pinion_forces(x, v)[time > rising + 0.5 * hold].sum(axis=0)
     return carried / carried.sum()

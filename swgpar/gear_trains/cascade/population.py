@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from swgpar.gear_trains.cascade.design import PINIONS, CascadeDesign
-from swgpar.gear_trains.cascade.dynamics import Gearbox
+from swgpar.gear_trains.cascade.dynamics import Gearbox, ramp
 from swgpar.gear_trains.cascade.layout import FLYWHEEL, N_MESHES, rigid_ways
 from swgpar.gear_trains.cascade.static import MESHES, static_sharing
 from swgpar.gear_trains.cascade.tolerances import standard_deviation
@@ -64,10 +64,7 @@ def block_shares(design: CascadeDesign, block: int, count: int) -> Shares:
     """
     section, errors, box = design.population, random_errors(design, block, count), Gearbox(design)
     rising, holding = (int(np.ceil(t / section.step)) for t in (section.ramp, section.hold))
-
-    def force(t: np.ndarray) -> np.ndarray:
-        return 1e3 * design.load.peak * np.minimum(t / (rising * section.step), 1.0)
-
+    force = ramp(1e3 * design.load.peak, rising * section.step)
     start = steady_velocities(design, box)
     means, largest = np.empty((count, PINIONS)), np.empty((count, PINIONS))
     for k in range(count):

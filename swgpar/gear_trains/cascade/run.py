@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
 
 import numpy as np
 from mpi4py import MPI
@@ -42,6 +41,10 @@ def quantities(design: CascadeDesign) -> Quantities:
         "braked_A": ("load shares in motion against the brake, direction A", PINIONS),
         "overloaded_static": ("overloaded gearboxes at rest", 1),
         "overloaded_dynamic": ("gearboxes overloaded at any moment of the hold", 1),
+        "largest_static_share": ("largest load share at rest of all gearboxes with errors", 1),
+        "largest_dynamic_mean_share": ("largest mean load share in motion of all gearboxes with errors", 1),
+        "largest_dynamic_share": ("largest load share at any moment of the hold, of all gearboxes with errors", 1),
+        "natural_frequencies": ("natural frequencies, the first that of the free turning (Hz)", DOFS),
     }
     for force in design.load.forces:
         name = label(force)
@@ -100,6 +103,10 @@ def compute(design: CascadeDesign, comm: MPI.Comm) -> TrainResult:
         "braked_A": braked_a.tolist(),
         "overloaded_static": float((shares.static > limit).any(axis=1).sum()),
         "overloaded_dynamic": float((shares.largest > limit).any(axis=1).sum()),
+        "largest_static_share": float(shares.static.max()),
+        "largest_dynamic_mean_share": float(shares.mean.max()),
+        "largest_dynamic_share": float(shares.largest.max()),
+        "natural_frequencies": natural_frequencies(design).tolist(),
     }
     for kind in ("rack_pinion", "g1_g1"):
         values[f"largest_error_{kind}"] = 1e6 * float(np.abs(stacks[kind][0]).max())
@@ -112,14 +119,6 @@ def compute(design: CascadeDesign, comm: MPI.Comm) -> TrainResult:
         moving = period.shares_at(1e3 * force)
         values[f"dynamic_B_{name}"] = moving.tolist()
         values[f"dynamic_mean_B_{name}"] = [moving[~even].mean(), moving[even].mean()]
-    frequencies = natural_frequencies(design)
-    summary: dict[str, Any] = {
-        "natural_frequencies_Hz": frequencies.tolist(),
-        "largest_static_share": float(shares.static.max()),
-        "largest_dynamic_mean_share": float(shares.mean.max()),
-        "largest_dynamic_share": float(shares.largest.max()),
-        "overload_limit": limit,
-    }
     tables = {
         "static": _static(design),
         "flex_unit": _flex_unit(design),
@@ -127,7 +126,7 @@ def compute(design: CascadeDesign, comm: MPI.Comm) -> TrainResult:
         "stack_up": {f"{kind}_um": 1e6 * samples for kind, (samples, _) in stacks.items()},
         "population": _population(shares),
     }
-    return TrainResult(_history(period), tables, values, summary)
+    return TrainResult(_history(period), tables, values, {"overload_limit": limit})
 
 
 def _history(period: Period) -> Table:

@@ -7,15 +7,14 @@ from typing import Annotated, Literal
 from annotated_types import Len
 
 from swgpar.errors import InputError
-from swgpar.gear_trains.keys import Output, Positive, TrainDesign
+from swgpar.gear_trains.keys import Damping, GearTrain, MonteCarlo, Output, Positive, TrainDesign
 from swgpar.quantities import Section, quantity, show
 
 Torques = Annotated[list[Positive], Len(1)]
 
 
-class Train(Section):
+class Train(GearTrain):
     model: Literal["gear_pair"] = quantity(text="the gear train")
-    seed: int = quantity(1, text="seed of all random samples", ge=0)
 
 
 class Gear(Section):
@@ -34,11 +33,6 @@ class Mesh(Section):
     harmonics: int = quantity(3, text="Fourier terms of the mesh stiffness", ge=1, le=100)
 
 
-class Damping(Section):
-    mass: float = quantity(unit="1/s", text="damping over mass", ge=0.0)
-    stiffness: float = quantity(unit="s", text="damping over stiffness of bearings and mean mesh", ge=0.0)
-
-
 class Load(Section):
     input: Torques = quantity(text="torques on the first gear, one for each case (N·m), each above 0")
     output: Torques = quantity(text="torques on the second gear, one for each case (N·m), each above 0")
@@ -50,10 +44,6 @@ class Time(Section):
     end: float = quantity(unit="s", text="end of the simulation; densities belong to it", gt=0.0)
     step: float = quantity(unit="s", text="time step", gt=0.0)
     rows: int = quantity(100, text="moments of time that are kept", ge=1, le=100_000)
-
-
-class MonteCarlo(Section):
-    samples: int = quantity(text="simulations of each case", ge=2, le=100_000_000)
 
 
 class GearPairDesign(TrainDesign):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from functools import partial, reduce
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from swgpar.gear_trains.gear_pair.design import GearPairDesign
 from swgpar.gear_trains.gear_pair.model import COORDINATES, WAY, at_rest, mesh_force, natural_modes, system
 from swgpar.gear_trains.gear_pair.monte_carlo import BLOCK, simulate
 from swgpar.gear_trains.linearisation import EQUIVALENT, Moments, linearised
-from swgpar.gear_trains.published import Quantities
+from swgpar.gear_trains.published import KINDS, Quantities
 from swgpar.gear_trains.result import Table, TrainResult
 from swgpar.gear_trains.sampling import blocks, generator, share_out
 from swgpar.gear_trains.sums import Sums
@@ -34,6 +35,9 @@ def quantities(design: GearPairDesign) -> Quantities:
     for case in range(1, len(design.load.input) + 1):
         known[f"out_of_contact_{case}"] = (f"share of samples of case {case} out of contact at the end", 1)
         known[f"far_flank_{case}"] = (f"share of samples of case {case} on the far flank at the end", 1)
+        for kind, method, name in product(KINDS, EQUIVALENT, VALUES):
+            text = f"difference of the {method}-based {kind} of {name} from Monte Carlo's, case {case} (%)"
+            known[f"error_{kind}_{method}_{name}_{case}"] = (text, 1)
     return known
 
 
@@ -101,8 +105,8 @@ def compute(design: GearPairDesign, comm: MPI.Comm) -> TrainResult:
         for case in cases
         for method in METHODS
     }
+    values |= _errors(statistics, len(cases))
     summary = {
-        "errors_percent": _errors(statistics, len(cases)),
         "sampling_error_percent": 100.0 / np.sqrt(2.0 * design.monte_carlo.samples),
         "task_s": {"linearised": seconds[: len(tasks)], "monte_carlo": sum(seconds[len(tasks) :])},
         "half_backlash_um": design.mesh.half_backlash,
@@ -118,19 +122,14 @@ def _statistics(moments: Moments) -> tuple[np.ndarray, np.ndarray]:
     return moments.mean[1:] @ ways.T, np.sqrt(np.maximum(variances, 0.0))
 
 
-def _errors(statistics: dict[tuple[int, str], tuple[np.ndarray, np.ndarray]], cases: int) -> dict[str, Any]:
+def _errors(statistics: dict[tuple[int, str], tuple[np.ndarray, np.ndarray]], cases: int) -> dict[str, float]:
     """Mean and deviation over the second half of the time: percent by which they differ from Monte Carlo's."""
-    out: dict[str, Any] = {}
-    for case in range(cases):
-        settled = [
-            {m: statistics[case, m][k][len(statistics[case, m][k]) // 2 :].mean(axis=0) for m in METHODS}
-            for k in (0, 1)
-        ]
+    out = {}
+    for case, (k, kind) in product(range(cases), enumerate(KINDS)):
+        settled = {m: statistics[case, m][k][len(statistics[case, m][k]) // 2 :].mean(axis=0) for m in METHODS}
         for method in EQUIVALENT:
-            out[f"case_{case + 1}_{method}"] = {
-                name: dict(zip(VALUES, (100.0 * (v[method] / v["monte_carlo"] - 1.0)).tolist(), strict=True))
-                for name, v in zip(("mean", "deviation"), settled, strict=True)
-            }
+            errors = (100.0 * (settled[method] / settled["monte_carlo"] - 1.0)).tolist()
+            out |= {f"error_{kind}_{method}_{v}_{case + 1}": e for v, e in zip(VALUES, errors, strict=True)}
     return out
 
 
@@ -142,7 +141,7 @@ def _history(design: GearPairDesign, statistics: dict[tuple[int, str], tuple[np.
         "time_s": np.tile(design.time.end * np.arange(1, rows + 1) / rows, cases),
     }
     for method in METHODS:
-        for k, kind in enumerate(("mean", "deviation")):
+        for k, kind in enumerate(KINDS):
             columns = np.concatenate([statistics[case, method][k] for case in range(cases)])
             out |= {f"{method}_{kind}_{v}_um": 1e6 * c for v, c in zip(VALUES, columns.T, strict=True)}
     return out

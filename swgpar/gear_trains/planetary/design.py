@@ -8,16 +8,15 @@ from typing import Annotated, Literal
 from annotated_types import Len
 
 from swgpar.errors import InputError
-from swgpar.gear_trains.keys import Output, Positive, TrainDesign
+from swgpar.gear_trains.keys import Damping, GearTrain, MonteCarlo, Output, Positive, TrainDesign
 from swgpar.gear_trains.ring.design import held
 from swgpar.quantities import Section, quantity
 
 Thicknesses = Annotated[list[Positive], Len(1)]
 
 
-class Train(Section):
+class Train(GearTrain):
     model: Literal["planetary"] = quantity(text="the gear train")
-    seed: int = quantity(1, text="seed of all random samples", ge=0)
 
 
 class Sun(Section):
@@ -71,11 +70,6 @@ class Meshes(Section):
     harmonics: int = quantity(3, text="Fourier terms of the mesh stiffness", ge=1, le=100)
 
 
-class Damping(Section):
-    mass: float = quantity(unit="1/s", text="damping over mass", ge=0.0)
-    stiffness: float = quantity(unit="s", text="damping over stiffness, of meshes over their mean stiffness", ge=0.0)
-
-
 class Wind(Section):
     speed: float = quantity(unit="km/h", text="mean speed", gt=0.0)
     turbulence: float = quantity(text="standard deviation over the mean of the speed", ge=0.0, le=1.0)
@@ -92,10 +86,6 @@ class Time(Section):
     steps: int = quantity(text="time steps in all", ge=10, le=10_000_000)
     linearised_steps: int = quantity(text="time steps of the linearisation", ge=10, le=10_000_000)
     rows: int = quantity(200, text="moments of time that are kept", ge=1, le=100_000)
-
-
-class MonteCarlo(Section):
-    samples: int = quantity(text="simulations", ge=2, le=100_000_000)
 
 
 class PlanetaryDesign(TrainDesign):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from functools import partial, reduce
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -17,9 +18,9 @@ from swgpar.gear_trains.planetary.linearised import Moments, linearised
 from swgpar.gear_trains.planetary.model import Train, elastic_ring, radii
 from swgpar.gear_trains.planetary.monte_carlo import BLOCK, simulate
 from swgpar.gear_trains.planetary.steps import Steps
-from swgpar.gear_trains.planetary.watched import NAMES
+from swgpar.gear_trains.planetary.watched import NAMES, WATCHED
 from swgpar.gear_trains.planetary.wind import Wind
-from swgpar.gear_trains.published import Quantities, label
+from swgpar.gear_trains.published import KINDS, Quantities, label
 from swgpar.gear_trains.result import Table, TrainResult
 from swgpar.gear_trains.sampling import blocks, generator, share_out
 from swgpar.gear_trains.sums import Sums
@@ -33,10 +34,11 @@ def quantities(design: PlanetaryDesign) -> Quantities:
         "cycles_node": ("dominant slow cycles of a node of the ring in a carrier revolution", 1),
         "out_of_contact": ("share of steps and samples in which a mesh is not on its loaded flank", 1),
     }
-    for rim in design.ring.rims:
-        for name in NAMES:
-            known[f"mean_{name}_{label(rim)}"] = (f"largest mean of {name} with a rim of {rim:g} mm (m)", 1)
-            known[f"deviation_{name}_{label(rim)}"] = (f"largest deviation of it with a rim of {rim:g} mm (m)", 1)
+    for kind, (name, what) in product(KINDS, WATCHED.items()):
+        known[f"{kind}_{name}"] = (f"largest {kind} of {what} (m)", 1)
+        known[f"error_{kind}_{name}"] = (f"difference of the linearised {kind} of {what} from Monte Carlo's (%)", 1)
+    for rim, kind, (name, what) in product(design.ring.rims, KINDS, WATCHED.items()):
+        known[f"{kind}_{name}_{label(rim)}"] = (f"largest {kind} of {what} with a rim of {rim:g} mm (m)", 1)
     return known
 
 
@@ -119,15 +121,11 @@ def compute(design: PlanetaryDesign, comm: MPI.Comm) -> TrainResult:
         "cycles_node": slow_cycles(here.mean[:, NAMES.index("node_w")], design.time.revolutions),
         "out_of_contact": sum(lost for _, lost in simulated) / (design.time.steps * design.monte_carlo.samples),
     }
+    values |= _extremes(here) | _errors("mean", here.mean, sums.mean)
+    values |= _errors("deviation", here.deviation, sums.deviation)
     for rim in design.ring.rims:
-        for k, name in enumerate(NAMES):
-            values[f"mean_{name}_{label(rim)}"] = float(np.abs(moments[rim].mean[:, k]).max())
-            values[f"deviation_{name}_{label(rim)}"] = float(moments[rim].deviation[:, k].max())
+        values |= {f"{name}_{label(rim)}": value for name, value in _extremes(moments[rim]).items()}
     summary = {
-        "errors_percent": {
-            "mean": _errors(here.mean, sums.mean),
-            "deviation": _errors(here.deviation, sums.deviation),
-        },
         "sampling_error_percent": 100.0 / np.sqrt(2.0 * sums.count),
         "least_eigenvalue_over_largest": here.least,
         "asymmetry_of_correlations": here.skew,
@@ -140,12 +138,17 @@ def compute(design: PlanetaryDesign, comm: MPI.Comm) -> TrainResult:
     return TrainResult(_history(design, here, sums), tables, values, summary)
 
 
-def _errors(here: np.ndarray, there: np.ndarray) -> dict[str, float]:
+def _extremes(moments: Moments) -> dict[str, float]:
+    """Largest means and deviations over the time, m."""
+    columns = {"mean": np.abs(moments.mean).max(axis=0), "deviation": moments.deviation.max(axis=0)}
+    return {f"{kind}_{name}": float(columns[kind][k]) for kind in KINDS for k, name in enumerate(NAMES)}
+
+
+def _errors(kind: str, here: np.ndarray, there: np.ndarray) -> dict[str, float]:
     """Percent by which values (rows, watched) differ from others over the second half of the time."""
     later = slice(len(here) // 2, None)
-    return dict(
-        zip(NAMES, (100.0 * (here[later].mean(axis=0) / there[later].mean(axis=0) - 1.0)).tolist(), strict=True)
-    )
+    percent = (100.0 * (here[later].mean(axis=0) / there[later].mean(axis=0) - 1.0)).tolist()
+    return {f"error_{kind}_{name}": value for name, value in zip(NAMES, percent, strict=True)}
 
 
 def _times(design: PlanetaryDesign) -> np.ndarray:

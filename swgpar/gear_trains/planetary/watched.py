@@ -7,9 +7,18 @@ import numpy as np
 from swgpar.gear_trains.planetary.model import Train, carrier, nodes, planet
 from swgpar.gear_trains.planetary.steps import Steps
 
-NAMES = ("sun_u", "carrier_u", "planet_eta", "node_w", "contact_v", "sun_mesh", "ring_mesh")
-"""Turn of the sun and the carrier (m at their radius), tangential way of planet 1, ring node 3 along the motion, ring
-outward at planet 1, ways of the meshes of planet 1."""
+WATCHED = {
+    "sun_u": "the turn of the sun at its radius",
+    "carrier_u": "the turn of the carrier at its radius",
+    "planet_eta": "the way of planet 1 along its circle",
+    "node_w": "ring node 3 along the motion",
+    "contact_v": "the ring outward at planet 1",
+    "sun_mesh": "the way of the sun's mesh of planet 1",
+    "ring_mesh": "the way of the ring's mesh of planet 1",
+}
+"""Name -> meaning; all in m."""
+
+NAMES = tuple(WATCHED)
 
 NODE = 2
 """The ring's node 3, from 0."""

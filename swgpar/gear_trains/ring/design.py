@@ -8,15 +8,14 @@ import numpy as np
 from annotated_types import Len
 
 from swgpar.errors import InputError
-from swgpar.gear_trains.keys import Output, Positive, TrainDesign
+from swgpar.gear_trains.keys import GearTrain, Output, Positive, TrainDesign
 from swgpar.quantities import Section, quantity
 
 Speeds = Annotated[list[Positive], Len(1)]
 
 
-class Train(Section):
+class Train(GearTrain):
     model: Literal["ring"] = quantity(text="the gear train")
-    seed: int = quantity(1, text="seed of all random samples", ge=0)
 
 
 class Body(Section):

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial, reduce
+from itertools import product
 from typing import Any
 
 import numpy as np
 from mpi4py import MPI
 
 from swgpar.gear_trains.cycles import slow_cycles
-from swgpar.gear_trains.published import Quantities, label
+from swgpar.gear_trains.published import KINDS, Quantities, label
 from swgpar.gear_trains.result import Table, TrainResult
 from swgpar.gear_trains.ring.beam import Ring, Section, free_frequencies
 from swgpar.gear_trains.ring.design import RingDesign
@@ -41,9 +42,8 @@ def quantities(design: RingDesign) -> Quantities:
     if load is not None:
         for point in POINTS:
             name = point.replace("_", " ")
-            for speed in load.speeds:
-                known[f"mean_{point}_{label(speed)}"] = (f"largest mean of the {name} at {speed:g} rad/s (m)", 1)
-                known[f"deviation_{point}_{label(speed)}"] = (f"largest deviation of it at {speed:g} rad/s (m)", 1)
+            for speed, kind in product(load.speeds, KINDS):
+                known[f"{kind}_{point}_{label(speed)}"] = (f"largest {kind} of the {name} at {speed:g} rad/s (m)", 1)
             known[f"cycles_{point}"] = (f"dominant slow cycles of the {name} in a revolution at the first speed", 1)
         known["critical_speeds"] = ("the five highest peaks of the mean of the middle node, by speed (rad/s)", 5)
     return known
