@@ -9,6 +9,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from swgpar.assembly import BlockRows, Elements, Exchange, add_unit_diagonal, create_matrix, create_vector, fill_matrix
+from swgpar.contact.clearance import Clearance
 from swgpar.contact.friction import FIRST_STEP, PairKey
 from swgpar.contact.rigid import CamPose, RigidContact
 from swgpar.contact.search import FlankPair, facing_flanks, largest
@@ -48,12 +49,6 @@ by 4e-5 of the input torque where teeth are wedged, at 1e-4 by 1e-6; kept later,
 
 SEARCHES = 3
 """Further contact searches of a solve, at states in which flanks touch that the last one left out."""
-
-LOADED_SIDE = -1
-"""Flanks that carry: the load turns the flexible spline counter-clockwise against the ring gear."""
-
-LONGEST, MEETING = 0.05, 2e-4
-"""Largest way (modules) of the teeth in a Newton step under torque control, and how deep they meet when apart."""
 
 FARTHEST = 0.2
 """Largest way (modules) of a node in any Newton step: tangents are no guide over the clearance of the teeth."""
@@ -106,6 +101,7 @@ class Equilibrium:
         self.scale, self.share = holding.scale, holding.share
         self.x, self.accepted = create_vector(partition), create_vector(partition)
         self.near = near(design)
+        self.clearance = Clearance(design, teeth, partition.comm)
         self.scene: Scene | None = None
         self.on_iteration = None
         self.tried: tuple[np.ndarray, np.ndarray] | None = None
@@ -290,26 +286,9 @@ class Equilibrium:
         with self.phases("insert"):
             fill_matrix(self.matrix, self.rows)
             p.stateIncrease()
-        bound = self.scale * self._longest_turn() if self.scene.control == "torque" else None
+        bound = self.scale * self.clearance.longest_turn() if self.scene.control == "torque" else None
         border, rows = self.holding.border(u, self.scene)
         self.border.set_system(self.matrix, self.holding.ground_vectors, border, rows, bound)
-
-    def _longest_turn(self) -> float:
-        """Bound (rad) of the output's turn in a Newton step under torque control.
-
-        Flanks close no faster than their radius times the turn: up to contact there is no overshoot.
-        """
-        module = self.design.drive.module
-        gap = self._clearance() / module
-        return module * (min(gap, LONGEST) + MEETING if gap > 0.0 else LONGEST) / self._reach
-
-    @property
-    def _reach(self) -> float:
-        """Radius (mm) that no tooth is farther out than."""
-        return 0.5 * self.design.drive.teeth_rg * self.design.drive.module + self.design.d
-
-    def _clearance(self) -> float:
-        return -largest(self.partition.comm, -self.teeth.clearance(LOADED_SIDE))
 
     def closing_turn(self, scene: Scene) -> float:
         """Turn (rad) of the output, the way the torque of `scene` acts, by which its flanks do not meet yet.
@@ -321,9 +300,7 @@ class Equilibrium:
         u = self.displacement()
         self.teeth.turn = self.holding.ring_turn(u)
         self.teeth.evaluate(u, scene.teeth, None, None)
-        gap = self._clearance()
-        apart = MEETING * self.design.drive.module < gap < np.inf
-        return float(np.copysign(gap / self._reach, scene.torque)) if apart else 0.0
+        return float(np.copysign(self.clearance.closing_turn(), scene.torque))
 
     # -- solve -------------------------------------------------------------------------------------------
 

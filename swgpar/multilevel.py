@@ -13,11 +13,11 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 from scipy.sparse import csr_matrix
-from scipy.spatial import Delaunay, cKDTree
+from scipy.spatial import Delaunay, QhullError, cKDTree
 
 from swgpar.assembly import read_field, write_field
 from swgpar.design import DriveDesign
-from swgpar.errors import SwgparError
+from swgpar.errors import InputError, SwgparError
 from swgpar.incremental import LOADED, DriveModel, Runner, stresses, turned
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
@@ -48,12 +48,16 @@ def interpolation(coarse: SectorMesh, fine: SectorMesh) -> csr_matrix:
 
     Linear in the tetrahedra (triangles in the plane) between the coarse nodes, in cylindrical coordinates, in which
     rim and cup are flat. Nodes outside are extrapolated, from the cell beside them that they are least outside of.
+    Raises InputError where the coarse nodes have no such tetrahedra.
     """
     plane = coarse.tied is not None
     nodes = np.unique(coarse.tied) if plane else np.arange(len(coarse.coords))
     scale = float(np.hypot(*coarse.coords[:, :2].T).max())
     place, wanted = _unrolled(coarse.coords[nodes], scale, plane), _unrolled(fine.coords, scale, plane)
-    mesh, dims = Delaunay(place), place.shape[1]
+    try:
+        mesh, dims = Delaunay(place), place.shape[1]
+    except QhullError as error:
+        raise InputError(f"no state can be taken from the coarser mesh: {str(error).splitlines()[0]}") from None
     cell = mesh.find_simplex(wanted, tol=1e-9)
     volume = np.abs(np.linalg.det(place[mesh.simplices[:, 1:]] - place[mesh.simplices[:, :1]]))
     sound = volume > 1e-3 * np.median(volume)
@@ -147,8 +151,8 @@ def load(
         way = Runner(DriveModel(design, recipe, comm))
         todo = [item for item in items if item.step <= LOADED]
         if below is not None:
-            take_over(below, way, todo[-1])
-            below, todo = None, todo[-1:]
+            todo, taken, below = todo[-1:], below, None
+            take_over(taken, way, todo[-1])
         iterations = []
         for item in todo:
             way.increment(item)
@@ -182,6 +186,8 @@ def start_loaded(runner: Runner, recipes: list[MeshRecipe], items: list[Scene]) 
 
 def take_over(below: DriveModel, runner: Runner, loaded: Scene) -> None:
     """Take over the loaded state of a coarser model, and release that."""
-    transfer(below, below.equilibrium.x, runner.model, runner.equilibrium.x)
-    below.destroy()
+    try:
+        transfer(below, below.equilibrium.x, runner.model, runner.equilibrium.x)
+    finally:
+        below.destroy()
     runner.scene = loaded

@@ -31,7 +31,7 @@ SECTION = [
 ]
 """Overrides that make the plane drive of the cup drive's section, under a tenth of the torque."""
 
-PLANE_FACTORS, SECTION_FACTORS = (1, 2, 3), (1, 2, 4)
+PLANE_FACTORS, SECTION_FACTORS = (1, 1.5, 2), (1, 2, 3)
 """Of the finest recipe's counts: the meshes from which limits are extrapolated."""
 
 COUNTS = {
@@ -49,15 +49,15 @@ def refinements(
     choice: str,
     design: str,
     meshes: Sequence[str],
-    factors: tuple[int, ...],
+    factors: tuple[float, ...],
     keys: list[str],
 ) -> dict[str, tuple[float, str]]:
     """Rows of a plane drive on its recipes and on refinements of the last one; returns the limits."""
     name = problem.replace(" ", "_")
     runs = [(Path(mesh).stem, Path(mesh), [*PERIOD, *keys]) for mesh in meshes]
     for factor in factors[1:]:
-        label = f"{Path(meshes[-1]).stem} x {factor}"
-        path = cases.out / f"{name}_x{factor}.toml"
+        label = f"{Path(meshes[-1]).stem} x {factor:g}"
+        path = cases.out / f"{name}_x{factor:g}.toml"
         runs.append((label, refined(meshes[-1], path, factor), [*FINER, *keys]))
     solved = [run(cases.out / f"{name}_{label.replace(' ', '')}", design, m, k, cases.ranks) for label, m, k in runs]
     found = {}

@@ -37,7 +37,7 @@ def run(folder: Path, design: str, mesh: str | Path, overrides: list[str], ranks
     }
 
 
-def refined(mesh: str, path: Path, factor: int, keys: Sequence[str] = ()) -> Path:
+def refined(mesh: str, path: Path, factor: float, keys: Sequence[str] = ()) -> Path:
     """Write a recipe with `factor` times as many elements: by the given keys (section.key), or in every direction."""
     recipe = load_recipe(mesh)
     finer = accuracy.refined(recipe, factor)

@@ -254,6 +254,7 @@ def drift(first: Mapping[str, Any], last: Mapping[str, Any]) -> float:
 
 
 DECADES = (0.5, 5.0, 50.0, 500.0, 5000.0)
+ONCE_FAILED = "designs that once failed, plane"
 FRICTION = (0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5)
 
 
@@ -300,5 +301,6 @@ def groups(count: int, seed: int) -> dict[str, Group]:
         "cams, plane reference": Group(PLANE, cams),
         "face width (aspect ratio), cup": Group(SMALL, lambda: widths((0.2, 1.0, 4.0, 20.0, 60.0, 200.0, 1000.0))),
         "random designs, plane": Group(PLANE, lambda: random_designs(count, seed)),
+        ONCE_FAILED: Group(PLANE, lambda: read_toml(Path(__file__).with_name("once_failed.toml"))),
         "random designs, cup": Group(PLANE, lambda: random_designs(count // 10, seed, "cup")),
     }

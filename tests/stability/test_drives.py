@@ -6,7 +6,7 @@ On any number of ranks; every case turns through one and a half pitches of the f
 from __future__ import annotations
 
 import pytest
-from drive_groups import MESH, drift, groups, table_of
+from drive_groups import MESH, ONCE_FAILED, drift, groups, table_of
 from mpi4py import MPI
 from small_drive import PLANE, assert_same_history, run_command, succeed
 
@@ -52,6 +52,11 @@ def run(group: str, case: str) -> None:
 @pytest.mark.parametrize(("group", "case"), HARDEST)
 def test_hardest(group: str, case: str) -> None:
     run(group, case)
+
+
+@pytest.mark.parametrize("case", ALL[ONCE_FAILED].make())
+def test_design_that_once_failed(case: str) -> None:
+    run(ONCE_FAILED, case)
 
 
 @pytest.mark.parametrize("number", range(4))

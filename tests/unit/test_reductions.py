@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -45,6 +46,14 @@ def test_linear_fields_survive_the_interpolation(gear: str, overrides: tuple[str
 
     assert np.abs(matrix @ fields(coarse.coords) - fields(fine.coords)).max() < 1e-9
     assert 0.0 > matrix.min() > -0.5 and matrix.max() < 1.5  # how far this extrapolates
+
+
+def test_nodes_without_tetrahedra_are_refused() -> None:
+    """The run then starts without coarser meshes."""
+    sector = build_sector_meshes(load_design(DATA / "small.toml"), load_recipe(DATA / "tiny.toml"))["ring_gear"]
+    flat = replace(sector, coords=sector.coords * (1.0, 1.0, 0.0))
+    with pytest.raises(InputError, match="no state can be taken from the coarser mesh: QH6"):
+        interpolation(flat, sector)
 
 
 def test_levels() -> None:
