@@ -39,6 +39,8 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
+from swgpar.contact.teeth import Held
+
 MOST, HALVING = 8, 10
 """Newton iterations of a solve over `solver.max_iterations`, and within how many the residual has to halve then."""
 
@@ -75,14 +77,13 @@ class WayOut:
     active : segments are held, pressures given in the law of friction, and the line search is careful
     tried : that has been so before: afterwards the iteration starts close to the solution
     rounds : of given pressures
-    solution : the state found so;  kept : segments cut there are held, as those cut anew led away from it
+    solution : the state found so and its segments, as long as it is an alternative to those cut anew
     """
 
     active: bool = False
     tried: bool = False
     rounds: int = 0
-    solution: PETSc.Vec | None = None
-    kept: bool = False
+    solution: tuple[PETSc.Vec, Held] | None = None
 
 
 class VisitedSets:

@@ -13,7 +13,7 @@ from swgpar.contact.clearance import Clearance
 from swgpar.contact.friction import FIRST_STEP, PairKey
 from swgpar.contact.rigid import CamPose, RigidContact
 from swgpar.contact.search import FlankPair, facing_flanks, largest
-from swgpar.contact.teeth import ToothContact
+from swgpar.contact.teeth import Held, ToothContact
 from swgpar.cycling import (
     AGREEMENT,
     MOST,
@@ -314,7 +314,7 @@ class Equilibrium:
         if self.failed or not np.isfinite(norm):
             return PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN
         secure = 1.0 if self.border.kept is None or self.border.kept.fresh else SECURE
-        if (self.way_out.kept or ratio < self.design.solver.rtol**HOLD) and self.softness == 1.0:
+        if ratio < self.design.solver.rtol**HOLD and self.softness == 1.0:
             self.teeth.hold()
         if ratio <= (secure * self.design.solver.rtol if self.softness == 1.0 else SOFT_TOLERANCE):
             return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
@@ -355,7 +355,7 @@ class Equilibrium:
             unused = self.holding.unused(scene)
             self.x.array[-len(unused) :][unused] = 0.0
         self.search()
-        iterations, self.augmentations, searches = 0, 0, 0
+        iterations, self.augmentations, searches, unaugmented = 0, 0, 0, None
         self.way_out = way_out = WayOut()
         soften = list(SOFTENING) if soft else []
         tolerance = self.design.contact.penetration_tolerance * self.design.drive.module
@@ -369,12 +369,13 @@ class Equilibrium:
             ratio = self.history[-1] if self.history else np.inf
             if reason < 0 or iterations > MOST * self.design.solver.max_iterations:
                 self.border.renew()
-                if reason < 0 and way_out.solution is not None and not way_out.kept:
+                if reason < 0 and way_out.solution is not None and self._keep(*way_out.solution):
                     logger.info("   segments of the flanks are kept: cut anew they do not settle")
-                    way_out.solution.copy(self.x)
-                    way_out.kept = True
-                    self.search()
+                    way_out.solution = None
                     continue
+                if reason < 0 and unaugmented is not None:
+                    self._take_back(*unaugmented)
+                    return Solved(True, iterations, self.history[-1], "converged")
                 text = REASONS.get(reason, str(reason)) if reason < 0 else f"{iterations} iterations in all"
                 return Solved(False, iterations, ratio, text)
             if reason == PETSc.SNES.ConvergedReason.CONVERGED_ITS:
@@ -389,7 +390,7 @@ class Equilibrium:
                 if way_out.rounds < ROUNDS and largest(self.partition.comm, self.teeth.lag()) > AGREEMENT:
                     way_out.rounds += 1
                     continue
-                way_out.active, way_out.solution = False, self.x.copy()
+                way_out.active, way_out.solution = False, (self.x.copy(), self.teeth.held())
                 self.teeth.release()
                 continue
             if self._overlooked():
@@ -398,18 +399,41 @@ class Equilibrium:
                     return Solved(False, iterations, ratio, f"contact outside of {SEARCHES + 1} searches")
                 self.search()
                 searches += 1
+                unaugmented = None
                 continue
             penetration = self.penetration()
             if penetration <= tolerance or self.augmentations >= self.design.contact.max_augmentations:
                 if penetration > tolerance and self.design.contact.max_augmentations:
-                    logger.warning(
-                        "   penetration of %.2g mm remains after %d augmentations", penetration, self.augmentations
-                    )
+                    self._warn(penetration)
                 self.accept()
                 return Solved(True, iterations, ratio, "converged")
             self.augmentations += 1
-            for contact in (self.rigid, self.pins, self.teeth):
+            contacts = (self.rigid, self.pins, self.teeth)
+            unaugmented = self.x.copy(), [contact.multiplier for contact in contacts]
+            for contact in contacts:
                 contact.augment()
+
+    def _warn(self, penetration: float) -> None:
+        logger.warning("   penetration of %.2g mm remains after %d augmentations", penetration, self.augmentations)
+
+    def _take_back(self, x: PETSc.Vec, multipliers: list[np.ndarray]) -> None:
+        """Accept the state before an augmentation that led to none."""
+        x.copy(self.x)
+        for contact, multiplier in zip((self.rigid, self.pins, self.teeth), multipliers):
+            contact.multiplier = multiplier
+        self._trial(self.x, x)
+        self.augmentations -= 1
+        self.history.append(x.norm() / self.reference)
+        self._warn(self.penetration())
+        self.accept()
+
+    def _keep(self, x: PETSc.Vec, held: Held) -> bool:
+        """Go back to a state and the segments that it was found on; False where they are gone."""
+        if self.partition.comm.allreduce(int(self.teeth.hold_again(held)), op=MPI.MIN) == 0:
+            self.teeth.release()
+            return False
+        x.copy(self.x)
+        return True
 
     def accept(self) -> None:
         """Make x the state from which friction counts the slip of the next solve."""

@@ -88,6 +88,16 @@ class PlacedFaces:
         return faces
 
 
+@dataclass
+class Held:
+    """Segments of `faces` with their friction; `all` faces tell of which search they are."""
+
+    all: PlacedFaces | None
+    faces: Faces | None
+    segments: Segments | None
+    friction: Friction | None
+
+
 class ToothContact:
     """All flank pairs this rank takes part in, from one search to the next.
 
@@ -202,6 +212,7 @@ class ToothContact:
 
     def _reset(self) -> None:
         self.faces: Faces | None = None
+        self.segments: Segments | None = None
         self.multiplier = self.gap = self.pressure = np.zeros((0, self.order**2))
         self.frozen = False
         self.friction: Friction | None = None
@@ -324,6 +335,25 @@ class ToothContact:
     def release(self) -> None:
         """Cut the faces anew in every evaluation again."""
         self.frozen = False
+
+    def held(self) -> Held:
+        """The segments that are held."""
+        return Held(self.all, self.faces, self.segments, self.friction)
+
+    def hold_again(self, held: Held) -> bool:
+        """Hold these segments, which are of the last search; False where that has been repeated meanwhile.
+
+        Friction follows the pressure on them, and there are no multipliers.
+        """
+        if held.all is not self.all:
+            return False
+        self.faces, self.segments, self.friction = held.faces, held.segments, held.friction
+        self.hold()
+        if self.faces is not None:
+            self.multiplier = np.zeros_like(self.faces.weight)
+        if self.friction is not None:
+            self.friction.lagged = None
+        return True
 
     def lag(self) -> float:
         """Give the law of friction the pressures of the last evaluation, on segments that are held.
