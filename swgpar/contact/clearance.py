@@ -20,8 +20,12 @@ class Clearance:
     """Of the last evaluation of the teeth's contact; all methods are collective."""
 
     def __init__(self, design: DriveDesign, teeth: ToothContact, comm: MPI.Comm) -> None:
-        self.teeth, self.comm, self.module = teeth, comm, design.drive.module
-        self.reach = 0.5 * design.drive.teeth_rg * self.module + design.d  # no tooth is farther out, mm
+        self.design, self.teeth, self.comm, self.module = design, teeth, comm, design.drive.module
+
+    @property
+    def reach(self) -> float:
+        """Radius (mm) that no tooth is farther out than."""
+        return 0.5 * self.design.drive.teeth_rg * self.module + self.design.d
 
     def gap(self) -> float:
         """Smallest gap (mm) of the loaded flanks; inf where none is near."""
