@@ -102,7 +102,8 @@ class Cylinder:
 class NoTeeth:
     """Stands for the flank contact of a body that has no flanks; scenes keep it switched off."""
 
-    penalty, turn, symmetric = 0.0, 0.0, True
+    penalty, turn, symmetric, frozen = 0.0, 0.0, True, False
+    multiplier = np.zeros((0, 0))
 
     def bind(self, local: LocalNodes) -> None:
         """There is nothing to bind."""
@@ -117,6 +118,13 @@ class NoTeeth:
 
     def hold(self) -> None:
         """There are no segments to keep."""
+
+    def release(self) -> None:
+        """Nor to cut anew."""
+
+    def lag(self) -> float:
+        """There is no friction."""
+        return 0.0
 
     def augment(self) -> None:
         """There are no multipliers."""
