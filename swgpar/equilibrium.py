@@ -51,7 +51,7 @@ SEARCHES = 3
 """Further contact searches of a solve, at states in which flanks touch that the last one left out."""
 
 FARTHEST = 0.2
-"""Largest way (modules) of a node in any Newton step: tangents are no guide over the clearance of the teeth."""
+"""Largest way (modules) of a node in a Newton step beside teeth: tangents are no guide over their clearance."""
 
 SECURE = 0.01
 """Share of tolerance and floor with a kept factor, whose steps do not square the error as Newton's own do."""
@@ -127,7 +127,7 @@ class Equilibrium:
         ksp = self.snes.getKSP()
         ksp.setType(PETSc.KSP.Type.PREONLY)
         ksp.getPC().setType(PETSc.PC.Type.PYTHON)
-        self.step = SearchedStep(self.border, self._trial, self.x, phases, FARTHEST * design.drive.module)
+        self.step = SearchedStep(self.border, self._trial, self.x, phases)
         ksp.getPC().setPythonContext(self.step)
         self.snes.setFromOptions()
         self.matrix: PETSc.Mat | None = None
@@ -354,6 +354,7 @@ class Equilibrium:
         if self.partition.comm.rank == self.partition.comm.size - 1:
             unused = self.holding.unused(scene)
             self.x.array[-len(unused) :][unused] = 0.0
+        self.step.longest = np.inf if scene.teeth is None else FARTHEST * self.design.drive.module
         self.search()
         iterations, self.augmentations, searches, unaugmented = 0, 0, 0, None
         self.way_out = way_out = WayOut()

@@ -31,7 +31,7 @@ class SearchedStep:
     The tangent is indefinite where a thin rim gives way between contacts. A step along which the potential grows is
     then taken the other way, unless the residual halves along it all the same, as it does near a solution.
 
-    longest : mm, of a node's way in a step
+    `longest` (mm) bounds a node's way in a step.
     """
 
     TARGET, TRIALS, CAREFUL = 0.5, 16, 60
@@ -42,11 +42,10 @@ class SearchedStep:
         residual: Callable[[PETSc.Vec, PETSc.Vec], bool],
         x: PETSc.Vec,
         phases: Phases,
-        longest: float,
     ) -> None:
-        self.border, self.residual, self.x, self.phases, self.longest = border, residual, x, phases, longest
+        self.border, self.residual, self.x, self.phases = border, residual, x, phases
         self.trial, self.force = x.duplicate(), x.duplicate()
-        self.careful = False
+        self.careful, self.longest = False, np.inf
 
     def _residual(self, step: PETSc.Vec, t: float) -> bool:
         """Put the residual after t times the step into `force`; whether an element has collapsed there."""

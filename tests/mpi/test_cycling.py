@@ -52,7 +52,8 @@ class Block:
 
 def newton(block: Block, watch: bool, longest: float = 1e9) -> tuple[float, int, bool]:
     """Last residual, iterations, and whether active sets have returned."""
-    search, visited = SearchedStep(block, block.residual, block.x, Phases(), longest), VisitedSets()
+    search, visited = SearchedStep(block, block.residual, block.x, Phases()), VisitedSets()
+    search.longest = longest
     force, step, returned, k = block.x.duplicate(), block.x.duplicate(), False, 0
     block.residual(block.x, force)
     while force.norm() > 1e-12 and k < 50:
@@ -104,10 +105,11 @@ def test_longest_way_of_a_node() -> None:
     block = Block(width=1e-2)
     before = block.x.array_r[0]
     search, force, step = (
-        SearchedStep(block, block.residual, block.x, Phases(), 0.25),
+        SearchedStep(block, block.residual, block.x, Phases()),
         block.x.duplicate(),
         block.x.duplicate(),
     )
+    search.longest = 0.25
     block.residual(block.x, force)
     search.apply(None, force, step)
     assert abs(force.array_r[0]) > 1.0 and before == 2.0
