@@ -21,8 +21,8 @@ proof.
 
 With friction there is no potential, as the largest traction follows the pressure. For given pressures in the law there
 is one, but for the change of the master's metric (Tresca's problem): the way out solves such problems, the pressures of
-each being those found by the last, until they agree to `AGREEMENT` (Licht, Pratt and Raous, 1991: they do where the
-coefficient is small). Friction follows the pressure again where it goes on from there.
+each being those found by the last, until they agree to `AGREEMENT` or `ROUNDS` are over (Licht, Pratt and Raous, 1991:
+they do where the coefficient is small). Friction follows the pressure again where it goes on from there.
 
 Where one face carries all, segments can move farther with the state than the state with them, so that an iteration in
 which they are cut anew runs away from any solution. What is left then is a solution on the segments of the way out:
@@ -75,13 +75,13 @@ class WayOut:
     """How far one solve has gone on the way out.
 
     active : segments are held, pressures given in the law of friction, and the line search is careful
-    tried : that has been so before: afterwards the iteration starts close to the solution
+    begun : that is or has been so; afterwards the iteration starts close to the solution
     rounds : of given pressures
     solution : the state found so and its segments, as long as it is an alternative to those cut anew
     """
 
     active: bool = False
-    tried: bool = False
+    begun: bool = False
     rounds: int = 0
     solution: tuple[PETSc.Vec, Held] | None = None
 

@@ -13,7 +13,7 @@ from swgpar.contact.clearance import Clearance
 from swgpar.contact.friction import FIRST_STEP, PairKey
 from swgpar.contact.rigid import CamPose, RigidContact
 from swgpar.contact.search import FlankPair, facing_flanks, largest
-from swgpar.contact.teeth import Held, ToothContact
+from swgpar.contact.teeth import ToothContact
 from swgpar.cycling import (
     AGREEMENT,
     MOST,
@@ -67,7 +67,7 @@ def near(design: DriveDesign) -> float:
 
 @dataclass(frozen=True)
 class Solved:
-    """What a solve did: Newton iterations, last residual over the contact force, augmentations."""
+    """What a solve did: Newton iterations, last residual over the contact force, why it ended."""
 
     converged: bool
     iterations: int
@@ -118,7 +118,6 @@ class Equilibrium:
         options = PETSc.Options()
         if not options.hasName("snes_linesearch_type"):
             options["snes_linesearch_type"] = "basic"
-        self.snes.setTolerances(max_it=MOST * design.solver.max_iterations)
         self.snes.setFunction(self._function, create_vector(partition))
         self.snes.setConvergenceTest(self._converged)
         keep = design.solver.keep_factor and design.solver.linear == "direct" and partition.dims == 3
@@ -327,13 +326,17 @@ class Equilibrium:
         if exhausted(self.history, self.design.solver.max_iterations):
             return PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT
         if not self.step.careful and self._unsettled(ratio):
-            logger.info("   contacts of Newton iteration %d return without progress: careful line search", its)
+            logger.info("   contacts do not settle in Newton iteration %d: careful line search", its)
             self.step.careful = True
-            if not self.way_out.tried and not self.teeth.frozen:
+            if not self.way_out.begun and not self._frozen():
                 self.teeth.hold()
                 self.teeth.lag()
-                self.way_out.active = self.way_out.tried = self.teeth.frozen
+                self.way_out.active = self.way_out.begun = self._frozen()
         return None
+
+    def _frozen(self) -> bool:
+        """Whether segments are held, on any rank: many have no teeth in reach."""
+        return bool(self.partition.comm.allreduce(int(self.teeth.frozen), op=MPI.MAX))
 
     def _unsettled(self, ratio: float) -> bool:
         """Whether active sets come back, or the residual does not fall."""
@@ -356,7 +359,8 @@ class Equilibrium:
             self.x.array[-len(unused) :][unused] = 0.0
         self.step.longest = np.inf if scene.teeth is None else FARTHEST * self.design.drive.module
         self.search()
-        iterations, self.augmentations, searches, unaugmented = 0, 0, 0, None
+        iterations, self.augmentations, searches, before_augmentation = 0, 0, 0, None
+        most = MOST * self.design.solver.max_iterations
         self.way_out = way_out = WayOut()
         soften = list(SOFTENING) if soft else []
         tolerance = self.design.contact.penetration_tolerance * self.design.drive.module
@@ -364,22 +368,27 @@ class Equilibrium:
             self.history, self.stale, self.tried = [], False, None
             self.visited, self.step.careful = VisitedSets(), way_out.active
             self.soften(soften.pop(0) if soften else 1.0)
+            self.snes.setTolerances(max_it=max(1, most - iterations))
             self.snes.solve(None, self.x)
             reason = self.snes.getConvergedReason()
             iterations += self.snes.getIterationNumber()
             ratio = self.history[-1] if self.history else np.inf
-            if reason < 0 or iterations > MOST * self.design.solver.max_iterations:
+            stale = reason == PETSc.SNES.ConvergedReason.CONVERGED_ITS
+            if reason < 0 or (stale and iterations >= most):
                 self.border.renew()
-                if reason < 0 and way_out.solution is not None and self._keep(*way_out.solution):
+                if way_out.solution is not None and iterations < most:
                     logger.info("   segments of the flanks are kept: cut anew they do not settle")
+                    x, held = way_out.solution
+                    x.copy(self.x)
+                    self.teeth.hold_again(held)
                     way_out.solution = None
                     continue
-                if reason < 0 and unaugmented is not None:
-                    self._take_back(*unaugmented)
-                    return Solved(True, iterations, self.history[-1], "converged")
+                if before_augmentation is not None:
+                    ratio = self._take_back(*before_augmentation)
+                    return Solved(True, iterations, ratio, "converged")
                 text = REASONS.get(reason, str(reason)) if reason < 0 else f"{iterations} iterations in all"
                 return Solved(False, iterations, ratio, text)
-            if reason == PETSc.SNES.ConvergedReason.CONVERGED_ITS:
+            if stale:
                 self._pattern(np.union1d(self.keys, self.missing))
                 soften.insert(0, self.softness)
                 continue
@@ -388,19 +397,21 @@ class Equilibrium:
                 self.teeth.release()
                 continue
             if way_out.active:
-                if way_out.rounds < ROUNDS and largest(self.partition.comm, self.teeth.lag()) > AGREEMENT:
+                change, top = (largest(self.partition.comm, value) for value in self.teeth.lag())
+                if way_out.rounds < ROUNDS and change > AGREEMENT * top:
                     way_out.rounds += 1
                     continue
                 way_out.active, way_out.solution = False, (self.x.copy(), self.teeth.held())
                 self.teeth.release()
                 continue
+            way_out.solution = None
             if self._overlooked():
                 # the state searched at was too far off: the found one is closer to the solution
                 if searches == SEARCHES:
                     return Solved(False, iterations, ratio, f"contact outside of {SEARCHES + 1} searches")
                 self.search()
                 searches += 1
-                unaugmented = None
+                before_augmentation = None
                 continue
             penetration = self.penetration()
             if penetration <= tolerance or self.augmentations >= self.design.contact.max_augmentations:
@@ -410,31 +421,23 @@ class Equilibrium:
                 return Solved(True, iterations, ratio, "converged")
             self.augmentations += 1
             contacts = (self.rigid, self.pins, self.teeth)
-            unaugmented = self.x.copy(), [contact.multiplier for contact in contacts]
+            before_augmentation = self.x.copy(), ratio, [contact.multiplier for contact in contacts]
             for contact in contacts:
                 contact.augment()
 
     def _warn(self, penetration: float) -> None:
         logger.warning("   penetration of %.2g mm remains after %d augmentations", penetration, self.augmentations)
 
-    def _take_back(self, x: PETSc.Vec, multipliers: list[np.ndarray]) -> None:
-        """Accept the state before an augmentation that led to none."""
+    def _take_back(self, x: PETSc.Vec, ratio: float, multipliers: list[np.ndarray]) -> float:
+        """Accept the state before an augmentation that led to none; `ratio` was its residual, and is returned."""
         x.copy(self.x)
         for contact, multiplier in zip((self.rigid, self.pins, self.teeth), multipliers):
             contact.multiplier = multiplier
-        self._trial(self.x, x)
+        self._trial(self.x, self.x.duplicate())  # pressures and gaps of that state
         self.augmentations -= 1
-        self.history.append(x.norm() / self.reference)
         self._warn(self.penetration())
         self.accept()
-
-    def _keep(self, x: PETSc.Vec, held: Held) -> bool:
-        """Go back to a state and the segments that it was found on; False where they are gone."""
-        if self.partition.comm.allreduce(int(self.teeth.hold_again(held)), op=MPI.MIN) == 0:
-            self.teeth.release()
-            return False
-        x.copy(self.x)
-        return True
+        return ratio
 
     def accept(self) -> None:
         """Make x the state from which friction counts the slip of the next solve."""

@@ -56,7 +56,7 @@ class SearchedStep:
         return self.residual(self.trial, self.force)
 
     def _halves(self, right: PETSc.Vec, step: PETSc.Vec) -> bool:
-        """Whether the full step halves the residual."""
+        """Whether the full step halves the residual; one that is bounded hardly does, even towards a maximum."""
         return not self._residual(step, 1.0) and self.force.norm() < 0.5 * right.norm()
 
     def _own(self, vector: PETSc.Vec) -> np.ndarray:
@@ -73,11 +73,14 @@ class SearchedStep:
         slope = self.border.partition.comm.allreduce(float(self._own(right) @ self._own(step)), op=MPI.SUM)
         return abs(right.dot(step) - slope) < MET * abs(slope)
 
-    def _bound(self, step: PETSc.Vec) -> None:
-        """Shorten the step to the longest way of a node."""
-        way = self.border.partition.comm.allreduce(float(np.abs(self._own(step)).max(initial=0.0)), op=MPI.MAX)
-        if way > self.longest:
-            step.scale(self.longest / way)
+    def _bound(self, step: PETSc.Vec) -> float:
+        """Shorten the step to the longest way of a node, to the share of it that is returned."""
+        ways = np.linalg.norm(self._own(step).reshape(-1, 3), axis=1)
+        way = self.border.partition.comm.allreduce(float(ways.max(initial=0.0)), op=MPI.MAX)
+        share = self.longest / way if way > self.longest else 1.0
+        if share < 1.0:
+            step.scale(share)
+        return share
 
     def setUp(self, pc: PETSc.PC) -> None:
         with self.phases("factor"):

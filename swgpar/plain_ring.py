@@ -122,9 +122,9 @@ class NoTeeth:
     def release(self) -> None:
         """Nor to cut anew."""
 
-    def lag(self) -> float:
+    def lag(self) -> tuple[float, float]:
         """There is no friction."""
-        return 0.0
+        return 0.0, 0.0
 
     def augment(self) -> None:
         """There are no multipliers."""

@@ -90,9 +90,8 @@ class PlacedFaces:
 
 @dataclass
 class Held:
-    """Segments of `faces` with their friction; `all` faces tell of which search they are."""
+    """Segments of faces with their friction."""
 
-    all: PlacedFaces | None
     faces: Faces | None
     segments: Segments | None
     friction: Friction | None
@@ -338,33 +337,28 @@ class ToothContact:
 
     def held(self) -> Held:
         """The segments that are held."""
-        return Held(self.all, self.faces, self.segments, self.friction)
+        return Held(self.faces, self.segments, self.friction)
 
-    def hold_again(self, held: Held) -> bool:
-        """Hold these segments, which are of the last search; False where that has been repeated meanwhile.
-
-        Friction follows the pressure on them, and there are no multipliers.
-        """
-        if held.all is not self.all:
-            return False
+    def hold_again(self, held: Held) -> None:
+        """Hold these segments, of the last search; friction follows the pressure on them, without multipliers."""
         self.faces, self.segments, self.friction = held.faces, held.segments, held.friction
         self.hold()
         if self.faces is not None:
             self.multiplier = np.zeros_like(self.faces.weight)
         if self.friction is not None:
             self.friction.lagged = None
-        return True
 
-    def lag(self) -> float:
+    def lag(self) -> tuple[float, float]:
         """Give the law of friction the pressures of the last evaluation, on segments that are held.
 
-        Returns the largest change to those given before, over the largest pressure; 0 without friction.
+        Returns the largest change to those given before and the largest pressure (MPa) on this rank; 0 without
+        friction.
         """
         if self.friction is None or not self.frozen:
-            return 0.0
+            return 0.0, 0.0
         before, self.friction.lagged = self.friction.lagged, self.pressure.copy()
-        top = self.pressure.max(initial=0.0)
-        return 1.0 if before is None else float(np.abs(self.pressure - before).max(initial=0.0) / (top or 1.0))
+        top = float(self.pressure.max(initial=0.0))
+        return top if before is None else float(np.abs(self.pressure - before).max(initial=0.0)), top
 
     def augment(self) -> None:
         """Take the pressures of the last evaluation as multipliers; their points stay where they are from now on."""
@@ -390,7 +384,10 @@ class ToothContact:
         )
         if not missing:
             return np.zeros(0, dtype=np.int64)
-        face, point = np.nonzero(self.pressure > 0.0)
+        acts = self.pressure > 0.0
+        if self.friction is not None and self.friction.lagged is not None:
+            acts |= (self.friction.lagged > 0.0) & np.isfinite(place[..., 0])
+        face, point = np.nonzero(acts)
         return self._keys(self.segments.parent[face], place[face, point])
 
     def owned_forces(self, u: np.ndarray, opening: float) -> np.ndarray:

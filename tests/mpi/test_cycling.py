@@ -31,9 +31,9 @@ class Block:
     f: float = 0.9
 
     def __post_init__(self) -> None:
-        self.partition = SimpleNamespace(comm=MPI.COMM_SELF, n_multipliers=1)
-        self.x = PETSc.Vec().createSeq(2, comm=MPI.COMM_SELF)
-        self.x.array[:] = 2.0, 0.0
+        self.partition = SimpleNamespace(comm=MPI.COMM_SELF, n_multipliers=3)
+        self.x = PETSc.Vec().createSeq(6, comm=MPI.COMM_SELF)
+        self.x.array[0] = 2.0
 
     def sticks(self) -> bool:
         return bool(abs(self.x.array_r[0]) < self.width)
@@ -43,7 +43,7 @@ class Block:
 
     def residual(self, x: PETSc.Vec, force: PETSc.Vec) -> bool:
         way = x.array_r[0]
-        force.array[:] = self.k * way + self.mu * np.clip(way / self.width, -1.0, 1.0) - self.f, 0.0
+        force.array[0] = self.k * way + self.mu * np.clip(way / self.width, -1.0, 1.0) - self.f
         return False
 
     def apply(self, pc: None, right: PETSc.Vec, step: PETSc.Vec) -> None:
@@ -84,7 +84,7 @@ class Valleys(Block):
     """A potential x^4 / 4 - x^2 / 2: concave between its minima at -1 and 1."""
 
     def residual(self, x: PETSc.Vec, force: PETSc.Vec) -> bool:
-        force.array[:] = x.array_r[0] ** 3 - x.array_r[0], 0.0
+        force.array[0] = x.array_r[0] ** 3 - x.array_r[0]
         return False
 
     def apply(self, pc: None, right: PETSc.Vec, step: PETSc.Vec) -> None:
@@ -102,18 +102,15 @@ def test_indefinite_tangent_leads_down_all_the_same(start: float, end: float) ->
 
 
 def test_longest_way_of_a_node() -> None:
+    """In space, and without the multipliers, which have other units."""
     block = Block(width=1e-2)
-    before = block.x.array_r[0]
-    search, force, step = (
-        SearchedStep(block, block.residual, block.x, Phases()),
-        block.x.duplicate(),
-        block.x.duplicate(),
-    )
+    search = SearchedStep(block, block.residual, block.x, Phases())
     search.longest = 0.25
-    block.residual(block.x, force)
-    search.apply(None, force, step)
-    assert abs(force.array_r[0]) > 1.0 and before == 2.0
-    assert step.array_r[0] == pytest.approx(0.25)
+    step = block.x.duplicate()
+    step.array[:] = 0.3, 0.0, 0.4, 7.0, 0.0, 0.0
+    assert search._bound(step) == pytest.approx(0.5)
+    np.testing.assert_allclose(step.array_r, [0.15, 0.0, 0.2, 3.5, 0.0, 0.0])
+    assert search._bound(step) == 1.0
 
 
 def test_residuals_that_fall_get_more_iterations() -> None:
