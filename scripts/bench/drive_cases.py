@@ -22,6 +22,7 @@ PLANE_MESHES = ("mesh/plane_coarse.toml", "mesh/plane.toml", "mesh/plane_fine.to
 CUP_MESHES = ("mesh/coarse.toml", "mesh/medium.toml", "mesh/full.toml")
 PERIOD = ["steps.samples=4", "steps.start_levels=1"]
 FINER = ["steps.samples=4", "steps.start_levels=3"]
+CUP_PERIOD = ["steps.samples=8", "steps.start_levels=2", "steps.pins=false", "solver.rtol=1e-5"]
 QUANTITIES = ("fs_s1", "fs_s3", "fs_vm")
 
 SECTION = [
@@ -81,7 +82,7 @@ def cup(cases: Cases) -> None:
     """Rows of the cup drive on its recipes."""
     levels = cases.levels(len(CUP_MESHES))
     names = [Path(mesh).stem for mesh in CUP_MESHES]
-    solved = [run(cases.out / f"cup_drive_{names[k]}", CUP, CUP_MESHES[k], PERIOD, cases.ranks) for k in levels]
+    solved = [run(cases.out / f"cup_drive_{names[k]}", CUP, CUP_MESHES[k], CUP_PERIOD, cases.ranks) for k in levels]
     found = {}
     for quantity in QUANTITIES:
         (a, b), (m, n) = ([s[k] for s in solved[-2:]] for k in ("values", "elements"))
