@@ -42,7 +42,7 @@ foreseen, tip overlap."""
 SOFTENING, SOFT_TOLERANCE = (1e-3, 3e-2), 1e-2
 """Shares of the penalty, and residual over contact force, of the first rough solves while contact is established."""
 
-HOLD = 0.55
+HOLD = 0.6
 """Power of the tolerance: residual over contact force below which segments of the flanks are kept. Newton's iteration
 is then quadratic: the next step or the one after it ends. Kept at 1e-3, segments make the state depend on the way to it
 by 4e-5 of the input torque where teeth are wedged, at 1e-4 by 1e-6; kept later, a solve takes some iterations more."""
