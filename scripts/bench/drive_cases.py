@@ -66,6 +66,8 @@ def refinements(
         value, order = limit([s["values"][quantity] for s in solved], [1.0 / factor for factor in factors])
         found[quantity] = (value, f"extrapolated, order {order:.2f}" if order else "finest mesh")
     labels = [label for label, *_ in runs]
+    if not any(source.startswith("extrapolated") for _, source in found.values()):
+        solved, labels = solved[:-1], labels[:-1]  # the last one is the reference
     cases.series(problem, choice, solved, found, {}, levels=labels, ranks=cases.ranks, halved=False)
     return found
 
