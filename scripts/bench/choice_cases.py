@@ -1,4 +1,4 @@
-"""Choices of a drive on one mesh: increments, contact quadrature, linear solver, ranks. Errors are differences.
+"""Choices of a drive on one mesh: increments, contact quadrature, linear solver. Errors are differences.
 
 Without friction the state does not depend on the way to it: the increment changes nothing but the seconds.
 """
@@ -6,7 +6,7 @@ Without friction the state does not depend on the way to it: the increment chang
 from __future__ import annotations
 
 from cases import Cases
-from drive_cases import CUP, CUP_MESHES, PERIOD, PLANE, PLANE_MESHES
+from drive_cases import PERIOD, PLANE, PLANE_MESHES
 from drive_runs import run
 
 SMALL, TINY = "tests/data/small.toml", "tests/data/tiny.toml"
@@ -54,17 +54,7 @@ def solvers(cases: Cases) -> None:
         cases.series("solver, small cup drive", linear, [one], found, {}, ["tiny"], cases.ranks, False)
 
 
-def ranks(cases: Cases) -> None:
-    """One rank and two, on a plane and on a cup drive."""
-    for name, design, mesh in (("plane drive", PLANE, PLANE_MESHES[1]), ("cup drive", CUP, CUP_MESHES[0])):
-        found = None
-        for n in (1, 2):
-            one = run(cases.out / f"ranks_{name.replace(' ', '_')}_{n}", design, mesh, PERIOD, n)
-            found = found or {q: (one["values"][q], "1 rank") for q in MEANS}
-            cases.series(f"ranks, {name}", f"{n} ranks", [one], found, {}, [mesh.split("/")[1]], n, False)
-
-
 def compute(cases: Cases) -> None:
     """All choices."""
-    for group in (increments, quadrature, solvers, ranks):
+    for group in (increments, quadrature, solvers):
         group(cases)
