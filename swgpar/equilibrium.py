@@ -98,6 +98,7 @@ class Equilibrium:
     ) -> None:
         self.design, self.partition, self.elements, self.holding = design, partition, elements, holding
         self.rigid, self.pins, self.teeth, self.phases = rigid, pins, teeth, phases
+        self.contacts = rigid, pins, teeth
         self.scale, self.share = holding.scale, holding.share
         self.x, self.accepted = create_vector(partition), create_vector(partition)
         self.near = near(design)
@@ -384,7 +385,8 @@ class Equilibrium:
                     way_out.solution = None
                     continue
                 if before_augmentation is not None:
-                    ratio = self._take_back(*before_augmentation)
+                    ratio, *state = before_augmentation
+                    self._take_back(*state)
                     return Solved(True, iterations, ratio, "converged")
                 text = REASONS.get(reason, str(reason)) if reason < 0 else f"{iterations} iterations in all"
                 return Solved(False, iterations, ratio, text)
@@ -420,24 +422,22 @@ class Equilibrium:
                 self.accept()
                 return Solved(True, iterations, ratio, "converged")
             self.augmentations += 1
-            contacts = (self.rigid, self.pins, self.teeth)
-            before_augmentation = self.x.copy(), ratio, [contact.multiplier for contact in contacts]
-            for contact in contacts:
+            before_augmentation = ratio, self.x.copy(), [contact.multiplier for contact in self.contacts]
+            for contact in self.contacts:
                 contact.augment()
 
     def _warn(self, penetration: float) -> None:
         logger.warning("   penetration of %.2g mm remains after %d augmentations", penetration, self.augmentations)
 
-    def _take_back(self, x: PETSc.Vec, ratio: float, multipliers: list[np.ndarray]) -> float:
-        """Accept the state before an augmentation that led to none; `ratio` was its residual, and is returned."""
+    def _take_back(self, x: PETSc.Vec, multipliers: list[np.ndarray]) -> None:
+        """Accept the state before an augmentation that led to none."""
         x.copy(self.x)
-        for contact, multiplier in zip((self.rigid, self.pins, self.teeth), multipliers):
+        for contact, multiplier in zip(self.contacts, multipliers):
             contact.multiplier = multiplier
         self._trial(self.x, self.x.duplicate())  # pressures and gaps of that state
         self.augmentations -= 1
         self._warn(self.penetration())
         self.accept()
-        return ratio
 
     def accept(self) -> None:
         """Make x the state from which friction counts the slip of the next solve."""
@@ -460,7 +460,7 @@ class Equilibrium:
     def penetration(self) -> float:
         """Largest penetration (mm) of the last evaluation, over all ranks."""
         scene, depth = self.scene, 0.0
-        for contact, on in ((self.rigid, scene.cam), (self.pins, scene.pins), (self.teeth, scene.teeth)):
+        for contact, on in zip(self.contacts, (scene.cam, scene.pins, scene.teeth)):
             if on is not None:
                 depth = max(depth, contact.penetration())
         return largest(self.partition.comm, depth)

@@ -65,13 +65,13 @@ class SearchedStep:
         last = partition.comm.rank == partition.comm.size - 1
         return vector.array_r[: -partition.n_multipliers] if last else vector.array_r
 
-    def _grows(self, right: PETSc.Vec, step: PETSc.Vec) -> bool:
-        """Whether the potential grows along a step whose slope is negative.
+    def _grows(self, right: PETSc.Vec, step: PETSc.Vec, start: float) -> bool:
+        """Whether the potential grows along a step whose slope `start` is negative.
 
         It is no measure of a step towards constraints that are not met yet, the multipliers' part of the slope.
         """
         slope = self.border.partition.comm.allreduce(float(self._own(right) @ self._own(step)), op=MPI.SUM)
-        return abs(right.dot(step) - slope) < MET * abs(slope)
+        return abs(start - slope) < MET * abs(slope)
 
     def _bound(self, step: PETSc.Vec) -> float:
         """Shorten the step to the longest way of a node, to the share of it that is returned."""
@@ -91,7 +91,7 @@ class SearchedStep:
             self.border.apply(pc, right, step)
         self._bound(step)
         start = right.dot(step)
-        if start < 0.0 and self._grows(right, step) and not self._halves(right, step):
+        if start < 0.0 and self._grows(right, step, start) and not self._halves(right, step):
             step.scale(-1.0)
             start = -start
         elif not start > 0.0:
