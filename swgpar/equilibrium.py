@@ -313,7 +313,10 @@ class Equilibrium:
             self.on_iteration(self.scene, its, ratio)
         if self.failed or not np.isfinite(norm):
             return PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN
-        secure = 1.0 if self.border.kept is None or self.border.kept.fresh else SECURE
+        kept = self.border.kept
+        secure = 1.0 if kept is None or kept.fresh else SECURE
+        if kept is not None:
+            kept.goal = reference * (SECURE * self.design.solver.rtol if self.softness == 1.0 else SOFT_TOLERANCE)
         if ratio < self.design.solver.rtol**HOLD and self.softness == 1.0:
             self.teeth.hold()
         if ratio <= (secure * self.design.solver.rtol if self.softness == 1.0 else SOFT_TOLERANCE):

@@ -7,9 +7,8 @@ from typing import Any
 
 import numpy as np
 from mpi4py import MPI
-from petsc4py import PETSc
 
-from swgpar.assembly import Elements, read_field, write_field
+from swgpar.assembly import Elements
 from swgpar.contact.rigid import RigidContact
 from swgpar.contact.teeth import ToothContact
 from swgpar.couplings import Coupling, Housing
@@ -22,6 +21,7 @@ from swgpar.log import Phases, logger
 from swgpar.meshing import MeshRecipe, build_sector_meshes
 from swgpar.micro_geometry import WaveGeneratorSurface
 from swgpar.partition import BodyLayout, LocalNodes, Partition
+from swgpar.prediction import State, predict
 from swgpar.steps import Scene, start
 from swgpar.stress import body_fields, maxima
 from swgpar.torques import torques
@@ -144,48 +144,6 @@ class DriveModel:
         return out
 
 
-def predict(model: DriveModel, x: PETSc.Vec, turn: float, slip: float = 0.0) -> None:
-    """Turn the state x with the wave generator by `turn`, or the output in its pattern by `slip` (rad).
-
-    After one pitch of the fixed gear the drive repeats with the teeth renamed by one (exactly, as that gear stands
-    still); in between the state is interpolated over the sectors by cubic polynomials.
-    """
-    partition = model.partition
-    teeth = [layout.mesh.n_sectors for layout in partition.layouts]
-    fixed = model.fixed_body
-    nodes = np.array([-1.0, 0.0, 1.0, 2.0])
-    new = []
-    for body, layout in enumerate(partition.layouts):
-        shift, drift = turn * teeth[fixed] / (2.0 * np.pi), 0.0
-        if body != fixed:
-            shift -= slip * teeth[body] / (2.0 * np.pi)
-            drift = turn * (1.0 - teeth[fixed] / teeth[body]) + slip
-        whole = int(np.floor(shift))
-        t = 1.0 - (shift - whole)
-        weights = np.array([np.prod([(t - m) / (n - m) for m in nodes if m != n]) for n in nodes])
-        first, end = partition.owned(body)
-        wanted = np.arange(first - whole - 2, end - whole + 2)
-        field = read_field(partition, body, wanted, x)
-        angle = layout.turn(layout.first_tooth + wanted)
-        local = turned(field, -angle)
-        count = end - first
-        pattern = sum(w * local[k : k + count] for k, w in enumerate(weights))
-        angle = layout.turn(layout.first_tooth + np.arange(first, end))
-        coords = layout.mesh.coords[None]
-        values = turned(coords + pattern, angle + drift) - turned(np.repeat(coords, count, axis=0), angle)
-        new.append((body, np.arange(first, end), values))
-    for body, sectors, values in new:
-        write_field(partition, body, sectors, values, x)
-
-
-def turned(vectors: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """Vectors (n, m, 3) of n sectors turned about z by angles (n,)."""
-    c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
-    return np.stack(
-        [c * vectors[..., 0] - s * vectors[..., 1], s * vectors[..., 0] + c * vectors[..., 1], vectors[..., 2]], axis=-1
-    )
-
-
 class Runner:
     """Goes through the sequence, one increment after the other; `row` describes the state reached."""
 
@@ -195,7 +153,7 @@ class Runner:
         self.scene = start(model.design)
         self.iterations = 0
         self.residual = 0.0
-        self.visited: list[tuple[float, PETSc.Vec]] = []
+        self.visited: list[State] = []
 
     def reset(self) -> None:
         """Go back to the undeformed drive."""
@@ -224,7 +182,7 @@ class Runner:
             if scene.angle != self.scene.angle:
                 self._turn_to(scene.angle)
             elif scene.control == "rotation" and scene.rotation != self.scene.rotation:
-                predict(self.model, x, 0.0, scene.rotation - self.scene.rotation)
+                self._slip(scene.rotation - self.scene.rotation)
             elif scene.name == "deflect" and self.scene.name == "deflect":
                 # the ring bends in proportion to the travel of the pins, or to the growth of the cam
                 first, old, new = (s.cam if s.pins is None else s.pins for s in (start(self.design), self.scene, scene))
@@ -262,18 +220,17 @@ class Runner:
             turn = self.equilibrium.closing_turn(target)
             if turn == 0.0:
                 break
-            predict(self.model, self.equilibrium.x, 0.0, turn)
+            self._slip(turn)
+
+    def _slip(self, turn: float) -> None:
+        """Turn the output in its pattern (rad)."""
+        x = self.equilibrium.x
+        predict(self.model.partition, self.model.fixed_body, [(0.0, x)], x, 0.0, turn)
 
     def _turn_to(self, angle: float) -> None:
-        """Predict the state at a cam angle (rad) from the visited one that is nearest to it in the period."""
-        turns = [(angle - visited) / self.design.pitch for visited, _ in self.visited]
-        apart = [round(abs(turn - np.rint(turn)), 6) for turn in turns]
-        nearest = min(reversed(range(len(turns))), key=apart.__getitem__, default=None)
-        origin = self.scene.angle
-        if nearest is not None:
-            origin, x = self.visited[nearest]
-            x.copy(self.equilibrium.x)
-        predict(self.model, self.equilibrium.x, angle - origin)
+        """Predict the state at a cam angle (rad) from those visited, or from the present one."""
+        x = self.equilibrium.x
+        predict(self.model.partition, self.model.fixed_body, self.visited or [(self.scene.angle, x)], x, angle)
 
     def increment(self, target: Scene) -> None:
         """Do one entry of the sequence."""

@@ -1,8 +1,8 @@
 """A factor that serves later systems too: GMRES on the present one, preconditioned by the kept factor.
 
-In the cup drive one factorisation costs as much as 5 (mesh/coarse.toml) to 30 (mesh/full.toml) solves with it, and from
-one Newton iteration to the next, or one increment to the next, the tangent changes by the rotation of the elements and
-by some contact points.
+In the cup drive one factorisation costs as much as 5 (mesh/coarse.toml) to 20 (mesh/full.toml) solves with it, the
+analysis of another pattern one and a half times that, and from one Newton iteration to the next, or one increment to
+the next, the tangent changes by the rotation of the elements and by some contact points.
 """
 
 from __future__ import annotations
@@ -11,12 +11,13 @@ from collections.abc import Callable
 
 from petsc4py import PETSc
 
-RTOL, LOOSEST = 1e-4, 1e-3
-"""Of GMRES: a Newton step that exact loses nothing but its last, quadratic, iteration; and while contacts still switch,
-where a step need not be exact."""
+RTOL = 1e-4
+"""Of GMRES: a Newton step that exact loses nothing but its last, quadratic, iteration. Looser steps while contacts
+switch spare a few iterations of GMRES and cost some of Newton's."""
 
-FORCING = 0.5
-"""Share of the square of the residual's last decrease that GMRES leaves (Eisenstat and Walker, 1996, choice 2)."""
+ENOUGH, LAST = 0.2, 0.1
+"""Share of the residual at which Newton's iteration ends that GMRES leaves, and of the present one at most: more
+exactness is of no use to the last step."""
 
 LONGEST = 40
 """Iterations of GMRES after which a factor is made at once."""
@@ -26,12 +27,18 @@ INTENSITY = 40.0
 60,000 to 920,000 unknowns (docs/benchmarks/scaling.csv), the most on large ones."""
 
 
-def price(operations: float, entries: float) -> float:
+ANALYSIS = 1.5
+"""Factorisations that cost as much as the analysis of another pattern by nested dissection: 1.4 on mesh/full.toml."""
+
+
+def price(operations: float, entries: float, analysed: bool) -> float:
     """Solves that take as long as a factorisation, from its counts of floating-point operations and of entries.
+
+    analysed : whether its pattern is known
 
     A count, and no clock: a run takes the same way every time.
     """
-    return operations / (INTENSITY * entries)
+    return operations / (INTENSITY * entries) * (1.0 if analysed else 1.0 + ANALYSIS)
 
 
 Operation = Callable[[PETSc.Vec, PETSc.Vec], None]
@@ -46,15 +53,15 @@ class KeptFactor:
     like : vector of the system
     multiply, solve : with the present system; with the factor
 
-    `fresh` says that the factor is that of the present system, `stale` that it is to be renewed before its next use;
-    `iterations` are those of all solves.
+    `goal` is the residual's norm at which Newton's iteration ends; `fresh` says that the factor is that of the present
+    system, `stale` that it is to be renewed before its next use; `iterations` are those of all solves.
     """
 
     def __init__(self, like: PETSc.Vec, multiply: Operation, solve: Operation) -> None:
         self.fresh, self.stale = False, True
         self.layout: tuple[int, ...] = ()
         self.iterations: list[int] = []
-        self.norm, self.price, self.least, self.lost = 0.0, 0.0, LONGEST, 0
+        self.goal, self.least, self.lost, self.last = 0.0, LONGEST, 0, 0
         operator = PETSc.Mat().createPython([like.getSizes()] * 2, _Multiply(multiply), comm=like.comm)
         operator.setUp()
         self.ksp = PETSc.KSP().create(comm=like.comm)
@@ -72,37 +79,34 @@ class KeptFactor:
         """Release GMRES, which refers to the system; collective."""
         self.ksp.destroy()
 
-    def renewed(self, layout: tuple[int, ...], price: float) -> None:
-        """The factor is that of the present system now.
+    def renewed(self, layout: tuple[int, ...]) -> None:
+        """The factor is that of the present system now. layout : what a system must share to be served"""
+        self.fresh, self.stale, self.layout = True, False, layout
+        self.least, self.lost, self.last = LONGEST, 0, 0
 
-        layout : what a system must share to be served;  price : of the factor, in iterations
+    def serves(self, layout: tuple[int, ...], price: float) -> bool:
+        """Whether the factor is to be used with a new system.
+
+        price : of a factor of that system, in iterations. It is due when the iterations beyond those of the old one's
+        best solve have cost its price, which takes at most twice the time of the best choice, or when one solve has
+        cost more than that.
         """
-        self.fresh, self.stale, self.layout, self.price = True, False, layout, price
-        self.least, self.lost = LONGEST, 0
-
-    def serves(self, layout: tuple[int, ...]) -> bool:
-        """Whether the factor is to be used with a new system."""
         self.fresh = False
-        return not self.stale and self.layout == layout
+        return not self.stale and self.layout == layout and max(self.lost, self.last) <= price
 
     def faces(self, right: PETSc.Vec) -> None:
         """Take note of Newton's residual, the right-hand side of the present system."""
-        before, self.norm = self.norm, right.norm()
-        forcing = FORCING * (self.norm / before) ** 2 if before > 0.0 else LOOSEST
-        self.ksp.setTolerances(rtol=min(max(forcing, RTOL), LOOSEST), max_it=LONGEST)
+        norm = right.norm()
+        enough = min(ENOUGH * self.goal / norm, LAST) if norm > 0.0 else LAST
+        self.ksp.setTolerances(rtol=max(RTOL, enough), max_it=LONGEST)
 
     def solve(self, right: PETSc.Vec, x: PETSc.Vec) -> bool:
-        """Solve the present system as exactly as its place in Newton's iteration asks; whether GMRES converged.
-
-        The factor is renewed when the iterations beyond those of its best solve have cost its price, which takes at
-        most twice the time of the best choice, or when one solve has cost more than that.
-        """
+        """Solve the present system as exactly as its place in Newton's iteration asks; whether GMRES converged."""
         self.ksp.solve(right, x)
-        count = self.ksp.getIterationNumber()
-        self.iterations.append(count)
-        self.least = min(self.least, count)
-        self.lost += count - self.least
-        self.stale = max(self.lost, count) > self.price
+        self.last = self.ksp.getIterationNumber()
+        self.iterations.append(self.last)
+        self.least = min(self.least, self.last)
+        self.lost += self.last - self.least
         return self.ksp.getConvergedReason() > 0
 
 

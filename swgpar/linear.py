@@ -10,8 +10,11 @@ from swgpar.kept_factor import KeptFactor, price
 from swgpar.log import logger
 from swgpar.partition import Partition
 
+ORDERING = {2: 6, 3: 4}
+"""Of the unknowns for MUMPS (its ICNTL(7)), by dimensions: PORD's nested dissection keeps the factor of a loaded solid
+drive, whose gears the teeth tie together, at half of what minimum degree makes of it; in the plane that is faster."""
+
 MUMPS_DEFAULTS = {
-    "mat_mumps_icntl_7": 6,  # quasi-dense minimum degree: faster here than PORD, MUMPS' choice without METIS
     "mat_mumps_icntl_13": 1,  # no ScaLAPACK root: its Cholesky refuses the indefinite tangents of early iterations
     "mat_mumps_icntl_14": 60,  # per cent of memory above the estimate
 }
@@ -66,11 +69,12 @@ class Bordered:
         pc = self.ksp.getPC()
         self.modes: PETSc.NullSpace | None = None
         self.unblocked: PETSc.Mat | None = None
+        self.factored: PETSc.Mat | None = None
         if linear == "direct":
             self.ksp.setType(PETSc.KSP.Type.PREONLY)
             pc.setType(PETSc.PC.Type.CHOLESKY if symmetric else PETSc.PC.Type.LU)
             pc.setFactorSolverType("mumps")
-            defaults = MUMPS_DEFAULTS
+            defaults = {**MUMPS_DEFAULTS, "mat_mumps_icntl_7": ORDERING[partition.dims]}
         else:
             self.ksp.setType(PETSc.KSP.Type.GMRES)
             pc.setType(PETSc.PC.Type.GAMG)
@@ -119,7 +123,7 @@ class Bordered:
 
     def setUp(self, pc: PETSc.PC) -> None:
         """Factorise the matrix of the last `set_system`, unless the kept factor still serves."""
-        if self.kept is None or not self.kept.serves(self._layout()):
+        if self.kept is None or not self.kept.serves(self._layout(), self._price()):
             self.factorise()
 
     def _layout(self) -> tuple[int, ...]:
@@ -162,10 +166,13 @@ class Bordered:
             logger.warning("   MUMPS cannot factorise: INFOG(1) = %d, INFOG(2) = %d", error, detail)
 
     def _price(self) -> float:
-        """Solves that take as long as the factorisation."""
+        """Solves that take as long as another factorisation."""
+        if self.factored is None:
+            return 0.0
         factor = self.ksp.getPC().getFactorMatrix()
         entries = factor.getMumpsInfog(29)  # in millions where it is negative
-        return price(factor.getMumpsRinfog(3), entries if entries > 0 else -1e6 * entries)
+        entries = entries if entries > 0 else -1e6 * entries
+        return price(factor.getMumpsRinfog(3), entries, self.matrix is self.factored)
 
     def factorise(self) -> None:
         """Factor, or set up, for the present matrix, and solve for the borders."""
@@ -182,8 +189,9 @@ class Bordered:
         system[nb:, :nb] = small[nb:, :nb]
         system[nb:, nb:] = -small[nb:, nb:]
         self.system = system
+        self.factored = self.matrix
         if self.kept is not None:
-            self.kept.renewed(self._layout(), self._price())
+            self.kept.renewed(self._layout())
 
     def _solve_sides(self, sides: list[PETSc.Vec]) -> None:
         """Columns Z, the solutions for the borders."""

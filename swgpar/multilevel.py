@@ -18,10 +18,11 @@ from scipy.spatial import Delaunay, QhullError, cKDTree
 from swgpar.assembly import read_field, write_field
 from swgpar.design import DriveDesign
 from swgpar.errors import InputError, SwgparError
-from swgpar.incremental import LOADED, DriveModel, Runner, stresses, turned
+from swgpar.incremental import LOADED, DriveModel, Runner, stresses
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.sector import SectorMesh
+from swgpar.prediction import turned
 from swgpar.steps import Scene
 
 SMALLEST = {"tip": 2, "root": 2}

@@ -63,7 +63,8 @@ def succeed(command: list[str]) -> subprocess.CompletedProcess[str]:
 def assert_same_history(folder: Path, other: Path, rel: float = 1e-8, *, iterations: bool = True) -> None:
     """Rows agree within `rel` of the largest value of their column: entries that vanish are round-off.
 
-    iterations : compare Newton iterations too; on other numbers of ranks round-off may cost or save one
+    iterations : compare Newton iterations too; on other numbers of ranks round-off may cost or save one, and a restart
+    predicts its first states from one alone
     """
     a, b = (history.read_history(path / history.NAME) for path in (folder, other))
     assert [r["step"] for r in a] == [r["step"] for r in b]

@@ -64,7 +64,7 @@ def test_a_kept_factor_changes_nothing(plain: dict[str, float]) -> None:
 def test_a_factor_renewed_after_every_solve_or_never_changes_nothing(
     cost: float, plain: dict[str, float], monkeypatch
 ) -> None:
-    monkeypatch.setattr("swgpar.linear.price", lambda operations, entries: cost)
+    monkeypatch.setattr("swgpar.linear.price", lambda operations, entries, analysed: cost)
     _, row = rotated("solver.far_teeth=modelled")
     assert_same(row, plain, 1e-6)
 

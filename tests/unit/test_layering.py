@@ -21,6 +21,7 @@ ORDER = (
     "partition",
     "kernel",
     "assembly",
+    "prediction",
     "couplings",
     "kept_factor",
     "linear",
