@@ -7,6 +7,7 @@ Progress is one line per increment, in the log file as on a terminal; a terminal
 from __future__ import annotations
 
 import logging
+import os
 import sys
 import time
 from collections import defaultdict
@@ -20,7 +21,19 @@ from rich.logging import RichHandler
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 logger = logging.getLogger("swgpar")
-console = Console(file=sys.stdout, highlight=False, soft_wrap=True)
+
+
+def _redirected() -> bool:
+    """Whether mpirun writes into a file or pipe: it gives its ranks a terminal all the same."""
+    if "OMPI_COMM_WORLD_RANK" not in os.environ:
+        return False
+    try:
+        return not os.readlink(f"/proc/{os.getppid()}/fd/1").startswith("/dev/")
+    except OSError:
+        return False
+
+
+console = Console(file=sys.stdout, force_terminal=False if _redirected() else None, highlight=False, soft_wrap=True)
 
 
 class _RunLog(logging.FileHandler):
