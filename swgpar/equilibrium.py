@@ -269,6 +269,7 @@ class Equilibrium:
         return self.failed
 
     def _jacobian(self, snes: PETSc.SNES, x: PETSc.Vec, j: PETSc.Mat, p: PETSc.Mat) -> None:
+        PETSc.garbage_cleanup(self.partition.comm)  # PETSc keeps what Python lets go of, such as the last border
         u = self.displacement(x)
         with self.phases("tangent"):
             self.rows.values[:] = 0.0

@@ -1,7 +1,7 @@
 """A factor that serves later systems too: GMRES on the present one, preconditioned by the kept factor.
 
-In the cup drive one factorisation costs as much as 5 (mesh/coarse.toml) to 20 (mesh/full.toml) solves with it, the
-analysis of another pattern one and a half times that, and from one Newton iteration to the next, or one increment to
+In the cup drive one factorisation costs as much as 5 (mesh/coarse.toml) to 12 (mesh/full.toml) solves with it, the
+analysis of another pattern once or twice that, and from one Newton iteration to the next, or one increment to
 the next, the tangent changes by the rotation of the elements and by some contact points.
 """
 
@@ -23,12 +23,12 @@ LONGEST = 40
 """Iterations of GMRES after which a factor is made at once."""
 
 INTENSITY = 40.0
-"""Operations on an entry of the factor, of a factorisation that takes as long as a solve with it: 23 to 45 on meshes of
+"""Operations on an entry of the factor, of a factorisation that takes as long as a solve with it: 22 to 54 on meshes of
 60,000 to 920,000 unknowns (docs/benchmarks/scaling.csv), the most on large ones."""
 
-
 ANALYSIS = 1.5
-"""Factorisations that cost as much as the analysis of another pattern by nested dissection: 1.4 on mesh/full.toml."""
+"""Factorisations that cost as much as the analysis of another pattern by nested dissection: 1 to 2 in the loaded drive
+on mesh/full.toml (`-log_view`), more before its gears touch."""
 
 
 def price(operations: float, entries: float, analysed: bool) -> float:
@@ -53,8 +53,8 @@ class KeptFactor:
     like : vector of the system
     multiply, solve : with the present system; with the factor
 
-    `goal` is the residual's norm at which Newton's iteration ends; `fresh` says that the factor is that of the present
-    system, `stale` that it is to be renewed before its next use; `iterations` are those of all solves.
+    `goal` is the residual's norm that ends Newton's iteration at the latest; `fresh` says that the factor is that of
+    the present system, `stale` that it is to be renewed before its next use; `iterations` are those of all solves.
     """
 
     def __init__(self, like: PETSc.Vec, multiply: Operation, solve: Operation) -> None:

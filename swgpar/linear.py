@@ -14,10 +14,15 @@ ORDERING = {2: 6, 3: 4}
 """Of the unknowns for MUMPS (its ICNTL(7)), by dimensions: PORD's nested dissection keeps the factor of a loaded solid
 drive, whose gears the teeth tie together, at half of what minimum degree makes of it; in the plane that is faster."""
 
-MUMPS_DEFAULTS = {
-    "mat_mumps_icntl_13": 1,  # no ScaLAPACK root: its Cholesky refuses the indefinite tangents of early iterations
-    "mat_mumps_icntl_14": 60,  # per cent of memory above the estimate
-}
+
+def mumps_defaults(dims: int) -> dict[str, int]:
+    """Options of PETSc for the factor of a matrix with so many unknowns per node."""
+    return {
+        "mat_mumps_icntl_7": ORDERING[dims],
+        "mat_mumps_icntl_13": 1,  # no ScaLAPACK root: its Cholesky refuses the indefinite tangents of early iterations
+        "mat_mumps_icntl_14": 60,  # per cent of memory above the estimate
+    }
+
 
 MORE_MEMORY, OUT_OF_ESTIMATE = (120, 240, 480), (-8, -9)
 """Per cent above MUMPS' estimate that are tried after these errors of its INFOG(1)."""
@@ -33,6 +38,19 @@ GAMG_DEFAULTS = {
     "mg_levels_sub_pc_type": "icc",
     "mg_levels_sub_pc_factor_shift_type": "positive_definite",
 }
+
+
+_own: set[str] = set()
+"""Options of PETSc that this process has set itself; all others are the user's."""
+
+
+def set_defaults(prefix: str, defaults: dict[str, object]) -> None:
+    """Set options that the user has not set; PETSc keeps them for all solvers of a prefix, and reads some late."""
+    options = PETSc.Options(prefix)
+    for name, value in defaults.items():
+        if prefix + name in _own or not options.hasName(name):
+            options[name] = value
+            _own.add(prefix + name)
 
 
 class Bordered:
@@ -74,18 +92,15 @@ class Bordered:
             self.ksp.setType(PETSc.KSP.Type.PREONLY)
             pc.setType(PETSc.PC.Type.CHOLESKY if symmetric else PETSc.PC.Type.LU)
             pc.setFactorSolverType("mumps")
-            defaults = {**MUMPS_DEFAULTS, "mat_mumps_icntl_7": ORDERING[partition.dims]}
+            self.defaults: dict[str, object] = {**mumps_defaults(partition.dims)}
         else:
             self.ksp.setType(PETSc.KSP.Type.GMRES)
             pc.setType(PETSc.PC.Type.GAMG)
-            defaults = GAMG_DEFAULTS
+            self.defaults = GAMG_DEFAULTS
             place = positions[:, : partition.dims].ravel()
             place = PETSc.Vec().createWithArray(place, bsize=partition.dims, comm=partition.comm)
             self.modes = PETSc.NullSpace().createRigidBody(place)
-        options = PETSc.Options(options_prefix)
-        for name, value in defaults.items():
-            if not options.hasName(name):
-                options[name] = value
+        set_defaults(options_prefix, self.defaults)
         self.ksp.setFromOptions()
         self.grounding: list[PETSc.Vec] = []
         self.border: list[PETSc.Vec] = []
@@ -137,6 +152,7 @@ class Bordered:
     def prepare(self) -> None:
         """Factor, or the set-up of the multigrid, of the present matrix."""
         matrix = self.matrix
+        set_defaults(self.ksp.getOptionsPrefix(), self.defaults)  # another model may have set its own since
         if self.modes is not None:  # GAMG has no triangular storage
             if self.unblocked is not None:
                 self.unblocked.destroy()
@@ -157,7 +173,7 @@ class Bordered:
             if pc.getFactorMatrix().getMumpsInfog(1) not in OUT_OF_ESTIMATE:
                 break
             logger.info("   MUMPS needs more memory than it had estimated: %d %% above it", more)
-            options["mat_mumps_icntl_14"] = more
+            options["mat_mumps_icntl_14"] = self.defaults["mat_mumps_icntl_14"] = more
             pc.reset()
             self.ksp.setOperators(matrix)
             self.ksp.setUp()
@@ -167,10 +183,10 @@ class Bordered:
 
     def _price(self) -> float:
         """Solves that take as long as another factorisation."""
-        if self.factored is None:
+        factor = None if self.factored is None else self.ksp.getPC().getFactorMatrix()
+        entries = 0 if factor is None else factor.getMumpsInfog(29)  # in millions where it is negative
+        if entries == 0:  # no factor yet, or one that failed
             return 0.0
-        factor = self.ksp.getPC().getFactorMatrix()
-        entries = factor.getMumpsInfog(29)  # in millions where it is negative
         entries = entries if entries > 0 else -1e6 * entries
         return price(factor.getMumpsRinfog(3), entries, self.matrix is self.factored)
 

@@ -24,7 +24,7 @@ logger = logging.getLogger("swgpar")
 
 
 def _redirected() -> bool:
-    """Whether mpirun writes into a file or pipe: it gives its ranks a terminal all the same."""
+    """Whether mpirun, or its daemon on another node, writes into a file or pipe: ranks have a terminal all the same."""
     if "OMPI_COMM_WORLD_RANK" not in os.environ:
         return False
     try:

@@ -43,10 +43,8 @@ def supports(shifts: list[float]) -> list[tuple[int, int, float]]:
         second = next(one for one in ahead[1:] if abs(one[0]) >= APART * abs(ahead[0][0]))
         chosen += [ahead[0], second]
     places = [place for place, *_ in chosen]
-    return [
-        (k, tooth, float(np.prod([other / (other - place) for other in places if other != place])))
-        for place, k, tooth in chosen
-    ]
+    weights = [float(np.prod([other / (other - place) for other in places if other != place])) for place in places]
+    return [(k, tooth, weight) for weight, (_, k, tooth) in zip(weights, chosen) if weight != 0.0]
 
 
 def predict(

@@ -191,7 +191,7 @@ class Recorder:
         self.rows, self.done, self.names = state["rows"], state["done"], state["names"]
         self.coarser = state["coarser"] and CoarserLevel(**state["coarser"])
         self.accuracy = state["accuracy"] and Accuracy(**state["accuracy"])
-        runner.scene = last
+        runner.take(last)
         for name, value in state["phases_s"].items():
             model.phases.seconds[name] += value
         if self.writer is not None:

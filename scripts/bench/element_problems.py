@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 from petsc4py import PETSc
 
-from swgpar.linear import GAMG_DEFAULTS, MUMPS_DEFAULTS
+from swgpar.linear import GAMG_DEFAULTS, mumps_defaults
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
 from contact_blocks import block  # noqa: E402
@@ -86,7 +86,8 @@ def solve(mesh: ElementMesh, fixed: np.ndarray, load: np.ndarray, linear: str) -
         ksp.setType(PETSc.KSP.Type.GMRES)
         ksp.getPC().setType(PETSc.PC.Type.GAMG)
     options = PETSc.Options("element_")
-    for name, value in (MUMPS_DEFAULTS if linear == "direct" else {**GAMG_DEFAULTS, "ksp_rtol": GAMG_RTOL}).items():
+    defaults = mumps_defaults(dims) if linear == "direct" else {**GAMG_DEFAULTS, "ksp_rtol": GAMG_RTOL}
+    for name, value in defaults.items():
         options[name] = value
     ksp.setFromOptions()
     ksp.setOperators(matrix)

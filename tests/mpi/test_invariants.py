@@ -13,8 +13,10 @@ from small_drive import PLANE
 
 from swgpar import cycling
 from swgpar.contact.pressure import nodal_pressure
-from swgpar.contact.rigid import CamPose
+from swgpar.contact.rigid import CamPose, RigidContact
+from swgpar.contact.teeth import Held, ToothContact
 from swgpar.design import DriveDesign, load_design
+from swgpar.equilibrium import Equilibrium
 from swgpar.incremental import DriveModel, Runner, stresses
 from swgpar.meshing import load_recipe
 from swgpar.steps import sequence
@@ -244,6 +246,56 @@ def test_enforcement_does_not_show(
     assert (runner.equilibrium.augmentations > 0) == augmented
     for name in (f"{gear}_{stress}" for gear in gears for stress in ("s1", "s3", "vm")):
         assert other[name] == pytest.approx(r[name], rel=5e-3), name
+
+
+@both_models
+def test_an_augmentation_that_leads_to_no_solution_is_taken_back(model: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One that poisons the multipliers: the state is that without augmentation, and they are as they were."""
+    soft = (*stiffness(10, 10), "contact.penetration_tolerance=5e-5")
+    _, without = loaded(small(model, *soft, "contact.max_augmentations=0"))
+    poisoned = []
+
+    def poison(contact: RigidContact | ToothContact) -> None:
+        contact.multiplier = np.full_like(contact.pressure, np.nan)
+        poisoned.append(contact)
+
+    for contact in (RigidContact, ToothContact):
+        monkeypatch.setattr(contact, "augment", poison)
+    runner, taken = loaded(small(model, *soft, "contact.max_augmentations=10"))
+    assert poisoned and runner.equilibrium.augmentations == 0
+    assert all(np.all(contact.multiplier == 0.0) for contact in runner.equilibrium.contacts)
+    assert_same(taken, without, 1e-6)
+
+
+@both_models
+def test_segments_are_kept_where_those_cut_anew_lead_nowhere(model: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The way out of a cycle is taken in every solve, and no residual can be evaluated with segments cut after it."""
+    _, r = base(model)
+    release, again, evaluate = ToothContact.release, ToothContact.hold_again, ToothContact.evaluate
+    solve, solving, kept = Equilibrium.solve, [], []
+
+    def torn(self: ToothContact) -> None:
+        release(self)
+        self.torn = bool(solving) and solving[-1].way_out.solution is not None
+
+    def whole(self: ToothContact, held: Held) -> None:
+        again(self, held)
+        self.torn = False
+        kept.append(held)
+
+    def fail(self: ToothContact, *arguments: object) -> np.ndarray:
+        if getattr(self, "torn", False):
+            raise FloatingPointError
+        return evaluate(self, *arguments)
+
+    monkeypatch.setattr(cycling.VisitedSets, "returns", lambda *_: True)
+    monkeypatch.setattr(ToothContact, "release", torn)
+    monkeypatch.setattr(ToothContact, "hold_again", whole)
+    monkeypatch.setattr(ToothContact, "evaluate", fail)
+    monkeypatch.setattr(Equilibrium, "solve", lambda self, *a, **k: (solving.append(self), solve(self, *a, **k))[1])
+    _, state = loaded(small(model))
+    assert kept
+    assert_same(state, r, 5e-3)  # the segments are those of the iteration in which the cycle was found
 
 
 @both_models

@@ -14,7 +14,7 @@ from stiffness import without_grounding
 from swgpar.assembly import create_vector
 from swgpar.design import load_design
 from swgpar.incremental import DriveModel
-from swgpar.linear import Bordered
+from swgpar.linear import ORDERING, Bordered
 from swgpar.log import logger
 from swgpar.meshing import load_recipe
 from swgpar.steps import Scene
@@ -76,6 +76,18 @@ def test_mumps_out_of_memory(option: str, value: int, word: str, monkeypatch) ->
     border.apply(pc, right, x)
     assert np.isfinite(x.norm()) == (option == "14")
     assert len(said) == 1 and word in said[0]
+
+
+def test_options_of_one_model_are_not_those_of_the_next() -> None:
+    """PETSc keeps options by prefix; what the user has set stays."""
+    options = PETSc.Options("both_")
+    options["mat_mumps_icntl_13"] = 0
+    for overrides, dims in ((PLANE, 2), ((), 3), (PLANE, 2)):
+        model, _ = system(overrides, "rotation")
+        place = model.equilibrium.positions()[: model.partition.n_own]
+        Bordered(model.partition, "direct", place, "both_")
+        assert options.getInt("mat_mumps_icntl_7") == ORDERING[dims]
+        assert options.getInt("mat_mumps_icntl_13") == 0
 
 
 @pytest.mark.parametrize("overrides", [(), ("drive.layout=spline_fixed",), PLANE])
