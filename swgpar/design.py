@@ -259,14 +259,13 @@ def check_fit(design: DriveDesign) -> None:
             cup.inner_radius,
             f"above 0 to below {outer - cup.fillet_radius:g} mm (the closed end inside cup.fillet_radius)",
         )
-    if micro.wg_crowning > 0.5 * design.d:
-        _refuse("micro_geometry.wg_crowning", micro.wg_crowning, f"0 to {0.5 * design.d:g} mm (half the deflection)")
-    if abs(micro.wg_slope) > 0.5 * design.d:
-        _refuse(
-            "micro_geometry.wg_slope",
-            micro.wg_slope,
-            f"-{0.5 * design.d:g} to {0.5 * design.d:g} mm (half the deflection)",
-        )
+    # beyond a quarter of its width the cam is a cone of some 30 degrees, off which the spline slides
+    most = min(0.5 * design.d, 0.25 * wave.face_width)
+    why = "half the deflection, a quarter of the cam's width"
+    if micro.wg_crowning > most:
+        _refuse("micro_geometry.wg_crowning", micro.wg_crowning, f"0 to {most:g} mm ({why})")
+    if abs(micro.wg_slope) > most:
+        _refuse("micro_geometry.wg_slope", micro.wg_slope, f"-{most:g} to {most:g} mm ({why})")
     if micro.fs_crowning > 0.25 * g.module:
         _refuse(
             "micro_geometry.fs_crowning", micro.fs_crowning, f"0 to {0.25 * g.module:g} mm (a quarter of the module)"

@@ -126,8 +126,21 @@ def teeth(numbers: Iterable[int]) -> Cases:
 
 
 def widths(values: Iterable[float]) -> Cases:
-    """The small cup drive with another face width on the same number of elements: aspect ratios to a thousand."""
-    return {f"width={w:g}": {"drive.face_width": w, "wave_generator.face_width": w} for w in values}
+    """The small cup drive with another face width on the same number of elements: aspect ratios to a thousand.
+
+    Below its own width micro-geometry and torque shrink in proportion: the full ones crush a narrow drive.
+    """
+    table = read_toml(SMALL)
+    own, scaled = table["drive"]["face_width"], {"load.torque": table["load"]["torque"]}
+    scaled |= {f"micro_geometry.{k}": table["micro_geometry"][k] for k in ("wg_crowning", "wg_slope", "fs_crowning")}
+    return {
+        f"width={w:g}": {
+            "drive.face_width": w,
+            "wave_generator.face_width": w,
+            **({key: value * w / own for key, value in scaled.items()} if w < own else {}),
+        }
+        for w in values
+    }
 
 
 def cams() -> Cases:
