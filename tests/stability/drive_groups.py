@@ -280,6 +280,7 @@ def groups(count: int, seed: int) -> dict[str, Group]:
         return Group(SMALL, lambda: {name: {**flat, **case} for name, case in cases.items()}, steps)
 
     soft = {"contact.penalty_coef": 5.0, "contact.max_augmentations": 50}
+    wide = {"cup.fillet_radius": 3.0}  # for the thickest rim
     rims, torques = (0.18, 0.3, 0.5, 1.0, 1.5, 2.0, 3.0), (0.0, 0.01, 1.0, 10.0, 50.0, 100.0, 200.0, 500.0)
     turns = {f"increment={a:g}": {"steps.increment": a, "steps.rotation": 2 * a} for a in (0.1, 0.3, 1.0, 3.0, 10.0)}
     return {
@@ -307,7 +308,7 @@ def groups(count: int, seed: int) -> dict[str, Group]:
             PLANE, lambda: each("contact.friction", FRICTION, {"load.torque": 50.0})
         ),
         "rim, plane reference": Group(PLANE, lambda: each("flexible_spline.rim", rims)),
-        "rim, cup reference": Group(CUP, lambda: each("flexible_spline.rim", (0.18, 0.3, 1.0, 3.0))),
+        "rim, cup reference": Group(CUP, lambda: each("flexible_spline.rim", (0.18, 0.3, 1.0, 3.0), wide)),
         "torque, plane reference": Group(PLANE, lambda: each("load.torque", torques)),
         "torque, cup reference": Group(CUP, lambda: each("load.torque", (0.01, 20.0, 100.0, 500.0))),
         "teeth, plane reference": Group(PLANE, lambda: teeth((20, 30, 40, 60, 80, 120, 160, 200, 320))),
