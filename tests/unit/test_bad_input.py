@@ -110,6 +110,14 @@ def test_micro_geometry_of_the_plane_model(key: str) -> None:
     load_design(REFERENCE, ["drive.model=plane", f"micro_geometry.{key}=0", *others])
 
 
+def test_a_spline_is_at_least_half_as_wide_as_its_rim_is_thick() -> None:
+    rim = load_design(REFERENCE).flexible_spline.rim
+    narrow = [f"{section}.face_width={0.4 * rim}" for section in ("drive", "wave_generator")]
+    straight = [f"micro_geometry.{key}=0" for key in ("wg_crowning", "wg_slope", "fs_crowning")]
+    with pytest.raises(InputError, match=rf"drive.face_width = .* allowed {0.5 * rim:g} mm \(half of the rim\)"):
+        load_design(REFERENCE, [*narrow, *straight])
+
+
 def test_a_cup_drive_needs_a_cup(design_file: Callable[[dict[str, dict]], Path]) -> None:
     path = design_file({})
     lines = path.read_text(encoding="utf-8").splitlines()
