@@ -253,10 +253,9 @@ def check_fit(design: DriveDesign) -> None:
     if cup.length <= cup.fillet_radius:
         _refuse("cup.length", cup.length, f"above {cup.fillet_radius:g} mm (cup.fillet_radius)")
     # a spline thrice as thick as wide does not get round (docs/benchmarks/stability.md), one twice as thick does
-    if g.face_width < 0.5 * design.flexible_spline.rim:
-        _refuse(
-            "drive.face_width", g.face_width, f"{0.5 * design.flexible_spline.rim:g} mm (half of the rim) to inf mm"
-        )
+    narrowest = 0.5 * design.flexible_spline.rim
+    if g.face_width < narrowest:
+        _refuse("drive.face_width", g.face_width, f"{narrowest:g} mm (half of the rim) to inf mm")
     outer = design.r_fs + design.cup_thickness
     if cup.inner_radius >= outer - cup.fillet_radius:
         _refuse(

@@ -15,7 +15,7 @@ ORDERING = {2: 6, 3: 4}
 drive, whose gears the teeth tie together, at half of what minimum degree makes of it; in the plane that is faster."""
 
 
-def mumps_defaults(dims: int) -> dict[str, int]:
+def mumps_defaults(dims: int) -> dict[str, object]:
     """Options of PETSc for the factor of a matrix with so many unknowns per node."""
     return {
         "mat_mumps_icntl_7": ORDERING[dims],
@@ -92,7 +92,7 @@ class Bordered:
             self.ksp.setType(PETSc.KSP.Type.PREONLY)
             pc.setType(PETSc.PC.Type.CHOLESKY if symmetric else PETSc.PC.Type.LU)
             pc.setFactorSolverType("mumps")
-            self.defaults: dict[str, object] = {**mumps_defaults(partition.dims)}
+            self.defaults: dict[str, object] = mumps_defaults(partition.dims)
         else:
             self.ksp.setType(PETSc.KSP.Type.GMRES)
             pc.setType(PETSc.PC.Type.GAMG)

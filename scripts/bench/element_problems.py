@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 from petsc4py import PETSc
 
-from swgpar.linear import GAMG_DEFAULTS, mumps_defaults
+from swgpar.linear import GAMG_DEFAULTS, mumps_defaults, set_defaults
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
 from contact_blocks import block  # noqa: E402
@@ -85,10 +85,8 @@ def solve(mesh: ElementMesh, fixed: np.ndarray, load: np.ndarray, linear: str) -
         matrix.setNearNullSpace(PETSc.NullSpace().createRigidBody(place))
         ksp.setType(PETSc.KSP.Type.GMRES)
         ksp.getPC().setType(PETSc.PC.Type.GAMG)
-    options = PETSc.Options("element_")
     defaults = mumps_defaults(dims) if linear == "direct" else {**GAMG_DEFAULTS, "ksp_rtol": GAMG_RTOL}
-    for name, value in defaults.items():
-        options[name] = value
+    set_defaults("element_", defaults)
     ksp.setFromOptions()
     ksp.setOperators(matrix)
     right, answer = matrix.createVecs()
