@@ -41,7 +41,7 @@ def read_field(partition: Partition, body: int, sectors: np.ndarray, vector: PET
     fixed = int(len(wanted) > 0 and wanted[0] == -1)
     values = Exchange(partition, wanted[fixed:].astype(np.int32))(vector)
     values = np.vstack([np.zeros((fixed, 3)), values])[place.reshape(number.shape)]
-    return np.where(flip[..., None] == 1, FLIP * values, values)
+    return partition.layouts[body].fill_inside(sectors, np.where(flip[..., None] == 1, FLIP * values, values))
 
 
 def write_field(partition: Partition, body: int, sectors: np.ndarray, values: np.ndarray, vector: PETSc.Vec) -> None:
@@ -55,12 +55,14 @@ class BodyElements:
     """The elements of one body as one rank sees them.
 
     Sectors run from one before the first owned to one after the last, as far as they exist: the owned
-    rows need the former, nodal averages of stress need both.
+    rows need the former, nodal averages of stress need both. A condensed sector is a single element here.
     """
 
     def __init__(self, partition: Partition, body: int, reference: ReferenceElements) -> None:
         layout = partition.layouts[body]
-        self.layout, self.reference = layout, reference
+        self.layout, self.reference, condensed = layout, reference, layout.condensed
+        self.assembled = reference if condensed is None else condensed.reference
+        self.cells = layout.mesh.elements if condensed is None else condensed.outer[None]
         first, end = partition.owned(body)
         sectors = np.arange(first - 1, end + 1) if end > first else np.zeros(0, dtype=np.int64)
         if not layout.closed:
@@ -69,7 +71,6 @@ class BodyElements:
         self.owned = slice(int(np.searchsorted(sectors, first)), int(np.searchsorted(sectors, end)))
         nodes = np.arange(len(layout.mesh.coords))
         self.number, self.flip = partition.numbers(body, sectors, nodes)
-        elements = layout.mesh.elements
         lo, hi = partition.row_start, partition.row_start + partition.n_own
         # on a single rank the sector before the first is an image of an owned one: it must not count twice
         self.neighbour = np.zeros(len(sectors), dtype=bool)
@@ -79,7 +80,7 @@ class BodyElements:
         counted = self.neighbour.copy()
         counted[self.owned] = True
         here = (self.number >= lo) & (self.number < hi) & counted[:, None]
-        touches = here[:, elements].any(axis=2) if len(sectors) else np.zeros((0, len(elements)), dtype=bool)
+        touches = here[:, self.cells].any(axis=2) if len(sectors) else np.zeros((0, len(self.cells)), dtype=bool)
         self.every = tuple(v.astype(np.int32) for v in np.nonzero(touches))
         self.modelled = np.ones(len(sectors), dtype=bool)
         angle = layout.turn(layout.first_tooth + sectors)
@@ -92,7 +93,7 @@ class BodyElements:
         sector_of, ref_of = self.every
         pick = self.modelled[sector_of]
         self.sector_of, self.ref_of = sector_of[pick], ref_of[pick]
-        nodes = self.layout.mesh.elements[self.ref_of]
+        nodes = self.cells[self.ref_of]
         self.conn = np.ascontiguousarray(self.local[self.sector_of[:, None], nodes])
         self.conn_flip = np.ascontiguousarray(self.flip[self.sector_of[:, None], nodes])
         self.turn = np.ascontiguousarray(self.turn_of_sector[self.sector_of])
@@ -100,7 +101,7 @@ class BodyElements:
     def displacement(self, u: np.ndarray) -> np.ndarray:
         """Displacement of all nodes of the seen sectors, images turned; (n_sectors, n_local, 3) mm."""
         field = np.where(self.local[..., None] >= 0, u[self.local], 0.0)
-        return np.where(self.flip[..., None] == 1, FLIP * field, field)
+        return self.layout.fill_inside(self.sectors, np.where(self.flip[..., None] == 1, FLIP * field, field))
 
     def positions(self) -> np.ndarray:
         """Undeformed positions of all nodes of the seen sectors; (n_sectors, n_local, 3) mm."""
@@ -114,17 +115,17 @@ class BodyElements:
         Returns (n_owned, n_local, 6) MPa; components xx, yy, zz, xy, yz, zx in global axes; zero in sectors left out.
         """
         mesh = self.layout.mesh
-        elements, tied = mesh.elements, mesh.tied
+        elements, tied = np.ascontiguousarray(mesh.elements), mesh.tied
         n_sectors, n_node, n_elem = len(self.sectors), len(mesh.coords), len(elements)
-        sums = np.zeros((n_sectors, n_node, 6))
+        sums, field = np.zeros((n_sectors, n_node, 6)), self.displacement(u)
         for k in np.flatnonzero(self.modelled):
             stress = recover_stress(
                 self.reference,
                 np.arange(n_elem, dtype=np.int32),
                 np.repeat(self.turn_of_sector[k : k + 1], n_elem, axis=0),
-                np.ascontiguousarray(self.local[k, elements]),
-                np.ascontiguousarray(self.flip[k, elements]),
-                u,
+                elements,
+                np.zeros(elements.shape, dtype=np.uint8),
+                field[k],
             )
             for c in range(6):
                 sums[k, :, c] = np.bincount(elements.ravel(), stress[:, :, c].ravel(), minlength=n_node)
@@ -219,7 +220,7 @@ class Elements:
         for k, body in enumerate(self.bodies):
             if len(body.conn):
                 assemble_elements(
-                    body.reference,
+                    body.assembled,
                     body.ref_of,
                     body.turn,
                     body.conn,

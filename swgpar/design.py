@@ -109,6 +109,10 @@ class Solver(Section):
     far_teeth: Literal["left_out", "modelled"] = quantity(
         "left_out", text="ring-gear sectors out of reach of the flexible spline, with the ring gear fixed"
     )
+    condensed_sectors: bool = quantity(
+        False,
+        text="eliminate the inside of tooth sectors: in the plane of both gears, in the cup drive of the ring gear",
+    )
     keep_factor: bool = quantity(True, text="cup drive: use factors for later tangents while GMRES converges with them")
 
 
@@ -185,6 +189,16 @@ class DriveDesign(Section):
         return self.backlash / (self.drive.teeth_fs * self.drive.module)
 
     @property
+    def sector_bend(self) -> float:
+        """Share of the bending strain that the plane model's condensed sectors leave out.
+
+        The rim's change of curvature 3 d / (2 r^2) turns the ends of a sector, a pitch apart, by theta against its
+        middle's frame: theta^2 / 8 of strain over that of bending.
+        """
+        curvature, pitch = 1.5 * self.d / self.r_fs**2, 2.0 * np.pi * self.r_fs / self.drive.teeth_fs
+        return (curvature * pitch) ** 2 / 8.0 / (0.5 * self.flexible_spline.rim * curvature)
+
+    @property
     def cup_thickness(self) -> float:
         """mm; the rim's thickness in the plane model, which has no cup."""
         return (self.cup.thickness_coef if self.cup else 1.0) * self.flexible_spline.rim
@@ -199,6 +213,9 @@ class DriveDesign(Section):
         """Penalty of the contact of cam and pins, MPa / mm."""
         return self.contact.wg_penalty_coef * self.material.E / self.drive.module
 
+
+SECTOR_BEND = 0.01
+"""Largest share of the bending strain that condensed sectors may leave out."""
 
 BULGE_POINTS = 2000
 """Points of the cam's outline at which it is checked."""
@@ -242,6 +259,11 @@ def check_fit(design: DriveDesign) -> None:
             'allowed "direct" with friction'
         )
     if g.model == "plane":
+        if design.solver.condensed_sectors and design.sector_bend > SECTOR_BEND:
+            raise InputError(
+                f"solver.condensed_sectors = true leaves out {design.sector_bend:.2g} of the bending strain: allowed "
+                f"up to {SECTOR_BEND:g}, with more teeth or a thicker flexible_spline.rim"
+            )
         for key in ("wg_crowning", "wg_slope", "fs_crowning"):
             if getattr(micro, key) != 0.0:
                 _refuse(f"micro_geometry.{key}", getattr(micro, key), 'only 0 with drive.model = "plane"')

@@ -6,7 +6,8 @@ counter-clockwise side of sector k is the clockwise-side node of sector k + 1.
 
 With twofold symmetry only half a turn is modelled: the sector after the last one is sector 0 turned by
 180 degrees, so a node of it is an *image*: its vectors are diag(-1, -1, 1) times those of the owner.
-Displacement unknowns are numbered in blocks of three per node; nodes fixed to the frame have none.
+Displacement unknowns are numbered in blocks of three per node; nodes fixed to the frame and inside of condensed sectors
+have none.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from mpi4py import MPI
 
+from swgpar.condensed import CondensedSector
 from swgpar.meshing.sector import SectorMesh
 
 FLIP = np.array([-1.0, -1.0, 1.0])
@@ -38,7 +40,8 @@ class BodyLayout:
     first_tooth, count : modelled teeth first_tooth .. first_tooth + count - 1
     closed : the chain closes on itself (with a half turn when the model is halved)
     images : True when the model holds half a turn
-    fixed : (n_fixed,) local nodes without unknowns
+    fixed : (n_fixed,) local nodes that do not move
+    condensed : the sector as one element, whose inner nodes have no unknowns; None where they have
     """
 
     mesh: SectorMesh
@@ -47,14 +50,18 @@ class BodyLayout:
     closed: bool
     images: bool
     fixed: np.ndarray
+    condensed: CondensedSector | None = None
 
     def __post_init__(self) -> None:
         n = len(self.mesh.coords)
         partner = np.full(n, -1, dtype=np.int64)
         partner[self.mesh.ccw_nodes] = self.mesh.cw_nodes
-        row = np.zeros(n, dtype=np.int64)
+        absent = np.zeros(n, dtype=bool)
+        absent[self.fixed] = True
+        if self.condensed is not None:
+            absent[self.condensed.inner] = True
+        row = np.where(absent, -1, 0)
         row[self.mesh.ccw_nodes] = -1
-        row[self.fixed] = -1
         tied = self.mesh.tied
         if tied is not None:
             row[tied != np.arange(n)] = -1
@@ -66,16 +73,14 @@ class BodyLayout:
         cap_nodes = np.sort(self.mesh.cw_nodes[cap >= 0])
         cap_row = np.full(n, -1, dtype=np.int64)
         cap_row[cap_nodes] = np.arange(len(cap_nodes))
-        is_fixed = np.zeros(n, dtype=bool)
-        is_fixed[self.fixed] = True
         if tied is not None:
-            is_fixed = is_fixed[tied]
+            absent = absent[tied]
         for name, value in dict(
             partner=partner,
             row=row,
             own=own,
             cap_row=cap_row,
-            is_fixed=is_fixed,
+            absent=absent,
             n_cap=0 if self.closed else len(cap_nodes),
         ).items():
             object.__setattr__(self, name, value)
@@ -92,6 +97,15 @@ class BodyLayout:
     def turn(self, tooth: np.ndarray) -> np.ndarray:
         """Angle of a tooth about z, counter-clockwise from +y, radians."""
         return self.mesh.phase + np.asarray(tooth) * (2.0 * np.pi / self.mesh.n_sectors)
+
+    def fill_inside(self, sectors: np.ndarray, field: np.ndarray) -> np.ndarray:
+        """`field` (n, n_local_nodes, 3) mm of chain indices (n,), with the displacement inside of condensed sectors."""
+        if self.condensed is not None:
+            angle = self.turn(self.first_tooth + sectors)
+            field[:, self.condensed.inner] = self.condensed.inside(angle, field[:, self.condensed.outer])
+            if self.mesh.tied is not None:
+                field = np.ascontiguousarray(field[:, self.mesh.tied])
+        return field
 
     def locate(self, tooth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Modelled chain index of any tooth number (-1 where it is left out) and its image flag."""
@@ -162,7 +176,7 @@ class Partition:
 
         Returns
         -------
-        number : (m, k) int64, -1 where the node is fixed
+        number : (m, k) int64, -1 where the node has no unknowns
         flip : (m, k) uint8, 1 where the owner's vectors must be turned by 180 degrees
         """
         b = self.layouts[body]
@@ -185,8 +199,8 @@ class Partition:
             (k - self.starts[body][rank]) * len(b.own) + b.row[local],
         )
         number = self._base[rank, body] + offset
-        fixed = np.broadcast_to(b.is_fixed[nodes], k.shape)
-        return np.where(fixed, -1, number), np.where(fixed, 0, flip).astype(np.uint8)
+        absent = np.broadcast_to(b.absent[nodes], k.shape)
+        return np.where(absent, -1, number), np.where(absent, 0, flip).astype(np.uint8)
 
 
 class LocalNodes:

@@ -11,6 +11,7 @@ from libc.stdint cimport int32_t, int64_t, uint8_t
 cdef extern from "element_batch.hpp" namespace "swgpar" nogil:
     struct ElementBatch:
         int64_t n
+        int64_t nodes
         const double* stiffness
         const double* gradient
         const double* coords
@@ -22,6 +23,8 @@ cdef extern from "element_batch.hpp" namespace "swgpar" nogil:
                                             const int64_t* slot, double* values, double* energy)
     int64_t assemble4 "swgpar::assemble<4>"(const ElementBatch&, const double* u, double* residual,
                                             const int64_t* slot, double* values, double* energy)
+    int64_t assemble_any "swgpar::assemble<Eigen::Dynamic>"(const ElementBatch&, const double* u, double* residual,
+                                                           const int64_t* slot, double* values, double* energy)
     int64_t stress8 "swgpar::stress<8>"(const ElementBatch&, const double* recovery, const double* u, double* out)
     int64_t stress4 "swgpar::stress<4>"(const ElementBatch&, const double* recovery, const double* u, double* out)
     int64_t solid "swgpar::reference<swgpar::Hex8i>"(int64_t n, const double* coords, double young, double poisson,
@@ -83,7 +86,7 @@ cdef ElementBatch batch(const double[:, :, ::1] stiffness, const double[:, :, ::
     if not (turn.shape[0] == conn.shape[0] == flip.shape[0] == ref_of.shape[0] and turn.shape[1] == 2
             and conn.shape[1] == flip.shape[1] == coords.shape[1]):
         raise ValueError("element arrays: shapes disagree")
-    return ElementBatch(conn.shape[0], &stiffness[0, 0, 0], &gradient[0, 0, 0], &coords[0, 0, 0], &ref_of[0],
+    return ElementBatch(conn.shape[0], conn.shape[1], &stiffness[0, 0, 0], &gradient[0, 0, 0], &coords[0, 0, 0], &ref_of[0],
                         &turn[0, 0], &conn[0, 0], &flip[0, 0])
 
 
@@ -119,8 +122,10 @@ def assemble_elements(ref, const int32_t[::1] ref_of, const double[:, ::1] turn,
     with nogil:
         if conn.shape[1] == 4:
             bad = assemble4(e, &u[0, 0], pr, pp, pv, &energy)
-        else:
+        elif conn.shape[1] == 8:
             bad = assemble8(e, &u[0, 0], pr, pp, pv, &energy)
+        else:
+            bad = assemble_any(e, &u[0, 0], pr, pp, pv, &energy)
     if bad >= 0:
         raise FloatingPointError(f"element {bad} has collapsed")
     return energy

@@ -41,13 +41,15 @@ inline Eigen::Matrix3d plane_rotation(const Eigen::Matrix3d& f) {
   return r;
 }
 
-// N: 8 for hexahedra; 4 for plane elements, whose nodes have no displacement along z.
+// N: 8 for hexahedra; 4 for plane elements, whose nodes have no displacement along z; Dynamic for condensed sectors,
+// plane ones if their gradients have no z.
 template <int N>
 struct Corotated {
+  static constexpr int D = N == Eigen::Dynamic ? Eigen::Dynamic : 3 * N;
   using Nodes = Eigen::Matrix<double, N, 3>;
-  using Vector = Eigen::Matrix<double, 3 * N, 1>;
-  using Square = Eigen::Matrix<double, 3 * N, 3 * N>;
-  using Rows = Eigen::Matrix<double, 3, 3 * N>;
+  using Vector = Eigen::Matrix<double, D, 1>;
+  using Square = Eigen::Matrix<double, D, D>;
+  using Rows = Eigen::Matrix<double, 3, D>;
 
   Eigen::Matrix3d rotation, stretch;
   Nodes y;
@@ -61,33 +63,37 @@ struct Corotated {
   Corotated(const Nodes& small, const Nodes& turned, const Nodes& u, const Nodes& g, const double* stiffness) {
     const Eigen::RowVector3d mean = u.colwise().mean();
     const Nodes x = turned + (u.rowwise() - mean);
+    const int m = static_cast<int>(g.rows());
+    const bool plane = N == 4 || (N == Eigen::Dynamic && g.col(2).isZero(0));
     Eigen::Matrix3d f = x.transpose() * g;
-    if (N == 4) f(2, 2) = 1.0;
+    if (plane) f(2, 2) = 1.0;
     if (!(f.determinant() > 0)) {
       valid = false;
       return;
     }
-    rotation = N == 4 ? plane_rotation(f) : polar_rotation(f);
+    rotation = plane ? plane_rotation(f) : polar_rotation(f);
     stretch = rotation.transpose() * f;
     stretch = (0.5 * (stretch + stretch.transpose())).eval();
     y = x * rotation;
-    for (int a = 0; a < N; ++a) d.template segment<3>(3 * a) = (y.row(a) - small.row(a)).transpose();
-    f0.noalias() = Eigen::Map<const Square>(stiffness) * d;
+    d.resize(3 * m), q.resize(3, 3 * m);
+    for (int a = 0; a < m; ++a) d.template segment<3>(3 * a) = (y.row(a) - small.row(a)).transpose();
+    f0.noalias() = Eigen::Map<const Square>(stiffness, 3 * m, 3 * m) * d;
     moment.setZero();
-    for (int a = 0; a < N; ++a) moment += Eigen::Vector3d(y.row(a)).cross(f0.template segment<3>(3 * a));
+    for (int a = 0; a < m; ++a) moment += Eigen::Vector3d(y.row(a)).cross(f0.template segment<3>(3 * a));
     const Eigen::Matrix3d gi = (stretch.trace() * Eigen::Matrix3d::Identity() - stretch).inverse();
-    for (int a = 0; a < N; ++a) q.template middleCols<3>(3 * a) = gi * skew(g.row(a));
+    for (int a = 0; a < m; ++a) q.template middleCols<3>(3 * a) = gi * skew(g.row(a));
     r = f0 - q.transpose() * moment;
   }
 
   // Tangent in the element frame; symmetric.
   Square tangent(const Nodes& g, const double* stiffness) const {
-    const Eigen::Map<const Square> k0(stiffness);
-    Eigen::Matrix<double, 3 * N, 3> lever;
-    Rows spin_f0, spin_r, change;
+    const int m = static_cast<int>(g.rows());
+    const Eigen::Map<const Square> k0(stiffness, 3 * m, 3 * m);
+    Eigen::Matrix<double, D, 3> lever(3 * m, 3);
+    Rows spin_f0(3, 3 * m), spin_r(3, 3 * m), change(3, 3 * m);
     const Eigen::Matrix3d gi = (stretch.trace() * Eigen::Matrix3d::Identity() - stretch).inverse();
     const Eigen::Vector3d n = gi * moment;
-    for (int a = 0; a < N; ++a) {
+    for (int a = 0; a < m; ++a) {
       lever.template middleRows<3>(3 * a) = skew(y.row(a));
       spin_f0.template middleCols<3>(3 * a) = skew(f0.template segment<3>(3 * a));
       spin_r.template middleCols<3>(3 * a) = skew(r.template segment<3>(3 * a));
@@ -96,7 +102,7 @@ struct Corotated {
     }
     change.noalias() -= skew(stretch * n) * q;
     // P^T K0 P + Q^T F0 P + Fr^T Q + Q^T N, gathered as K0 + A Q + Q^T A^T-like low-rank updates
-    const Eigen::Matrix<double, 3 * N, 3> ky = k0 * lever;
+    const Eigen::Matrix<double, D, 3> ky = k0 * lever;
     const Eigen::Matrix3d inner = lever.transpose() * ky + spin_f0 * lever;
     Rows left = ky.transpose() + spin_f0 + change;
     left.noalias() += inner * q;

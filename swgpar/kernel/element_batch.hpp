@@ -9,8 +9,8 @@
 
 namespace swgpar {
 
-struct ElementBatch {  // N nodes each: 8, or 4 in the plane
-  std::int64_t n;
+struct ElementBatch {  // N nodes each: 8, 4 in the plane, or those of a condensed sector
+  std::int64_t n, nodes;
   const double* stiffness;     // (n_ref, 3 N, 3 N)
   const double* gradient;      // (n_ref, N, 3)
   const double* coords;        // (n_ref, N, 3)
@@ -24,37 +24,43 @@ template <int N>
 using RowNodes = Eigen::Matrix<double, N, 3, Eigen::RowMajor>;
 
 template <int N>
+inline std::int64_t count(const ElementBatch& e) {
+  return N == Eigen::Dynamic ? e.nodes : N;
+}
+
+template <int N>
 inline Corotated<N> state(const ElementBatch& e, std::int64_t k, const double* u, Eigen::Matrix<double, N, 3>& g) {
-  const std::int64_t ref = e.ref_of[k];
-  g = Eigen::Map<const RowNodes<N>>(e.gradient + 3 * N * ref);
-  Eigen::Matrix<double, N, 3> x = Eigen::Map<const RowNodes<N>>(e.coords + 3 * N * ref);
+  const std::int64_t ref = e.ref_of[k], m = count<N>(e);
+  g = Eigen::Map<const RowNodes<N>>(e.gradient + 3 * m * ref, m, 3);
+  Eigen::Matrix<double, N, 3> x = Eigen::Map<const RowNodes<N>>(e.coords + 3 * m * ref, m, 3);
   x.rowwise() -= x.colwise().mean().eval();
   const double c = e.turn[2 * k], s = e.turn[2 * k + 1];
-  Eigen::Matrix<double, N, 3> turned = x, v;
+  Eigen::Matrix<double, N, 3> turned = x, v(m, 3);
   turned.col(0) = c * x.col(0) - s * x.col(1);
   turned.col(1) = s * x.col(0) + c * x.col(1);
-  for (int a = 0; a < N; ++a) v.row(a) = nodal(u, e.conn[N * k + a], e.flip[N * k + a]).transpose();
-  return Corotated<N>(x, turned, v, g, e.stiffness + 9 * N * N * ref);
+  for (int a = 0; a < m; ++a) v.row(a) = nodal(u, e.conn[m * k + a], e.flip[m * k + a]).transpose();
+  return Corotated<N>(x, turned, v, g, e.stiffness + 9 * m * m * ref);
 }
 
 // Adds forces and tangent blocks; returns the index of a collapsed element or -1.
 template <int N>
 inline std::int64_t assemble(const ElementBatch& e, const double* u, double* residual, const std::int64_t* slot,
                              double* values, double* energy) {
-  Eigen::Matrix<double, N, 3> g;
+  const std::int64_t m = count<N>(e);
+  Eigen::Matrix<double, N, 3> g(m, 3);
   for (std::int64_t k = 0; k < e.n; ++k) {
     const Corotated<N> c = state<N>(e, k, u, g);
     if (!c.valid) return k;
     *energy += 0.5 * c.d.dot(c.f0);
-    const std::int32_t* conn = e.conn + N * k;
-    const std::uint8_t* flip = e.flip + N * k;
+    const std::int32_t* conn = e.conn + m * k;
+    const std::uint8_t* flip = e.flip + m * k;
     if (residual != nullptr)
-      for (int a = 0; a < N; ++a) add_nodal(residual, conn[a], flip[a], c.rotation * c.r.template segment<3>(3 * a));
+      for (int a = 0; a < m; ++a) add_nodal(residual, conn[a], flip[a], c.rotation * c.r.template segment<3>(3 * a));
     if (values == nullptr) continue;
-    const auto t = c.tangent(g, e.stiffness + 9 * N * N * e.ref_of[k]);
-    for (int a = 0; a < N; ++a) {
-      for (int b = 0; b < N; ++b) {
-        const std::int64_t place = slot[N * N * k + N * a + b];
+    const auto t = c.tangent(g, e.stiffness + 9 * m * m * e.ref_of[k]);
+    for (int a = 0; a < m; ++a) {
+      for (int b = 0; b < m; ++b) {
+        const std::int64_t place = slot[m * m * k + m * a + b];
         if (place < 0) continue;
         const Mat3 even =
             0.5 * (t.template block<3, 3>(3 * a, 3 * b) + t.template block<3, 3>(3 * b, 3 * a).transpose());

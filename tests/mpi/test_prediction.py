@@ -39,7 +39,7 @@ def wave(model: DriveModel, angle: float, slip: float = 0.0) -> PETSc.Vec:
         around = np.arctan2(place[..., 1], place[..., 0])
         radial = np.stack([np.cos(around), np.sin(around), np.zeros_like(around)], axis=-1)
         values = place + np.cos(2.0 * (around - angle))[..., None] * radial - turned(coords, at)
-        values[:, layout.is_fixed] = 0.0
+        values[:, layout.absent] = 0.0
         write_field(partition, body, own, values, x)
     return x
 

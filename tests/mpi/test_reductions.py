@@ -122,6 +122,44 @@ def test_far_teeth_change_little() -> None:
     assert_same(near_teeth, all_teeth, 1e-6)
 
 
+MANY = ("drive.teeth_fs=80", "drive.teeth_rg=82", *PLANE)
+
+
+@pytest.mark.parametrize("overrides", [(), ("contact.friction=0.2",), ("drive.layout=spline_fixed",)])
+def test_condensed_sectors_in_the_plane_leave_out_the_bend_of_a_sector(overrides: tuple[str, ...]) -> None:
+    """E theta^2 / 8 of the bending stress; half as much again for the load's part and the nodal averages."""
+    runner, plain = rotated(*MANY, *overrides)
+    condensed_runner, condensed = rotated(*MANY, *overrides, "solver.condensed_sectors=true")
+    design = runner.design
+    assert 0.5 * runner.model.partition.n_global > condensed_runner.model.partition.n_global
+    share = 1.5 * design.sector_bend
+    assert 1e-3 < share < 0.015
+    assert_same(condensed, plain, share)
+    # everywhere, inside too
+    for fields, others in zip(stresses(condensed_runner.model)[1], stresses(runner.model)[1]):
+        assert np.abs(fields["displacement"] - others["displacement"]).max(initial=0.0) < 2e-3 * design.d
+        for name in ("s1", "s3", "vm"):
+            assert np.abs(fields[name] - others[name]).max(initial=0.0) < share * plain["fs_vm"], name
+
+
+def test_condensed_sectors_of_the_cup_drives_ring_gear_change_little(plain: dict[str, float]) -> None:
+    runner, row = rotated(*PLAIN, "solver.condensed_sectors=true")
+    assert [layout.condensed is None for layout in runner.model.partition.layouts] == [True, False]
+    assert_same(row, plain, 1e-3)
+
+
+def test_condensed_sectors_with_all_that_applies() -> None:
+    """Start on a coarser mesh, states predicted, whole drive: interpolation needs what is inside of the sectors."""
+    refined = "../../mesh/plane_coarse.toml"
+    condensed = (*MANY, "solver.condensed_sectors=true")
+    runner, row = rotated(*condensed, recipe=refined)
+    fast, quick = rotated(*condensed, "steps.start_levels=1", "steps.pins=false", recipe=refined)
+    assert fast.iterations <= runner.iterations
+    assert_same(quick, row, 1e-6)
+    _, whole = rotated(*condensed, "solver.twofold_symmetry=false", recipe=refined)
+    assert_same(whole, row, 1e-6)
+
+
 def test_the_continued_history_is_that_of_a_longer_rotation() -> None:
     design = load_design(DATA / "small.toml", [*PLANE, "steps.samples=4", "steps.rotation=11"])
     runner = Runner(DriveModel(design, load_recipe(DATA / "tiny.toml"), MPI.COMM_WORLD))

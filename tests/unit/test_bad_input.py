@@ -98,6 +98,15 @@ def test_friction_needs_the_direct_solver(design: Path) -> None:
         load_design(design, ["contact.friction=0.1", 'solver.linear="iterative"'])
 
 
+def test_condensed_sectors_that_bend_too_much() -> None:
+    plane = REFERENCE.with_name("plane_half_turn.toml")
+    load_design(plane, ["solver.condensed_sectors=true"])
+    few = ["solver.condensed_sectors=true", "drive.teeth_fs=40", "drive.teeth_rg=42"]
+    with pytest.raises(InputError, match="solver.condensed_sectors = true leaves out 0.019 .* allowed up to 0.01"):
+        load_design(plane, few)
+    load_design(plane, few[1:])
+
+
 @pytest.mark.parametrize("key", ["wg_crowning", "wg_slope", "fs_crowning"])
 def test_micro_geometry_of_the_plane_model(key: str) -> None:
     """It has no face width along which anything could change."""

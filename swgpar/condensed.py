@@ -1,0 +1,89 @@
+"""Tooth sectors whose inside is eliminated: congruent sectors share one stiffness of their outer nodes.
+
+A sector is then one element of the nodes that neighbours, contact, cam and couplings need (static condensation). Its
+inside is linear in a frame that turns with the outer nodes, as that of every element does with its own
+(`kernel/corotation.hpp`). Lost is how much the ends of a sector turn against each other, which in the plane leaves out
+strains of an eighth of the square of that angle (`DriveDesign.sector_bend`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.linalg import splu
+from scipy.spatial.transform import Rotation
+
+from swgpar.kernel import ReferenceElements
+from swgpar.meshing.sector import SectorMesh
+
+
+@dataclass(frozen=True)
+class CondensedSector:
+    """The elements of a sector as one.
+
+    outer : (m,) nodes that are kept;  inner : (k,) nodes that are not;  inner_coords : (k, 3) mm
+    reference : the sector as an element of m nodes, without recovery of stress
+    modes : (3 k, 3 m) displacement of the inner nodes by that of the outer ones, in the sector's frame
+    """
+
+    outer: np.ndarray
+    inner: np.ndarray
+    inner_coords: np.ndarray
+    reference: ReferenceElements
+    modes: np.ndarray
+
+    def inside(self, angle: np.ndarray, u: np.ndarray) -> np.ndarray:
+        """Displacement (n, k, 3) mm of the inner nodes of sectors turned by (n,) rad, from (n, m, 3) of the outer."""
+        coords, gradient = self.reference.coords[0], self.reference.gradient[0]
+        middle = coords.mean(axis=0)
+        outer, inner = coords - middle, self.inner_coords - middle
+        turn = Rotation.from_euler("z", angle[:, None]).as_matrix().transpose(0, 2, 1)
+        mean = u.mean(axis=1, keepdims=True)
+        place = outer @ turn + u - mean
+        stretch = place.transpose(0, 2, 1) @ gradient
+        if not gradient[:, 2].any():  # plane
+            stretch[:, 2, 2] = 1.0
+        left, _, right = np.linalg.svd(stretch)
+        frame = left @ right
+        deformed = (place @ frame - outer).reshape(len(u), -1) @ self.modes.T
+        return (inner + deformed.reshape(len(u), -1, 3)) @ frame.transpose(0, 2, 1) - inner @ turn + mean
+
+
+def outer_nodes(mesh: SectorMesh) -> np.ndarray:
+    """Nodes of a sector's elements that something else acts on as well, sorted."""
+    parts = [mesh.cw_nodes, mesh.ccw_nodes, *mesh.faces.values(), *mesh.node_sets.values()]
+    parts += [grid.nodes for grid in mesh.flanks]
+    return np.intersect1d(np.concatenate([part.ravel() for part in parts]), mesh.elements)
+
+
+def condense(mesh: SectorMesh, elements: ReferenceElements) -> CondensedSector:
+    """Eliminate the inside of a sector from the stiffness of its elements."""
+    outer = outer_nodes(mesh)
+    inner = np.setdiff1d(mesh.elements, outer)
+    n, m, k, dims = len(mesh.coords), len(outer), len(inner), 3 if mesh.tied is None else 2
+    entry = (3 * mesh.elements[..., None] + np.arange(3)).reshape(len(mesh.elements), -1)
+    row, column = np.broadcast_arrays(entry[:, :, None], entry[:, None, :])
+    stiffness = coo_matrix((elements.stiffness.ravel(), (row.ravel(), column.ravel())), shape=(3 * n, 3 * n)).tocsr()
+    at_outer, at_inner = ((3 * nodes[:, None] + np.arange(dims)).ravel() for nodes in (outer, inner))
+    coupling = stiffness[at_inner][:, at_outer].toarray()
+    modes = np.zeros((k, 3, m, 3))
+    reduced = np.zeros((m, 3, m, 3))
+    solved = -splu(stiffness[at_inner][:, at_inner].tocsc()).solve(coupling)
+    condensed = stiffness[at_outer][:, at_outer].toarray() + coupling.T @ solved
+    modes[:, :dims, :, :dims] = solved.reshape(k, dims, m, dims)
+    reduced[:, :dims, :, :dims] = (0.5 * (condensed + condensed.T)).reshape(m, dims, m, dims)
+    coords = mesh.coords[outer]
+    # the frame follows the least-squares gradient of the outer nodes' motion
+    about = (coords - coords.mean(axis=0))[:, :dims]
+    gradient = np.zeros((m, 3))
+    gradient[:, :dims] = about @ np.linalg.inv(about.T @ about)
+    reference = ReferenceElements(
+        reduced.reshape(1, 3 * m, 3 * m),
+        np.zeros((1, 0, 3 * m)),
+        gradient[None],
+        coords[None],
+        elements.volume.sum(keepdims=True),
+    )
+    return CondensedSector(outer, inner, mesh.coords[inner], reference, modes.reshape(3 * k, 3 * m))
