@@ -8,11 +8,12 @@ Compressive stress is no measure: where edges carry, its largest value has no li
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.design import DriveDesign
+from swgpar.design import SECTOR_BEND, DriveDesign
 from swgpar.design_file import validate
 from swgpar.error_estimate import ORDER
 from swgpar.errors import InputError
@@ -35,6 +36,10 @@ turn by 0.3 %, those of the cup drive by 0.5 %; what half of a run's own angles 
 RTOL = 1e-5
 """Newton's tolerance: its part in the error of the stresses is below the lowest accuracy by decades."""
 
+BEND = 0.2
+"""Share of an accuracy up to which condensed sectors, which leave out a part of the bending strain, are used: of the
+largest stress, which a notch raises, that part is less than half as much."""
+
 STEPS = (1.5, 2.0)
 """Refinements of all counts to choose from."""
 
@@ -53,7 +58,7 @@ class Chosen:
 
 
 def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
-    """The design with the angles and the tolerance that suit an accuracy, where it does not say them itself.
+    """The design with the angles, tolerance and sectors that suit an accuracy, where it does not say them itself.
 
     Raises InputError where the accuracy is out of range or cannot be had.
     """
@@ -64,14 +69,18 @@ def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
             f"--accuracy needs contact.friction = 0, not {design.contact.friction:g}: with friction the loaded state "
             "depends on the way to it and cannot be taken over from a coarser mesh"
         )
-    changes = {}
+    changes: dict[str, Any] = {}
+    solver: dict[str, Any] = {}
     whole_period = design.steps.rotation >= np.degrees(design.pitch)
     if "samples" not in design.steps.model_fields_set and whole_period:
         samples = next(count for least, count in SAMPLES if accuracy >= least)
         changes["steps"] = design.steps.model_copy(update={"samples": samples})
     if "rtol" not in design.solver.model_fields_set:
-        changes["solver"] = design.solver.model_copy(update={"rtol": RTOL})
-    return design.model_copy(update=changes)
+        solver["rtol"] = RTOL
+    small = design.drive.model == "plane" and design.sector_bend <= min(BEND * accuracy, SECTOR_BEND)
+    if "condensed_sectors" not in design.solver.model_fields_set and small:
+        solver["condensed_sectors"] = True
+    return design.model_copy(update={**changes, "solver": design.solver.model_copy(update=solver)})
 
 
 def refined(recipe: MeshRecipe, factor: float) -> MeshRecipe:

@@ -51,6 +51,14 @@ def write_field(partition: Partition, body: int, sectors: np.ndarray, values: np
     vector.array.reshape(-1, 3)[number[own] - partition.row_start] = values[own]
 
 
+def read_multipliers(partition: Partition, vector: PETSc.Vec) -> np.ndarray:
+    """The multiplier entries of a full-length vector, on every rank."""
+    comm, last, n = partition.comm, partition.comm.size - 1, partition.n_multipliers
+    values = vector.array_r[-n:].copy() if comm.rank == last else np.empty(n)
+    comm.Bcast(values, root=last)
+    return values
+
+
 class BodyElements:
     """The elements of one body as one rank sees them.
 

@@ -9,12 +9,13 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.assembly import Elements
+from swgpar.balance import near
 from swgpar.condensed import condense
 from swgpar.contact.rigid import RigidContact
 from swgpar.contact.teeth import ToothContact
 from swgpar.couplings import Coupling, Housing
 from swgpar.design import DriveDesign
-from swgpar.equilibrium import Equilibrium, near
+from swgpar.equilibrium import Equilibrium
 from swgpar.errors import ConvergenceError
 from swgpar.holding import Holding
 from swgpar.kernel import reference_elements

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from petsc4py import PETSc
 
-from swgpar.assembly import create_vector
+from swgpar.assembly import create_vector, read_multipliers
 from swgpar.kept_factor import KeptFactor, price
 from swgpar.log import logger
 from swgpar.partition import Partition
@@ -236,13 +236,6 @@ class Bordered:
                 solution.set(0.0)  # nothing to start the next tangent's from
         self.ksp.setInitialGuessNonzero(False)
 
-    def multipliers(self, vector: PETSc.Vec) -> np.ndarray:
-        """The multiplier entries of a full-length vector, on every rank."""
-        comm, last, n = self.partition.comm, self.partition.comm.size - 1, self.partition.n_multipliers
-        values = vector.array_r[-n:].copy() if comm.rank == last else np.empty(n)
-        comm.Bcast(values, root=last)
-        return values
-
     def apply(self, pc: PETSc.PC, right: PETSc.Vec, x: PETSc.Vec) -> None:
         if self.kept is not None:
             self.kept.faces(right)
@@ -257,7 +250,7 @@ class Bordered:
         """y = [K' - B B^T, C^T; C, 0] x of the last `set_system`; multipliers that it does not use stand alone."""
         n, last = self.partition.n_multipliers, self.partition.comm.rank == self.partition.comm.size - 1
         used = self.rows[: len(self.border) - self.free]
-        multipliers = self.multipliers(x)
+        multipliers = read_multipliers(self.partition, x)
         moved = x.copy()
         if last:
             moved.array[-n:] = 0.0
@@ -284,7 +277,7 @@ class Bordered:
         sides = (self.grounding + self.border)[: prescribed if bound is None else None]
         load = np.array([v.dot(x) for v in sides])
         load[nb:] *= -1.0
-        load[nb:prescribed] += self.multipliers(right)[used]
+        load[nb:prescribed] += read_multipliers(self.partition, right)[used]
         if bound is None:
             answer = np.linalg.solve(self.system[:prescribed, :prescribed], load)
         else:

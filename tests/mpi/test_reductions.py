@@ -10,7 +10,7 @@ import pytest
 from mpi4py import MPI
 from small_drive import PLANE
 
-import swgpar.equilibrium
+import swgpar.balance
 from swgpar.design import load_design
 from swgpar.incremental import DriveModel, Runner, stresses
 from swgpar.kept_factor import LONGEST
@@ -78,11 +78,11 @@ def test_a_start_without_pins_changes_nothing(overrides: tuple[str, ...]) -> Non
 
 def test_search_over_candidate_teeth_only(plain: dict[str, float], monkeypatch) -> None:
     """Flanks as far as five modules apart instead of those that can meet."""
-    margin = swgpar.equilibrium.TIP_MARGIN
-    monkeypatch.setattr("swgpar.equilibrium.TIP_MARGIN", 5.0)
+    margin = swgpar.balance.TIP_MARGIN
+    monkeypatch.setattr("swgpar.balance.TIP_MARGIN", 5.0)
     runner, row = rotated(*PLAIN)
     wide = len(runner.equilibrium.teeth.pairs)
-    monkeypatch.setattr("swgpar.equilibrium.TIP_MARGIN", margin)
+    monkeypatch.setattr("swgpar.balance.TIP_MARGIN", margin)
     runner.equilibrium.search()
     near = len(runner.equilibrium.teeth.pairs)
     print(f"{near} of {wide} pairs of flanks")

@@ -40,6 +40,15 @@ def test_what_the_design_says_itself_is_kept() -> None:
     assert with_accuracy(load_design(DATA / "small.toml", [*PLANE, "steps.rotation=4"]), 0.01).steps.samples == 0
 
 
+def test_sectors_are_condensed_where_that_leaves_out_little() -> None:
+    plane = DATA.parent.parent / "drivers/plane_half_turn.toml"
+    assert with_accuracy(load_design(plane), 0.02).solver.condensed_sectors
+    assert not with_accuracy(load_design(plane), 0.005).solver.condensed_sectors
+    assert not with_accuracy(load_design(plane, ["solver.condensed_sectors=false"]), 0.02).solver.condensed_sectors
+    assert not with_accuracy(load_design(DATA / "small.toml", PLANE), 0.2).solver.condensed_sectors
+    assert not with_accuracy(load_design(plane.with_name("cup_45deg.toml")), 0.1).solver.condensed_sectors
+
+
 def test_accuracies_that_cannot_be_had() -> None:
     design = load_design(DATA / "small.toml", PLANE)
     for accuracy in (0.0, 0.5, float("nan")):

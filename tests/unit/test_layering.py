@@ -34,6 +34,7 @@ ORDER = (
     "far_teeth",
     "holding",
     "stress",
+    "balance",
     "equilibrium",
     "torques",
     "incremental",
