@@ -120,7 +120,7 @@ def choose(design: DriveDesign, recipe: MeshRecipe, items: list[Scene], accuracy
         dimensions = model.partition.dims
         below, here = seen[-1], level_of(model)
         seen.append(here)
-        error = relative_error(seen, dimensions)
+        error = relative_error(seen, dimensions) + model.bend_left_out() / abs(here.stresses[MEASURE])
         logger.info(
             "%d elements: s1 %.1f MPa under load, estimated error %.2g %%",
             here.elements,

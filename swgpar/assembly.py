@@ -38,9 +38,9 @@ def read_field(partition: Partition, body: int, sectors: np.ndarray, vector: PET
     """Nodal values (n_sectors, n_local_nodes, 3) of any sectors of a body, images turned; collective."""
     number, flip = partition.numbers(body, sectors, np.arange(len(partition.layouts[body].mesh.coords)))
     wanted, place = np.unique(number, return_inverse=True)
-    fixed = int(len(wanted) > 0 and wanted[0] == -1)
-    values = Exchange(partition, wanted[fixed:].astype(np.int32))(vector)
-    values = np.vstack([np.zeros((fixed, 3)), values])[place.reshape(number.shape)]
+    absent = int(len(wanted) > 0 and wanted[0] == -1)
+    values = Exchange(partition, wanted[absent:].astype(np.int32))(vector)
+    values = np.vstack([np.zeros((absent, 3)), values])[place.reshape(number.shape)]
     return partition.layouts[body].fill_inside(sectors, np.where(flip[..., None] == 1, FLIP * values, values))
 
 

@@ -214,6 +214,8 @@ def _print_result(result) -> None:
             f"accuracy of the largest tensile stress: {accuracy['asked']:g} asked for, {accuracy['estimated']:.2g} "
             f"estimated{'' if accuracy['reached'] else ', NOT reached: the mesh is the finest that is taken'}"
         )
+    if left_out := result.summary["condensed_MPa"]:
+        console.print(f"condensed sectors leave out {left_out:.2g} MPa of bending stress")
     if error := result.summary["sampling_error"]:
         console.print(
             f"half as many angles change the means by: s1 {error['fs_s1']:.2f}, |s3| {error['fs_s3']:.2f}, "

@@ -1,9 +1,9 @@
-"""Tooth sectors whose inside is eliminated: congruent sectors share one stiffness of their outer nodes.
+"""Plane tooth sectors whose inside is eliminated: congruent sectors share one stiffness of their outer nodes.
 
-A sector is then one element of the nodes that neighbours, contact, cam and couplings need (static condensation). Its
-inside is linear in a frame that turns with the outer nodes, as that of every element does with its own
-(`kernel/corotation.hpp`). Lost is how much the ends of a sector turn against each other, which in the plane leaves out
-strains of an eighth of the square of that angle (`DriveDesign.sector_bend`).
+A sector is then one element (a superelement, by static condensation) of the nodes that neighbours, contact, cam and
+couplings need. Its inside is linear in a frame that turns with the outer nodes, as that of every element does with its
+own (`kernel/corotation.hpp`). Lost is how much the ends of a sector turn against each other (`bend`), which leaves out
+strains of an eighth of the square of that angle.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ class CondensedSector:
 
     outer : (m,) nodes that are kept;  inner : (k,) nodes that are not;  inner_coords : (k, 3) mm
     reference : the sector as an element of m nodes, without recovery of stress
-    modes : (3 k, 3 m) displacement of the inner nodes by that of the outer ones, in the sector's frame
+    modes : (3 k, 3 m) constraint modes: displacement of the inner nodes by that of the outer ones, in that frame
     """
 
     outer: np.ndarray
@@ -39,16 +39,33 @@ class CondensedSector:
         coords, gradient = self.reference.coords[0], self.reference.gradient[0]
         middle = coords.mean(axis=0)
         outer, inner = coords - middle, self.inner_coords - middle
-        turn = Rotation.from_euler("z", angle[:, None]).as_matrix().transpose(0, 2, 1)
+        turn = _about_z(angle)
         mean = u.mean(axis=1, keepdims=True)
         place = outer @ turn + u - mean
         stretch = place.transpose(0, 2, 1) @ gradient
-        if not gradient[:, 2].any():  # plane
-            stretch[:, 2, 2] = 1.0
-        left, _, right = np.linalg.svd(stretch)
-        frame = left @ right
-        deformed = (place @ frame - outer).reshape(len(u), -1) @ self.modes.T
-        return (inner + deformed.reshape(len(u), -1, 3)) @ frame.transpose(0, 2, 1) - inner @ turn + mean
+        frame = _about_z(np.arctan2(stretch[:, 1, 0] - stretch[:, 0, 1], stretch[:, 0, 0] + stretch[:, 1, 1]))
+        deformed = (place @ frame.transpose(0, 2, 1) - outer).reshape(len(u), outer.size) @ self.modes.T
+        return (inner + deformed.reshape(len(u), *inner.shape)) @ frame - inner @ turn + mean
+
+
+def _about_z(angle: np.ndarray) -> np.ndarray:
+    """Matrices (n, 3, 3) that turn rows by angles (n,) rad from the right."""
+    return Rotation.from_euler("z", angle[:, None]).as_matrix().transpose(0, 2, 1)
+
+
+def bend(mesh: SectorMesh, angle: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """Turn (n,) rad of the two cuts of sectors against each other, at displacements u (n, n_node, 3) mm.
+
+    angle : (n,) rad, of the sectors
+    """
+    turns = []
+    for nodes in (mesh.ccw_nodes, mesh.cw_nodes):
+        place = mesh.coords[nodes] @ _about_z(angle)
+        place -= place.mean(axis=1, keepdims=True)
+        now = place + u[:, nodes] - u[:, nodes].mean(axis=1, keepdims=True)
+        sine = (place[..., 0] * now[..., 1] - place[..., 1] * now[..., 0]).sum(axis=1)
+        turns.append(np.arctan2(sine, (place * now)[..., :2].sum(axis=(1, 2))))
+    return turns[0] - turns[1]
 
 
 def outer_nodes(mesh: SectorMesh) -> np.ndarray:
@@ -59,26 +76,26 @@ def outer_nodes(mesh: SectorMesh) -> np.ndarray:
 
 
 def condense(mesh: SectorMesh, elements: ReferenceElements) -> CondensedSector:
-    """Eliminate the inside of a sector from the stiffness of its elements."""
+    """Eliminate the inside of a sector of the plane model from the stiffness of its elements."""
     outer = outer_nodes(mesh)
     inner = np.setdiff1d(mesh.elements, outer)
-    n, m, k, dims = len(mesh.coords), len(outer), len(inner), 3 if mesh.tied is None else 2
+    n, m, k = len(mesh.coords), len(outer), len(inner)
     entry = (3 * mesh.elements[..., None] + np.arange(3)).reshape(len(mesh.elements), -1)
     row, column = np.broadcast_arrays(entry[:, :, None], entry[:, None, :])
     stiffness = coo_matrix((elements.stiffness.ravel(), (row.ravel(), column.ravel())), shape=(3 * n, 3 * n)).tocsr()
-    at_outer, at_inner = ((3 * nodes[:, None] + np.arange(dims)).ravel() for nodes in (outer, inner))
+    at_outer, at_inner = ((3 * nodes[:, None] + np.arange(2)).ravel() for nodes in (outer, inner))
     coupling = stiffness[at_inner][:, at_outer].toarray()
     modes = np.zeros((k, 3, m, 3))
     reduced = np.zeros((m, 3, m, 3))
     solved = -splu(stiffness[at_inner][:, at_inner].tocsc()).solve(coupling)
     condensed = stiffness[at_outer][:, at_outer].toarray() + coupling.T @ solved
-    modes[:, :dims, :, :dims] = solved.reshape(k, dims, m, dims)
-    reduced[:, :dims, :, :dims] = (0.5 * (condensed + condensed.T)).reshape(m, dims, m, dims)
+    modes[:, :2, :, :2] = solved.reshape(k, 2, m, 2)
+    reduced[:, :2, :, :2] = (0.5 * (condensed + condensed.T)).reshape(m, 2, m, 2)
     coords = mesh.coords[outer]
     # the frame follows the least-squares gradient of the outer nodes' motion
-    about = (coords - coords.mean(axis=0))[:, :dims]
+    about = (coords - coords.mean(axis=0))[:, :2]
     gradient = np.zeros((m, 3))
-    gradient[:, :dims] = about @ np.linalg.inv(about.T @ about)
+    gradient[:, :2] = about @ np.linalg.inv(about.T @ about)
     reference = ReferenceElements(
         reduced.reshape(1, 3 * m, 3 * m),
         np.zeros((1, 0, 3 * m)),

@@ -109,10 +109,7 @@ class Solver(Section):
     far_teeth: Literal["left_out", "modelled"] = quantity(
         "left_out", text="ring-gear sectors out of reach of the flexible spline, with the ring gear fixed"
     )
-    condensed_sectors: bool = quantity(
-        False,
-        text="eliminate the inside of tooth sectors: in the plane of both gears, in the cup drive of the ring gear",
-    )
+    condensed_sectors: bool = quantity(False, text="plane model: eliminate the inside of tooth sectors")
     keep_factor: bool = quantity(True, text="cup drive: use factors for later tangents while GMRES converges with them")
 
 
@@ -189,13 +186,26 @@ class DriveDesign(Section):
         return self.backlash / (self.drive.teeth_fs * self.drive.module)
 
     @property
-    def sector_bend(self) -> float:
-        """Share of the bending strain that the plane model's condensed sectors leave out.
+    def axial_travel(self) -> float:
+        """Way (mm) of a tooth at the major axis towards the closed end, on the cone of a cup that bends without strain.
 
-        The rim's change of curvature 3 d / (2 r^2) turns the ends of a sector, a pitch apart, by theta against its
-        middle's frame: theta^2 / 8 of strain over that of bending.
+        A wall whose deflection d / 2 cos 2 phi grows from the closed end on moves axially by r d / (8 L) (Love's
+        inextensional mode), and the tooth leans by d / (2 L).
         """
-        curvature, pitch = 1.5 * self.d / self.r_fs**2, 2.0 * np.pi * self.r_fs / self.drive.teeth_fs
+        middle = self.r_fs + 0.5 * self.flexible_spline.rim
+        height = 0.5 * self.drive.teeth_fs * self.drive.module - middle
+        return 0.5 * self.d / self.cup.length * (0.25 * middle + height) if self.cup else 0.0
+
+    @property
+    def sector_bend(self) -> float:
+        """Share of the bending strain that the plane model's condensed sectors leave out, at most.
+
+        The rim's change of curvature turns the ends of a sector, a pitch apart, by theta against each other: a strain
+        of theta^2 / 8 over that of bending. On an elliptical cam the curvature changes by 3 d / (2 r^2); a ring that
+        touches at its major axis only bends 1.4 times as much there, on rollers 70 degrees apart 2.9 times.
+        """
+        sharper = 1.0 if self.wave_generator.type == "elliptical" else 3.0
+        curvature, pitch = sharper * 1.5 * self.d / self.r_fs**2, 2.0 * np.pi * self.r_fs / self.drive.teeth_fs
         return (curvature * pitch) ** 2 / 8.0 / (0.5 * self.flexible_spline.rim * curvature)
 
     @property
@@ -268,16 +278,19 @@ def check_fit(design: DriveDesign) -> None:
             if getattr(micro, key) != 0.0:
                 _refuse(f"micro_geometry.{key}", getattr(micro, key), 'only 0 with drive.model = "plane"')
         return
+    if design.solver.condensed_sectors:
+        raise InputError('solver.condensed_sectors = true is out of range: allowed only with drive.model = "plane"')
     if cup is None:
         raise InputError('cup is missing: allowed only with drive.model = "plane"')
     if cup.fillet_radius < design.cup_thickness:
         _refuse("cup.fillet_radius", cup.fillet_radius, f"{design.cup_thickness:g} (the cup's thickness) to inf mm")
     if cup.length <= cup.fillet_radius:
         _refuse("cup.length", cup.length, f"above {cup.fillet_radius:g} mm (cup.fillet_radius)")
-    # a spline thrice as thick as wide does not get round (docs/benchmarks/stability.md), one twice as thick does
-    narrowest = 0.5 * design.flexible_spline.rim
+    # narrower splines leave the ring gear's width (docs/benchmarks/stability.md)
+    narrowest = max(design.axial_travel, 0.5 * design.flexible_spline.rim)
+    why = "axial travel of the teeth, half of the rim"
     if g.face_width < narrowest:
-        _refuse("drive.face_width", g.face_width, f"{narrowest:g} mm (half of the rim) to inf mm")
+        _refuse("drive.face_width", g.face_width, f"{narrowest:.4g} mm ({why}) to inf mm")
     outer = design.r_fs + design.cup_thickness
     if cup.inner_radius >= outer - cup.fillet_radius:
         _refuse(

@@ -9,7 +9,6 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from swgpar.assembly import Elements, create_vector
-from swgpar.balance import Balance
 from swgpar.contact.clearance import Clearance
 from swgpar.contact.rigid import RigidContact
 from swgpar.contact.search import largest
@@ -27,6 +26,7 @@ from swgpar.cycling import (
     fingerprint,
 )
 from swgpar.design import DriveDesign
+from swgpar.discrete_drive import DiscreteDrive
 from swgpar.holding import Holding
 from swgpar.line_search import SearchedStep
 from swgpar.linear import Bordered
@@ -65,8 +65,8 @@ class Solved:
     reason: str
 
 
-class Equilibrium(Balance):
-    """The discrete drive and its Newton solver; parameters of `Balance`."""
+class Equilibrium(DiscreteDrive):
+    """The discrete drive and its Newton solver; parameters of `DiscreteDrive`."""
 
     def __init__(
         self,
@@ -244,7 +244,7 @@ class Equilibrium(Balance):
                 text = REASONS.get(reason, str(reason)) if reason < 0 else f"{iterations} iterations in all"
                 return Solved(False, iterations, ratio, text)
             if stale:
-                self._pattern(np.union1d(self.keys, self.missing))
+                self.lay_out(np.union1d(self.keys, self.missing))
                 soften.insert(0, self.softness)
                 continue
             if self.softness != 1.0:

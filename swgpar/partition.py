@@ -99,7 +99,7 @@ class BodyLayout:
         return self.mesh.phase + np.asarray(tooth) * (2.0 * np.pi / self.mesh.n_sectors)
 
     def fill_inside(self, sectors: np.ndarray, field: np.ndarray) -> np.ndarray:
-        """`field` (n, n_local_nodes, 3) mm of chain indices (n,), with the displacement inside of condensed sectors."""
+        """`field` (n, n_local_nodes, 3) mm of chain indices (n,), with what is inside of condensed sectors."""
         if self.condensed is not None:
             angle = self.turn(self.first_tooth + sectors)
             field[:, self.condensed.inner] = self.condensed.inside(angle, field[:, self.condensed.outer])
@@ -229,7 +229,7 @@ class LocalNodes:
         return len(self.number)
 
     def index(self, number: np.ndarray) -> np.ndarray:
-        """Local index (int32) of global numbers; -1 where fixed (-1) or not seen by this rank."""
+        """Local index (int32) of global numbers; -1 where there is none (-1) or this rank does not see it."""
         number = np.asarray(number)
         own = (number >= self.row_start) & (number < self.row_start + self.n_own)
         found = np.where(own, number - self.row_start, -1)

@@ -251,6 +251,7 @@ def summarise(
         "means": means,
         "accuracy": None if accuracy is None else asdict(accuracy),
         "mesh_error": mesh_error(rows, elements, coarser, model.partition.dims) if coarser else None,
+        "condensed_MPa": model.bend_left_out() if design.solver.condensed_sectors else None,
         "sampling_error": sampling_error(design, rows, MEANS) if design.steps.samples and means else None,
         "newton_iterations_mean": float(np.mean([r["newton_iterations"] for r in turning])) if turning else None,
         "balance_error_Nmm": max((r["torque_balance_Nmm"] for r in rows), default=0.0),

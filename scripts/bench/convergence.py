@@ -12,8 +12,11 @@ ORDERS = 0.2, 6.0
 def limit(values: list[float], sizes: list[float] | None = None) -> tuple[float, float | None]:
     """Limit and order p of the last three values, as v + c h^p; sizes h are halved from each to the next by default.
 
-    Without such an order the last value, and no order. With halved sizes this is Aitken's extrapolation.
+    Without such an order, or with fewer values, the last value, and no order. With halved sizes this is Aitken's
+    extrapolation.
     """
+    if len(values) < 3:
+        return values[-1], None
     a, b, c = values[-3:]
     h = np.array(sizes[-3:] if sizes else [4.0, 2.0, 1.0])
     if b == c or (a - b) / (b - c) <= 0.0:

@@ -12,6 +12,8 @@ from pathlib import Path
 import program
 from page import markdown, put
 
+from swgpar.design import load_design
+
 OFF = {
     "solver.twofold_symmetry": "false",
     "solver.far_teeth": "modelled",
@@ -25,11 +27,11 @@ ON = {
     "twofold symmetry": {"solver.twofold_symmetry": "true"},
     "far teeth left out": {"solver.far_teeth": "left_out"},
     "factor kept": {"solver.keep_factor": "true"},
-    "condensed sectors": {"solver.condensed_sectors": "true"},
     "start on a coarser mesh": {"steps.start_levels": "1"},
     "no pins": {"steps.pins": "false"},
     "one period": {"steps.samples": "{samples}"},
 }
+PLANE_ON = {"condensed sectors": {"solver.condensed_sectors": "true"}}
 MEANS = ("fs_s1", "fs_s3", "fs_vm", "rg_vm", "wg_torque_Nmm")
 
 
@@ -63,9 +65,15 @@ def main() -> None:
     options.add_argument("--ranks", type=int, default=2)
     options.add_argument("--samples", type=int, default=4, help="angles in a period")
     options.add_argument("--set", nargs="+", default=[], help="further overrides, for all runs")
-    options.add_argument("--only", nargs="+", default=None, choices=[*ON, "all"], help="rows besides the plain one")
+    options.add_argument(
+        "--only", nargs="+", default=None, choices=[*ON, *PLANE_ON, "all"], help="rows besides the plain one"
+    )
     arguments = options.parse_args()
-    variants = {"none": {}, **ON, "all": {k: v for keys in ON.values() for k, v in keys.items()}}
+    plane = load_design(arguments.design, arguments.set).drive.model == "plane"
+    apply = {**ON, **PLANE_ON} if plane else ON
+    if not set(arguments.only or []) <= {*apply, "all"}:
+        options.error("--only: condensed sectors are for the plane model")
+    variants = {"none": {}, **apply, "all": {k: v for keys in apply.values() for k, v in keys.items()}}
     rows: list[dict[str, float | str]] = []
     for name, keys in variants.items():
         if arguments.only is not None and name not in ("none", *arguments.only):

@@ -40,6 +40,7 @@ class ReferenceElements(NamedTuple):
 
     stiffness : (n, 3 m, 3 m) N/mm;  recovery : (n, 6 m, 3 m) MPa/mm, row 6 * node + component
     gradient : (n, m, 3) 1/mm, at the centre;  coords : (n, m, 3) mm;  volume : (n,) mm^3
+    Condensed sectors have more nodes, no rows of `recovery`, and the least-squares gradient of their nodes.
     """
 
     stiffness: np.ndarray
@@ -135,6 +136,8 @@ def recover_stress(ref, const int32_t[::1] ref_of, const double[:, ::1] turn, co
                    const uint8_t[:, ::1] flip, const double[:, ::1] u):
     """Stress extrapolated to the nodes of each element; (n, m, 6) MPa, global axes, xx yy zz xy yz zx."""
     cdef int64_t bad
+    if conn.shape[1] not in (4, 8):
+        raise ValueError("recover_stress: elements have 4 or 8 nodes")
     out = np.empty((conn.shape[0], conn.shape[1], 6))
     if conn.shape[0] == 0:
         return out

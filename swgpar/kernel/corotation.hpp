@@ -42,7 +42,7 @@ inline Eigen::Matrix3d plane_rotation(const Eigen::Matrix3d& f) {
 }
 
 // N: 8 for hexahedra; 4 for plane elements, whose nodes have no displacement along z; Dynamic for condensed sectors,
-// plane ones if their gradients have no z.
+// which are plane too.
 template <int N>
 struct Corotated {
   static constexpr int D = N == Eigen::Dynamic ? Eigen::Dynamic : 3 * N;
@@ -64,14 +64,13 @@ struct Corotated {
     const Eigen::RowVector3d mean = u.colwise().mean();
     const Nodes x = turned + (u.rowwise() - mean);
     const int m = static_cast<int>(g.rows());
-    const bool plane = N == 4 || (N == Eigen::Dynamic && g.col(2).isZero(0));
     Eigen::Matrix3d f = x.transpose() * g;
-    if (plane) f(2, 2) = 1.0;
+    if (N != 8) f(2, 2) = 1.0;
     if (!(f.determinant() > 0)) {
       valid = false;
       return;
     }
-    rotation = plane ? plane_rotation(f) : polar_rotation(f);
+    rotation = N != 8 ? plane_rotation(f) : polar_rotation(f);
     stretch = rotation.transpose() * f;
     stretch = (0.5 * (stretch + stretch.transpose())).eval();
     y = x * rotation;

@@ -268,6 +268,7 @@ def drift(first: Mapping[str, Any], last: Mapping[str, Any]) -> float:
 
 DECADES = (0.5, 5.0, 50.0, 500.0, 5000.0)
 ONCE_FAILED = "designs that once failed, plane"
+FACE_WIDTHS = (0.2, 0.3, 0.5, 1.0, 4.0, 20.0, 60.0, 200.0, 1000.0)
 FRICTION = (0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5)
 
 
@@ -313,7 +314,7 @@ def groups(count: int, seed: int) -> dict[str, Group]:
         "torque, cup reference": Group(CUP, lambda: each("load.torque", (0.01, 20.0, 100.0, 500.0))),
         "teeth, plane reference": Group(PLANE, lambda: teeth((20, 30, 40, 60, 80, 120, 160, 200, 320))),
         "cams, plane reference": Group(PLANE, cams),
-        "face width (aspect ratio), cup": Group(SMALL, lambda: widths((0.2, 0.3, 1.0, 4.0, 20.0, 60.0, 200.0, 1000.0))),
+        "face width (aspect ratio), cup": Group(SMALL, lambda: widths(FACE_WIDTHS)),
         "random designs, plane": Group(PLANE, lambda: random_designs(count, seed)),
         ONCE_FAILED: Group(PLANE, lambda: read_toml(Path(__file__).with_name("once_failed.toml"))),
         "random designs, cup": Group(PLANE, lambda: random_designs(count // 10, seed, "cup")),

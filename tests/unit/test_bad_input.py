@@ -75,6 +75,7 @@ OVERRIDES = [
     ("contact.friction=-0.1", "contact.friction", "allowed 0 to 1"),
     ("contact.friction=1.5", "contact.friction", "allowed 0 to 1"),
     ('contact.friction="low"', "contact.friction", "a number"),
+    ("solver.condensed_sectors=true", "solver.condensed_sectors", 'allowed only with drive.model = "plane"'),
     ("solver.max_iterations=0", "solver.max_iterations", "1"),
     ('solver.linear="magic"', "solver.linear", "direct"),
     ("nonsense=1", "nonsense", "section.key=value"),
@@ -123,8 +124,18 @@ def test_a_spline_is_at_least_half_as_wide_as_its_rim_is_thick() -> None:
     rim = load_design(REFERENCE).flexible_spline.rim
     narrow = [f"{section}.face_width={0.4 * rim}" for section in ("drive", "wave_generator")]
     straight = [f"micro_geometry.{key}=0" for key in ("wg_crowning", "wg_slope", "fs_crowning")]
-    with pytest.raises(InputError, match=rf"drive.face_width = .* allowed {0.5 * rim:g} mm \(half of the rim\)"):
+    with pytest.raises(InputError, match=rf"drive.face_width = .* allowed {0.5 * rim:g} mm \(axial travel of"):
         load_design(REFERENCE, [*narrow, *straight])
+
+
+def test_teeth_do_not_travel_out_of_the_face_width() -> None:
+    """Measured on the small drive of 4 mm width: 0.50 mm."""
+    small = load_design(REFERENCE.parents[1] / "tests/data/small.toml")
+    assert small.axial_travel == pytest.approx(0.4854, abs=1e-4)
+    straight = [f"micro_geometry.{key}=0" for key in ("wg_crowning", "wg_slope", "fs_crowning")]
+    narrow = [f"{section}.face_width=0.45" for section in ("drive", "wave_generator")]
+    with pytest.raises(InputError, match="drive.face_width = 0.45 is out of range: allowed 0.4854 mm"):
+        load_design(REFERENCE.parents[1] / "tests/data/small.toml", [*narrow, *straight])
 
 
 def test_a_cup_drive_needs_a_cup(design_file: Callable[[dict[str, dict]], Path]) -> None:

@@ -34,7 +34,7 @@ ORDER = (
     "far_teeth",
     "holding",
     "stress",
-    "balance",
+    "discrete_drive",
     "equilibrium",
     "torques",
     "incremental",

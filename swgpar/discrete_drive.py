@@ -37,7 +37,7 @@ def near(design: DriveDesign) -> float:
     return max(NEAR * design.drive.module, TOUCH * design.drive.module + design.backlash)
 
 
-class Balance:
+class DiscreteDrive:
     """The discrete drive: which flanks can meet, the forces that are left over at a displacement, and their tangent.
 
     Parameters
@@ -45,6 +45,10 @@ class Balance:
     design : the drive;  partition, elements : ownership and elements, bound to their local nodes
     holding : what holds and loads the bodies
     rigid, pins : cam and pins on the inner surface;  teeth : flank contact
+
+    `x` is the state, `accepted` the last one that was found in equilibrium. `residual` leaves the norm of the contact
+    forces in `reference`, N, and whether an element has collapsed in `failed`; `tangent` leaves `matrix`, contact
+    blocks that have no room in it in `missing`, and what round-off can make of the forces in `round_off`, N.
     """
 
     def __init__(
@@ -123,7 +127,7 @@ class Balance:
                 self.teeth.resist(self.displacement(self.accepted))
         self.rigid.reset()
         self.pins.reset()
-        self._pattern(keys)
+        self.lay_out(keys)
 
     def _facing(self, margin: float) -> list[FlankPair]:
         u = self.displacement()
@@ -138,7 +142,8 @@ class Balance:
             found = self.teeth.overlooked(pairs, self.displacement(), self.scene.teeth)
         return bool(self.partition.comm.allreduce(int(found), op=MPI.MAX))
 
-    def _pattern(self, keys: np.ndarray) -> None:
+    def lay_out(self, keys: np.ndarray) -> None:
+        """Make room in the tangent for contact blocks, keys row * n_global + column, where they are other ones."""
         with self.phases("pattern"):
             changed = self.keys is None or not np.array_equal(keys, self.keys)
             if not self.partition.comm.allreduce(int(changed), op=MPI.MAX):
@@ -168,7 +173,7 @@ class Balance:
         return missing
 
     def residual(self, x: PETSc.Vec, f: PETSc.Vec) -> None:
-        """Set f to the forces left over at x, N; `failed` says whether an element has collapsed there."""
+        """Set f to the forces left over at x, N."""
         with self.phases("residual"):
             u = self.displacement(x)
             n_own = self.partition.n_own
@@ -189,7 +194,7 @@ class Balance:
                 f.array[-len(tail) :] = tail
 
     def tangent(self, u: np.ndarray) -> None:
-        """Fill `matrix` at displacement u (n_local, 3) mm; `missing` are blocks that its pattern has no room for."""
+        """Fill `matrix` at displacement u (n_local, 3) mm."""
         with self.phases("tangent"):
             self.rows.values[:] = 0.0
             self.elements.assemble(u, None, self.rows, self.slots)
