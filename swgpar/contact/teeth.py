@@ -21,6 +21,10 @@ from swgpar.contact.segments import MIRROR, FlankFaces, Segments, bilinear, cut_
 from swgpar.kernel import contact_flanks
 from swgpar.partition import LocalNodes, Partition
 
+CONTINUED = 5.0
+"""Facets by which middles and corners of faces may lie past the ends of the master's flank, which goes on straight
+there: where faces are cut then changes continuously as they slide over an end."""
+
 
 @dataclass
 class Flanks:
@@ -220,7 +224,7 @@ class ToothContact:
         """Cut the faces for displacement u; without multipliers, which would belong to other points."""
         faces = self.all.corners(self.pick)
         zero = np.zeros(faces.weight.shape)
-        _, _, place, _ = self._contact(faces, u, zero, 0.0, None, None)
+        _, _, place, _ = self._contact(faces, u, zero, 0.0, None, None, beyond=CONTINUED)
         segments = cut_faces(place, self.all.size[self.pick], self.flanks.s, self.flanks.z, self.order)
         self.faces = self.all.cut(self.pick, segments)
         self.segments = replace(segments, parent=self.pick[segments.parent])
@@ -230,10 +234,12 @@ class ToothContact:
             traction = friction.interpolated(self.samples, self.segments)
             self.friction = friction.begin(self.coefficient, place, gap, traction)
 
-    def _contact(self, faces: Faces, u: np.ndarray, multiplier: np.ndarray, opening: float, residual, rows, law=None):
+    def _contact(
+        self, faces: Faces, u: np.ndarray, multiplier: np.ndarray, opening: float, residual, rows, law=None, **more
+    ):
         moment = np.zeros(len(faces.conn))
         settings = self.penalty, opening, self.reach, self.pressure_limit, residual, rows, law, self.turn, moment
-        result = contact_flanks(self.flanks, faces, u, multiplier, *settings)
+        result = contact_flanks(self.flanks, faces, u, multiplier, *settings, **more)
         if residual is not None:
             self.moment = float(moment[self.pair_owned[faces.patch]].sum())
         return result
@@ -259,12 +265,15 @@ class ToothContact:
         return self._keys(pick, place[pick])
 
     def _centers(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Gap (n_face,) mm at the middle of every face and its place (n_face, 2) on the master."""
+        """Gap (n_face,) mm at the middle of every face, inf beside the master, and its place (n_face, 2) on that."""
         every = np.arange(len(self.all.conn))
         half = np.full((len(every), 1), 0.5)
         faces = self.all.cut(every, Segments(every, half, half, np.ones_like(half)))
-        gap, _, place, _ = self._contact(faces, u, np.zeros_like(half), 0.0, None, None)
-        return gap[:, 0], place[:, 0]
+        gap, _, place, _ = self._contact(faces, u, np.zeros_like(half), 0.0, None, None, beyond=CONTINUED)
+        gap, place = gap[:, 0], place[:, 0]
+        for line, at, size in zip((self.flanks.s, self.flanks.z), place.T, self.all.size.T):
+            gap[np.maximum(line[0] - at, at - line[-1]) > 0.5 * size] = np.inf  # no part lies on the flank
+        return gap, place
 
     def overlooked(self, pairs: list[FlankPair], u: np.ndarray, opening: float) -> bool:
         """Whether there are pairs that the last search did not see, or faces in contact that it did not pick."""

@@ -48,11 +48,15 @@ cdef extern from "contact_batch.hpp" namespace "swgpar" nogil:
         double* now
         const double* lagged
     int64_t flank_contact(const FlankBatch&, const FaceBatch&, const double* u, const double* multiplier,
-                          double penalty, double opening, double reach, double limit, const Friction& friction,
+                          double penalty, double opening, double reach, double beyond, double limit, const Friction& friction,
                           double* residual, const BlockRows& rows, double* gap, double* pressure, double* place,
                           double* moment)
     int64_t add_blocks(int64_t n, int m, const int32_t* conn, const uint8_t* flip, const double* blocks,
                        const BlockRows& rows)
+
+
+OVERLAP = 0.02
+"""Facets by which points that touch may lie past the ends of a flank: those of segments that are kept while it moves."""
 
 
 cdef BlockRows rows_of(rows):
@@ -82,7 +86,7 @@ cdef Friction friction_of(law, int64_t n_face, int64_t n_q) except *:
 
 def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] multiplier, double penalty,
                    double opening, double reach, double limit, double[:, ::1] residual, rows, friction=None,
-                   double turn=0.0, double[::1] moment=None):
+                   double turn=0.0, double[::1] moment=None, double beyond=OVERLAP):
     """Forces and tangent of slave faces against master flank patches.
 
     Parameters
@@ -98,6 +102,7 @@ def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] 
     rows : record with start, column, values, number, n_own, symmetric; None to skip the tangent
     friction : record of the last converged state, where tractions are put (`swgpar.contact.friction.Friction`), or None
     turn : rad, of the master body as a whole
+    beyond : facets by which foot points may lie past the ends of the flank, which goes on straight there
     moment : (n_face,) N mm, derivative of the contact's energy with respect to `turn`, added to with the residual
 
     Returns
@@ -150,7 +155,7 @@ def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] 
     if moments.shape[0] != n_face:
         raise ValueError("contact_flanks: moment must have an entry for each face")
     with nogil:
-        missing = flank_contact(p, f, &u[0, 0], &multiplier[0, 0], penalty, opening, reach, limit, law, p_residual, r,
+        missing = flank_contact(p, f, &u[0, 0], &multiplier[0, 0], penalty, opening, reach, beyond, limit, law, p_residual, r,
                                 &gap[0, 0], &pressure[0, 0], &place[0, 0, 0], &moments[0])
     return gap_array, pressure_array, place_array, missing
 

@@ -107,21 +107,25 @@ struct Foot {
   int i = 0, j = 0;
   double eta = 0.5, zeta = 0.5, gap = 0.0;
   Vec3 x, x_eta, x_zeta, x_etaeta, x_etazeta, normal;
-  Vec2 height, height_eta;  // of the curve over its chord, and its derivative
-  bool found = false;
+  Vec2 height, height_eta;               // of the curve over its chord, and its derivative
+  bool found = false, straight = false;  // straight: past the ends of the profile
 };
 
 inline void evaluate(const Patch& p, const double* u, Foot& f) {
   const int i = f.i, j = f.j;
-  const double t = f.eta, t2 = t * t, t3 = t2 * t, len = p.s[i + 1] - p.s[i];
+  // past the ends of the profile the curve goes on straight
+  const double past = i == 0 && f.eta < 0 ? f.eta : i == p.n_s - 1 && f.eta > 1 ? f.eta - 1 : 0.0;
+  f.straight = past != 0.0;
+  const double t = f.eta - past, t2 = t * t, t3 = t2 * t, len = p.s[i + 1] - p.s[i];
   const Vec2 a = p.turned(p.point + 2 * i), b = p.turned(p.point + 2 * i + 2);
   const Vec2 ta = len * p.turned(p.tangent + 2 * i), tb = len * p.turned(p.tangent + 2 * i + 2);
   const Vec2 chord = b - a;
-  f.height = p.carried((3 * t2 - 2 * t3 - t) * chord + (t3 - 2 * t2 + t) * ta + (t3 - t2) * tb);
-  const Vec2 x = a + t * chord + f.height;
   f.height_eta = p.carried((6 * t - 6 * t2 - 1) * chord + (3 * t2 - 4 * t + 1) * ta + (3 * t2 - 2 * t) * tb);
+  f.height = p.carried((3 * t2 - 2 * t3 - t) * chord + (t3 - 2 * t2 + t) * ta + (t3 - t2) * tb) + past * f.height_eta;
+  const Vec2 x = a + f.eta * chord + f.height;
   const Vec2 d = chord + f.height_eta;
-  const Vec2 dd = p.carried((6 - 12 * t) * chord + (6 * t - 4) * ta + (6 * t - 2) * tb);
+  Vec2 dd = Vec2::Zero();
+  if (!f.straight) dd = p.carried((6 - 12 * t) * chord + (6 * t - 4) * ta + (6 * t - 2) * tb);
   const double z0 = p.z[j], dz = p.z[j + 1] - z0, e = f.eta, q = f.zeta;
   const Vec3 u00 = nodal(u, p.node(i, j), p.image(i, j)), u10 = nodal(u, p.node(i + 1, j), p.image(i + 1, j));
   const Vec3 u01 = nodal(u, p.node(i, j + 1), p.image(i, j + 1));
@@ -133,11 +137,10 @@ inline void evaluate(const Patch& p, const double* u, Foot& f) {
   f.x_etazeta = u00 - u10 - u01 + u11;
 }
 
-// Orthogonal projection of a point onto a patch. Not found: it lies beside the flank.
-inline Foot project(const Patch& p, const double* u, const Vec3& xs) {
+// Orthogonal projection of a point onto a patch. Not found: it lies beside the flank, by more than `beyond` facets.
+inline Foot project(const Patch& p, const double* u, const Vec3& xs, double beyond) {
   constexpr double kOverlap = 0.02;  // a facet's parameters may exceed it by this before the next one is taken
   constexpr double kStep = 1e-10;    // last step, in facets: round-off of positions far from the axis allows 1e-13
-  constexpr double kEnd = 0.5;       // straight continuation past the ends of the face width, in facets
   Foot f;
   int j = 0;
   while (j < p.n_z - 1 && p.z[j + 1] < xs[2]) ++j;
@@ -153,7 +156,7 @@ inline Foot project(const Patch& p, const double* u, const Vec3& xs) {
   f.eta = row == f.i ? 0.0 : 1.0;
   f.j = j;
   f.zeta = (xs[2] - p.z[j]) / (p.z[j + 1] - p.z[j]);
-  if (f.zeta < -kEnd || f.zeta > 1 + kEnd) return f;
+  if (f.zeta < -1 - beyond || f.zeta > 2 + beyond) return f;
   for (int it = 0; it < 40; ++it) {
     evaluate(p, u, f);
     const Vec3 dist = xs - f.x;
@@ -187,9 +190,10 @@ inline Foot project(const Patch& p, const double* u, const Vec3& xs) {
       f.found = true;
       break;
     }
-    if (f.eta < -1 || f.eta > 2 || f.zeta < -1 || f.zeta > 2) return f;  // beyond the end of the grid
+    if (f.eta < -1 - beyond || f.eta > 2 + beyond || f.zeta < -1 - beyond || f.zeta > 2 + beyond)
+      return f;  // beyond the end of the grid
   }
-  f.found = f.found && f.eta >= -kOverlap && f.eta <= 1 + kOverlap && f.zeta >= -kEnd && f.zeta <= 1 + kEnd;
+  f.found = f.found && f.eta >= -beyond && f.eta <= 1 + beyond && f.zeta >= -beyond && f.zeta <= 1 + beyond;
   if (!f.found) return f;
   evaluate(p, u, f);
   f.normal = p.orientation * f.x_eta.cross(f.x_zeta).normalized();

@@ -50,9 +50,9 @@ struct FaceBatch {  // slave faces and their quadrature points
 };
 
 inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& faces, const double* u,
-                                  const double* multiplier, double penalty, double opening, double reach, double limit,
-                                  const Friction& friction, double* residual, const BlockRows& rows, double* gap,
-                                  double* pressure, double* place, double* moment) {
+                                  const double* multiplier, double penalty, double opening, double reach, double beyond,
+                                  double limit, const Friction& friction, double* residual, const BlockRows& rows,
+                                  double* gap, double* pressure, double* place, double* moment) {
   std::int64_t missing = 0;
   for (std::int64_t k = 0; k < faces.n_face; ++k) {
     const Patch patch = patches.patch(faces.patch[k]);
@@ -73,7 +73,7 @@ inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& fa
       const std::int64_t kq = k * faces.n_q + q;
       const double* shape = faces.shape + 4 * kq;
       const Vec3 xs = shape[0] * corner[0] + shape[1] * corner[1] + shape[2] * corner[2] + shape[3] * corner[3];
-      const Foot f = project(patch, u, xs);
+      const Foot f = project(patch, u, xs, beyond);
       // a surface seen from behind, or across a tooth, is not the one this point can touch
       if (!f.found || f.normal.dot(face_normal) > -0.3 || std::abs(f.gap) > reach) continue;
       place[2 * kq] = patch.s[f.i] + f.eta * (patch.s[f.i + 1] - patch.s[f.i]);
@@ -110,8 +110,8 @@ inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& fa
         moment[k] += w * motion.by_turn(f).dot(motion.x.transpose() * t.value);
       }
       if (rows.values != nullptr)
-        missing += add_friction_tangent(f, t, motion, patch.bent(f.i), conn, flip, w, penalty, bounding,
-                                        std::min(1.0, limit / bounding), friction, rows);
+        missing += add_friction_tangent(f, t, motion, f.straight ? Vec3::Zero().eval() : patch.bent(f.i), conn, flip, w,
+                                        penalty, bounding, std::min(1.0, limit / bounding), friction, rows);
     }
   }
   return missing;

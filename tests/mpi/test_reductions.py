@@ -189,7 +189,7 @@ def test_condensed_sectors_on_any_number_of_ranks() -> None:
         pytest.skip("compares several ranks with one: runs under mpirun")
     _, row = rotated(*CONDENSED)
     _, alone = rotated(*CONDENSED, comm=MPI.COMM_SELF)
-    assert_same(row, alone, 1e-8)
+    assert_same(row, alone, 1e-7)  # the input torque is what is left of moments 1e3 times as large
 
 
 def test_the_continued_history_is_that_of_a_longer_rotation() -> None:
