@@ -105,9 +105,9 @@ class Segments:
 def _ends(place: np.ndarray, corners: tuple[list[int], list[int]], length: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Places (n,) of both ends of faces on the master, from `place` (n, 4) of their corners.
 
-    length : (n,) of the faces along the master, with sign; a foot beyond the end of the flank is taken that far from
-    the other end's: the face is cut where the flank ends, so that along it what touches changes nearly continuously
-    (a facet's reach of a fiftieth, and of half a facet beyond the face width, remain).
+    Feet beyond the end of the flank lie on its straight continuation: the face is cut where the flank ends, so that
+    what touches changes continuously. length : (n,) of the faces along the master, with sign, which stands in for a
+    foot that is much farther off still, or across the tooth.
     """
     low, high = (
         np.where(np.isnan(a), b, np.where(np.isnan(b), a, 0.5 * (a + b))) for a, b in (place[:, c].T for c in corners)

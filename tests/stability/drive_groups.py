@@ -267,7 +267,7 @@ def drift(first: Mapping[str, Any], last: Mapping[str, Any]) -> float:
 
 
 DECADES = (0.5, 5.0, 50.0, 500.0, 5000.0)
-ONCE_FAILED = "designs that once failed, plane"
+ONCE_FAILED = "designs that once failed"
 FACE_WIDTHS = (0.2, 0.3, 0.5, 1.0, 4.0, 20.0, 60.0, 200.0, 1000.0)
 FRICTION = (0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5)
 

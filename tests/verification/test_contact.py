@@ -8,7 +8,7 @@ from contact_blocks import Blocks, Rows, block, master
 from hertz import hertz
 
 from swgpar.contact.segments import SAMPLES, bilinear, cut_faces, face_corners
-from swgpar.contact.teeth import Faces, Flanks, PlacedFaces
+from swgpar.contact.teeth import CONTINUED, Faces, Flanks, PlacedFaces
 from swgpar.kernel import contact_flanks
 
 PENALTY = 4e6
@@ -79,30 +79,35 @@ def test_tangent_and_balance_on_a_curved_deformed_master() -> None:
     assert abs(moment[2]) > 1e-5 * np.abs(r).sum() > 1e4 * abs(moment[2] + turning[0])
 
 
-@pytest.mark.parametrize("shift", [-0.3, -0.15, 0.0, 0.6, 0.85, 0.95, 1.15])
-def test_face_that_slides_over_the_end_of_the_flank(shift: float) -> None:
-    """It is cut where the flank ends, also where its corner beyond has no foot: the force is that of the overlap."""
+def over_the_end(along: float, across: float) -> float:
+    """Area (mm2) of a face that touches on a flat flank, shifted along profile and width (mm)."""
     s, z, length, depth = np.array([0.0, 0.4, 1.0]), np.array([-0.5, 0.5]), 0.35, 1e-3
     flanks = master(np.column_stack([s, 0.0 * s]), np.tile([1.0, 0.0], (3, 1)), s, z, 4)
     # arc length on the slave runs the other way
-    corners = np.array([[length, 0, -0.5], [0, 0, -0.5], [0, 0, 0.5], [length, 0, 0.5]]) + [shift, -depth, 0]
+    corners = np.array([[length, 0, -0.5], [0, 0, -0.5], [0, 0, 0.5], [length, 0, 0.5]])
     faces = PlacedFaces(
         np.arange(4, dtype=np.int32)[None],
         np.zeros((1, 4), np.uint8),
-        corners[None].copy(),
+        (corners + [along, -depth, across])[None],
         np.array([[0.0, -1.0, 0.0]]),
         np.array([[length, 1.0]]),
         np.zeros((1, len(SAMPLES), len(SAMPLES))),
         np.zeros(1, np.int32),
     )
     u, pick, settings = np.zeros((4 + flanks.conn.size, 3)), np.zeros(1, dtype=np.int64), (PENALTY, 0.0, 0.1, np.inf)
-    place = contact_flanks(flanks, faces.corners(pick), u, np.zeros((1, 4)), *settings, None, None)[2]
-    assert np.isnan(place).any() == (shift < 0.0 or shift + length > 1.02)
+    place = contact_flanks(flanks, faces.corners(pick), u, np.zeros((1, 4)), *settings, None, None, beyond=CONTINUED)[2]
     cut, r = faces.cut(pick, cut_faces(place, faces.size, s, z, 2)), np.zeros_like(u)
     contact_flanks(flanks, cut, u, np.zeros(cut.weight.shape), *settings, r, None)
-    overlap = max(0.0, min(1.0, shift + length) - max(0.0, shift))
-    # facets reach on by a fiftieth, which may take a point more
-    assert -r[:4, 1].sum() == pytest.approx(PENALTY * depth * overlap, abs=0.05 * PENALTY * depth * length)
+    return -r[:4, 1].sum() / (PENALTY * depth)
+
+
+@pytest.mark.parametrize("along", [-0.3, -0.15, 0.0, 0.6, 0.85, 0.95, 1.15])
+@pytest.mark.parametrize("across", [0.0, 0.3, -0.8])
+def test_face_that_slides_over_the_end_of_the_flank(along: float, across: float) -> None:
+    """It is cut where the flank ends, along the profile and the width: the force is that of the overlap."""
+    overlap = max(0.0, min(1.0, along + 0.35) - max(0.0, along)) * (1.0 - abs(across))
+    # facets reach on by a fiftieth, which may take points more
+    assert over_the_end(along, across) == pytest.approx(overlap, abs=0.05 * 0.35)
 
 
 @pytest.mark.parametrize("angle", [0.3, 1.7, 3.0, -2.2])
