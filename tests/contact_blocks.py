@@ -11,7 +11,7 @@ from scipy.sparse.linalg import spsolve
 
 from swgpar.contact import friction
 from swgpar.contact.segments import Segments, cut_faces
-from swgpar.contact.teeth import Faces, Flanks, PlacedFaces
+from swgpar.contact.teeth import CONTINUED, Faces, Flanks, PlacedFaces
 from swgpar.kernel import contact_flanks
 
 ORDERING = "MMD_AT_PLUS_A"
@@ -99,7 +99,8 @@ class Blocks:
                 r, rows = mesh.residual(u) - force, Rows(self.n_surface, self.coefficient == 0.0)
                 if augmentation == 0:
                     corners = self.placed.corners(pick)
-                    foot = contact_flanks(self.flanks, corners, u, np.zeros((len(pick), 4)), *settings, None, None)[2]
+                    zero = np.zeros((len(pick), 4))
+                    foot = contact_flanks(self.flanks, corners, u, zero, *settings, None, None, beyond=CONTINUED)[2]
                     segments = cut_faces(foot, self.placed.size, self.flanks.s, self.flanks.z, self.order)
                     faces = self.placed.cut(pick, segments)
                     multiplier = np.zeros(faces.weight.shape)

@@ -22,7 +22,7 @@ from swgpar.kernel import contact_flanks
 from swgpar.partition import LocalNodes, Partition
 
 CONTINUED = 5.0
-"""Facets by which middles and corners of faces may lie past the ends of the master's flank, which goes on straight
+"""Facets by which corners of faces may lie past the ends of the master's flank, which goes on straight
 there: where faces are cut then changes continuously as they slide over an end."""
 
 
@@ -265,15 +265,12 @@ class ToothContact:
         return self._keys(pick, place[pick])
 
     def _centers(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Gap (n_face,) mm at the middle of every face, inf beside the master, and its place (n_face, 2) on that."""
+        """Gap (n_face,) mm at the middle of every face and its place (n_face, 2) on the master."""
         every = np.arange(len(self.all.conn))
         half = np.full((len(every), 1), 0.5)
         faces = self.all.cut(every, Segments(every, half, half, np.ones_like(half)))
-        gap, _, place, _ = self._contact(faces, u, np.zeros_like(half), 0.0, None, None, beyond=CONTINUED)
-        gap, place = gap[:, 0], place[:, 0]
-        for line, at, size in zip((self.flanks.s, self.flanks.z), place.T, self.all.size.T):
-            gap[np.maximum(line[0] - at, at - line[-1]) > 0.5 * size] = np.inf  # no part lies on the flank
-        return gap, place
+        gap, _, place, _ = self._contact(faces, u, np.zeros_like(half), 0.0, None, None)
+        return gap[:, 0], place[:, 0]
 
     def overlooked(self, pairs: list[FlankPair], u: np.ndarray, opening: float) -> bool:
         """Whether there are pairs that the last search did not see, or faces in contact that it did not pick."""

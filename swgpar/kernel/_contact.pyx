@@ -55,8 +55,9 @@ cdef extern from "contact_batch.hpp" namespace "swgpar" nogil:
                        const BlockRows& rows)
 
 
-OVERLAP = 0.02
-"""Facets by which points that touch may lie past the ends of a flank: those of segments that are kept while it moves."""
+OVERHANG = 1e-4
+"""Facets by which points that touch may lie past the ends of a flank: flanks that end together are to touch up to there,
+however they move by elastic deformation."""
 
 
 cdef BlockRows rows_of(rows):
@@ -86,7 +87,7 @@ cdef Friction friction_of(law, int64_t n_face, int64_t n_q) except *:
 
 def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] multiplier, double penalty,
                    double opening, double reach, double limit, double[:, ::1] residual, rows, friction=None,
-                   double turn=0.0, double[::1] moment=None, double beyond=OVERLAP):
+                   double turn=0.0, double[::1] moment=None, double beyond=OVERHANG):
     """Forces and tangent of slave faces against master flank patches.
 
     Parameters

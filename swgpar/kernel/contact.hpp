@@ -193,7 +193,10 @@ inline Foot project(const Patch& p, const double* u, const Vec3& xs, double beyo
     if (f.eta < -1 - beyond || f.eta > 2 + beyond || f.zeta < -1 - beyond || f.zeta > 2 + beyond)
       return f;  // beyond the end of the grid
   }
-  f.found = f.found && f.eta >= -beyond && f.eta <= 1 + beyond && f.zeta >= -beyond && f.zeta <= 1 + beyond;
+  const auto within = [&](double t, int facet, int count) {
+    return t >= (facet == 0 ? -beyond : -kOverlap) && t <= 1 + (facet == count - 1 ? beyond : kOverlap);
+  };
+  f.found = f.found && within(f.eta, f.i, p.n_s) && within(f.zeta, f.j, p.n_z);
   if (!f.found) return f;
   evaluate(p, u, f);
   f.normal = p.orientation * f.x_eta.cross(f.x_zeta).normalized();
