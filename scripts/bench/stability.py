@@ -187,7 +187,7 @@ def main() -> int:
     rows: list[Row] = []
     if table.exists():  # groups that do not run now keep their rows
         with table.open(encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
+            rows = [row for row in csv.DictReader(file) if row["group"] in work]
     print(line(HEADER), flush=True)
     for name, run in work.items():
         if arguments.only and not any(word in name for word in arguments.only):
