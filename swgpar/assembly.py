@@ -126,13 +126,14 @@ class BodyElements:
         elements, tied = np.ascontiguousarray(mesh.elements), mesh.tied
         n_sectors, n_node, n_elem = len(self.sectors), len(mesh.coords), len(elements)
         sums, field = np.zeros((n_sectors, n_node, 6)), self.displacement(u)
+        every, unturned = np.arange(n_elem, dtype=np.int32), np.zeros(elements.shape, dtype=np.uint8)
         for k in np.flatnonzero(self.modelled):
             stress = recover_stress(
                 self.reference,
-                np.arange(n_elem, dtype=np.int32),
+                every,
                 np.repeat(self.turn_of_sector[k : k + 1], n_elem, axis=0),
                 elements,
-                np.zeros(elements.shape, dtype=np.uint8),
+                unturned,
                 field[k],
             )
             for c in range(6):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
@@ -37,6 +39,7 @@ def near(design: DriveDesign) -> float:
     return max(NEAR * design.drive.module, TOUCH * design.drive.module + design.backlash)
 
 
+@dataclass(eq=False, repr=False)
 class DiscreteDrive:
     """The discrete drive: which flanks can meet, the forces that are left over at a displacement, and their tangent.
 
@@ -51,20 +54,18 @@ class DiscreteDrive:
     blocks that have no room in it in `missing`, and what round-off can make of the forces in `round_off`, N.
     """
 
-    def __init__(
-        self,
-        design: DriveDesign,
-        partition: Partition,
-        elements: Elements,
-        holding: Holding,
-        rigid: RigidContact,
-        pins: RigidContact,
-        teeth: ToothContact,
-        phases: Phases,
-    ) -> None:
-        self.design, self.partition, self.elements, self.holding = design, partition, elements, holding
-        self.rigid, self.pins, self.teeth, self.phases = rigid, pins, teeth, phases
-        self.contacts = rigid, pins, teeth
+    design: DriveDesign
+    partition: Partition
+    elements: Elements
+    holding: Holding
+    rigid: RigidContact
+    pins: RigidContact
+    teeth: ToothContact
+    phases: Phases
+
+    def __post_init__(self) -> None:
+        design, partition, elements, holding = self.design, self.partition, self.elements, self.holding
+        self.contacts = self.rigid, self.pins, self.teeth
         self.scale, self.share = holding.scale, holding.share
         self.x, self.accepted = create_vector(partition), create_vector(partition)
         self.near = near(design)

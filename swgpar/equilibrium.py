@@ -8,11 +8,9 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from swgpar.assembly import Elements, create_vector
+from swgpar.assembly import create_vector
 from swgpar.contact.clearance import Clearance
-from swgpar.contact.rigid import RigidContact
 from swgpar.contact.search import largest
-from swgpar.contact.teeth import ToothContact
 from swgpar.cycling import (
     AGREEMENT,
     MOST,
@@ -25,13 +23,10 @@ from swgpar.cycling import (
     falls,
     fingerprint,
 )
-from swgpar.design import DriveDesign
 from swgpar.discrete_drive import DiscreteDrive
-from swgpar.holding import Holding
 from swgpar.line_search import SearchedStep
 from swgpar.linear import Bordered
-from swgpar.log import Phases, logger
-from swgpar.partition import Partition
+from swgpar.log import logger
 from swgpar.steps import Scene
 
 SOFTENING, SOFT_TOLERANCE = (1e-3, 3e-2), 1e-2
@@ -65,21 +60,13 @@ class Solved:
     reason: str
 
 
+@dataclass(eq=False, repr=False)
 class Equilibrium(DiscreteDrive):
     """The discrete drive and its Newton solver; parameters of `DiscreteDrive`."""
 
-    def __init__(
-        self,
-        design: DriveDesign,
-        partition: Partition,
-        elements: Elements,
-        holding: Holding,
-        rigid: RigidContact,
-        pins: RigidContact,
-        teeth: ToothContact,
-        phases: Phases,
-    ) -> None:
-        super().__init__(design, partition, elements, holding, rigid, pins, teeth, phases)
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        design, partition, teeth = self.design, self.partition, self.teeth
         self.clearance = Clearance(design, teeth, partition.comm)
         self.on_iteration = None
         self.tried: tuple[np.ndarray, np.ndarray] | None = None
@@ -97,7 +84,7 @@ class Equilibrium(DiscreteDrive):
         ksp = self.snes.getKSP()
         ksp.setType(PETSc.KSP.Type.PREONLY)
         ksp.getPC().setType(PETSc.PC.Type.PYTHON)
-        self.step = SearchedStep(self.border, self._trial, self.x, phases)
+        self.step = SearchedStep(self.border, self._trial, self.x, self.phases)
         ksp.getPC().setPythonContext(self.step)
         self.snes.setFromOptions()
         # SNES sees vectors of three unknowns per node, the matrix may have two: it is known to the border alone

@@ -45,12 +45,10 @@ def forces(
 def moved(sector: Sector, turn: float, strain: float, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
     """Outer nodes' displacement (m, 3) mm under a turn and a random deformation, and their rows in `coords`."""
     mesh, _, condensed = sector
-    c, s = np.cos(turn), np.sin(turn)
     place = turned(mesh.coords[condensed.outer], ANGLE[0])
     scatter = strain * np.random.default_rng(seed).uniform(-1.0, 1.0, place.shape)
     scatter[:, 2] = 0.0
-    x = (place + scatter) @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]) + [3.0, -2.0, 0.0]
-    return x - place, condensed.outer
+    return turned(place + scatter, turn) + [3.0, -2.0, 0.0] - place, condensed.outer
 
 
 def turned(points: np.ndarray, angle: float) -> np.ndarray:
