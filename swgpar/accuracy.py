@@ -14,13 +14,12 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.design import SECTOR_BEND, DriveDesign
-from swgpar.design_file import validate
 from swgpar.error_estimate import ORDER
 from swgpar.errors import InputError
 from swgpar.incremental import DriveModel
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
-from swgpar.multilevel import CoarserLevel, coarser, level_of, load
+from swgpar.multilevel import CoarserLevel, coarser, level_of, load, recounted
 from swgpar.steps import Scene
 
 MEASURE = "fs_s1"
@@ -84,12 +83,8 @@ def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
 
 
 def refined(recipe: MeshRecipe, factor: float) -> MeshRecipe:
-    """The recipe with every count times `factor`, rounded up, gradings as they are; raises InputError beyond bounds."""
-    content = {
-        name: {key: -int(-factor * value // 1) if isinstance(value, int) else value for key, value in section.items()}
-        for name, section in recipe.model_dump(exclude_none=True).items()
-    }
-    return validate(MeshRecipe, content)
+    """The recipe with every count times `factor`, rounded up; raises InputError beyond bounds."""
+    return recounted(recipe, lambda name, value: -int(-factor * value // 1))
 
 
 def relative_error(levels: list[CoarserLevel], dimensions: int) -> float:

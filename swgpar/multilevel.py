@@ -7,6 +7,7 @@ state does not depend on the way to it, so that the result is the same to the so
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +18,7 @@ from scipy.spatial import Delaunay, QhullError, cKDTree
 
 from swgpar.assembly import read_field, write_field
 from swgpar.design import DriveDesign
+from swgpar.design_file import validate
 from swgpar.errors import InputError, SwgparError
 from swgpar.incremental import LOADED, DriveModel, Runner, stresses
 from swgpar.log import logger
@@ -26,22 +28,29 @@ from swgpar.prediction import turned
 from swgpar.steps import Scene
 
 SMALLEST = {"tip": 2, "root": 2}
-"""Counts that a recipe may not go below; all others reach 1, along the face width 2."""
+"""Counts that a recipe may not go below; all others reach 1, along the face width 2 or 3."""
+
+
+def recounted(recipe: MeshRecipe, count: Callable[[str, int], int]) -> MeshRecipe:
+    """The recipe with count(name, elements) for every count, gradings as they are; raises InputError beyond bounds.
+
+    The middle of the face width stays what it is, a node or an element: a crowned cam touches along it. Where the
+    coarser mesh has no node there its ring takes a shape of its own, 0.1 micrometres beside that of the finer one, and
+    the finer mesh finds its contacts anew.
+    """
+    content = {
+        section: {name: count(name, value) if isinstance(value, int) else value for name, value in counts.items()}
+        for section, counts in recipe.model_dump(exclude_none=True).items()
+    }
+    if recipe.face_width is not None:
+        width = content["face_width"]
+        width["elements"] += (width["elements"] + recipe.face_width.elements) % 2
+    return validate(MeshRecipe, content)
 
 
 def coarser(recipe: MeshRecipe) -> MeshRecipe:
     """The recipe with half of every count, rounded up."""
-
-    def halve(section: dict) -> dict:
-        return {
-            name: max(SMALLEST.get(name, 1), -(-value // 2)) if isinstance(value, int) else value
-            for name, value in section.items()
-        }
-
-    content = {name: halve(section) for name, section in recipe.model_dump(exclude_none=True).items()}
-    if "face_width" in content:
-        content["face_width"]["elements"] = max(2, content["face_width"]["elements"])
-    return MeshRecipe.model_validate(content)
+    return recounted(recipe, lambda name, value: max(SMALLEST.get(name, 1), -(-value // 2)))
 
 
 def interpolation(coarse: SectorMesh, fine: SectorMesh) -> csr_matrix:

@@ -24,8 +24,9 @@ MESH = Path(__file__).parent.parent.parent / "mesh"
 def test_coarser_recipes_halve_down_to_the_smallest() -> None:
     recipe = load_recipe(MESH / "full.toml")
     once = coarser(recipe)
-    assert (once.flexible_spline.flank, once.flexible_spline.root, once.face_width.elements) == (9, 2, 5)
+    assert (once.flexible_spline.flank, once.flexible_spline.root, once.face_width.elements) == (9, 2, 6)
     assert once.cup.end_ratio == recipe.cup.end_ratio
+    assert coarser(once).face_width.elements == 4
     for _ in range(10):
         recipe = coarser(recipe)
     assert coarser(recipe) == recipe
