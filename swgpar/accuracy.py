@@ -1,7 +1,7 @@
 """A mesh for an accuracy: refined until the estimated error of the largest tensile stress is below what is asked for.
 
-The drive is assembled and loaded on a mesh with few elements; every finer one starts from the state before. The error
-of the loaded state is estimated from the last three meshes, so that the time goes into one mesh that suffices.
+The drive is assembled and loaded on a mesh with few elements; every other one starts from the state before. What each
+group of counts adds to the error of the loaded state is estimated on the way, so that elements go where they help.
 Compressive stress is no measure: where edges carry, its largest value has no limit.
 """
 
@@ -18,8 +18,8 @@ from swgpar.error_estimate import ORDER
 from swgpar.errors import InputError
 from swgpar.incremental import DriveModel
 from swgpar.log import logger
-from swgpar.meshing import MeshRecipe
-from swgpar.multilevel import CoarserLevel, coarser, level_of, load, recounted
+from swgpar.meshing import MeshRecipe, build_sector_meshes
+from swgpar.multilevel import Level, coarser, level_of, load, recounted
 from swgpar.steps import Scene
 
 MEASURE = "fs_s1"
@@ -32,28 +32,43 @@ SAMPLES = ((0.02, 4), (0.005, 8), (0.0, 16))
 """Angles in a period for accuracies from the first number on. Four instead of eight change the means of the plane half
 turn by 0.3 %, those of the cup drive by 0.5 %; what half of a run's own angles would give is in its summary."""
 
-RTOL = 1e-5
-"""Newton's tolerance: its part in the error of the stresses is below the lowest accuracy by decades."""
+RTOL = 1e-7
+"""Newton's tolerance: its part in the error of the stresses is below the lowest accuracy by decades, and at 1e-5 the
+input torque of a fine plane mesh was 0.6 % off, for one iteration less."""
 
 BEND = 0.2
 """Share of an accuracy up to which condensed sectors, which leave out a part of the bending strain, are used: of the
 largest stress, which a notch raises, that part is less than half as much."""
 
-STEPS = (1.5, 2.0)
-"""Refinements of all counts to choose from."""
+Counts = dict[str, tuple[str, ...]]
+"""Names of counts by section of the recipe."""
 
-LARGEST = {2: 400_000, 3: 700_000}
+Steps = tuple[int, ...]
+"""How many times every group of counts is doubled."""
+
+GROUPS: dict[str, Counts] = {
+    "root and rim": {"flexible_spline": ("root", "under", "rim")},
+    "flanks and ring gear": {
+        "flexible_spline": ("tip", "layers", "flank"),
+        "ring_gear": ("tip", "layers", "flank", "root", "under", "rim"),
+    },
+    "length": {"face_width": ("elements",), "cup": ("cylinder", "fillet", "closed_end")},
+}
+"""Counts that are refined together. The largest tension sits in the root or at the inner surface below it: twice the
+counts there do for it what twice all counts do, at a third of the time (docs/benchmarks/accuracy.md)."""
+
+LARGEST = {2: 1_500_000, 3: 700_000}
 """Elements of the whole drive, plane and solid, beyond which no finer mesh is taken: some 20 GB."""
 
 
 @dataclass(frozen=True)
 class Chosen:
-    """The model on the mesh chosen, in its loaded state, and the level below it. error : relative, estimated"""
+    """The model on the mesh chosen, in its loaded state. error : relative, estimated;  stresses : errors of all, MPa"""
 
     model: DriveModel
     recipe: MeshRecipe
-    below: CoarserLevel
     error: float
+    stresses: dict[str, float]
 
 
 def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
@@ -82,56 +97,119 @@ def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
     return design.model_copy(update={**changes, "solver": design.solver.model_copy(update=solver)})
 
 
-def refined(recipe: MeshRecipe, factor: float) -> MeshRecipe:
-    """The recipe with every count times `factor`, rounded up; raises InputError beyond bounds."""
-    return recounted(recipe, lambda name, value: -int(-factor * value // 1))
+def doubled(recipe: MeshRecipe, counts: Counts, times: int = 1) -> MeshRecipe:
+    """The recipe with these counts doubled, so many times; raises InputError beyond bounds."""
+    return recounted(recipe, lambda title, name, value: value << times if name in counts.get(title, ()) else value)
 
 
-def relative_error(levels: list[CoarserLevel], dimensions: int) -> float:
-    """Estimated relative error of the largest tensile stress on the last of several meshes.
+def error_before(coarse: float, fine: float | None) -> float:
+    """Error before a doubling, by Richardson from the stresses before and after; infinite where there is none."""
+    return np.inf if fine is None else abs(fine - coarse) / (1.0 - 0.5**ORDER)
 
-    As `estimate`, but with the larger of the last two slopes over the element size: where a mesh is too coarse to see
-    the stress, a difference that is small by chance would pass for convergence.
+
+def error_after(change: float, before: float) -> float:
+    """Error after a doubling, from what it changed and what the one before it did (0 for the first).
+
+    The larger of both estimates: where a mesh is too coarse to see the stress, a change that is small by chance would
+    pass for convergence.
     """
-    size = [level.elements ** (-1.0 / dimensions) for level in levels]
-    stress = [level.stresses[MEASURE] for level in levels]
-    slopes = [(b - a) / (h - k) for a, b, h, k in zip(stress, stress[1:], size, size[1:]) if h > k]
-    if len(slopes) < len(levels) - 1 or not slopes:
-        return 1.0
-    error = max(map(abs, slopes[-2:])) * size[-1]
-    return error / (abs(stress[-1]) + error)
+    return max(abs(change), abs(before) / 2.0**ORDER) / (2.0**ORDER - 1.0)
+
+
+def relative(error: float, stress: float) -> float:
+    """Error over the stress without it; 1 where nothing is known."""
+    return error / (abs(stress) + error) if np.isfinite(error) else 1.0
+
+
+class Refinement:
+    """The loaded drive on recipes with some groups of counts doubled.
+
+    Parameters
+    ----------
+    design, items, comm : the drive, all increments of its run, communicator
+    recipe : what is refined; coarsened where a group could not be doubled below the largest size
+    """
+
+    def __init__(self, design: DriveDesign, recipe: MeshRecipe, items: list[Scene], comm: MPI.Comm) -> None:
+        self.design, self.items, self.comm = design, items, comm
+        self.dimensions = 2 if design.drive.model == "plane" else 3
+        self.groups = {name: counts for name, counts in GROUPS.items() if self.dimensions == 3 or name != "length"}
+        self.base, self.steps = recipe, (0,) * len(self.groups)
+        while not all(self.size(one_more(self.steps, k)) for k in range(len(self.groups))):
+            if coarser(self.base) == self.base:
+                break
+            self.base = coarser(self.base)
+        self.levels: dict[Steps, Level] = {}
+        self.model = load(design, coarser(self.base), items, comm)
+
+    def recipe(self, steps: Steps) -> MeshRecipe:
+        """With every group doubled as many times as `steps` says."""
+        recipe = self.base
+        for counts, times in zip(self.groups.values(), steps):
+            recipe = doubled(recipe, counts, times)
+        return recipe
+
+    def size(self, steps: Steps) -> int:
+        """Elements of the whole drive; 0 where there is no such mesh, or where it is too large."""
+        try:
+            meshes = build_sector_meshes(self.design, self.recipe(steps)).values()
+        except InputError:
+            return 0
+        elements = sum(len(mesh.hexes) * mesh.n_sectors for mesh in meshes)
+        return elements if elements <= LARGEST[self.dimensions] else 0
+
+    def load(self, steps: Steps) -> Level:
+        """Bring the drive to its loaded state there, from that of the last mesh."""
+        self.model = load(self.design, self.recipe(steps), self.items, self.comm, self.model)
+        self.steps, self.levels[steps] = steps, level_of(self.model)
+        return self.levels[steps]
+
+
+def one_more(steps: Steps, group: int) -> Steps:
+    """Steps with another doubling of one group."""
+    return tuple(count + (k == group) for k, count in enumerate(steps))
 
 
 def choose(design: DriveDesign, recipe: MeshRecipe, items: list[Scene], accuracy: float, comm: MPI.Comm) -> Chosen:
     """Refine `recipe` until the estimated relative error of the largest tensile stress is at most `accuracy`.
 
-    items : all increments of the run. Ends with the finest mesh below the largest size where the accuracy is out of
-    reach, and says so. Raises ConvergenceError or InputError like a run on one of the meshes.
+    Every group of counts has an error, first from what doubling it alone changes; then the group is doubled that has
+    the largest error for the elements of the finer mesh.
+
+    items : all increments of the run. Ends below the largest size where the accuracy is out of reach, and says so.
+    Raises ConvergenceError or InputError like a run on one of the meshes.
     """
-    model = load(design, coarser(recipe), items, comm)
-    seen = [level_of(model)]
-    while True:
-        model = load(design, recipe, items, comm, model)
-        dimensions = model.partition.dims
-        below, here = seen[-1], level_of(model)
-        seen.append(here)
-        error = relative_error(seen, dimensions) + model.bend_left_out() / abs(here.stresses[MEASURE])
-        logger.info(
-            "%d elements: s1 %.1f MPa under load, estimated error %.2g %%",
-            here.elements,
-            here.stresses[MEASURE],
-            100.0 * error,
+    way = Refinement(design, recipe, items, comm)
+    steps, every = way.steps, range(len(way.groups))
+    here, errors, changes = way.load(steps), [], [{} for _ in every]
+    for k in every:
+        finer = way.load(one_more(steps, k)) if way.size(one_more(steps, k)) else None
+        errors.append(
+            {name: error_before(value, finer and finer.stresses[name]) for name, value in here.stresses.items()}
         )
-        factor = STEPS[0] if error <= STEPS[0] ** ORDER * accuracy else STEPS[1]
+    while True:
+        stress = here.stresses[MEASURE]
+        left_out = way.model.bend_left_out()
+        error = relative(sum(one[MEASURE] for one in errors) + left_out, stress)
+        parts = ", ".join(
+            f"{name} {100.0 * relative(one[MEASURE], stress):.2g}" for name, one in zip(way.groups, errors)
+        )
+        logger.info("%d elements: s1 %.1f MPa under load, estimated errors (%%): %s", here.elements, stress, parts)
         if error <= accuracy:
-            return Chosen(model, recipe, below, error)
-        if here.elements * factor**dimensions > LARGEST[dimensions]:
-            factor = STEPS[0]
-        if here.elements * factor**dimensions > LARGEST[dimensions]:
-            logger.info("no finer mesh is taken beyond %d elements", LARGEST[dimensions])
-            return Chosen(model, recipe, below, error)
-        try:
-            recipe = refined(recipe, factor)
-        except InputError as limit:
-            logger.info("no finer mesh can be had: %s", limit)
-            return Chosen(model, recipe, below, error)
+            break
+        sizes = [way.size(one_more(steps, k)) for k in every]
+        stays = left_out + sum(one[MEASURE] for one, size in zip(errors, sizes) if not size)
+        if relative(stays, stress) > accuracy or not any(sizes):
+            logger.info("no finer mesh that helps is taken up to %d elements", LARGEST[way.dimensions])
+            break
+        k = max((k for k in every if sizes[k]), key=lambda k: errors[k][MEASURE] / sizes[k])
+        steps, before = one_more(steps, k), here.stresses
+        here = way.levels[steps] if steps in way.levels else way.load(steps)
+        change = {name: value - before[name] for name, value in here.stresses.items()}
+        errors[k] = {name: error_after(value, changes[k].get(name, 0.0)) for name, value in change.items()}
+        changes[k] = change
+    if way.steps != steps:
+        way.load(steps)
+    total = {name: sum(one[name] for one in errors) for name in here.stresses}
+    known = {name: value for name, value in total.items() if np.isfinite(value)}
+    return Chosen(way.model, way.recipe(steps), error, known)

@@ -31,17 +31,18 @@ SMALLEST = {"tip": 2, "root": 2}
 """Counts that a recipe may not go below; all others reach 1, along the face width 2 or 3."""
 
 
-def recounted(recipe: MeshRecipe, count: Callable[[str, int], int]) -> MeshRecipe:
-    """The recipe with count(name, elements) for every count, gradings as they are; raises InputError beyond bounds.
+def recounted(recipe: MeshRecipe, count: Callable[[str, str, int], int]) -> MeshRecipe:
+    """The recipe with count(section, name, elements) for every count, gradings as they are.
 
     The middle of the face width stays what it is, a node or an element: a crowned cam touches along it. Where the
     coarser mesh has no node there its ring takes a shape of its own, 0.1 micrometres beside that of the finer one, and
-    the finer mesh finds its contacts anew.
+    the finer mesh finds its contacts anew. Raises InputError beyond bounds.
     """
-    content = {
-        section: {name: count(name, value) if isinstance(value, int) else value for name, value in counts.items()}
-        for section, counts in recipe.model_dump(exclude_none=True).items()
-    }
+
+    def section(title: str, counts: dict[str, int | float]) -> dict[str, int | float]:
+        return {name: count(title, name, value) if isinstance(value, int) else value for name, value in counts.items()}
+
+    content = {title: section(title, counts) for title, counts in recipe.model_dump(exclude_none=True).items()}
     if recipe.face_width is not None:
         width = content["face_width"]
         width["elements"] += (width["elements"] + recipe.face_width.elements) % 2
@@ -50,7 +51,7 @@ def recounted(recipe: MeshRecipe, count: Callable[[str, int], int]) -> MeshRecip
 
 def coarser(recipe: MeshRecipe) -> MeshRecipe:
     """The recipe with half of every count, rounded up."""
-    return recounted(recipe, lambda name, value: max(SMALLEST.get(name, 1), -(-value // 2)))
+    return recounted(recipe, lambda _, name, value: max(SMALLEST.get(name, 1), -(-value // 2)))
 
 
 def interpolation(coarse: SectorMesh, fine: SectorMesh) -> csr_matrix:
@@ -137,16 +138,16 @@ def from_loaded(items: list[Scene]) -> list[Scene]:
 
 
 @dataclass(frozen=True)
-class CoarserLevel:
-    """The loaded state on the next coarser mesh. elements : of the whole drive;  stresses : largest ones, MPa"""
+class Level:
+    """The loaded state on one mesh. elements : of the whole drive;  stresses : largest ones, MPa"""
 
     elements: int
     stresses: dict[str, float]
 
 
-def level_of(model: DriveModel) -> CoarserLevel:
+def level_of(model: DriveModel) -> Level:
     """Elements and stresses of a model in its loaded state."""
-    return CoarserLevel(model.elements_whole(), stresses(model)[0])
+    return Level(model.elements_whole(), stresses(model)[0])
 
 
 def load(
@@ -177,7 +178,7 @@ def load(
     return way.model
 
 
-def start_loaded(runner: Runner, recipes: list[MeshRecipe], items: list[Scene]) -> CoarserLevel:
+def start_loaded(runner: Runner, recipes: list[MeshRecipe], items: list[Scene]) -> Level:
     """Bring `runner` to the loaded state by way of coarser meshes, the coarsest of `recipes` first.
 
     items : all increments of the run. Raises ConvergenceError or InputError where a mesh does not allow it; `runner` is

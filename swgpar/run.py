@@ -28,7 +28,7 @@ from swgpar.incremental import DriveModel, Runner, stresses
 from swgpar.log import IncrementProgress, logger
 from swgpar.meshing import MeshRecipe, load_recipe, require_sections
 from swgpar.meshing.recipe import to_toml
-from swgpar.multilevel import CoarserLevel, from_loaded, levels, start_loaded
+from swgpar.multilevel import Level, from_loaded, levels, start_loaded
 from swgpar.period import continued, of_period, sampling_error
 from swgpar.results import checkpoint, history
 from swgpar.results.atomic import agreed, on_all, to_json, write_from_root
@@ -46,11 +46,15 @@ MEANS = ("fs_s1", "fs_s3", "fs_vm", "rg_s1", "rg_s3", "rg_vm", "wg_torque_Nmm")
 
 @dataclass(frozen=True)
 class Accuracy:
-    """Of the largest tensile stress under load, relative: asked for, estimated, and whether that suffices."""
+    """Of the largest tensile stress under load, relative: asked for, estimated, and whether that suffices.
+
+    mesh_error : estimated errors of all largest stresses, MPa
+    """
 
     asked: float
     estimated: float
     reached: bool
+    mesh_error: dict[str, float]
 
 
 @dataclass(frozen=True)
@@ -79,7 +83,7 @@ class Recorder:
         self.rows: list[dict[str, Any]] = []
         self.done = 0
         self.names: dict[str, dict[str, int]] = {}
-        self.coarser: CoarserLevel | None = None
+        self.coarser: Level | None = None
         self.accuracy: Accuracy | None = None
         self.writer = FieldWriter(out, self.comm) if model.design.output.fields else None
 
@@ -169,7 +173,7 @@ class Recorder:
                 "same ones, only steps.rotation, the output, solver.linear, keep_factor and far_teeth may differ"
             )
         last = Scene(**state["scene"])
-        if state["coarser"]:
+        if state["coarser"] or state["accuracy"]:
             items = from_loaded(items)
         if state["done"] > len(items) or items[state["done"] - 1] != last:
             raise InputError(
@@ -189,7 +193,7 @@ class Recorder:
             rows, _ = checkpoint.read_checkpoint(path, self.comm, dict.fromkeys(friction.ROWS, every))
             model.equilibrium.resume(friction.from_rows(rows))
         self.rows, self.done, self.names = state["rows"], state["done"], state["names"]
-        self.coarser = state["coarser"] and CoarserLevel(**state["coarser"])
+        self.coarser = state["coarser"] and Level(**state["coarser"])
         self.accuracy = state["accuracy"] and Accuracy(**state["accuracy"])
         runner.take(last)
         for name, value in state["phases_s"].items():
@@ -200,7 +204,7 @@ class Recorder:
         return items, float(state["wall_s"])
 
 
-def mesh_error(rows: list[dict[str, Any]], elements: int, coarser: CoarserLevel, dimensions: int) -> dict[str, float]:
+def mesh_error(rows: list[dict[str, Any]], elements: int, coarser: Level, dimensions: int) -> dict[str, float]:
     """Estimated errors of the loaded state's largest stresses by the mesh, MPa: from this mesh and the next coarser."""
     found = {
         name: estimate(value, rows[0][name], coarser.elements, elements, dimensions)
@@ -212,7 +216,7 @@ def mesh_error(rows: list[dict[str, Any]], elements: int, coarser: CoarserLevel,
 def summarise(
     model: DriveModel,
     rows: list[dict[str, Any]],
-    coarser: CoarserLevel | None,
+    coarser: Level | None,
     recipe_name: str,
     accuracy: Accuracy | None,
     seconds: float,
@@ -229,6 +233,7 @@ def summarise(
     counts = model.counts()
     memory = comm.allgather(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0)
     elements = model.elements_whole()
+    by_mesh = mesh_error(rows, elements, coarser, model.partition.dims) if coarser else None
     expected = 1000.0 * design.load.torque / abs(design.ratio)
     return {
         "recipe": recipe_name,
@@ -249,8 +254,8 @@ def summarise(
         "phases_s": {k: round(v, 3) for k, v in model.phases.slowest(comm).items()},
         "peak_memory_MB_per_rank": [round(m, 1) for m in memory],
         "means": means,
-        "accuracy": None if accuracy is None else asdict(accuracy),
-        "mesh_error": mesh_error(rows, elements, coarser, model.partition.dims) if coarser else None,
+        "accuracy": accuracy and {key: value for key, value in asdict(accuracy).items() if key != "mesh_error"},
+        "mesh_error": accuracy.mesh_error if accuracy else by_mesh,
         "condensed_MPa": model.bend_left_out() if design.solver.condensed_sectors else None,
         "sampling_error": sampling_error(design, rows, MEANS) if design.steps.samples and means else None,
         "newton_iterations_mean": float(np.mean([r["newton_iterations"] for r in turning])) if turning else None,
@@ -301,8 +306,7 @@ def run_drive(
     try:
         if chosen is not None:
             write_from_root(comm, out / RECIPE, to_toml(recipe).encode())
-            recorder.coarser = chosen.below
-            recorder.accuracy = Accuracy(accuracy, chosen.error, chosen.error <= accuracy)
+            recorder.accuracy = Accuracy(accuracy, chosen.error, chosen.error <= accuracy, chosen.stresses)
         result = _compute(model, recipe, recorder, resumed, restart, begin, recipe_name, on_increment)
     except SwgparError as error:
         model.destroy()  # collective: not after an error that perhaps this rank alone has met
@@ -313,7 +317,7 @@ def run_drive(
     return result
 
 
-def _start_on_coarser(runner: Runner, recipe: MeshRecipe, items: list[Scene]) -> CoarserLevel | None:
+def _start_on_coarser(runner: Runner, recipe: MeshRecipe, items: list[Scene]) -> Level | None:
     """Reach the loaded state by way of coarser meshes; None where the design does without, or where that fails."""
     recipes = levels(runner.design, recipe)
     if not recipes:
@@ -357,7 +361,7 @@ def _compute(
         runner.take(from_loaded(items)[0])
     elif not resumed:
         recorder.coarser = _start_on_coarser(runner, recipe, items)
-    if not resumed and recorder.coarser is not None:
+    if not resumed and (recorder.coarser or recorder.accuracy):
         items = from_loaded(items)
     with IncrementProgress(comm, len(items), done=recorder.done, terminal=on_increment is None) as progress:
         model.equilibrium.on_iteration = lambda scene, its, ratio: progress.newton(

@@ -5,22 +5,29 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from mpi4py import MPI
 from small_drive import DATA, PLANE
 
-from swgpar.accuracy import RTOL, refined, relative_error, with_accuracy
+from swgpar import accuracy as module
+from swgpar.accuracy import GROUPS, RTOL, Refinement, Steps, choose, doubled, error_after, with_accuracy
 from swgpar.design import load_design
 from swgpar.errors import InputError
 from swgpar.meshing import load_recipe
 from swgpar.meshing.recipe import to_toml
-from swgpar.multilevel import CoarserLevel
+from swgpar.multilevel import Level, coarser
 
 
-def test_every_count_is_refined_and_no_grading() -> None:
+def test_groups_hold_every_count_once_and_no_grading() -> None:
     recipe = load_recipe(DATA.parent.parent / "mesh/full.toml")
-    finer = refined(recipe, 1.5)
-    assert finer.flexible_spline.flank == 26 and finer.ring_gear.under == 3 and finer.cup.fillet == 6
-    assert finer.cup.end_ratio == recipe.cup.end_ratio
-    assert refined(recipe, 2.0).face_width.elements == 20
+    finer = recipe
+    for counts in GROUPS.values():
+        finer = doubled(finer, counts)
+    for title, section in recipe.model_dump(exclude_none=True).items():
+        for name, value in section.items():
+            expected = 2 * value if isinstance(value, int) else value
+            assert getattr(getattr(finer, title), name) == expected, (title, name)
+    notch = doubled(recipe, GROUPS["root and rim"], 3)
+    assert notch.flexible_spline.root == 8 * recipe.flexible_spline.root and notch.ring_gear == recipe.ring_gear
 
 
 def test_a_chosen_recipe_can_be_read_again(tmp_path: Path) -> None:
@@ -58,19 +65,87 @@ def test_accuracies_that_cannot_be_had() -> None:
         with_accuracy(load_design(DATA / "small.toml", [*PLANE, "contact.friction=0.1"]), 0.01)
 
 
-def level(elements: int, stress: float) -> CoarserLevel:
-    return CoarserLevel(elements, {"fs_s1": stress})
+class Analytic:
+    """Stands in for `Refinement`: s1 = 300 MPa less errors of the first order, elements that double with each step."""
+
+    ERRORS, EVERY, ELEMENTS, FINEST, LEFT_OUT = (60.0, -3.0), 300.0, 1000, 10**9, 0.0
+
+    def __init__(self, *_: object) -> None:
+        self.groups, self.steps, self.levels, self.dimensions = {"a": {}, "b": {}}, (0, 0), {}, 2
+        self.model, self.loads = self, []
+
+    def bend_left_out(self) -> float:
+        return self.LEFT_OUT
+
+    def recipe(self, steps: Steps) -> Steps:
+        return steps
+
+    def size(self, steps: Steps) -> int:
+        size = self.ELEMENTS << sum(steps)
+        return size if size <= self.FINEST else 0
+
+    def stress(self, steps: Steps) -> float:
+        return self.EVERY - sum(error / 2**count for error, count in zip(self.ERRORS, steps))
+
+    def load(self, steps: Steps) -> Level:
+        assert self.size(steps)
+        self.steps, self.levels[steps] = steps, Level(self.size(steps), {"fs_s1": self.stress(steps), "fs_s3": 0.0})
+        self.loads.append(steps)
+        return self.levels[steps]
 
 
-@pytest.mark.parametrize("dimensions", [2, 3])
-def test_error_of_a_stress_of_the_first_order(dimensions: int) -> None:
-    levels = [level(n, 300.0 - 700.0 * n ** (-1.0 / dimensions)) for n in (1000, 3375, 27000)]
-    assert relative_error(levels, dimensions) == pytest.approx(1.0 - levels[-1].stresses["fs_s1"] / 300.0)
-    assert relative_error(levels[:1], dimensions) == 1.0
+def chosen(monkeypatch: pytest.MonkeyPatch, asked: float, stand_in: type[Analytic] = Analytic) -> module.Chosen:
+    monkeypatch.setattr(module, "Refinement", stand_in)
+    return choose(None, None, [], asked, MPI.COMM_SELF)
 
 
-def test_a_difference_that_is_small_by_chance_is_no_convergence() -> None:
-    """The larger one of the last two slopes counts, and meshes that are not finer than the one before say nothing."""
-    chance = [level(100, 280.0), level(400, 260.0), level(1600, 260.1)]
-    assert relative_error(chance, 2) == pytest.approx(10.0 / 270.1)
-    assert relative_error([*chance, level(1600, 260.1)], 2) == 1.0
+@pytest.mark.parametrize(("asked", "steps"), [(0.2, (1, 0)), (0.05, (3, 0)), (0.02, (5, 0)), (0.01, (6, 1))])
+def test_the_group_with_the_larger_error_is_refined(
+    monkeypatch: pytest.MonkeyPatch, asked: float, steps: Steps
+) -> None:
+    """Errors of the first order are found exactly; those of both groups add up."""
+    found = chosen(monkeypatch, asked)
+    assert found.recipe == found.model.steps == steps
+    assert len(found.model.loads) == len(set(found.model.loads)) + (steps == (1, 0))  # back from the trial of b
+    true = 60.0 / 2 ** steps[0] + 3.0 / 2 ** steps[1]
+    assert found.stresses == {"fs_s1": pytest.approx(true), "fs_s3": 0.0}
+    assert found.error == pytest.approx(true / (found.model.stress(steps) + true)) and found.error <= asked
+
+
+def test_what_condensed_sectors_leave_out_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Condensed(Analytic):
+        LEFT_OUT = 4.0
+
+    assert chosen(monkeypatch, 0.05, Condensed).error == pytest.approx((7.5 + 3.0 + 4.0) / (295.5 + 14.5))
+    assert chosen(monkeypatch, 0.04).recipe == (3, 0) and chosen(monkeypatch, 0.04, Condensed).recipe == (4, 0)
+
+
+def test_refinement_ends_where_nothing_helps(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Small(Analytic):
+        FINEST = 4000
+
+    found = chosen(monkeypatch, 0.01, Small)
+    assert found.recipe == (2, 0) and found.error > 0.01  # b alone could not bring it down
+
+    class Single(Analytic):
+        FINEST = 1000
+
+    found = chosen(monkeypatch, 0.2, Single)
+    assert found.recipe == (0, 0) and found.error == 1.0 and found.stresses == {}
+
+
+def test_a_change_that_is_small_by_chance_is_no_convergence() -> None:
+    assert error_after(5.0, 0.0) == 5.0 and error_after(5.0, -8.0) == 5.0
+    assert error_after(0.1, -8.0) == 4.0
+
+
+def test_a_recipe_that_is_too_fine_is_coarsened(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every group can be doubled below the largest size."""
+    monkeypatch.setattr(module, "load", lambda design, recipe, items, comm, below=None: recipe)
+    design = load_design(DATA.parent.parent / "drivers/cup_45deg.toml")
+    full = load_recipe(DATA.parent.parent / "mesh/full.toml")
+    way = Refinement(design, full, [], MPI.COMM_SELF)
+    assert way.base == coarser(full) and way.model == coarser(way.base)
+    assert 0 < way.size((0, 0, 0)) < min(way.size(steps) for steps in ((1, 0, 0), (0, 1, 0), (0, 0, 1)))
+    assert way.size((9, 0, 0)) == 0  # more than a count may be
+    assert Refinement(design, way.base, [], MPI.COMM_SELF).base == way.base
