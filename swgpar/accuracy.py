@@ -15,7 +15,7 @@ from mpi4py import MPI
 
 from swgpar.design import SECTOR_BEND, DriveDesign
 from swgpar.error_estimate import ORDER
-from swgpar.errors import InputError
+from swgpar.errors import ConvergenceError, InputError
 from swgpar.incremental import DriveModel
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe, build_sector_meshes
@@ -43,7 +43,7 @@ largest stress, which a notch raises, that part is less than half as much."""
 Counts = dict[str, tuple[str, ...]]
 """Names of counts by section of the recipe."""
 
-Steps = tuple[int, ...]
+Doublings = tuple[int, ...]
 """How many times every group of counts is doubled."""
 
 GROUPS: dict[str, Counts] = {
@@ -54,11 +54,11 @@ GROUPS: dict[str, Counts] = {
     },
     "length": {"face_width": ("elements",), "cup": ("cylinder", "fillet", "closed_end")},
 }
-"""Counts that are refined together. The largest tension sits in the root or at the inner surface below it: twice the
-counts there do for it what twice all counts do, at a third of the time (docs/benchmarks/accuracy.md)."""
+"""Counts that are refined together. The largest tension sits in the root or at the inner surface below it, and most of
+its error comes from the counts there (docs/benchmarks/accuracy.md, plane drive)."""
 
 LARGEST = {2: 1_500_000, 3: 700_000}
-"""Elements of the whole drive, plane and solid, beyond which no finer mesh is taken: some 20 GB."""
+"""Elements of the whole drive, plane and solid, beyond which no finer mesh is taken: some 7 and 12 GB."""
 
 
 @dataclass(frozen=True)
@@ -98,20 +98,17 @@ def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
 
 
 def doubled(recipe: MeshRecipe, counts: Counts, times: int = 1) -> MeshRecipe:
-    """The recipe with these counts doubled, so many times; raises InputError beyond bounds."""
+    """The recipe with these counts doubled, so many times; an odd one along the face width stays odd, one higher.
+
+    Raises InputError beyond bounds.
+    """
     return recounted(recipe, lambda title, name, value: value << times if name in counts.get(title, ()) else value)
 
 
-def error_before(coarse: float, fine: float | None) -> float:
-    """Error before a doubling, by Richardson from the stresses before and after; infinite where there is none."""
-    return np.inf if fine is None else abs(fine - coarse) / (1.0 - 0.5**ORDER)
+def error_after(change: float, before: float = 0.0) -> float:
+    """Error after a doubling, by Richardson from what it changed, and at least from what the one before it did.
 
-
-def error_after(change: float, before: float) -> float:
-    """Error after a doubling, from what it changed and what the one before it did (0 for the first).
-
-    The larger of both estimates: where a mesh is too coarse to see the stress, a change that is small by chance would
-    pass for convergence.
+    Where a mesh is too coarse to see the stress, a change that is small by chance would pass for convergence.
     """
     return max(abs(change), abs(before) / 2.0**ORDER) / (2.0**ORDER - 1.0)
 
@@ -134,40 +131,47 @@ class Refinement:
         self.design, self.items, self.comm = design, items, comm
         self.dimensions = 2 if design.drive.model == "plane" else 3
         self.groups = {name: counts for name, counts in GROUPS.items() if self.dimensions == 3 or name != "length"}
-        self.base, self.steps = recipe, (0,) * len(self.groups)
-        while not all(self.size(one_more(self.steps, k)) for k in range(len(self.groups))):
+        self.base, self.doublings = recipe, (0,) * len(self.groups)
+        while not all(self.size(one_more(self.doublings, k)) for k in range(len(self.groups))):
             if coarser(self.base) == self.base:
                 break
             self.base = coarser(self.base)
-        self.levels: dict[Steps, Level] = {}
+        self.levels: dict[Doublings, Level] = {}
+        self.left_out: dict[Doublings, float] = {}
         self.model = load(design, coarser(self.base), items, comm)
 
-    def recipe(self, steps: Steps) -> MeshRecipe:
-        """With every group doubled as many times as `steps` says."""
+    def recipe(self, doublings: Doublings) -> MeshRecipe:
+        """With every group doubled as many times as `doublings` says."""
         recipe = self.base
-        for counts, times in zip(self.groups.values(), steps):
+        for counts, times in zip(self.groups.values(), doublings):
             recipe = doubled(recipe, counts, times)
         return recipe
 
-    def size(self, steps: Steps) -> int:
+    def size(self, doublings: Doublings) -> int:
         """Elements of the whole drive; 0 where there is no such mesh, or where it is too large."""
         try:
-            meshes = build_sector_meshes(self.design, self.recipe(steps)).values()
+            meshes = build_sector_meshes(self.design, self.recipe(doublings)).values()
         except InputError:
             return 0
         elements = sum(len(mesh.hexes) * mesh.n_sectors for mesh in meshes)
         return elements if elements <= LARGEST[self.dimensions] else 0
 
-    def load(self, steps: Steps) -> Level:
-        """Bring the drive to its loaded state there, from that of the last mesh."""
-        self.model = load(self.design, self.recipe(steps), self.items, self.comm, self.model)
-        self.steps, self.levels[steps] = steps, level_of(self.model)
-        return self.levels[steps]
+    def load(self, doublings: Doublings) -> Level:
+        """Bring the drive to its loaded state there, from that of the last mesh, or else from the start."""
+        recipe, below = self.recipe(doublings), self.model
+        try:
+            self.model = load(self.design, recipe, self.items, self.comm, below)
+        except (ConvergenceError, InputError) as error:
+            logger.info("the state of another mesh does not lead to that of this one: %s", error)
+            self.model = load(self.design, recipe, self.items, self.comm)
+        self.doublings, self.levels[doublings] = doublings, level_of(self.model)
+        self.left_out[doublings] = self.model.bend_left_out()
+        return self.levels[doublings]
 
 
-def one_more(steps: Steps, group: int) -> Steps:
-    """Steps with another doubling of one group."""
-    return tuple(count + (k == group) for k, count in enumerate(steps))
+def one_more(doublings: Doublings, group: int) -> Doublings:
+    """Doublings with another doubling of one group."""
+    return tuple(count + (k == group) for k, count in enumerate(doublings))
 
 
 def choose(design: DriveDesign, recipe: MeshRecipe, items: list[Scene], accuracy: float, comm: MPI.Comm) -> Chosen:
@@ -180,16 +184,18 @@ def choose(design: DriveDesign, recipe: MeshRecipe, items: list[Scene], accuracy
     Raises ConvergenceError or InputError like a run on one of the meshes.
     """
     way = Refinement(design, recipe, items, comm)
-    steps, every = way.steps, range(len(way.groups))
-    here, errors, changes = way.load(steps), [], [{} for _ in every]
+    doublings, every = way.doublings, range(len(way.groups))
+    here, changes = way.load(doublings), []
     for k in every:
-        finer = way.load(one_more(steps, k)) if way.size(one_more(steps, k)) else None
-        errors.append(
-            {name: error_before(value, finer and finer.stresses[name]) for name, value in here.stresses.items()}
+        trial = way.load(one_more(doublings, k)).stresses if way.size(one_more(doublings, k)) else None
+        # what the doubling before this one would have changed
+        changes.append(
+            {name: 2.0**ORDER * (trial[name] - value) if trial else np.inf for name, value in here.stresses.items()}
         )
+    errors = [{name: error_after(value) for name, value in change.items()} for change in changes]
     while True:
         stress = here.stresses[MEASURE]
-        left_out = way.model.bend_left_out()
+        left_out = way.left_out[doublings]
         error = relative(sum(one[MEASURE] for one in errors) + left_out, stress)
         parts = ", ".join(
             f"{name} {100.0 * relative(one[MEASURE], stress):.2g}" for name, one in zip(way.groups, errors)
@@ -197,19 +203,19 @@ def choose(design: DriveDesign, recipe: MeshRecipe, items: list[Scene], accuracy
         logger.info("%d elements: s1 %.1f MPa under load, estimated errors (%%): %s", here.elements, stress, parts)
         if error <= accuracy:
             break
-        sizes = [way.size(one_more(steps, k)) for k in every]
+        sizes = [way.size(one_more(doublings, k)) for k in every]
         stays = left_out + sum(one[MEASURE] for one, size in zip(errors, sizes) if not size)
         if relative(stays, stress) > accuracy or not any(sizes):
             logger.info("no finer mesh that helps is taken up to %d elements", LARGEST[way.dimensions])
             break
         k = max((k for k in every if sizes[k]), key=lambda k: errors[k][MEASURE] / sizes[k])
-        steps, before = one_more(steps, k), here.stresses
-        here = way.levels[steps] if steps in way.levels else way.load(steps)
+        doublings, before = one_more(doublings, k), here.stresses
+        here = way.levels[doublings] if doublings in way.levels else way.load(doublings)
         change = {name: value - before[name] for name, value in here.stresses.items()}
-        errors[k] = {name: error_after(value, changes[k].get(name, 0.0)) for name, value in change.items()}
+        errors[k] = {name: error_after(value, changes[k][name]) for name, value in change.items()}
         changes[k] = change
-    if way.steps != steps:
-        way.load(steps)
+    if way.doublings != doublings:
+        way.load(doublings)
     total = {name: sum(one[name] for one in errors) for name in here.stresses}
     known = {name: value for name, value in total.items() if np.isfinite(value)}
-    return Chosen(way.model, way.recipe(steps), error, known)
+    return Chosen(way.model, way.recipe(doublings), error, known)

@@ -206,7 +206,7 @@ def _print_result(result) -> None:
         )
     asked = result.summary["accuracy"]
     if error := result.summary["mesh_error"]:
-        others = "coarser ones" if asked else "the one of the start"
+        others = "others on the way" if asked else "the one of the start"
         console.print(
             f"estimated error by the mesh, under load: s1 {error['fs_s1']:.1f}, |s3| {error['fs_s3']:.1f}, "
             f"von Mises {error['fs_vm']:.1f} MPa (from this mesh and {others})"
@@ -214,7 +214,7 @@ def _print_result(result) -> None:
     if asked:
         console.print(
             f"accuracy of the largest tensile stress: {asked['asked']:g} asked for, {asked['estimated']:.2g} "
-            f"estimated{'' if asked['reached'] else ', NOT reached: the mesh is the finest that is taken'}"
+            f"estimated{'' if asked['reached'] else ', NOT reached: no finer mesh that helps is taken'}"
         )
     if left_out := result.summary["condensed_MPa"]:
         console.print(f"condensed sectors leave out {left_out:.2g} MPa of bending stress")

@@ -68,7 +68,7 @@ def interpolation(coarse: SectorMesh, fine: SectorMesh) -> csr_matrix:
     try:
         mesh, dims = Delaunay(place), place.shape[1]
     except QhullError as error:
-        raise InputError(f"no state can be taken from the coarser mesh: {str(error).splitlines()[0]}") from None
+        raise InputError(f"no state can be taken from the other mesh: {str(error).splitlines()[0]}") from None
     cell = mesh.find_simplex(wanted, tol=1e-9)
     volume = np.abs(np.linalg.det(place[mesh.simplices[:, 1:]] - place[mesh.simplices[:, :1]]))
     sound = volume > 1e-3 * np.median(volume)
@@ -153,7 +153,7 @@ def level_of(model: DriveModel) -> Level:
 def load(
     design: DriveDesign, recipe: MeshRecipe, items: list[Scene], comm: MPI.Comm, below: DriveModel | None = None
 ) -> DriveModel:
-    """The drive on one mesh in its loaded state, continued from that of the coarser model `below`, which is released.
+    """The drive on one mesh in its loaded state, from that on another one, the model `below`, which is released.
 
     items : all increments of the run. Raises ConvergenceError or InputError where a mesh does not allow it.
     """
@@ -196,7 +196,7 @@ def start_loaded(runner: Runner, recipes: list[MeshRecipe], items: list[Scene]) 
 
 
 def take_over(below: DriveModel, runner: Runner, loaded: Scene) -> None:
-    """Take over the loaded state of a coarser model, and release that."""
+    """Take over the loaded state of the model on another mesh, and release that."""
     try:
         transfer(below, below.equilibrium.x, runner.model, runner.equilibrium.x)
     finally:

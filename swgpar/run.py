@@ -158,7 +158,7 @@ class Recorder:
         """Bring back the state of the checkpoint, on any number of ranks.
 
         items : the sequence that is to be continued. Returns those of it that the run consists of, without the first
-        steps where it started on coarser meshes, and the wall seconds spent on it.
+        steps where other meshes did them, and the wall seconds spent on it.
         """
         model = self.model
         ranges = {

@@ -11,12 +11,13 @@ from mpi4py import MPI
 from small_drive import PLANE
 
 import swgpar.discrete_drive
+from swgpar import accuracy
 from swgpar.assembly import read_field
 from swgpar.design import load_design
 from swgpar.incremental import DriveModel, Runner, stresses
 from swgpar.kept_factor import LONGEST
 from swgpar.meshing import load_recipe
-from swgpar.multilevel import from_loaded, levels, start_loaded
+from swgpar.multilevel import from_loaded, level_of, levels, start_loaded
 from swgpar.period import continued
 from swgpar.steps import sequence
 
@@ -207,3 +208,19 @@ def test_the_continued_history_is_that_of_a_longer_rotation() -> None:
     computed = {**runner.row(), **stresses(runner.model)[0]}
     assert following["wg_angle_deg"] == pytest.approx(np.degrees(1.25 * design.pitch))
     assert_same(following, computed, 1e-6)
+
+
+def test_a_mesh_is_chosen_alike_on_any_number_of_ranks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The recipe, the loaded state on it and its estimated errors; every group is tried, in space as well."""
+    monkeypatch.setattr(accuracy, "LARGEST", {3: 12_000})
+    design = load_design(DATA / "small.toml", ["steps.rotation=3", "solver.rtol=1e-9"])
+    found = []
+    for comm in (MPI.COMM_WORLD, MPI.COMM_SELF):
+        chosen = accuracy.choose(design, load_recipe(DATA / "tiny.toml"), list(sequence(design)), 0.05, comm)
+        assert np.isfinite(chosen.error) and chosen.model.elements_whole() <= 12_000
+        found.append((chosen, level_of(chosen.model).stresses))
+        chosen.model.destroy()
+    (here, stress), (alone, other) = found
+    assert here.recipe == alone.recipe
+    assert here.error == pytest.approx(alone.error, rel=1e-5)
+    assert stress == pytest.approx(other, rel=1e-7) and here.stresses == pytest.approx(alone.stresses, rel=1e-5)

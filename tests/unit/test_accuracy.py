@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,7 @@ from mpi4py import MPI
 from small_drive import DATA, PLANE
 
 from swgpar import accuracy as module
-from swgpar.accuracy import GROUPS, RTOL, Refinement, Steps, choose, doubled, error_after, with_accuracy
+from swgpar.accuracy import GROUPS, RTOL, Doublings, Refinement, choose, doubled, error_after, with_accuracy
 from swgpar.design import load_design
 from swgpar.errors import InputError
 from swgpar.meshing import load_recipe
@@ -66,32 +67,32 @@ def test_accuracies_that_cannot_be_had() -> None:
 
 
 class Analytic:
-    """Stands in for `Refinement`: s1 = 300 MPa less errors of the first order, elements that double with each step."""
+    """Stands in for `Refinement`: s1 = 300 MPa less errors of the first order; b takes more elements than a."""
 
-    ERRORS, EVERY, ELEMENTS, FINEST, LEFT_OUT = (60.0, -3.0), 300.0, 1000, 10**9, 0.0
+    ERRORS, EVERY, FINEST, LEFT_OUT = (60.0, -3.0), 300.0, 10**9, 0.0
 
     def __init__(self, *_: object) -> None:
-        self.groups, self.steps, self.levels, self.dimensions = {"a": {}, "b": {}}, (0, 0), {}, 2
-        self.model, self.loads = self, []
+        self.groups, self.doublings, self.levels, self.dimensions = {"a": {}, "b": {}}, (0, 0), {}, 2
+        self.model, self.loads, self.left_out = self, [], defaultdict(lambda: self.LEFT_OUT)
 
-    def bend_left_out(self) -> float:
-        return self.LEFT_OUT
+    def recipe(self, doublings: Doublings) -> Doublings:
+        return doublings
 
-    def recipe(self, steps: Steps) -> Steps:
-        return steps
-
-    def size(self, steps: Steps) -> int:
-        size = self.ELEMENTS << sum(steps)
+    def size(self, doublings: Doublings) -> int:
+        size = 1000 * 2 ** doublings[0] * 8 ** doublings[1]
         return size if size <= self.FINEST else 0
 
-    def stress(self, steps: Steps) -> float:
-        return self.EVERY - sum(error / 2**count for error, count in zip(self.ERRORS, steps))
+    def stress(self, doublings: Doublings) -> float:
+        return self.EVERY - sum(error / 2**count for error, count in zip(self.ERRORS, doublings))
 
-    def load(self, steps: Steps) -> Level:
-        assert self.size(steps)
-        self.steps, self.levels[steps] = steps, Level(self.size(steps), {"fs_s1": self.stress(steps), "fs_s3": 0.0})
-        self.loads.append(steps)
-        return self.levels[steps]
+    def load(self, doublings: Doublings) -> Level:
+        assert self.size(doublings)
+        self.doublings, self.levels[doublings] = (
+            doublings,
+            Level(self.size(doublings), {"fs_s1": self.stress(doublings), "fs_s3": 0.0}),
+        )
+        self.loads.append(doublings)
+        return self.levels[doublings]
 
 
 def chosen(monkeypatch: pytest.MonkeyPatch, asked: float, stand_in: type[Analytic] = Analytic) -> module.Chosen:
@@ -99,17 +100,17 @@ def chosen(monkeypatch: pytest.MonkeyPatch, asked: float, stand_in: type[Analyti
     return choose(None, None, [], asked, MPI.COMM_SELF)
 
 
-@pytest.mark.parametrize(("asked", "steps"), [(0.2, (1, 0)), (0.05, (3, 0)), (0.02, (5, 0)), (0.01, (6, 1))])
-def test_the_group_with_the_larger_error_is_refined(
-    monkeypatch: pytest.MonkeyPatch, asked: float, steps: Steps
+@pytest.mark.parametrize(("asked", "doublings"), [(0.2, (1, 0)), (0.05, (3, 0)), (0.02, (5, 0)), (0.01, (7, 1))])
+def test_the_group_is_refined_that_has_the_larger_error_for_its_elements(
+    monkeypatch: pytest.MonkeyPatch, asked: float, doublings: Doublings
 ) -> None:
-    """Errors of the first order are found exactly; those of both groups add up."""
+    """Errors of the first order are found exactly; those of both groups add up, whatever their signs."""
     found = chosen(monkeypatch, asked)
-    assert found.recipe == found.model.steps == steps
-    assert len(found.model.loads) == len(set(found.model.loads)) + (steps == (1, 0))  # back from the trial of b
-    true = 60.0 / 2 ** steps[0] + 3.0 / 2 ** steps[1]
+    assert found.recipe == found.model.doublings == doublings
+    assert len(found.model.loads) == len(set(found.model.loads)) + (doublings == (1, 0))  # back from the trial of b
+    true = 60.0 / 2 ** doublings[0] + 3.0 / 2 ** doublings[1]
     assert found.stresses == {"fs_s1": pytest.approx(true), "fs_s3": 0.0}
-    assert found.error == pytest.approx(true / (found.model.stress(steps) + true)) and found.error <= asked
+    assert found.error == pytest.approx(true / (found.model.stress(doublings) + true)) and found.error <= asked
 
 
 def test_what_condensed_sectors_leave_out_counts(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -118,14 +119,18 @@ def test_what_condensed_sectors_leave_out_counts(monkeypatch: pytest.MonkeyPatch
 
     assert chosen(monkeypatch, 0.05, Condensed).error == pytest.approx((7.5 + 3.0 + 4.0) / (295.5 + 14.5))
     assert chosen(monkeypatch, 0.04).recipe == (3, 0) and chosen(monkeypatch, 0.04, Condensed).recipe == (4, 0)
+    found = chosen(monkeypatch, 0.01, Condensed)  # no mesh brings back what is left out
+    assert found.recipe == (0, 0) and found.error > 0.01
 
 
 def test_refinement_ends_where_nothing_helps(monkeypatch: pytest.MonkeyPatch) -> None:
-    class Small(Analytic):
-        FINEST = 4000
+    class Blocked(Analytic):
+        def size(self, doublings: Doublings) -> int:
+            return super().size(doublings) if doublings[0] <= 2 else 0
 
-    found = chosen(monkeypatch, 0.01, Small)
-    assert found.recipe == (2, 0) and found.error > 0.01  # b alone could not bring it down
+    found = chosen(monkeypatch, 0.01, Blocked)
+    assert found.recipe == (2, 0) and found.error > 0.01  # b could be doubled, and would not do
+    assert found.model.size((2, 1))
 
     class Single(Analytic):
         FINEST = 1000
@@ -134,9 +139,14 @@ def test_refinement_ends_where_nothing_helps(monkeypatch: pytest.MonkeyPatch) ->
     assert found.recipe == (0, 0) and found.error == 1.0 and found.stresses == {}
 
 
-def test_a_change_that_is_small_by_chance_is_no_convergence() -> None:
-    assert error_after(5.0, 0.0) == 5.0 and error_after(5.0, -8.0) == 5.0
-    assert error_after(0.1, -8.0) == 4.0
+def test_a_change_that_is_small_by_chance_is_no_convergence(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Chance(Analytic):
+        def stress(self, doublings: Doublings) -> float:
+            return 273.0 if doublings == (2, 0) else super().stress(doublings)  # as with (1, 0), by chance
+
+    found = chosen(monkeypatch, 0.05, Chance)
+    assert found.recipe == (4, 0) and found.stresses["fs_s1"] == pytest.approx(22.5 / 2.0 + 3.0)
+    assert error_after(5.0) == 5.0 and error_after(0.1, -8.0) == 4.0
 
 
 def test_a_recipe_that_is_too_fine_is_coarsened(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -146,6 +156,6 @@ def test_a_recipe_that_is_too_fine_is_coarsened(monkeypatch: pytest.MonkeyPatch)
     full = load_recipe(DATA.parent.parent / "mesh/full.toml")
     way = Refinement(design, full, [], MPI.COMM_SELF)
     assert way.base == coarser(full) and way.model == coarser(way.base)
-    assert 0 < way.size((0, 0, 0)) < min(way.size(steps) for steps in ((1, 0, 0), (0, 1, 0), (0, 0, 1)))
+    assert 0 < way.size((0, 0, 0)) < min(way.size(doublings) for doublings in ((1, 0, 0), (0, 1, 0), (0, 0, 1)))
     assert way.size((9, 0, 0)) == 0  # more than a count may be
     assert Refinement(design, way.base, [], MPI.COMM_SELF).base == way.base

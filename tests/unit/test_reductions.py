@@ -13,7 +13,8 @@ from swgpar.design import load_design
 from swgpar.errors import InputError
 from swgpar.far_teeth import LEAST, MARGIN, FarTeeth
 from swgpar.meshing import build_sector_meshes, load_recipe
-from swgpar.multilevel import coarser, interpolation, levels
+from swgpar.meshing.recipe import FaceWidthRecipe
+from swgpar.multilevel import coarser, interpolation, levels, recounted
 from swgpar.period import continued
 from swgpar.steps import angles, sequence
 
@@ -27,6 +28,11 @@ def test_coarser_recipes_halve_down_to_the_smallest() -> None:
     assert (once.flexible_spline.flank, once.flexible_spline.root, once.face_width.elements) == (9, 2, 6)
     assert once.cup.end_ratio == recipe.cup.end_ratio
     assert coarser(once).face_width.elements == 4
+    odd = recounted(recipe, lambda *count: 9)
+    assert odd.face_width.elements == 10  # even like the one it comes from
+    for elements, half in ((3, 3), (7, 5), (9, 5), (2, 2), (4, 2), (6, 4)):
+        width = recipe.model_copy(update={"face_width": FaceWidthRecipe(elements=elements)})
+        assert coarser(width).face_width.elements == half
     for _ in range(10):
         recipe = coarser(recipe)
     assert coarser(recipe) == recipe
@@ -53,7 +59,7 @@ def test_nodes_without_tetrahedra_are_refused() -> None:
     """The run then starts without coarser meshes."""
     sector = build_sector_meshes(load_design(DATA / "small.toml"), load_recipe(DATA / "tiny.toml"))["ring_gear"]
     flat = replace(sector, coords=sector.coords * (1.0, 1.0, 0.0))
-    with pytest.raises(InputError, match="no state can be taken from the coarser mesh: QH6"):
+    with pytest.raises(InputError, match="no state can be taken from the other mesh: QH6"):
         interpolation(flat, sector)
 
 

@@ -10,13 +10,25 @@ import pytest
 from mpi4py import MPI
 
 from swgpar.kernel import reference_elements
+from swgpar.meshing import load_recipe
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "scripts" / "bench"))
 from cam_ring import INNER, THICKNESS, closed_form, ring_on_cam  # noqa: E402
 from convergence import limit, rates  # noqa: E402
+from drive_runs import refined  # noqa: E402
 from element_problems import ELEMENTS, PROBLEMS  # noqa: E402
 
 SHAPES = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+
+
+def test_recipes_of_the_drives(tmp_path: Path) -> None:
+    mesh = str(Path(__file__).parents[2] / "mesh/plane.toml")
+    plane = load_recipe(mesh)
+    every = load_recipe(refined(mesh, tmp_path / "every.toml", 1.5))
+    assert every.flexible_spline.flank == -(-3 * plane.flexible_spline.flank // 2)
+    root = load_recipe(refined(mesh, tmp_path / "root.toml", 2, ["flexible_spline.root"]))
+    assert root.flexible_spline.root == 2 * plane.flexible_spline.root
+    assert root.flexible_spline.flank == plane.flexible_spline.flank and root.ring_gear == plane.ring_gear
 
 
 @pytest.mark.parametrize("aspect", [0.5, 1.0, 4.0])
