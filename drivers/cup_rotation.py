@@ -15,9 +15,9 @@ from pathlib import Path
 
 from mpi4py import MPI
 
-from swgpar.design import load_design
+from swgpar.analysis.run_drive import run_drive
+from swgpar.design.drive_design import load_design
 from swgpar.meshing import load_recipe
-from swgpar.run import run_drive
 
 HERE = Path(__file__).parent
 

@@ -29,10 +29,10 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar import log
-from swgpar.cams.simplified import simplified
-from swgpar.design import Material
+from swgpar.analysis.plain_ring import RingCounts, RingDesign, RingModel
+from swgpar.design.drive_design import Material
+from swgpar.geometry.cams.simplified import simplified
 from swgpar.log import logger
-from swgpar.plain_ring import RingCounts, RingDesign, RingModel
 from swgpar.results.atomic import agreed, write_from_root
 
 OUTER_DIAMETER, THICKNESS, SUPPORT_DIAMETER = 136.0, 4.5, 65.0

@@ -124,11 +124,11 @@ def parser() -> argparse.ArgumentParser:
 def _run(arguments: argparse.Namespace) -> None:
     from mpi4py import MPI
 
-    from swgpar.design import load_design
+    from swgpar.analysis.run_drive import run_drive
+    from swgpar.design.drive_design import load_design
     from swgpar.gear_trains.train import is_gear_train
     from swgpar.meshing import load_recipe
     from swgpar.results.atomic import on_all
-    from swgpar.run import run_drive
 
     comm = MPI.COMM_WORLD
     if on_all(comm, lambda: is_gear_train(arguments.design)):
@@ -232,8 +232,8 @@ def _print_result(result) -> None:
 def _figures(out: str) -> None:
     from pathlib import Path
 
+    from swgpar.analysis.figures import make_figures
     from swgpar.log import console
-    from swgpar.report import make_figures
 
     try:
         for path in make_figures(Path(out)):
@@ -267,7 +267,7 @@ def _study(arguments: argparse.Namespace) -> None:
 def _mesh(arguments: argparse.Namespace) -> None:
     from pathlib import Path
 
-    from swgpar.design import load_design
+    from swgpar.design.drive_design import load_design
     from swgpar.meshing import build_sector_meshes, load_recipe
     from swgpar.meshing.export import mesh_report, write_mesh
 
@@ -281,9 +281,9 @@ def _mesh(arguments: argparse.Namespace) -> None:
 
 
 def _check(arguments: argparse.Namespace) -> None:
-    from swgpar.design import load_design
+    from swgpar.design.derived_geometry import derived_geometry
+    from swgpar.design.drive_design import load_design
     from swgpar.gear_trains.train import is_gear_train, load_train, model_of
-    from swgpar.geometry_check import derived_geometry
 
     if is_gear_train(arguments.design):
         train = load_train(arguments.design, arguments.overrides)
@@ -297,8 +297,8 @@ def _check(arguments: argparse.Namespace) -> None:
 def _report(arguments: argparse.Namespace) -> None:
     from pathlib import Path
 
+    from swgpar.analysis.figures import make_figures
     from swgpar.log import console
-    from swgpar.report import make_figures
 
     for path in make_figures(Path(arguments.out)):
         console.print(f"figure {path}")

@@ -10,8 +10,8 @@ from scipy.sparse import block_diag, csr_matrix
 from scipy.sparse.linalg import spsolve
 
 from swgpar.contact import friction
+from swgpar.contact.flanks import CONTINUED, Faces, Flanks, PlacedFaces
 from swgpar.contact.segments import Segments, cut_faces
-from swgpar.contact.teeth import CONTINUED, Faces, Flanks, PlacedFaces
 from swgpar.kernel import contact_flanks
 
 ORDERING = "MMD_AT_PLUS_A"

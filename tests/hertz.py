@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from contact_blocks import Blocks, block, master
 
+from swgpar.contact.flanks import PlacedFaces
 from swgpar.contact.segments import SAMPLES, face_corners
-from swgpar.contact.teeth import PlacedFaces
 
 YOUNG, POISSON, RADIUS, SIZE = 210e3, 0.3, 1000.0, 50.0
 """MPa, of both bodies; mm, radius, height and width of the blocks. The half width is about 1 mm: strains are 5e-4."""

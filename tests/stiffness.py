@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from petsc4py import PETSc
 
-from swgpar.assembly import create_vector
-from swgpar.equilibrium import Equilibrium
+from swgpar.fem.vectors import create_vector
+from swgpar.solve.newton import NewtonSolver
 
 
-def without_grounding(equilibrium: Equilibrium, x: PETSc.Vec) -> PETSc.Vec:
+def without_grounding(equilibrium: NewtonSolver, x: PETSc.Vec) -> PETSc.Vec:
     """K x without the grounding, in vectors of three unknowns per node."""
     dims, result = equilibrium.partition.dims, create_vector(equilibrium.partition)
     into, out = equilibrium.matrix.createVecs()

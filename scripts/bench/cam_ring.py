@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.cams import EllipticalCam
-from swgpar.design import Contact, Material, Solver
-from swgpar.plain_ring import RingCounts, RingDesign, RingModel
+from swgpar.analysis.plain_ring import RingCounts, RingDesign, RingModel
+from swgpar.design.drive_design import Contact, Material, Solver
+from swgpar.geometry.cams import EllipticalCam
 
 INNER, THICKNESS, DEFLECTION = 58.2, 1.0, 2.0
 """mm: inner radius and rim of the reference drive's flexible spline, and its diametral deflection."""

@@ -2,7 +2,7 @@
 
 The plane drive, and the plane section of the cup drive, are refined in all directions beyond their finest recipe: the
 limit is extrapolated from the last three meshes with the order that they show. The cup drive itself is too large for
-that: its limit is extrapolated from its two finest recipes with the order of `swgpar.error_estimate`, and says little
+that: its limit is extrapolated from its two finest recipes with the order of `analysis.error_estimate`, and says little
 for the finest one; what the recipes leave out in the section says more.
 """
 
@@ -15,7 +15,7 @@ from cases import Cases
 from convergence import limit
 from drive_runs import refined, run
 
-from swgpar.error_estimate import estimate
+from swgpar.analysis.error_estimate import estimate
 
 PLANE, CUP = "drivers/plane_half_turn.toml", "drivers/cup_45deg.toml"
 PLANE_MESHES = ("mesh/plane_coarse.toml", "mesh/plane.toml", "mesh/plane_fine.toml")

@@ -10,9 +10,9 @@ from typing import Any
 
 import program
 
+from swgpar.analysis.coarse_start import recounted
 from swgpar.meshing import MeshRecipe, load_recipe
 from swgpar.meshing.recipe import to_toml
-from swgpar.multilevel import recounted
 
 
 def run(folder: Path, design: str, mesh: str | Path, overrides: list[str], ranks: int) -> dict[str, Any]:

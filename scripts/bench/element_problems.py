@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 from petsc4py import PETSc
 
-from swgpar.linear import GAMG_DEFAULTS, mumps_defaults, set_defaults
+from swgpar.solve.bordered_system import GAMG_DEFAULTS, mumps_defaults, set_defaults
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
 from contact_blocks import block  # noqa: E402

@@ -9,9 +9,9 @@ from collections.abc import Callable
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.assembly import create_matrix, fill_matrix
-from swgpar.design import load_design
-from swgpar.incremental import DriveModel
+from swgpar.analysis.drive_model import DriveModel
+from swgpar.design.drive_design import load_design
+from swgpar.fem.sparse import create_matrix, fill_matrix
 from swgpar.meshing import load_recipe
 
 

@@ -14,14 +14,15 @@ import numpy as np
 from mpi4py import MPI
 from peer_problems import CAM, CAM_HALF_ANGLE, INNER, OUTER, PENALTY, PROBLEMS, STEEL, WIDTH, Problem, line
 
-from swgpar.assembly import BlockRows, BodyElements
-from swgpar.cams import EllipticalCam
-from swgpar.contact.rigid import CamPose
-from swgpar.design import Contact
-from swgpar.line_search import SearchedStep
-from swgpar.plain_ring import RingBody, RingCounts, RingDesign, RingModel
-from swgpar.steps import Scene
-from swgpar.stress import body_fields
+from swgpar.analysis.plain_ring import RingBody, RingCounts, RingDesign, RingModel
+from swgpar.contact.rigid_surface import CamPose
+from swgpar.design.drive_design import Contact
+from swgpar.design.load_states import LoadState
+from swgpar.fem.elements import BodyElements
+from swgpar.fem.sparse import BlockRows
+from swgpar.fem.stress import body_fields
+from swgpar.geometry.cams import EllipticalCam
+from swgpar.solve.line_search import LineSearch
 
 
 class DeadLoad:
@@ -58,9 +59,9 @@ def pinched(design: RingDesign, counts: RingCounts, force: float) -> tuple[BodyE
             local.append(ring.body.local[ring.body.owned][k, nodes])
             forces.append(force * direction * share[:, None] * (0.0, 1.0, 0.0))
     # the search is made for contact: in bending without it a full step, which stretches the ring, is the way out
-    SearchedStep.TRIALS = 0
+    LineSearch.TRIALS = 0
     equilibrium = ring.equilibrium(DeadLoad(np.concatenate(local), np.concatenate(forces)))
-    solved = equilibrium.solve(Scene(1, "load", cam=0.0))
+    solved = equilibrium.solve(LoadState(1, "load", cam=0.0))
     if not solved.converged:
         raise SystemExit(f"not converged: {solved}")
     return ring.body, equilibrium.displacement(), solved.iterations

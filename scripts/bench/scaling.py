@@ -27,17 +27,17 @@ def measure(mesh: str, linear: str) -> None:
     petsc4py.init([])
     from mpi4py import MPI
 
-    from swgpar.assembly import create_vector
-    from swgpar.design import load_design
-    from swgpar.incremental import DriveModel
+    from swgpar.analysis.drive_model import DriveModel
+    from swgpar.design.drive_design import load_design
+    from swgpar.design.load_states import load_sequence
+    from swgpar.fem.vectors import create_vector
     from swgpar.meshing import load_recipe
-    from swgpar.steps import sequence
 
     comm = MPI.COMM_WORLD
     design = load_design("drivers/cup_45deg.toml", [f"solver.linear={linear}"])
     model = DriveModel(design, load_recipe(mesh), comm)
     equilibrium, border = model.equilibrium, model.equilibrium.border
-    equilibrium.scene = next(iter(sequence(design)))
+    equilibrium.scene = next(iter(load_sequence(design)))
     equilibrium.search()
     equilibrium.history = []
     right, x, product = (create_vector(model.partition) for _ in range(3))

@@ -21,7 +21,7 @@ from typing import Any
 
 from page import markdown, put
 
-from swgpar.incremental import LOADED
+from swgpar.analysis.load_stepping import LOADED
 from swgpar.results import history
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from mpi4py import MPI
 
+from swgpar.contact.flanks import FlankContact
 from swgpar.contact.search import largest
-from swgpar.contact.teeth import ToothContact
-from swgpar.design import DriveDesign
+from swgpar.design.drive_design import DriveDesign
 
 LOADED_SIDE = -1
 """Flanks that carry: the load turns the flexible spline counter-clockwise against the ring gear."""
@@ -19,7 +19,7 @@ LONGEST, MEETING = 0.05, 2e-4
 class Clearance:
     """Of the last evaluation of the teeth's contact; all methods are collective."""
 
-    def __init__(self, design: DriveDesign, teeth: ToothContact, comm: MPI.Comm) -> None:
+    def __init__(self, design: DriveDesign, teeth: FlankContact, comm: MPI.Comm) -> None:
         self.design, self.teeth, self.comm, self.module = design, teeth, comm, design.drive.module
 
     @property

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.assembly import BodyElements
-from swgpar.partition import Partition
+from swgpar.fem.elements import BodyElements
+from swgpar.fem.partition import Partition
 
 
 @dataclass(frozen=True)

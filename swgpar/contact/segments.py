@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from swgpar.geometry.micro_geometry import crowning
 from swgpar.meshing.sector import FlankGrid, SectorMesh
-from swgpar.micro_geometry import crowning
 
 MIRROR = np.array([-1.0, 1.0])
 

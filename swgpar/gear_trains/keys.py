@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 from annotated_types import Ge, Gt
 
-from swgpar.quantities import Section, quantity
+from swgpar.input.quantities import Section, quantity
 
 Positive = Annotated[float, Gt(0.0)]
 NotNegative = Annotated[float, Ge(0.0)]

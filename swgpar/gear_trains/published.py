@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from swgpar.errors import InputError
-from swgpar.quantities import show
+from swgpar.input.quantities import show
 
 Quantities = Mapping[str, tuple[str, int]]
 """What a model computes: name -> meaning with its unit, number of values."""

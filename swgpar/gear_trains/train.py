@@ -16,14 +16,14 @@ from mpi4py import MPI
 
 import swgpar
 from swgpar import log
-from swgpar.design_file import apply_overrides, read_toml, validate
 from swgpar.errors import InputError
 from swgpar.gear_trains import cascade, gear_pair, planetary, ring
 from swgpar.gear_trains.keys import TrainDesign
 from swgpar.gear_trains.published import Quantities, check_published, compare
 from swgpar.gear_trains.result import TrainResult, write
+from swgpar.input.quantities import show
+from swgpar.input.toml_file import apply_overrides, read_toml, validate
 from swgpar.log import logger
-from swgpar.quantities import show
 from swgpar.results.atomic import agreed
 from swgpar.results.folder import prepare
 

@@ -92,7 +92,7 @@ def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] 
 
     Parameters
     ----------
-    patches, faces : records of arrays (`swgpar.contact.teeth.Flanks`, `Faces`)
+    patches, faces : records of arrays (`swgpar.contact.flanks.Flanks`, `Faces`)
     u : (n_local, 3) mm, displacements
     multiplier : (n_face, n_q) MPa
     penalty : MPa / mm

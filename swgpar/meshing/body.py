@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from swgpar.errors import InputError
+from swgpar.geometry.micro_geometry import crowning
+from swgpar.geometry.profiles import make_profile
 from swgpar.meshing.cup import attached_quads, cup_nodes
 from swgpar.meshing.quality import hex_quality, quad_quality
 from swgpar.meshing.recipe import MeshRecipe, ToothRecipe
@@ -14,11 +16,9 @@ from swgpar.meshing.relief import relief_field
 from swgpar.meshing.sector import FlankGrid, Floats, SectorMesh
 from swgpar.meshing.sweep import axial_stations, sweep_line, sweep_quads
 from swgpar.meshing.tooth import CrossSection, cross_section
-from swgpar.micro_geometry import crowning
-from swgpar.profiles import make_profile
 
 if TYPE_CHECKING:
-    from swgpar.design import DriveDesign
+    from swgpar.design.drive_design import DriveDesign
 
 THICK_CUP = 0.85
 """Cup thickness over rim thickness above which the cup continues the layers below the root as well."""

@@ -14,7 +14,7 @@ from swgpar.meshing.sweep import symmetric_steps
 from swgpar.meshing.tooth import CrossSection
 
 if TYPE_CHECKING:
-    from swgpar.design import DriveDesign
+    from swgpar.design.drive_design import DriveDesign
 
 
 def meridian(design: DriveDesign, recipe: CupRecipe) -> tuple[Floats, Floats]:

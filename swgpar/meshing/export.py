@@ -18,7 +18,7 @@ from swgpar.meshing.quality import hex_volumes
 from swgpar.meshing.sector import Floats, Ints, SectorMesh
 
 if TYPE_CHECKING:
-    from swgpar.design import DriveDesign
+    from swgpar.design.drive_design import DriveDesign
 
 FORMATS = ("vtu", "msh", "inp")
 

@@ -16,7 +16,7 @@ import numpy as np
 from swgpar.meshing.sector import Ints, SectorMesh
 
 if TYPE_CHECKING:
-    from swgpar.design import Material
+    from swgpar.design.drive_design import Material
 
 MATERIAL = "GEAR_MATERIAL"
 """Name of the one material in the file."""

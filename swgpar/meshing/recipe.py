@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from swgpar.design_file import read_toml, validate
 from swgpar.errors import InputError
-from swgpar.quantities import Section, quantity, show
+from swgpar.input.quantities import Section, quantity, show
+from swgpar.input.toml_file import read_toml, validate
 
 
 class ToothRecipe(Section):

@@ -6,9 +6,9 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import splu
 
+from swgpar.geometry.profiles.curve import ToothProfile
 from swgpar.meshing.sector import Floats
 from swgpar.meshing.tooth import CrossSection
-from swgpar.profiles.curve import ToothProfile
 
 # dN/dxi of the bilinear quadrilateral at the 2x2 Gauss points: (point, node, direction)
 _CORNERS = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)], dtype=float)

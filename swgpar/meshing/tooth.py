@@ -27,9 +27,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from swgpar.geometry.profiles.curve import ToothProfile
 from swgpar.meshing.mapped import MappedBlocks, QuadMesh
 from swgpar.meshing.recipe import ToothRecipe
-from swgpar.profiles.curve import ToothProfile
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]

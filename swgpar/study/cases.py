@@ -8,11 +8,11 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-from swgpar.design_file import apply_overrides, read_toml, with_value
 from swgpar.errors import InputError
 from swgpar.gear_trains.train import SECTION
+from swgpar.input.quantities import show
+from swgpar.input.toml_file import apply_overrides, read_toml, with_value
 from swgpar.meshing import MeshRecipe, load_recipe
-from swgpar.quantities import show
 from swgpar.study.drives import DRIVES
 from swgpar.study.spec import Study
 from swgpar.study.system import Case, Job, Quantity, System, named, not_known

@@ -9,14 +9,14 @@ from typing import Any
 
 from mpi4py import MPI
 
-from swgpar.design import DriveDesign, make_design
-from swgpar.design_file import apply_overrides
+from swgpar.analysis.run_drive import MEANS, identity, run_drive
+from swgpar.design.drive_design import DriveDesign, make_design
+from swgpar.design.load_states import load_sequence
 from swgpar.errors import InputError
-from swgpar.quantities import show
+from swgpar.input.quantities import show
+from swgpar.input.toml_file import apply_overrides
 from swgpar.results import history
 from swgpar.results.history import UNITS
-from swgpar.run import MEANS, identity, run_drive
-from swgpar.steps import sequence
 from swgpar.study.spec import CaseSection, Study
 from swgpar.study.system import Job, Outcome, Quantity, System
 
@@ -100,7 +100,7 @@ class Drives(System):
         return f"mean. with {', '.join(MEANS)}, or step1. to step{STEPS}. with a column of history.csv"
 
     def increments(self, design: DriveDesign) -> int:
-        return sum(1 for _ in sequence(design))
+        return sum(1 for _ in load_sequence(design))
 
     def identity(self, job: Job) -> dict[str, Any]:
         design = job.case.design

@@ -7,9 +7,9 @@ import textwrap
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
+from swgpar.analysis.run_drive import FIRST_ROTATION
 from swgpar.results import history
 from swgpar.results.history import UNITS
-from swgpar.run import FIRST_ROTATION
 from swgpar.study.drives import MEANINGS
 from swgpar.study.system import Case, Outcome, Quantity
 from swgpar.study.table import by_case, shown, shown_quantities

@@ -14,9 +14,9 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from swgpar import log
+from swgpar.analysis.figures import make_figures
 from swgpar.errors import InputError, SwgparError
 from swgpar.log import logger
-from swgpar.report import make_figures
 from swgpar.results.atomic import agreed, sentence, to_json, write_file, write_from_root
 from swgpar.study.system import Job, Outcome
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from swgpar.design_file import read_toml, split_override, validate
 from swgpar.errors import InputError
-from swgpar.quantities import Section, quantity, show
+from swgpar.input.quantities import Section, quantity, show
+from swgpar.input.toml_file import read_toml, split_override, validate
 
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.,+=-]*")
 """Names of cases are names of folders."""

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from swgpar.error_estimate import Estimate, estimate
+from swgpar.analysis.error_estimate import Estimate, estimate
 from swgpar.study.system import Case, Job, Outcome, Quantity
 
 Result = tuple[Job, Outcome]

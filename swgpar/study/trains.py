@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.design_file import apply_overrides
 from swgpar.errors import InputError
 from swgpar.gear_trains.keys import TrainDesign
 from swgpar.gear_trains.published import meaning_and_unit, numbered
 from swgpar.gear_trains.train import make_train, model_of, run_train
-from swgpar.quantities import show
+from swgpar.input.quantities import show
+from swgpar.input.toml_file import apply_overrides
 from swgpar.results.atomic import to_json
 from swgpar.study.spec import CaseSection, Study
 from swgpar.study.system import Job, Outcome, Quantity, System

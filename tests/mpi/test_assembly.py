@@ -10,11 +10,11 @@ from mpi4py import MPI
 from small_drive import PLANE
 from stiffness import without_grounding
 
-from swgpar.assembly import create_vector
-from swgpar.design import load_design
-from swgpar.incremental import DriveModel
+from swgpar.analysis.drive_model import DriveModel
+from swgpar.design.drive_design import load_design
+from swgpar.design.load_states import LoadState
+from swgpar.fem.vectors import create_vector
 from swgpar.meshing import load_recipe
-from swgpar.steps import Scene
 
 DATA = Path(__file__).parent.parent / "data"
 CONDENSED = (*PLANE, "solver.condensed_sectors=true")
@@ -37,12 +37,12 @@ CONDENSED = (*PLANE, "solver.condensed_sectors=true")
     ],
 )
 def test_tangent_is_the_derivative_of_the_residual(overrides: tuple[str, ...], monkeypatch) -> None:
-    monkeypatch.setattr("swgpar.design.SECTOR_BEND", 1.0)  # 40 teeth: of no account here
+    monkeypatch.setattr("swgpar.design.drive_design.SECTOR_BEND", 1.0)  # 40 teeth: of no account here
     design = load_design(DATA / "small.toml", overrides)
     model = DriveModel(design, load_recipe(DATA / "tiny.toml"), MPI.COMM_WORLD)
     equilibrium, partition, dims = model.equilibrium, model.partition, model.partition.dims
     # undeformed, the cam overlaps at the major axis; shrunk teeth overlap slightly at the minor axis
-    equilibrium.scene = Scene(4, "rotate", angle=0.01, cam=-0.001, teeth=-0.02, control="torque", torque=2000.0)
+    equilibrium.scene = LoadState(4, "rotate", angle=0.01, cam=-0.001, teeth=-0.02, control="torque", torque=2000.0)
     rng = np.random.default_rng(3)
     own = slice(partition.row_start, partition.row_start + partition.n_own)
     # with friction: points of the flanks have come from here, most of them slip

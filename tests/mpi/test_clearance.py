@@ -11,19 +11,20 @@ import pytest
 from mpi4py import MPI
 from small_drive import PLANE
 
-from swgpar.design import load_design
-from swgpar.incremental import DriveModel, Runner
+from swgpar.analysis.drive_model import DriveModel
+from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.design.drive_design import load_design
+from swgpar.design.load_states import load_sequence
 from swgpar.meshing import load_recipe
-from swgpar.steps import sequence
 
 DATA = Path(__file__).parent.parent / "data"
 
 
 @lru_cache
-def loaded(*overrides: str) -> tuple[Runner, dict[str, float], int]:
+def loaded(*overrides: str) -> tuple[LoadStepper, dict[str, float], int]:
     """The small drive after step 3, its row, and how often increments were cut."""
     design = load_design(DATA / "small.toml", overrides)
-    runner = Runner(DriveModel(design, load_recipe(DATA / "tiny.toml"), MPI.COMM_WORLD))
+    runner = LoadStepper(DriveModel(design, load_recipe(DATA / "tiny.toml"), MPI.COMM_WORLD))
     solves = 0
     solve = runner.equilibrium.solve
 
@@ -33,13 +34,13 @@ def loaded(*overrides: str) -> tuple[Runner, dict[str, float], int]:
         return solve(*arguments, **words)
 
     runner.equilibrium.solve = counted
-    items = [item for item in sequence(design) if item.step <= 3]
+    items = [item for item in load_sequence(design) if item.step <= 3]
     for item in items:
         runner.increment(item)
     return runner, runner.row(), solves - len(items)
 
 
-def backlash(c_p: float, *more: str) -> tuple[Runner, dict[str, float], int]:
+def backlash(c_p: float, *more: str) -> tuple[LoadStepper, dict[str, float], int]:
     return loaded(*more, f"ring_gear.c_P={c_p}")
 
 
@@ -76,8 +77,8 @@ def test_the_output_turns_through_the_backlash() -> None:
 def test_a_drive_that_has_parted_is_loaded_again() -> None:
     """From the middle of its backlash, where nothing holds the output, the torque brings it back to the same state."""
     design = load_design(DATA / "small.toml", [*PLANE, "ring_gear.c_P=0.8"])
-    runner = Runner(DriveModel(design, load_recipe(DATA / "tiny.toml"), MPI.COMM_WORLD))
-    items = [item for item in sequence(design) if item.step <= 3]
+    runner = LoadStepper(DriveModel(design, load_recipe(DATA / "tiny.toml"), MPI.COMM_WORLD))
+    items = [item for item in load_sequence(design) if item.step <= 3]
     for item in items:
         runner.increment(item)
     before = runner.row()

@@ -10,9 +10,9 @@ import pytest
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from swgpar.cycling import VisitedSets, exhausted, fingerprint
-from swgpar.line_search import SearchedStep
 from swgpar.log import Phases
+from swgpar.solve.active_set_cycles import VisitedSets, exhausted, fingerprint
+from swgpar.solve.line_search import LineSearch
 
 WORLD = MPI.COMM_WORLD
 
@@ -22,7 +22,7 @@ class Block:
     """A block on a spring that sticks to the ground: k x + mu min(1, |x| / width) sign(x) = f, a convex potential.
 
     Below mu it sticks, and slipping either way the tangent k of the slip sends it to slip the other way.
-    Stands for the linear solver too (`swgpar.linear.Bordered`), with a multiplier that nothing uses.
+    Stands for the linear solver too (`BorderedSystem`), with a multiplier that nothing uses.
     """
 
     width: float
@@ -52,7 +52,7 @@ class Block:
 
 def newton(block: Block, watch: bool, longest: float = 1e9) -> tuple[float, int, bool]:
     """Last residual, iterations, and whether active sets have returned."""
-    search, visited = SearchedStep(block, block.residual, block.x, Phases()), VisitedSets()
+    search, visited = LineSearch(block, block.residual, block.x, Phases()), VisitedSets()
     search.longest = longest
     force, step, returned, k = block.x.duplicate(), block.x.duplicate(), False, 0
     block.residual(block.x, force)
@@ -104,7 +104,7 @@ def test_indefinite_tangent_leads_down_all_the_same(start: float, end: float) ->
 def test_longest_way_of_a_node() -> None:
     """In space, and without the multipliers, which have other units."""
     block = Block(width=1e-2)
-    search = SearchedStep(block, block.residual, block.x, Phases())
+    search = LineSearch(block, block.residual, block.x, Phases())
     search.longest = 0.25
     step = block.x.duplicate()
     step.array[:] = 0.3, 0.0, 0.4, 7.0, 0.0, 0.0

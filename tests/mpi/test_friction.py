@@ -9,29 +9,30 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from swgpar.analysis.drive_model import DriveModel
+from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.contact.segments import Segments
-from swgpar.design import load_design
-from swgpar.incremental import DriveModel, Runner
+from swgpar.design.drive_design import load_design
+from swgpar.design.load_states import load_sequence
 from swgpar.meshing import load_recipe
-from swgpar.steps import sequence
 
 DATA = Path(__file__).parent.parent / "data"
 WORLD = MPI.COMM_WORLD
 PITCH = 2.0 * np.pi / 42
 
 
-def loaded(friction: float, comm: MPI.Comm = WORLD) -> Runner:
+def loaded(friction: float, comm: MPI.Comm = WORLD) -> LoadStepper:
     """The small drive after step 3."""
     design = load_design(DATA / "small.toml", [f"contact.friction={friction}"])
-    runner = Runner(DriveModel(design, load_recipe(DATA / "tiny.toml"), comm))
-    for item in sequence(design):
+    runner = LoadStepper(DriveModel(design, load_recipe(DATA / "tiny.toml"), comm))
+    for item in load_sequence(design):
         if item.step > 3:
             break
         runner.increment(item)
     return runner
 
 
-def turn(runner: Runner, angle: float) -> dict[str, float]:
+def turn(runner: LoadStepper, angle: float) -> dict[str, float]:
     runner.advance(replace(runner.scene, step=4, name="rotate", angle=angle))
     return runner.row()
 
@@ -46,7 +47,7 @@ class Forces:
     place: np.ndarray
 
 
-def forces(runner: Runner) -> tuple[Forces, float]:
+def forces(runner: LoadStepper) -> tuple[Forces, float]:
     """Forces of the present state, and their work over the slip since the one before; metric taken as one."""
     teeth, u = runner.equilibrium.teeth, runner.equilibrium.displacement()
     if teeth.faces is None:
@@ -59,7 +60,7 @@ def forces(runner: Runner) -> tuple[Forces, float]:
     return Forces([p.key for p in teeth.pairs], teeth.segments, force, place), work
 
 
-def onward(runner: Runner, old: Forces) -> float:
+def onward(runner: LoadStepper, old: Forces) -> float:
     """Work of the forces of the state before over the slip since then."""
     teeth, u = runner.equilibrium.teeth, runner.equilibrium.displacement()
     now = {p.key: k for k, p in enumerate(teeth.pairs)}

@@ -11,16 +11,17 @@ import pytest
 from mpi4py import MPI
 from small_drive import PLANE
 
-from swgpar import cycling
-from swgpar.contact.pressure import nodal_pressure
-from swgpar.contact.rigid import CamPose, RigidContact
-from swgpar.contact.teeth import Held, ToothContact
-from swgpar.design import DriveDesign, load_design
-from swgpar.equilibrium import Equilibrium
-from swgpar.incremental import DriveModel, Runner, stresses
+from swgpar.analysis.contact_pressure import nodal_pressure
+from swgpar.analysis.drive_model import DriveModel, stresses
+from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.contact.flanks import FlankContact, FrozenSegments
+from swgpar.contact.rigid_surface import CamPose, RigidContact
+from swgpar.design.drive_design import DriveDesign, load_design
+from swgpar.design.load_states import load_sequence
+from swgpar.fem.stress import body_fields
 from swgpar.meshing import load_recipe
-from swgpar.steps import sequence
-from swgpar.stress import body_fields
+from swgpar.solve import active_set_cycles as cycling
+from swgpar.solve.newton import NewtonSolver
 
 DATA = Path(__file__).parent.parent / "data"
 WORLD = MPI.COMM_WORLD
@@ -31,17 +32,17 @@ TORQUE = {"cup": 2000.0, "plane": 200.0}
 both_models = pytest.mark.parametrize("model", MODELS)
 
 
-def loaded(design: DriveDesign, comm: MPI.Comm = WORLD) -> tuple[Runner, dict[str, float]]:
+def loaded(design: DriveDesign, comm: MPI.Comm = WORLD) -> tuple[LoadStepper, dict[str, float]]:
     """The small drive after step 3, and its history row."""
-    runner = Runner(DriveModel(design, load_recipe(DATA / "tiny.toml"), comm))
-    for item in sequence(design):
+    runner = LoadStepper(DriveModel(design, load_recipe(DATA / "tiny.toml"), comm))
+    for item in load_sequence(design):
         if item.step > 3:
             break
         runner.increment(item)
     return runner, row(runner)
 
 
-def row(runner: Runner) -> dict[str, float]:
+def row(runner: LoadStepper) -> dict[str, float]:
     return {**runner.row(), **stresses(runner.model)[0]}
 
 
@@ -50,17 +51,17 @@ def small(model: str, *overrides: str) -> DriveDesign:
 
 
 @lru_cache
-def base(model: str) -> tuple[Runner, dict[str, float]]:
+def base(model: str) -> tuple[LoadStepper, dict[str, float]]:
     return loaded(small(model))
 
 
 @lru_cache
-def other_layout(model: str) -> tuple[Runner, dict[str, float]]:
+def other_layout(model: str) -> tuple[LoadStepper, dict[str, float]]:
     """The flexible spline fixed, with 21/20 of the torque: the teeth carry as much as in the first layout."""
     return loaded(small(model, "drive.layout=spline_fixed", f"load.torque={TORQUE[model] * 21 / 20 / 1000:g}"))
 
 
-def turn(runner: Runner, angle: float) -> dict[str, float]:
+def turn(runner: LoadStepper, angle: float) -> dict[str, float]:
     """Row after turning the wave generator to `angle` (rad)."""
     runner.iterations = 0
     runner.advance(replace(runner.scene, step=4, name="rotate", angle=angle))
@@ -255,11 +256,11 @@ def test_an_augmentation_that_leads_to_no_solution_is_taken_back(model: str, mon
     _, without = loaded(small(model, *soft, "contact.max_augmentations=0"))
     poisoned = []
 
-    def poison(contact: RigidContact | ToothContact) -> None:
+    def poison(contact: RigidContact | FlankContact) -> None:
         contact.multiplier = np.full_like(contact.pressure, np.nan)
         poisoned.append(contact)
 
-    for contact in (RigidContact, ToothContact):
+    for contact in (RigidContact, FlankContact):
         monkeypatch.setattr(contact, "augment", poison)
     runner, taken = loaded(small(model, *soft, "contact.max_augmentations=10"))
     assert poisoned and runner.equilibrium.augmentations == 0
@@ -271,28 +272,28 @@ def test_an_augmentation_that_leads_to_no_solution_is_taken_back(model: str, mon
 def test_segments_are_kept_where_those_cut_anew_lead_nowhere(model: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The way out of a cycle is taken in every solve, and no residual can be evaluated with segments cut after it."""
     _, r = base(model)
-    release, again, evaluate = ToothContact.release, ToothContact.hold_again, ToothContact.evaluate
-    solve, solving, kept = Equilibrium.solve, [], []
+    release, again, evaluate = FlankContact.release, FlankContact.hold_again, FlankContact.evaluate
+    solve, solving, kept = NewtonSolver.solve, [], []
 
-    def torn(self: ToothContact) -> None:
+    def torn(self: FlankContact) -> None:
         release(self)
         self.torn = bool(solving) and solving[-1].way_out.solution is not None
 
-    def whole(self: ToothContact, held: Held) -> None:
+    def whole(self: FlankContact, held: FrozenSegments) -> None:
         again(self, held)
         self.torn = False
         kept.append(held)
 
-    def fail(self: ToothContact, *arguments: object) -> np.ndarray:
+    def fail(self: FlankContact, *arguments: object) -> np.ndarray:
         if getattr(self, "torn", False):
             raise FloatingPointError
         return evaluate(self, *arguments)
 
     monkeypatch.setattr(cycling.VisitedSets, "returns", lambda *_: True)
-    monkeypatch.setattr(ToothContact, "release", torn)
-    monkeypatch.setattr(ToothContact, "hold_again", whole)
-    monkeypatch.setattr(ToothContact, "evaluate", fail)
-    monkeypatch.setattr(Equilibrium, "solve", lambda self, *a, **k: (solving.append(self), solve(self, *a, **k))[1])
+    monkeypatch.setattr(FlankContact, "release", torn)
+    monkeypatch.setattr(FlankContact, "hold_again", whole)
+    monkeypatch.setattr(FlankContact, "evaluate", fail)
+    monkeypatch.setattr(NewtonSolver, "solve", lambda self, *a, **k: (solving.append(self), solve(self, *a, **k))[1])
     _, state = loaded(small(model))
     assert kept
     assert_same(state, r, 5e-3)  # the segments are those of the iteration in which the cycle was found

@@ -11,13 +11,13 @@ from petsc4py import PETSc
 from small_drive import PLANE
 from stiffness import without_grounding
 
-from swgpar.assembly import create_vector
-from swgpar.design import load_design
-from swgpar.incremental import DriveModel
-from swgpar.linear import ORDERING, Bordered
+from swgpar.analysis.drive_model import DriveModel
+from swgpar.design.drive_design import load_design
+from swgpar.design.load_states import LoadState
+from swgpar.fem.vectors import create_vector
 from swgpar.log import logger
 from swgpar.meshing import load_recipe
-from swgpar.steps import Scene
+from swgpar.solve.bordered_system import ORDERING, BorderedSystem
 
 DATA = Path(__file__).parent.parent / "data"
 
@@ -26,7 +26,7 @@ def system(overrides: tuple[str, ...], control: str) -> tuple[DriveModel, PETSc.
     """A drive with its tangent set up, and a random right side."""
     model = DriveModel(load_design(DATA / "small.toml", overrides), load_recipe(DATA / "tiny.toml"), MPI.COMM_WORLD)
     equilibrium, partition = model.equilibrium, model.partition
-    equilibrium.scene = Scene(4, "rotate", angle=0.01, cam=-0.001, teeth=-0.02, control=control, rotation=1e-3)
+    equilibrium.scene = LoadState(4, "rotate", angle=0.01, cam=-0.001, teeth=-0.02, control=control, rotation=1e-3)
     equilibrium.search()
     # without the geometric terms the undeformed drive's stiffness is positive: overlaps here are beyond real pressures
     equilibrium.rigid.pressure_limit = equilibrium.teeth.pressure_limit = 0.0
@@ -46,7 +46,7 @@ def test_iterative_equals_direct(overrides: tuple[str, ...]) -> None:
     positions = equilibrium.positions()[: partition.n_own]
     solutions = []
     for linear in ("direct", "iterative"):
-        border = Bordered(partition, linear, positions, f"test_{linear}_")
+        border = BorderedSystem(partition, linear, positions, f"test_{linear}_")
         solved = equilibrium.border
         border.set_system(equilibrium.matrix, equilibrium.holding.ground_vectors, solved.border, solved.rows)
         pc = equilibrium.snes.getKSP().getPC()
@@ -65,7 +65,7 @@ def test_mumps_out_of_memory(option: str, value: int, word: str, monkeypatch) ->
     model, right = system(PLANE, "rotation")
     equilibrium, partition = model.equilibrium, model.partition
     PETSc.Options()[f"short_{option}_mat_mumps_icntl_{option}"] = value
-    border = Bordered(partition, "direct", equilibrium.positions()[: partition.n_own], f"short_{option}_")
+    border = BorderedSystem(partition, "direct", equilibrium.positions()[: partition.n_own], f"short_{option}_")
     solved, pc = equilibrium.border, equilibrium.snes.getKSP().getPC()
     border.set_system(equilibrium.matrix, equilibrium.holding.ground_vectors, solved.border, solved.rows)
     x = create_vector(partition)
@@ -85,7 +85,7 @@ def test_options_of_one_model_are_not_those_of_the_next() -> None:
     for overrides, dims in ((PLANE, 2), ((), 3), (PLANE, 2)):
         model, _ = system(overrides, "rotation")
         place = model.equilibrium.positions()[: model.partition.n_own]
-        Bordered(model.partition, "direct", place, "both_")
+        BorderedSystem(model.partition, "direct", place, "both_")
         assert options.getInt("mat_mumps_icntl_7") == ORDERING[dims]
         assert options.getInt("mat_mumps_icntl_13") == 0
 
@@ -99,7 +99,7 @@ def test_the_loaded_motion_is_bounded(overrides: tuple[str, ...]) -> None:
     output = solved.border[-1]
 
     def step(border: list[PETSc.Vec], rows: list[int], bound: float | None) -> PETSc.Vec:
-        test = Bordered(partition, "direct", equilibrium.positions()[: partition.n_own], "test_")
+        test = BorderedSystem(partition, "direct", equilibrium.positions()[: partition.n_own], "test_")
         test.set_system(equilibrium.matrix, equilibrium.holding.ground_vectors, border, rows, bound)
         test.setUp(pc)
         x = create_vector(partition)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from swgpar.cams.simplified import simplified
-from swgpar.design import Material
-from swgpar.plain_ring import RingCounts, RingDesign, RingModel
+from swgpar.analysis.plain_ring import RingCounts, RingDesign, RingModel
+from swgpar.design.drive_design import Material
+from swgpar.geometry.cams.simplified import simplified
 
 
 @pytest.mark.parametrize("plane", [True, False])

@@ -8,11 +8,11 @@ from mpi4py import MPI
 from petsc4py import PETSc
 from small_drive import DESIGN, PLANE, RECIPE
 
-from swgpar.assembly import create_vector, read_field, write_field
-from swgpar.design import load_design
-from swgpar.incremental import DriveModel
+from swgpar.analysis.drive_model import DriveModel
+from swgpar.analysis.predictor import predict, supports, turned
+from swgpar.design.drive_design import load_design
+from swgpar.fem.vectors import create_vector, read_field, write_field
 from swgpar.meshing import load_recipe
-from swgpar.prediction import predict, supports, turned
 
 CASES = ((), ("drive.layout=spline_fixed",), ("solver.twofold_symmetry=false",))
 

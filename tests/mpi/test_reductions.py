@@ -10,16 +10,17 @@ import pytest
 from mpi4py import MPI
 from small_drive import PLANE
 
-import swgpar.discrete_drive
-from swgpar import accuracy
-from swgpar.assembly import read_field
-from swgpar.design import load_design
-from swgpar.incremental import DriveModel, Runner, stresses
-from swgpar.kept_factor import LONGEST
+import swgpar.solve.discrete_problem
+from swgpar.analysis import mesh_refinement as accuracy
+from swgpar.analysis.coarse_start import from_loaded, level_of, levels, start_loaded
+from swgpar.analysis.drive_model import DriveModel, stresses
+from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.analysis.period import continued
+from swgpar.design.drive_design import load_design
+from swgpar.design.load_states import load_sequence
+from swgpar.fem.vectors import read_field
 from swgpar.meshing import load_recipe
-from swgpar.multilevel import from_loaded, level_of, levels, start_loaded
-from swgpar.period import continued
-from swgpar.steps import sequence
+from swgpar.solve.factor_reuse import LONGEST
 
 DATA = Path(__file__).parent.parent / "data"
 PHYSICAL = ("fs_s1", "fs_s3", "fs_vm", "rg_vm", "wg_torque_Nmm", "output_angle_deg")
@@ -29,12 +30,12 @@ PLAIN = ("solver.far_teeth=modelled", "solver.keep_factor=false")
 
 def rotated(
     *overrides: str, recipe: str = "tiny.toml", comm: MPI.Comm = MPI.COMM_WORLD
-) -> tuple[Runner, dict[str, float]]:
+) -> tuple[LoadStepper, dict[str, float]]:
     """The small drive turned by two increments of 1.5 degrees, and its last history row."""
     design = load_design(DATA / "small.toml", ["steps.rotation=3", "steps.increment=1.5", *overrides])
     mesh = load_recipe(DATA / recipe)
-    runner = Runner(DriveModel(design, mesh, comm))
-    items = list(sequence(design))
+    runner = LoadStepper(DriveModel(design, mesh, comm))
+    items = list(load_sequence(design))
     if design.steps.start_levels:
         recipes = levels(design, mesh)
         assert len(recipes) == design.steps.start_levels
@@ -68,7 +69,7 @@ def test_a_kept_factor_changes_nothing(plain: dict[str, float]) -> None:
 def test_a_factor_renewed_after_every_solve_or_never_changes_nothing(
     cost: float, plain: dict[str, float], monkeypatch
 ) -> None:
-    monkeypatch.setattr("swgpar.linear.price", lambda operations, entries, analysed: cost)
+    monkeypatch.setattr("swgpar.solve.bordered_system.price", lambda operations, entries, analysed: cost)
     _, row = rotated("solver.far_teeth=modelled")
     assert_same(row, plain, 1e-6)
 
@@ -82,11 +83,11 @@ def test_a_start_without_pins_changes_nothing(overrides: tuple[str, ...]) -> Non
 
 def test_search_over_candidate_teeth_only(plain: dict[str, float], monkeypatch) -> None:
     """Flanks as far as five modules apart instead of those that can meet."""
-    margin = swgpar.discrete_drive.TIP_MARGIN
-    monkeypatch.setattr("swgpar.discrete_drive.TIP_MARGIN", 5.0)
+    margin = swgpar.solve.discrete_problem.TIP_MARGIN
+    monkeypatch.setattr("swgpar.solve.discrete_problem.TIP_MARGIN", 5.0)
     runner, row = rotated(*PLAIN)
     wide = len(runner.equilibrium.teeth.pairs)
-    monkeypatch.setattr("swgpar.discrete_drive.TIP_MARGIN", margin)
+    monkeypatch.setattr("swgpar.solve.discrete_problem.TIP_MARGIN", margin)
     runner.equilibrium.search()
     near = len(runner.equilibrium.teeth.pairs)
     print(f"{near} of {wide} pairs of flanks")
@@ -178,8 +179,8 @@ def test_a_start_on_a_coarser_mesh_takes_over_what_is_inside() -> None:
     for condensed in (False, True):
         overrides = [*CONDENSED[:-1], "steps.start_levels=1", f"solver.condensed_sectors={str(condensed).lower()}"]
         design, mesh = load_design(DATA / "small.toml", overrides), load_recipe(DATA / "../../mesh/plane_coarse.toml")
-        runner = Runner(DriveModel(design, mesh, MPI.COMM_WORLD))
-        start_loaded(runner, levels(design, mesh), list(sequence(design)))
+        runner = LoadStepper(DriveModel(design, mesh, MPI.COMM_WORLD))
+        start_loaded(runner, levels(design, mesh), list(load_sequence(design)))
         iterations.append(runner.iterations)
     print(iterations)
     assert iterations[1] <= iterations[0] + 1
@@ -195,9 +196,9 @@ def test_condensed_sectors_on_any_number_of_ranks() -> None:
 
 def test_the_continued_history_is_that_of_a_longer_rotation() -> None:
     design = load_design(DATA / "small.toml", [*PLANE, "steps.samples=4", "steps.rotation=11"])
-    runner = Runner(DriveModel(design, load_recipe(DATA / "tiny.toml"), MPI.COMM_WORLD))
+    runner = LoadStepper(DriveModel(design, load_recipe(DATA / "tiny.toml"), MPI.COMM_WORLD))
     rows = []
-    for item in sequence(design):
+    for item in load_sequence(design):
         runner.increment(item)
         if item.step >= 3:
             rows.append({**runner.row(), **stresses(runner.model)[0], "wall_s": 1.0})
@@ -216,7 +217,7 @@ def test_a_mesh_is_chosen_alike_on_any_number_of_ranks(monkeypatch: pytest.Monke
     design = load_design(DATA / "small.toml", ["steps.rotation=3", "solver.rtol=1e-9"])
     found = []
     for comm in (MPI.COMM_WORLD, MPI.COMM_SELF):
-        chosen = accuracy.choose(design, load_recipe(DATA / "tiny.toml"), list(sequence(design)), 0.05, comm)
+        chosen = accuracy.choose(design, load_recipe(DATA / "tiny.toml"), list(load_sequence(design)), 0.05, comm)
         assert np.isfinite(chosen.error) and chosen.model.elements_whole() <= 12_000
         found.append((chosen, level_of(chosen.model).stresses))
         chosen.model.destroy()

@@ -10,11 +10,12 @@ from drive_groups import MESH, ONCE_FAILED, drift, groups, table_of
 from mpi4py import MPI
 from small_drive import PLANE, assert_same_history, run_command, succeed
 
-from swgpar.design import make_design
+from swgpar.analysis.drive_model import DriveModel, stresses
+from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.design.drive_design import make_design
+from swgpar.design.load_states import load_sequence
 from swgpar.errors import InputError
-from swgpar.incremental import DriveModel, Runner, stresses
 from swgpar.meshing import load_recipe
-from swgpar.steps import sequence
 
 WORLD = MPI.COMM_WORLD
 ALL = groups(count=4, seed=7)
@@ -33,10 +34,10 @@ HARDEST = [
 def run(group: str, case: str) -> None:
     """Every increment converges, torques balance, and without friction the state repeats."""
     design = make_design(table_of(ALL[group].design, ALL[group].cases()[case]))
-    runner = Runner(DriveModel(design, load_recipe(MESH), WORLD))
+    runner = LoadStepper(DriveModel(design, load_recipe(MESH), WORLD))
     rows = []
     try:
-        for scene in sequence(design):
+        for scene in load_sequence(design):
             runner.increment(scene)
             rows.append({**runner.row(), **stresses(runner.model)[0]})
     finally:

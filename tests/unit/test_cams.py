@@ -12,15 +12,15 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.special import ellipe
 
-from swgpar.cams import EllipticalCam, make_cam, pin_travel, taut_length
-from swgpar.cams.chain import ChainCam, Parabola
-from swgpar.cams.four_roller import four_roller
-from swgpar.cams.parabolic import Side, parabolic
-from swgpar.cams.simplified import simplified
-from swgpar.design import load_design
+from swgpar.design.drive_design import load_design
+from swgpar.design.load_states import load_sequence, start
 from swgpar.errors import InputError
-from swgpar.micro_geometry import WaveGeneratorSurface, crowning
-from swgpar.steps import sequence, start
+from swgpar.geometry.cams import EllipticalCam, make_cam, pin_travel, taut_length
+from swgpar.geometry.cams.chain import ChainCam, Parabola
+from swgpar.geometry.cams.four_roller import four_roller
+from swgpar.geometry.cams.parabolic import Side, parabolic
+from swgpar.geometry.cams.simplified import simplified
+from swgpar.geometry.micro_geometry import WaveGeneratorSurface, crowning
 
 REFERENCE = Path(__file__).parents[2] / "drivers" / "cup_45deg.toml"
 A, B, R_FS = 59.2, 57.2, 58.2
@@ -299,7 +299,7 @@ def test_pins_fit_into_the_spline_and_end_at_the_cam(name: str, design_file: Cal
         x, y = cam.center
         assert travel == pytest.approx(y - np.sqrt((R_FS - cam.radius) ** 2 - x**2), rel=1e-5)
     assert start(design).pins == travel
-    assert [i.pins for i in sequence(design) if i.step == 1][-1] == 0.0
+    assert [i.pins for i in load_sequence(design) if i.step == 1][-1] == 0.0
 
 
 @pytest.mark.parametrize("name", SECTIONS)

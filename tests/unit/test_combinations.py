@@ -7,9 +7,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from swgpar.cams import make_cam
 from swgpar.cli import main
-from swgpar.design import load_design
+from swgpar.design.drive_design import load_design
+from swgpar.geometry.cams import make_cam
 
 DOUBLE_ARC = {"type": "double_arc", "r_addendum": 1.0, "r_dedendum": 0.6}
 INVOLUTE = {"type": "involute", "cutter_radius": 0.2}

@@ -6,49 +6,8 @@ import ast
 from pathlib import Path
 
 import swgpar
+from swgpar.rooms import ROOMS
 
-ORDER = (
-    "errors",
-    "log",
-    "quantities",
-    "design_file",
-    "profiles",
-    "cams",
-    "design",
-    "geometry_check",
-    "micro_geometry",
-    "meshing",
-    "kernel",
-    "condensed",
-    "partition",
-    "assembly",
-    "prediction",
-    "couplings",
-    "kept_factor",
-    "linear",
-    "line_search",
-    "contact",
-    "cycling",
-    "steps",
-    "period",
-    "far_teeth",
-    "holding",
-    "stress",
-    "discrete_drive",
-    "equilibrium",
-    "torques",
-    "incremental",
-    "multilevel",
-    "plain_ring",
-    "error_estimate",
-    "accuracy",
-    "results",
-    "gear_trains",
-    "report",
-    "run",
-    "study",
-    "cli",
-)
 ROOT = Path(__file__).parents[2] / "swgpar"
 
 
@@ -66,7 +25,7 @@ def test_every_module_has_its_place() -> None:
     there = {
         p.stem if p.is_file() else p.name for p in ROOT.iterdir() if p.suffix == ".py" or (p / "__init__.py").exists()
     }
-    assert there - {"__init__"} == set(ORDER), swgpar.__file__
+    assert there - {"__init__"} == set(ROOMS), swgpar.__file__
 
 
 def test_imports_go_upwards_only() -> None:
@@ -78,6 +37,6 @@ def test_imports_go_upwards_only() -> None:
         wrong += [
             f"{path.relative_to(ROOT)} imports {name}"
             for name in imported(path)
-            if ORDER.index(name) > ORDER.index(own)
+            if ROOMS.index(name) > ROOMS.index(own)
         ]
     assert not wrong

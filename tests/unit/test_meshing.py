@@ -9,16 +9,16 @@ import meshio
 import numpy as np
 import pytest
 
-from swgpar.design import DriveDesign, load_design
+from swgpar.design.drive_design import DriveDesign, load_design
 from swgpar.errors import InputError, OutputError
+from swgpar.geometry.profiles import make_profile
+from swgpar.geometry.profiles.curve import Segment, ToothProfile
 from swgpar.meshing import MeshRecipe, SectorMesh, body, build_sector_meshes, load_recipe
 from swgpar.meshing.cup import meridian
 from swgpar.meshing.export import mesh_report, whole_body, whole_drive, write_mesh
 from swgpar.meshing.quality import hex_quality, hex_volumes, quad_quality
 from swgpar.meshing.sweep import axial_stations
 from swgpar.meshing.tooth import cross_section
-from swgpar.profiles import make_profile
-from swgpar.profiles.curve import Segment, ToothProfile
 
 ROOT = Path(__file__).resolve().parents[2]
 REFERENCE = ROOT / "drivers" / "cup_45deg.toml"

@@ -12,14 +12,14 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from swgpar.design import load_design
+from swgpar.design.drive_design import load_design
 from swgpar.errors import InputError
-from swgpar.profiles import make_profile
-from swgpar.profiles.curve import ToothProfile, check_flank
-from swgpar.profiles.double_arc import double_arc, straight_length
-from swgpar.profiles.frame import FlankFrame
-from swgpar.profiles.involute import Cutter, involute
-from swgpar.profiles.quadruple_arc import quadruple_arc
+from swgpar.geometry.profiles import make_profile
+from swgpar.geometry.profiles.curve import ToothProfile, check_flank
+from swgpar.geometry.profiles.double_arc import double_arc, straight_length
+from swgpar.geometry.profiles.frame import FlankFrame
+from swgpar.geometry.profiles.involute import Cutter, involute
+from swgpar.geometry.profiles.quadruple_arc import quadruple_arc
 
 REFERENCE = Path(__file__).parents[2] / "drivers" / "cup_45deg.toml"
 ALPHA = np.radians(20.0)

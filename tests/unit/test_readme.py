@@ -9,12 +9,12 @@ from typing import Literal, get_args, get_origin
 import pytest
 from pydantic.fields import FieldInfo
 
-from swgpar.design import DriveDesign
+from swgpar.design.drive_design import DriveDesign
 from swgpar.gear_trains.cascade import CascadeDesign
 from swgpar.gear_trains.gear_pair import GearPairDesign
 from swgpar.gear_trains.planetary import PlanetaryDesign
 from swgpar.gear_trains.ring import RingDesign
-from swgpar.quantities import Section, allowed
+from swgpar.input.quantities import Section, allowed
 
 ROOT = Path(__file__).parents[2]
 

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 from small_drive import PLANE
 
-from swgpar.design import load_design
+from swgpar.analysis.coarse_start import coarser, interpolation, levels, recounted
+from swgpar.analysis.period import continued
+from swgpar.design.drive_design import load_design
+from swgpar.design.load_states import angles, load_sequence
 from swgpar.errors import InputError
-from swgpar.far_teeth import LEAST, MARGIN, FarTeeth
+from swgpar.fem.inactive_sectors import LEAST, MARGIN, InactiveSectors
 from swgpar.meshing import build_sector_meshes, load_recipe
 from swgpar.meshing.recipe import FaceWidthRecipe
-from swgpar.multilevel import coarser, interpolation, levels, recounted
-from swgpar.period import continued
-from swgpar.steps import angles, sequence
 
 DATA = Path(__file__).parent.parent / "data"
 MESH = Path(__file__).parent.parent.parent / "mesh"
@@ -76,7 +76,7 @@ def test_one_period_is_continued_over_the_rotation() -> None:
     design = load_design(DATA / "small.toml", ["steps.samples=4", "steps.rotation=30"])
     pitch = 360.0 / 42
     assert np.degrees(angles(design)) == pytest.approx([pitch * k / 4 for k in (1, 2, 3)])
-    assert len(list(sequence(design))) == 6
+    assert len(list(load_sequence(design))) == 6
     rows = [
         {
             "step": str(3 + k),
@@ -123,7 +123,7 @@ class _Elements:
 
 
 def test_far_teeth_follow_the_near_ones_with_hysteresis() -> None:
-    far, elements = FarTeeth(61), _Elements(61)
+    far, elements = InactiveSectors(61), _Elements(61)
 
     def near(*sectors: int) -> bool:
         return far.update(np.array(sectors, dtype=np.int64), elements, None)

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from swgpar.design import load_design
-from swgpar.steps import sequence, start
+from swgpar.design.drive_design import load_design
+from swgpar.design.load_states import load_sequence, start
 
 DATA = Path(__file__).parents[1] / "data"
 
@@ -19,7 +19,7 @@ def test_every_increment_can_be_cut(torque: str) -> None:
     module, travel = design.drive.module, design.d
     before = start(design)
     keys = ("angle", "cam", "teeth", "pins", "rotation", "torque")
-    for target in sequence(design):
+    for target in load_sequence(design):
         # without a torque step 3 is the end of step 2
         if any(getattr(before, k) != getattr(target, k) for k in keys):
             half, end = (before.toward(target, share, module, travel) for share in (0.5, 1.0))
@@ -30,7 +30,7 @@ def test_every_increment_can_be_cut(torque: str) -> None:
 
 def test_engagement_grows_from_a_clearance() -> None:
     design = load_design(DATA / "small.toml", [])
-    deflected, engaged = (scene for scene, _ in zip(sequence(design), range(2)))
+    deflected, engaged = (scene for scene, _ in zip(load_sequence(design), range(2)))
     half = deflected.toward(engaged, 0.5, design.drive.module, design.d)
     assert half.cam > 0.0 and half.teeth > 0.0
     assert half.pins == pytest.approx(0.125 * design.d)

@@ -12,7 +12,7 @@ import pytest
 from mpi4py import MPI
 from study_files import assert_refused, jobs_of
 
-from swgpar.error_estimate import estimate
+from swgpar.analysis.error_estimate import estimate
 from swgpar.errors import InputError
 from swgpar.results.table import format_csv
 from swgpar.study.drives import values

@@ -7,8 +7,8 @@ import pytest
 from contact_blocks import Blocks, Rows, block, master
 from hertz import hertz
 
+from swgpar.contact.flanks import CONTINUED, Faces, Flanks, PlacedFaces
 from swgpar.contact.segments import SAMPLES, bilinear, cut_faces, face_corners
-from swgpar.contact.teeth import CONTINUED, Faces, Flanks, PlacedFaces
 from swgpar.kernel import contact_flanks
 
 PENALTY = 4e6

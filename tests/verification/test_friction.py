@@ -7,8 +7,8 @@ import pytest
 from contact_blocks import Blocks, Rows, block, master
 
 from swgpar.contact import friction
+from swgpar.contact.flanks import Faces, PlacedFaces
 from swgpar.contact.segments import SAMPLES, Segments, bilinear, face_corners
-from swgpar.contact.teeth import Faces, PlacedFaces
 from swgpar.kernel import contact_flanks
 
 PENALTY = 4e6

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from swgpar.plain_ring import RingCounts, RingDesign
+from swgpar.analysis.plain_ring import RingCounts, RingDesign
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "drivers"))
 from ring_experiment import OUTER_DIAMETER, OUTWARD, STEEL, THICKNESS, closed_form, press  # noqa: E402

@@ -8,7 +8,7 @@ from annotated_types import Len
 
 from swgpar.errors import InputError
 from swgpar.gear_trains.keys import GearTrain, Output, Positive, TrainDesign
-from swgpar.quantities import Section, quantity
+from swgpar.input.quantities import Section, quantity
 
 PINIONS = 8
 Ratios = Annotated[list[Positive], Len(PINIONS, PINIONS)]

@@ -8,7 +8,7 @@ from annotated_types import Len
 
 from swgpar.errors import InputError
 from swgpar.gear_trains.keys import Damping, GearTrain, MonteCarlo, Output, Positive, TrainDesign
-from swgpar.quantities import Section, quantity, show
+from swgpar.input.quantities import Section, quantity, show
 
 Torques = Annotated[list[Positive], Len(1)]
 

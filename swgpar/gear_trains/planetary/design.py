@@ -10,7 +10,7 @@ from annotated_types import Len
 from swgpar.errors import InputError
 from swgpar.gear_trains.keys import Damping, GearTrain, MonteCarlo, Output, Positive, TrainDesign
 from swgpar.gear_trains.ring.design import held
-from swgpar.quantities import Section, quantity
+from swgpar.input.quantities import Section, quantity
 
 Thicknesses = Annotated[list[Positive], Len(1)]
 

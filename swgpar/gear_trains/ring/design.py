@@ -9,7 +9,7 @@ from annotated_types import Len
 
 from swgpar.errors import InputError
 from swgpar.gear_trains.keys import GearTrain, Output, Positive, TrainDesign
-from swgpar.quantities import Section, quantity
+from swgpar.input.quantities import Section, quantity
 
 Speeds = Annotated[list[Positive], Len(1)]
 

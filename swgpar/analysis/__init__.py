@@ -1,0 +1,1 @@
+"""From a design to results: drive model, load stepping, mesh refinement, figures."""

@@ -1,0 +1,221 @@
+"""A mesh for an accuracy: refined until the estimated error of the largest tensile stress is below what is asked for.
+
+The drive is assembled and loaded on a mesh with few elements; every other one starts from the state before. What each
+group of counts adds to the error of the loaded state is estimated on the way, so that elements go where they help.
+Compressive stress is no measure: where edges carry, its largest value has no limit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+
+from swgpar.analysis.coarse_start import Level, coarser, level_of, load, recounted
+from swgpar.analysis.drive_model import DriveModel
+from swgpar.analysis.error_estimate import ORDER
+from swgpar.design.drive_design import SECTOR_BEND, DriveDesign
+from swgpar.design.load_states import LoadState
+from swgpar.errors import ConvergenceError, InputError
+from swgpar.log import logger
+from swgpar.meshing import MeshRecipe, build_sector_meshes
+
+MEASURE = "fs_s1"
+"""Stress whose accuracy is asked for."""
+
+LOWEST, HIGHEST = 1e-3, 0.2
+"""Accuracies that may be asked for."""
+
+SAMPLES = ((0.02, 4), (0.005, 8), (0.0, 16))
+"""Angles in a period for accuracies from the first number on. Four instead of eight change the means of the plane half
+turn by 0.3 %, those of the cup drive by 0.5 %; what half of a run's own angles would give is in its summary."""
+
+RTOL = 1e-7
+"""Newton's tolerance: its part in the error of the stresses is below the lowest accuracy by decades, and at 1e-5 the
+input torque of a fine plane mesh was 0.6 % off, for one iteration less."""
+
+BEND = 0.2
+"""Share of an accuracy up to which condensed sectors, which leave out a part of the bending strain, are used: of the
+largest stress, which a notch raises, that part is less than half as much."""
+
+Counts = dict[str, tuple[str, ...]]
+"""Names of counts by section of the recipe."""
+
+Doublings = tuple[int, ...]
+"""How many times every group of counts is doubled."""
+
+GROUPS: dict[str, Counts] = {
+    "root and rim": {"flexible_spline": ("root", "under", "rim")},
+    "flanks and ring gear": {
+        "flexible_spline": ("tip", "layers", "flank"),
+        "ring_gear": ("tip", "layers", "flank", "root", "under", "rim"),
+    },
+    "length": {"face_width": ("elements",), "cup": ("cylinder", "fillet", "closed_end")},
+}
+"""Counts that are refined together. The largest tension sits in the root or at the inner surface below it, and most of
+its error comes from the counts there (docs/benchmarks/accuracy.md, plane drive)."""
+
+LARGEST = {2: 1_500_000, 3: 700_000}
+"""Elements of the whole drive, plane and solid, beyond which no finer mesh is taken: some 7 and 12 GB."""
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """The model on the mesh chosen, in its loaded state. error : relative, estimated;  stresses : errors of all, MPa"""
+
+    model: DriveModel
+    recipe: MeshRecipe
+    error: float
+    stresses: dict[str, float]
+
+
+def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
+    """The design with the angles, tolerance and sectors that suit an accuracy, where it does not say them itself.
+
+    Raises InputError where the accuracy is out of range or cannot be had.
+    """
+    if not LOWEST <= accuracy <= HIGHEST:
+        raise InputError(f"--accuracy {accuracy:g} is out of range: allowed {LOWEST:g} to {HIGHEST:g}")
+    if design.contact.friction:
+        raise InputError(
+            f"--accuracy needs contact.friction = 0, not {design.contact.friction:g}: with friction the loaded state "
+            "depends on the way to it and cannot be taken over from a coarser mesh"
+        )
+    changes: dict[str, Any] = {}
+    solver: dict[str, Any] = {}
+    whole_period = design.steps.rotation >= np.degrees(design.pitch)
+    if "samples" not in design.steps.model_fields_set and whole_period:
+        samples = next(count for least, count in SAMPLES if accuracy >= least)
+        changes["steps"] = design.steps.model_copy(update={"samples": samples})
+    if "rtol" not in design.solver.model_fields_set:
+        solver["rtol"] = RTOL
+    small = design.drive.model == "plane" and design.sector_bend <= min(BEND * accuracy, SECTOR_BEND)
+    if "condensed_sectors" not in design.solver.model_fields_set and small:
+        solver["condensed_sectors"] = True
+    return design.model_copy(update={**changes, "solver": design.solver.model_copy(update=solver)})
+
+
+def doubled(recipe: MeshRecipe, counts: Counts, times: int = 1) -> MeshRecipe:
+    """The recipe with these counts doubled, so many times; an odd one along the face width stays odd, one higher.
+
+    Raises InputError beyond bounds.
+    """
+    return recounted(recipe, lambda title, name, value: value << times if name in counts.get(title, ()) else value)
+
+
+def error_after(change: float, before: float = 0.0) -> float:
+    """Error after a doubling, by Richardson from what it changed, and at least from what the one before it did.
+
+    Where a mesh is too coarse to see the stress, a change that is small by chance would pass for convergence.
+    """
+    return max(abs(change), abs(before) / 2.0**ORDER) / (2.0**ORDER - 1.0)
+
+
+def relative(error: float, stress: float) -> float:
+    """Error over the stress without it; 1 where nothing is known."""
+    return error / (abs(stress) + error) if np.isfinite(error) else 1.0
+
+
+class Refinement:
+    """The loaded drive on recipes with some groups of counts doubled.
+
+    Parameters
+    ----------
+    design, items, comm : the drive, all increments of its run, communicator
+    recipe : what is refined; coarsened where a group could not be doubled below the largest size
+    """
+
+    def __init__(self, design: DriveDesign, recipe: MeshRecipe, items: list[LoadState], comm: MPI.Comm) -> None:
+        self.design, self.items, self.comm = design, items, comm
+        self.dimensions = 2 if design.drive.model == "plane" else 3
+        self.groups = {name: counts for name, counts in GROUPS.items() if self.dimensions == 3 or name != "length"}
+        self.base, self.doublings = recipe, (0,) * len(self.groups)
+        while not all(self.size(one_more(self.doublings, k)) for k in range(len(self.groups))):
+            if coarser(self.base) == self.base:
+                break
+            self.base = coarser(self.base)
+        self.levels: dict[Doublings, Level] = {}
+        self.left_out: dict[Doublings, float] = {}
+        self.model = load(design, coarser(self.base), items, comm)
+
+    def recipe(self, doublings: Doublings) -> MeshRecipe:
+        """With every group doubled as many times as `doublings` says."""
+        recipe = self.base
+        for counts, times in zip(self.groups.values(), doublings):
+            recipe = doubled(recipe, counts, times)
+        return recipe
+
+    def size(self, doublings: Doublings) -> int:
+        """Elements of the whole drive; 0 where there is no such mesh, or where it is too large."""
+        try:
+            meshes = build_sector_meshes(self.design, self.recipe(doublings)).values()
+        except InputError:
+            return 0
+        elements = sum(len(mesh.hexes) * mesh.n_sectors for mesh in meshes)
+        return elements if elements <= LARGEST[self.dimensions] else 0
+
+    def load(self, doublings: Doublings) -> Level:
+        """Bring the drive to its loaded state there, from that of the last mesh, or else from the start."""
+        recipe, below = self.recipe(doublings), self.model
+        try:
+            self.model = load(self.design, recipe, self.items, self.comm, below)
+        except (ConvergenceError, InputError) as error:
+            logger.info("the state of another mesh does not lead to that of this one: %s", error)
+            self.model = load(self.design, recipe, self.items, self.comm)
+        self.doublings, self.levels[doublings] = doublings, level_of(self.model)
+        self.left_out[doublings] = self.model.bend_left_out()
+        return self.levels[doublings]
+
+
+def one_more(doublings: Doublings, group: int) -> Doublings:
+    """Doublings with another doubling of one group."""
+    return tuple(count + (k == group) for k, count in enumerate(doublings))
+
+
+def choose(design: DriveDesign, recipe: MeshRecipe, items: list[LoadState], accuracy: float, comm: MPI.Comm) -> Chosen:
+    """Refine `recipe` until the estimated relative error of the largest tensile stress is at most `accuracy`.
+
+    Every group of counts has an error, first from what doubling it alone changes; then the group is doubled that has
+    the largest error for the elements of the finer mesh.
+
+    items : all increments of the run. Ends below the largest size where the accuracy is out of reach, and says so.
+    Raises ConvergenceError or InputError like a run on one of the meshes.
+    """
+    way = Refinement(design, recipe, items, comm)
+    doublings, every = way.doublings, range(len(way.groups))
+    here, changes = way.load(doublings), []
+    for k in every:
+        trial = way.load(one_more(doublings, k)).stresses if way.size(one_more(doublings, k)) else None
+        # what the doubling before this one would have changed
+        changes.append(
+            {name: 2.0**ORDER * (trial[name] - value) if trial else np.inf for name, value in here.stresses.items()}
+        )
+    errors = [{name: error_after(value) for name, value in change.items()} for change in changes]
+    while True:
+        stress = here.stresses[MEASURE]
+        left_out = way.left_out[doublings]
+        error = relative(sum(one[MEASURE] for one in errors) + left_out, stress)
+        parts = ", ".join(
+            f"{name} {100.0 * relative(one[MEASURE], stress):.2g}" for name, one in zip(way.groups, errors)
+        )
+        logger.info("%d elements: s1 %.1f MPa under load, estimated errors (%%): %s", here.elements, stress, parts)
+        if error <= accuracy:
+            break
+        sizes = [way.size(one_more(doublings, k)) for k in every]
+        stays = left_out + sum(one[MEASURE] for one, size in zip(errors, sizes) if not size)
+        if relative(stays, stress) > accuracy or not any(sizes):
+            logger.info("no finer mesh that helps is taken up to %d elements", LARGEST[way.dimensions])
+            break
+        k = max((k for k in every if sizes[k]), key=lambda k: errors[k][MEASURE] / sizes[k])
+        doublings, before = one_more(doublings, k), here.stresses
+        here = way.levels[doublings] if doublings in way.levels else way.load(doublings)
+        change = {name: value - before[name] for name, value in here.stresses.items()}
+        errors[k] = {name: error_after(value, changes[k][name]) for name, value in change.items()}
+        changes[k] = change
+    if way.doublings != doublings:
+        way.load(doublings)
+    total = {name: sum(one[name] for one in errors) for name in here.stresses}
+    known = {name: value for name, value in total.items() if np.isfinite(value)}
+    return Chosen(way.model, way.recipe(doublings), error, known)

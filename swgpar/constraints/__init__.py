@@ -1,0 +1,1 @@
+"""Distributing coupling and supports."""

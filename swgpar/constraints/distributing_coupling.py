@@ -1,0 +1,179 @@
+"""The distributing coupling on the bore (in the plane on the inner surface), or on the ring gear's outer surface.
+
+The coupling ties six quantities of a surface to a reference point without stiffening it: the mean
+displacement, the mean tilts and the mean rotation about z of its nodes, weighted by their area. The rotation
+
+    phi = atan2(sum w (X x dx)_z, sum w (X . dx)),   X, dx taken from the weighted means,
+
+is the best-fitting rigid rotation in the plane; the torque T enters through its potential -T phi, so that
+it is work-conjugate to phi at any rotation (section 3.4.5, "Load application").
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from mpi4py import MPI
+
+from swgpar.fem.elements import BodyElements
+from swgpar.fem.partition import Partition
+
+ROTATION = 5
+"""Coupled quantities: displacement x, y, z, tilts about x and y, rotation about z."""
+
+
+@dataclass
+class MeanMotion:
+    """Values (6,) and gradients (6, n_local, 3) of the coupled quantities."""
+
+    value: np.ndarray
+    gradient: np.ndarray
+
+
+def node_weights(coords: np.ndarray, nodes: np.ndarray, ccw: np.ndarray) -> np.ndarray:
+    """Tributary area of the surface's nodes of one sector (arc length times axial share), closed over the sector.
+
+    coords : (n, 3) mm, sector 0;  nodes : (k,) local;  ccw : local nodes that the next sector owns
+    """
+    x, y, z = coords[nodes].T
+    angle = np.round(np.arctan2(-x, y), 9)
+    z = np.round((z - z.min()) / (np.ptp(z) or 1.0), 9)
+
+    def share(values: np.ndarray, closed: bool) -> np.ndarray:
+        level, inverse = np.unique(values, return_inverse=True)
+        if len(level) == 1:
+            return np.ones(len(values))
+        gap = np.diff(level)
+        left = np.concatenate([[gap[-1] if closed else 0.0], gap])
+        right = np.concatenate([gap, [gap[0] if closed else 0.0]])
+        return (0.5 * (left + right))[inverse]
+
+    weight = share(angle, True) * share(z, False)
+    return np.where(np.isin(nodes, ccw), 0.0, weight)
+
+
+class DistributingCoupling:
+    """Mean motions of a surface of a body.
+
+    Parameters
+    ----------
+    partition : ownership
+    body : elements of the body on this rank (bound to local nodes);  surface : name of its node set
+    images : the model holds half a turn; then only z and the rotation can be non-zero
+    """
+
+    def __init__(self, partition: Partition, body: BodyElements, surface: str, images: bool) -> None:
+        self.comm = partition.comm
+        self.images = images
+        mesh = body.layout.mesh
+        nodes = mesh.node_sets[surface]
+        weight = node_weights(mesh.coords, nodes, mesh.ccw_nodes)
+        keep = weight > 0
+        nodes, weight = nodes[keep], weight[keep]
+        sectors = np.arange(len(body.sectors))[body.owned]
+        self.nodes = body.local[np.ix_(sectors, nodes)].ravel()
+        self.reference = body.positions()[np.ix_(sectors, nodes)].reshape(-1, 3)
+        self.weight = np.tile(weight, len(sectors))
+        total = self.sum(self.weight)
+        self.weight = self.weight / total
+        center = np.zeros(3) if images else self.sum(self.weight[:, None] * self.reference)
+        center[2] = self.sum(self.weight * self.reference[:, 2])
+        self.arm = self.reference - center
+        self.radius2 = float(self.sum(self.weight * (self.arm[:, 0] ** 2 + self.arm[:, 1] ** 2)))
+        self.solid = partition.dims == 3
+        whole = not images
+        self.active = np.array([whole, whole, self.solid, whole and self.solid, whole and self.solid, True])
+
+    def sum(self, value: np.ndarray) -> np.ndarray:
+        """Sum over all nodes of the surface, on all ranks."""
+        local = np.sum(np.asarray(value, dtype=float), axis=0)
+        return self.comm.allreduce(local, op=MPI.SUM)
+
+    def evaluate(self, u: np.ndarray) -> MeanMotion:
+        """Coupled quantities (mm, mm, mm, rad, rad, rad) and their gradients at displacement u (n_local, 3)."""
+        v, w, arm = u[self.nodes], self.weight, self.arm
+        mean = self.sum(w[:, None] * v)
+        if self.images:
+            mean[:2] = 0.0
+        x, y = arm[:, 0] + v[:, 0] - mean[0], arm[:, 1] + v[:, 1] - mean[1]
+        sine, cosine = self.sum(
+            np.column_stack([w * (arm[:, 0] * y - arm[:, 1] * x), w * (arm[:, 0] * x + arm[:, 1] * y)])
+        )
+        tilt_x, tilt_y = (
+            self.sum(np.column_stack([w * arm[:, 1] * v[:, 2], -w * arm[:, 0] * v[:, 2]])) * 2.0 / self.radius2
+        )
+        value = np.array([*mean, tilt_x, tilt_y, np.arctan2(sine, cosine)])
+        gradient = np.zeros((6, len(w), 3))
+        for k in range(3):
+            gradient[k, :, k] = w
+        gradient[3, :, 2] = 2.0 / self.radius2 * w * arm[:, 1]
+        gradient[4, :, 2] = -2.0 / self.radius2 * w * arm[:, 0]
+        norm = cosine * cosine + sine * sine
+        gradient[5, :, 0] = w * (-cosine * arm[:, 1] - sine * arm[:, 0]) / norm
+        gradient[5, :, 1] = w * (cosine * arm[:, 0] - sine * arm[:, 1]) / norm
+        return MeanMotion(value, gradient)
+
+    def supports(self) -> np.ndarray:
+        """Unit directions (n, n_local, 3) on single nodes that hold the body rigidly.
+
+        They ground the structure inside a factorisation and are taken out again exactly; see `BorderedSystem`. A solid
+        needs six of them, axial and tangential at three nodes, a plane body the tangential ones only; half a model
+        needs those of one node.
+        """
+        places = (0.0,) if self.images else (0.0, 2.0 * np.pi / 3.0, 4.0 * np.pi / 3.0)
+        angle = np.mod(np.arctan2(-self.arm[:, 0], self.arm[:, 1]), 2.0 * np.pi)
+        picked = []
+        for place in places:
+            # the first node at the smallest angular distance, by rank: exactly one node in the whole model
+            distance = np.abs(np.mod(angle - place + np.pi, 2.0 * np.pi) - np.pi)
+            best = (
+                (float(np.round(distance.min(), 9)), self.comm.rank, int(distance.argmin()))
+                if len(distance)
+                else (9.0, self.comm.rank, 0)
+            )
+            winner = min(self.comm.allgather(best))
+            axial, tangential = np.zeros((2, len(self.nodes), 3))
+            if winner[1] == self.comm.rank:
+                node = winner[2]
+                a = self.arm[node]
+                axial[node, 2] = 1.0
+                tangential[node, :2] = np.array([-a[1], a[0]]) / np.hypot(a[0], a[1])
+            picked += [axial, tangential] if self.solid else [tangential]
+        return np.array(picked)
+
+
+class Housing:
+    """Rigid ring in which the ring gear turns as the output: its outer nodes stay on their circle (section 5.8).
+
+    Stiff radial springs, as hard as contact; the nodes are free along the circle and the axis.
+
+    Parameters
+    ----------
+    coupling : of the outer surface;  area : mm², of the modelled surface;  penalty : MPa / mm
+    """
+
+    def __init__(self, coupling: DistributingCoupling, area: float, penalty: float) -> None:
+        self.nodes, self.place = coupling.nodes, coupling.reference[:, :2]
+        self.radius = np.hypot(*self.place.T)
+        self.stiffness = penalty * area * coupling.weight
+
+    def _radial(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Radii (n,) mm, outward normals (n, 2) and forces along them (n,) N at displacement u (n_local, 3)."""
+        x = self.place + u[self.nodes, :2]
+        r = np.hypot(*x.T)
+        return r, x / r[:, None], self.stiffness * (r - self.radius)
+
+    def add_forces(self, u: np.ndarray, residual: np.ndarray) -> None:
+        """Add to residual (n_local, 3) N."""
+        _, normal, force = self._radial(u)
+        residual[self.nodes, :2] += force[:, None] * normal
+
+    def blocks(self, u: np.ndarray) -> np.ndarray:
+        """Tangent blocks (n, 3, 3) N/mm of the nodes."""
+        r, normal, force = self._radial(u)
+        blocks = np.zeros((len(r), 3, 3))
+        nn = normal[:, :, None] * normal[:, None, :]
+        bent = (force / r)[:, None, None]
+        blocks[:, :2, :2] = self.stiffness[:, None, None] * nn + bent * (np.eye(2) - nn)
+        return blocks

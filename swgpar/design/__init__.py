@@ -1,0 +1,1 @@
+"""The design file of the drive, its derived geometry and its load states."""

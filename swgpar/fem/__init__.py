@@ -1,0 +1,1 @@
+"""Finite elements: partition, assembly, condensed and inactive sectors, stress."""

@@ -1,0 +1,35 @@
+"""Principal and von Mises stresses at the nodes, and their maxima over a body."""
+
+from __future__ import annotations
+
+import numpy as np
+from mpi4py import MPI
+
+from swgpar.fem.elements import BodyElements
+
+
+def principal(stress: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Largest and smallest principal stress and von Mises stress of (…, 6) tensors xx yy zz xy yz zx (MPa)."""
+    xx, yy, zz, xy, yz, zx = np.moveaxis(stress, -1, 0)
+    tensor = np.stack([np.stack([xx, xy, zx], -1), np.stack([xy, yy, yz], -1), np.stack([zx, yz, zz], -1)], -2)
+    values = np.linalg.eigvalsh(tensor)
+    s1, s2, s3 = values[..., 2], values[..., 1], values[..., 0]
+    mises = np.sqrt(0.5 * ((s1 - s2) ** 2 + (s2 - s3) ** 2 + (s3 - s1) ** 2))
+    return s1, s3, mises
+
+
+def body_fields(body: BodyElements, u: np.ndarray) -> dict[str, np.ndarray]:
+    """Displacement, stress tensor, s1, s3 and von Mises stress at the nodes of the owned sectors."""
+    tensor = body.nodal_stress(u)
+    s1, s3, mises = principal(tensor)
+    return {"displacement": body.displacement(u)[body.owned], "stress": tensor, "s1": s1, "s3": s3, "vm": mises}
+
+
+def maxima(comm: MPI.Comm, fields: dict[str, np.ndarray]) -> dict[str, float]:
+    """Maxima over the whole body (MPa): s1, s3 (positive in compression) and vm."""
+    local = np.array(
+        [fields["s1"].max(initial=-np.inf), (-fields["s3"]).max(initial=-np.inf), fields["vm"].max(initial=0.0)]
+    )
+    total = np.empty(3)
+    comm.Allreduce(local, total, op=MPI.MAX)
+    return dict(zip(("s1", "s3", "vm"), total.tolist()))

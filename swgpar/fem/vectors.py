@@ -1,0 +1,54 @@
+"""Distributed vectors of nodal unknowns: creation, ghost values, nodal fields of sectors, multipliers."""
+
+from __future__ import annotations
+
+import numpy as np
+from petsc4py import PETSc
+
+from swgpar.fem.partition import FLIP, Partition
+
+
+def create_vector(partition: Partition) -> PETSc.Vec:
+    """Distributed vector of three unknowns per node, multipliers last."""
+    return PETSc.Vec().createMPI((3 * partition.n_own, 3 * partition.n_global), bsize=3, comm=partition.comm)
+
+
+class Exchange:
+    """Values of distributed vectors at the nodes with the given global numbers, (n,) int32."""
+
+    def __init__(self, partition: Partition, number: np.ndarray) -> None:
+        self.target = PETSc.Vec().createSeq(3 * len(number), bsize=3)
+        entries = (3 * number[:, None] + np.arange(3, dtype=PETSc.IntType)).ravel().astype(PETSc.IntType)
+        source = PETSc.IS().createGeneral(entries, comm=PETSc.COMM_SELF)
+        into = PETSc.IS().createStride(3 * len(number), 0, 1, comm=PETSc.COMM_SELF)
+        self.scatter = PETSc.Scatter().create(create_vector(partition), source, self.target, into)
+
+    def __call__(self, vector: PETSc.Vec) -> np.ndarray:
+        """Local nodal values (n_local, 3) of a global vector, ghosts included."""
+        self.scatter.scatter(vector, self.target, addv=PETSc.InsertMode.INSERT, mode=PETSc.ScatterMode.FORWARD)
+        return self.target.array_r.reshape(-1, 3).copy()
+
+
+def read_field(partition: Partition, body: int, sectors: np.ndarray, vector: PETSc.Vec) -> np.ndarray:
+    """Nodal values (n_sectors, n_local_nodes, 3) of any sectors of a body, images turned; collective."""
+    number, flip = partition.numbers(body, sectors, np.arange(len(partition.layouts[body].mesh.coords)))
+    wanted, place = np.unique(number, return_inverse=True)
+    absent = int(len(wanted) > 0 and wanted[0] == -1)
+    values = Exchange(partition, wanted[absent:].astype(np.int32))(vector)
+    values = np.vstack([np.zeros((absent, 3)), values])[place.reshape(number.shape)]
+    return partition.layouts[body].fill_inside(sectors, np.where(flip[..., None] == 1, FLIP * values, values))
+
+
+def write_field(partition: Partition, body: int, sectors: np.ndarray, values: np.ndarray, vector: PETSc.Vec) -> None:
+    """Set the owned entries of `vector` from nodal values (n_sectors, n_local_nodes, 3) of owned sectors."""
+    number, flip = partition.numbers(body, sectors, np.arange(len(partition.layouts[body].mesh.coords)))
+    own = (number >= partition.row_start) & (number < partition.row_start + partition.n_own) & (flip == 0)
+    vector.array.reshape(-1, 3)[number[own] - partition.row_start] = values[own]
+
+
+def read_multipliers(partition: Partition, vector: PETSc.Vec) -> np.ndarray:
+    """The multiplier entries of a full-length vector, on every rank."""
+    comm, last, n = partition.comm, partition.comm.size - 1, partition.n_multipliers
+    values = vector.array_r[-n:].copy() if comm.rank == last else np.empty(n)
+    comm.Bcast(values, root=last)
+    return values

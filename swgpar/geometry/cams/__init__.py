@@ -1,0 +1,59 @@
+"""Exact cam curves of wave generators. A new cam is a new file here, its keys, and an entry in `make_cam`."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from scipy.spatial import ConvexHull
+
+from swgpar.geometry.cams.elliptical import EllipticalCam
+from swgpar.geometry.cams.four_roller import four_roller
+from swgpar.geometry.cams.keys import Elliptical, FourRoller, Parabolic, Simplified, WaveGenerator
+from swgpar.geometry.cams.parabolic import Side, parabolic
+from swgpar.geometry.cams.simplified import simplified
+
+
+class Cam(Protocol):
+    def evaluate(self, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Signed distance (n,), outward unit normal (n, 2) and k (n,), Hessian = k t t^T, at points (n, 2)."""
+
+    def outline(self, n: int) -> np.ndarray:
+        """About n points of the surface (n, 2), mm."""
+
+
+def make_cam(design) -> Cam:
+    """Cam curve of a design, major axis along +y."""
+    keys, a = design.wave_generator, design.a
+    name = "wave_generator"
+    if isinstance(keys, FourRoller):
+        return four_roller(a, float(np.radians(keys.beta)), keys.r_4, f"{name}.r_4")
+    if isinstance(keys, Elliptical):
+        return EllipticalCam(a, design.b)
+    if isinstance(keys, Simplified):
+        return simplified(a, design.b)
+    if isinstance(keys, Parabolic):
+        side = Side(keys.a_p, keys.C_p, keys.r_c, name)
+        return parabolic(a, design.b, side, side)
+    right = Side(keys.right.a_p, keys.right.C_p, keys.right.r_c, f"{name}.right")
+    left = Side(keys.left.a_p, keys.left.C_p, keys.left.r_c, f"{name}.left")
+    return parabolic(a, design.b, right, left, float(np.radians(keys.rotational_angle)))
+
+
+def taut_length(cam: Cam, n: int = 7200) -> float:
+    """Length of a band drawn tight around the cam, mm: the perimeter of its convex hull."""
+    return float(ConvexHull(cam.outline(n)).area)
+
+
+def pin_travel(cam: Cam, radius: float, n: int = 7200) -> float:
+    """How far the pins, the two halves of the cam, are drawn in along the major axis to fit into the circle `radius`.
+
+    In mm; half the deflection for a cam that first touches at its tips, more when it bulges beside them (the pins
+    of section 3.2 are the halves of the cam).
+    """
+    x, y = cam.outline(n).T
+    upper = (y > 0.0) & (np.abs(x) < radius)
+    return float(np.max(y[upper] - np.sqrt(radius**2 - x[upper] ** 2)))
+
+
+__all__ = ["Cam", "EllipticalCam", "FourRoller", "WaveGenerator", "make_cam", "pin_travel", "taut_length"]

@@ -1,0 +1,77 @@
+"""The section [wave_generator] of the design file: one set of keys for each `type` of cam."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BeforeValidator, Field
+
+from swgpar.input.quantities import Section, default_type, quantity
+
+
+def _pins(default: float) -> float:
+    return quantity(default, unit="deg", text="half of the angle a pushing pin covers", gt=0.0, le=60.0)
+
+
+class _WaveGenerator(Section):
+    face_width: float = quantity(unit="mm", text="width of the cam", gt=0.0)
+    pin_half_angle: float = _pins(60.0)
+
+
+class _Reduced(_WaveGenerator):
+    """Cams with a minor semi-axis b = C (r_fs - d / 2) (eq. 3.4)."""
+
+    C: float = quantity(1.0, text="minor axis reduction", gt=0.0, le=1.0)
+
+
+class Elliptical(_Reduced):
+    """Section 3.2.2."""
+
+    type: Literal["elliptical"] = quantity("elliptical", text="kind of cam")
+    pin_half_angle: float = _pins(15.0)
+
+
+class Simplified(_Reduced):
+    """Section 3.2.1."""
+
+    type: Literal["simplified"] = quantity("simplified", text="kind of cam")
+
+
+class SideKeys(Section):
+    """The parabola of a lobe, or of one side of it, and how it is led to the minor axis."""
+
+    a_p: float = quantity(unit="1/mm", text="parabola coefficient", gt=0.0)
+    C_p: float = quantity(text="half length of the parabola over the minor semi-axis", gt=0.0, le=1.0)
+    r_c: float = quantity(unit="mm", text="radius of the connector arc", gt=0.0)
+
+
+class Parabolic(_Reduced, SideKeys):
+    """Section 3.2.3."""
+
+    type: Literal["parabolic"] = quantity("parabolic", text="kind of cam")
+
+
+class AsymmetricParabolic(_Reduced):
+    """Section 5.7; right and left on the upper lobe, both turned by the rotational angle lambda."""
+
+    type: Literal["asymmetric_parabolic"] = quantity("asymmetric_parabolic", text="kind of cam")
+    rotational_angle: float = quantity(
+        0.0, unit="deg", text="turn of the parabolas about their apexes, counter-clockwise", gt=-10.0, lt=10.0
+    )
+    right: SideKeys
+    left: SideKeys
+
+
+class FourRoller(_WaveGenerator):
+    """Section 3.2.4."""
+
+    type: Literal["four_roller"] = quantity("four_roller", text="kind of cam")
+    beta: float = quantity(unit="deg", text="angle of the rollers from the major axis", gt=0.0, lt=90.0)
+    r_4: float = quantity(unit="mm", text="radius of the rollers", gt=0.0)
+
+
+WaveGenerator = Annotated[
+    Elliptical | Simplified | Parabolic | AsymmetricParabolic | FourRoller,
+    Field(discriminator="type"),
+    BeforeValidator(default_type("elliptical")),
+]

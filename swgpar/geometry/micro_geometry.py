@@ -1,0 +1,77 @@
+"""Crowning and slope: microns taken from the cam and from the flanks (section 7.12).
+
+Sign of the slope, with theta from the major axis and z towards the closed end: the cam's surface is moved
+radially by -s (2 z / F_w) cos(2 theta). s > 0 raises the edge under the open end at the major axis, so that the
+surface follows the cone of the deflected cup (section 7.12); s < 0 is the sense of the words of section 7.13.3.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from swgpar.geometry.cams import make_cam
+
+
+def crowning(amount: float, z: np.ndarray, width: float, shape: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Material removed at axial places z (n,), and its first two derivatives (mm, -, 1/mm).
+
+    `amount` at |z| = width / 2, nothing at mid-width; "parabolic", or "circular": the arc through the same points.
+    """
+    z = np.asarray(z, dtype=float)
+    if amount == 0.0:
+        return np.zeros_like(z), np.zeros_like(z), np.zeros_like(z)
+    if shape == "parabolic":
+        k = 4.0 * amount / width**2
+        return k * z**2, 2.0 * k * z, np.full_like(z, 2.0 * k)
+    radius = (0.25 * width**2 + amount**2) / (2.0 * amount)
+    root = np.sqrt(radius**2 - z**2)
+    return radius - root, z / root, radius**2 / root**3
+
+
+class WaveGeneratorSurface:
+    """Level function of the cam with crowning and slope: exact in-plane distance less the radial modification.
+
+    The zero level is the surface; away from it h is the distance up to the factor |grad h|, 1.002 at most here.
+    """
+
+    def __init__(self, design) -> None:
+        micro = design.micro_geometry
+        self.cam = make_cam(design)
+        self.width = design.wave_generator.face_width
+        self.crowning, self.slope, self.shape = micro.wg_crowning, micro.wg_slope, micro.crowning_shape
+
+    def evaluate(self, xyz: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Level h (n,) mm, gradient (n, 3), Hessian (n, 3, 3) 1/mm at points (n, 3) of the cam's frame."""
+        x, y, z = np.asarray(xyz, dtype=float).T
+        distance, normal, bend = self.cam.evaluate(xyz[:, :2])
+        gradient = np.zeros((len(x), 3))
+        hessian = np.zeros((len(x), 3, 3))
+        gradient[:, :2] = normal
+        tangent = np.column_stack([-normal[:, 1], normal[:, 0]])
+        hessian[:, :2, :2] = bend[:, None, None] * tangent[:, :, None] * tangent[:, None, :]
+        c, dc, ddc = crowning(self.crowning, z, self.width, self.shape)
+        level = distance + c
+        gradient[:, 2] += dc
+        hessian[:, 2, 2] += ddc
+        if self.slope:
+            # q = cos 2 theta = (y^2 - x^2) / r^2
+            r2 = x * x + y * y
+            q = (y * y - x * x) / r2
+            qx, qy = -2.0 * x * (1.0 + q) / r2, 2.0 * y * (1.0 - q) / r2
+            qxx = (-2.0 * (1.0 + q) - 4.0 * x * qx) / r2
+            qyy = (2.0 * (1.0 - q) - 4.0 * y * qy) / r2
+            qxy = (-2.0 * x * qy - 2.0 * y * qx) / r2
+            k = 2.0 * self.slope / self.width
+            level = level + k * z * q
+            gradient[:, 0] += k * z * qx
+            gradient[:, 1] += k * z * qy
+            gradient[:, 2] += k * q
+            hessian[:, 0, 0] += k * z * qxx
+            hessian[:, 1, 1] += k * z * qyy
+            hessian[:, 0, 1] += k * z * qxy
+            hessian[:, 1, 0] += k * z * qxy
+            hessian[:, 0, 2] += k * qx
+            hessian[:, 2, 0] += k * qx
+            hessian[:, 1, 2] += k * qy
+            hessian[:, 2, 1] += k * qy
+        return level, gradient, hessian

@@ -1,0 +1,118 @@
+"""A flank segment given by exact functions of a parameter, made to run by arc length."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.interpolate import CubicHermiteSpline
+from scipy.spatial import cKDTree
+
+from swgpar.geometry.profiles.curve import Floats
+
+PANELS, ORDER = 64, 6
+"""Panels of the arc length's table and Gauss points in each: round-off for the smooth curves of a tooth."""
+
+
+@dataclass(frozen=True)
+class Local:
+    """The curve at parameters t (n,): points (n, 2) mm; angles of the tangents, rad; |dx/dt| mm; d angle/dt (n,)."""
+
+    point: Floats
+    angle: Floats
+    speed: Floats
+    spin: Floats
+
+
+@dataclass(frozen=True)
+class CurvedSegment:
+    """A smooth segment x(t), 0 <= t <= 1, run through from the tip towards the root.
+
+    Attributes
+    ----------
+    name : str
+    local : callable
+        Gives the `Local` at parameters (n,); exact, defined a little beyond 0 and 1, with a speed above 0.
+    """
+
+    name: str
+    local: Callable[[Floats], Local]
+
+    @cached_property
+    def _table(self) -> tuple[Floats, Floats]:
+        """Gauss points and weights on (0, 1), and arc lengths (PANELS + 1,), mm, at the ends of the panels."""
+        point, weight = np.polynomial.legendre.leggauss(ORDER)
+        return np.stack((0.5 * (point + 1.0), 0.5 * weight)), self._lengths(0.5 * (point + 1.0), 0.5 * weight)
+
+    def _lengths(self, point: Floats, weight: Floats) -> Floats:
+        start = np.arange(PANELS)[:, None] / PANELS
+        speed = self.local((start + point / PANELS).ravel()).speed.reshape(PANELS, -1)
+        return np.concatenate(([0.0], np.cumsum(speed @ weight / PANELS)))
+
+    @property
+    def length(self) -> float:
+        """Arc length, mm."""
+        return float(self._table[1][-1])
+
+    def arc_length(self, t: Floats) -> Floats:
+        """Return the arc lengths (n,), mm, at the parameters `t` : (n,)."""
+        (point, weight), ends = self._table
+        panel = np.clip((t * PANELS).astype(int), 0, PANELS - 1)
+        part = t - panel / PANELS
+        speed = self.local((panel[:, None] / PANELS + part[:, None] * point).ravel()).speed
+        return ends[panel] + part * (speed.reshape(len(t), -1) @ weight)
+
+    @cached_property
+    def _inverse(self) -> CubicHermiteSpline:
+        t, ends = np.linspace(0.0, 1.0, PANELS + 1), self._table[1]
+        return CubicHermiteSpline(ends, t, 1.0 / self.local(t).speed)
+
+    def parameter(self, s: Floats) -> Floats:
+        """Return the parameters (n,) at the arc lengths `s` : (n,) mm, by Newton's method from the table."""
+        s = np.asarray(s, dtype=np.float64)
+        t = self._inverse(s)
+        for _ in range(6):
+            step = (self.arc_length(t) - s) / self.local(t).speed
+            t = t - step
+            if np.max(np.abs(step), initial=0.0) < 1e-8:  # the next step would be its square
+                break
+        return t
+
+    def point(self, s: Floats) -> Floats:
+        """Return the points (n, 2), mm, at the local arc lengths `s` : (n,) mm."""
+        return self.local(self.parameter(s)).point
+
+    def angle(self, s: Floats) -> Floats:
+        """Return the angles of the tangents (n,), rad, at the local arc lengths `s` : (n,) mm."""
+        return self.local(self.parameter(s)).angle
+
+    def bend(self, s: Floats) -> Floats:
+        """Return the change of that angle per arc length (n,), 1/mm."""
+        here = self.local(self.parameter(s))
+        return here.spin / here.speed
+
+    @cached_property
+    def _samples(self) -> cKDTree:
+        return cKDTree(self.local(np.linspace(0.0, 1.0, 257)).point)
+
+    def nearest(self, points: Floats) -> Floats:
+        """Return the local arc length (n,), mm, of the point of the segment nearest to `points` (n, 2), mm."""
+        t = self._samples.query(points)[1] / 256.0
+        moving = np.arange(len(points))
+        for _ in range(20):
+            here = self.local(t[moving])
+            c, s = np.cos(here.angle), np.sin(here.angle)
+            x, y = (here.point - points[moving]).T
+            # half the slope of the squared distance and its derivative, over the speed
+            value = x * c + y * s
+            slope = here.speed - here.spin * (x * s - y * c)
+            step = value / np.where(slope > 0.1 * here.speed, slope, here.speed)
+            new = np.clip(t[moving] - step, 0.0, 1.0)
+            still = np.abs(new - t[moving]) > 1e-14
+            t[moving] = new
+            moving = moving[still]
+            if not moving.size:
+                break
+        return self.arc_length(t)

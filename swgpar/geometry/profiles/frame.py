@@ -1,0 +1,88 @@
+"""What the directly defined profiles have in common: the pitch point, and the directions at it (section 3.3.2)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from swgpar.errors import InputError
+from swgpar.geometry.profiles.curve import Segment, ToothProfile
+from swgpar.geometry.profiles.teeth import Teeth
+
+Piece = tuple[str, np.ndarray, float, float, float]
+"""Name, start, inclination, convexity and length of a segment, as `FlankFrame.segment` takes them."""
+
+
+@dataclass(frozen=True)
+class FlankFrame(Teeth):
+    """Flank at x > 0 of a tooth centred on +y.
+
+    Attributes
+    ----------
+    c_P : float
+        Angular tooth thickness reduction (eq. 3.22).
+    """
+
+    c_P: float
+
+    @property
+    def r_tip_circle(self) -> float:
+        """Addendum radius, mm (eq. 3.16)."""
+        return self.r_pitch + self.side * self.addendum
+
+    @property
+    def r_root_circle(self) -> float:
+        """Dedendum radius, mm (eq. 3.17)."""
+        return self.r_pitch - self.side * self.dedendum
+
+    @property
+    def half_thickness(self) -> float:
+        """Angle between the tooth's centre line and the pitch point, rad (eq. 3.22)."""
+        return 0.5 * self.c_P * np.pi / self.n_teeth
+
+    @property
+    def star(self) -> float:
+        """Angle of the normal at the pitch point, rad (eq. 3.27)."""
+        return self.pressure_angle - self.side * self.half_thickness
+
+    @property
+    def pitch(self) -> np.ndarray:
+        """Pitch point (2,), mm (eq. 3.23)."""
+        return self.r_pitch * np.array([np.sin(self.half_thickness), np.cos(self.half_thickness)])
+
+    @property
+    def up(self) -> np.ndarray:
+        """Unit tangent (2,) at the pitch point, towards the tip (eq. 3.29)."""
+        return np.array([-np.sin(self.star), self.side * np.cos(self.star)])
+
+    def n(self, beta: float) -> np.ndarray:
+        """Outward normal (2,) of inclination beta, rad (eqs 3.28, 3.34)."""
+        return np.array([np.cos(beta), self.side * np.sin(beta)])
+
+    def beta_of(self, center: np.ndarray) -> float:
+        """Inclination, rad, of the normal common to an arc about `center` (2,) and to a circle about the axis."""
+        x, y = self.side * center / np.hypot(*center)
+        return float(np.arctan2(self.side * y, x))
+
+    def segment(self, name: str, start: np.ndarray, beta: float, convexity: float, length: float) -> Segment:
+        """Segment from `start` (2,), mm, where the normal's inclination is beta.
+
+        `convexity` is its curvature, 1/mm, above 0 where the tooth is convex, and `length` its arc length, mm.
+        """
+        direction = beta - 0.5 * np.pi if self.external else 0.5 * np.pi - beta
+        return Segment(name, (float(start[0]), float(start[1])), direction, -self.side * convexity, float(length))
+
+    def profile(self, pieces: list[Piece], name: str, allowed: str) -> ToothProfile:
+        """Flank of `pieces` from tip to root; those of no length are left out, a negative length is refused.
+
+        name : section of the design file;  allowed : what may be changed, for the message
+        """
+        for piece, *_, length in pieces:
+            if length < 0.0:
+                raise InputError(
+                    f"{name}.r_{piece}: the {piece} arc would have a negative length ({length:.3g} mm); "
+                    f"allowed are {allowed} for which all arcs run from tip to root"
+                )
+        segments = tuple(self.segment(*piece) for piece in pieces if piece[-1] > 1e-12 * self.module)
+        return ToothProfile(segments, self.external, self.r_tip_circle, self.r_root_circle, self.n_teeth)

@@ -1,0 +1,238 @@
+"""The involute flank with its fillet: external teeth cut by a rack, internal ones by a shaper (section 3.3.1).
+
+Generation about the pitch point I, with the gear's axis at (0, -r_P) from it: while the gear turns clockwise by psi
+(the generating angle) the rack moves by r_P psi, or the shaper turns by psi N / N_g (eq. 3.15). By the equation of
+meshing (eq. 3.14) the cutter touches the gear where its normal passes through I. So
+
+- the straight flank of the rack and the shaper's involute, of pressure angle alpha, touch at K = w n with
+  n = (cos alpha, s sin alpha), w = r_b (psi + alpha_P), where alpha_P is half the angular thickness of the tooth;
+- the rounded tip of the cutter, of radius rho about C(psi), touches at K = C (1 + rho / |C|) with n = -C / |C|.
+
+The flank is x = R(psi) (K - O): K in the gear's frame. s = +1 for external, -1 for internal teeth.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from scipy.optimize import brentq
+
+from swgpar.errors import InputError
+from swgpar.geometry.profiles.curve import Floats, ToothProfile
+from swgpar.geometry.profiles.curved_segment import CurvedSegment, Local
+from swgpar.geometry.profiles.teeth import Teeth
+
+
+@dataclass(frozen=True)
+class Cutter(Teeth):
+    """Gear and cutter of the same reference profile: external teeth by a rack, internal ones by a shaper; mm.
+
+    Attributes
+    ----------
+    tip_radius : rounding of the cutter's teeth
+    shift : profile shift, in modules: the cutter is set outwards by shift * module
+    cutter_teeth : teeth of the shaper
+    """
+
+    tip_radius: float
+    shift: float
+    cutter_teeth: int = 0
+
+    @property
+    def r_base(self) -> float:
+        """Base radius (eq. 3.12)."""
+        return self.r_pitch * np.cos(self.pressure_angle)
+
+    @property
+    def half_thickness(self) -> float:
+        """Half the angular thickness of the gear's teeth at the pitch circle, alpha_P."""
+        return (0.5 * np.pi + 2.0 * self.side * self.shift * np.tan(self.pressure_angle)) / self.n_teeth
+
+    @property
+    def depth(self) -> float:
+        """How far the cutter's teeth reach beyond the pitch circle."""
+        return self.dedendum - self.side * self.shift * self.module
+
+    @property
+    def r_tip_circle(self) -> float:
+        return self.r_pitch + self.side * self.addendum + self.shift * self.module
+
+    @property
+    def r_root_circle(self) -> float:
+        return self.r_pitch - self.side * self.depth
+
+    @property
+    def r_cutter(self) -> float:
+        """Pitch radius of the shaper."""
+        return 0.5 * self.cutter_teeth * self.module
+
+    def contact_place(self, radius: float) -> float:
+        """Place w on the line of action where the involute reaches `radius`."""
+        base = np.sqrt(radius**2 - self.r_base**2)
+        return self.side * (base - self.r_base * np.tan(self.pressure_angle))
+
+
+def _check_tip(cut: Cutter, limit: float, name: str) -> None:
+    """The rounding must leave the cutter's tooth a flat tip: below `limit`, mm."""
+    if limit <= 0.0:
+        raise InputError(
+            f"{name}.pressure_angle = {np.degrees(cut.pressure_angle):g} is out of range: allowed are smaller angles, "
+            "for which the cutter's tooth does not end in a point"
+        )
+    if cut.tip_radius >= limit:
+        raise InputError(
+            f"{name}.cutter_radius = {cut.tip_radius:g} is out of range: allowed above 0 to below {limit:.6g} mm, "
+            "where the cutter's tooth has no flat tip left"
+        )
+
+
+def _rack_tip(cut: Cutter, name: str) -> tuple[float, float, Callable[[Floats], tuple[Floats, Floats]]]:
+    """Generating angles at the start and the end of the fillet, and C (n, 2) with dC/dpsi (n, 2)."""
+    tangent, rho = np.tan(cut.pressure_angle), cut.tip_radius
+    rise = (1.0 - np.sin(cut.pressure_angle)) / np.cos(cut.pressure_angle)
+    # centre of the rounding: from the tooth's centre line, and below the pitch line
+    flank = cut.half_thickness * cut.r_pitch + cut.depth * tangent
+    across, below = flank + rho * rise, cut.depth - rho
+    _check_tip(cut, min((0.5 * np.pi * cut.module - flank) / rise, cut.depth), name)
+
+    def center(psi: Floats) -> tuple[Floats, Floats]:
+        c = np.stack((across + cut.r_pitch * psi, np.full_like(psi, -below)), axis=-1)
+        return c, np.stack((np.full_like(psi, cut.r_pitch), np.zeros_like(psi)), axis=-1)
+
+    # psi = (c_x - across) / r_P; c_x = -below cot(alpha) where the normal is the flank's, 0 at the root
+    return (-below / tangent - across) / cut.r_pitch, -across / cut.r_pitch, center
+
+
+def _shaper_tip(cut: Cutter, name: str) -> tuple[float, float, Callable[[Floats], tuple[Floats, Floats]]]:
+    """The same as `_rack_tip` for the tip of a shaper's tooth."""
+    alpha, rho, ratio = cut.pressure_angle, cut.tip_radius, cut.n_teeth / cut.cutter_teeth
+    r_g, r_b = cut.r_cutter, cut.r_cutter * np.cos(alpha)
+    r_c = r_g + cut.depth - rho
+
+    def margin(radius: float) -> float:
+        """Polar angle between the middle of the shaper's tooth and the centre of a rounding of this radius."""
+        roll = np.arccos(r_b / (r_g + cut.depth - radius))
+        thickness = np.pi / cut.cutter_teeth - cut.half_thickness * ratio
+        return thickness + np.tan(alpha) - alpha - (np.tan(roll) - roll) - radius / r_b
+
+    limit = cut.depth
+    if margin(limit) < 0.0 < margin(0.0):
+        limit = float(brentq(margin, 0.0, limit, xtol=1e-12 * cut.module))
+    _check_tip(cut, limit if margin(0.0) > 0.0 else 0.0, name)
+    place = np.pi / cut.cutter_teeth - margin(rho)
+
+    def center(psi: Floats) -> tuple[Floats, Floats]:
+        angle = place + ratio * psi
+        c = np.stack((r_c * np.sin(angle), r_c * np.cos(angle) - r_g), axis=-1)
+        return c, ratio * r_c * np.stack((np.cos(angle), -np.sin(angle)), axis=-1)
+
+    # C on the line of action, at the distance w_c from I on the far side of the flank's contact
+    w_c = np.sqrt(r_c**2 - r_b**2) - r_b * np.tan(alpha)
+    return (-np.arcsin(w_c * np.cos(alpha) / r_c) - place) / ratio, -place / ratio, center
+
+
+Contact = Callable[[Floats], tuple[Floats, Floats, Floats, Floats]]
+
+
+def _curve(cut: Cutter, name: str, ends: tuple[float, float], contact: Contact) -> CurvedSegment:
+    """Segment from the generating angle ends[0] to ends[1].
+
+    `contact` gives K (n, 2), dK/dpsi (n, 2), the angle of n in the fixed frame and its derivative (n,).
+    """
+    first, span = ends[0], ends[1] - ends[0]
+
+    def local(t: Floats) -> Local:
+        psi = first + span * t
+        k, dk, normal, dnormal = contact(psi)
+        arm = k + (0.0, cut.r_pitch)
+        c, s = np.cos(psi), np.sin(psi)
+        point = np.stack((c * arm[:, 0] - s * arm[:, 1], s * arm[:, 0] + c * arm[:, 1]), axis=-1)
+        # velocity in the gear's frame, seen from the fixed one: dK + the turn of the arm
+        velocity = dk + np.stack((-arm[:, 1], arm[:, 0]), axis=-1)
+        angle = normal - cut.side * 0.5 * np.pi
+        speed = span * (velocity[:, 0] * np.cos(angle) + velocity[:, 1] * np.sin(angle))
+        return Local(point, angle + psi, speed, span * (dnormal + 1.0))
+
+    return CurvedSegment(name, local)
+
+
+@lru_cache(maxsize=16)
+def involute(cut: Cutter, name: str = "profile") -> ToothProfile:
+    """Build the flank: involute from the addendum circle, fillet down to the dedendum circle."""
+    s, alpha, r_b, rho = cut.side, cut.pressure_angle, cut.r_base, cut.tip_radius
+    if cut.r_tip_circle <= r_b:
+        raise InputError(
+            f"{name}.pressure_angle = {np.degrees(alpha):g} is out of range: allowed are angles whose base circle "
+            f"({r_b:.6g} mm) lies inside the addendum circle ({cut.r_tip_circle:.6g} mm)"
+        )
+    if cut.depth <= 0.0 or cut.addendum + s * cut.shift * cut.module <= 0.0:
+        low, high = sorted((-s * cut.addendum / cut.module, s * cut.dedendum / cut.module))
+        raise InputError(
+            f"{name}.shift = {cut.shift:g} is out of range: allowed above {low:g} to below {high:g} modules, where the "
+            "pitch circle crosses the teeth"
+        )
+    w_tip = cut.contact_place(cut.r_tip_circle)
+    if not cut.external:
+        _check_shaper(cut, w_tip, name)
+    first, last, center = (_rack_tip if cut.external else _shaper_tip)(cut, name)
+    normal = np.array([np.cos(alpha), s * np.sin(alpha)])
+    c = center(np.array([first]))[0][0]
+    w_form = -float(np.hypot(*c)) - rho
+    if r_b * np.tan(alpha) + s * w_form <= 0.0:
+        raise InputError(
+            f"{name}.cutter_radius = {rho:g} undercuts the teeth: allowed are a larger radius, more teeth or a larger "
+            "profile.shift, so that the involute begins above its base circle"
+        )
+
+    def flank(psi: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        k = (r_b * (psi + cut.half_thickness))[:, None] * normal
+        return k, np.broadcast_to(r_b * normal, k.shape), np.full_like(psi, s * alpha), np.zeros_like(psi)
+
+    def fillet(psi: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        c, dc = center(psi)
+        reach = np.hypot(c[:, 0], c[:, 1])
+        turn = (c[:, 0] * dc[:, 1] - c[:, 1] * dc[:, 0]) / reach**2
+        across = np.stack((-c[:, 1], c[:, 0]), axis=-1) / reach[:, None]
+        k = c * (1.0 + rho / reach)[:, None]
+        return k, dc + (rho * turn)[:, None] * across, np.arctan2(-c[:, 1], -c[:, 0]), turn
+
+    ends = w_tip / r_b - cut.half_thickness, w_form / r_b - cut.half_thickness
+    segments = _curve(cut, "involute", ends, flank), _curve(cut, "fillet", (first, last), fillet)
+    profile = ToothProfile(segments, cut.external, cut.r_tip_circle, cut.r_root_circle, cut.n_teeth)
+    if not cut.external:
+        _check_trimming(cut, profile, center, name)
+    return profile
+
+
+def _check_shaper(cut: Cutter, w_tip: float, name: str) -> None:
+    """The shaper's involute must exist where it cuts the ring's tips: above the shaper's own base circle."""
+    least = int(np.ceil(2.0 * w_tip / (cut.module * np.sin(cut.pressure_angle)) + 1e-9))
+    if not least <= cut.cutter_teeth < cut.n_teeth:
+        raise InputError(
+            f"{name}.cutter_teeth = {cut.cutter_teeth} is out of range: allowed {least} to {cut.n_teeth - 1} "
+            "(an involute down to the ring's tips, and a shaper smaller than the ring)"
+        )
+
+
+def _check_trimming(cut: Cutter, profile: ToothProfile, center: Callable, name: str) -> None:
+    """The shaper's tips must pass the ring's tips without cutting them on their way in and out."""
+    psi = np.linspace(-np.pi, np.pi, 7201) * cut.cutter_teeth / cut.n_teeth
+    c = center(psi)[0] + (0.0, cut.r_pitch)
+    x, y = np.cos(psi) * c[:, 0] - np.sin(psi) * c[:, 1], np.sin(psi) * c[:, 0] + np.cos(psi) * c[:, 1]
+    reach = np.hypot(x, y)
+    near = (reach > cut.r_tip_circle - cut.tip_radius) & (np.abs(np.arctan2(x, y)) < np.pi / cut.n_teeth)
+    points = np.stack((np.abs(x), y), axis=-1)[near]
+    # short of the addendum circle only the edge of the top land can be met
+    clear = np.where(
+        reach[near] > cut.r_tip_circle,
+        profile.distance(points)[0],
+        np.linalg.norm(points - profile.point(0.0), axis=1),
+    )
+    if clear.min(initial=np.inf) < cut.tip_radius - 1e-6 * cut.module:
+        raise InputError(
+            f"{name}.cutter_teeth = {cut.cutter_teeth} is out of range: allowed are fewer teeth, so that the shaper "
+            "does not trim the tips of the ring's teeth"
+        )

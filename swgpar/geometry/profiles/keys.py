@@ -1,0 +1,61 @@
+"""The sections [flexible_spline.profile] and [ring_gear.profile]: one set of keys for each `type` of profile."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BeforeValidator, Field
+
+from swgpar.input.quantities import Section, default_type, quantity
+
+
+class QuadrupleArc(Section):
+    """Section 3.3.3."""
+
+    type: Literal["quadruple_arc"] = quantity("quadruple_arc", text="kind of profile")
+    r_tip: float = quantity(unit="mm", text="radius of the tip arc", gt=0.0)
+    r_addendum: float = quantity(unit="mm", text="radius of the addendum arc", gt=0.0)
+    straight_l: float = quantity(0.0, unit="mm", text="length of the straight segment", ge=0.0)
+    r_dedendum: float = quantity(unit="mm", text="radius of the dedendum arc", gt=0.0)
+    r_root: float = quantity(unit="mm", text="radius of the root arc", gt=0.0)
+
+
+class DoubleArc(Section):
+    """Section 3.3.2."""
+
+    type: Literal["double_arc"] = quantity("double_arc", text="kind of profile")
+    r_addendum: float = quantity(unit="mm", text="radius of the addendum arc", gt=0.0)
+    r_dedendum: float = quantity(unit="mm", text="radius of the dedendum arc", gt=0.0)
+
+
+class _Involute(Section):
+    """Section 3.3.1."""
+
+    type: Literal["involute"] = quantity("involute", text="kind of profile")
+    pressure_angle: float | None = quantity(
+        None, unit="deg", text="pressure angle of this gear; without it drive.pressure_angle", gt=0.0, lt=45.0
+    )
+    cutter_radius: float = quantity(unit="mm", text="tip radius of the cutter's teeth", gt=0.0)
+    shift: float = quantity(0.0, unit="modules", text="profile shift coefficient", ge=-1.0, le=1.0)
+
+
+class RackInvolute(_Involute):
+    """External teeth, cut by a rack."""
+
+
+class ShaperInvolute(_Involute):
+    """Internal teeth, cut by a shaper."""
+
+    cutter_teeth: int = quantity(text="teeth of the shaper-cutter", ge=8, le=2000)
+
+
+ExternalProfile = Annotated[
+    QuadrupleArc | DoubleArc | RackInvolute,
+    Field(discriminator="type"),
+    BeforeValidator(default_type("quadruple_arc")),
+]
+InternalProfile = Annotated[
+    QuadrupleArc | DoubleArc | ShaperInvolute,
+    Field(discriminator="type"),
+    BeforeValidator(default_type("quadruple_arc")),
+]

@@ -1,0 +1,89 @@
+"""Reading of TOML input files with ``--set`` overrides into validated sections."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import ValidationError
+
+from swgpar.errors import InputError
+from swgpar.input.quantities import Section, sentence, show
+
+SectionType = TypeVar("SectionType", bound=Section)
+
+
+def read_toml(path: str | Path) -> dict[str, Any]:
+    """Read a TOML file; every failure is an `InputError` of one sentence that names the file."""
+    path = Path(path)
+    try:
+        text = path.read_bytes().decode("utf-8-sig")
+    except FileNotFoundError:
+        raise InputError(f"{path} cannot be read: there is no such file") from None
+    except IsADirectoryError:
+        raise InputError(f"{path} cannot be read: it is a directory, not a TOML file") from None
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path} cannot be read: byte {error.start} is not UTF-8 text") from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"{show(str(path))} cannot be read: {reason}") from None
+    try:
+        return tomllib.loads(text)
+    except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
+        reason = " ".join(str(error).split())
+        raise InputError(f"{path} is not valid TOML: {reason}") from None
+
+
+def parse_value(text: str) -> Any:
+    """Return `text` read as a TOML value; a text that is none stays a bare string."""
+    try:
+        table = tomllib.loads(f"value = {text}")
+    except (ValueError, RecursionError):
+        return text
+    return table["value"] if set(table) == {"value"} else text
+
+
+def apply_overrides(table: dict[str, Any], overrides: Sequence[str]) -> dict[str, Any]:
+    """Return a copy of `table` with each ``section.key=value`` of `overrides` set, in order."""
+    for override in overrides:
+        key, text = split_override(override)
+        table = with_value(table, key, parse_value(text))
+    return table
+
+
+def split_override(override: str) -> tuple[str, str]:
+    """Key and text of the value of a ``section.key=value``."""
+    key, equals, text = override.partition("=")
+    names = [name.strip() for name in key.split(".")]
+    if not equals or not text.strip() or len(names) < 2 or not all(names):
+        raise InputError(f"--set {show(override)} cannot be read: write section.key=value")
+    return ".".join(names), text.strip()
+
+
+def with_value(table: dict[str, Any], key: str, value: Any) -> dict[str, Any]:
+    """Return a copy of `table` with the value of ``section.key`` replaced; sections on the way are made."""
+    table = _copy(table)
+    target, names = table, key.split(".")
+    for depth, name in enumerate(names[:-1], start=1):
+        target = target.setdefault(name, {})
+        if not isinstance(target, dict):
+            raise InputError(
+                f"{key} = {show(value)} cannot be applied: {'.'.join(names[:depth])} = {show(target)} "
+                "is a value, not a section"
+            )
+    target[names[-1]] = value
+    return table
+
+
+def _copy(table: dict[str, Any]) -> dict[str, Any]:
+    return {key: _copy(value) if isinstance(value, dict) else value for key, value in table.items()}
+
+
+def validate(model: type[SectionType], table: dict[str, Any]) -> SectionType:
+    """Validate `table` against `model`; the first finding becomes an `InputError` of one sentence."""
+    try:
+        return model.model_validate(table)
+    except ValidationError as error:
+        raise InputError(sentence(model, error)) from None

@@ -1,0 +1,1 @@
+"""The discrete problem and its Newton solver."""

@@ -1,0 +1,292 @@
+"""Linear systems: the grounded stiffness, bordered by the constraints of the couplings, factorised or iterated on."""
+
+from __future__ import annotations
+
+import numpy as np
+from petsc4py import PETSc
+
+from swgpar.fem.partition import Partition
+from swgpar.fem.vectors import create_vector, read_multipliers
+from swgpar.log import logger
+from swgpar.solve.factor_reuse import ReusedFactor, price
+
+ORDERING = {2: 6, 3: 4}
+"""Of the unknowns for MUMPS (its ICNTL(7)), by dimensions: PORD's nested dissection keeps the factor of a loaded solid
+drive, whose gears the teeth tie together, at half of what minimum degree makes of it; in the plane that is faster."""
+
+
+def mumps_defaults(dims: int) -> dict[str, object]:
+    """Options of PETSc for the factor of a matrix with so many unknowns per node."""
+    return {
+        "mat_mumps_icntl_7": ORDERING[dims],
+        "mat_mumps_icntl_13": 1,  # no ScaLAPACK root: its Cholesky refuses the indefinite tangents of early iterations
+        "mat_mumps_icntl_14": 60,  # per cent of memory above the estimate
+    }
+
+
+MORE_MEMORY, OUT_OF_ESTIMATE = (120, 240, 480), (-8, -9)
+"""Per cent above MUMPS' estimate that are tried after these errors of its INFOG(1)."""
+
+GAMG_DEFAULTS = {
+    "ksp_rtol": 1e-6,
+    "ksp_max_it": 2000,
+    "ksp_pc_side": "right",  # the true residual is judged: the preconditioned one hides the soft modes of a thin cup
+    "ksp_gmres_restart": 200,
+    "mg_levels_ksp_type": "chebyshev",
+    "mg_levels_ksp_max_it": 4,
+    "mg_levels_pc_type": "bjacobi",  # flat elements defeat Jacobi's iteration as a smoother
+    "mg_levels_sub_pc_type": "icc",
+    "mg_levels_sub_pc_factor_shift_type": "positive_definite",
+}
+
+
+_own: set[str] = set()
+"""Options of PETSc that this process has set itself; all others are the user's."""
+
+
+def set_defaults(prefix: str, defaults: dict[str, object]) -> None:
+    """Set options that the user has not set; PETSc keeps them for all solvers of a prefix, and reads some late."""
+    options = PETSc.Options(prefix)
+    for name, value in defaults.items():
+        if prefix + name in _own or not options.hasName(name):
+            options[name] = value
+            _own.add(prefix + name)
+
+
+class BorderedSystem:
+    """Preconditioner (PETSc `PC` of type python) for [K, C^T; C, 0] with solutions of K' = K + B B^T.
+
+    `linear` says how they are got: "direct", by a factor (MUMPS); "iterative", by GMRES with smoothed aggregation
+    (GAMG) on the rigid-body modes of the nodes at `positions` (n_own, 3) mm.
+
+    K alone is singular while the drive floats; the grounded K' is not. With Z = K'^-1 [B, C^T] the small system
+
+        (1 - B^T Z_B) s + B^T Z_C l = B^T z,     C Z_B s - C Z_C l = r_l - C z,     z = K'^-1 r_u
+
+    gives x = z + Z_B s - Z_C l exactly, whether K is symmetric or not: the grounding leaves no trace.
+
+    The last border is the motion of the output. Where it is not prescribed but loaded, its Newton step is the one at
+    which its l vanishes, and it is bounded: a drive whose teeth have parted floats, and there the step has no end.
+    All other unknowns follow the bounded motion.
+
+    keep : use a factor for later tangents too, see `ReusedFactor`
+    """
+
+    def __init__(
+        self,
+        partition: Partition,
+        linear: str,
+        positions: np.ndarray,
+        options_prefix: str,
+        symmetric: bool = True,
+        keep: bool = False,
+    ) -> None:
+        self.partition = partition
+        self.ksp = PETSc.KSP().create(comm=partition.comm)
+        self.ksp.setOptionsPrefix(options_prefix)
+        pc = self.ksp.getPC()
+        self.modes: PETSc.NullSpace | None = None
+        self.unblocked: PETSc.Mat | None = None
+        self.factored: PETSc.Mat | None = None
+        if linear == "direct":
+            self.ksp.setType(PETSc.KSP.Type.PREONLY)
+            pc.setType(PETSc.PC.Type.CHOLESKY if symmetric else PETSc.PC.Type.LU)
+            pc.setFactorSolverType("mumps")
+            self.defaults: dict[str, object] = mumps_defaults(partition.dims)
+        else:
+            self.ksp.setType(PETSc.KSP.Type.GMRES)
+            pc.setType(PETSc.PC.Type.GAMG)
+            self.defaults = GAMG_DEFAULTS
+            place = positions[:, : partition.dims].ravel()
+            place = PETSc.Vec().createWithArray(place, bsize=partition.dims, comm=partition.comm)
+            self.modes = PETSc.NullSpace().createRigidBody(place)
+        set_defaults(options_prefix, self.defaults)
+        self.ksp.setFromOptions()
+        self.grounding: list[PETSc.Vec] = []
+        self.border: list[PETSc.Vec] = []
+        self.rows: list[int] = []
+        self.columns: list[PETSc.Vec] = []
+        self.kept = ReusedFactor(create_vector(partition), self.multiply, self.solve_with_factor) if keep else None
+
+    def solve_grounded(self, right: PETSc.Vec, x: PETSc.Vec) -> None:
+        """x = K'^-1 right; in the plane the matrix has no z, and x gets a zero there."""
+        dims = self.partition.dims
+        if dims == 3:
+            self.ksp.solve(right, x)
+            return
+        into, out = self.ksp.getOperators()[0].createVecs()
+        for vector, flat in ((right, into), (x, out)):
+            flat.array.reshape(-1, dims)[:] = vector.array_r.reshape(-1, 3)[:, :dims]
+        self.ksp.solve(into, out)
+        x.array.reshape(-1, 3)[:, :dims] = out.array_r.reshape(-1, dims)
+        x.array.reshape(-1, 3)[:, dims:] = 0.0
+
+    def set_system(
+        self,
+        matrix: PETSc.Mat,
+        grounding: list[PETSc.Vec],
+        border: list[PETSc.Vec],
+        rows: list[int],
+        bound: float | None = None,
+    ) -> None:
+        """K', vectors B and C^T (full length, zero in the multiplier rows), multiplier rows of C.
+
+        bound : of C x in the last row when that is loaded instead of prescribed
+        """
+        self.matrix, self.grounding, self.border, self.rows, self.bound = matrix, grounding, border, rows, bound
+        self.free = 0 if bound is None else 1
+
+    def setUp(self, pc: PETSc.PC) -> None:
+        """Factorise the matrix of the last `set_system`, unless the kept factor still serves."""
+        if self.kept is None or not self.kept.serves(self._layout(), self._price()):
+            self.factorise()
+
+    def _layout(self) -> tuple[int, ...]:
+        return len(self.grounding), len(self.border), self.free
+
+    def renew(self) -> None:
+        """Take no kept factor for the next system, which has little in common with the last one."""
+        if self.kept is not None:
+            self.kept.stale = True
+
+    def prepare(self) -> None:
+        """Factor, or the set-up of the multigrid, of the present matrix."""
+        matrix = self.matrix
+        set_defaults(self.ksp.getOptionsPrefix(), self.defaults)  # another model may have set its own since
+        if self.modes is not None:  # GAMG has no triangular storage
+            if self.unblocked is not None:
+                self.unblocked.destroy()
+            self.unblocked = matrix.convert("aij", out=PETSc.Mat())
+            self.unblocked.setNearNullSpace(self.modes)
+            matrix = self.unblocked
+        self.ksp.setOperators(matrix)
+        self.ksp.getPC().setReusePreconditioner(False)
+        self.ksp.setUp()
+        if self.modes is None:
+            self._mend_factor(matrix)
+        self.ksp.getPC().setReusePreconditioner(self.kept is not None)  # the matrix changes below a kept factor
+
+    def _mend_factor(self, matrix: PETSc.Mat) -> None:
+        """Factorise again with more memory where MUMPS ran out of what it had estimated (users' guide, section 8)."""
+        pc, options = self.ksp.getPC(), PETSc.Options(self.ksp.getOptionsPrefix())
+        for more in MORE_MEMORY:
+            if pc.getFactorMatrix().getMumpsInfog(1) not in OUT_OF_ESTIMATE:
+                break
+            logger.info("   MUMPS needs more memory than it had estimated: %d %% above it", more)
+            options["mat_mumps_icntl_14"] = self.defaults["mat_mumps_icntl_14"] = more
+            pc.reset()
+            self.ksp.setOperators(matrix)
+            self.ksp.setUp()
+        error, detail = (pc.getFactorMatrix().getMumpsInfog(k) for k in (1, 2))
+        if error < 0:
+            logger.warning("   MUMPS cannot factorise: INFOG(1) = %d, INFOG(2) = %d", error, detail)
+
+    def _price(self) -> float:
+        """Solves that take as long as another factorisation."""
+        factor = None if self.factored is None else self.ksp.getPC().getFactorMatrix()
+        entries = 0 if factor is None else factor.getMumpsInfog(29)  # in millions where it is negative
+        if entries == 0:  # no factor yet, or one that failed
+            return 0.0
+        entries = entries if entries > 0 else -1e6 * entries
+        return price(factor.getMumpsRinfog(3), entries, self.matrix is self.factored)
+
+    def factorise(self) -> None:
+        """Factor, or set up, for the present matrix, and solve for the borders."""
+        self.prepare()
+        sides = self.grounding + self.border
+        if len(self.columns) != len(sides):
+            self.columns = [vector.duplicate() for vector in sides]
+        self._solve_sides(sides)
+        b, c, nb = self.grounding, self.border, len(self.grounding)
+        small = np.array([[left.dot(right) for right in self.columns] for left in b + c]).reshape(len(b + c), -1)
+        system = np.zeros_like(small)
+        system[:nb, :nb] = np.eye(nb) - small[:nb, :nb]
+        system[:nb, nb:] = small[:nb, nb:]
+        system[nb:, :nb] = small[nb:, :nb]
+        system[nb:, nb:] = -small[nb:, nb:]
+        self.system = system
+        self.factored = self.matrix
+        if self.kept is not None:
+            self.kept.renewed(self._layout())
+
+    def _solve_sides(self, sides: list[PETSc.Vec]) -> None:
+        """Columns Z, the solutions for the borders."""
+        self.failed = False
+        if self.modes is None and self.ksp.getConvergedReason() >= 0:
+            # all at once: a solve is bound by reading the factor
+            dims, (n, rows) = self.partition.dims, self.matrix.getSizes()[0]
+            into = PETSc.Mat().createDense([[n, rows], [None, len(sides)]], comm=self.partition.comm)
+            into.setUp()
+            for k, vector in enumerate(sides):
+                into.getDenseArray()[:, k] = vector.array_r.reshape(-1, 3)[:, :dims].ravel()
+            into.assemble()
+            out = into.duplicate()
+            self.ksp.getPC().getFactorMatrix().matSolve(into, out)
+            for k, solution in enumerate(self.columns):
+                solution.set(0.0)
+                solution.array.reshape(-1, 3)[:, :dims] = out.getDenseArray()[:, k].reshape(-1, dims)
+            into.destroy()
+            out.destroy()
+            return
+        self.ksp.setInitialGuessNonzero(self.modes is not None)  # those of the last tangent
+        for vector, solution in zip(sides, self.columns):
+            self.solve_grounded(vector, solution)
+            if self.ksp.getConvergedReason() < 0:
+                self.failed = True
+                solution.set(0.0)  # nothing to start the next tangent's from
+        self.ksp.setInitialGuessNonzero(False)
+
+    def apply(self, pc: PETSc.PC, right: PETSc.Vec, x: PETSc.Vec) -> None:
+        if self.kept is not None:
+            self.kept.faces(right)
+        if self.kept is not None and not self.kept.fresh:
+            # the bound needs the answer to a unit of load, which GMRES does not give
+            if self.kept.solve(right, x) and (self.bound is None or abs(self.border[-1].dot(x)) < self.bound):
+                return
+            self.factorise()
+        self.solve_with_factor(right, x, self.bound)
+
+    def multiply(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
+        """y = [K' - B B^T, C^T; C, 0] x of the last `set_system`; multipliers that it does not use stand alone."""
+        n, last = self.partition.n_multipliers, self.partition.comm.rank == self.partition.comm.size - 1
+        used = self.rows[: len(self.border) - self.free]
+        multipliers = read_multipliers(self.partition, x)
+        moved = x.copy()
+        if last:
+            moved.array[-n:] = 0.0
+        self.matrix.mult(moved, y)
+        for vector in self.grounding:
+            y.axpy(-vector.dot(moved), vector)
+        tail = multipliers.copy()
+        for vector, row in zip(self.border, used):
+            y.axpy(multipliers[row], vector)
+            tail[row] = vector.dot(moved)
+        if last:
+            y.array[-n:] = tail
+        moved.destroy()
+
+    def solve_with_factor(self, right: PETSc.Vec, x: PETSc.Vec, bound: float | None = None) -> None:
+        """Solution of the system of the factor; without `bound` the output moves freely where it is loaded."""
+        self.solve_grounded(right, x)
+        if self.failed or self.ksp.getConvergedReason() < 0:
+            x.set(np.nan)  # the residual at such a step is not finite: the increment is cut back
+            return
+        nb = len(self.grounding)
+        prescribed = len(self.columns) - self.free
+        used = self.rows[: prescribed - nb]
+        sides = (self.grounding + self.border)[: prescribed if bound is None else None]
+        load = np.array([v.dot(x) for v in sides])
+        load[nb:] *= -1.0
+        load[nb:prescribed] += read_multipliers(self.partition, right)[used]
+        if bound is None:
+            answer = np.linalg.solve(self.system[:prescribed, :prescribed], load)
+        else:
+            answer = np.linalg.solve(self.system, load)
+            unit = np.linalg.solve(self.system, np.eye(len(load))[-1])
+            force, stiffness = answer[-1], -unit[-1]
+            motion = force / stiffness if stiffness * bound > abs(force) else np.sign(force) * bound
+            answer += motion * unit
+        for k, value in enumerate(answer):
+            x.axpy(value if k < nb else -value, self.columns[k])
+        if self.partition.comm.rank == self.partition.comm.size - 1:
+            x.array[-self.partition.n_multipliers :][used] = answer[nb:prescribed]

@@ -1,0 +1,130 @@
+"""A factor that serves later systems too: GMRES on the present one, preconditioned by the kept factor.
+
+In the cup drive one factorisation costs as much as 5 (mesh/coarse.toml) to 12 (mesh/full.toml) solves with it, the
+analysis of another pattern once or twice that, and from one Newton iteration to the next, or one increment to
+the next, the tangent changes by the rotation of the elements and by some contact points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from petsc4py import PETSc
+
+RTOL = 1e-4
+"""Of GMRES: a Newton step that exact loses nothing but its last, quadratic, iteration. Looser steps while contacts
+switch spare a few iterations of GMRES and cost some of Newton's."""
+
+ENOUGH, LAST = 0.2, 0.1
+"""Share of the residual at which Newton's iteration ends that GMRES leaves, and of the present one at most: more
+exactness is of no use to the last step."""
+
+LONGEST = 40
+"""Iterations of GMRES after which a factor is made at once."""
+
+INTENSITY = 40.0
+"""Operations on an entry of the factor, of a factorisation that takes as long as a solve with it: 22 to 54 on meshes of
+60,000 to 920,000 unknowns (docs/benchmarks/scaling.csv), the most on large ones."""
+
+ANALYSIS = 1.5
+"""Factorisations that cost as much as the analysis of another pattern by nested dissection: 1 to 2 in the loaded drive
+on mesh/full.toml (`-log_view`), more before its gears touch."""
+
+
+def price(operations: float, entries: float, analysed: bool) -> float:
+    """Solves that take as long as a factorisation, from its counts of floating-point operations and of entries.
+
+    analysed : whether its pattern is known
+
+    A count, and no clock: a run takes the same way every time.
+    """
+    return operations / (INTENSITY * entries) * (1.0 if analysed else 1.0 + ANALYSIS)
+
+
+Operation = Callable[[PETSc.Vec, PETSc.Vec], None]
+"""Computes its second argument from the first."""
+
+
+class ReusedFactor:
+    """Whether a factor is kept, and GMRES with it.
+
+    Parameters
+    ----------
+    like : vector of the system
+    multiply, solve : with the present system; with the factor
+
+    `goal` is the residual's norm that ends Newton's iteration at the latest; `fresh` says that the factor is that of
+    the present system, `stale` that it is to be renewed before its next use; `iterations` are those of all solves.
+    """
+
+    def __init__(self, like: PETSc.Vec, multiply: Operation, solve: Operation) -> None:
+        self.fresh, self.stale = False, True
+        self.layout: tuple[int, ...] = ()
+        self.iterations: list[int] = []
+        self.goal, self.least, self.lost, self.last = 0.0, LONGEST, 0, 0
+        operator = PETSc.Mat().createPython([like.getSizes()] * 2, _Multiply(multiply), comm=like.comm)
+        operator.setUp()
+        self.ksp = PETSc.KSP().create(comm=like.comm)
+        self.ksp.setOptionsPrefix("kept_")
+        self.ksp.setOperators(operator)
+        self.ksp.setType(PETSc.KSP.Type.GMRES)
+        self.ksp.setPCSide(PETSc.PC.Side.RIGHT)
+        self.ksp.setGMRESRestart(LONGEST)
+        pc = self.ksp.getPC()
+        pc.setType(PETSc.PC.Type.PYTHON)
+        pc.setPythonContext(_Solve(solve))
+        self.ksp.setFromOptions()
+
+    def destroy(self) -> None:
+        """Release GMRES, which refers to the system; collective."""
+        self.ksp.destroy()
+
+    def renewed(self, layout: tuple[int, ...]) -> None:
+        """The factor is that of the present system now. layout : what a system must share to be served"""
+        self.fresh, self.stale, self.layout = True, False, layout
+        self.least, self.lost, self.last = LONGEST, 0, 0
+
+    def serves(self, layout: tuple[int, ...], price: float) -> bool:
+        """Whether the factor is to be used with a new system.
+
+        price : of a factor of that system, in iterations. It is due when the iterations beyond those of the old one's
+        best solve have cost its price, which takes at most twice the time of the best choice, or when one solve has
+        cost more than that.
+        """
+        self.fresh = False
+        return not self.stale and self.layout == layout and max(self.lost, self.last) <= price
+
+    def faces(self, right: PETSc.Vec) -> None:
+        """Take note of Newton's residual, the right-hand side of the present system."""
+        norm = right.norm()
+        enough = min(ENOUGH * self.goal / norm, LAST) if norm > 0.0 else LAST
+        self.ksp.setTolerances(rtol=max(RTOL, enough), max_it=LONGEST)
+
+    def solve(self, right: PETSc.Vec, x: PETSc.Vec) -> bool:
+        """Solve the present system as exactly as its place in Newton's iteration asks; whether GMRES converged."""
+        self.ksp.solve(right, x)
+        self.last = self.ksp.getIterationNumber()
+        self.iterations.append(self.last)
+        self.least = min(self.least, self.last)
+        self.lost += self.last - self.least
+        return self.ksp.getConvergedReason() > 0
+
+
+class _Multiply:
+    """PETSc `Mat`."""
+
+    def __init__(self, multiply: Operation) -> None:
+        self.multiply = multiply
+
+    def mult(self, mat: PETSc.Mat, x: PETSc.Vec, y: PETSc.Vec) -> None:
+        self.multiply(x, y)
+
+
+class _Solve:
+    """PETSc `PC`."""
+
+    def __init__(self, solve: Operation) -> None:
+        self.solve = solve
+
+    def apply(self, pc: PETSc.PC, right: PETSc.Vec, x: PETSc.Vec) -> None:
+        self.solve(right, x)
