@@ -10,9 +10,9 @@ from typing import Any
 
 import program
 
-from swgpar.analysis.coarse_start import recounted
 from swgpar.meshing import MeshRecipe, load_recipe
 from swgpar.meshing.recipe import to_toml
+from swgpar.meshing.recipe_counts import with_counts
 
 
 def run(folder: Path, design: str, mesh: str | Path, overrides: list[str], ranks: int) -> dict[str, Any]:
@@ -40,7 +40,7 @@ def run(folder: Path, design: str, mesh: str | Path, overrides: list[str], ranks
 def refined(mesh: str, path: Path, factor: float, keys: Sequence[str] = ()) -> Path:
     """Write a recipe with `factor` times as many elements: by the given keys (section.key), or in every direction."""
     recipe = load_recipe(mesh)
-    finer = recounted(recipe, lambda *count: -int(-factor * count[-1] // 1))
+    finer = with_counts(recipe, lambda *count: -int(-factor * count[-1] // 1))
     if keys:
         content = recipe.model_dump(exclude_none=True)
         for section, name in (key.split(".") for key in keys):

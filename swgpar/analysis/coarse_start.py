@@ -7,100 +7,23 @@ state does not depend on the way to it, so that the result is the same to the so
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
-from scipy.sparse import csr_matrix
-from scipy.spatial import Delaunay, QhullError, cKDTree
 
 from swgpar.analysis.drive_model import DriveModel, stresses
 from swgpar.analysis.load_stepping import LOADED, LoadStepper
-from swgpar.analysis.predictor import turned
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import LoadState
-from swgpar.errors import InputError, SwgparError
+from swgpar.errors import SwgparError
 from swgpar.fem.vectors import read_field, write_field
-from swgpar.input.toml_file import validate
+from swgpar.geometry.rotation import rotated
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
-from swgpar.meshing.sector import SectorMesh
-
-SMALLEST = {"tip": 2, "root": 2}
-"""Counts that a recipe may not go below; all others reach 1, along the face width 2 or 3."""
-
-
-def recounted(recipe: MeshRecipe, count: Callable[[str, str, int], int]) -> MeshRecipe:
-    """The recipe with count(section, name, elements) for every count, gradings as they are.
-
-    The middle of the face width stays what it is, a node or an element: a crowned cam touches along it. Where the
-    coarser mesh has no node there its ring takes a shape of its own, 0.1 micrometres beside that of the finer one, and
-    the finer mesh finds its contacts anew. Raises InputError beyond bounds.
-    """
-
-    def section(title: str, counts: dict[str, int | float]) -> dict[str, int | float]:
-        return {name: count(title, name, value) if isinstance(value, int) else value for name, value in counts.items()}
-
-    content = {title: section(title, counts) for title, counts in recipe.model_dump(exclude_none=True).items()}
-    if recipe.face_width is not None:
-        width = content["face_width"]
-        width["elements"] += (width["elements"] + recipe.face_width.elements) % 2
-    return validate(MeshRecipe, content)
-
-
-def coarser(recipe: MeshRecipe) -> MeshRecipe:
-    """The recipe with half of every count, rounded up."""
-    return recounted(recipe, lambda _, name, value: max(SMALLEST.get(name, 1), -(-value // 2)))
-
-
-def interpolation(coarse: SectorMesh, fine: SectorMesh) -> csr_matrix:
-    """Matrix (n_fine, n_coarse) that takes nodal values of the coarse sector to the nodes of the fine one.
-
-    Linear in the tetrahedra (triangles in the plane) between the coarse nodes, in cylindrical coordinates, in which
-    rim and cup are flat. Nodes outside are extrapolated, from the cell beside them that they are least outside of.
-    Raises InputError where the coarse nodes have no such tetrahedra.
-    """
-    plane = coarse.tied is not None
-    nodes = np.unique(coarse.tied) if plane else np.arange(len(coarse.coords))
-    scale = float(np.hypot(*coarse.coords[:, :2].T).max())
-    place, wanted = _unrolled(coarse.coords[nodes], scale, plane), _unrolled(fine.coords, scale, plane)
-    try:
-        mesh, dims = Delaunay(place), place.shape[1]
-    except QhullError as error:
-        raise InputError(f"no state can be taken from the other mesh: {str(error).splitlines()[0]}") from None
-    cell = mesh.find_simplex(wanted, tol=1e-9)
-    volume = np.abs(np.linalg.det(place[mesh.simplices[:, 1:]] - place[mesh.simplices[:, :1]]))
-    sound = volume > 1e-3 * np.median(volume)
-    at_node = [[] for _ in place]
-    for k in np.flatnonzero(sound):
-        for node in mesh.simplices[k]:
-            at_node[node].append(k)
-    outside = np.flatnonzero((cell < 0) | ~sound[cell])
-    _, nearest = cKDTree(place).query(wanted[outside], k=4)
-    for k, around in zip(outside, nearest):
-        choice = np.unique(np.concatenate([at_node[node] for node in around]).astype(np.int64))
-        weight = _barycentric(mesh, choice, np.repeat(wanted[k : k + 1], len(choice), axis=0))
-        cell[k] = choice[weight.min(axis=1).argmax()]
-    weight = _barycentric(mesh, cell, wanted)
-    where = np.repeat(np.arange(len(wanted)), dims + 1), nodes[mesh.simplices[cell].ravel()]
-    return csr_matrix((weight.ravel(), where), shape=(len(wanted), len(coarse.coords)))
-
-
-def _unrolled(points: np.ndarray, scale: float, plane: bool) -> np.ndarray:
-    """Points (n, 3) near +y as angle times `scale`, radius and, in space, z; mm."""
-    radius = np.hypot(points[:, 0], points[:, 1])
-    around = np.arctan2(points[:, 0], points[:, 1]) * scale
-    return np.column_stack([around, radius] if plane else [around, radius, points[:, 2]])
-
-
-def _barycentric(mesh: Delaunay, cell: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Weights (n, dims + 1) of the corners of cells (n,) at points (n, dims)."""
-    dims = points.shape[1]
-    transform = mesh.transform[cell]
-    first = np.einsum("nij,nj->ni", transform[:, :dims], points - transform[:, dims])
-    return np.column_stack([first, 1.0 - first.sum(axis=1)])
+from swgpar.meshing.interpolation import interpolation
+from swgpar.meshing.recipe_counts import coarser
 
 
 def transfer(coarse: DriveModel, x: PETSc.Vec, fine: DriveModel, y: PETSc.Vec) -> None:
@@ -109,10 +32,10 @@ def transfer(coarse: DriveModel, x: PETSc.Vec, fine: DriveModel, y: PETSc.Vec) -
         first, end = fine.partition.owned(body)
         sectors = np.arange(first, end)
         angle = layout.turn(layout.first_tooth + sectors)
-        local = turned(read_field(coarse.partition, body, sectors, x), -angle)
+        local = rotated(read_field(coarse.partition, body, sectors, x), -angle[:, None])
         matrix = interpolation(coarse.partition.layouts[body].mesh, layout.mesh)
         values = np.stack([matrix @ sector for sector in local]) if len(local) else np.zeros((0, matrix.shape[0], 3))
-        write_field(fine.partition, body, sectors, turned(values, angle), y)
+        write_field(fine.partition, body, sectors, rotated(values, angle[:, None]), y)
     if fine.comm.rank == fine.comm.size - 1:
         n = fine.partition.n_multipliers
         y.array[-n:] = x.array_r[-n:]

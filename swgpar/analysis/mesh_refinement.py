@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.analysis.coarse_start import Level, coarser, level_of, load, recounted
+from swgpar.analysis.coarse_start import Level, level_of, load
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.error_estimate import ORDER
 from swgpar.design.drive_design import SECTOR_BEND, DriveDesign
@@ -21,6 +21,7 @@ from swgpar.design.load_states import LoadState
 from swgpar.errors import ConvergenceError, InputError
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe, build_sector_meshes
+from swgpar.meshing.recipe_counts import coarser, doubled
 
 MEASURE = "fs_s1"
 """Stress whose accuracy is asked for."""
@@ -95,14 +96,6 @@ def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
     if "condensed_sectors" not in design.solver.model_fields_set and small:
         solver["condensed_sectors"] = True
     return design.model_copy(update={**changes, "solver": design.solver.model_copy(update=solver)})
-
-
-def doubled(recipe: MeshRecipe, counts: Counts, times: int = 1) -> MeshRecipe:
-    """The recipe with these counts doubled, so many times; an odd one along the face width stays odd, one higher.
-
-    Raises InputError beyond bounds.
-    """
-    return recounted(recipe, lambda title, name, value: value << times if name in counts.get(title, ()) else value)
 
 
 def error_after(change: float, before: float = 0.0) -> float:

@@ -11,6 +11,7 @@ from petsc4py import PETSc
 
 from swgpar.fem.partition import Partition
 from swgpar.fem.vectors import read_field, write_field
+from swgpar.geometry.rotation import rotated
 
 APART = 1.5
 """How many times farther away than the first the second state on one side is, at least: of states close together the
@@ -70,17 +71,11 @@ def predict(
             there, state = states[k]
             turn = (angle - there) * drift + own_slip
             sectors = own + tooth
-            local = turned(read_field(partition, body, sectors, state), -layout.turn(layout.first_tooth + sectors))
-            moved += weight * (turned(coords + local, np.full(len(own), turn)) - coords)
-        at = layout.turn(layout.first_tooth + own)
-        new.append((body, own, turned(coords + moved, at) - turned(np.repeat(coords[None], len(own), axis=0), at)))
+            local = rotated(
+                read_field(partition, body, sectors, state), -layout.turn(layout.first_tooth + sectors)[:, None]
+            )
+            moved += weight * (rotated(coords + local, np.full((len(own), 1), turn)) - coords)
+        at = layout.turn(layout.first_tooth + own)[:, None]
+        new.append((body, own, rotated(coords + moved, at) - rotated(coords, at)))
     for body, own, values in new:
         write_field(partition, body, own, values, x)
-
-
-def turned(vectors: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """Vectors (n, m, 3) of n sectors turned about z by angles (n,)."""
-    c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
-    return np.stack(
-        [c * vectors[..., 0] - s * vectors[..., 1], s * vectors[..., 0] + c * vectors[..., 1], vectors[..., 2]], axis=-1
-    )

@@ -14,6 +14,7 @@ import numpy as np
 from swgpar.contact.enforcement import penetration, pressure
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.sparse import BlockRows
+from swgpar.geometry.rotation import HALF_TURN
 from swgpar.kernel import add_face_blocks
 
 
@@ -105,7 +106,7 @@ class RigidContact:
     ) -> None:
         """Gaps and pressures at displacement u (n_local, 3); adds to residual (n_local, 3) and tangent rows."""
         field = np.where(self.conn[..., None] >= 0, u[self.conn], 0.0)
-        field[self.flip == 1] *= (-1.0, -1.0, 1.0)
+        field[self.flip == 1] *= HALF_TURN
         x = np.einsum("qa,fai->fqi", self.shape, self.coords + field)
         c, s = np.cos(pose.angle), np.sin(pose.angle)
         turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
@@ -127,7 +128,7 @@ class RigidContact:
         if residual is not None:
             nodal = -np.einsum("fq,qa,fqi->fai", force, self.shape, gradient)
             flip, conn = self.flip[pick], self.conn[pick]
-            nodal[flip == 1] *= (-1.0, -1.0, 1.0)
+            nodal[flip == 1] *= HALF_TURN
             free = conn >= 0
             for axis in range(3):
                 residual[:, axis] += np.bincount(conn[free], nodal[..., axis][free], minlength=len(residual))

@@ -8,6 +8,7 @@ from scipy.spatial import cKDTree
 from swgpar.design.drive_design import DriveDesign
 from swgpar.geometry.cams import make_cam, pin_travel, taut_length
 from swgpar.geometry.profiles import make_profile
+from swgpar.geometry.rotation import rotated
 
 
 def flank_clearance(design: DriveDesign, n_angles: int = 721, n_points: int = 200) -> float:
@@ -28,10 +29,10 @@ def flank_clearance(design: DriveDesign, n_angles: int = 721, n_points: int = 20
     tree, normal = cKDTree(ring.point(samples)), ring.normal(samples)
     smallest = np.inf
     for side in (1.0, -1.0):
-        x = place[:, None] + turned(flank * [side, 1.0] - [0.0, r], turn[:, None])
+        x = place[:, None] + rotated(flank * [side, 1.0] - [0.0, r], turn[:, None])
         # in the frame of the wave generator the slot that goes with a tooth at psi is at psi N_fs / N_rg
         angle = psi * design.drive.teeth_fs / design.drive.teeth_rg - side * np.pi / design.drive.teeth_rg
-        in_ring = (turned(x, -angle[:, None]) * [-side, 1.0]).reshape(-1, 2)
+        in_ring = (rotated(x, -angle[:, None]) * [-side, 1.0]).reshape(-1, 2)
         in_ring = in_ring[np.hypot(*in_ring.T) > ring.r_tip_circle]
         if len(in_ring):
             # to the nearest sample first, so that the exact distance is needed for the nearest points only
@@ -40,12 +41,6 @@ def flank_clearance(design: DriveDesign, n_angles: int = 721, n_points: int = 20
             near = rough < rough.min() + 2.0 * samples[1]
             smallest = min(smallest, float(ring.distance(in_ring[near])[0].min()))
     return smallest
-
-
-def turned(points: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """Points (..., 2), mm, turned counter-clockwise about the axis by `angle` (...), rad."""
-    x, y = np.moveaxis(points, -1, 0)
-    return np.stack([np.cos(angle) * x - np.sin(angle) * y, np.sin(angle) * x + np.cos(angle) * y], axis=-1)
 
 
 def derived_geometry(design: DriveDesign) -> dict[str, float]:

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from swgpar.fem.partition import FLIP, LocalNodes, Partition
+from swgpar.fem.partition import LocalNodes, Partition
 from swgpar.fem.sparse import BlockRows
+from swgpar.geometry.rotation import HALF_TURN
 from swgpar.kernel import ReferenceElements, assemble_elements, recover_stress
 
 
@@ -64,7 +65,7 @@ class BodyElements:
     def displacement(self, u: np.ndarray) -> np.ndarray:
         """Displacement of all nodes of the seen sectors, images turned; (n_sectors, n_local, 3) mm."""
         field = np.where(self.local[..., None] >= 0, u[self.local], 0.0)
-        return self.layout.fill_inside(self.sectors, np.where(self.flip[..., None] == 1, FLIP * field, field))
+        return self.layout.fill_inside(self.sectors, np.where(self.flip[..., None] == 1, HALF_TURN * field, field))
 
     def positions(self) -> np.ndarray:
         """Undeformed positions of all nodes of the seen sectors; (n_sectors, n_local, 3) mm."""

@@ -20,9 +20,6 @@ from mpi4py import MPI
 from swgpar.fem.condensed_sectors import CondensedSector
 from swgpar.meshing.sector import SectorMesh
 
-FLIP = np.array([-1.0, -1.0, 1.0])
-"""Factors of a vector's components under the half turn of a twofold-symmetric image."""
-
 MULTIPLIER_NODES = 2
 """Blocks appended after the last node for each body that floats: six multipliers of its coupling."""
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from petsc4py import PETSc
 
-from swgpar.fem.partition import FLIP, Partition
+from swgpar.fem.partition import Partition
+from swgpar.geometry.rotation import HALF_TURN
 
 
 def create_vector(partition: Partition) -> PETSc.Vec:
@@ -36,7 +37,7 @@ def read_field(partition: Partition, body: int, sectors: np.ndarray, vector: PET
     absent = int(len(wanted) > 0 and wanted[0] == -1)
     values = Exchange(partition, wanted[absent:].astype(np.int32))(vector)
     values = np.vstack([np.zeros((absent, 3)), values])[place.reshape(number.shape)]
-    return partition.layouts[body].fill_inside(sectors, np.where(flip[..., None] == 1, FLIP * values, values))
+    return partition.layouts[body].fill_inside(sectors, np.where(flip[..., None] == 1, HALF_TURN * values, values))
 
 
 def write_field(partition: Partition, body: int, sectors: np.ndarray, values: np.ndarray, vector: PETSc.Vec) -> None:

@@ -20,6 +20,7 @@ from swgpar.fem.inactive_sectors import InactiveSectors
 from swgpar.fem.partition import LocalNodes, Partition
 from swgpar.fem.sparse import BlockRows, add_unit_diagonal, create_matrix, fill_matrix
 from swgpar.fem.vectors import Exchange, create_vector, read_multipliers
+from swgpar.geometry.rotation import HALF_TURN
 from swgpar.log import Phases
 
 NEAR, TOUCH, TIP_MARGIN = 0.25, 0.05, 0.1
@@ -90,7 +91,7 @@ class DiscreteProblem:
         place = np.zeros((len(self.local), 3))
         for body in self.elements.bodies:
             seen, where = body.local >= 0, body.positions()
-            where[body.flip == 1] *= (-1.0, -1.0, 1.0)
+            where[body.flip == 1] *= HALF_TURN
             place[body.local[seen]] = where[seen]
         return place
 

@@ -9,9 +9,10 @@ from petsc4py import PETSc
 from small_drive import DESIGN, PLANE, RECIPE
 
 from swgpar.analysis.drive_model import DriveModel
-from swgpar.analysis.predictor import predict, supports, turned
+from swgpar.analysis.predictor import predict, supports
 from swgpar.design.drive_design import load_design
 from swgpar.fem.vectors import create_vector, read_field, write_field
+from swgpar.geometry.rotation import rotated
 from swgpar.meshing import load_recipe
 
 CASES = ((), ("drive.layout=spline_fixed",), ("solver.twofold_symmetry=false",))
@@ -34,11 +35,11 @@ def wave(model: DriveModel, angle: float, slip: float = 0.0) -> PETSc.Vec:
         own = np.arange(*partition.owned(body))
         coords = np.repeat(layout.mesh.coords[None], len(own), axis=0)
         turn = 0.0 if body == model.fixed_body else angle * (1.0 - teeth[model.fixed_body] / teeth[body]) + slip
-        at = layout.turn(layout.first_tooth + own)
-        place = turned(coords, at + turn)
+        at = layout.turn(layout.first_tooth + own)[:, None]
+        place = rotated(coords, at + turn)
         around = np.arctan2(place[..., 1], place[..., 0])
         radial = np.stack([np.cos(around), np.sin(around), np.zeros_like(around)], axis=-1)
-        values = place + np.cos(2.0 * (around - angle))[..., None] * radial - turned(coords, at)
+        values = place + np.cos(2.0 * (around - angle))[..., None] * radial - rotated(coords, at)
         values[:, layout.absent] = 0.0
         write_field(partition, body, own, values, x)
     return x

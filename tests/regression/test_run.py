@@ -24,10 +24,11 @@ from small_drive import (
     succeed,
 )
 
-from swgpar.analysis.coarse_start import level_of, load, recounted
+from swgpar.analysis.coarse_start import level_of, load
 from swgpar.design.drive_design import load_design
 from swgpar.design.load_states import load_sequence
 from swgpar.meshing import load_recipe
+from swgpar.meshing.recipe_counts import with_counts
 from swgpar.results import history
 
 CUP_ROTATION = Path(__file__).parents[2] / "drivers" / "cup_rotation.py"
@@ -166,7 +167,7 @@ def test_an_accuracy_is_reached_by_refinement(tmp_path: Path) -> None:
     assert summary["mesh_error"]["fs_s1"] < asked / (1.0 - asked) * rows[0]["fs_s1"]
     # and so is the distance from a mesh with twice the elements in both directions, and a good half of the error
     design = load_design(DESIGN, [*PLANE, "steps.rotation=9", "solver.rtol=1e-7"])
-    finer = load(design, recounted(recipe, lambda *count: 2 * count[-1]), list(load_sequence(design)), MPI.COMM_SELF)
+    finer = load(design, with_counts(recipe, lambda *count: 2 * count[-1]), list(load_sequence(design)), MPI.COMM_SELF)
     reference = level_of(finer).stresses["fs_s1"]
     finer.destroy()
     print(f"s1 {rows[0]['fs_s1']:.2f} MPa, {reference:.2f} on the reference mesh")

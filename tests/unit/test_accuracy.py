@@ -10,14 +10,13 @@ from mpi4py import MPI
 from small_drive import DATA, PLANE
 
 from swgpar.analysis import mesh_refinement as module
-from swgpar.analysis.coarse_start import Level, coarser
+from swgpar.analysis.coarse_start import Level
 from swgpar.analysis.mesh_refinement import (
     GROUPS,
     RTOL,
     Doublings,
     Refinement,
     choose,
-    doubled,
     error_after,
     with_accuracy,
 )
@@ -25,6 +24,7 @@ from swgpar.design.drive_design import load_design
 from swgpar.errors import InputError
 from swgpar.meshing import load_recipe
 from swgpar.meshing.recipe import to_toml
+from swgpar.meshing.recipe_counts import coarser, doubled
 
 
 def test_groups_hold_every_count_once_and_no_grading() -> None:

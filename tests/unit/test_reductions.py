@@ -9,14 +9,16 @@ import numpy as np
 import pytest
 from small_drive import PLANE
 
-from swgpar.analysis.coarse_start import coarser, interpolation, levels, recounted
+from swgpar.analysis.coarse_start import levels
 from swgpar.analysis.period import continued
 from swgpar.design.drive_design import load_design
 from swgpar.design.load_states import angles, load_sequence
 from swgpar.errors import InputError
 from swgpar.fem.inactive_sectors import LEAST, MARGIN, InactiveSectors
 from swgpar.meshing import build_sector_meshes, load_recipe
+from swgpar.meshing.interpolation import interpolation
 from swgpar.meshing.recipe import FaceWidthRecipe
+from swgpar.meshing.recipe_counts import coarser, with_counts
 
 DATA = Path(__file__).parent.parent / "data"
 MESH = Path(__file__).parent.parent.parent / "mesh"
@@ -28,7 +30,7 @@ def test_coarser_recipes_halve_down_to_the_smallest() -> None:
     assert (once.flexible_spline.flank, once.flexible_spline.root, once.face_width.elements) == (9, 2, 6)
     assert once.cup.end_ratio == recipe.cup.end_ratio
     assert coarser(once).face_width.elements == 4
-    odd = recounted(recipe, lambda *count: 9)
+    odd = with_counts(recipe, lambda *count: 9)
     assert odd.face_width.elements == 10  # even like the one it comes from
     for elements, half in ((3, 3), (7, 5), (9, 5), (2, 2), (4, 2), (6, 4)):
         width = recipe.model_copy(update={"face_width": FaceWidthRecipe(elements=elements)})

@@ -1,0 +1,26 @@
+"""Rotations about the drive's axis z."""
+
+from __future__ import annotations
+
+import numpy as np
+
+HALF_TURN = np.array([-1.0, -1.0, 1.0])
+"""Factors of a vector's components (x, y, z) under a rotation by 180 degrees about z."""
+
+
+def rotated(vectors: np.ndarray, angle: float | np.ndarray) -> np.ndarray:
+    """Rotate vectors about z, counter-clockwise.
+
+    Parameters
+    ----------
+    vectors : (..., 2) or (..., 3)
+        Points or vectors in any unit; a third component is kept.
+    angle : rad
+        Scalar, or an array that broadcasts against ``vectors.shape[:-1]``.
+    """
+    c, s = np.cos(angle), np.sin(angle)
+    x, y = vectors[..., 0], vectors[..., 1]
+    components = [c * x - s * y, s * x + c * y]
+    if vectors.shape[-1] == 3:
+        components.append(np.broadcast_to(vectors[..., 2], components[0].shape))
+    return np.stack(components, axis=-1)

@@ -1,0 +1,42 @@
+"""Mesh recipes with other element counts: coarser meshes for a start, finer ones for an accuracy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+from swgpar.input.toml_file import validate
+from swgpar.meshing.recipe import MeshRecipe
+
+SMALLEST = {"tip": 2, "root": 2}
+"""Smallest counts of a recipe by name; all others reach 1, along the face width 2 or 3."""
+
+
+def with_counts(recipe: MeshRecipe, count: Callable[[str, str, int], int]) -> MeshRecipe:
+    """The recipe with ``count(section, name, elements)`` in place of every element count. Gradings stay.
+
+    The parity of the elements along the face width is kept, so that its middle stays a node or an element: a crowned
+    cam touches there. With another parity the ring takes a shape that differs by 0.1 micrometres, and a finer mesh has
+    to find its contacts anew. Raises InputError where a count is out of range.
+    """
+
+    def section(title: str, counts: dict[str, int | float]) -> dict[str, int | float]:
+        return {name: count(title, name, value) if isinstance(value, int) else value for name, value in counts.items()}
+
+    content = {title: section(title, counts) for title, counts in recipe.model_dump(exclude_none=True).items()}
+    if recipe.face_width is not None:
+        width = content["face_width"]
+        width["elements"] += (width["elements"] + recipe.face_width.elements) % 2
+    return validate(MeshRecipe, content)
+
+
+def coarser(recipe: MeshRecipe) -> MeshRecipe:
+    """The recipe with half of every count, rounded up."""
+    return with_counts(recipe, lambda _, name, value: max(SMALLEST.get(name, 1), -(-value // 2)))
+
+
+def doubled(recipe: MeshRecipe, counts: Mapping[str, Sequence[str]], times: int = 1) -> MeshRecipe:
+    """The recipe with the named counts doubled `times` times. An odd count along the face width stays odd, one higher.
+
+    counts : names of the counts by section. Raises InputError where a count is out of range.
+    """
+    return with_counts(recipe, lambda title, name, value: value << times if name in counts.get(title, ()) else value)
