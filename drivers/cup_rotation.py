@@ -5,7 +5,7 @@ output torque of 20 N m (Tables 7.1 to 7.4). Equations: equilibrium of two elast
 frictionless contact of cam on spline and of spline on ring gear, and a torque that is work-conjugate to the mean
 rotation of the cup's bore. Expected run time: about 3 minutes with the coarse recipe on 2 cores.
 
-    mpirun -n 2 python drivers/cup_rotation.py --mesh mesh/coarse.toml --out results/cup
+    mpirun -n 2 python drivers/cup_rotation.py --mesh coarse --out results/cup
 """
 
 from __future__ import annotations

@@ -19,11 +19,11 @@ OPTIONS = ("--set", "--mesh", "--accuracy", "--out", "--restart", "--overwrite",
 
 EXAMPLES = """examples:
   swgpar check drivers/cup_45deg.toml
-  mpirun -n 2 swgpar run drivers/cup_45deg.toml --mesh mesh/coarse.toml --out results/coarse
-  mpirun -n 2 swgpar run drivers/plane_half_turn.toml --mesh mesh/plane_coarse.toml --accuracy 0.05 --out results/plane
-  mpirun -n 2 swgpar run drivers/cup_45deg.toml --mesh mesh/full.toml --out results/full --set load.torque=10
-  mpirun -n 2 swgpar run drivers/cup_45deg.toml --mesh mesh/full.toml --out results/full --restart
-  swgpar mesh drivers/cup_45deg.toml --mesh mesh/coarse.toml --out results/mesh --format vtu inp
+  mpirun -n 2 swgpar run drivers/cup_45deg.toml --mesh coarse --out results/coarse
+  mpirun -n 2 swgpar run drivers/plane_half_turn.toml --mesh plane_coarse --accuracy 0.05 --out results/plane
+  mpirun -n 2 swgpar run drivers/cup_45deg.toml --mesh full --out results/full --set load.torque=10
+  mpirun -n 2 swgpar run drivers/cup_45deg.toml --mesh full --out results/full --restart
+  swgpar mesh drivers/cup_45deg.toml --mesh coarse --out results/mesh --format vtu inp
   swgpar report results/full
   mpirun -n 2 swgpar run drivers/cascade.toml --out results/cascade
 """
@@ -40,7 +40,7 @@ STUDY_EXAMPLES = """examples:
 a study file:
   [study]
   design = "../cup_45deg.toml"              # relative to the study file, like the meshes
-  meshes = ["../../mesh/coarse.toml"]
+  meshes = ["coarse"]
   [study.vary]
   "load.torque" = [5.0, 10.0, 20.0]
 
@@ -248,9 +248,9 @@ def _study(arguments: argparse.Namespace) -> None:
     from mpi4py import MPI
 
     from swgpar.log import console
-    from swgpar.study import run_study
-    from swgpar.study.table import compare
-    from swgpar.study.terminal import print_results
+    from swgpar.studies import run_study
+    from swgpar.studies.table import compare
+    from swgpar.studies.terminal import print_results
 
     out = Path(arguments.out)
     results = run_study(arguments.study, out, restart=arguments.restart, overwrite=arguments.overwrite)

@@ -18,6 +18,6 @@ ROOMS = (
     "results",
     "gear_trains",
     "analysis",
-    "study",
+    "studies",
     "cli",
 )

@@ -18,8 +18,8 @@ from drive_runs import refined, run
 from swgpar.analysis.error_estimate import estimate
 
 PLANE, CUP = "drivers/plane_half_turn.toml", "drivers/cup_45deg.toml"
-PLANE_MESHES = ("mesh/plane_coarse.toml", "mesh/plane.toml", "mesh/plane_fine.toml")
-CUP_MESHES = ("mesh/coarse.toml", "mesh/medium.toml", "mesh/full.toml")
+PLANE_MESHES = ("plane_coarse", "plane", "plane_fine")
+CUP_MESHES = ("coarse", "medium", "full")
 PERIOD = ["steps.samples=4", "steps.start_levels=1"]
 FINER = ["steps.samples=4", "steps.start_levels=3"]
 CUP_PERIOD = ["steps.samples=8", "steps.start_levels=2", "steps.pins=false", "solver.rtol=1e-5"]

@@ -28,7 +28,7 @@ def fastest(repeat: int, action: Callable[[], None]) -> float:
 def main() -> None:
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--design", default="drivers/cup_45deg.toml")
-    options.add_argument("--mesh", default="mesh/full.toml")
+    options.add_argument("--mesh", default="full")
     options.add_argument("--repeat", type=int, default=3)
     arguments = options.parse_args()
     design = load_design(arguments.design, ["solver.twofold_symmetry=false"])

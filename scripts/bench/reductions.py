@@ -59,7 +59,7 @@ def cells(row: dict[str, float | str]) -> list[str]:
 def main() -> None:
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--design", default="drivers/cup_45deg.toml")
-    options.add_argument("--mesh", default="mesh/coarse.toml")
+    options.add_argument("--mesh", default="coarse")
     options.add_argument("--out", default="results/bench/reductions")
     options.add_argument("--table", default="docs/benchmarks/reductions_cup.csv")
     options.add_argument("--ranks", type=int, default=2)

@@ -17,7 +17,7 @@ import sys
 import time
 from pathlib import Path
 
-MESHES = ("tests/data/tiny.toml", "mesh/coarse.toml", "mesh/medium.toml", "mesh/full.toml")
+MESHES = ("tests/data/tiny.toml", "coarse", "medium", "full")
 
 
 def measure(mesh: str, linear: str) -> None:

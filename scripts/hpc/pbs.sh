@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# swgpar on a PBS cluster: qsub -v DESIGN=drivers/cup_45deg.toml,RECIPE=mesh/full.toml,OUT=results/full scripts/hpc/pbs.sh
+# swgpar on a PBS cluster: qsub -v DESIGN=drivers/cup_45deg.toml,RECIPE=full,OUT=results/full scripts/hpc/pbs.sh
 #PBS -N swgpar
 #PBS -l select=1:ncpus=16:mpiprocs=16:ompthreads=1:mem=64gb
 #PBS -l walltime=04:00:00

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from swgpar.errors import InputError
 from swgpar.input.quantities import Section, quantity, show
 from swgpar.input.toml_file import read_toml, validate
+
+RECIPES = ("coarse", "medium", "full", "plane_coarse", "plane", "plane_fine")
+"""Names of the recipes that belong to the package, coarse to fine: of the cup drive, of the plane model."""
 
 
 class ToothRecipe(Section):
@@ -62,17 +66,47 @@ class MeshRecipe(Section):
     cup: CupRecipe | None = None
 
 
-def load_recipe(path: str | Path) -> MeshRecipe:
-    """Read a mesh recipe (TOML); every failure is an `InputError` of one sentence."""
+def is_recipe_name(mesh: str | Path) -> bool:
+    """Whether `mesh` is a plain word, which names a recipe of the package, and not the path of a file."""
+    path = Path(mesh)
+    return path.name == str(path) and not path.suffix
+
+
+def recipe_path(mesh: str | Path) -> Path:
+    """The file of a recipe that is given by its name in the package ("coarse") or by its path.
+
+    Raises InputError for a plain word that is neither.
+    """
+    path = Path(mesh)
+    if not is_recipe_name(path) or path.is_file():
+        return path
+    if str(path) not in RECIPES:
+        raise InputError(
+            f"mesh = {show(str(path))} is not available: allowed {', '.join(RECIPES)} or the path of a mesh recipe"
+        )
+    return Path(__file__).with_name("recipes") / f"{path}.toml"
+
+
+def load_recipe(mesh: str | Path) -> MeshRecipe:
+    """Read a mesh recipe (TOML) by its name in the package or its path.
+
+    Every failure is an `InputError` of one sentence.
+    """
+    path = recipe_path(mesh)
     table = read_toml(path)
+    try:
+        return make_recipe(table)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+
+
+def make_recipe(table: dict[str, Any]) -> MeshRecipe:
+    """Check the content of a mesh recipe; every problem is an `InputError` of one sentence."""
     for key, value in table.items():
         if key not in MeshRecipe.model_fields:
             allowed = ", ".join(MeshRecipe.model_fields)
-            raise InputError(f"{path}: {key} = {show(value)} is not a section of a mesh recipe: allowed {allowed}")
-    try:
-        return validate(MeshRecipe, table)
-    except InputError as error:
-        raise InputError(f"{path}: {error}") from None
+            raise InputError(f"{key} = {show(value)} is not a section of a mesh recipe: allowed {allowed}")
+    return validate(MeshRecipe, table)
 
 
 def to_toml(recipe: MeshRecipe) -> str:

@@ -1,6 +1,6 @@
 """A factor that serves later systems too: GMRES on the present one, preconditioned by the kept factor.
 
-In the cup drive one factorisation costs as much as 5 (mesh/coarse.toml) to 12 (mesh/full.toml) solves with it, the
+In the cup drive one factorisation costs as much as 5 (coarse) to 12 (full) solves with it, the
 analysis of another pattern once or twice that, and from one Newton iteration to the next, or one increment to
 the next, the tangent changes by the rotation of the elements and by some contact points.
 """
@@ -28,7 +28,7 @@ INTENSITY = 40.0
 
 ANALYSIS = 1.5
 """Factorisations that cost as much as the analysis of another pattern by nested dissection: 1 to 2 in the loaded drive
-on mesh/full.toml (`-log_view`), more before its gears touch."""
+on full (`-log_view`), more before its gears touch."""
 
 
 def price(operations: float, entries: float, analysed: bool) -> float:

@@ -29,11 +29,11 @@ PLAIN = ("solver.far_teeth=modelled", "solver.keep_factor=false")
 
 
 def rotated(
-    *overrides: str, recipe: str = "tiny.toml", comm: MPI.Comm = MPI.COMM_WORLD
+    *overrides: str, recipe: str | Path = DATA / "tiny.toml", comm: MPI.Comm = MPI.COMM_WORLD
 ) -> tuple[LoadStepper, dict[str, float]]:
     """The small drive turned by two increments of 1.5 degrees, and its last history row."""
     design = load_design(DATA / "small.toml", ["steps.rotation=3", "steps.increment=1.5", *overrides])
-    mesh = load_recipe(DATA / recipe)
+    mesh = load_recipe(recipe)
     runner = LoadStepper(DriveModel(design, mesh, comm))
     items = list(load_sequence(design))
     if design.steps.start_levels:
@@ -111,7 +111,7 @@ def test_a_start_on_a_coarser_mesh_changes_nothing(plain: dict[str, float]) -> N
 
 @pytest.mark.parametrize("count", [1, 2])
 def test_a_start_on_coarser_meshes_changes_nothing_in_the_plane(count: int) -> None:
-    refined = "../../mesh/plane_coarse.toml"
+    refined = "plane_coarse"
     _, step_by_step = rotated(*PLAIN, *PLANE, recipe=refined)
     _, row = rotated(*PLAIN, *PLANE, f"steps.start_levels={count}", recipe=refined)
     assert_same(row, step_by_step, 1e-6)
@@ -166,7 +166,7 @@ def test_what_is_read_of_condensed_sectors_is_complete() -> None:
 
 
 def test_condensed_sectors_with_all_that_applies() -> None:
-    refined = "../../mesh/plane_coarse.toml"
+    refined = "plane_coarse"
     _, row = rotated(*CONDENSED, recipe=refined)
     for further in (("steps.start_levels=1", "steps.pins=false"), ("solver.twofold_symmetry=false",)):
         _, other = rotated(*CONDENSED, *further, recipe=refined)
@@ -178,7 +178,7 @@ def test_a_start_on_a_coarser_mesh_takes_over_what_is_inside() -> None:
     iterations = []
     for condensed in (False, True):
         overrides = [*CONDENSED[:-1], "steps.start_levels=1", f"solver.condensed_sectors={str(condensed).lower()}"]
-        design, mesh = load_design(DATA / "small.toml", overrides), load_recipe(DATA / "../../mesh/plane_coarse.toml")
+        design, mesh = load_design(DATA / "small.toml", overrides), load_recipe("plane_coarse")
         runner = LoadStepper(DriveModel(design, mesh, MPI.COMM_WORLD))
         start_loaded(runner, levels(design, mesh), list(load_sequence(design)))
         iterations.append(runner.iterations)

@@ -7,8 +7,6 @@ from pathlib import Path
 import pytest
 from small_drive import DATA, DESIGN, RECIPE, execute, on_ranks, swgpar
 
-RECIPES = Path(__file__).parents[2] / "mesh"
-
 # mpirun passes on one exit code only and ends the others: this shell reports that of each rank and ends well itself
 EACH = ["sh", "-c", '"$@"; echo "exit code $?"', "sh"]
 
@@ -32,7 +30,7 @@ def refused(command: list[str], exit_code: int) -> str:
         (DESIGN, DESIGN, "drive.module=1", "drive"),
         (DESIGN, RECIPE, "drive.model=plane", "micro_geometry.wg_crowning = 0.1 is out of range: allowed only 0"),
         (DESIGN, RECIPE, "drive.layout=free", 'allowed "ring_fixed" or "spline_fixed"'),
-        (DESIGN, RECIPES / "plane_coarse.toml", "drive.module=1", "[face_width] is missing in the mesh recipe"),
+        (DESIGN, "plane_coarse", "drive.module=1", "[face_width] is missing in the mesh recipe"),
     ],
 )
 def test_bad_files_and_values(tmp_path: Path, design: Path, recipe: Path, override: str, words: str) -> None:

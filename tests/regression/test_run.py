@@ -11,7 +11,6 @@ import pytest
 import pyvista
 from mpi4py import MPI
 from small_drive import (
-    DATA,
     DESIGN,
     PLANE,
     RECIPE,
@@ -154,7 +153,7 @@ def test_an_accuracy_is_reached_by_refinement(tmp_path: Path) -> None:
     """The estimate of the mesh that the run ends with is below what was asked for; a restart keeps that mesh."""
     out = tmp_path / "run"
     asked, pitch = 0.1, 360.0 / 42.0
-    first = DATA.parent.parent / "mesh" / "plane_coarse.toml"
+    first = "plane_coarse"
     more = ("--mesh", str(first), "--accuracy", str(asked))
     command = run_command(out, *more, overrides=[*PLANE, "steps.rotation=9"])
     succeed(command)

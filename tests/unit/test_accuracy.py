@@ -28,7 +28,7 @@ from swgpar.meshing.recipe_counts import coarser, doubled
 
 
 def test_groups_hold_every_count_once_and_no_grading() -> None:
-    recipe = load_recipe(DATA.parent.parent / "mesh/full.toml")
+    recipe = load_recipe("full")
     finer = recipe
     for counts in GROUPS.values():
         finer = doubled(finer, counts)
@@ -42,7 +42,7 @@ def test_groups_hold_every_count_once_and_no_grading() -> None:
 
 def test_a_chosen_recipe_can_be_read_again(tmp_path: Path) -> None:
     for name in ("full", "plane"):
-        recipe = load_recipe(DATA.parent.parent / f"mesh/{name}.toml")
+        recipe = load_recipe(name)
         (tmp_path / "recipe.toml").write_text(to_toml(recipe))
         assert load_recipe(tmp_path / "recipe.toml") == recipe
 
@@ -162,7 +162,7 @@ def test_a_recipe_that_is_too_fine_is_coarsened(monkeypatch: pytest.MonkeyPatch)
     """Every group can be doubled below the largest size."""
     monkeypatch.setattr(module, "load", lambda design, recipe, items, comm, below=None: recipe)
     design = load_design(DATA.parent.parent / "drivers/cup_45deg.toml")
-    full = load_recipe(DATA.parent.parent / "mesh/full.toml")
+    full = load_recipe("full")
     way = Refinement(design, full, [], MPI.COMM_SELF)
     assert way.base == coarser(full) and way.model == coarser(way.base)
     assert 0 < way.size((0, 0, 0)) < min(way.size(doublings) for doublings in ((1, 0, 0), (0, 1, 0), (0, 0, 1)))

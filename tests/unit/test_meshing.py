@@ -22,7 +22,7 @@ from swgpar.meshing.tooth import cross_section
 
 ROOT = Path(__file__).resolve().parents[2]
 REFERENCE = ROOT / "drivers" / "cup_45deg.toml"
-RECIPES = {name: ROOT / "mesh" / f"{name}.toml" for name in ("coarse", "medium", "full")}
+RECIPES = {name: name for name in ("coarse", "medium", "full")}
 TINY = ROOT / "tests" / "data" / "tiny.toml"
 GEARS = ("flexible_spline", "ring_gear")
 SMALL = (
@@ -461,9 +461,7 @@ def plane_meshes(recipe: Path, *overrides: str) -> dict[str, SectorMesh]:
 
 
 PLANE_CASES = [pytest.param(TINY, SMALL, id="tiny")]
-PLANE_CASES += [
-    pytest.param(ROOT / "mesh" / f"{name}.toml", (), id=name) for name in ("plane", "plane_coarse", "coarse")
-]
+PLANE_CASES += [pytest.param(name, (), id=name) for name in ("plane", "plane_coarse", "coarse")]
 
 
 @pytest.mark.parametrize(("recipe", "overrides"), PLANE_CASES)
@@ -509,7 +507,7 @@ def test_an_inverted_quadrilateral_is_refused(monkeypatch: pytest.MonkeyPatch) -
 
 @pytest.mark.parametrize(("name", "low", "high"), [("plane", 45_000, 49_000), ("plane_coarse", 22_000, 24_000)])
 def test_plane_recipes_have_the_announced_size(name: str, low: int, high: int) -> None:
-    both = plane_meshes(ROOT / "mesh" / f"{name}.toml")
+    both = plane_meshes(name)
     assert low <= sum(len(mesh.hexes) * mesh.n_sectors for mesh in both.values()) <= high
 
 

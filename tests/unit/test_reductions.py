@@ -21,11 +21,10 @@ from swgpar.meshing.recipe import FaceWidthRecipe
 from swgpar.meshing.recipe_counts import coarser, with_counts
 
 DATA = Path(__file__).parent.parent / "data"
-MESH = Path(__file__).parent.parent.parent / "mesh"
 
 
 def test_coarser_recipes_halve_down_to_the_smallest() -> None:
-    recipe = load_recipe(MESH / "full.toml")
+    recipe = load_recipe("full")
     once = coarser(recipe)
     assert (once.flexible_spline.flank, once.flexible_spline.root, once.face_width.elements) == (9, 2, 6)
     assert once.cup.end_ratio == recipe.cup.end_ratio
@@ -66,7 +65,7 @@ def test_nodes_without_tetrahedra_are_refused() -> None:
 
 
 def test_levels() -> None:
-    recipe = load_recipe(MESH / "full.toml")
+    recipe = load_recipe("full")
     design = load_design(DATA / "small.toml", ["steps.start_levels=2"])
     assert levels(design, recipe) == [coarser(coarser(recipe)), coarser(recipe)]
     assert levels(load_design(DATA / "small.toml"), recipe) == []

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from swgpar.meshing import build_sector_meshes
-from swgpar.study.cases import expand
-from swgpar.study.drives import DRIVES
-from swgpar.study.spec import load_study
-from swgpar.study.system import Job
+from swgpar.studies.cases import expand
+from swgpar.studies.drives import DRIVES
+from swgpar.studies.spec import load_study
+from swgpar.studies.system import Job
 
 ROOT = Path(__file__).parents[2]
 FILES = sorted((ROOT / "drivers" / "studies").glob("*.toml"))

@@ -15,14 +15,14 @@ from study_files import assert_refused, jobs_of
 from swgpar.analysis.error_estimate import estimate
 from swgpar.errors import InputError
 from swgpar.results.table import format_csv
-from swgpar.study.drives import values
-from swgpar.study.figures import over_angle, over_key
-from swgpar.study.job import read_status, run_job
-from swgpar.study.report import make_report
-from swgpar.study.spec import load_study
-from swgpar.study.study import queue
-from swgpar.study.system import Outcome
-from swgpar.study.table import compare, study_rows
+from swgpar.studies.drives import values
+from swgpar.studies.figures import over_angle, over_key
+from swgpar.studies.job import read_status, run_job
+from swgpar.studies.report import make_report
+from swgpar.studies.spec import load_study
+from swgpar.studies.study import queue
+from swgpar.studies.system import Outcome
+from swgpar.studies.table import compare, study_rows
 
 DATA = Path(__file__).parent.parent / "data"
 ROOT = Path(__file__).parents[2]
@@ -184,7 +184,7 @@ def test_an_unforeseen_error_is_the_case_s_own(
     def broken(*_: object, **__: object) -> None:
         raise ZeroDivisionError("by nothing")
 
-    monkeypatch.setattr("swgpar.study.drives.run_drive", broken)
+    monkeypatch.setattr("swgpar.studies.drives.run_drive", broken)
     (job,) = jobs_of(study_file())
     found = run_job(job, tmp_path / "a" / "b", MPI.COMM_SELF, restart=False)
     assert (found.status, found.reason) == ("failed", "ZeroDivisionError: by nothing")

@@ -13,12 +13,12 @@ import pytest
 from study_files import assert_refused, jobs_of
 
 from swgpar.results.table import format_csv
-from swgpar.study.cases import labels
-from swgpar.study.figures import over_angle, over_key
-from swgpar.study.report import make_report
-from swgpar.study.spec import load_study
-from swgpar.study.system import Outcome
-from swgpar.study.table import compare, published_rows, study_rows
+from swgpar.studies.cases import labels
+from swgpar.studies.figures import over_angle, over_key
+from swgpar.studies.report import make_report
+from swgpar.studies.spec import load_study
+from swgpar.studies.system import Outcome
+from swgpar.studies.table import compare, published_rows, study_rows
 
 DRIVERS = Path(__file__).parents[2] / "drivers"
 Write = Callable[..., Path]

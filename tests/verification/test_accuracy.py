@@ -22,7 +22,7 @@ SHAPES = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
 
 
 def test_recipes_of_the_drives(tmp_path: Path) -> None:
-    mesh = str(Path(__file__).parents[2] / "mesh/plane.toml")
+    mesh = "plane"
     plane = load_recipe(mesh)
     every = load_recipe(refined(mesh, tmp_path / "every.toml", 1.5))
     assert every.flexible_spline.flank == -(-3 * plane.flexible_spline.flank // 2)

@@ -137,7 +137,7 @@ def toothed_ring(design: RingDesign, recipe: str) -> np.ndarray:
             f"material.E={1e3 * body.E}", "material.nu=0.3", "load.torque=0",
         ],
     )  # fmt: skip
-    sector = build_sector_meshes(drive, load_recipe(ROOT / "mesh" / recipe))["ring_gear"]
+    sector = build_sector_meshes(drive, load_recipe(recipe))["ring_gear"]
     flat = np.flatnonzero(sector.tied == np.arange(len(sector.coords)))
     count, number = sector.n_sectors, np.full(len(sector.coords), -1)
     # nodes on the clockwise side belong to the sector before: that one's counter-clockwise side is the same line
@@ -182,7 +182,7 @@ def test_tooth_masses_against_a_solid_ring() -> None:
     the coarse one within 0.6 % of the fine one. `pytest -s` prints the table of docs/gear_trains.md.
     """
     design = load_train(MODES)
-    coarse, solid = (toothed_ring(design, f"plane{level}.toml")[:5] for level in ("_coarse", ""))
+    coarse, solid = (toothed_ring(design, f"plane{level}")[:5] for level in ("_coarse", ""))
     with_masses, _ = distinct_frequencies(design, 5)
     smooth, _ = distinct_frequencies(changed(design, "ring", inner_radius=176.0).model_copy(update={"teeth": None}), 5)
     printed = np.array([590.0, 1650.0, 3129.0, 4977.0, 7166.0])

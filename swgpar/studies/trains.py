@@ -19,8 +19,8 @@ from swgpar.gear_trains.train import make_train, model_of, run_train
 from swgpar.input.quantities import show
 from swgpar.input.toml_file import apply_overrides
 from swgpar.results.atomic import to_json
-from swgpar.study.spec import CaseSection, Study
-from swgpar.study.system import Job, Outcome, Quantity, System
+from swgpar.studies.spec import CaseSection, Study
+from swgpar.studies.system import Job, Outcome, Quantity, System
 
 
 class GearTrains(System):

@@ -13,10 +13,10 @@ from swgpar.gear_trains.train import SECTION
 from swgpar.input.quantities import show
 from swgpar.input.toml_file import apply_overrides, read_toml, with_value
 from swgpar.meshing import MeshRecipe, load_recipe
-from swgpar.study.drives import DRIVES
-from swgpar.study.spec import Study
-from swgpar.study.system import Case, Job, Quantity, System, named, not_known
-from swgpar.study.trains import GEAR_TRAINS
+from swgpar.studies.drives import DRIVES
+from swgpar.studies.spec import Study
+from swgpar.studies.system import Case, Job, Quantity, System, named, not_known
+from swgpar.studies.trains import GEAR_TRAINS
 
 
 def expand(study: Study) -> list[Job]:

@@ -15,10 +15,11 @@ from swgpar.design.load_states import load_sequence
 from swgpar.errors import InputError
 from swgpar.input.quantities import show
 from swgpar.input.toml_file import apply_overrides
+from swgpar.meshing.recipe import is_recipe_name
 from swgpar.results import history
 from swgpar.results.history import UNITS
-from swgpar.study.spec import CaseSection, Study
-from swgpar.study.system import Job, Outcome, Quantity, System
+from swgpar.studies.spec import CaseSection, Study
+from swgpar.studies.system import Job, Outcome, Quantity, System
 
 STEPS = 4
 """Steps 1 to 4: deflection, engagement, load, and the rotation, whose increments go on counting in the history."""
@@ -75,7 +76,7 @@ class Drives(System):
             raise InputError(
                 f"study.compared = {show(section.compared)} is none of study.meshes = {show(section.meshes)}"
             )
-        meshes = tuple(study.path.parent / mesh for mesh in case.meshes or section.meshes)
+        meshes = tuple(_recipe(study, mesh) for mesh in case.meshes or section.meshes)
         stems = [mesh.stem for mesh in meshes]
         if len(set(stems)) < len(stems):
             raise InputError(f"meshes = {show(stems)} have a name twice: allowed are recipes of different names")
@@ -138,6 +139,11 @@ class Drives(System):
             wall_s=summary["wall_s"],
             rows=rows,
         )
+
+
+def _recipe(study: Study, mesh: str) -> Path:
+    """The name of a recipe of the package, or the path of one, which the study file gives relative to itself."""
+    return Path(mesh) if is_recipe_name(mesh) else study.path.parent / mesh
 
 
 DRIVES = Drives()

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 import swgpar
-from swgpar.study import figures
-from swgpar.study.spec import Study
-from swgpar.study.table import (
+from swgpar.studies import figures
+from swgpar.studies.spec import Study
+from swgpar.studies.table import (
     Comparison,
     Result,
     by_case,

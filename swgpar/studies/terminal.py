@@ -9,8 +9,8 @@ from rich import box
 from rich.table import Table
 
 from swgpar.log import console, progress_bar
-from swgpar.study.system import Job, Outcome
-from swgpar.study.table import Comparison, Result, shown_quantities
+from swgpar.studies.system import Job, Outcome
+from swgpar.studies.table import Comparison, Result, shown_quantities
 
 COLUMNS = 5
 """Quantities that the table on the terminal shows: study.csv has all of them."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from swgpar.analysis.error_estimate import Estimate, estimate
-from swgpar.study.system import Case, Job, Outcome, Quantity
+from swgpar.studies.system import Case, Job, Outcome, Quantity
 
 Result = tuple[Job, Outcome]
 

@@ -13,7 +13,7 @@ from mpi4py import MPI
 
 from swgpar.errors import InputError
 from swgpar.meshing import MeshRecipe
-from swgpar.study.spec import CaseSection, Study
+from swgpar.studies.spec import CaseSection, Study
 
 
 @dataclass(frozen=True)

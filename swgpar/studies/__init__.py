@@ -1,5 +1,5 @@
 """Studies: many drives, described by one file, compared in one report."""
 
-from swgpar.study.study import run_study
+from swgpar.studies.study import run_study
 
 __all__ = ["run_study"]

@@ -18,7 +18,7 @@ from swgpar.analysis.figures import make_figures
 from swgpar.errors import InputError, SwgparError
 from swgpar.log import logger
 from swgpar.results.atomic import agreed, sentence, to_json, write_file, write_from_root
-from swgpar.study.system import Job, Outcome
+from swgpar.studies.system import Job, Outcome
 
 STATUS = "status.json"
 """In the folder of a job: status ("started", "failed", "finished"), identity of what is computed, reason."""

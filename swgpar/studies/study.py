@@ -15,14 +15,14 @@ from swgpar.errors import InputError, OutputError
 from swgpar.results.atomic import agreed, first_reason, write_from_root
 from swgpar.results.folder import prepare
 from swgpar.results.table import format_csv
-from swgpar.study.cases import expand
-from swgpar.study.job import STATUS, read_status, run_job
-from swgpar.study.report import make_report
-from swgpar.study.schedule import Counter, Reports
-from swgpar.study.spec import Study, load_study
-from swgpar.study.system import Job, Outcome
-from swgpar.study.table import Result, compare, published_rows, study_rows
-from swgpar.study.terminal import StudyProgress
+from swgpar.studies.cases import expand
+from swgpar.studies.job import STATUS, read_status, run_job
+from swgpar.studies.report import make_report
+from swgpar.studies.schedule import Counter, Reports
+from swgpar.studies.spec import Study, load_study
+from swgpar.studies.system import Job, Outcome
+from swgpar.studies.table import Result, compare, published_rows, study_rows
+from swgpar.studies.terminal import StudyProgress
 
 Report = Callable[[tuple[int, Outcome | None]], None]
 """Takes a job's number with its outcome, or None after an increment."""

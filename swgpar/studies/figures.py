@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING, Any
 from swgpar.analysis.run_drive import FIRST_ROTATION
 from swgpar.results import history
 from swgpar.results.history import UNITS
-from swgpar.study.drives import MEANINGS
-from swgpar.study.system import Case, Outcome, Quantity
-from swgpar.study.table import by_case, shown, shown_quantities
+from swgpar.studies.drives import MEANINGS
+from swgpar.studies.system import Case, Outcome, Quantity
+from swgpar.studies.table import by_case, shown, shown_quantities
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from swgpar.study.table import Result
+    from swgpar.studies.table import Result
 
 OVER_ANGLE = ("fs_s1", "fs_s3", "fs_vm")
 LINES = 12
