@@ -16,7 +16,7 @@ from pathlib import Path
 from mpi4py import MPI
 
 from swgpar.analysis.run_drive import run_drive
-from swgpar.design.drive_design import load_design
+from swgpar.design.design_file import load_design
 from swgpar.meshing import load_recipe
 
 HERE = Path(__file__).parent

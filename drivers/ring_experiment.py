@@ -30,7 +30,7 @@ from mpi4py import MPI
 
 from swgpar import log
 from swgpar.analysis.plain_ring import RingCounts, RingDesign, RingModel
-from swgpar.design.drive_design import Material
+from swgpar.design.sections import Material
 from swgpar.geometry.cams.simplified import simplified
 from swgpar.log import logger
 from swgpar.results.atomic import agreed, write_from_root

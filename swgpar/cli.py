@@ -125,7 +125,7 @@ def _run(arguments: argparse.Namespace) -> None:
     from mpi4py import MPI
 
     from swgpar.analysis.run_drive import run_drive
-    from swgpar.design.drive_design import load_design
+    from swgpar.design.design_file import load_design
     from swgpar.gear_trains.train import is_gear_train
     from swgpar.meshing import load_recipe
     from swgpar.results.atomic import on_all
@@ -267,7 +267,7 @@ def _study(arguments: argparse.Namespace) -> None:
 def _mesh(arguments: argparse.Namespace) -> None:
     from pathlib import Path
 
-    from swgpar.design.drive_design import load_design
+    from swgpar.design.design_file import load_design
     from swgpar.meshing import build_sector_meshes, load_recipe
     from swgpar.meshing.export import mesh_report, write_mesh
 
@@ -282,7 +282,7 @@ def _mesh(arguments: argparse.Namespace) -> None:
 
 def _check(arguments: argparse.Namespace) -> None:
     from swgpar.design.derived_geometry import derived_geometry
-    from swgpar.design.drive_design import load_design
+    from swgpar.design.design_file import load_design
     from swgpar.gear_trains.train import is_gear_train, load_train, model_of
 
     if is_gear_train(arguments.design):

@@ -6,7 +6,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.analysis.plain_ring import RingCounts, RingDesign, RingModel
-from swgpar.design.drive_design import Contact, Material, Solver
+from swgpar.design.sections import Contact, Material, Solver
 from swgpar.geometry.cams import EllipticalCam
 
 INNER, THICKNESS, DEFLECTION = 58.2, 1.0, 2.0

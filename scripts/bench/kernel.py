@@ -10,7 +10,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.analysis.drive_model import DriveModel
-from swgpar.design.drive_design import load_design
+from swgpar.design.design_file import load_design
 from swgpar.fem.sparse import create_matrix, fill_matrix
 from swgpar.meshing import load_recipe
 

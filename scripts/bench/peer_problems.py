@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from swgpar.design.drive_design import Material
+from swgpar.design.sections import Material
 from swgpar.meshing.ring import ring_sector
 from swgpar.meshing.sector import SectorMesh
 

@@ -16,8 +16,8 @@ from peer_problems import CAM, CAM_HALF_ANGLE, INNER, OUTER, PENALTY, PROBLEMS, 
 
 from swgpar.analysis.plain_ring import RingBody, RingCounts, RingDesign, RingModel
 from swgpar.contact.rigid_surface import CamPose
-from swgpar.design.drive_design import Contact
 from swgpar.design.load_states import LoadState
+from swgpar.design.sections import Contact
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.sparse import BlockRows
 from swgpar.fem.stress import body_fields

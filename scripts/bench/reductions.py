@@ -12,7 +12,7 @@ from pathlib import Path
 import program
 from page import markdown, put
 
-from swgpar.design.drive_design import load_design
+from swgpar.design.design_file import load_design
 
 OFF = {
     "solver.twofold_symmetry": "false",

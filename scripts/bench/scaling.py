@@ -28,7 +28,7 @@ def measure(mesh: str, linear: str) -> None:
     from mpi4py import MPI
 
     from swgpar.analysis.drive_model import DriveModel
-    from swgpar.design.drive_design import load_design
+    from swgpar.design.design_file import load_design
     from swgpar.design.load_states import load_sequence
     from swgpar.fem.vectors import create_vector
     from swgpar.meshing import load_recipe

@@ -17,7 +17,6 @@ from swgpar.fem.condensed_sectors import bend, condense
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import BodyLayout, LocalNodes, Partition
 from swgpar.fem.stress import body_fields, maxima
-from swgpar.geometry.micro_geometry import WaveGeneratorSurface
 from swgpar.kernel import reference_elements
 from swgpar.log import Phases
 from swgpar.meshing import MeshRecipe, build_sector_meshes
@@ -64,7 +63,7 @@ class DriveModel:
             self.elements = Elements(self.partition, references, symmetric=design.contact.friction == 0.0)
             self.elements.bind(LocalNodes(self.partition, self.elements.wanted))
         spline, ring = self.elements.bodies
-        surface = WaveGeneratorSurface(design)
+        surface = design.cam_surface()
         half_width = 0.5 * design.wave_generator.face_width * (1.0 + 1e-9)
         rigid = (
             surface,

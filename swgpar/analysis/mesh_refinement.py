@@ -16,7 +16,8 @@ from mpi4py import MPI
 from swgpar.analysis.coarse_start import Level, level_of, load
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.error_estimate import ORDER
-from swgpar.design.drive_design import SECTOR_BEND, DriveDesign
+from swgpar.design.drive_design import DriveDesign
+from swgpar.design.fit_checks import OMITTED_BENDING
 from swgpar.design.load_states import LoadState
 from swgpar.errors import ConvergenceError, InputError
 from swgpar.log import logger
@@ -92,7 +93,7 @@ def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
         changes["steps"] = design.steps.model_copy(update={"samples": samples})
     if "rtol" not in design.solver.model_fields_set:
         solver["rtol"] = RTOL
-    small = design.drive.model == "plane" and design.sector_bend <= min(BEND * accuracy, SECTOR_BEND)
+    small = design.drive.model == "plane" and design.sector_bend <= min(BEND * accuracy, OMITTED_BENDING)
     if "condensed_sectors" not in design.solver.model_fields_set and small:
         solver["condensed_sectors"] = True
     return design.model_copy(update={**changes, "solver": design.solver.model_copy(update=solver)})

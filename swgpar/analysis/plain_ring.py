@@ -11,8 +11,8 @@ from swgpar.analysis.drive_model import PRESSURE_LIMIT
 from swgpar.constraints.distributing_coupling import DistributingCoupling
 from swgpar.constraints.supports import Supports
 from swgpar.contact.rigid_surface import RigidContact
-from swgpar.design.drive_design import Contact, Material, Solver
 from swgpar.design.load_states import LoadState
+from swgpar.design.sections import Contact, Material, Solver
 from swgpar.errors import ConvergenceError
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import BodyLayout, LocalNodes, Partition

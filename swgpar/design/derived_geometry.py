@@ -6,8 +6,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.geometry.cams import make_cam, pin_travel, taut_length
-from swgpar.geometry.profiles import make_profile
+from swgpar.geometry.cams import pin_travel, taut_length
 from swgpar.geometry.rotation import rotated
 
 
@@ -17,7 +16,7 @@ def flank_clearance(design: DriveDesign, n_angles: int = 721, n_points: int = 20
     Kinematics of an inextensible ring: radial w = d/2 cos 2 psi, tangential v = -d/4 sin 2 psi, tilt (v - w') / r at
     the mid-line of the rim; clockwise flank of the tooth against the ring gear's flank it faces.
     """
-    spline, ring = make_profile(design, "flexible_spline"), make_profile(design, "ring_gear")
+    spline, ring = design.profile("flexible_spline"), design.profile("ring_gear")
     r = design.r_fs + 0.5 * design.flexible_spline.rim
     psi = np.linspace(-0.25 * np.pi, 0.25 * np.pi, n_angles)
     w, v = 0.5 * design.d * np.cos(2.0 * psi), -0.25 * design.d * np.sin(2.0 * psi)
@@ -45,8 +44,8 @@ def flank_clearance(design: DriveDesign, n_angles: int = 721, n_points: int = 20
 
 def derived_geometry(design: DriveDesign) -> dict[str, float]:
     """Names with units, and values."""
-    spline, ring = make_profile(design, "flexible_spline"), make_profile(design, "ring_gear")
-    cam = make_cam(design)
+    spline, ring = design.profile("flexible_spline"), design.profile("ring_gear")
+    cam = design.cam()
     return {
         "ratio (wave generator / output)": design.ratio,
         "d, diametral deflection (mm)": design.d,

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.geometry.cams import make_cam, pin_travel
+from swgpar.geometry.cams import pin_travel
 
 PINS_BACK = 0.25
 """How far the pins are drawn back during engagement, as a share of the deflection d."""
@@ -71,7 +71,7 @@ class LoadState:
 
 def start(design: DriveDesign) -> LoadState:
     """Undeformed drive; pins, or the shrunk cam, touch the inner surface."""
-    travel = pin_travel(make_cam(design), design.r_fs)
+    travel = pin_travel(design.cam(), design.r_fs)
     return (
         LoadState(step=0, name="start", pins=travel)
         if design.steps.pins

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from swgpar.geometry.cams import make_cam
+from swgpar.geometry.cams import Cam
 
 
 def crowning(amount: float, z: np.ndarray, width: float, shape: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Material removed at axial places z (n,), and its first two derivatives (mm, -, 1/mm).
+    """Material removed at the axial coordinates z (n,), mm, and its first two derivatives (mm, -, 1/mm).
 
     `amount` at |z| = width / 2, nothing at mid-width; "parabolic", or "circular": the arc through the same points.
     """
@@ -32,13 +32,20 @@ class WaveGeneratorSurface:
     """Level function of the cam with crowning and slope: exact in-plane distance less the radial modification.
 
     The zero level is the surface; away from it h is the distance up to the factor |grad h|, 1.002 at most here.
+
+    Parameters
+    ----------
+    cam : curve of the cross-section at mid-width
+    width : mm, face width of the cam
+    crowning, slope : mm, at |z| = width / 2 (section 7.12; the sign of the slope is explained above)
+    shape : "parabolic" or "circular", of the crowning
     """
 
-    def __init__(self, design) -> None:
-        micro = design.micro_geometry
-        self.cam = make_cam(design)
-        self.width = design.wave_generator.face_width
-        self.crowning, self.slope, self.shape = micro.wg_crowning, micro.wg_slope, micro.crowning_shape
+    def __init__(
+        self, cam: Cam, width: float, crowning: float = 0.0, slope: float = 0.0, shape: str = "parabolic"
+    ) -> None:
+        self.cam, self.width = cam, width
+        self.crowning, self.slope, self.shape = crowning, slope, shape
 
     def evaluate(self, xyz: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Level h (n,) mm, gradient (n, 3), Hessian (n, 3, 3) 1/mm at points (n, 3) of the cam's frame."""

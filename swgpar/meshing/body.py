@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.geometry.micro_geometry import crowning
-from swgpar.geometry.profiles import make_profile
 from swgpar.meshing.cup import attached_quads, cup_nodes
 from swgpar.meshing.quality import hex_quality, quad_quality
 from swgpar.meshing.recipe import MeshRecipe, ToothRecipe
@@ -16,9 +14,6 @@ from swgpar.meshing.relief import relief_field
 from swgpar.meshing.sector import FlankGrid, Floats, SectorMesh
 from swgpar.meshing.sweep import axial_stations, sweep_line, sweep_quads
 from swgpar.meshing.tooth import CrossSection, cross_section
-
-if TYPE_CHECKING:
-    from swgpar.design.drive_design import DriveDesign
 
 THICK_CUP = 0.85
 """Cup thickness over rim thickness above which the cup continues the layers below the root as well."""
@@ -58,7 +53,7 @@ def _check(gear: str, quality: dict[str, float], recipe: ToothRecipe, unit: str)
 def build_sector(design: DriveDesign, recipe: MeshRecipe, gear: str) -> SectorMesh:
     """Mesh the tooth sector of `gear` (``flexible_spline`` or ``ring_gear``); one layer of it for the plane model."""
     counts: ToothRecipe = getattr(recipe, gear)
-    profile = make_profile(design, gear)
+    profile = design.profile(gear)
     interface, free, root_too = _radii(design, gear, counts, profile.r_root_circle)
     section = cross_section(profile, counts, interface, free)
     width = design.drive.face_width

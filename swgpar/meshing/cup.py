@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
-from swgpar.errors import InputError
+from swgpar.design.drive_design import DriveDesign
 from swgpar.meshing.recipe import CupRecipe
 from swgpar.meshing.sector import Floats, Ints
 from swgpar.meshing.sweep import symmetric_steps
 from swgpar.meshing.tooth import CrossSection
-
-if TYPE_CHECKING:
-    from swgpar.design.drive_design import DriveDesign
 
 
 def meridian(design: DriveDesign, recipe: CupRecipe) -> tuple[Floats, Floats]:
@@ -30,16 +25,6 @@ def meridian(design: DriveDesign, recipe: CupRecipe) -> tuple[Floats, Floats]:
     # centre of the fillet's arcs
     r_centre = design.r_fs + thickness - cup.fillet_radius
     z_centre = back + cup.length - cup.fillet_radius
-    if z_centre <= back:
-        raise InputError(
-            f"cup.length = {cup.length:g} is out of range: allowed above {cup.fillet_radius:g} "
-            "(the fillet's radius) to inf mm"
-        )
-    if cup.inner_radius >= r_centre:
-        raise InputError(
-            f"cup.inner_radius = {cup.inner_radius:g} is out of range: allowed above 0 to below {r_centre:g} "
-            "mm (where the fillet meets the closed end)"
-        )
     z = back + (z_centre - back) * symmetric_steps(recipe.cylinder, recipe.end_ratio)
     angle = np.linspace(0.0, 0.5 * np.pi, recipe.fillet + 1)[1:]
     r = r_centre - (r_centre - cup.inner_radius) * symmetric_steps(recipe.closed_end, recipe.end_ratio)[1:]

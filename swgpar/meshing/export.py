@@ -7,18 +7,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import meshio
 import numpy as np
 
+from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutputError
 from swgpar.meshing.inp import element_faces, write_inp
 from swgpar.meshing.quality import hex_volumes
 from swgpar.meshing.sector import Floats, Ints, SectorMesh
-
-if TYPE_CHECKING:
-    from swgpar.design.drive_design import DriveDesign
 
 FORMATS = ("vtu", "msh", "inp")
 

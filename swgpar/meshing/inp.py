@@ -8,15 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import meshio
 import numpy as np
 
+from swgpar.design.sections import Material
 from swgpar.meshing.sector import Ints, SectorMesh
-
-if TYPE_CHECKING:
-    from swgpar.design.drive_design import Material
 
 MATERIAL = "GEAR_MATERIAL"
 """Name of the one material in the file."""

@@ -10,7 +10,8 @@ from typing import Any
 from mpi4py import MPI
 
 from swgpar.analysis.run_drive import MEANS, identity, run_drive
-from swgpar.design.drive_design import DriveDesign, make_design
+from swgpar.design.design_file import make_design
+from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import load_sequence
 from swgpar.errors import InputError
 from swgpar.input.quantities import show

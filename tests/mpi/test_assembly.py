@@ -11,7 +11,7 @@ from small_drive import PLANE
 from stiffness import without_grounding
 
 from swgpar.analysis.drive_model import DriveModel
-from swgpar.design.drive_design import load_design
+from swgpar.design.design_file import load_design
 from swgpar.design.load_states import LoadState
 from swgpar.fem.vectors import create_vector
 from swgpar.meshing import load_recipe
@@ -37,7 +37,7 @@ CONDENSED = (*PLANE, "solver.condensed_sectors=true")
     ],
 )
 def test_tangent_is_the_derivative_of_the_residual(overrides: tuple[str, ...], monkeypatch) -> None:
-    monkeypatch.setattr("swgpar.design.drive_design.SECTOR_BEND", 1.0)  # 40 teeth: of no account here
+    monkeypatch.setattr("swgpar.design.fit_checks.OMITTED_BENDING", 1.0)  # 40 teeth: of no account here
     design = load_design(DATA / "small.toml", overrides)
     model = DriveModel(design, load_recipe(DATA / "tiny.toml"), MPI.COMM_WORLD)
     equilibrium, partition, dims = model.equilibrium, model.partition, model.partition.dims

@@ -13,7 +13,7 @@ from small_drive import PLANE
 
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.design.drive_design import load_design
+from swgpar.design.design_file import load_design
 from swgpar.design.load_states import load_sequence
 from swgpar.meshing import load_recipe
 

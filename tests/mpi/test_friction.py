@@ -12,7 +12,7 @@ from mpi4py import MPI
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.contact.segments import Segments
-from swgpar.design.drive_design import load_design
+from swgpar.design.design_file import load_design
 from swgpar.design.load_states import load_sequence
 from swgpar.meshing import load_recipe
 

@@ -16,7 +16,8 @@ from swgpar.analysis.drive_model import DriveModel, stresses
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.contact.flanks import FlankContact, FrozenSegments
 from swgpar.contact.rigid_surface import CamPose, RigidContact
-from swgpar.design.drive_design import DriveDesign, load_design
+from swgpar.design.design_file import load_design
+from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import load_sequence
 from swgpar.fem.stress import body_fields
 from swgpar.meshing import load_recipe

@@ -12,7 +12,7 @@ from small_drive import PLANE
 from stiffness import without_grounding
 
 from swgpar.analysis.drive_model import DriveModel
-from swgpar.design.drive_design import load_design
+from swgpar.design.design_file import load_design
 from swgpar.design.load_states import LoadState
 from swgpar.fem.vectors import create_vector
 from swgpar.log import logger

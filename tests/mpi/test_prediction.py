@@ -10,7 +10,7 @@ from small_drive import DESIGN, PLANE, RECIPE
 
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.predictor import predict, supports
-from swgpar.design.drive_design import load_design
+from swgpar.design.design_file import load_design
 from swgpar.fem.vectors import create_vector, read_field, write_field
 from swgpar.geometry.rotation import rotated
 from swgpar.meshing import load_recipe

@@ -16,7 +16,7 @@ from swgpar.analysis.coarse_start import from_loaded, level_of, levels, start_lo
 from swgpar.analysis.drive_model import DriveModel, stresses
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.period import continued
-from swgpar.design.drive_design import load_design
+from swgpar.design.design_file import load_design
 from swgpar.design.load_states import load_sequence
 from swgpar.fem.vectors import read_field
 from swgpar.meshing import load_recipe

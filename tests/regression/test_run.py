@@ -24,7 +24,7 @@ from small_drive import (
 )
 
 from swgpar.analysis.coarse_start import level_of, load
-from swgpar.design.drive_design import load_design
+from swgpar.design.design_file import load_design
 from swgpar.design.load_states import load_sequence
 from swgpar.meshing import load_recipe
 from swgpar.meshing.recipe_counts import with_counts

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from small_drive import PLANE as SMALL_PLANE
 
-from swgpar.design.drive_design import make_design
+from swgpar.design.design_file import make_design
 from swgpar.errors import InputError
 from swgpar.input.toml_file import parse_value, read_toml, with_value
 from swgpar.meshing import build_sector_meshes, load_recipe

@@ -12,7 +12,7 @@ from small_drive import PLANE, assert_same_history, run_command, succeed
 
 from swgpar.analysis.drive_model import DriveModel, stresses
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.design.drive_design import make_design
+from swgpar.design.design_file import make_design
 from swgpar.design.load_states import load_sequence
 from swgpar.errors import InputError
 from swgpar.meshing import load_recipe

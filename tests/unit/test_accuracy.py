@@ -20,7 +20,7 @@ from swgpar.analysis.mesh_refinement import (
     error_after,
     with_accuracy,
 )
-from swgpar.design.drive_design import load_design
+from swgpar.design.design_file import load_design
 from swgpar.errors import InputError
 from swgpar.meshing import load_recipe
 from swgpar.meshing.recipe import to_toml

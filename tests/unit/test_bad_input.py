@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from swgpar.design.drive_design import load_design
+from swgpar.design.design_file import load_design
 from swgpar.errors import InputError
 
 REFERENCE = Path(__file__).parents[2] / "drivers" / "cup_45deg.toml"

@@ -12,15 +12,15 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.special import ellipe
 
-from swgpar.design.drive_design import load_design
+from swgpar.design.design_file import load_design
 from swgpar.design.load_states import load_sequence, start
 from swgpar.errors import InputError
-from swgpar.geometry.cams import EllipticalCam, make_cam, pin_travel, taut_length
+from swgpar.geometry.cams import EllipticalCam, pin_travel, taut_length
 from swgpar.geometry.cams.chain import ChainCam, Parabola
 from swgpar.geometry.cams.four_roller import four_roller
 from swgpar.geometry.cams.parabolic import Side, parabolic
 from swgpar.geometry.cams.simplified import simplified
-from swgpar.geometry.micro_geometry import WaveGeneratorSurface, crowning
+from swgpar.geometry.micro_geometry import crowning
 
 REFERENCE = Path(__file__).parents[2] / "drivers" / "cup_45deg.toml"
 A, B, R_FS = 59.2, 57.2, 58.2
@@ -286,7 +286,7 @@ def test_foot_on_the_parabola_by_its_cubic() -> None:
 @pytest.mark.parametrize("name", SECTIONS)
 def test_pins_fit_into_the_spline_and_end_at_the_cam(name: str, design_file: Callable) -> None:
     design = load_design(design_file({"wave_generator": SECTIONS[name]}))
-    cam = make_cam(design)
+    cam = design.cam()
     travel = pin_travel(cam, R_FS)
     angle = np.radians(np.linspace(-60.0, 60.0, 20001))
     inner = R_FS * np.stack([np.sin(angle), np.cos(angle)], axis=-1) + [0.0, travel]
@@ -307,7 +307,7 @@ def test_pins_fit_into_the_spline_and_end_at_the_cam(name: str, design_file: Cal
 def test_derivatives_of_the_modified_surface(shape: str, name: str, design_file: Callable) -> None:
     path = design_file({"wave_generator": SECTIONS[name]})
     design = load_design(path, [f"micro_geometry.crowning_shape={shape}"])
-    surface = WaveGeneratorSurface(design)
+    surface = design.cam_surface()
     rng = np.random.default_rng(2)
     angle, radius = rng.uniform(0, 2 * np.pi, 50), rng.uniform(57.0, 60.0, 50)
     x = np.column_stack([radius * np.sin(angle), radius * np.cos(angle), rng.uniform(-5, 5, 50)])
@@ -322,7 +322,7 @@ def test_derivatives_of_the_modified_surface(shape: str, name: str, design_file:
 
 
 def test_slope_raises_the_open_end_at_the_major_axis() -> None:
-    surface = WaveGeneratorSurface(load_design(REFERENCE, ["micro_geometry.wg_crowning=0"]))
+    surface = load_design(REFERENCE, ["micro_geometry.wg_crowning=0"]).cam_surface()
     open_end, closed_end = surface.evaluate(np.array([[0.0, 59.2, -5.0], [0.0, 59.2, 5.0]]))[0]
     assert open_end == pytest.approx(-0.09) and closed_end == pytest.approx(0.09)
 

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from swgpar.cli import main
-from swgpar.design.drive_design import load_design
-from swgpar.geometry.cams import make_cam
+from swgpar.design.design_file import load_design
 
 DOUBLE_ARC = {"type": "double_arc", "r_addendum": 1.0, "r_dedendum": 0.6}
 INVOLUTE = {"type": "involute", "cutter_radius": 0.2}
@@ -45,7 +44,7 @@ def test_check(profile: str, cam: str, design_file: Callable, capsys: pytest.Cap
     assert all(np.isfinite(value) for value in values.values())
     design = load_design(path)
     assert (design.wave_generator.type, design.flexible_spline.profile.type) == (cam, profile)
-    tip = make_cam(design).evaluate(np.array([[0.0, design.a]]))[0]
+    tip = design.cam().evaluate(np.array([[0.0, design.a]]))[0]
     # between the rollers there is no tip: their centres are 10 degrees and a - r_4 away
     gap = np.hypot(design.a - 51.2 * np.cos(np.radians(10)), 51.2 * np.sin(np.radians(10))) - 8.0
     assert tip == pytest.approx(gap if cam == "four_roller" else 0.0, abs=1e-12)

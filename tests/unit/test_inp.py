@@ -12,7 +12,7 @@ import pytest
 from element_mesh import ElementMesh
 from small_drive import DESIGN, PLANE, RECIPE
 
-from swgpar.design.drive_design import load_design
+from swgpar.design.design_file import load_design
 from swgpar.meshing import SectorMesh, build_sector_meshes, load_recipe
 from swgpar.meshing.export import named_surfaces, whole_body, whole_drive, write_mesh
 from swgpar.meshing.inp import HEX_FACES, QUAD_FACES

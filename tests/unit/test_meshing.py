@@ -9,9 +9,9 @@ import meshio
 import numpy as np
 import pytest
 
-from swgpar.design.drive_design import DriveDesign, load_design
+from swgpar.design.design_file import load_design
+from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutputError
-from swgpar.geometry.profiles import make_profile
 from swgpar.geometry.profiles.curve import Segment, ToothProfile
 from swgpar.meshing import MeshRecipe, SectorMesh, body, build_sector_meshes, load_recipe
 from swgpar.meshing.cup import meridian
@@ -102,7 +102,7 @@ def polygon_area(points: np.ndarray) -> float:
 
 def section_area(case: DriveDesign, gear: str) -> float:
     """Area of one tooth and its rim by integration along the exact outline."""
-    profile = make_profile(case, gear)
+    profile = case.profile(gear)
     half = np.pi / profile.n_teeth
     flank = profile.point(np.linspace(0.0, profile.length, 20001))
     # Green's theorem: the flank as a fine polygon, the circles exactly
@@ -230,7 +230,7 @@ def test_node_sets() -> None:
 @pytest.mark.parametrize("gear", GEARS)
 def test_section_area_converges_quadratically(gear: str) -> None:
     case, recipe = design(), load_recipe(RECIPES["coarse"])
-    profile = make_profile(case, gear)
+    profile = case.profile(gear)
     exact = section_area(case, gear)
     interface, free = (
         (case.r_fs + case.cup_thickness, case.r_fs)
@@ -292,7 +292,7 @@ def test_full_recipe_is_graded_as_in_table_4_2() -> None:
     case = design()
     for gear, mesh in meshes(RECIPES["full"]).items():
         counts = getattr(recipe, gear)
-        section = cross_section(make_profile(case, gear), counts, *((59.0, 58.2) if mesh.phase == 0 else (62.8, 63.8)))
+        section = cross_section(case.profile(gear), counts, *((59.0, 58.2) if mesh.phase == 0 else (62.8, 63.8)))
         root_land = 1  # from R to the middle of the root
         assert len(mesh.flanks[0].s) - 1 + root_land == 21
         assert len(section.free) - 1 >= 10

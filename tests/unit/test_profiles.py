@@ -12,9 +12,8 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from swgpar.design.drive_design import load_design
+from swgpar.design.design_file import load_design
 from swgpar.errors import InputError
-from swgpar.geometry.profiles import make_profile
 from swgpar.geometry.profiles.curve import ToothProfile, check_flank
 from swgpar.geometry.profiles.double_arc import double_arc, straight_length
 from swgpar.geometry.profiles.frame import FlankFrame
@@ -271,14 +270,14 @@ def test_backlash_and_turn_of_both_kinds_of_profiles(design_file: Callable) -> N
     expected = 2.0 * (0.2 * np.tan(ALPHA) - 0.1 * np.tan(np.radians(20.4)))
     assert design.backlash == pytest.approx(expected, rel=1e-11)
     assert design.r_fs == pytest.approx(60.0 - 0.8 + 0.1 - 1.0)  # the rim lies below the shifted root circle
-    assert make_profile(design, "flexible_spline").r_root_circle - design.r_fs == pytest.approx(1.0)
+    assert design.profile("flexible_spline").r_root_circle - design.r_fs == pytest.approx(1.0)
 
 
 def test_pressure_angles_of_both_gears(design_file: Callable) -> None:
     sections = {"flexible_spline.profile": rack(pressure_angle=20.4), "ring_gear.profile": shaper()}
     design = load_design(design_file(sections), ["ring_gear.c_P=1.0", "drive.pressure_angle=19.8"])
     for gear, teeth, angle in (("flexible_spline", 120, 20.4), ("ring_gear", 122, 19.8)):
-        p = make_profile(design, gear)
+        p = design.profile(gear)
         lever = abs(np.cross(p.point(0.1)[0], p.normal(0.1)[0]))
         assert lever == pytest.approx(0.5 * teeth * np.cos(np.radians(angle)), rel=1e-12)
 

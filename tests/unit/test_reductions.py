@@ -11,7 +11,7 @@ from small_drive import PLANE
 
 from swgpar.analysis.coarse_start import levels
 from swgpar.analysis.period import continued
-from swgpar.design.drive_design import load_design
+from swgpar.design.design_file import load_design
 from swgpar.design.load_states import angles, load_sequence
 from swgpar.errors import InputError
 from swgpar.fem.inactive_sectors import LEAST, MARGIN, InactiveSectors

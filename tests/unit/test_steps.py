@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from swgpar.design.drive_design import load_design
+from swgpar.design.design_file import load_design
 from swgpar.design.load_states import load_sequence, start
 
 DATA = Path(__file__).parents[1] / "data"

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from small_drive import PLANE
 
-from swgpar.design.drive_design import load_design
+from swgpar.design.design_file import load_design
 from swgpar.fem.condensed_sectors import CondensedSector, bend, condense
 from swgpar.kernel import ReferenceElements, assemble_elements, reference_elements
 from swgpar.meshing import build_sector_meshes, load_recipe

@@ -11,7 +11,7 @@ from element_mesh import ElementMesh
 from scipy.sparse import block_diag, bmat, coo_matrix
 from scipy.sparse.linalg import eigsh
 
-from swgpar.design.drive_design import load_design
+from swgpar.design.design_file import load_design
 from swgpar.gear_trains.cycles import slow_cycles
 from swgpar.gear_trains.meshed_system import MeshedSystem
 from swgpar.gear_trains.ring.beam import Ring, Section, free_frequencies

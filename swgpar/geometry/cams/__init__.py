@@ -1,4 +1,7 @@
-"""Exact cam curves of wave generators. A new cam is a new file here, its keys, and an entry in `make_cam`."""
+"""Exact cam curves of wave generators (section 3.2).
+
+A new cam is a module here with a class that meets `Cam`, its keys in `keys.py` and an entry in `make_cam`.
+"""
 
 from __future__ import annotations
 
@@ -15,6 +18,8 @@ from swgpar.geometry.cams.simplified import simplified
 
 
 class Cam(Protocol):
+    """A closed curve, major axis along +y; all lengths in mm."""
+
     def evaluate(self, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Signed distance (n,), outward unit normal (n, 2) and k (n,), Hessian = k t t^T, at points (n, 2)."""
 
@@ -22,22 +27,30 @@ class Cam(Protocol):
         """About n points of the surface (n, 2), mm."""
 
 
-def make_cam(design) -> Cam:
-    """Cam curve of a design, major axis along +y."""
-    keys, a = design.wave_generator, design.a
-    name = "wave_generator"
+def make_cam(keys: WaveGenerator, a: float, b: float | None = None, name: str = "wave_generator") -> Cam:
+    """Curve of a cam, major axis along +y.
+
+    Parameters
+    ----------
+    keys : section [wave_generator] of the design file
+    a : mm, major semi-axis (eq. 3.3)
+    b : mm, minor semi-axis (eq. 3.4); of no use with rollers
+    name : of the section, for messages
+
+    Raises InputError where the keys give no closed curve.
+    """
     if isinstance(keys, FourRoller):
         return four_roller(a, float(np.radians(keys.beta)), keys.r_4, f"{name}.r_4")
     if isinstance(keys, Elliptical):
-        return EllipticalCam(a, design.b)
+        return EllipticalCam(a, b)
     if isinstance(keys, Simplified):
-        return simplified(a, design.b)
+        return simplified(a, b)
     if isinstance(keys, Parabolic):
         side = Side(keys.a_p, keys.C_p, keys.r_c, name)
-        return parabolic(a, design.b, side, side)
+        return parabolic(a, b, side, side)
     right = Side(keys.right.a_p, keys.right.C_p, keys.right.r_c, f"{name}.right")
     left = Side(keys.left.a_p, keys.left.C_p, keys.left.r_c, f"{name}.left")
-    return parabolic(a, design.b, right, left, float(np.radians(keys.rotational_angle)))
+    return parabolic(a, b, right, left, float(np.radians(keys.rotational_angle)))
 
 
 def taut_length(cam: Cam, n: int = 7200) -> float:

@@ -1,0 +1,140 @@
+"""Checks of sizes that have to fit each other. Each refusal names the key, its value and what is allowed."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from swgpar.design.drive_design import DriveDesign
+from swgpar.design.sections import GEARS
+from swgpar.errors import InputError
+from swgpar.geometry.cams import FourRoller
+
+OMITTED_BENDING = 0.01
+"""Largest share of the bending strain that condensed sectors may leave out."""
+
+SMALLEST_MINOR_AXIS = 0.4
+"""Smallest minor semi-axis of a cam over the inner radius of the flexible spline."""
+
+OUTLINE_POINTS = 2000
+"""Points of the cam's outline at which its largest radius is measured."""
+
+
+def check_fit(design: DriveDesign) -> None:
+    """Raise InputError for the first size that does not fit the others."""
+    _check_teeth(design)
+    _check_wave_generator(design)
+    _check_steps(design)
+    if design.wave_generator.face_width > design.drive.face_width:
+        width = design.drive.face_width
+        _refuse(
+            "wave_generator.face_width",
+            design.wave_generator.face_width,
+            f"above 0 to {width:g} mm (drive.face_width)",
+        )
+    if design.contact.friction > 0.0 and design.solver.linear == "iterative":
+        raise InputError(
+            f'solver.linear = "iterative" is not available with contact.friction = {design.contact.friction:g}: '
+            'allowed "direct" with friction'
+        )
+    if design.drive.model == "plane":
+        _check_plane(design)
+    else:
+        _check_cup(design)
+        _check_micro_geometry(design)
+    _check_outline(design)
+
+
+def _refuse(key: str, value: float, allowed: str) -> None:
+    raise InputError(f"{key} = {value:g} is out of range: allowed {allowed}")
+
+
+def _check_teeth(design: DriveDesign) -> None:
+    drive = design.drive
+    difference = drive.teeth_rg - drive.teeth_fs
+    if difference <= 0 or difference % 2:
+        raise InputError(
+            f"drive.teeth_rg - drive.teeth_fs = {difference} is out of range: allowed a positive multiple of two"
+        )
+    if drive.dedendum_coef <= drive.addendum_coef:
+        allowed = f"above {drive.addendum_coef:g} (the addendum) to 2 modules"
+        _refuse("drive.dedendum_coef", drive.dedendum_coef, allowed)
+    if design.r_fs <= design.d:
+        allowed = "a rim that leaves an inner radius above the deflection"
+        _refuse("flexible_spline.rim", design.flexible_spline.rim, allowed)
+
+
+def _check_wave_generator(design: DriveDesign) -> None:
+    wave = design.wave_generator
+    if isinstance(wave, FourRoller):
+        if wave.beta >= wave.pin_half_angle:
+            _refuse("wave_generator.beta", wave.beta, f"above 0 to below {wave.pin_half_angle:g} deg (pin_half_angle)")
+    elif design.b < SMALLEST_MINOR_AXIS * design.r_fs:
+        allowed = f"values whose minor semi-axis is at least {SMALLEST_MINOR_AXIS:g} of the spline's inner radius"
+        _refuse("wave_generator.C", wave.C, allowed)
+
+
+def _check_steps(design: DriveDesign) -> None:
+    steps, least = design.steps, np.degrees(design.pitch) * design.periods
+    if steps.samples and steps.rotation < 0.999999 * least:
+        allowed = f"{least:.6g} deg (periods: {design.periods}) and more with steps.samples"
+        _refuse("steps.rotation", steps.rotation, allowed)
+
+
+def _check_plane(design: DriveDesign) -> None:
+    if design.solver.condensed_sectors and design.sector_bend > OMITTED_BENDING:
+        raise InputError(
+            f"solver.condensed_sectors = true leaves out {design.sector_bend:.2g} of the bending strain: allowed "
+            f"up to {OMITTED_BENDING:g}, with more teeth or a thicker flexible_spline.rim"
+        )
+    for key in ("wg_crowning", "wg_slope", "fs_crowning"):
+        value = getattr(design.micro_geometry, key)
+        if value != 0.0:
+            _refuse(f"micro_geometry.{key}", value, 'only 0 with drive.model = "plane"')
+
+
+def _check_cup(design: DriveDesign) -> None:
+    """Sizes of the cup; the mesh of its wall relies on them (`swgpar.meshing.cup.meridian`)."""
+    cup = design.cup
+    if design.solver.condensed_sectors:
+        raise InputError('solver.condensed_sectors = true is out of range: allowed only with drive.model = "plane"')
+    if cup is None:
+        raise InputError('cup is missing: allowed only with drive.model = "plane"')
+    if cup.fillet_radius < design.cup_thickness:
+        _refuse("cup.fillet_radius", cup.fillet_radius, f"{design.cup_thickness:g} (the cup's thickness) to inf mm")
+    if cup.length <= cup.fillet_radius:
+        _refuse("cup.length", cup.length, f"above {cup.fillet_radius:g} mm (cup.fillet_radius)")
+    # narrower splines leave the ring gear's width (docs/benchmarks/stability.md)
+    narrowest = max(design.axial_travel, 0.5 * design.flexible_spline.rim)
+    if design.drive.face_width < narrowest:
+        allowed = f"{narrowest:.4g} mm (axial travel of the teeth, half of the rim) to inf mm"
+        _refuse("drive.face_width", design.drive.face_width, allowed)
+    closed_end = design.r_fs + design.cup_thickness - cup.fillet_radius
+    if cup.inner_radius >= closed_end:
+        allowed = f"above 0 to below {closed_end:g} mm (the closed end inside cup.fillet_radius)"
+        _refuse("cup.inner_radius", cup.inner_radius, allowed)
+
+
+def _check_micro_geometry(design: DriveDesign) -> None:
+    micro, module = design.micro_geometry, design.drive.module
+    # beyond a quarter of its width the cam is a cone of some 30 degrees, off which the spline slides
+    most = min(0.5 * design.d, 0.25 * design.wave_generator.face_width)
+    limits = "half the deflection, a quarter of the cam's width"
+    if micro.wg_crowning > most:
+        _refuse("micro_geometry.wg_crowning", micro.wg_crowning, f"0 to {most:g} mm ({limits})")
+    if abs(micro.wg_slope) > most:
+        _refuse("micro_geometry.wg_slope", micro.wg_slope, f"-{most:g} to {most:g} mm ({limits})")
+    if micro.fs_crowning > 0.25 * module:
+        allowed = f"0 to {0.25 * module:g} mm (a quarter of the module)"
+        _refuse("micro_geometry.fs_crowning", micro.fs_crowning, allowed)
+
+
+def _check_outline(design: DriveDesign) -> None:
+    """Both profiles and the cam can be built, and the cam's outline leaves room for the teeth."""
+    spline, ring = (design.profile(gear) for gear in GEARS)
+    bulge = float(np.linalg.norm(design.cam().outline(OUTLINE_POINTS), axis=1).max()) - design.a
+    clearance = max(ring.r_root_circle - spline.r_tip_circle - 0.5 * design.d, 1e-6 * design.a)
+    if bulge > clearance:
+        raise InputError(
+            f"wave_generator ({design.wave_generator.type}) bulges {bulge:.3g} mm beyond its major semi-axis: "
+            f"allowed up to {clearance:.3g} mm, where the flexible spline's teeth meet the ring gear's root circle"
+        )

@@ -1,0 +1,141 @@
+"""The sections of the drive's design file: every key with its unit and allowed range."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from swgpar.geometry.profiles import ExternalProfile, InternalProfile
+from swgpar.input.quantities import Section, quantity
+
+GearName = Literal["flexible_spline", "ring_gear"]
+"""Name of a gear: its section in the design file, and its body in meshes and results."""
+
+GEARS: tuple[GearName, GearName] = ("flexible_spline", "ring_gear")
+"""Both gears, in the order of the bodies."""
+
+
+class Drive(Section):
+    """Section [drive]: layout, tooth numbers and sizes both gears share."""
+
+    layout: Literal["ring_fixed", "spline_fixed"] = quantity(
+        "ring_fixed", text="fixed member; the other gear is the output"
+    )
+    model: Literal["cup", "plane"] = quantity("cup", text="the cup drive, or the toothed section in plane stress")
+    teeth_fs: int = quantity(text="teeth of the flexible spline", ge=8, le=2000)
+    teeth_rg: int = quantity(text="teeth of the ring gear", ge=10, le=2002)
+    module: float = quantity(unit="mm", text="module", gt=0.0)
+    pressure_angle: float = quantity(20.0, unit="deg", text="pressure angle", gt=0.0, lt=45.0)
+    addendum_coef: float = quantity(unit="modules", text="addendum", gt=0.0, le=2.0)
+    dedendum_coef: float = quantity(unit="modules", text="dedendum", gt=0.0, le=2.0)
+    face_width: float = quantity(unit="mm", text="face width", gt=0.0)
+
+
+class Gear(Section):
+    """What the sections [flexible_spline] and [ring_gear] have in common."""
+
+    rim: float = quantity(unit="mm", text="rim thickness below the root circle", gt=0.0)
+    c_P: float = quantity(1.0, text="angular tooth thickness reduction; 1 for involutes", gt=0.0, le=1.2)
+    c_l: float = quantity(0.5, text="place of the pitch point on the straight segment", ge=0.0, le=1.0)
+
+
+class ExternalGear(Gear):
+    """Section [flexible_spline]."""
+
+    profile: ExternalProfile
+
+
+class InternalGear(Gear):
+    """Section [ring_gear]."""
+
+    profile: InternalProfile
+
+
+class Cup(Section):
+    """Section [cup]: the wall of the flexible spline behind its teeth."""
+
+    length: float = quantity(unit="mm", text="from the back of the teeth to the closed end", gt=0.0)
+    thickness_coef: float = quantity(0.8, text="cup thickness over rim thickness", ge=0.1, le=0.95)
+    fillet_radius: float = quantity(unit="mm", text="outer fillet radius", gt=0.0)
+    inner_radius: float = quantity(unit="mm", text="bore radius of the closed end", gt=0.0)
+
+
+class MicroGeometry(Section):
+    """Section [micro_geometry]: crowning and slope (section 7.12)."""
+
+    wg_crowning: float = quantity(0.0, unit="mm", text="crowning of the cam at its edges", ge=0.0)
+    wg_slope: float = quantity(
+        0.0, unit="mm", text="slope of the cam: radial -s (2z/F_w) cos 2 theta; s > 0 follows the cone of the cup"
+    )
+    fs_crowning: float = quantity(0.0, unit="mm", text="crowning of the flexible spline's flanks at their ends", ge=0.0)
+    crowning_shape: Literal["parabolic", "circular"] = quantity("parabolic", text="curve of the crowning")
+
+
+class Material(Section):
+    """Section [material]: linear elastic, the same for both gears."""
+
+    E: float = quantity(unit="MPa", text="modulus of elasticity", gt=0.0)
+    nu: float = quantity(text="Poisson's ratio", ge=0.0, le=0.499)
+
+
+class Load(Section):
+    """Section [load]."""
+
+    torque: float = quantity(0.0, unit="N·m", text="output torque, against the output's motion", ge=0.0)
+
+
+class Contact(Section):
+    """Section [contact]: friction, penalties and quadrature."""
+
+    friction: float = quantity(0.0, text="coefficient of friction between the flanks", ge=0.0, le=1.0)
+    penalty_coef: float = quantity(50.0, text="penalty of the flanks over E / module", gt=0.0)
+    wg_penalty_coef: float = quantity(5.0, text="penalty of cam and pins over E / module", gt=0.0)
+    quadrature: int = quantity(2, text="Gauss points per direction on segments of flank faces", ge=1, le=16)
+    wg_quadrature: int = quantity(3, text="Gauss points per direction on the inner surface", ge=1, le=16)
+    max_augmentations: int = quantity(3, text="largest number of augmentations per increment", ge=0, le=50)
+    penetration_tolerance: float = quantity(
+        1e-3, unit="modules", text="penetration that needs no augmentation", gt=0.0, le=0.1
+    )
+
+
+class Steps(Section):
+    """Section [steps]: the load sequence and its increments."""
+
+    rotation: float = quantity(45.0, unit="deg", text="rotation of the wave generator", ge=0.0, le=36000.0)
+    increment: float = quantity(5.0, unit="deg", text="increment of that rotation", ge=0.01, le=45.0)
+    pins: bool = quantity(True, text="deflect the spline by pins before the cam is there; false: by the growing cam")
+    deflect_increments: int = quantity(1, text="increments of the deflection (step 1)", ge=1, le=1000)
+    engage_increments: int = quantity(1, text="increments of the engagement", ge=1, le=1000)
+    load_increments: int = quantity(1, text="increments of the torque", ge=1, le=1000)
+    samples: int = quantity(
+        0,
+        text="angles computed in one period and continued by symmetry, instead of increments; 0: off",
+        ge=0,
+        le=1000,
+    )
+    start_levels: int = quantity(
+        0, text="coarser meshes on which the drive is assembled and loaded (steps 1 to 3); 0: off", ge=0, le=4
+    )
+
+
+class Solver(Section):
+    """Section [solver]: linear solver, convergence and reductions of the model."""
+
+    linear: Literal["direct", "iterative"] = quantity("direct", text="linear solver: MUMPS, or GMRES with GAMG")
+    rtol: float = quantity(1e-9, text="residual over contact force at convergence", gt=0.0, le=1e-3)
+    max_iterations: int = quantity(
+        25, text="Newton iterations before a cut-back, unless the residual falls", ge=1, le=1000
+    )
+    max_cutbacks: int = quantity(5, text="halvings of an increment before the run ends", ge=0, le=20)
+    twofold_symmetry: bool = quantity(True, text="model half of the drive when tooth numbers allow it")
+    far_teeth: Literal["left_out", "modelled"] = quantity(
+        "left_out", text="ring-gear sectors out of reach of the flexible spline, with the ring gear fixed"
+    )
+    condensed_sectors: bool = quantity(False, text="plane model: eliminate the inside of tooth sectors")
+    keep_factor: bool = quantity(True, text="cup drive: use factors for later tangents while GMRES converges with them")
+
+
+class Output(Section):
+    """Section [output]."""
+
+    fields: bool = quantity(True, text="write fields.h5 and fields.xdmf")
+    figures: bool = quantity(True, text="draw the figures")
