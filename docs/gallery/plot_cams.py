@@ -1,0 +1,85 @@
+"""
+Cams of the wave generator
+==========================
+
+The kinds of cam, drawn from the curves that the contact search uses. All have the same major
+semi-axis. The second figure shows how far each cam lies outside or inside the undeformed inner
+surface of the flexible spline.
+"""
+
+import tomllib
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from swgpar.design.drive_design import make_design
+from swgpar.geometry.cams import make_cam
+
+DRIVERS = Path(__file__).parents[2] / "drivers"
+CAMS = {
+    "elliptical": {"type": "elliptical"},
+    "simplified": {"type": "simplified", "C": 0.97},
+    "parabolic": {"type": "parabolic", "a_p": 0.0095, "C_p": 0.45, "r_c": 12.0},
+    "parabolic, asymmetric": {
+        "type": "asymmetric_parabolic",
+        "right": {"a_p": 0.0095, "C_p": 0.45, "r_c": 12.0},
+        "left": {"a_p": 0.0097, "C_p": 0.51, "r_c": 10.0},
+    },
+    "four rollers": {"type": "four_roller", "beta": 25.0, "r_4": 15.0},
+}
+
+with open(DRIVERS / "plane_half_turn.toml", "rb") as file:
+    table = tomllib.load(file)
+designs = {
+    name: make_design(table | {"wave_generator": {"face_width": 10.0, **keys}})
+    for name, keys in CAMS.items()
+}
+
+# %%
+# The outlines. The dashed circle is the inner surface of the undeformed spline.
+
+figure, axes = plt.subplots(
+    1, len(designs), figsize=(12.0, 3.0), sharey=True, layout="constrained"
+)
+angle = np.linspace(0.0, 2.0 * np.pi, 721)
+for panel, (name, design) in zip(axes, designs.items()):
+    outline = make_cam(design).outline(3600)
+    panel.plot(*np.vstack([outline, outline[:1]]).T, color="tab:orange")
+    panel.plot(
+        design.r_fs * np.sin(angle),
+        design.r_fs * np.cos(angle),
+        "--",
+        color="0.6",
+        linewidth=0.8,
+    )
+    panel.set(title=name, aspect="equal", xlabel="x (mm)")
+axes[0].set_ylabel("y (mm)")
+
+# %%
+# The radial distance of the cams from that circle, over the angle from the major axis. An ellipse has
+# the smallest change of curvature. Rollers leave the spline free between them.
+
+figure, panel = plt.subplots(figsize=(8.0, 4.5), layout="constrained")
+edges = np.linspace(-90.0, 90.0, 361)
+for name, design in designs.items():
+    x, y = make_cam(design).outline(7200).T
+    around = np.degrees(np.arctan2(x, y))
+    radius = np.hypot(x, y)
+    outside = [
+        radius[(around >= low) & (around < high)].max(initial=0.0)
+        for low, high in zip(edges[:-1], edges[1:])
+    ]
+    panel.plot(
+        (edges[:-1] + edges[1:]) / 2.0, np.subtract(outside, design.r_fs), label=name
+    )
+panel.axhline(0.0, color="0.6", linewidth=0.8)
+panel.set(
+    xlabel="angle from the major axis (deg)",
+    ylabel="outside the inner surface (mm)",
+    xlim=(-90.0, 90.0),
+    ylim=(-2.0, 1.2),
+    xticks=np.arange(-90, 91, 30),
+)
+panel.legend(loc="lower center", ncols=3)
+plt.show()
