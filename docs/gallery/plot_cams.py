@@ -2,9 +2,9 @@
 Cams of the wave generator
 ==========================
 
-The kinds of cam, drawn from the curves that the contact search uses. All have the same major
-semi-axis. The second figure shows how far each cam lies outside or inside the undeformed inner
-surface of the flexible spline.
+The kinds of cam, drawn from the curves that the contact search uses. All have the same
+major semi-axis. The second figure shows how far each cam lies outside or inside the
+undeformed inner surface of the flexible spline.
 """
 
 import tomllib
@@ -57,8 +57,8 @@ for panel, (name, design) in zip(axes, designs.items()):
 axes[0].set_ylabel("y (mm)")
 
 # %%
-# The radial distance of the cams from that circle, over the angle from the major axis. An ellipse has
-# the smallest change of curvature. Rollers leave the spline free between them.
+# The radial distance of the cams from that circle, over the angle from the major axis.
+# Rollers leave the spline free between them.
 
 figure, panel = plt.subplots(figsize=(8.0, 4.5), layout="constrained")
 edges = np.linspace(-90.0, 90.0, 361)
