@@ -23,7 +23,7 @@ Solved = tuple[int, dict[str, float], dict[str, float]]
 
 
 def element(case: dict[str, Any]) -> Callable[[], Solved]:
-    from element_problems import ELEMENTS, PROBLEMS
+    from support.element_problems import ELEMENTS, PROBLEMS
 
     plane, incompatible = ELEMENTS[case["element"]]
 
@@ -35,8 +35,7 @@ def element(case: dict[str, Any]) -> Callable[[], Solved]:
 
 
 def hertz(case: dict[str, Any]) -> Callable[[], Solved]:
-    import element_problems  # noqa: F401  (finds the tests' modules)
-    from hertz import hertz as solve
+    from support.hertz import hertz as solve
 
     def run() -> Solved:
         found = solve(2 ** (case["level"] + 1), case["quadrature"], case["incompatible"])
@@ -48,7 +47,7 @@ def hertz(case: dict[str, Any]) -> Callable[[], Solved]:
 
 
 def ring_on_cam(case: dict[str, Any]) -> Callable[[], Solved]:
-    from cam_ring import ring_on_cam as solve
+    from support.cam_ring import ring_on_cam as solve
 
     keys = ("level", "plane", "incompatible", "quadrature", "linear")
     return lambda: (*solve(*(case[key] for key in keys), MPI.COMM_WORLD), {})

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from convergence import limit, rates
+from support.convergence import limit, rates
 
 RATE_SLACK = 0.2
 """Of an asserted rate: on the finest levels terms of higher order still count, most for the stress of hexahedra."""

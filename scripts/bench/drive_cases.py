@@ -12,9 +12,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from cases import Cases
-from convergence import limit
-from drive_runs import refined, run
+from drive_runs import run
 
+from support.convergence import limit
+from support.recipes import refined
 from swgpar.analysis.error_estimate import estimate
 
 PLANE, CUP = "drivers/plane_half_turn.toml", "drivers/cup_45deg.toml"

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from cases import Cases, references
-from element_problems import ELEMENTS, ITERATIVE, PROBLEMS
+
+from support.element_problems import ELEMENTS, ITERATIVE, PROBLEMS
 
 
 def compute(cases: Cases) -> None:

@@ -1,6 +1,6 @@
 """Drives and elements under numerical stress: what converges, what is refused, and how far the invariants drift.
 
-Every group of `tests/stability/drive_groups.py` is a study on a small mesh, a case at a time on every rank. A case ends
+Every group of `tests/support/drive_groups.py` is a study on a small mesh, a case at a time on every rank. A case ends
 in one of three ways: it converges, it is refused by one sentence before anything is computed, or it fails (does not
 converge).
 stability.csv has a row for every case: Newton iterations (largest number in one increment, and all), cut-backs, the
@@ -21,14 +21,13 @@ from typing import Any
 
 from page import markdown, put
 
+from support.commands import environment, on_ranks, run_command
+from support.drive_groups import MESH, REPEATED, UNITS, UNITS_GROUP, Group, drift, groups, toml_value
+from support.element_limits import element_rows
+from support.paths import ROOT
+from support.small_drive import PLANE
 from swgpar.analysis.load_stepping import LOADED
 from swgpar.results import history
-
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests/stability")]
-from drive_groups import MESH, REPEATED, UNITS, UNITS_GROUP, Group, drift, groups, toml_value  # noqa: E402
-from elements import element_rows  # noqa: E402
-from small_drive import PLANE, environment, on_ranks, run_command  # noqa: E402
 
 Row = dict[str, Any]
 COLUMNS = ("group", "case", "status", "newton_max", "newton_all", "cutbacks", "cycles", "unbalanced", "drift", "wall_s")

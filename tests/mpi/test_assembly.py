@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from mpi4py import MPI
-from small_drive import PLANE
-from stiffness import without_grounding
 
+from support.paths import DESIGN, RECIPE
+from support.small_drive import PLANE
+from support.stiffness import without_grounding
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.design.design_file import load_design
 from swgpar.design.load_states import LoadState
 from swgpar.fem.vectors import create_vector
 from swgpar.meshing import load_recipe
 
-DATA = Path(__file__).parent.parent / "data"
 CONDENSED = (*PLANE, "solver.condensed_sectors=true")
 
 
@@ -38,8 +36,8 @@ CONDENSED = (*PLANE, "solver.condensed_sectors=true")
 )
 def test_tangent_is_the_derivative_of_the_residual(overrides: tuple[str, ...], monkeypatch) -> None:
     monkeypatch.setattr("swgpar.design.fit_checks.OMITTED_BENDING", 1.0)  # 40 teeth: of no account here
-    design = load_design(DATA / "small.toml", overrides)
-    model = DriveModel(design, load_recipe(DATA / "tiny.toml"), MPI.COMM_WORLD)
+    design = load_design(DESIGN, overrides)
+    model = DriveModel(design, load_recipe(RECIPE), MPI.COMM_WORLD)
     equilibrium, partition, dims = model.equilibrium, model.partition, model.partition.dims
     # undeformed, the cam overlaps at the major axis; shrunk teeth overlap slightly at the minor axis
     equilibrium.scene = LoadState(4, "rotate", angle=0.01, cam=-0.001, teeth=-0.02, control="torque", torque=2000.0)

@@ -4,27 +4,25 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import lru_cache
-from pathlib import Path
 
 import numpy as np
 import pytest
 from mpi4py import MPI
-from small_drive import PLANE
 
+from support.paths import DESIGN, RECIPE
+from support.small_drive import PLANE
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.design.design_file import load_design
 from swgpar.design.load_states import load_sequence
 from swgpar.meshing import load_recipe
 
-DATA = Path(__file__).parent.parent / "data"
-
 
 @lru_cache
 def loaded(*overrides: str) -> tuple[LoadStepper, dict[str, float], int]:
     """The small drive after step 3, its row, and how often increments were cut."""
-    design = load_design(DATA / "small.toml", overrides)
-    runner = LoadStepper(DriveModel(design, load_recipe(DATA / "tiny.toml"), MPI.COMM_WORLD))
+    design = load_design(DESIGN, overrides)
+    runner = LoadStepper(DriveModel(design, load_recipe(RECIPE), MPI.COMM_WORLD))
     solves = 0
     solve = runner.equilibrium.solve
 
@@ -76,8 +74,8 @@ def test_the_output_turns_through_the_backlash() -> None:
 
 def test_a_drive_that_has_parted_is_loaded_again() -> None:
     """From the middle of its backlash, where nothing holds the output, the torque brings it back to the same state."""
-    design = load_design(DATA / "small.toml", [*PLANE, "ring_gear.c_P=0.8"])
-    runner = LoadStepper(DriveModel(design, load_recipe(DATA / "tiny.toml"), MPI.COMM_WORLD))
+    design = load_design(DESIGN, [*PLANE, "ring_gear.c_P=0.8"])
+    runner = LoadStepper(DriveModel(design, load_recipe(RECIPE), MPI.COMM_WORLD))
     items = [item for item in load_sequence(design) if item.step <= 3]
     for item in items:
         runner.increment(item)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from mpi4py import MPI
 
+from support.paths import DESIGN, RECIPE
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.contact.segments import Segments
@@ -16,15 +16,14 @@ from swgpar.design.design_file import load_design
 from swgpar.design.load_states import load_sequence
 from swgpar.meshing import load_recipe
 
-DATA = Path(__file__).parent.parent / "data"
 WORLD = MPI.COMM_WORLD
 PITCH = 2.0 * np.pi / 42
 
 
 def loaded(friction: float, comm: MPI.Comm = WORLD) -> LoadStepper:
     """The small drive after step 3."""
-    design = load_design(DATA / "small.toml", [f"contact.friction={friction}"])
-    runner = LoadStepper(DriveModel(design, load_recipe(DATA / "tiny.toml"), comm))
+    design = load_design(DESIGN, [f"contact.friction={friction}"])
+    runner = LoadStepper(DriveModel(design, load_recipe(RECIPE), comm))
     for item in load_sequence(design):
         if item.step > 3:
             break

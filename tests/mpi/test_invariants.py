@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import lru_cache
-from pathlib import Path
 
 import numpy as np
 import pytest
 from mpi4py import MPI
-from small_drive import PLANE
 
+from support.paths import DESIGN, RECIPE
+from support.small_drive import PLANE
 from swgpar.analysis.contact_pressure import nodal_pressure
 from swgpar.analysis.drive_model import DriveModel, stresses
 from swgpar.analysis.load_stepping import LoadStepper
@@ -24,7 +24,6 @@ from swgpar.meshing import load_recipe
 from swgpar.solve import active_set_cycles as cycling
 from swgpar.solve.newton import NewtonSolver
 
-DATA = Path(__file__).parent.parent / "data"
 WORLD = MPI.COMM_WORLD
 MODELS = {"cup": (), "plane": PLANE}
 TORQUE = {"cup": 2000.0, "plane": 200.0}
@@ -35,7 +34,7 @@ both_models = pytest.mark.parametrize("model", MODELS)
 
 def loaded(design: DriveDesign, comm: MPI.Comm = WORLD) -> tuple[LoadStepper, dict[str, float]]:
     """The small drive after step 3, and its history row."""
-    runner = LoadStepper(DriveModel(design, load_recipe(DATA / "tiny.toml"), comm))
+    runner = LoadStepper(DriveModel(design, load_recipe(RECIPE), comm))
     for item in load_sequence(design):
         if item.step > 3:
             break
@@ -48,7 +47,7 @@ def row(runner: LoadStepper) -> dict[str, float]:
 
 
 def small(model: str, *overrides: str) -> DriveDesign:
-    return load_design(DATA / "small.toml", [*MODELS[model], *overrides])
+    return load_design(DESIGN, [*MODELS[model], *overrides])
 
 
 @lru_cache

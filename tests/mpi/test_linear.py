@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from mpi4py import MPI
 from petsc4py import PETSc
-from small_drive import PLANE
-from stiffness import without_grounding
 
+from support.paths import DESIGN, RECIPE
+from support.small_drive import PLANE
+from support.stiffness import without_grounding
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.design.design_file import load_design
 from swgpar.design.load_states import LoadState
@@ -19,12 +18,10 @@ from swgpar.log import logger
 from swgpar.meshing import load_recipe
 from swgpar.solve.bordered_system import ORDERING, BorderedSystem
 
-DATA = Path(__file__).parent.parent / "data"
-
 
 def system(overrides: tuple[str, ...], control: str) -> tuple[DriveModel, PETSc.Vec]:
     """A drive with its tangent set up, and a random right side."""
-    model = DriveModel(load_design(DATA / "small.toml", overrides), load_recipe(DATA / "tiny.toml"), MPI.COMM_WORLD)
+    model = DriveModel(load_design(DESIGN, overrides), load_recipe(RECIPE), MPI.COMM_WORLD)
     equilibrium, partition = model.equilibrium, model.partition
     equilibrium.scene = LoadState(4, "rotate", angle=0.01, cam=-0.001, teeth=-0.02, control=control, rotation=1e-3)
     equilibrium.search()

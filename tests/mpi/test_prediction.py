@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 from petsc4py import PETSc
-from small_drive import DESIGN, PLANE, RECIPE
 
+from support.paths import DESIGN, RECIPE
+from support.small_drive import PLANE
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.predictor import predict, supports
 from swgpar.design.design_file import load_design

@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from mpi4py import MPI
-from small_drive import PLANE
 
 import swgpar.solve.discrete_problem
+from support.paths import DESIGN, RECIPE
+from support.small_drive import PLANE
 from swgpar.analysis import mesh_refinement as accuracy
 from swgpar.analysis.coarse_start import from_loaded, level_of, levels, start_loaded
 from swgpar.analysis.drive_model import DriveModel, stresses
@@ -22,17 +23,16 @@ from swgpar.fem.vectors import read_field
 from swgpar.meshing import load_recipe
 from swgpar.solve.factor_reuse import LONGEST
 
-DATA = Path(__file__).parent.parent / "data"
 PHYSICAL = ("fs_s1", "fs_s3", "fs_vm", "rg_vm", "wg_torque_Nmm", "output_angle_deg")
 STATE = ("fs_s1", "fs_s3", "fs_vm", "rg_vm", "wg_torque_Nmm")
 PLAIN = ("solver.far_teeth=modelled", "solver.keep_factor=false")
 
 
 def rotated(
-    *overrides: str, recipe: str | Path = DATA / "tiny.toml", comm: MPI.Comm = MPI.COMM_WORLD
+    *overrides: str, recipe: str | Path = RECIPE, comm: MPI.Comm = MPI.COMM_WORLD
 ) -> tuple[LoadStepper, dict[str, float]]:
     """The small drive turned by two increments of 1.5 degrees, and its last history row."""
-    design = load_design(DATA / "small.toml", ["steps.rotation=3", "steps.increment=1.5", *overrides])
+    design = load_design(DESIGN, ["steps.rotation=3", "steps.increment=1.5", *overrides])
     mesh = load_recipe(recipe)
     runner = LoadStepper(DriveModel(design, mesh, comm))
     items = list(load_sequence(design))
@@ -178,7 +178,7 @@ def test_a_start_on_a_coarser_mesh_takes_over_what_is_inside() -> None:
     iterations = []
     for condensed in (False, True):
         overrides = [*CONDENSED[:-1], "steps.start_levels=1", f"solver.condensed_sectors={str(condensed).lower()}"]
-        design, mesh = load_design(DATA / "small.toml", overrides), load_recipe("plane_coarse")
+        design, mesh = load_design(DESIGN, overrides), load_recipe("plane_coarse")
         runner = LoadStepper(DriveModel(design, mesh, MPI.COMM_WORLD))
         start_loaded(runner, levels(design, mesh), list(load_sequence(design)))
         iterations.append(runner.iterations)
@@ -195,8 +195,8 @@ def test_condensed_sectors_on_any_number_of_ranks() -> None:
 
 
 def test_the_continued_history_is_that_of_a_longer_rotation() -> None:
-    design = load_design(DATA / "small.toml", [*PLANE, "steps.samples=4", "steps.rotation=11"])
-    runner = LoadStepper(DriveModel(design, load_recipe(DATA / "tiny.toml"), MPI.COMM_WORLD))
+    design = load_design(DESIGN, [*PLANE, "steps.samples=4", "steps.rotation=11"])
+    runner = LoadStepper(DriveModel(design, load_recipe(RECIPE), MPI.COMM_WORLD))
     rows = []
     for item in load_sequence(design):
         runner.increment(item)
@@ -214,10 +214,10 @@ def test_the_continued_history_is_that_of_a_longer_rotation() -> None:
 def test_a_mesh_is_chosen_alike_on_any_number_of_ranks(monkeypatch: pytest.MonkeyPatch) -> None:
     """The recipe, the loaded state on it and its estimated errors; every group is tried, in space as well."""
     monkeypatch.setattr(accuracy, "LARGEST", {3: 12_000})
-    design = load_design(DATA / "small.toml", ["steps.rotation=3", "solver.rtol=1e-9"])
+    design = load_design(DESIGN, ["steps.rotation=3", "solver.rtol=1e-9"])
     found = []
     for comm in (MPI.COMM_WORLD, MPI.COMM_SELF):
-        chosen = accuracy.choose(design, load_recipe(DATA / "tiny.toml"), list(load_sequence(design)), 0.05, comm)
+        chosen = accuracy.choose(design, load_recipe(RECIPE), list(load_sequence(design)), 0.05, comm)
         assert np.isfinite(chosen.error) and chosen.model.elements_whole() <= 12_000
         found.append((chosen, level_of(chosen.model).stresses))
         chosen.model.destroy()

@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from small_drive import run_command, succeed
+
+from support.commands import run_command, succeed
 
 
 @pytest.fixture(scope="session")

@@ -5,7 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from small_drive import DATA, DESIGN, RECIPE, execute, on_ranks, swgpar
+
+from support.commands import execute, on_ranks, swgpar
+from support.paths import DATA, DESIGN, RECIPE
 
 # mpirun passes on one exit code only and ends the others: this shell reports that of each rank and ends well itself
 EACH = ["sh", "-c", '"$@"; echo "exit code $?"', "sh"]

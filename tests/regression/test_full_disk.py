@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 from mpi4py import MPI
-from small_drive import assert_same_history, execute, run_command, succeed
 
+from support.commands import assert_same_history, execute, run_command, succeed
 from swgpar.results import checkpoint, history
 from swgpar.results.parallel_hdf5 import h5py
 

@@ -6,11 +6,11 @@ import json
 from pathlib import Path
 
 import pytest
-from small_drive import execute, on_ranks, succeed, swgpar
 
+from support.commands import execute, on_ranks, succeed, swgpar
+from support.paths import DRIVERS
 from swgpar.results.table import read_columns
 
-DRIVERS = Path(__file__).parents[2] / "drivers"
 SMALL = {
     "cascade": ("population.gearboxes=30", "population.hold=0.01", "load.period=0.05", "tolerances.samples=100"),
     "gear_pair": ("monte_carlo.samples=5000", "time.end=0.0005", "time.rows=10"),

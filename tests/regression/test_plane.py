@@ -8,8 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 import pyvista
-from small_drive import PLANE, RECIPE, SHORT, assert_same_history, run_command, succeed
 
+from support.commands import assert_same_history, run_command, succeed
+from support.paths import RECIPE
+from support.small_drive import PLANE, SHORT
 from swgpar.meshing import load_recipe
 from swgpar.results import history
 

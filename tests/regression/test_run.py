@@ -10,19 +10,10 @@ import numpy as np
 import pytest
 import pyvista
 from mpi4py import MPI
-from small_drive import (
-    DESIGN,
-    PLANE,
-    RECIPE,
-    SHORT,
-    assert_same_history,
-    execute,
-    kill_after,
-    on_ranks,
-    run_command,
-    succeed,
-)
 
+from support.commands import assert_same_history, execute, kill_after, on_ranks, run_command, succeed
+from support.paths import DESIGN, DRIVERS, RECIPE
+from support.small_drive import PLANE, SHORT
 from swgpar.analysis.coarse_start import level_of, load
 from swgpar.design.design_file import load_design
 from swgpar.design.load_states import load_sequence
@@ -30,7 +21,7 @@ from swgpar.meshing import load_recipe
 from swgpar.meshing.recipe_counts import with_counts
 from swgpar.results import history
 
-CUP_ROTATION = Path(__file__).parents[2] / "drivers" / "cup_rotation.py"
+CUP_ROTATION = DRIVERS / "cup_rotation.py"
 
 
 def test_result_files(plain: Path) -> None:

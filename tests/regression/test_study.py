@@ -8,7 +8,9 @@ import shutil
 from pathlib import Path
 
 import pytest
-from small_drive import DESIGN, RECIPE, execute, kill_after, on_ranks, succeed, swgpar
+
+from support.commands import execute, kill_after, on_ranks, succeed, swgpar
+from support.paths import DESIGN, RECIPE
 
 GOOD, FAILING = ("a_torque=1", "a_torque=2"), ("b_torque=1", "b_torque=2")
 

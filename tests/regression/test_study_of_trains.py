@@ -8,11 +8,12 @@ from pathlib import Path
 
 import pytest
 from mpi4py import MPI
-from small_drive import execute, on_ranks, swgpar
 
+from support.commands import execute, on_ranks, swgpar
+from support.paths import DRIVERS
 from swgpar.gear_trains.train import load_train, run_train
 
-DESIGN = Path(__file__).parents[2] / "drivers" / "gear_pair.toml"
+DESIGN = DRIVERS / "gear_pair.toml"
 SMALL = ("monte_carlo.samples=500", "time.end=0.0005", "time.rows=10")
 SHOWN = ("out_of_contact_2", "out_of_contact_3", "error_deviation_force_mesh_1", "error_mean_energy_y1_3")
 CASES = [f"noise={noise}_half_backlash={half}" for noise in (50, 200) for half in (20, -1)]

@@ -6,10 +6,11 @@ On any number of ranks; every case turns through one and a half pitches of the f
 from __future__ import annotations
 
 import pytest
-from drive_groups import MESH, ONCE_FAILED, drift, groups, table_of
 from mpi4py import MPI
-from small_drive import PLANE, assert_same_history, run_command, succeed
 
+from support.commands import assert_same_history, run_command, succeed
+from support.drive_groups import MESH, ONCE_FAILED, drift, groups, table_of
+from support.small_drive import PLANE
 from swgpar.analysis.drive_model import DriveModel, stresses
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.design.design_file import make_design

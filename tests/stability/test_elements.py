@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from elements import AMOUNTS, POISSON, bending, patch
+
+from support.element_limits import AMOUNTS, POISSON, bending, patch
 
 both_elements = pytest.mark.parametrize("dims", [2, 3])
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-REFERENCE = Path(__file__).parents[2] / "drivers" / "cup_45deg.toml"
+from support.paths import REFERENCE
 
 
 def inline(value: Any) -> str:

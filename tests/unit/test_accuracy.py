@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 from mpi4py import MPI
-from small_drive import DATA, PLANE
 
+from support.paths import DESIGN, DRIVERS, REFERENCE
+from support.small_drive import PLANE
 from swgpar.analysis import mesh_refinement as module
 from swgpar.analysis.coarse_start import Level
 from swgpar.analysis.mesh_refinement import (
@@ -48,31 +49,31 @@ def test_a_chosen_recipe_can_be_read_again(tmp_path: Path) -> None:
 
 
 def test_what_the_design_says_itself_is_kept() -> None:
-    design = with_accuracy(load_design(DATA / "small.toml", [*PLANE, "steps.rotation=9"]), 0.01)
+    design = with_accuracy(load_design(DESIGN, [*PLANE, "steps.rotation=9"]), 0.01)
     assert design.steps.samples == 8 and design.solver.rtol == RTOL
     own = [*PLANE, "steps.rotation=9", "steps.samples=3", "solver.rtol=1e-8"]
-    design = with_accuracy(load_design(DATA / "small.toml", own), 0.01)
+    design = with_accuracy(load_design(DESIGN, own), 0.01)
     assert design.steps.samples == 3 and design.solver.rtol == 1e-8
     # less than a period
-    assert with_accuracy(load_design(DATA / "small.toml", [*PLANE, "steps.rotation=4"]), 0.01).steps.samples == 0
+    assert with_accuracy(load_design(DESIGN, [*PLANE, "steps.rotation=4"]), 0.01).steps.samples == 0
 
 
 def test_sectors_are_condensed_where_that_leaves_out_little() -> None:
-    plane = DATA.parent.parent / "drivers/plane_half_turn.toml"
+    plane = DRIVERS / "plane_half_turn.toml"
     assert with_accuracy(load_design(plane), 0.02).solver.condensed_sectors
     assert not with_accuracy(load_design(plane), 0.005).solver.condensed_sectors
     assert not with_accuracy(load_design(plane, ["solver.condensed_sectors=false"]), 0.02).solver.condensed_sectors
-    assert not with_accuracy(load_design(DATA / "small.toml", PLANE), 0.2).solver.condensed_sectors
+    assert not with_accuracy(load_design(DESIGN, PLANE), 0.2).solver.condensed_sectors
     assert not with_accuracy(load_design(plane.with_name("cup_45deg.toml")), 0.1).solver.condensed_sectors
 
 
 def test_accuracies_that_cannot_be_had() -> None:
-    design = load_design(DATA / "small.toml", PLANE)
+    design = load_design(DESIGN, PLANE)
     for accuracy in (0.0, 0.5, float("nan")):
         with pytest.raises(InputError, match="out of range: allowed 0.001 to 0.2"):
             with_accuracy(design, accuracy)
     with pytest.raises(InputError, match="--accuracy needs contact.friction = 0, not 0.1"):
-        with_accuracy(load_design(DATA / "small.toml", [*PLANE, "contact.friction=0.1"]), 0.01)
+        with_accuracy(load_design(DESIGN, [*PLANE, "contact.friction=0.1"]), 0.01)
 
 
 class Analytic:
@@ -161,7 +162,7 @@ def test_a_change_that_is_small_by_chance_is_no_convergence(monkeypatch: pytest.
 def test_a_recipe_that_is_too_fine_is_coarsened(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every group can be doubled below the largest size."""
     monkeypatch.setattr(module, "load", lambda design, recipe, items, comm, below=None: recipe)
-    design = load_design(DATA.parent.parent / "drivers/cup_45deg.toml")
+    design = load_design(REFERENCE)
     full = load_recipe("full")
     way = Refinement(design, full, [], MPI.COMM_SELF)
     assert way.base == coarser(full) and way.model == coarser(way.base)

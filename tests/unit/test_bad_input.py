@@ -9,10 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from support.paths import DESIGN, REFERENCE
 from swgpar.design.design_file import load_design
 from swgpar.errors import InputError
-
-REFERENCE = Path(__file__).parents[2] / "drivers" / "cup_45deg.toml"
 
 OVERRIDES = [
     ("drive.teeth_fs=-120", "drive.teeth_fs", "-120"),
@@ -130,12 +129,12 @@ def test_a_spline_is_at_least_half_as_wide_as_its_rim_is_thick() -> None:
 
 def test_teeth_do_not_travel_out_of_the_face_width() -> None:
     """Measured on the small drive of 4 mm width: 0.50 mm."""
-    small = load_design(REFERENCE.parents[1] / "tests/data/small.toml")
+    small = load_design(DESIGN)
     assert small.axial_travel == pytest.approx(0.4854, abs=1e-4)
     straight = [f"micro_geometry.{key}=0" for key in ("wg_crowning", "wg_slope", "fs_crowning")]
     narrow = [f"{section}.face_width=0.45" for section in ("drive", "wave_generator")]
     with pytest.raises(InputError, match="drive.face_width = 0.45 is out of range: allowed 0.4854 mm"):
-        load_design(REFERENCE.parents[1] / "tests/data/small.toml", [*narrow, *straight])
+        load_design(DESIGN, [*narrow, *straight])
 
 
 def test_a_cup_drive_needs_a_cup(design_file: Callable[[dict[str, dict]], Path]) -> None:

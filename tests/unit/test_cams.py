@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +11,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.special import ellipe
 
+from support.paths import REFERENCE
 from swgpar.design.design_file import load_design
 from swgpar.design.load_states import load_sequence, start
 from swgpar.errors import InputError
@@ -22,7 +22,6 @@ from swgpar.geometry.cams.parabolic import Side, parabolic
 from swgpar.geometry.cams.simplified import simplified
 from swgpar.geometry.micro_geometry import crowning
 
-REFERENCE = Path(__file__).parents[2] / "drivers" / "cup_45deg.toml"
 A, B, R_FS = 59.2, 57.2, 58.2
 
 

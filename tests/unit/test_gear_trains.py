@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from support.paths import DRIVERS, REFERENCE
 from swgpar.errors import ConvergenceError, InputError
 from swgpar.gear_trains.published import check_published, compare
 from swgpar.gear_trains.sampling import blocks, generator, share_out
 from swgpar.gear_trains.train import is_gear_train, load_train, model_of
 from swgpar.results.table import format_columns, read_columns
 
-DRIVERS = Path(__file__).parents[2] / "drivers"
 CASCADE, GEAR_PAIR = DRIVERS / "cascade.toml", DRIVERS / "gear_pair.toml"
 RING, RING_MODES = DRIVERS / "ring_moving_load.toml", DRIVERS / "ring_modes.toml"
 PLANETARY = DRIVERS / "planetary.toml"
@@ -93,9 +93,9 @@ def test_one_sentence_with_key_and_reason(file: Path, override: str, reason: str
 
 
 def test_drives_are_no_gear_trains() -> None:
-    assert is_gear_train(CASCADE) and not is_gear_train(DRIVERS / "cup_45deg.toml")
+    assert is_gear_train(CASCADE) and not is_gear_train(REFERENCE)
     with pytest.raises(InputError, match="gear_train.model is missing"):
-        load_train(DRIVERS / "cup_45deg.toml")
+        load_train(REFERENCE)
 
 
 @pytest.mark.parametrize("file", [CASCADE, GEAR_PAIR, RING, RING_MODES, DRIVERS / "ring_supported.toml", PLANETARY])

@@ -9,9 +9,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from element_mesh import ElementMesh
-from small_drive import DESIGN, PLANE, RECIPE
 
+from support.element_mesh import ElementMesh
+from support.paths import DESIGN, RECIPE
+from support.small_drive import PLANE
 from swgpar.design.design_file import load_design
 from swgpar.meshing import SectorMesh, build_sector_meshes, load_recipe
 from swgpar.meshing.export import named_surfaces, whole_body, whole_drive, write_mesh

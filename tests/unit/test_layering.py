@@ -8,7 +8,7 @@ from pathlib import Path
 import swgpar
 from swgpar.rooms import ROOMS
 
-ROOT = Path(__file__).parents[2] / "swgpar"
+ROOT = Path(swgpar.__file__).parent
 
 
 def imported(path: Path) -> set[str]:

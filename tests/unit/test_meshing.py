@@ -9,6 +9,7 @@ import meshio
 import numpy as np
 import pytest
 
+from support.paths import RECIPE, REFERENCE
 from swgpar.design.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutputError
@@ -20,10 +21,7 @@ from swgpar.meshing.quality import hex_quality, hex_volumes, quad_quality
 from swgpar.meshing.sweep import axial_stations
 from swgpar.meshing.tooth import cross_section
 
-ROOT = Path(__file__).resolve().parents[2]
-REFERENCE = ROOT / "drivers" / "cup_45deg.toml"
-RECIPES = {name: name for name in ("coarse", "medium", "full")}
-TINY = ROOT / "tests" / "data" / "tiny.toml"
+CUP_RECIPES = ("coarse", "medium", "full")
 GEARS = ("flexible_spline", "ring_gear")
 SMALL = (
     "drive.teeth_fs=40",
@@ -66,17 +64,17 @@ def meshes(recipe: Path, *overrides: str) -> dict[str, SectorMesh]:
     return build_sector_meshes(design(*overrides), load_recipe(recipe))
 
 
-CASES = [pytest.param(path, (), id=name) for name, path in RECIPES.items()]
+CASES = [pytest.param(name, (), id=name) for name in CUP_RECIPES]
 CASES += [
-    pytest.param(TINY, SMALL, id="tiny"),
-    pytest.param(TINY, (), id="tiny-reference"),
-    pytest.param(RECIPES["medium"], ("cup.thickness_coef=0.95",), id="thick-cup"),
-    pytest.param(RECIPES["medium"], ("cup.thickness_coef=0.2",), id="thin-cup"),
-    pytest.param(RECIPES["full"], ("wave_generator.face_width=6.0",), id="narrow-cam"),
-    pytest.param(RECIPES["coarse"], DOUBLE_ARC, id="double-arc"),
-    pytest.param(RECIPES["coarse"], INVOLUTE, id="involute"),
-    pytest.param(RECIPES["full"], INVOLUTE, id="involute-full"),
-    pytest.param(RECIPES["coarse"], (*INVOLUTE, *SHIFTED), id="involute-shifted"),
+    pytest.param(RECIPE, SMALL, id="tiny"),
+    pytest.param(RECIPE, (), id="tiny-reference"),
+    pytest.param("medium", ("cup.thickness_coef=0.95",), id="thick-cup"),
+    pytest.param("medium", ("cup.thickness_coef=0.2",), id="thin-cup"),
+    pytest.param("full", ("wave_generator.face_width=6.0",), id="narrow-cam"),
+    pytest.param("coarse", DOUBLE_ARC, id="double-arc"),
+    pytest.param("coarse", INVOLUTE, id="involute"),
+    pytest.param("full", INVOLUTE, id="involute-full"),
+    pytest.param("coarse", (*INVOLUTE, *SHIFTED), id="involute-shifted"),
 ]
 
 
@@ -132,10 +130,10 @@ def test_jacobians_are_positive_and_elements_are_good(recipe: Path, overrides: t
         assert np.unique(mesh.hexes).size == len(mesh.coords)
 
 
-@pytest.mark.parametrize("recipe", RECIPES)
+@pytest.mark.parametrize("recipe", CUP_RECIPES)
 def test_double_arcs_in_finer_recipes(recipe: str) -> None:
     # elements of the top land narrow towards the tooth's inside: less well shaped than with rounded tip edges
-    for mesh in meshes(RECIPES[recipe], *DOUBLE_ARC).values():
+    for mesh in meshes(recipe, *DOUBLE_ARC).values():
         assert mesh.quality["min_jacobian"] > 0.0 and mesh.quality["min_scaled_jacobian"] > 0.4
 
 
@@ -147,7 +145,7 @@ def test_a_sharp_trapezoidal_tooth_can_be_meshed(external: bool) -> None:
     direction = float(np.arctan2(*(r - t)[::-1]))
     segment = Segment("straight", (t[0], t[1]), direction, 0.0, float(np.hypot(*(r - t))))
     profile = ToothProfile((segment,), external, float(np.hypot(*t)), float(np.hypot(*r)), 60)
-    recipe = load_recipe(RECIPES["full"]).flexible_spline
+    recipe = load_recipe("full").flexible_spline
     section = cross_section(profile, recipe, float(np.hypot(*r)) - 0.6 * side, float(np.hypot(*r)) - side)
     x = section.coords[section.quads]
     after, before = np.roll(x, -1, axis=1) - x, np.roll(x, 1, axis=1) - x
@@ -190,9 +188,9 @@ def test_flanks_lie_on_the_profile_with_crowning(recipe: Path, overrides: tuple[
             assert np.array_equal(nodes[..., 2], np.broadcast_to(flank.z, flank.nodes.shape))
 
 
-@pytest.mark.parametrize("name", RECIPES)
+@pytest.mark.parametrize("name", CUP_RECIPES)
 def test_segment_ends_are_nodes(name: str) -> None:
-    for mesh in meshes(RECIPES[name]).values():
+    for mesh in meshes(name).values():
         for end in mesh.profile.breaks:
             assert np.abs(mesh.flanks[0].s - end).min() < 1e-12
 
@@ -216,7 +214,7 @@ def test_named_faces_look_out_of_the_material(recipe: Path, overrides: tuple[str
 
 
 def test_node_sets() -> None:
-    case, both = design(), meshes(RECIPES["coarse"])
+    case, both = design(), meshes("coarse")
     bore = both["flexible_spline"].coords[both["flexible_spline"].node_sets["bore"]]
     assert np.allclose(np.hypot(bore[:, 0], bore[:, 1]), case.cup.inner_radius, rtol=1e-13)
     end = 0.5 * case.drive.face_width + case.cup.length
@@ -229,7 +227,7 @@ def test_node_sets() -> None:
 
 @pytest.mark.parametrize("gear", GEARS)
 def test_section_area_converges_quadratically(gear: str) -> None:
-    case, recipe = design(), load_recipe(RECIPES["coarse"])
+    case, recipe = design(), load_recipe("coarse")
     profile = case.profile(gear)
     exact = section_area(case, gear)
     interface, free = (
@@ -253,7 +251,7 @@ def test_volumes_match_closed_forms(thickness_coef: float) -> None:
     case = design(*overrides)
     errors = []
     for factor in (1, 2):
-        recipe = refined(load_recipe(RECIPES["full"]), factor)
+        recipe = refined(load_recipe("full"), factor)
         error = []
         for gear, mesh in build_sector_meshes(case, recipe).items():
             volume = mesh.n_sectors * hex_volumes(mesh.coords, mesh.hexes).sum()
@@ -265,8 +263,8 @@ def test_volumes_match_closed_forms(thickness_coef: float) -> None:
 
 
 def test_crowning_leaves_everything_but_the_teeth() -> None:
-    plain = meshes(RECIPES["full"], "micro_geometry.fs_crowning=0.0")["flexible_spline"]
-    crowned = meshes(RECIPES["full"])["flexible_spline"]
+    plain = meshes("full", "micro_geometry.fs_crowning=0.0")["flexible_spline"]
+    crowned = meshes("full")["flexible_spline"]
     moved = np.linalg.norm(crowned.coords - plain.coords, axis=1)
     assert moved.max() <= 0.045 * (1.0 + 1e-12)
     radius = np.hypot(plain.coords[:, 0], plain.coords[:, 1])
@@ -283,14 +281,14 @@ def test_crowning_leaves_everything_but_the_teeth() -> None:
     [("coarse", 30_000, 60_000), ("medium", 130_000, 170_000), ("full", 450_000, 520_000)],
 )
 def test_recipes_have_the_announced_size(name: str, low: int, high: int) -> None:
-    both = meshes(RECIPES[name])
+    both = meshes(name)
     assert low <= sum(len(mesh.hexes) * mesh.n_sectors for mesh in both.values()) <= high
 
 
 def test_full_recipe_is_graded_as_in_table_4_2() -> None:
-    recipe = load_recipe(RECIPES["full"])
+    recipe = load_recipe("full")
     case = design()
-    for gear, mesh in meshes(RECIPES["full"]).items():
+    for gear, mesh in meshes("full").items():
         counts = getattr(recipe, gear)
         section = cross_section(case.profile(gear), counts, *((59.0, 58.2) if mesh.phase == 0 else (62.8, 63.8)))
         root_land = 1  # from R to the middle of the root
@@ -301,7 +299,7 @@ def test_full_recipe_is_graded_as_in_table_4_2() -> None:
 
 
 def test_tiny_recipe_has_about_a_hundred_elements_per_sector() -> None:
-    both = meshes(TINY, *SMALL)
+    both = meshes(RECIPE, *SMALL)
     assert all(70 <= len(mesh.hexes) <= 120 for mesh in both.values())
 
 
@@ -315,7 +313,7 @@ def test_nodes_lie_at_the_ends_of_a_narrow_wave_generator() -> None:
                 assert np.allclose(z, -z[::-1], atol=1e-15)
                 if n > 2 and inner < 10.0:
                     assert np.abs(z - 0.5 * inner).min() < 1e-14 and np.abs(z + 0.5 * inner).min() < 1e-14
-    grid = meshes(RECIPES["full"], "wave_generator.face_width=6.0")["flexible_spline"].flanks[0]
+    grid = meshes("full", "wave_generator.face_width=6.0")["flexible_spline"].flanks[0]
     assert np.abs(grid.z - 3.0).min() < 1e-14
 
 
@@ -338,14 +336,14 @@ def test_meshes_scale_with_the_unit_system() -> None:
         for part in section.split("."):
             values = values[part]
         overrides += [f"{section}.{key}={scale * values[key]!r}" for key in keys]
-    for gear, metres in meshes(RECIPES["coarse"], *overrides).items():
-        millimetres = meshes(RECIPES["coarse"])[gear]
+    for gear, metres in meshes("coarse", *overrides).items():
+        millimetres = meshes("coarse")[gear]
         assert np.array_equal(metres.hexes, millimetres.hexes)
         assert np.allclose(metres.coords, scale * millimetres.coords, rtol=0.0, atol=1e-12 * scale * 60.0)
 
 
 def test_whole_drive_is_watertight() -> None:
-    for mesh in meshes(TINY, *SMALL).values():
+    for mesh in meshes(RECIPE, *SMALL).values():
         coords, hexes = whole_body(mesh)
         assert len(coords) == mesh.n_sectors * (len(mesh.coords) - len(mesh.ccw_nodes))
         assert hex_volumes(coords, hexes).min() > 0.0
@@ -381,7 +379,7 @@ def test_whole_drive_is_watertight() -> None:
 )
 def test_bad_recipes_are_refused_in_one_sentence(tmp_path: Path, old: str, new: str, words: tuple[str, ...]) -> None:
     path = tmp_path / "recipe.toml"
-    good = TINY.read_text()
+    good = RECIPE.read_text()
     assert old in good
     path.write_text(good.replace(old, new, 1))
     with pytest.raises(InputError) as caught:
@@ -395,7 +393,7 @@ def test_bad_recipes_are_refused_in_one_sentence(tmp_path: Path, old: str, new: 
 )
 def test_a_cup_needs_all_sections_of_a_recipe(tmp_path: Path, section: str, text: str) -> None:
     path = tmp_path / "recipe.toml"
-    content = TINY.read_text()
+    content = RECIPE.read_text()
     assert text in content
     cut = content.index(text)
     after = content.find("\n[", cut + 1)
@@ -416,11 +414,11 @@ def test_unreadable_recipe(tmp_path: Path) -> None:
 @pytest.mark.parametrize("override", ["cup.length=1.5", "cup.inner_radius=58.0"])
 def test_a_cup_that_does_not_close_is_refused(override: str) -> None:
     with pytest.raises(InputError, match=override.partition("=")[0]):
-        meridian(design(override), load_recipe(TINY).cup)
+        meridian(design(override), load_recipe(RECIPE).cup)
 
 
 def test_exports_read_back(tmp_path: Path) -> None:
-    both = meshes(TINY, *SMALL)
+    both = meshes(RECIPE, *SMALL)
     drive = whole_drive(both)
     files = write_mesh(design(*SMALL), both, tmp_path / "mesh")
     assert [path.suffix for path in files] == [".vtu", ".msh", ".inp"]
@@ -437,7 +435,7 @@ def test_exports_read_back(tmp_path: Path) -> None:
 
 
 def test_export_failures_are_clear(tmp_path: Path) -> None:
-    both = meshes(TINY, *SMALL)
+    both = meshes(RECIPE, *SMALL)
     blocked = tmp_path / "file"
     blocked.write_text("")
     with pytest.raises(OutputError, match="cannot be written"):
@@ -447,7 +445,7 @@ def test_export_failures_are_clear(tmp_path: Path) -> None:
 
 
 def test_report_counts_the_full_drive() -> None:
-    both = meshes(TINY, *SMALL)
+    both = meshes(RECIPE, *SMALL)
     report = mesh_report(both)
     drive = whole_drive(both)
     assert sum(entry["nodes"] for entry in report.values()) == len(drive.points)
@@ -460,7 +458,7 @@ def plane_meshes(recipe: Path, *overrides: str) -> dict[str, SectorMesh]:
     return build_sector_meshes(plane_design(*overrides), load_recipe(recipe))
 
 
-PLANE_CASES = [pytest.param(TINY, SMALL, id="tiny")]
+PLANE_CASES = [pytest.param(RECIPE, SMALL, id="tiny")]
 PLANE_CASES += [pytest.param(name, (), id=name) for name in ("plane", "plane_coarse", "coarse")]
 
 
@@ -502,7 +500,7 @@ def test_an_inverted_quadrilateral_is_refused(monkeypatch: pytest.MonkeyPatch) -
     worst = {"min_scaled_jacobian": -0.1, "min_jacobian": -0.25, "max_jacobian": 1.0, "max_aspect_ratio": 3.0}
     monkeypatch.setattr(body, "quad_quality", lambda coords, quads: worst)
     with pytest.raises(InputError, match="-0.25 mm2"):
-        build_sector_meshes(plane_design(*SMALL), load_recipe(TINY))
+        build_sector_meshes(plane_design(*SMALL), load_recipe(RECIPE))
 
 
 @pytest.mark.parametrize(("name", "low", "high"), [("plane", 45_000, 49_000), ("plane_coarse", 22_000, 24_000)])
@@ -513,7 +511,7 @@ def test_plane_recipes_have_the_announced_size(name: str, low: int, high: int) -
 
 def test_whole_plane_drive_is_closed() -> None:
     """Every edge inside belongs to two quadrilaterals, counter-clockwise ones; two circles of edges are left."""
-    for mesh in plane_meshes(TINY, *SMALL).values():
+    for mesh in plane_meshes(RECIPE, *SMALL).values():
         coords, quads = whole_body(mesh)
         assert len(coords) == mesh.n_sectors * (len(mesh.coords) - len(mesh.ccw_nodes)) // 2
         assert np.array_equal(np.unique(quads), np.arange(len(coords))) and np.all(coords[:, 2] == 0.0)
@@ -527,7 +525,7 @@ def test_whole_plane_drive_is_closed() -> None:
 
 
 def test_plane_exports_read_back(tmp_path: Path) -> None:
-    both = plane_meshes(TINY, *SMALL)
+    both = plane_meshes(RECIPE, *SMALL)
     drive = whole_drive(both)
     assert set(drive.cells_dict) == {"quad"}
     files = write_mesh(plane_design(*SMALL), both, tmp_path / "mesh")

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,7 +19,6 @@ from swgpar.geometry.profiles.frame import FlankFrame
 from swgpar.geometry.profiles.involute import Cutter, involute
 from swgpar.geometry.profiles.quadruple_arc import quadruple_arc
 
-REFERENCE = Path(__file__).parents[2] / "drivers" / "cup_45deg.toml"
 ALPHA = np.radians(20.0)
 IMPROVED = dict(r_tip=0.5, r_addendum=1.0, straight_l=0.0, r_dedendum=20.0, r_root=0.6)
 INITIAL = dict(r_tip=0.3, r_addendum=1.0, straight_l=0.2, r_dedendum=2.0, r_root=0.3)

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Literal, get_args, get_origin
 
 import pytest
 from pydantic.fields import FieldInfo
 
+from support.paths import ROOT
 from swgpar.design.drive_design import DriveDesign
 from swgpar.gear_trains.cascade import CascadeDesign
 from swgpar.gear_trains.gear_pair import GearPairDesign
 from swgpar.gear_trains.planetary import PlanetaryDesign
 from swgpar.gear_trains.ring import RingDesign
 from swgpar.input.quantities import Section, allowed
-
-ROOT = Path(__file__).parents[2]
 
 
 def sections(field: FieldInfo) -> list[type[Section]]:

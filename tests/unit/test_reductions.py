@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
-from small_drive import PLANE
 
+from support.paths import DESIGN, RECIPE
+from support.small_drive import PLANE
 from swgpar.analysis.coarse_start import levels
 from swgpar.analysis.period import continued
 from swgpar.design.design_file import load_design
@@ -19,8 +19,6 @@ from swgpar.meshing import build_sector_meshes, load_recipe
 from swgpar.meshing.interpolation import interpolation
 from swgpar.meshing.recipe import FaceWidthRecipe
 from swgpar.meshing.recipe_counts import coarser, with_counts
-
-DATA = Path(__file__).parent.parent / "data"
 
 
 def test_coarser_recipes_halve_down_to_the_smallest() -> None:
@@ -43,9 +41,9 @@ def test_coarser_recipes_halve_down_to_the_smallest() -> None:
 @pytest.mark.parametrize("gear", ["flexible_spline", "ring_gear"])
 def test_linear_fields_survive_the_interpolation(gear: str, overrides: tuple[str, ...]) -> None:
     """A field linear in angle, radius and z is exact, inside the coarse mesh as outside, where it is extrapolated."""
-    design = load_design(DATA / "small.toml", overrides)
-    fine = build_sector_meshes(design, load_recipe(DATA / "tiny.toml"))[gear]
-    coarse = build_sector_meshes(design, coarser(load_recipe(DATA / "tiny.toml")))[gear]
+    design = load_design(DESIGN, overrides)
+    fine = build_sector_meshes(design, load_recipe(RECIPE))[gear]
+    coarse = build_sector_meshes(design, coarser(load_recipe(RECIPE)))[gear]
     matrix = interpolation(coarse, fine)
 
     def fields(points: np.ndarray) -> np.ndarray:
@@ -58,7 +56,7 @@ def test_linear_fields_survive_the_interpolation(gear: str, overrides: tuple[str
 
 def test_nodes_without_tetrahedra_are_refused() -> None:
     """The run then starts without coarser meshes."""
-    sector = build_sector_meshes(load_design(DATA / "small.toml"), load_recipe(DATA / "tiny.toml"))["ring_gear"]
+    sector = build_sector_meshes(load_design(DESIGN), load_recipe(RECIPE))["ring_gear"]
     flat = replace(sector, coords=sector.coords * (1.0, 1.0, 0.0))
     with pytest.raises(InputError, match="no state can be taken from the other mesh: QH6"):
         interpolation(flat, sector)
@@ -66,15 +64,15 @@ def test_nodes_without_tetrahedra_are_refused() -> None:
 
 def test_levels() -> None:
     recipe = load_recipe("full")
-    design = load_design(DATA / "small.toml", ["steps.start_levels=2"])
+    design = load_design(DESIGN, ["steps.start_levels=2"])
     assert levels(design, recipe) == [coarser(coarser(recipe)), coarser(recipe)]
-    assert levels(load_design(DATA / "small.toml"), recipe) == []
+    assert levels(load_design(DESIGN), recipe) == []
     # with friction the loaded state depends on the way
-    assert levels(load_design(DATA / "small.toml", ["steps.start_levels=2", "contact.friction=0.1"]), recipe) == []
+    assert levels(load_design(DESIGN, ["steps.start_levels=2", "contact.friction=0.1"]), recipe) == []
 
 
 def test_one_period_is_continued_over_the_rotation() -> None:
-    design = load_design(DATA / "small.toml", ["steps.samples=4", "steps.rotation=30"])
+    design = load_design(DESIGN, ["steps.samples=4", "steps.rotation=30"])
     pitch = 360.0 / 42
     assert np.degrees(angles(design)) == pytest.approx([pitch * k / 4 for k in (1, 2, 3)])
     assert len(list(load_sequence(design))) == 6
@@ -101,15 +99,15 @@ def test_one_period_is_continued_over_the_rotation() -> None:
 
 
 def test_with_friction_a_period_settles_first() -> None:
-    design = load_design(DATA / "small.toml", ["steps.samples=4", "steps.rotation=30", "contact.friction=0.1"])
+    design = load_design(DESIGN, ["steps.samples=4", "steps.rotation=30", "contact.friction=0.1"])
     assert len(angles(design)) == 8
     with pytest.raises(InputError, match="steps.rotation = 10 is out of range: allowed 17.1429 deg"):
-        load_design(DATA / "small.toml", ["steps.samples=4", "steps.rotation=10", "contact.friction=0.1"])
+        load_design(DESIGN, ["steps.samples=4", "steps.rotation=10", "contact.friction=0.1"])
 
 
 def test_less_than_a_period_is_refused() -> None:
     with pytest.raises(InputError, match="steps.rotation = 6 is out of range: allowed 8.571"):
-        load_design(DATA / "small.toml", ["steps.samples=4"])
+        load_design(DESIGN, ["steps.samples=4"])
 
 
 class _Elements:

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
+from support.paths import DESIGN
 from swgpar.design.design_file import load_design
 from swgpar.design.load_states import load_sequence, start
-
-DATA = Path(__file__).parents[1] / "data"
 
 
 @pytest.mark.parametrize("torque", ["0", "2"])
 def test_every_increment_can_be_cut(torque: str) -> None:
     """Half of an increment is another scene than its end, and one that nears it."""
-    design = load_design(DATA / "small.toml", [f"load.torque={torque}", "steps.rotation=4", "steps.increment=2"])
+    design = load_design(DESIGN, [f"load.torque={torque}", "steps.rotation=4", "steps.increment=2"])
     module, travel = design.drive.module, design.d
     before = start(design)
     keys = ("angle", "cam", "teeth", "pins", "rotation", "torque")
@@ -29,7 +26,7 @@ def test_every_increment_can_be_cut(torque: str) -> None:
 
 
 def test_engagement_grows_from_a_clearance() -> None:
-    design = load_design(DATA / "small.toml", [])
+    design = load_design(DESIGN, [])
     deflected, engaged = (scene for scene, _ in zip(load_sequence(design), range(2)))
     half = deflected.toward(engaged, 0.5, design.drive.module, design.d)
     assert half.cam > 0.0 and half.teeth > 0.0

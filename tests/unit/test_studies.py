@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pytest
 
+from support.paths import DRIVERS
 from swgpar.meshing import build_sector_meshes
 from swgpar.studies.cases import expand
 from swgpar.studies.drives import DRIVES
 from swgpar.studies.spec import load_study
 from swgpar.studies.system import Job
 
-ROOT = Path(__file__).parents[2]
-FILES = sorted((ROOT / "drivers" / "studies").glob("*.toml"))
+FILES = sorted((DRIVERS / "studies").glob("*.toml"))
 REFUSED = {
     ("double_arc", "r_dedendum=0.8"): "no root land is left",
     ("four_roller", "r_4=10"): "where the rollers touch",

@@ -10,8 +10,9 @@ from pathlib import Path
 
 import pytest
 from mpi4py import MPI
-from study_files import assert_refused, jobs_of
 
+from support.paths import DATA, DESIGN, RECIPE, ROOT
+from support.study_files import assert_refused, jobs_of
 from swgpar.analysis.error_estimate import estimate
 from swgpar.errors import InputError
 from swgpar.results.table import format_csv
@@ -24,9 +25,7 @@ from swgpar.studies.study import queue
 from swgpar.studies.system import Outcome
 from swgpar.studies.table import compare, study_rows
 
-DATA = Path(__file__).parent.parent / "data"
-ROOT = Path(__file__).parents[2]
-MESHES = f'meshes = ["{DATA / "tiny.toml"}"]'
+MESHES = f'meshes = ["{RECIPE}"]'
 Write = Callable[..., Path]
 
 
@@ -36,7 +35,7 @@ def study_file(tmp_path: Path) -> Write:
 
     def write(rest: str = "", *, meshes: str = MESHES, more: str = "") -> Path:
         path = tmp_path / "study.toml"
-        path.write_text(f'[study]\ndesign = "{DATA / "small.toml"}"\n{meshes}\n{more}\n{rest}', encoding="utf-8")
+        path.write_text(f'[study]\ndesign = "{DESIGN}"\n{meshes}\n{more}\n{rest}', encoding="utf-8")
         return path
 
     return write
@@ -58,8 +57,8 @@ def test_grid_and_sweep(study_file: Write) -> None:
 
 def test_one_design_on_two_meshes(study_file: Write, tmp_path: Path) -> None:
     finer = tmp_path / "finer.toml"
-    finer.write_text((DATA / "tiny.toml").read_text(encoding="utf-8"), encoding="utf-8")
-    jobs = jobs_of(study_file(meshes=f'meshes = ["{DATA / "tiny.toml"}", "finer.toml"]'))
+    finer.write_text((RECIPE).read_text(encoding="utf-8"), encoding="utf-8")
+    jobs = jobs_of(study_file(meshes=f'meshes = ["{RECIPE}", "finer.toml"]'))
     assert [(j.case.name, j.mesh.stem, j.finer) for j in jobs] == [("small", "tiny", 1), ("small", "finer", 0)]
     assert queue(jobs, [None, None]) == [1, 0]
     assert queue(jobs, [None, "failed"]) == [0, 1]

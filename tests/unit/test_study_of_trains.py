@@ -10,8 +10,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from study_files import assert_refused, jobs_of
 
+from support.paths import DRIVERS, ROOT
+from support.study_files import assert_refused, jobs_of
 from swgpar.results.table import format_csv
 from swgpar.studies.cases import labels
 from swgpar.studies.figures import over_angle, over_key
@@ -20,7 +21,6 @@ from swgpar.studies.spec import load_study
 from swgpar.studies.system import Outcome
 from swgpar.studies.table import compare, published_rows, study_rows
 
-DRIVERS = Path(__file__).parents[2] / "drivers"
 Write = Callable[..., Path]
 
 
@@ -180,7 +180,7 @@ def test_what_a_train_does_not_have_is_left_out(study_file: Write, tmp_path: Pat
 
 
 def test_the_example_of_the_documentation(tmp_path: Path) -> None:
-    text = (DRIVERS.parent / "docs" / "studies.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
     example = text.partition("## Gear trains")[2].partition("```toml\n")[2].partition("```")[0]
     path = tmp_path / "study.toml"
     path.write_text(example.replace("../", f"{DRIVERS}/"), encoding="utf-8")

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 from mpi4py import MPI
 
+from support.cam_ring import INNER, THICKNESS, closed_form, ring_on_cam
+from support.convergence import limit, rates
+from support.element_problems import ELEMENTS, PROBLEMS
+from support.recipes import refined
 from swgpar.kernel import reference_elements
 from swgpar.meshing import load_recipe
-
-sys.path.insert(0, str(Path(__file__).parents[2] / "scripts" / "bench"))
-from cam_ring import INNER, THICKNESS, closed_form, ring_on_cam  # noqa: E402
-from convergence import limit, rates  # noqa: E402
-from drive_runs import refined  # noqa: E402
-from element_problems import ELEMENTS, PROBLEMS  # noqa: E402
 
 SHAPES = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import itertools
-from pathlib import Path
 
 import numpy as np
 import pytest
 
+from support.paths import DRIVERS
 from swgpar.gear_trains.cascade.design import CascadeDesign
 from swgpar.gear_trains.cascade.dynamics import Gearbox, natural_frequencies, no_errors
 from swgpar.gear_trains.cascade.flex_unit import FlexUnits
@@ -19,7 +19,7 @@ from swgpar.gear_trains.cascade.static import MESHES, first_crossing, path_gaps,
 from swgpar.gear_trains.cascade.tolerances import contributions, stack_up
 from swgpar.gear_trains.train import load_train
 
-DRIVER = Path(__file__).parents[2] / "drivers" / "cascade.toml"
+DRIVER = DRIVERS / "cascade.toml"
 
 
 @pytest.fixture(scope="module")

@@ -2,27 +2,25 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
-from small_drive import PLANE
 
+from support.paths import DESIGN, RECIPE
+from support.small_drive import PLANE
 from swgpar.design.design_file import load_design
 from swgpar.fem.condensed_sectors import CondensedSector, bend, condense
 from swgpar.kernel import ReferenceElements, assemble_elements, reference_elements
 from swgpar.meshing import build_sector_meshes, load_recipe
 from swgpar.meshing.sector import SectorMesh
 
-DATA = Path(__file__).parent.parent / "data"
 ANGLE = np.array([0.7])
 Sector = tuple[SectorMesh, ReferenceElements, CondensedSector]
 
 
 @pytest.fixture(scope="module", params=["flexible_spline", "ring_gear"])
 def sector(request) -> Sector:
-    design = load_design(DATA / "small.toml", PLANE)
-    mesh = build_sector_meshes(design, load_recipe(DATA / "tiny.toml"))[request.param]
+    design = load_design(DESIGN, PLANE)
+    mesh = build_sector_meshes(design, load_recipe(RECIPE))[request.param]
     elements = reference_elements(
         mesh.coords[mesh.elements], design.material.E, design.material.nu, design.drive.face_width
     )

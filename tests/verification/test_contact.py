@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from contact_blocks import Blocks, Rows, block, master
-from hertz import hertz
 
+from support.contact_blocks import Blocks, Rows, block, master
+from support.hertz import hertz
 from swgpar.contact.flanks import CONTINUED, Faces, Flanks, PlacedFaces
 from swgpar.contact.segments import SAMPLES, bilinear, cut_faces, face_corners
 from swgpar.kernel import contact_flanks

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from contact_blocks import Blocks, Rows, block, master
 
+from support.contact_blocks import Blocks, Rows, block, master
 from swgpar.contact import friction
 from swgpar.contact.flanks import Faces, PlacedFaces
 from swgpar.contact.segments import SAMPLES, Segments, bilinear, face_corners

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import itertools
-from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import eigh, expm, solve_continuous_lyapunov
 
+from support.paths import DRIVERS
 from swgpar.gear_trains import backlash
 from swgpar.gear_trains.gear_pair.design import GearPairDesign
 from swgpar.gear_trains.gear_pair.model import WAY, at_rest, combined_mass, natural_modes, system
@@ -20,7 +20,7 @@ from swgpar.gear_trains.sampling import generator
 from swgpar.gear_trains.sums import Sums
 from swgpar.gear_trains.train import load_train
 
-DRIVER = Path(__file__).parents[2] / "drivers" / "gear_pair.toml"
+DRIVER = DRIVERS / "gear_pair.toml"
 STEP, STEPS, EVERY = 1e-5, 300, 30
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(200)
 STATES = [(m, s, b) for m in (-3.0, -0.4, 0.0, 1.0, 2.5) for s in (0.05, 0.7, 3.0) for b in (0.0, 1.0)]

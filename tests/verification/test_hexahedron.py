@@ -6,10 +6,10 @@ import itertools
 
 import numpy as np
 import pytest
-from element_mesh import ElementMesh, pinch
 from scipy.sparse.linalg import spsolve
 from scipy.spatial.transform import Rotation
 
+from support.element_mesh import ElementMesh, pinch
 from swgpar.kernel import reference_elements
 
 CORNERS = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])

@@ -9,9 +9,9 @@ import sys
 from pathlib import Path
 
 import pytest
-from small_drive import environment
 
-ROOT = Path(__file__).resolve().parents[2]
+from support.commands import environment
+from support.paths import ROOT
 
 
 @pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX (ccx) is not installed")

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import itertools
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from support.paths import DRIVERS
 from swgpar.errors import ConvergenceError
 from swgpar.gear_trains.backlash import force
 from swgpar.gear_trains.cycles import slow_cycles
@@ -24,7 +24,7 @@ from swgpar.gear_trains.sampling import generator
 from swgpar.gear_trains.train import load_train
 from swgpar.kernel import TrainKernel
 
-DRIVER = Path(__file__).parents[2] / "drivers" / "planetary.toml"
+DRIVER = DRIVERS / "planetary.toml"
 
 
 @pytest.fixture(scope="module")

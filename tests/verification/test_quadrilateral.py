@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from element_mesh import ElementMesh, pinch
 from scipy.sparse.linalg import spsolve
 
+from support.element_mesh import ElementMesh, pinch
 from swgpar.kernel import assemble_elements, reference_elements
 
 CORNERS = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=float)

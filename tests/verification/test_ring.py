@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import itertools
-from pathlib import Path
 
 import numpy as np
 import pytest
-from element_mesh import ElementMesh
 from scipy.sparse import block_diag, bmat, coo_matrix
 from scipy.sparse.linalg import eigsh
 
+from support.element_mesh import ElementMesh
+from support.paths import DRIVERS
 from swgpar.design.design_file import load_design
 from swgpar.gear_trains.cycles import slow_cycles
 from swgpar.gear_trains.meshed_system import MeshedSystem
@@ -22,9 +22,8 @@ from swgpar.gear_trains.sampling import generator
 from swgpar.gear_trains.train import load_train
 from swgpar.meshing import build_sector_meshes, load_recipe
 
-ROOT = Path(__file__).parents[2]
-MOVING, MODES = ROOT / "drivers" / "ring_moving_load.toml", ROOT / "drivers" / "ring_modes.toml"
-SUPPORTED = ROOT / "drivers" / "ring_supported.toml"
+MOVING, MODES = DRIVERS / "ring_moving_load.toml", DRIVERS / "ring_modes.toml"
+SUPPORTED = DRIVERS / "ring_supported.toml"
 
 
 @pytest.fixture(scope="module")
@@ -126,7 +125,7 @@ def toothed_ring(design: RingDesign, recipe: str) -> np.ndarray:
     """
     body = design.ring
     drive = load_design(
-        ROOT / "drivers" / "plane_half_turn.toml",
+        DRIVERS / "plane_half_turn.toml",
         [
             "drive.module=5.5", "drive.teeth_rg=64", "drive.teeth_fs=60", "drive.addendum_coef=1.0",
             f"drive.dedendum_coef={(body.inner_radius - 176.0) / 5.5}", f"drive.face_width={body.face_width}",

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 
+from support.paths import DRIVERS
+from support.scripts import load_script
 from swgpar.analysis.plain_ring import RingCounts, RingDesign
 
-sys.path.insert(0, str(Path(__file__).parents[2] / "drivers"))
-from ring_experiment import OUTER_DIAMETER, OUTWARD, STEEL, THICKNESS, closed_form, press  # noqa: E402
+EXPERIMENT = load_script(DRIVERS / "ring_experiment.py")
+OUTER_DIAMETER, THICKNESS, OUTWARD = EXPERIMENT.OUTER_DIAMETER, EXPERIMENT.THICKNESS, EXPERIMENT.OUTWARD
+STEEL, closed_form, press = EXPERIMENT.STEEL, EXPERIMENT.closed_form, EXPERIMENT.press
 
 PLANE = RingDesign(OUTER_DIAMETER, THICKNESS, 10.0, True, STEEL)
 SMALL = np.array([1e-3])  # the ratio at 90 degrees grows by 0.014 per mm of travel

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from contact_blocks import Blocks, block, master
 
+from support.contact_blocks import Blocks, block, master
 from swgpar.contact.flanks import PlacedFaces
 from swgpar.contact.segments import SAMPLES, face_corners
 

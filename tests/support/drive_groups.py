@@ -1,6 +1,6 @@
 """Drives under numerical stress, by group: designs whose one key, or few, go to where the numbers get hard.
 
-Groups serve the tests of this folder and `scripts/bench/stability`. All run on the smallest mesh.
+Groups serve `tests/stability` and `scripts/bench/stability`. All run on the smallest mesh.
 """
 
 from __future__ import annotations
@@ -12,20 +12,18 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from small_drive import PLANE as SMALL_PLANE
 
+from support.paths import DATA, DESIGN, DRIVERS, RECIPE, REFERENCE
+from support.small_drive import PLANE as SMALL_PLANE
 from swgpar.design.design_file import make_design
 from swgpar.errors import InputError
 from swgpar.input.toml_file import parse_value, read_toml, with_value
 from swgpar.meshing import build_sector_meshes, load_recipe
 
-ROOT = Path(__file__).resolve().parents[2]
-PLANE, SMALL, CUP = (
-    ROOT / p for p in ("drivers/plane_half_turn.toml", "tests/data/small.toml", "drivers/cup_45deg.toml")
-)
+PLANE, SMALL, CUP = DRIVERS / "plane_half_turn.toml", DESIGN, REFERENCE
 """The plane reference drive, the small cup drive of 40 teeth, and the cup reference drive."""
 
-MESH = ROOT / "tests/data/tiny.toml"
+MESH = RECIPE
 
 Case = dict[str, Any]
 """Values of the design file that a case replaces: by "section.key", or by "section" for a whole one."""
@@ -316,6 +314,6 @@ def groups(count: int, seed: int) -> dict[str, Group]:
         "cams, plane reference": Group(PLANE, cams),
         "face width (aspect ratio), cup": Group(SMALL, lambda: widths(FACE_WIDTHS)),
         "random designs, plane": Group(PLANE, lambda: random_designs(count, seed)),
-        ONCE_FAILED: Group(PLANE, lambda: read_toml(Path(__file__).with_name("once_failed.toml"))),
+        ONCE_FAILED: Group(PLANE, lambda: read_toml(DATA / "once_failed.toml")),
         "random designs, cup": Group(PLANE, lambda: random_designs(count // 10, seed, "cup")),
     }

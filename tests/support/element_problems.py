@@ -7,20 +7,16 @@ Stress and Strain for the ring; Lamé for the cylinder; Cook (1974) for the memb
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 from petsc4py import PETSc
 
+from support.contact_blocks import block
+from support.element_mesh import ElementMesh
 from swgpar.solve.bordered_system import GAMG_DEFAULTS, mumps_defaults, set_defaults
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
-from contact_blocks import block  # noqa: E402
-from element_mesh import ElementMesh  # noqa: E402
 
 GAMG_RTOL = 1e-9
 """Residual at which GAMG's iteration ends: far below the errors of all meshes."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from element_mesh import ElementMesh
 from scipy.sparse import block_diag, csr_matrix
 from scipy.sparse.linalg import spsolve
 
+from support.element_mesh import ElementMesh
 from swgpar.contact import friction
 from swgpar.contact.flanks import CONTINUED, Faces, Flanks, PlacedFaces
 from swgpar.contact.segments import Segments, cut_faces

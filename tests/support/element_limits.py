@@ -11,10 +11,10 @@ from itertools import combinations_with_replacement
 from typing import Any
 
 import numpy as np
-from contact_blocks import block
-from element_mesh import ElementMesh
 from scipy.spatial.transform import Rotation
 
+from support.contact_blocks import block
+from support.element_mesh import ElementMesh
 from swgpar.meshing.quality import hex_quality, quad_quality
 
 YOUNG, STRAIN = 210e3, 1e-8

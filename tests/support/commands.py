@@ -1,4 +1,4 @@
-"""Runs of the small drive as child processes, for tests of the command."""
+"""Commands as child processes: runs of the small drive, on ranks, to the end or killed."""
 
 from __future__ import annotations
 
@@ -12,18 +12,9 @@ from pathlib import Path
 
 import numpy as np
 
+from support.paths import DATA, DESIGN, RECIPE
+from support.small_drive import SHORT
 from swgpar.results import history
-
-DATA = Path(__file__).parent / "data"
-DESIGN, RECIPE = DATA / "small.toml", DATA / "tiny.toml"
-PLANE = (
-    "drive.model=plane",
-    "load.torque=0.2",
-    *(f"micro_geometry.{key}=0" for key in ("wg_crowning", "wg_slope", "fs_crowning")),
-)
-"""Overrides that make the plane model of the small drive; it carries a tenth of the torque."""
-
-SHORT = ("steps.rotation=4.0", "steps.increment=2.0")
 
 # a process that has initialised MPI passes these on, and mpirun then takes itself for a rank of that job
 INHERITED = ("OMPI_COMM_", "OMPI_MCA_ess", "OMPI_MCA_orte", "PMIX_")

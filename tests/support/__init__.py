@@ -1,0 +1,1 @@
+"""What tests and benchmarks share: small problems with known answers, the small drive, groups of designs, commands."""
