@@ -1,0 +1,146 @@
+"""Contact of flanks: segments with their quadrature points, and the exact surface over a facet."""
+
+from __future__ import annotations
+
+import matplotlib.pyplot as plt
+import numpy as np
+from _drafting import DRIVERS, INK, NOTE, RING, SPLINE, label, leader, run
+from matplotlib.figure import Figure
+
+from swgpar.contact.segments import cut_faces, flank_faces
+from swgpar.design.drive_design import load_design
+from swgpar.geometry.profiles import make_profile
+from swgpar.meshing import build_sector_meshes
+from swgpar.meshing.recipe import load_recipe
+
+LINES = np.array([-0.4, 0.35, 1.1]), np.array([-0.5, 0.3, 0.85, 1.6])
+"""Node lines of the master (arc length, z; mm) in the frame of a slave face of 1 mm by 1 mm."""
+
+SHIFT = 1.0
+"""Arc length runs the other way on the master: s = SHIFT − a."""
+
+
+def segments() -> Figure:
+    """One face of the slave flank, cut along the node lines of the master."""
+    corners = np.array([[[SHIFT, 0.0], [0.0, 0.0], [0.0, 1.0], [SHIFT, 1.0]]])
+    cut = cut_faces(corners, np.ones((1, 2)), LINES[0], LINES[1], 2)
+    figure, axes = plt.subplots(1, 2, figsize=(12.0, 5.4))
+    for ax in axes:
+        ax.set_aspect("equal")
+        ax.axis("off")
+        ax.set_xlim(-0.62, 1.62)
+        ax.set_ylim(-0.62, 1.5)
+    left, right = axes
+    for s in LINES[0]:
+        left.plot([SHIFT - s] * 2, [-0.55, 1.4], color=RING, lw=2.0)
+    for z in LINES[1][:3]:
+        left.plot([-0.55, 1.5], [z, z], color=RING, lw=2.0)
+    left.fill([0, 1, 1, 0], [0, 0, 1, 1], fc=SPLINE, alpha=0.35, ec=INK, lw=1.5)
+    for (x, y), name in zip(((0, 0), (1, 0), (1, 1), (0, 1)), ("(0, 0)", "(1, 0)", "(1, 1)", "(0, 1)")):
+        left.plot(x, y, "o", color=INK, ms=5)
+        label(left, (x, y - 0.08 if y == 0 else y + 0.08), name, color=INK)
+    label(left, (0.5, 0.12), "face of the slave\n(flexible spline)", color=INK)
+    leader(left, (1.3, -0.35), "node lines of the master\n(ring gear)", (SHIFT + 0.4, 0.1))
+    left.set_title("a face lies on several facets of the master", fontsize=10)
+    for s in LINES[0]:
+        if 0 < SHIFT - s < 1:
+            right.plot([SHIFT - s] * 2, [0, 1], color=RING, lw=2.2)
+    for z in LINES[1]:
+        if 0 < z < 1:
+            right.plot([0, 1], [z, z], color=RING, lw=2.2)
+    right.plot([0.5, 0.5], [0, 1], color=SPLINE, lw=1.0, ls="--")
+    right.plot([0, 1], [0.5, 0.5], color=SPLINE, lw=1.0, ls="--")
+    right.fill([0, 1, 1, 0], [0, 0, 1, 1], fc=SPLINE, alpha=0.2, ec=INK, lw=1.5)
+    right.scatter(cut.a.ravel(), cut.b.ravel(), s=900 * np.sqrt(cut.share.ravel()) * 0.25 + 4, color=NOTE, zorder=3)
+    right.annotate("", xy=(0.45, -0.22), xytext=(0, -0.22), arrowprops={"arrowstyle": "-|>", "color": INK})
+    label(right, (0.6, -0.22), "a, along the profile", color=INK, ha="left")
+    right.annotate("", xy=(-0.2, 0.45), xytext=(-0.2, 0.0), arrowprops={"arrowstyle": "-|>", "color": INK})
+    label(right, (-0.2, 0.56), "b, along z", color=INK)
+    leader(right, (1.35, 1.18), "Gauss points, 2 × 2\nin every segment", (cut.a.max(), cut.b.max()))
+    text = "dashed: faces are cut in their middle too"
+    label(right, (0.5, 1.12), text, color=SPLINE)
+    right.set_title("segments with their quadrature points", fontsize=10)
+    figure.tight_layout()
+    return figure
+
+
+def offset() -> Figure:
+    """The exact, crowned flank over the facets of a coarse mesh, and the Hermite curve of the master."""
+    design = load_design(DRIVERS / "plane_half_turn.toml")
+    recipe = load_recipe(DRIVERS.parent / "mesh" / "coarse.toml")
+    mesh = build_sector_meshes(design, recipe)["flexible_spline"]
+    grid = mesh.flanks[0]
+    profile = make_profile(design, "flexible_spline")
+    figure, (left, right) = plt.subplots(1, 2, figsize=(12.5, 5.6), gridspec_kw={"width_ratios": [1.0, 1.25]})
+    left.set_aspect("equal")
+    left.axis("off")
+    curve = profile.point(np.linspace(0.0, profile.length, 400))
+    nodes = mesh.coords[grid.nodes[:, 0], :2]
+    fill = np.concatenate([curve, [(curve[-1, 0], curve[-1, 1] - 0.2), (0.0, curve[-1, 1] - 0.2), (0.0, curve[0, 1])]])
+    left.fill(*fill.T, fc=SPLINE, alpha=0.25)
+    left.plot(*curve.T, color=NOTE, lw=1.8)
+    left.plot(*nodes.T, "o-", color=INK, lw=1.2, ms=4)
+    label(left, (0.25, curve[0, 1] - 0.75), "flexible spline", color=INK)
+    leader(left, (0.95, curve[0, 1] - 0.15), "exact flank", tuple(profile.point(0.18 * profile.length)[0]))
+    at = 0.5 * (nodes[2] + nodes[3])
+    leader(left, (1.15, curve[0, 1] - 0.55), "facets between nodes", tuple(at), color=INK)
+    left.set_title("flank of the coarse mesh: nodes lie on the exact curve", fontsize=10)
+    faces = flank_faces(mesh, grid, 0.0, design.drive.face_width, "parabolic")
+    t = np.linspace(0.0, 1.0, 60)
+    for i, (s0, s1) in enumerate(zip(grid.s[:-1], grid.s[1:])):
+        exact = profile.point(s0 + t * (s1 - s0))
+        chord = nodes[i] + t[:, None] * (nodes[i + 1] - nodes[i])
+        height = 1e3 * np.sum((exact - chord) * profile.normal(s0 + t * (s1 - s0)), axis=1)
+        right.plot(s0 + t * (s1 - s0), height, color=NOTE, lw=1.6)
+        samples = 0.5 - 0.5 * np.cos(np.pi * (np.arange(5) + 0.5) / 5)
+        right.plot(s0 + samples * (s1 - s0), 1e3 * faces.offset[i, :, 0], "o", color=SPLINE, ms=5)
+        right.axvline(s0, color=INK, lw=0.5, ls=":")
+    right.axvline(grid.s[-1], color=INK, lw=0.5, ls=":")
+    right.axhline(0.0, color=INK, lw=1.2)
+    right.set_xlabel("arc length s from the addendum circle, mm", fontsize=9)
+    right.set_ylabel("height of the exact flank over the facet, µm", fontsize=9)
+    right.set_title("offset that every quadrature point carries (dots: samples, polynomial between)", fontsize=10)
+    figure.tight_layout()
+    return figure
+
+
+def law() -> Figure:
+    """Pressure over the gap of the augmented Lagrangian, and the return mapping of friction."""
+    figure, (left, right) = plt.subplots(1, 2, figsize=(11.5, 4.2))
+    gap = np.linspace(-1.6, 1.4, 301)
+    for k, (multiplier, style) in enumerate(((0.0, "-"), (0.8, "--"))):
+        left.plot(gap, np.maximum(0.0, multiplier - gap), color=(SPLINE, NOTE)[k], lw=2.0, ls=style)
+    left.axvline(0.0, color=INK, lw=0.7)
+    left.axhline(0.0, color=INK, lw=0.7)
+    leader(left, (-0.6, 0.15), r"$\lambda = 0$", (-0.35, 0.35), color=SPLINE)
+    leader(left, (0.55, 1.0), r"$\lambda > 0$: $p = \lambda$ at $g = 0$", (0.02, 0.8))
+    label(left, (-1.05, 1.55), r"slope $-\varepsilon$", color=INK, rotation=-40)
+    left.set_xticks([])
+    left.set_yticks([])
+    left.set_xlabel("gap g  (negative: penetration)", fontsize=9)
+    left.set_ylabel("pressure p", fontsize=9)
+    left.set_title(r"$p = \max(0, \lambda - \varepsilon g)$", fontsize=11)
+    right.set_aspect("equal")
+    right.axis("off")
+    circle = np.linspace(0, 2 * np.pi, 200)
+    right.plot(np.cos(circle), np.sin(circle), color=INK, lw=1.4)
+    label(right, (0.0, -1.13), r"slip: $|T| = \mu p$", color=INK)
+    start, trial = np.array([0.15, 0.55]), np.array([1.75, 0.85])
+    arrow = {"arrowstyle": "-|>", "lw": 1.6, "shrinkA": 0, "shrinkB": 0}
+    right.annotate("", xy=start, xytext=(0, 0), arrowprops={**arrow, "color": SPLINE})
+    right.annotate("", xy=trial, xytext=start, arrowprops={**arrow, "color": RING})
+    end = trial / np.hypot(*trial)
+    right.annotate("", xy=end, xytext=(0, 0), arrowprops={**arrow, "color": NOTE})
+    leader(right, (-0.5, 0.62), "$t_n$, last\nconverged state", (0.08, 0.3), color=SPLINE)
+    label(right, (1.95, 0.95), r"$T_{trial}$")
+    label(right, (1.1, 0.92), r"$\varepsilon\,\varphi\,(\xi - \xi_n)$", color=INK)
+    label(right, (0.62, 0.18), "$T$")
+    right.set_xlim(-1.3, 2.3)
+    right.set_ylim(-1.3, 1.4)
+    right.set_title("friction: the trial traction returns to the cone", fontsize=11)
+    figure.tight_layout()
+    return figure
+
+
+if __name__ == "__main__":
+    run({"contact_segments": segments, "contact_offset": offset, "contact_laws": law})

@@ -1,0 +1,241 @@
+"""The drive with its dimensions: section along the axis, toothed part enlarged, and front view."""
+
+from __future__ import annotations
+
+import matplotlib.pyplot as plt
+import numpy as np
+from _drafting import (
+    CAM,
+    DRIVERS,
+    INK,
+    RING,
+    SPLINE,
+    angle_mark,
+    axis_line,
+    dimension,
+    extension,
+    label,
+    leader,
+    run,
+    turned,
+)
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon
+
+from swgpar.design.drive_design import DriveDesign, load_design
+from swgpar.geometry.cams import EllipticalCam
+from swgpar.geometry.profiles import make_profile
+from swgpar.meshing.cup import meridian
+from swgpar.meshing.recipe import load_recipe
+
+
+def fill(ax: Axes, points: np.ndarray, colour: str, **style) -> None:
+    """Closed outline (n, 2), filled."""
+    ax.add_patch(Polygon(points, **{"closed": True, "fc": colour, "ec": INK, "lw": 0.8, "alpha": 0.85, **style}))
+
+
+def parts(design: DriveDesign) -> dict[str, np.ndarray]:
+    """Outlines (n, 2) in the plane of z and r, mm, of the undeformed drive; teeth are cut along a tooth's middle."""
+    recipe = load_recipe(DRIVERS.parent / "mesh" / "full.toml")
+    inner, outer = meridian(design, recipe.cup)
+    spline, ring = (make_profile(design, gear) for gear in ("flexible_spline", "ring_gear"))
+    half, cam_half = 0.5 * design.drive.face_width, 0.5 * design.wave_generator.face_width
+    tip, root = spline.r_tip_circle, spline.r_root_circle
+    wall = np.concatenate([[(design.r_fs, -half)], inner, outer[::-1], [(root, half), (root, -half)]])
+    rings = ring.r_tip_circle, ring.r_root_circle, ring.r_root_circle + design.ring_gear.rim
+
+    def box(z0: float, z1: float, r0: float, r1: float) -> np.ndarray:
+        return np.array([(z0, r0), (z1, r0), (z1, r1), (z0, r1)])
+
+    return {
+        "wall": wall[:, ::-1],
+        "tooth": box(-half, half, root, tip),
+        "ring tooth": box(-half, half, rings[0], rings[1]),
+        "ring": box(-half, half, rings[1], rings[2]),
+        "cam": box(-cam_half, cam_half, 0.0, design.r_fs - 0.5 * design.d),
+    }
+
+
+def section() -> Figure:
+    """Section of the reference cup drive along its axis, undeformed, upper half."""
+    design = load_design(DRIVERS / "cup_45deg.toml")
+    outline, cup, half = parts(design), design.cup, 0.5 * design.drive.face_width
+    figure, ax = plt.subplots(figsize=(9.5, 8.6))
+    ax.set_aspect("equal")
+    ax.axis("off")
+    fill(ax, outline["cam"], CAM)
+    fill(ax, outline["wall"], SPLINE)
+    fill(ax, outline["tooth"], SPLINE, alpha=0.45)
+    fill(ax, outline["ring tooth"], RING, alpha=0.45)
+    fill(ax, outline["ring"], RING)
+    end, outside = half + cup.length, design.r_fs + design.cup_thickness
+    axis_line(ax, (-16.0, 0.0), (end + 12.0, 0.0))
+    axis_line(ax, (0.0, -3.0), (0.0, 74.0))
+    ax.annotate("", xy=(end + 13.0, 0), xytext=(end + 8.0, 0), arrowprops={"arrowstyle": "-|>", "color": INK})
+    label(ax, (end + 15.0, 0.0), "z", color=INK, fontsize=10)
+    label(ax, (0.0, 75.5), "z = 0, middle of the face width", color=INK)
+    label(ax, (0.0, 30.0), "wave\ngenerator", color=INK)
+    label(ax, (30.0, 63.5), "flexible spline (cup)", color=INK)
+    label(ax, (-15.0, 67.0), "ring gear", color=INK)
+    ax.plot([-10.5, -4.5], [66.4, 63.4], color=INK, lw=0.6)
+    ax.plot([30.0, 28.0], [62.5, outside], color=INK, lw=0.6)
+    # axial dimensions
+    for z, top in ((-half, 71.5), (half, 71.5), (end, 71.5)):
+        extension(ax, (z, 57.0 if z == end else 64.0), (z, top))
+    dimension(ax, (-half, 70.5), (half, 70.5), "$F_w$  drive.face_width", at=(-11.5, 72.3))
+    dimension(ax, (half, 70.5), (end, 70.5), "$l_c$  cup.length", at=(0.5 * (half + end), 72.3))
+    cam_half = 0.5 * design.wave_generator.face_width
+    dimension(ax, (-cam_half, 46.0), (cam_half, 46.0), "", at=(0.0, 46.0))
+    leader(ax, (-15.5, 42.0), "wave_generator\n.face_width", (-0.6 * cam_half, 45.9))
+    # radii
+    dimension(ax, (22.0, 0.0), (22.0, design.r_fs), "$r_{fs}$ (derived)", rotation=90)
+    extension(ax, (half, design.r_fs), (23.0, design.r_fs))
+    half_bore = 0.5 * cup.inner_radius
+    dimension(
+        ax, (end + 5.0, 0.0), (end + 5.0, 2.0 * half_bore), "$r_{ci}$  cup\n.inner_radius", at=(end + 11.0, half_bore)
+    )
+    extension(ax, (end - 0.2, cup.inner_radius), (end + 6.0, cup.inner_radius))
+    corner = end - cup.fillet_radius, outside - cup.fillet_radius
+    touch = corner[0] + cup.fillet_radius * np.sqrt(0.5), corner[1] + cup.fillet_radius * np.sqrt(0.5)
+    leader(ax, (end + 9.0, 64.0), "$r_{cf}$  cup.fillet_radius\n(outside of the wall)", touch)
+    leader(ax, (38.0, 48.0), "$c_c t_r$  cup.thickness_coef\ntimes flexible_spline.rim", (33.0, design.r_fs + 0.3))
+    leader(ax, (38.0, 10.0), "closed end: the coupling\nacts on the bore", (end - 0.4, cup.inner_radius + 0.3))
+    leader(ax, (-16.0, 54.0), "open end", (-half, design.r_fs + 0.4))
+    ax.set_xlim(-22.0, end + 19.0)
+    ax.set_ylim(-4.0, 78.0)
+    return figure
+
+
+def teeth() -> Figure:
+    """Toothed part of the section, enlarged."""
+    design = load_design(DRIVERS / "cup_45deg.toml")
+    outline, half = parts(design), 0.5 * design.drive.face_width
+    spline, ring = (make_profile(design, gear) for gear in ("flexible_spline", "ring_gear"))
+    pitch = [0.5 * n * design.drive.module for n in (design.drive.teeth_fs, design.drive.teeth_rg)]
+    figure, ax = plt.subplots(figsize=(9.5, 6.4))
+    ax.set_aspect("equal")
+    ax.axis("off")
+    fill(ax, np.array([(-half, 56.6), (half, 56.6), (half, 57.2), (-half, 57.2)]), CAM)
+    for name, colour, alpha in (
+        ("wall", SPLINE, 0.85),
+        ("tooth", SPLINE, 0.45),
+        ("ring tooth", RING, 0.45),
+        ("ring", RING, 0.85),
+    ):
+        fill(ax, outline[name], colour, alpha=alpha)
+    label(ax, (0.0, 56.9), "wave generator (at the minor axis)", color=INK)
+    label(ax, (0.0, 58.7), "rim of the flexible spline", color=INK)
+    label(ax, (0.0, 63.0), "rim of the ring gear", color=INK)
+    for radius, text in zip(pitch, ("pitch circle, $N_{fs} m/2$", "pitch circle, $N_{rg} m/2$")):
+        ax.plot([-half - 0.3, half + 0.3], [radius, radius], color=INK, lw=0.7, dashes=(12, 3, 2, 3))
+        label(ax, (0.0, radius), text, color=INK)
+    left, right = -half - 0.6, half + 0.7
+    inner, root, tip = design.r_fs, spline.r_root_circle, spline.r_tip_circle
+    for z, radii in ((left, (inner, root, tip)), (right, (design.r_fs + design.cup_thickness,))):
+        for radius in radii:
+            extension(ax, (np.sign(z) * half, radius), (z - 0.2 if z < 0 else z + 0.2, radius))
+    dimension(ax, (left, inner), (left, root), "$t_r$  flexible_spline.rim", at=(left - 2.4, 0.5 * (inner + root)))
+    text = "$h_d m$  drive.dedendum_coef"
+    dimension(ax, (left, root), (left, pitch[0]), text, at=(left - 2.7, 0.5 * (root + pitch[0])))
+    text = "$h_a m$  drive.addendum_coef"
+    dimension(ax, (left, pitch[0]), (left, tip), text, at=(left - 2.7, 0.5 * (tip + pitch[0])))
+    extension(ax, (-half, pitch[0]), (left - 0.2, pitch[0]))
+    text = "$c_c t_r$, thickness of the cup"
+    dimension(
+        ax, (right, inner), (right, inner + design.cup_thickness), text, at=(right + 2.2, inner + 0.35), ha="center"
+    )
+    low, top, out = ring.r_tip_circle, ring.r_root_circle, ring.r_root_circle + design.ring_gear.rim
+    for radius in (low, pitch[1], top, out):
+        extension(ax, (half, radius), (right + 0.2, radius))
+    dimension(ax, (right, low), (right, pitch[1]), "$h_a m$", at=(right + 0.7, 0.5 * (low + pitch[1])))
+    dimension(ax, (right, pitch[1]), (right, top), "$h_d m$", at=(right + 0.7, 0.5 * (top + pitch[1])))
+    dimension(ax, (right, top), (right, out), "ring_gear.rim", at=(right + 1.5, 0.5 * (top + out)))
+    for z, radius, text in ((0.5, root, "$r_D$"), (0.5, tip, "$r_A$"), (1.5, low, "$r_A$"), (1.5, top, "$r_D$")):
+        label(ax, (half - z, radius), text, fontsize=8)
+    ax.set_xlim(-half - 6.0, half + 5.0)
+    ax.set_ylim(56.4, out + 0.3)
+    return figure
+
+
+FRONT = {
+    "drive": {"model": "plane", "teeth_fs": 40, "teeth_rg": 42, "module": 1.0, "addendum_coef": 0.6}
+    | {"dedendum_coef": 0.8, "face_width": 10.0},
+    "wave_generator": {"type": "elliptical", "face_width": 10.0},
+}
+"""Keys of a drive with few teeth, so that they can be seen."""
+
+
+def front_design() -> DriveDesign:
+    """The reference teeth on 40 and 42 instead of 120 and 122."""
+    from swgpar.design.drive_design import make_design
+    from swgpar.input.toml_file import read_toml
+
+    table = read_toml(DRIVERS / "plane_half_turn.toml")
+    table["drive"].update(FRONT["drive"])
+    return make_design(table)
+
+
+def outline_of_gear(design: DriveDesign, gear: str, n: int = 24) -> np.ndarray:
+    """All teeth of a gear (n_teeth, points, 2), mm, undeformed, tooth 0 of the spline and slot 0 of the ring on +y."""
+    profile = make_profile(design, gear)
+    flank = profile.point(np.linspace(profile.length, 0.0, n))
+    tooth = np.concatenate([flank * (-1.0, 1.0), flank[::-1]])
+    phase = 0.0 if gear == "flexible_spline" else np.pi / profile.n_teeth
+    angles = -phase - 2.0 * np.pi * np.arange(profile.n_teeth) / profile.n_teeth
+    return np.array([turned(tooth, angle) for angle in angles])
+
+
+def deflected(design: DriveDesign, points: np.ndarray) -> np.ndarray:
+    """Points (n, 2) of the undeformed spline on an inextensible ring: w = d/2 cos 2 psi, v = -d/4 sin 2 psi."""
+    r = design.r_fs + 0.5 * design.flexible_spline.rim
+    psi = np.arctan2(-points[:, 0], points[:, 1])
+    w, v = 0.5 * design.d * np.cos(2 * psi), -0.25 * design.d * np.sin(2 * psi)
+    tilt = psi + (v + design.d * np.sin(2 * psi)) / r
+    middle = (r + w) * np.array([-np.sin(psi + v / r), np.cos(psi + v / r)])
+    height = np.hypot(*points.T) - r
+    return (middle + height * np.array([-np.sin(tilt), np.cos(tilt)])).T
+
+
+def front() -> Figure:
+    """Front view of a drive with 40 and 42 teeth, seen from the closed end, the cup cut away."""
+    design = front_design()
+    ring, spline = (outline_of_gear(design, gear).reshape(-1, 2) for gear in ("ring_gear", "flexible_spline"))
+    outer = make_profile(design, "ring_gear").r_root_circle + design.ring_gear.rim
+    figure, ax = plt.subplots(figsize=(9.0, 8.6))
+    ax.set_aspect("equal")
+    ax.axis("off")
+    circle = np.linspace(0.0, 2.0 * np.pi, 361)
+    unit = np.column_stack([np.sin(circle), np.cos(circle)])
+    ax.fill(*(outer * unit).T, fc=RING, ec=INK, lw=0.8)
+    ax.fill(*ring.T, fc="white", ec=INK, lw=0.7)
+    ax.fill(*deflected(design, spline).T, fc=SPLINE, ec=INK, lw=0.7, alpha=0.9)
+    ax.fill(*deflected(design, design.r_fs * unit).T, fc="white", ec=INK, lw=0.6)
+    cam = EllipticalCam(design.a, design.b).outline(720)
+    ax.fill(*cam.T, fc=CAM, ec=INK, lw=0.8, alpha=0.75)
+    ax.plot(*(design.r_fs * unit).T, color=INK, lw=0.7, ls="--")
+    far = outer + 3.0
+    axis_line(ax, (0.0, -far), (0.0, far))
+    axis_line(ax, (-far, 0.0), (far, 0.0))
+    label(ax, (3.5, far + 0.8), "+y, major axis at 0 degrees", color=INK)
+    label(ax, (far + 0.6, 0.0), "+x,\nminor\naxis", color=INK)
+    dimension(ax, (0.0, 0.0), (0.0, design.a), "a", at=(0.7, 0.55 * design.a))
+    dimension(ax, (0.0, 0.0), (design.b, 0.0), "b", at=(0.55 * design.b, 0.8))
+    direction = np.array([np.sin(np.radians(-52.0)), np.cos(np.radians(-52.0))])
+    tip = tuple(design.r_fs * direction)
+    dimension(ax, (0.0, 0.0), tip, "$r_{fs}$, undeformed", at=tuple(0.55 * design.r_fs * direction), rotation=-38)
+    angle_mark(ax, (0.0, 0.0), 6.0, 90.0, 128.0, "wave generator\nturns", out=1.45)
+    angle_mark(ax, (0.0, 0.0), outer + 1.2, 52.0, 40.0, "flexible spline turns\n(ring gear fixed)", out=1.2)
+    label(ax, (0.0, -0.45 * design.a), "wave generator", color=INK)
+    leader(ax, (-outer - 1.5, -outer + 2.0), "ring gear", tuple(0.96 * outer * np.array([-0.72, -0.69])))
+    inside = design.r_fs + 0.5
+    leader(ax, (outer + 1.0, -outer + 2.0), "flexible spline", tuple(inside * np.array([0.69, -0.72])))
+    leader(ax, (-9.5, far), "teeth mesh at both\nends of the major axis", (-0.8, 0.5 * design.drive.teeth_rg))
+    leader(ax, (far - 0.5, 8.5), "teeth are apart\nat the minor axis", (0.5 * design.drive.teeth_fs - 0.7, 2.2))
+    ax.set_xlim(-far - 1.0, far + 5.5)
+    ax.set_ylim(-far - 0.5, far + 1.6)
+    return figure
+
+
+if __name__ == "__main__":
+    run({"drive_section": section, "drive_teeth": teeth, "drive_front": front})
