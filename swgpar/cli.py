@@ -9,8 +9,8 @@ import traceback
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NoReturn
 
-import swgpar
 from swgpar.errors import InputError, StudyError, SwgparError
+from swgpar.version import __version__
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -63,7 +63,7 @@ def parser() -> argparse.ArgumentParser:
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    top.add_argument("--version", action="version", version=f"swgpar {swgpar.__version__}")
+    top.add_argument("--version", action="version", version=f"swgpar {__version__}")
     commands = top.add_subparsers(dest="command", required=True, metavar="run | study | mesh | check | report")
 
     def design_command(name: str, text: str) -> argparse.ArgumentParser:

@@ -1,23 +1,30 @@
-"""The rooms of the package in the order of the data: a module imports only from its own room and those before it."""
+"""The rooms of the package in the order of the data, and what each is for.
+
+A module imports only from its own room and from those before it; `tests/unit/test_layering.py` reads the order here.
+"""
 
 from __future__ import annotations
 
-ROOMS = (
-    "rooms",
-    "errors",
-    "log",
-    "input",
-    "geometry",
-    "design",
-    "kernel",
-    "meshing",
-    "fem",
-    "contact",
-    "constraints",
-    "solve",
-    "results",
-    "gear_trains",
-    "analysis",
-    "studies",
-    "cli",
-)
+PURPOSE = {
+    "rooms": "this order",
+    "version": "version of the package",
+    "errors": "exceptions of one sentence, with exit codes",
+    "log": "log of rank 0, progress, wall seconds by phase",
+    "input": "quantities with units and ranges, TOML files, sentences that refuse bad values",
+    "geometry": "exact cams and tooth profiles, crowning and slope, from numbers",
+    "design": "design file of the drive: sections, derived quantities, checks of fit, load states",
+    "kernel": "C++ kernels of elements, contact and friction, and their Cython layer",
+    "meshing": "mesh recipes, tooth sectors, quality, interpolation between meshes, export",
+    "fem": "distribution over ranks, element assembly, condensed and inactive sectors, stress",
+    "contact": "contact of cam, pins and flanks: search, enforcement, friction",
+    "constraints": "supports and distributing couplings",
+    "solve": "residual and tangent, Newton's method, linear systems",
+    "results": "history, fields and checkpoints in a results folder",
+    "gear_trains": "lumped models of gear trains around strain wave gears",
+    "analysis": "a run of the drive: model, load stepping, prediction, mesh refinement, figures",
+    "studies": "many runs: cases, schedule, tables, report",
+    "cli": "the command line",
+}
+"""Purpose of each room, in the order of the rooms."""
+
+ROOMS = tuple(PURPOSE)

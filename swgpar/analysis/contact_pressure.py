@@ -7,9 +7,10 @@ from petsc4py import PETSc
 
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.vectors import create_vector
+from swgpar.solve.newton import NewtonSolver
 
 
-def nodal_pressure(equilibrium, body: BodyElements) -> np.ndarray:
+def nodal_pressure(equilibrium: NewtonSolver, body: BodyElements) -> np.ndarray:
     """Mean pressure of cam and flanks around each node of the owned sectors; (n_sectors, n_local) MPa.
 
     Area-weighted by the shape functions over the faces of the last evaluation; collective.

@@ -15,7 +15,6 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
-import swgpar
 from swgpar import log
 from swgpar.analysis.coarse_start import Level, from_loaded, levels, start_loaded
 from swgpar.analysis.contact_pressure import nodal_pressure
@@ -37,6 +36,7 @@ from swgpar.results.atomic import agreed, on_all, to_json, write_from_root
 from swgpar.results.fields import FieldWriter
 from swgpar.results.folder import RECIPE, prepare
 from swgpar.results.parallel_hdf5 import require_parallel
+from swgpar.version import __version__
 
 FIRST_ROTATION = 4
 """Step number of the first rotation increment: means are taken from there on."""
@@ -246,7 +246,7 @@ def summarise(
         "increments": len(rows),
         "ranks": comm.size,
         "versions": {
-            "swgpar": swgpar.__version__,
+            "swgpar": __version__,
             "python": platform.python_version(),
             "numpy": np.__version__,
             "petsc": ".".join(map(str, PETSc.Sys.getVersion())),

@@ -14,7 +14,6 @@ import numpy as np
 import scipy
 from mpi4py import MPI
 
-import swgpar
 from swgpar import log
 from swgpar.errors import InputError
 from swgpar.gear_trains import cascade, gear_pair, planetary, ring
@@ -26,6 +25,7 @@ from swgpar.input.toml_file import apply_overrides, read_toml, validate
 from swgpar.log import logger
 from swgpar.results.atomic import agreed
 from swgpar.results.folder import prepare
+from swgpar.version import __version__
 
 SECTION = "gear_train"
 """The section that makes a design file that of a gear train."""
@@ -109,7 +109,7 @@ def run_train(
         **result.summary,
         "ranks": comm.size,
         "versions": {
-            "swgpar": swgpar.__version__,
+            "swgpar": __version__,
             "python": platform.python_version(),
             "numpy": np.__version__,
             "scipy": scipy.__version__,

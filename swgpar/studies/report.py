@@ -8,7 +8,6 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-import swgpar
 from swgpar.studies import figures
 from swgpar.studies.spec import Study
 from swgpar.studies.table import (
@@ -20,6 +19,7 @@ from swgpar.studies.table import (
     shown_quantities,
     study_rows,
 )
+from swgpar.version import __version__
 
 STYLE = """
 body { font: 15px/1.45 sans-serif; margin: 2em auto; max-width: 84em; padding: 0 1em; color: #222; }
@@ -75,7 +75,7 @@ def make_report(study: Study, results: Sequence[Result], comparisons: Sequence[C
 def _introduction(study: Study, results: Sequence[Result]) -> str:
     failed = sum(outcome.status == "failed" for _, outcome in results)
     seconds = sum(outcome.wall_s or 0.0 for _, outcome in results)
-    text = f"swgpar {swgpar.__version__}: {len(results)} runs, {failed} failed, {seconds:.0f} s of computing."
+    text = f"swgpar {__version__}: {len(results)} runs, {failed} failed, {seconds:.0f} s of computing."
     return f"<p>{text} Design: {escape(study.section.design)}.</p>"
 
 

@@ -1,42 +1,85 @@
-"""A module imports only from modules that come before it on the way of the data."""
+"""The rooms of the package: what a module may import, and that no annotation is missing that would hide an import."""
 
 from __future__ import annotations
 
 import ast
+from collections.abc import Iterator
 from pathlib import Path
+
+import pytest
 
 import swgpar
 from swgpar.rooms import ROOMS
 
 ROOT = Path(swgpar.__file__).parent
+MODULES = sorted(path.relative_to(ROOT) for path in ROOT.rglob("*.py"))
+LOOSE = 8
+"""Largest number of modules at the top of the package, `__init__` left aside."""
 
 
-def imported(path: Path) -> set[str]:
-    names = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("swgpar."):
-            names.add(node.module.split(".")[1])
-        elif isinstance(node, ast.Import):
-            names |= {a.name.split(".")[1] for a in node.names if a.name.startswith("swgpar.")}
-    return names
+def room_of(module: Path) -> str:
+    return module.parts[0].removesuffix(".py")
 
 
-def test_every_module_has_its_place() -> None:
-    there = {
-        p.stem if p.is_file() else p.name for p in ROOT.iterdir() if p.suffix == ".py" or (p / "__init__.py").exists()
-    }
-    assert there - {"__init__"} == set(ROOMS), swgpar.__file__
+def imported(module: Path) -> Iterator[str]:
+    """Full names of what a module imports from the package: at its top, in functions and under TYPE_CHECKING."""
+    package = ["swgpar", *module.parent.parts]
+    for node in ast.walk(ast.parse((ROOT / module).read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names if alias.name.startswith("swgpar"))
+        elif isinstance(node, ast.ImportFrom):
+            source = package[: len(package) + 1 - node.level] if node.level else []
+            source = ".".join([*source, *([node.module] if node.module else [])])
+            if source == "swgpar":
+                yield from (f"swgpar.{alias.name}" for alias in node.names)
+            elif source.startswith("swgpar."):
+                yield source
 
 
-def test_imports_go_upwards_only() -> None:
-    wrong = []
-    for path in sorted(ROOT.rglob("*.py")):
-        own = path.relative_to(ROOT).parts[0].removesuffix(".py")
-        if own == "__init__":
-            continue
-        wrong += [
-            f"{path.relative_to(ROOT)} imports {name}"
-            for name in imported(path)
-            if ROOMS.index(name) > ROOMS.index(own)
-        ]
+def public_functions(body: list[ast.stmt]) -> Iterator[ast.FunctionDef]:
+    """Functions and methods that other modules may call."""
+    for node in body:
+        if isinstance(node, ast.ClassDef):
+            yield from public_functions(node.body)
+        elif isinstance(node, ast.FunctionDef) and (not node.name.startswith("_") or node.name.endswith("__")):
+            yield node
+
+
+def unannotated(function: ast.FunctionDef) -> list[str]:
+    arguments = function.args
+    every = [*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs, arguments.vararg, arguments.kwarg]
+    missing = [a.arg for a in every if a and a.annotation is None and a.arg not in ("self", "cls")]
+    return missing + ([] if function.returns is not None else ["return"])
+
+
+def test_every_module_is_in_a_room() -> None:
+    assert {room_of(module) for module in MODULES} - {"__init__"} == set(ROOMS)
+    assert len(set(ROOMS)) == len(ROOMS)
+
+
+def test_few_modules_are_loose() -> None:
+    assert len([module for module in MODULES if len(module.parts) == 1 and module.stem != "__init__"]) <= LOOSE
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_imports_come_from_the_same_room_or_from_those_before_it(room: str) -> None:
+    allowed = ROOMS[: ROOMS.index(room) + 1]
+    wrong = [
+        f"{module} imports {name}"
+        for module in MODULES
+        if room_of(module) == room
+        for name in imported(module)
+        if name == "swgpar" or name.split(".")[1] not in allowed
+    ]
+    assert not wrong
+
+
+def test_public_functions_are_annotated() -> None:
+    """Without a type a parameter can be an object of a later room."""
+    wrong = [
+        f"{module}:{function.lineno} {function.name}: {', '.join(unannotated(function))}"
+        for module in MODULES
+        for function in public_functions(ast.parse((ROOT / module).read_text(encoding="utf-8")).body)
+        if unannotated(function)
+    ]
     assert not wrong
