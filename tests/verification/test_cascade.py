@@ -164,9 +164,9 @@ def reference_forces(design: CascadeDesign, errors: np.ndarray, x: np.ndarray, v
     """The forces of all gears, written down with vectors instead of loops."""
     out = np.zeros(DOFS)
     m = meshes(design)
-    angle = x[m["driven"]] / m["radius"] + errors["phase"]
+    angle = x[m["driven"]] / m["driven_radius"] + errors["phase"]
     p = x[m["driver"]] - x[m["driven"]] - errors["amplitude"] * np.sin(angle)
-    rate = v[m["driver"]] - v[m["driven"]] - errors["amplitude"] * np.cos(angle) * v[m["driven"]] / m["radius"]
+    rate = v[m["driver"]] - v[m["driven"]] - errors["amplitude"] * np.cos(angle) * v[m["driven"]] / m["driven_radius"]
     g = np.maximum(p - m["gap_B"], 0.0) + np.minimum(p + m["gap_A"], 0.0)
     k = m["stiffness"] * (1.0 + m["variation"] * np.sin(2.0 * x[m["driven"]] / m["module"] + errors["tooth_phase"]))
     s = np.clip(np.abs(g) / (1e-6 * design.damping.contact_ramp), 0.0, 1.0)

@@ -13,6 +13,7 @@ from support.paths import DRIVERS
 from swgpar.errors import ConvergenceError
 from swgpar.gear_trains.backlash import force
 from swgpar.gear_trains.cycles import slow_cycles
+from swgpar.gear_trains.kernel import PlanetaryStepKernel
 from swgpar.gear_trains.planetary.design import PlanetaryDesign
 from swgpar.gear_trains.planetary.linearised import Moments, linearised
 from swgpar.gear_trains.planetary.model import Train, carrier, nodes, planet, radii
@@ -22,7 +23,6 @@ from swgpar.gear_trains.planetary.watched import NAMES, watched
 from swgpar.gear_trains.planetary.wind import Wind
 from swgpar.gear_trains.sampling import generator
 from swgpar.gear_trains.train import load_train
-from swgpar.kernel import TrainKernel
 
 DRIVER = DRIVERS / "planetary.toml"
 
@@ -170,7 +170,7 @@ def test_a_step_is_the_trapezoidal_rule(small: PlanetaryDesign) -> None:
 def test_a_step_that_does_not_converge() -> None:
     """One mode and one mesh that pulls where it should push: d = 1.5 in contact asks for 0.5, in the gap, and back."""
     one, zero = np.ones(1), np.zeros(1)
-    kernel = TrainKernel(1e-3, 1.0, one, zero, zero, zero, np.ones((2, 1, 1)), np.full((2, 1, 1), -2.0), zero)
+    kernel = PlanetaryStepKernel(1e-3, 1.0, one, zero, zero, zero, np.ones((2, 1, 1)), np.full((2, 1, 1), -2.0), zero)
     train = SimpleNamespace(half=1.0)
     steps = SimpleNamespace(h=1e-3, kernel=kernel, train=train, stiffness=np.ones((2, 1)), touching=np.ones((2, 1, 1)))
     states = States(np.full((1, 1), 1.5), np.zeros((1, 1)), np.zeros((1, 1)))

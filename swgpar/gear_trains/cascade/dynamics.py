@@ -1,6 +1,6 @@
 """Motion of the cascade gearbox: meshes with backlash and errors, flexible units, shafts, generator.
 
-The equations follow from the energy of meshes and shafts, so that their matrices are symmetric (kernel/gearbox.hpp).
+The equations follow from the energy of meshes and shafts, so that their matrices are symmetric (gear_trains/kernel/cascade_gearbox.hpp).
 In print (eqs 9 to 23) the backlash and the errors are moved into an alternating force, and the contact function
 multiplies stiffness and force once each; here a mesh simply has the force
 
@@ -28,7 +28,7 @@ from scipy.linalg import eigh
 from swgpar.errors import ConvergenceError
 from swgpar.gear_trains.cascade.design import PINIONS, CascadeDesign
 from swgpar.gear_trains.cascade.layout import DOFS, FLYWHEEL, N_MESHES, RACK, masses, meshes, shafts
-from swgpar.kernel import MESH_ERROR, GearboxKernel
+from swgpar.gear_trains.kernel import MESH_ERROR, GearboxKernel
 
 Force = Callable[[np.ndarray], np.ndarray]
 """Rack forces in N at times in s, any shape."""

@@ -13,7 +13,7 @@ import numpy as np
 from swgpar.gear_trains.cascade.design import PINIONS, CascadeDesign
 from swgpar.gear_trains.cascade.flex_unit import FlexUnits
 from swgpar.gear_trains.cascade.static import MESHES, PAIRS, SIDES
-from swgpar.kernel import MESH, SHAFT
+from swgpar.gear_trains.kernel import MESH, SHAFT
 
 RACK, PINION, G1, G2, G3, G4, FLYWHEEL = 0, 1, 9, 17, 19, 21, 22
 DOFS, N_MESHES, N_SHAFTS = 23, 18, 11
@@ -46,7 +46,7 @@ def meshes(design: CascadeDesign) -> np.ndarray:
     out = np.zeros(N_MESHES, dtype=MESH)
     out["driver"] = np.concatenate([np.full(PINIONS, RACK), odd + 1, odd, G3 + side])
     out["driven"] = np.concatenate([PINION + np.arange(PINIONS), odd, G2 + np.arange(PAIRS) // 2, np.full(SIDES, G4)])
-    out["radius"] = radii(design)[out["driven"]]
+    out["driven_radius"] = radii(design)[out["driven"]]
     sections = [getattr(design, kind) for kind, count in MESHES.items() for _ in range(count)]
     for key, scale in (("stiffness", 1.0), ("variation", 1.0), ("gap_A", 1e-3), ("gap_B", 1e-3), ("module", 1e-3)):
         out[key] = [scale * getattr(section, key) for section in sections]
@@ -63,8 +63,8 @@ def shafts(design: CascadeDesign) -> np.ndarray:
     out["first_radius"], out["second_radius"] = radii(design)[out["first"]], radii(design)[out["second"]]
     out["stiffness"][PINIONS:] = [design.shafts.g2_g3] * SIDES + [design.shafts.g4_flywheel]
     out["stiffness"][:PINIONS] = units.ratios * units.stiffness
-    out["initial"], out["end"] = out["stiffness"], units.end
-    out["initial"][:PINIONS] = units.ratios * units.initial
+    out["initial_stiffness"], out["linear_above"] = out["stiffness"], units.end
+    out["initial_stiffness"][:PINIONS] = units.ratios * units.initial
     out["damping"] = design.damping.metal * out["stiffness"]
     out["damping"][:PINIONS] = design.damping.flex * out["stiffness"][:PINIONS]
     return out

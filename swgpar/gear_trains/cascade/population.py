@@ -12,8 +12,8 @@ from swgpar.gear_trains.cascade.dynamics import Gearbox, ramp
 from swgpar.gear_trains.cascade.layout import FLYWHEEL, N_MESHES, rigid_ways
 from swgpar.gear_trains.cascade.static import MESHES, static_sharing
 from swgpar.gear_trains.cascade.tolerances import standard_deviation
+from swgpar.gear_trains.kernel import MESH_ERROR
 from swgpar.gear_trains.sampling import blocks, generator
-from swgpar.kernel import MESH_ERROR
 
 BLOCK = 25
 STREAM = 1

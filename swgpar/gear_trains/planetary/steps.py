@@ -10,7 +10,7 @@ W their ways then. Multiplied by W this is a system for the m ways d1 alone,
     (1 + 2/h G c) d1 + G f(d1) = d,    G = h/2 W D⁻¹ Wᵀ,
 
 whose matrices are the same for all states. So a step costs a few products with W and some sums over the modes: they are
-compiled (kernel/planetary.hpp). Instead of the velocities v the states hold y = 2/h q + v: then y1 = 4/h q1 - y0.
+compiled (gear_trains/kernel/planetary_steps.hpp). Instead of the velocities v the states hold y = 2/h q + v: then y1 = 4/h q1 - y0.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ import numpy as np
 
 from swgpar.errors import ConvergenceError
 from swgpar.gear_trains.backlash import force
+from swgpar.gear_trains.kernel import PlanetaryStepKernel
 from swgpar.gear_trains.planetary.model import Train
-from swgpar.kernel import TrainKernel
 
 Law = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Of the meshes at the end of a step: (1, m, m) from their forces to their ways; springs and constants (1, m)."""
@@ -60,7 +60,7 @@ class Steps:
         self.give = (self.ways * self.scale) @ self.ways.transpose(0, 2, 1)
         self.damped = np.eye(self.ways.shape[1]) + 2.0 / h * self.give * train.mesh_damping
         self.touching = np.linalg.inv(self.damped + self.give * self.stiffness[:, None, :])
-        self.kernel = TrainKernel(
+        self.kernel = PlanetaryStepKernel(
             h,
             train.half,
             self.of_q,
