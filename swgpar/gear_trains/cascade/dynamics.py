@@ -1,6 +1,6 @@
 """Motion of the cascade gearbox: meshes with backlash and errors, flexible units, shafts, generator.
 
-The equations follow from the energy of meshes and shafts, so that their matrices are symmetric (gear_trains/kernel/cascade_gearbox.hpp).
+The equations follow from the energy of meshes and shafts, so that their matrices are symmetric.
 In print (eqs 9 to 23) the backlash and the errors are moved into an alternating force, and the contact function
 multiplies stiffness and force once each; here a mesh simply has the force
 

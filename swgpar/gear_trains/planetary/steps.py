@@ -10,7 +10,7 @@ W their ways then. Multiplied by W this is a system for the m ways d1 alone,
     (1 + 2/h G c) d1 + G f(d1) = d,    G = h/2 W D⁻¹ Wᵀ,
 
 whose matrices are the same for all states. So a step costs a few products with W and some sums over the modes: they are
-compiled (gear_trains/kernel/planetary_steps.hpp). Instead of the velocities v the states hold y = 2/h q + v: then y1 = 4/h q1 - y0.
+compiled (kernel/planetary_steps.hpp). Instead of the velocities v the states hold y = 2/h q + v: then y1 = 4/h q1 - y0.
 """
 
 from __future__ import annotations
