@@ -14,6 +14,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from swgpar.design.design_file import load_design, make_design
+from swgpar.design.drive_design import DriveDesign
+from swgpar.input.toml_file import read_toml
+
 ROOT = Path(__file__).resolve().parents[2]
 DRIVERS = ROOT / "drivers"
 
@@ -83,6 +87,19 @@ def turned(points: np.ndarray, angle: float) -> np.ndarray:
     """Points (n, 2) turned counter-clockwise about the origin by `angle` (rad)."""
     c, s = np.cos(angle), np.sin(angle)
     return points @ np.array([[c, s], [-s, c]])
+
+
+def reference(name: str = "cup_45deg") -> DriveDesign:
+    """The design of a file in drivers/."""
+    return load_design(DRIVERS / f"{name}.toml")
+
+
+def plane_with(**sections: Mapping[str, object]) -> DriveDesign:
+    """The plane reference drive with other values of some sections; a profile or a cam is replaced as a whole."""
+    table = read_toml(DRIVERS / "plane_half_turn.toml")
+    for name, values in sections.items():
+        table[name] = dict(values) if name == "wave_generator" else {**table[name], **values}
+    return make_design(table)
 
 
 def run(drawings: Mapping[str, Callable[[], Figure]]) -> None:

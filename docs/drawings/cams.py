@@ -6,7 +6,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 from _drafting import (
     CAM,
-    DRIVERS,
     INK,
     NOTE,
     SPLINE,
@@ -17,19 +16,18 @@ from _drafting import (
     dimension,
     label,
     leader,
+    plane_with,
     run,
 )
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from swgpar.design.drive_design import make_design
-from swgpar.geometry.cams import Cam, make_cam
+from swgpar.geometry.cams import Cam
 from swgpar.geometry.cams.chain import Parabola
 from swgpar.geometry.cams.elliptical import EllipticalCam
 from swgpar.geometry.cams.four_roller import four_roller
 from swgpar.geometry.cams.parabolic import Side, parabolic, solve_quarter
 from swgpar.geometry.cams.simplified import simplified
-from swgpar.input.toml_file import read_toml
 
 R_FS, D, A, B = 10.0, 4.0, 12.0, 8.0
 """Inner radius of the spline, deflection and semi-axes (mm) of the drawings: proportions are exaggerated."""
@@ -198,11 +196,9 @@ REFERENCE = {
 def cam_radius() -> Figure:
     """Radius of the cams of the reference drive over the angle from the major axis, at true scale."""
     figure, ax = plt.subplots(figsize=(9.0, 4.4))
-    table = read_toml(DRIVERS / "plane_half_turn.toml")
     for name, keys in REFERENCE.items():
-        table["wave_generator"] = {"face_width": 10.0, **keys}
-        design = make_design(table)
-        points = make_cam(design).outline(7200)
+        design = plane_with(wave_generator={"face_width": 10.0, **keys})
+        points = design.cam().outline(7200)
         angle, radius = np.degrees(np.arctan2(-points[:, 0], points[:, 1])), np.hypot(*points.T)
         order = np.argsort(angle)
         angle, height = angle[order], radius[order] - design.r_fs

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import matplotlib.pyplot as plt
 import numpy as np
-from _drafting import DRIVERS, INK, NOTE, RING, SPLINE, label, leader, run
+from _drafting import INK, NOTE, RING, SPLINE, label, leader, reference, run
 from matplotlib.figure import Figure
 
 from swgpar.contact.segments import cut_faces, flank_faces
-from swgpar.design.drive_design import load_design
-from swgpar.geometry.profiles import make_profile
 from swgpar.meshing import build_sector_meshes
 from swgpar.meshing.recipe import load_recipe
 
@@ -66,11 +64,11 @@ def segments() -> Figure:
 
 def offset() -> Figure:
     """The exact, crowned flank over the facets of a coarse mesh, and the Hermite curve of the master."""
-    design = load_design(DRIVERS / "plane_half_turn.toml")
-    recipe = load_recipe(DRIVERS.parent / "mesh" / "coarse.toml")
+    design = reference("plane_half_turn")
+    recipe = load_recipe("coarse")
     mesh = build_sector_meshes(design, recipe)["flexible_spline"]
     grid = mesh.flanks[0]
-    profile = make_profile(design, "flexible_spline")
+    profile = design.profile("flexible_spline")
     figure, (left, right) = plt.subplots(1, 2, figsize=(12.5, 5.6), gridspec_kw={"width_ratios": [1.0, 1.25]})
     left.set_aspect("equal")
     left.axis("off")

@@ -6,7 +6,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 from _drafting import (
     CAM,
-    DRIVERS,
     INK,
     RING,
     SPLINE,
@@ -16,6 +15,8 @@ from _drafting import (
     extension,
     label,
     leader,
+    plane_with,
+    reference,
     run,
     turned,
 )
@@ -23,9 +24,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
-from swgpar.design.drive_design import DriveDesign, load_design
+from swgpar.design.drive_design import DriveDesign
 from swgpar.geometry.cams import EllipticalCam
-from swgpar.geometry.profiles import make_profile
 from swgpar.meshing.cup import meridian
 from swgpar.meshing.recipe import load_recipe
 
@@ -37,9 +37,9 @@ def fill(ax: Axes, points: np.ndarray, colour: str, **style) -> None:
 
 def parts(design: DriveDesign) -> dict[str, np.ndarray]:
     """Outlines (n, 2) in the plane of z and r, mm, of the undeformed drive; teeth are cut along a tooth's middle."""
-    recipe = load_recipe(DRIVERS.parent / "mesh" / "full.toml")
+    recipe = load_recipe("full")
     inner, outer = meridian(design, recipe.cup)
-    spline, ring = (make_profile(design, gear) for gear in ("flexible_spline", "ring_gear"))
+    spline, ring = (design.profile(gear) for gear in ("flexible_spline", "ring_gear"))
     half, cam_half = 0.5 * design.drive.face_width, 0.5 * design.wave_generator.face_width
     tip, root = spline.r_tip_circle, spline.r_root_circle
     wall = np.concatenate([[(design.r_fs, -half)], inner, outer[::-1], [(root, half), (root, -half)]])
@@ -59,7 +59,7 @@ def parts(design: DriveDesign) -> dict[str, np.ndarray]:
 
 def section() -> Figure:
     """Section of the reference cup drive along its axis, undeformed, upper half."""
-    design = load_design(DRIVERS / "cup_45deg.toml")
+    design = reference()
     outline, cup, half = parts(design), design.cup, 0.5 * design.drive.face_width
     figure, ax = plt.subplots(figsize=(9.5, 8.6))
     ax.set_aspect("equal")
@@ -109,9 +109,9 @@ def section() -> Figure:
 
 def teeth() -> Figure:
     """Toothed part of the section, enlarged."""
-    design = load_design(DRIVERS / "cup_45deg.toml")
+    design = reference()
     outline, half = parts(design), 0.5 * design.drive.face_width
-    spline, ring = (make_profile(design, gear) for gear in ("flexible_spline", "ring_gear"))
+    spline, ring = (design.profile(gear) for gear in ("flexible_spline", "ring_gear"))
     pitch = [0.5 * n * design.drive.module for n in (design.drive.teeth_fs, design.drive.teeth_rg)]
     figure, ax = plt.subplots(figsize=(9.5, 6.4))
     ax.set_aspect("equal")
@@ -158,27 +158,14 @@ def teeth() -> Figure:
     return figure
 
 
-FRONT = {
-    "drive": {"model": "plane", "teeth_fs": 40, "teeth_rg": 42, "module": 1.0, "addendum_coef": 0.6}
-    | {"dedendum_coef": 0.8, "face_width": 10.0},
-    "wave_generator": {"type": "elliptical", "face_width": 10.0},
-}
-"""Keys of a drive with few teeth, so that they can be seen."""
-
-
 def front_design() -> DriveDesign:
-    """The reference teeth on 40 and 42 instead of 120 and 122."""
-    from swgpar.design.drive_design import make_design
-    from swgpar.input.toml_file import read_toml
-
-    table = read_toml(DRIVERS / "plane_half_turn.toml")
-    table["drive"].update(FRONT["drive"])
-    return make_design(table)
+    """The reference teeth on 40 and 42 instead of 120 and 122, so that they can be seen."""
+    return plane_with(drive={"teeth_fs": 40, "teeth_rg": 42})
 
 
 def outline_of_gear(design: DriveDesign, gear: str, n: int = 24) -> np.ndarray:
     """All teeth of a gear (n_teeth, points, 2), mm, undeformed, tooth 0 of the spline and slot 0 of the ring on +y."""
-    profile = make_profile(design, gear)
+    profile = design.profile(gear)
     flank = profile.point(np.linspace(profile.length, 0.0, n))
     tooth = np.concatenate([flank * (-1.0, 1.0), flank[::-1]])
     phase = 0.0 if gear == "flexible_spline" else np.pi / profile.n_teeth
@@ -201,7 +188,7 @@ def front() -> Figure:
     """Front view of a drive with 40 and 42 teeth, seen from the closed end, the cup cut away."""
     design = front_design()
     ring, spline = (outline_of_gear(design, gear).reshape(-1, 2) for gear in ("ring_gear", "flexible_spline"))
-    outer = make_profile(design, "ring_gear").r_root_circle + design.ring_gear.rim
+    outer = design.profile("ring_gear").r_root_circle + design.ring_gear.rim
     figure, ax = plt.subplots(figsize=(9.0, 8.6))
     ax.set_aspect("equal")
     ax.axis("off")

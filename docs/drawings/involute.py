@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from _drafting import DRIVERS, INK, NOTE, RING, SPLINE, arc, axis_line, canvas, label, leader, run, turned
+from _drafting import INK, NOTE, RING, SPLINE, arc, axis_line, canvas, label, leader, plane_with, run, turned
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from swgpar.design.drive_design import DriveDesign, make_design
-from swgpar.geometry.profiles import ToothProfile, make_profile
-from swgpar.input.toml_file import read_toml
+from swgpar.design.drive_design import DriveDesign
+from swgpar.geometry.profiles import ToothProfile
 
 TEETH, RADIUS, SHAPER = (40, 42), 0.2, 28
 """Teeth of both gears, so few that the cutters' motion shows; tip radius (mm) of the cutters; teeth of the shaper."""
@@ -20,11 +19,12 @@ ROLL = np.linspace(-0.2, 0.12, 17)
 
 def design() -> DriveDesign:
     """The plane reference drive with few teeth, which are involutes."""
-    table = read_toml(DRIVERS / "plane_half_turn.toml")
-    table["drive"]["teeth_fs"], table["drive"]["teeth_rg"] = TEETH
-    table["flexible_spline"]["profile"] = {"type": "involute", "cutter_radius": RADIUS}
-    table["ring_gear"]["profile"] = {"type": "involute", "cutter_radius": RADIUS, "cutter_teeth": SHAPER}
-    return make_design(table)
+    rack_cut = {"type": "involute", "cutter_radius": RADIUS}
+    return plane_with(
+        drive=dict(zip(("teeth_fs", "teeth_rg"), TEETH)),
+        flexible_spline={"profile": rack_cut},
+        ring_gear={"profile": {**rack_cut, "cutter_teeth": SHAPER}},
+    )
 
 
 def rack_flank(alpha: float, depth: float, module: float) -> np.ndarray:
@@ -92,7 +92,7 @@ def frame(ax: Axes, profile: ToothProfile, r_pitch: float, title: str) -> None:
 
 def rack(ax: Axes, drive: DriveDesign) -> None:
     """External tooth in the gear's frame, the rack in several positions."""
-    profile, g = make_profile(drive, "flexible_spline"), drive.drive
+    profile, g = drive.profile("flexible_spline"), drive.drive
     r_pitch, alpha = 0.5 * g.teeth_fs * g.module, np.radians(g.pressure_angle)
     depth, half = g.dedendum_coef * g.module, 0.5 * np.pi / g.teeth_fs
     flank = rack_flank(alpha, depth, g.module)
@@ -116,7 +116,7 @@ def rack(ax: Axes, drive: DriveDesign) -> None:
 
 def shaper(ax: Axes, drive: DriveDesign) -> None:
     """Internal tooth in the gear's frame, the shaper in several positions."""
-    profile, g = make_profile(drive, "ring_gear"), drive.drive
+    profile, g = drive.profile("ring_gear"), drive.drive
     r_pitch, alpha = 0.5 * g.teeth_rg * g.module, np.radians(g.pressure_angle)
     depth, r_g = g.dedendum_coef * g.module, 0.5 * SHAPER * g.module
     tooth, ratio = shaper_tooth(alpha, depth, g.module), g.teeth_rg / SHAPER

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import matplotlib.pyplot as plt
 import numpy as np
-from _drafting import CAM, DRIVERS, INK, NOTE, SPLINE, dimension, label, leader, run
+from _drafting import CAM, INK, NOTE, SPLINE, dimension, label, leader, reference, run
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from swgpar.design.drive_design import DriveDesign, load_design
-from swgpar.geometry.micro_geometry import WaveGeneratorSurface, crowning
+from swgpar.design.drive_design import DriveDesign
+from swgpar.geometry.micro_geometry import crowning
 
 
 def cam_height(design: DriveDesign, z: np.ndarray, minor: bool = False) -> np.ndarray:
     """Radial height (n,) mm of the modified cam's surface over the cam curve, at the major or the minor axis."""
-    surface = WaveGeneratorSurface(design)
+    surface = design.cam_surface()
     point = (design.b, 0.0) if minor else (0.0, design.a)
     level, _, _ = surface.evaluate(np.column_stack([np.tile(point, (len(z), 1)), z]))
     return -level
@@ -39,7 +39,7 @@ def frame(ax: Axes, half: float, title: str) -> None:
 
 def slope() -> Figure:
     """Sense of the slope: wg_slope above and below zero, at the major and the minor axis."""
-    design = load_design(DRIVERS / "cup_45deg.toml")
+    design = reference()
     half, s = 0.5 * design.wave_generator.face_width, 0.09
     z = np.linspace(-half, half, 201)
     figure, axes = plt.subplots(1, 2, figsize=(12.5, 4.8))
@@ -61,7 +61,7 @@ def slope() -> Figure:
 
 def crowned() -> Figure:
     """Crowning of the cam (parabolic and circular) and of a flank."""
-    design = load_design(DRIVERS / "cup_45deg.toml")
+    design = reference()
     half = 0.5 * design.wave_generator.face_width
     z = np.linspace(-half, half, 201)
     figure, axes = plt.subplots(1, 2, figsize=(12.5, 4.8))

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import matplotlib.pyplot as plt
 import numpy as np
-from _drafting import DRIVERS, INK, NOTE, RING, SPLINE, arc, axis_line, canvas, label, leader, run
+from _drafting import INK, NOTE, RING, SPLINE, arc, axis_line, canvas, label, leader, reference, run
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
-from swgpar.design.drive_design import load_design
 from swgpar.fem.partition import split
 from swgpar.meshing import build_sector_meshes
 from swgpar.meshing.recipe import load_recipe
@@ -42,8 +41,8 @@ def draw_sector(ax: Axes, mesh: SectorMesh, colour: str, title: str) -> None:
 
 def sectors() -> Figure:
     """One sector of both gears, plane model."""
-    design = load_design(DRIVERS / "plane_half_turn.toml")
-    meshes = build_sector_meshes(design, load_recipe(DRIVERS.parent / "mesh" / "plane_coarse.toml"))
+    design = reference("plane_half_turn")
+    meshes = build_sector_meshes(design, load_recipe("plane_coarse"))
     figure, axes = canvas(11.0, 6.4, 1, 2)
     draw_sector(axes[0], meshes["flexible_spline"], SPLINE, "sector of the flexible spline (plane_coarse)")
     draw_sector(axes[1], meshes["ring_gear"], RING, "sector of the ring gear (plane_coarse)")

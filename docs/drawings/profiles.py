@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from _drafting import DRIVERS, INK, NOTE, RING, SPLINE, arc, axis_line, canvas, label, leader, run
+from _drafting import INK, NOTE, RING, SPLINE, arc, axis_line, canvas, label, leader, plane_with, run
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from swgpar.design.drive_design import DriveDesign, make_design
-from swgpar.geometry.profiles import ToothProfile, make_profile
+from swgpar.design.drive_design import DriveDesign
+from swgpar.geometry.profiles import ToothProfile
 from swgpar.geometry.profiles.curve import Segment
-from swgpar.input.toml_file import read_toml
 
 COLOURS = {"tip": "#8c4fb0", "addendum": "#2f7fd0", "straight": "#111111", "dedendum": "#2d9a57", "root": "#d07a20"}
 
@@ -25,11 +24,8 @@ Spot = dict[str, tuple[float, float]]
 
 def design_with(profile: dict[str, object]) -> DriveDesign:
     """The plane reference drive with this profile on both gears."""
-    table = read_toml(DRIVERS / "plane_half_turn.toml")
-    for gear in ("flexible_spline", "ring_gear"):
-        table[gear]["profile"] = dict(profile)
-        table[gear]["c_l"] = 0.5 if profile["type"] == "quadruple_arc" else 0.4
-    return make_design(table)
+    values = {"profile": dict(profile), "c_l": 0.5 if profile["type"] == "quadruple_arc" else 0.4}
+    return plane_with(flexible_spline=values, ring_gear=values)
 
 
 def center(segment: Segment) -> np.ndarray:
@@ -132,7 +128,7 @@ def pair(profile: dict[str, object], spots: tuple[Spot, Spot], title: str) -> Fi
         spots,
         ("external tooth (flexible spline), s = +1", "internal tooth (ring gear), s = −1"),
     ):
-        flank, r_pitch = make_profile(design, gear), 0.5 * teeth * design.drive.module
+        flank, r_pitch = design.profile(gear), 0.5 * teeth * design.drive.module
         draw_profile(ax, flank, r_pitch, spot)
         pitch_point(ax, flank, r_pitch, angle, spot)
         ax.set_title(f"{title}, {name}", fontsize=10)
