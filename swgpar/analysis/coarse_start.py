@@ -29,9 +29,9 @@ from swgpar.meshing.recipe_counts import coarser
 def transfer(coarse: DriveModel, x: PETSc.Vec, fine: DriveModel, y: PETSc.Vec) -> None:
     """Set y of the fine model to the state x of the coarse one; both on the same ranks, sector by sector."""
     for body, layout in enumerate(fine.partition.layouts):
-        first, end = fine.partition.owned(body)
+        first, end = fine.partition.owned_sectors(body)
         sectors = np.arange(first, end)
-        angle = layout.turn(layout.first_tooth + sectors)
+        angle = layout.sector_angle(layout.first_tooth + sectors)
         local = rotated(read_field(coarse.partition, body, sectors, x), -angle[:, None])
         matrix = interpolation(coarse.partition.layouts[body].mesh, layout.mesh)
         values = np.stack([matrix @ sector for sector in local]) if len(local) else np.zeros((0, matrix.shape[0], 3))

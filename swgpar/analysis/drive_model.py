@@ -13,9 +13,10 @@ from swgpar.contact.flanks import FlankContact
 from swgpar.contact.rigid_surface import RigidContact
 from swgpar.contact.search import largest
 from swgpar.design.drive_design import DriveDesign
-from swgpar.fem.condensed_sectors import bend, condense
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR, BodyLayout
+from swgpar.fem.condensed_sectors import condense, relative_end_rotation
 from swgpar.fem.elements import Elements
-from swgpar.fem.partition import BodyLayout, LocalNodes, Partition
+from swgpar.fem.partition import Partition
 from swgpar.fem.stress import body_fields, maxima
 from swgpar.kernel import reference_elements
 from swgpar.log import Phases
@@ -61,7 +62,6 @@ class DriveModel:
         self.partition = Partition(layouts, comm)
         with self.phases("elements"):
             self.elements = Elements(self.partition, references, symmetric=design.contact.friction == 0.0)
-            self.elements.bind(LocalNodes(self.partition, self.elements.wanted))
         spline, ring = self.elements.bodies
         surface = design.cam_surface()
         half_width = 0.5 * design.wave_generator.face_width * (1.0 + 1e-9)
@@ -106,7 +106,7 @@ class DriveModel:
             self.phases,
         )
         self.copies = 2 if images else 1
-        self.fixed_body = 1 if design.drive.layout == "ring_fixed" else 0
+        self.fixed_body = RING_GEAR if design.drive.layout == "ring_fixed" else FLEXIBLE_SPLINE
 
     def destroy(self) -> None:
         """Release the solver and its factor, which Python cannot: PETSc holds references in a circle. Collective."""
@@ -114,12 +114,14 @@ class DriveModel:
 
     def bend_left_out(self) -> float:
         """Stress (MPa) that condensed sectors leave out in the present state: E theta^2 / 8 where they bend most."""
-        body = self.elements.bodies[0]
+        body = self.elements.bodies[FLEXIBLE_SPLINE]
         if body.layout.condensed is None:
             return 0.0
-        angle = body.layout.turn(body.layout.first_tooth + body.sectors[body.owned])
-        turn = bend(body.layout.mesh, angle, body.displacement(self.equilibrium.displacement())[body.owned])
-        return largest(self.comm, self.design.material.E * float((turn**2).max(initial=0.0)) / 8.0)
+        angle = body.layout.sector_angle(body.layout.first_tooth + body.sectors[body.owned])
+        angle = relative_end_rotation(
+            body.layout.mesh, angle, body.displacement(self.equilibrium.displacement())[body.owned]
+        )
+        return largest(self.comm, self.design.material.E * float((angle**2).max(initial=0.0)) / 8.0)
 
     def elements_whole(self) -> int:
         """Elements of the whole drive."""
@@ -129,12 +131,12 @@ class DriveModel:
         """Nodes, elements and unknowns per body, modelled and of the whole drive."""
         out = {}
         for layout in self.partition.layouts:
-            layers = 1 if layout.mesh.tied is None else 2
+            layers = 2 if layout.mesh.plane else 1
             per_sector = (len(layout.mesh.coords) - len(layout.mesh.ccw_nodes)) // layers
             out[layout.name] = {
                 "nodes": per_sector * layout.count,
                 "elements": len(layout.mesh.hexes) * layout.count,
-                "dofs": self.partition.dims * len(layout.own) * layout.count,
+                "dofs": self.partition.dims * len(layout.numbering.owned_nodes) * layout.count,
                 "nodes_whole": per_sector * layout.mesh.n_sectors,
                 "elements_whole": len(layout.mesh.hexes) * layout.mesh.n_sectors,
                 "quality": layout.mesh.quality,

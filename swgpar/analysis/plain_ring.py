@@ -14,8 +14,10 @@ from swgpar.contact.rigid_surface import RigidContact
 from swgpar.design.load_states import LoadState
 from swgpar.design.sections import Contact, Material, Solver
 from swgpar.errors import ConvergenceError
+from swgpar.fem.body_layout import BodyLayout
 from swgpar.fem.elements import Elements
-from swgpar.fem.partition import BodyLayout, LocalNodes, Partition
+from swgpar.fem.local_nodes import LocalNodes
+from swgpar.fem.partition import Partition
 from swgpar.fem.stress import body_fields, maxima
 from swgpar.geometry.cams import Cam
 from swgpar.kernel import reference_elements
@@ -155,7 +157,6 @@ class RingBody:
         self.mesh, self.partition = mesh, Partition([layout], comm)
         reference = reference_elements(mesh.coords[mesh.elements], material.E, material.nu, width, incompatible)
         self.elements = Elements(self.partition, [reference])
-        self.elements.bind(LocalNodes(self.partition, self.elements.wanted))
         self.body = self.elements.bodies[0]
 
     def equilibrium(self, surface: RigidContact) -> NewtonSolver:

@@ -61,7 +61,7 @@ def predict(
     for body, layout in enumerate(partition.layouts):
         own_slip = 0.0 if body == fixed else slip
         drift = 0.0 if body == fixed else 1.0 - teeth[fixed] / teeth[body]
-        first, end = partition.owned(body)
+        first, end = partition.owned_sectors(body)
         own = np.arange(first, end)
         coords = layout.mesh.coords
         moved = np.zeros((end - first, *coords.shape))
@@ -72,10 +72,10 @@ def predict(
             turn = (angle - there) * drift + own_slip
             sectors = own + tooth
             local = rotated(
-                read_field(partition, body, sectors, state), -layout.turn(layout.first_tooth + sectors)[:, None]
+                read_field(partition, body, sectors, state), -layout.sector_angle(layout.first_tooth + sectors)[:, None]
             )
             moved += weight * (rotated(coords + local, np.full((len(own), 1), turn)) - coords)
-        at = layout.turn(layout.first_tooth + own)[:, None]
+        at = layout.sector_angle(layout.first_tooth + own)[:, None]
         new.append((body, own, rotated(coords + moved, at) - rotated(coords, at)))
     for body, own, values in new:
         write_field(partition, body, own, values, x)

@@ -27,6 +27,7 @@ from swgpar.contact import friction
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import LoadState, load_sequence
 from swgpar.errors import ConvergenceError, InputError, SwgparError
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.fem.vectors import write_field
 from swgpar.log import IncrementProgress, logger
 from swgpar.meshing import MeshRecipe, load_recipe, require_sections
@@ -94,7 +95,7 @@ class Recorder:
             return
         bodies, extra = {}, {}
         for k, body in enumerate(self.model.elements.bodies):
-            first, _ = self.model.partition.owned(k)
+            first, _ = self.model.partition.owned_sectors(k)
             mesh = body.layout.mesh
             bodies[mesh.body] = (body.positions()[body.owned], mesh.hexes.astype(np.int64), first, body.layout.count)
             extra[f"{mesh.body}/flank_nodes"] = np.array([g.nodes for g in mesh.flanks])
@@ -114,11 +115,11 @@ class Recorder:
         self.done += 1
         with model.phases("output"):
             ranges = [
-                (body.layout.name, *model.partition.owned(k), body.layout.count)
+                (body.layout.name, *model.partition.owned_sectors(k), body.layout.count)
                 for k, body in enumerate(model.elements.bodies)
             ]
             if self.writer is not None:
-                fields[0]["pressure"] = nodal_pressure(equilibrium, model.elements.bodies[0])
+                fields[0]["pressure"] = nodal_pressure(equilibrium, model.elements.bodies[FLEXIBLE_SPLINE])
                 self.names = {
                     name: {f: a.shape[2] if a.ndim == 3 else 1 for f, a in field.items()}
                     for (name, *_), field in zip(ranges, fields)
@@ -133,9 +134,9 @@ class Recorder:
                 for (name, first, _, total), field in zip(ranges, fields)
             }
             if model.design.contact.friction:
-                first, end = model.partition.owned(0)
+                first, end = model.partition.owned_sectors(FLEXIBLE_SPLINE)
                 for name, values in equilibrium.teeth.history_rows(first, end).items():
-                    blocks[name] = values, first, model.partition.layouts[0].count
+                    blocks[name] = values, first, model.partition.layouts[FLEXIBLE_SPLINE].count
             state = {
                 "identity": self.identity,
                 "done": self.done,
@@ -163,7 +164,7 @@ class Recorder:
         """
         model = self.model
         ranges = {
-            body.layout.name: (model.partition.owned(k)[0], int(np.diff(model.partition.owned(k))[0]))
+            body.layout.name: (model.partition.owned_sectors(k)[0], int(np.diff(model.partition.owned_sectors(k))[0]))
             for k, body in enumerate(model.elements.bodies)
         }
         path = self.out / checkpoint.NAME
@@ -184,13 +185,13 @@ class Recorder:
         arrays, _ = checkpoint.read_checkpoint(path, self.comm, ranges)
         x = model.equilibrium.x
         for k, body in enumerate(model.elements.bodies):
-            first, end = model.partition.owned(k)
+            first, end = model.partition.owned_sectors(k)
             write_field(model.partition, k, np.arange(first, end), arrays[body.layout.name], x)
         if self.comm.rank == self.comm.size - 1:
             x.array[-model.partition.n_multipliers :] = state["multipliers"]
         if model.design.contact.friction:
             # a rank needs the flanks that its ring teeth face too
-            every = (0, model.partition.layouts[0].count)
+            every = (0, model.partition.layouts[FLEXIBLE_SPLINE].count)
             rows, _ = checkpoint.read_checkpoint(path, self.comm, dict.fromkeys(friction.ROWS, every))
             model.equilibrium.resume(friction.from_rows(rows))
         self.rows, self.done, self.names = state["rows"], state["done"], state["names"]

@@ -6,6 +6,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.contact.rigid_surface import CamPose
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.solve.newton import NewtonSolver
 
 
@@ -15,7 +16,7 @@ def torques(equilibrium: NewtonSolver) -> dict[str, float]:
     "balance" is what is left of the largest sum that should vanish, over the bodies that are free to turn.
     """
     u, scene, partition = equilibrium.displacement(), equilibrium.scene, equilibrium.partition
-    body = equilibrium.elements.bodies[0]
+    body = equilibrium.elements.bodies[FLEXIBLE_SPLINE]
     rigid, teeth = np.zeros_like(u), np.zeros_like(u)
     if scene.cam is not None:
         equilibrium.rigid.evaluate(u, CamPose(scene.angle, scene.cam), rigid, None, owned_only=True)

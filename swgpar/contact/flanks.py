@@ -17,8 +17,10 @@ from swgpar.contact.enforcement import penetration
 from swgpar.contact.friction import Friction, PairKey
 from swgpar.contact.search import FlankPair
 from swgpar.contact.segments import MIRROR, FlankFaces, Segments, bilinear, cut_faces, flank_faces, lagrange
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.elements import BodyElements
-from swgpar.fem.partition import LocalNodes, Partition
+from swgpar.fem.local_nodes import LocalNodes
+from swgpar.fem.partition import Partition
 from swgpar.fem.sparse import BlockRows
 from swgpar.kernel import contact_flanks
 
@@ -144,7 +146,10 @@ class FlankContact:
         self.turn, self.moment = 0.0, 0.0
 
     def _takes_part(self, p: FlankPair) -> bool:
-        owners = self.partition.owner(0, np.array(p.sector)), self.partition.owner(1, np.array(p.ring))
+        owners = (
+            self.partition.owner_of_sector(FLEXIBLE_SPLINE, np.array(p.sector)),
+            self.partition.owner_of_sector(RING_GEAR, np.array(p.ring)),
+        )
         return self.partition.comm.rank in owners
 
     def numbers(self, pairs: list[FlankPair]) -> np.ndarray:
@@ -152,8 +157,14 @@ class FlankContact:
         self.pairs = [p for p in pairs if self._takes_part(p)]
         seen = [np.zeros(0, dtype=np.int64)]
         for p in self.pairs:
-            seen.append(self.partition.numbers(0, np.array([p.sector]), self.slaves[p.side].corners.ravel())[0].ravel())
-            seen.append(self.partition.numbers(1, np.array([p.ring]), self.grids[-p.side].nodes.ravel())[0].ravel())
+            seen.append(
+                self.partition.node_numbers(FLEXIBLE_SPLINE, np.array([p.sector]), self.slaves[p.side].corners.ravel())[
+                    0
+                ].ravel()
+            )
+            seen.append(
+                self.partition.node_numbers(RING_GEAR, np.array([p.ring]), self.grids[-p.side].nodes.ravel())[0].ravel()
+            )
         return np.concatenate(seen)
 
     def bind(self, local: LocalNodes) -> None:
@@ -179,9 +190,9 @@ class FlankContact:
             # tangent (T to R) x z points to the right of the tangent: compare with the outward normal
             right = np.column_stack([tangent[:, 1], -tangent[:, 0]])
             flanks.orientation[k] = np.sign(np.sum(right * profile.normal(grid.s) * mirror))
-            angle = self.ring.layout.turn(np.array(p.ring_tooth))
+            angle = self.ring.layout.sector_angle(np.array(p.ring_tooth))
             flanks.turn[k] = np.cos(angle), np.sin(angle)
-            number, flip = self.partition.numbers(1, np.array([p.ring]), grid.nodes.ravel())
+            number, flip = self.partition.node_numbers(RING_GEAR, np.array([p.ring]), grid.nodes.ravel())
             flanks.conn[k] = local.index(number).reshape(grid.nodes.shape)
             flanks.flip[k] = np.where(number >= 0, flip ^ p.ring_flip, 0).reshape(grid.nodes.shape)
             placed.append(self._placed(self.slaves[p.side], p, k, local))
@@ -192,7 +203,9 @@ class FlankContact:
             if placed
             else None
         )
-        owner = np.array([self.partition.owner(0, np.array(p.sector)) for p in self.pairs], dtype=np.int64)
+        owner = np.array(
+            [self.partition.owner_of_sector(FLEXIBLE_SPLINE, np.array(p.sector)) for p in self.pairs], dtype=np.int64
+        )
         self.pair_owned = owner == self.partition.comm.rank
         self.pick = np.zeros(0, dtype=np.int64)
         self._reset()
@@ -200,8 +213,8 @@ class FlankContact:
 
     def _placed(self, slave: FlankFaces, pair: FlankPair, patch: int, local: LocalNodes) -> PlacedFaces:
         mesh = self.spline.layout.mesh
-        number, flip = self.partition.numbers(0, np.array([pair.sector]), slave.corners.ravel())
-        angle = self.spline.layout.turn(np.array(self.spline.layout.first_tooth + pair.sector))
+        number, flip = self.partition.node_numbers(FLEXIBLE_SPLINE, np.array([pair.sector]), slave.corners.ravel())
+        angle = self.spline.layout.sector_angle(np.array(self.spline.layout.first_tooth + pair.sector))
         c, s = np.cos(angle), np.sin(angle)
         turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
         return PlacedFaces(

@@ -63,7 +63,7 @@ class RigidContact:
         self.surface, self.penalty, self.pressure_limit = surface, penalty, pressure_limit
         faces = body.layout.mesh.faces["inner"]
         first = body.owned.start
-        sectors = np.r_[np.flatnonzero(body.neighbour), np.arange(first, body.owned.stop)]
+        sectors = np.r_[np.flatnonzero(body.preceding), np.arange(first, body.owned.stop)]
         self.conn = np.ascontiguousarray(body.local[sectors][:, faces].reshape(-1, 4))
         self.flip = np.ascontiguousarray(body.flip[sectors][:, faces].reshape(-1, 4))
         self.coords = body.positions()[sectors][:, faces].reshape(-1, 4, 3)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from mpi4py import MPI
 
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.partition import Partition
 
@@ -46,12 +47,12 @@ def facing_flanks(
     margin : mm, how far the tip of a tooth may stay inside the tip circle of the ring gear
     """
     layout, ring = partition.layouts
-    first, end = partition.owned(0)
+    first, end = partition.owned_sectors(FLEXIBLE_SPLINE)
     rows = np.arange(len(spline.sectors))[spline.owned]
     tips = np.concatenate([f.nodes[0] for f in layout.mesh.flanks])
     body = np.unique(np.concatenate([f.nodes.ravel() for f in layout.mesh.flanks]))
     x = spline.positions()[rows] + spline.displacement(u)[rows]
-    angle = layout.turn(layout.first_tooth + np.arange(first, end))
+    angle = layout.sector_angle(layout.first_tooth + np.arange(first, end))
     c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
     flank = x[:, body]
     local_x, local_y = c * flank[..., 0] + s * flank[..., 1], -s * flank[..., 0] + c * flank[..., 1]
@@ -63,7 +64,7 @@ def facing_flanks(
     for k in np.flatnonzero(table[:, 1] > ring.mesh.profile.r_tip_circle - margin):
         slot = int(np.rint((table[k, 0] - turn) / pitch))
         for side, tooth in ((1, slot - 1), (-1, slot)):
-            index, flip = ring.locate(np.array(tooth))
+            index, flip = ring.sector_of_tooth(np.array(tooth))
             if index >= 0:
                 pairs.append(FlankPair(int(k), side, int(index), int(flip), tooth))
     return pairs

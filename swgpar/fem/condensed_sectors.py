@@ -1,9 +1,9 @@
 """Plane tooth sectors whose inside is eliminated: congruent sectors share one stiffness of their outer nodes.
 
 A sector is then one element (a superelement, by static condensation) of the nodes that neighbours, contact, cam and
-couplings need. Its inside is linear in a frame that turns with the outer nodes, as that of every element does with its
-own (`kernel/corotation.hpp`). Lost is how much the ends of a sector turn against each other (`bend`), which leaves out
-strains of an eighth of the square of that angle.
+couplings need. Its inside is linear in a frame that rotates with the outer nodes, as every element is in a frame of its
+own (`kernel/corotation.hpp`). The rotation of a sector's ends relative to each other (`relative_end_rotation`) is not
+seen: strains of an eighth of the square of that angle are left out.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class CondensedSector:
     reference: ReferenceElements
     modes: np.ndarray
 
-    def inside(self, angle: np.ndarray, u: np.ndarray) -> np.ndarray:
+    def inner_displacement(self, angle: np.ndarray, u: np.ndarray) -> np.ndarray:
         """Displacement (n, k, 3) mm of the inner nodes of sectors turned by (n,) rad, from (n, m, 3) of the outer."""
         coords, gradient = self.reference.coords[0], self.reference.gradient[0]
         middle = coords.mean(axis=0)
@@ -53,7 +53,7 @@ def _about_z(angle: np.ndarray) -> np.ndarray:
     return Rotation.from_euler("z", angle[:, None]).as_matrix().transpose(0, 2, 1)
 
 
-def bend(mesh: SectorMesh, angle: np.ndarray, u: np.ndarray) -> np.ndarray:
+def relative_end_rotation(mesh: SectorMesh, angle: np.ndarray, u: np.ndarray) -> np.ndarray:
     """Turn (n,) rad of the two cuts of sectors against each other, at displacements u (n, n_node, 3) mm.
 
     angle : (n,) rad, of the sectors

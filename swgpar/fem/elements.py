@@ -7,97 +7,146 @@ the same order on any number of ranks.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from swgpar.fem.partition import LocalNodes, Partition
+from swgpar.fem.local_nodes import LocalNodes
+from swgpar.fem.partition import Partition
 from swgpar.fem.sparse import BlockRows
 from swgpar.geometry.rotation import HALF_TURN
 from swgpar.kernel import ReferenceElements, assemble_elements, recover_stress
 
 
-class BodyElements:
-    """The elements of one body as one rank sees them.
+@dataclass(frozen=True)
+class AssembledElements:
+    """The n elements of one body that a rank assembles, of m nodes each.
 
-    Sectors run from one before the first owned to one after the last, as far as they exist: the owned
-    rows need the former, nodal averages of stress need both. A condensed sector is a single element here.
+    reference : (n,) int32, index of the congruent element
+    rotation : (n, 2) cosine and sine of the angle of the element's sector
+    conn : (n, m) int32 local nodes, -1 where there are no unknowns
+    flip : (n, m) uint8, 1 for nodes that are images under the half turn
     """
 
-    def __init__(self, partition: Partition, body: int, reference: ReferenceElements) -> None:
+    reference: np.ndarray
+    rotation: np.ndarray
+    conn: np.ndarray
+    flip: np.ndarray
+
+
+def sectors_seen(partition: Partition, body: int) -> np.ndarray:
+    """Indices (n,) in the chain of the sectors whose elements a rank needs: its own and one on either side.
+
+    The owned rows need the sector before them, nodal averages of stress need both; none where the rank owns none.
+    """
+    layout = partition.layouts[body]
+    first, end = partition.owned_sectors(body)
+    sectors = np.arange(first - 1, end + 1) if end > first else np.zeros(0, dtype=np.int64)
+    return sectors if layout.closed else sectors[(sectors >= 0) & (sectors < layout.count)]
+
+
+class BodyElements:
+    """The elements of one body as one rank sees them. A condensed sector is a single element.
+
+    Parameters
+    ----------
+    partition, body : ownership, and index of the body
+    reference : matrices of the elements of a sector
+    local : nodes of this rank
+
+    Attributes
+    ----------
+    layout : BodyLayout
+    sectors : (n_sectors,) indices in the chain, see `sectors_seen`;  owned : slice of the owned ones among them
+    preceding : (n_sectors,) bool, the sector before the first owned one, where another rank owns it
+    number, flip, local : (n_sectors, n_node) global numbers, image flags and local indices of the nodes
+    sector_rotation : (n_sectors, 2) cosine and sine of the angles of the sectors
+    active : (n_sectors,) bool, sectors whose elements count
+    assembled : elements of the active sectors that this rank assembles
+    """
+
+    def __init__(self, partition: Partition, body: int, reference: ReferenceElements, local: LocalNodes) -> None:
         layout = partition.layouts[body]
         self.layout, self.reference, condensed = layout, reference, layout.condensed
-        self.assembled = reference if condensed is None else condensed.reference
-        self.cells = layout.mesh.elements if condensed is None else condensed.outer[None]
-        first, end = partition.owned(body)
-        sectors = np.arange(first - 1, end + 1) if end > first else np.zeros(0, dtype=np.int64)
-        if not layout.closed:
-            sectors = sectors[(sectors >= 0) & (sectors < layout.count)]
+        self.assembled_reference = reference if condensed is None else condensed.reference
+        self.element_nodes = layout.mesh.elements if condensed is None else condensed.outer[None]
+        first, end = partition.owned_sectors(body)
+        sectors = sectors_seen(partition, body)
         self.sectors = sectors
         self.owned = slice(int(np.searchsorted(sectors, first)), int(np.searchsorted(sectors, end)))
-        nodes = np.arange(len(layout.mesh.coords))
-        self.number, self.flip = partition.numbers(body, sectors, nodes)
-        lo, hi = partition.row_start, partition.row_start + partition.n_own
-        # on a single rank the sector before the first is an image of an owned one: it must not count twice
-        self.neighbour = np.zeros(len(sectors), dtype=bool)
-        self.neighbour[: self.owned.start] = True
-        if layout.closed and end - first == layout.count:
-            self.neighbour[:] = False
-        counted = self.neighbour.copy()
-        counted[self.owned] = True
-        here = (self.number >= lo) & (self.number < hi) & counted[:, None]
-        touches = here[:, self.cells].any(axis=2) if len(sectors) else np.zeros((0, len(self.cells)), dtype=bool)
-        self.every = tuple(v.astype(np.int32) for v in np.nonzero(touches))
-        self.modelled = np.ones(len(sectors), dtype=bool)
-        angle = layout.turn(layout.first_tooth + sectors)
-        self.turn_of_sector = np.column_stack([np.cos(angle), np.sin(angle)]).reshape(-1, 2)
-        self.local = np.zeros_like(self.number, dtype=np.int32)
-
-    def bind(self, local: LocalNodes) -> None:
-        """Look up the local indices of all nodes once the rank's local nodes are known."""
+        self.number, self.flip = partition.node_numbers(body, sectors, np.arange(len(layout.mesh.coords)))
         self.local = local.index(self.number)
-        sector_of, ref_of = self.every
-        pick = self.modelled[sector_of]
-        self.sector_of, self.ref_of = sector_of[pick], ref_of[pick]
-        nodes = self.cells[self.ref_of]
-        self.conn = np.ascontiguousarray(self.local[self.sector_of[:, None], nodes])
-        self.conn_flip = np.ascontiguousarray(self.flip[self.sector_of[:, None], nodes])
-        self.turn = np.ascontiguousarray(self.turn_of_sector[self.sector_of])
+        # on a single rank the sector before the first is an image of an owned one: it must not count twice
+        self.preceding = np.zeros(len(sectors), dtype=bool)
+        self.preceding[: self.owned.start] = True
+        if layout.closed and end - first == layout.count:
+            self.preceding[:] = False
+        angle = layout.sector_angle(layout.first_tooth + sectors)
+        self.sector_rotation = np.column_stack([np.cos(angle), np.sin(angle)]).reshape(-1, 2)
+        counted = self.preceding.copy()
+        counted[self.owned] = True
+        owned = (self.number >= partition.row_start) & (self.number < partition.row_start + partition.n_own)
+        owned &= counted[:, None]
+        self._touching = np.zeros((0, len(self.element_nodes)), dtype=bool)
+        if len(sectors):
+            self._touching = owned[:, self.element_nodes].any(axis=2)
+        self.active = np.ones(len(sectors), dtype=bool)
+        self.assembled = self._assembled()
+
+    def activate(self, active: np.ndarray) -> None:
+        """Let the elements of the sectors (n_sectors,) bool count, and no others."""
+        self.active = active
+        self.assembled = self._assembled()
+
+    def _assembled(self) -> AssembledElements:
+        """Elements of active sectors that have an owned node."""
+        sector, element = (v.astype(np.int32) for v in np.nonzero(self._touching))
+        counted = self.active[sector]
+        sector, element = sector[counted], element[counted]
+        nodes = self.element_nodes[element]
+        return AssembledElements(
+            element,
+            np.ascontiguousarray(self.sector_rotation[sector]),
+            np.ascontiguousarray(self.local[sector[:, None], nodes]),
+            np.ascontiguousarray(self.flip[sector[:, None], nodes]),
+        )
 
     def displacement(self, u: np.ndarray) -> np.ndarray:
-        """Displacement of all nodes of the seen sectors, images turned; (n_sectors, n_local, 3) mm."""
+        """Displacement of all nodes of the sectors seen, images rotated; (n_sectors, n_node, 3) mm."""
         field = np.where(self.local[..., None] >= 0, u[self.local], 0.0)
-        return self.layout.fill_inside(self.sectors, np.where(self.flip[..., None] == 1, HALF_TURN * field, field))
+        return self.layout.with_inner_nodes(self.sectors, np.where(self.flip[..., None] == 1, HALF_TURN * field, field))
 
     def positions(self) -> np.ndarray:
-        """Undeformed positions of all nodes of the seen sectors; (n_sectors, n_local, 3) mm."""
+        """Undeformed positions of all nodes of the sectors seen; (n_sectors, n_node, 3) mm."""
         x, y, z = self.layout.mesh.coords.T
-        c, s = self.turn_of_sector[:, :1], self.turn_of_sector[:, 1:]
+        c, s = self.sector_rotation[:, :1], self.sector_rotation[:, 1:]
         return np.stack([c * x - s * y, s * x + c * y, np.broadcast_to(z, (len(c), len(z)))], axis=-1)
 
     def nodal_stress(self, u: np.ndarray) -> np.ndarray:
         """Stress at the nodes of the owned sectors: extrapolated per element, averaged over the body's elements.
 
-        Returns (n_owned, n_local, 6) MPa; components xx, yy, zz, xy, yz, zx in global axes; zero in sectors left out.
+        Returns (n_owned, n_node, 6) MPa; components xx, yy, zz, xy, yz, zx in global axes; zero in inactive sectors.
         """
         mesh = self.layout.mesh
-        elements, tied = np.ascontiguousarray(mesh.elements), mesh.tied
+        elements, lower = np.ascontiguousarray(mesh.elements), mesh.lower_nodes
         n_sectors, n_node, n_elem = len(self.sectors), len(mesh.coords), len(elements)
         sums, field = np.zeros((n_sectors, n_node, 6)), self.displacement(u)
-        every, unturned = np.arange(n_elem, dtype=np.int32), np.zeros(elements.shape, dtype=np.uint8)
-        for k in np.flatnonzero(self.modelled):
+        indices, no_image = np.arange(n_elem, dtype=np.int32), np.zeros(elements.shape, dtype=np.uint8)
+        for k in np.flatnonzero(self.active):
             stress = recover_stress(
                 self.reference,
-                every,
-                np.repeat(self.turn_of_sector[k : k + 1], n_elem, axis=0),
+                indices,
+                np.repeat(self.sector_rotation[k : k + 1], n_elem, axis=0),
                 elements,
-                unturned,
+                no_image,
                 field[k],
             )
             for c in range(6):
                 sums[k, :, c] = np.bincount(elements.ravel(), stress[:, :, c].ravel(), minlength=n_node)
         count = np.bincount(elements.ravel(), minlength=n_node).astype(float)
-        if tied is not None:
-            sums, count = sums[:, tied], count[tied]
-        counts = self.modelled[:, None] * count
+        if lower is not None:
+            sums, count = sums[:, lower], count[lower]
+        counts = self.active[:, None] * count
         ccw, cw = mesh.ccw_nodes, mesh.cw_nodes
         total = sums[:-1, ccw] + sums[1:, cw]
         number = counts[:-1, ccw] + counts[1:, cw]
@@ -106,67 +155,89 @@ class BodyElements:
         return (sums / np.maximum(counts, 1.0)[..., None])[self.owned]
 
 
-class Elements:
-    """All bodies' elements on one rank: residual, tangent and stress of the structure.
+@dataclass(frozen=True)
+class TangentPattern:
+    """Blocks of the tangent's owned rows that elements, multipliers and the diagonal need.
 
+    keys : sorted row * n_global + column of the blocks
+    positions : of each body's (n, m * m) element blocks among the keys, -1 for blocks of other ranks
+    nodes_without_elements : (n,) owned local nodes
+    """
+
+    keys: np.ndarray
+    positions: list[np.ndarray]
+    nodes_without_elements: np.ndarray
+
+
+class Elements:
+    """All bodies' elements on one rank: residual and tangent of the structure.
+
+    Parameters
+    ----------
+    partition : ownership
+    references : of each body, matrices of the elements of a sector
     symmetric : keep the tangent's upper triangle only
+
+    Attributes
+    ----------
+    local : nodes of this rank that its elements, multipliers and averages of stress need
+    bodies : elements of each body;  pattern : of the tangent for the active sectors
     """
 
     def __init__(self, partition: Partition, references: list[ReferenceElements], symmetric: bool = True) -> None:
         self.partition, self.symmetric = partition, symmetric
-        self.bodies = [BodyElements(partition, k, r) for k, r in enumerate(references)]
-        seen = [b.number.ravel() for b in self.bodies] + [partition.multiplier_nodes]
-        self.wanted = np.unique(np.concatenate(seen))
+        needed = [
+            partition.node_numbers(k, sectors_seen(partition, k), np.arange(len(layout.mesh.coords)))[0].ravel()
+            for k, layout in enumerate(partition.layouts)
+        ]
+        self.local = LocalNodes(partition, np.concatenate([*needed, partition.multiplier_nodes]))
+        self.bodies = [BodyElements(partition, k, r, self.local) for k, r in enumerate(references)]
+        self.pattern = self._pattern()
 
-    def bind(self, local: LocalNodes) -> None:
-        """Look up local indices, and lay out the blocks of the sectors that are modelled."""
-        for body in self.bodies:
-            body.bind(local)
+    def activate(self, body: int, active: np.ndarray) -> None:
+        """Let the elements of the sectors (n_sectors,) bool of a body count, and no others of it."""
+        self.bodies[body].activate(active)
+        self.pattern = self._pattern()
+
+    def _pattern(self) -> TangentPattern:
+        partition, local = self.partition, self.local
         touched = np.zeros(local.n_own, dtype=bool)
         for body in self.bodies:
-            touched[body.conn[(body.conn >= 0) & (body.conn < local.n_own)]] = True
-        multipliers = self.partition.multiplier_nodes - local.row_start
-        touched[multipliers[(multipliers >= 0) & (multipliers < local.n_own)]] = True
-        self.idle = np.flatnonzero(~touched)
-        keys = []
-        for body in self.bodies:
-            number = np.where(body.conn >= 0, local.number[body.conn], -1).astype(np.int64)
-            keys.append(self._pairs(body.conn, number, local).ravel())
-        if local.n_own and local.row_start + local.n_own == self.partition.n_global:
-            m = self.partition.multiplier_nodes
-            keys.append(m * self.partition.n_global + m)
-        own = np.arange(local.row_start, local.row_start + local.n_own)
-        keys.append(own * self.partition.n_global + own)
+            conn = body.assembled.conn
+            touched[conn[(conn >= 0) & (conn < local.n_own)]] = True
+        multipliers = partition.multiplier_nodes
+        own = multipliers - local.row_start
+        touched[own[(own >= 0) & (own < local.n_own)]] = True
+        blocks = [self._blocks(body.assembled.conn) for body in self.bodies]
+        diagonal = np.arange(local.row_start, local.row_start + local.n_own)
+        keys = [*(block.ravel() for block in blocks), diagonal * partition.n_global + diagonal]
+        if local.n_own and local.row_start + local.n_own == partition.n_global:
+            keys.append(multipliers * partition.n_global + multipliers)
         keys = np.unique(np.concatenate(keys))
-        self.keys = keys[keys >= 0]
-        self.slots = [
-            np.searchsorted(
-                self.keys, self._pairs(b.conn, np.where(b.conn >= 0, local.number[b.conn], -1).astype(np.int64), local)
-            )
-            for b in self.bodies
-        ]
-        for slot, body in zip(self.slots, self.bodies):
-            number = np.where(body.conn >= 0, local.number[body.conn], -1).astype(np.int64)
-            slot[self._pairs(body.conn, number, local) < 0] = -1
+        keys = keys[keys >= 0]
+        positions = [np.where(block >= 0, np.searchsorted(keys, block), -1) for block in blocks]
+        return TangentPattern(keys, positions, np.flatnonzero(~touched))
 
-    def _pairs(self, conn: np.ndarray, number: np.ndarray, local: LocalNodes) -> np.ndarray:
-        """Keys row * n_global + column of an element's owned blocks, -1 elsewhere; (n, pairs)."""
+    def _blocks(self, conn: np.ndarray) -> np.ndarray:
+        """Keys row * n_global + column (n, m * m) of the owned blocks of elements, -1 elsewhere; conn : (n, m)."""
+        local = self.local
+        number = np.where(conn >= 0, local.number[conn], -1).astype(np.int64)
         row, col = number[:, :, None], number[:, None, :]
         owned = ((conn >= 0) & (conn < local.n_own))[:, :, None]
         keys = np.where(owned & (col >= (row if self.symmetric else 0)), row * self.partition.n_global + col, -1)
         return keys.reshape(len(conn), conn.shape[1] ** 2)
 
     def rows(self, extra: np.ndarray, number: np.ndarray) -> tuple[BlockRows, list[np.ndarray]]:
-        """Pattern of the elements joined with further keys, and where each body's element blocks are in it.
+        """Rows of the tangent for the elements and further blocks, and the positions of each body's element blocks.
 
         extra : keys row * n_global + column of contact blocks;  number : (n_local,) int32 global numbers
         """
-        keys = np.union1d(self.keys, extra) if len(extra) else self.keys
-        n = self.partition.n_global
-        row, column = np.divmod(keys, n)
+        own_keys = self.pattern.keys
+        keys = np.union1d(own_keys, extra) if len(extra) else own_keys
+        row, column = np.divmod(keys, self.partition.n_global)
         first = self.partition.row_start
         start = np.searchsorted(row, np.arange(first, first + self.partition.n_own + 1))
-        place = np.searchsorted(keys, self.keys)
+        position = np.searchsorted(keys, own_keys)
         rows = BlockRows(
             start.astype(np.int64),
             column.astype(np.int32),
@@ -176,22 +247,27 @@ class Elements:
             keys,
             self.symmetric,
         )
-        return rows, [np.where(slot >= 0, place[slot], -1) for slot in self.slots]
+        return rows, [np.where(own >= 0, position[own], -1) for own in self.pattern.positions]
 
     def assemble(
-        self, u: np.ndarray, residual: np.ndarray | None, rows: BlockRows | None, slots: list[np.ndarray] | None
+        self, u: np.ndarray, residual: np.ndarray | None, rows: BlockRows | None, positions: list[np.ndarray] | None
     ) -> None:
-        """Add internal forces to `residual` (n_local, 3) N and tangent blocks to `rows.values`."""
+        """Add internal forces to `residual` (n_local, 3) N and tangent blocks (N/mm) to `rows.values`.
+
+        u : (n_local, 3) mm;  positions : of the element blocks in `rows`, as `rows` gives them
+        Raises FloatingPointError where an element has collapsed.
+        """
         for k, body in enumerate(self.bodies):
-            if len(body.conn):
+            elements = body.assembled
+            if len(elements.conn):
                 assemble_elements(
-                    body.assembled,
-                    body.ref_of,
-                    body.turn,
-                    body.conn,
-                    body.conn_flip,
+                    body.assembled_reference,
+                    elements.reference,
+                    elements.rotation,
+                    elements.conn,
+                    elements.flip,
                     u,
                     residual,
-                    None if slots is None else slots[k],
+                    None if positions is None else positions[k],
                     None if rows is None else rows.values,
                 )

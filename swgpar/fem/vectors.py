@@ -32,17 +32,17 @@ class Exchange:
 
 def read_field(partition: Partition, body: int, sectors: np.ndarray, vector: PETSc.Vec) -> np.ndarray:
     """Nodal values (n_sectors, n_local_nodes, 3) of any sectors of a body, images turned; collective."""
-    number, flip = partition.numbers(body, sectors, np.arange(len(partition.layouts[body].mesh.coords)))
+    number, flip = partition.node_numbers(body, sectors, np.arange(len(partition.layouts[body].mesh.coords)))
     wanted, place = np.unique(number, return_inverse=True)
     absent = int(len(wanted) > 0 and wanted[0] == -1)
     values = Exchange(partition, wanted[absent:].astype(np.int32))(vector)
     values = np.vstack([np.zeros((absent, 3)), values])[place.reshape(number.shape)]
-    return partition.layouts[body].fill_inside(sectors, np.where(flip[..., None] == 1, HALF_TURN * values, values))
+    return partition.layouts[body].with_inner_nodes(sectors, np.where(flip[..., None] == 1, HALF_TURN * values, values))
 
 
 def write_field(partition: Partition, body: int, sectors: np.ndarray, values: np.ndarray, vector: PETSc.Vec) -> None:
     """Set the owned entries of `vector` from nodal values (n_sectors, n_local_nodes, 3) of owned sectors."""
-    number, flip = partition.numbers(body, sectors, np.arange(len(partition.layouts[body].mesh.coords)))
+    number, flip = partition.node_numbers(body, sectors, np.arange(len(partition.layouts[body].mesh.coords)))
     own = (number >= partition.row_start) & (number < partition.row_start + partition.n_own) & (flip == 0)
     vector.array.reshape(-1, 3)[number[own] - partition.row_start] = values[own]
 

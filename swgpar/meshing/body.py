@@ -112,7 +112,7 @@ def build_sector(design: DriveDesign, recipe: MeshRecipe, gear: str) -> SectorMe
         flanks=(flanks[0], flanks[1]),
         profile=profile,
         quality=quality,
-        tied=np.tile(rows[0], 2) if plane else None,
+        lower_nodes=np.tile(rows[0], 2) if plane else None,
     )
 
 

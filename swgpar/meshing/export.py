@@ -22,14 +22,14 @@ FORMATS = ("vtu", "msh", "inp")
 
 def sector_numbers(mesh: SectorMesh) -> Ints:
     """Return the number (n_sectors, n_node) of every sector's nodes in the body; shared nodes have one."""
-    own = np.ones(len(mesh.coords), dtype=bool) if mesh.tied is None else mesh.tied == np.arange(len(mesh.coords))
+    own = np.ones(len(mesh.coords), dtype=bool) if not mesh.plane else mesh.lower_nodes == np.arange(len(mesh.coords))
     own[mesh.ccw_nodes] = False
     place = np.cumsum(own) - 1
     n_own = int(own.sum())
     numbers = place + np.arange(mesh.n_sectors)[:, None] * n_own
     numbers[:, mesh.ccw_nodes] = np.roll(numbers, -1, axis=0)[:, mesh.cw_nodes]
-    if mesh.tied is not None:
-        numbers = numbers[:, mesh.tied]
+    if mesh.plane:
+        numbers = numbers[:, mesh.lower_nodes]
     return numbers.astype(np.int32)
 
 
@@ -41,7 +41,7 @@ def whole_body(mesh: SectorMesh) -> tuple[Floats, Ints]:
     coords = np.empty((int(numbers.max()) + 1, 3))
     coords[numbers, 0] = x * np.cos(angle) - y * np.sin(angle)
     coords[numbers, 1] = x * np.sin(angle) + y * np.cos(angle)
-    coords[numbers, 2] = z if mesh.tied is None else 0.0
+    coords[numbers, 2] = z if not mesh.plane else 0.0
     elements = mesh.elements
     return coords, numbers[:, elements].reshape(-1, elements.shape[1])
 
@@ -81,7 +81,7 @@ def whole_drive(meshes: dict[str, SectorMesh]) -> meshio.Mesh:
     for number, mesh in enumerate(meshes.values()):
         coords, elements = whole_body(mesh)
         points.append(coords)
-        cells.append(("hexahedron" if mesh.tied is None else "quad", elements + offset))
+        cells.append(("hexahedron" if not mesh.plane else "quad", elements + offset))
         body.append(np.full(len(elements), number, dtype=np.int32))
         point_sets |= {name: nodes + offset for name, nodes in named_nodes(mesh).items()}
         offset += len(coords)
@@ -169,7 +169,7 @@ def mesh_report(meshes: dict[str, SectorMesh]) -> dict[str, dict[str, float]]:
     """
     report = {}
     for body, mesh in meshes.items():
-        own = (len(mesh.coords) - len(mesh.ccw_nodes)) // (1 if mesh.tied is None else 2)
+        own = (len(mesh.coords) - len(mesh.ccw_nodes)) // (1 if not mesh.plane else 2)
         report[body] = {
             "nodes": own * mesh.n_sectors,
             "elements": len(mesh.hexes) * mesh.n_sectors,

@@ -28,10 +28,10 @@ def element_faces(mesh: SectorMesh, quads: Ints) -> Ints:
 
     In the plane, where a quadrilateral spans both layers of nodes, the face is an edge of the element.
     """
-    if mesh.tied is not None:
-        quads = mesh.tied[quads]
+    if mesh.plane:
+        quads = mesh.lower_nodes[quads]
         quads = np.array([np.unique(quad) for quad in quads], dtype=np.int32).reshape(-1, 2)
-    table = HEX_FACES if mesh.tied is None else QUAD_FACES
+    table = HEX_FACES if not mesh.plane else QUAD_FACES
     faces = np.sort(mesh.elements[:, table], axis=-1)
     place = {tuple(nodes): (k, f) for k, row in enumerate(faces.tolist()) for f, nodes in enumerate(row)}
     return np.array([place[tuple(quad)] for quad in np.sort(quads, axis=1).tolist()], dtype=np.int32).reshape(-1, 2)

@@ -23,8 +23,8 @@ def interpolation(coarse: SectorMesh, fine: SectorMesh) -> csr_matrix:
     coordinates, in which rim and cup are flat. Values at nodes outside are extrapolated from the adjacent cell in which
     their smallest weight is largest. Raises InputError where the coarse nodes have no such tetrahedra.
     """
-    plane = coarse.tied is not None
-    nodes = np.unique(coarse.tied) if plane else np.arange(len(coarse.coords))
+    plane = coarse.plane
+    nodes = np.unique(coarse.lower_nodes) if plane else np.arange(len(coarse.coords))
     radius = float(np.hypot(*coarse.coords[:, :2].T).max())
     known, sought = _unrolled(coarse.coords[nodes], radius, plane), _unrolled(fine.coords, radius, plane)
     try:

@@ -57,5 +57,5 @@ def ring_sector(
         flanks=(),
         profile=None,
         quality=hex_quality(coords, hexes),
-        tied=np.tile(rows[0], 2) if plane else None,
+        lower_nodes=np.tile(rows[0], 2) if plane else None,
     )

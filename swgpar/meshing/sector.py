@@ -63,7 +63,7 @@ class SectorMesh:
     quality : dict of float
         ``min_scaled_jacobian``, ``min_jacobian`` and ``max_jacobian`` (mm³, determinants at the 2x2x2 Gauss
         points), ``max_aspect_ratio``; of the quadrilaterals (mm², 2x2 points) in the plane model.
-    tied : (n_node,) int32 or None
+    lower_nodes : (n_node,) int32 or None
         Plane model: the node of the lower layer that each node moves with; None for a solid.
     """
 
@@ -79,9 +79,14 @@ class SectorMesh:
     flanks: tuple[FlankGrid, ...]
     profile: ToothProfile | None
     quality: dict[str, float]
-    tied: Ints | None = None
+    lower_nodes: Ints | None = None
+
+    @property
+    def plane(self) -> bool:
+        """Whether this is the plane model, whose nodes above move with those below."""
+        return self.lower_nodes is not None
 
     @property
     def elements(self) -> Ints:
         """Nodes of the finite elements: the hexahedra, or their lower faces in the plane model; (n_elem, 8 or 4)."""
-        return self.hexes if self.tied is None else self.hexes[:, :4]
+        return self.hexes if not self.plane else self.hexes[:, :4]

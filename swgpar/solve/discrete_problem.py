@@ -15,9 +15,10 @@ from swgpar.contact.rigid_surface import CamPose, RigidContact
 from swgpar.contact.search import FlankPair, facing_flanks, largest
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import LoadState
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.elements import Elements
 from swgpar.fem.inactive_sectors import InactiveSectors
-from swgpar.fem.partition import LocalNodes, Partition
+from swgpar.fem.partition import Partition
 from swgpar.fem.sparse import BlockRows, add_unit_diagonal, create_matrix, fill_matrix
 from swgpar.fem.vectors import Exchange, create_vector, read_multipliers
 from swgpar.geometry.rotation import HALF_TURN
@@ -68,7 +69,7 @@ class DiscreteProblem:
         self.rebind(np.zeros(0, dtype=np.int64))
         self.keys: np.ndarray | None = None
         ring_stands = design.solver.far_teeth == "left_out" and holding.housing is None and len(elements.bodies) == 2
-        self.far = InactiveSectors(partition.layouts[1].count) if ring_stands else None
+        self.far = InactiveSectors(partition.layouts[RING_GEAR].count) if ring_stands else None
         own = np.arange(partition.row_start, partition.row_start + partition.n_own)
         self.own_keys = own * partition.n_global + own
         self.round_off = 0.0
@@ -77,7 +78,7 @@ class DiscreteProblem:
 
     def rebind(self, further: np.ndarray) -> None:
         """Take further global nodes (n,) into this rank's view."""
-        self.local = LocalNodes(self.partition, self.elements.wanted, further)
+        self.local = self.elements.local.extended(further)
         self.exchange = Exchange(self.partition, self.local.number)
         self.teeth.bind(self.local)
         self.teeth.turn = self.holding.ring_turn(self.displacement())
@@ -115,9 +116,9 @@ class DiscreteProblem:
             keys = self.teeth.select(self.displacement(), self.near, TOUCH * self.design.drive.module)
             if self.far is not None:
                 near = np.concatenate(self.partition.comm.allgather(self.teeth.picked_rings()))
-                if self.far.update(near, self.elements, self.local):
+                if self.far.update(near, self.elements):
                     self.keys = None
-                self.x.array.reshape(-1, 3)[self.elements.idle] = 0.0
+                self.x.array.reshape(-1, 3)[self.elements.pattern.nodes_without_elements] = 0.0
             if not self.teeth.symmetric and self.scene is not None and self.scene.step >= FIRST_STEP:
                 self.teeth.resist(self.displacement(self.accepted))
         self.rigid.reset()
@@ -126,7 +127,9 @@ class DiscreteProblem:
 
     def _facing(self, margin: float) -> list[FlankPair]:
         u = self.displacement()
-        return facing_flanks(self.partition, self.elements.bodies[0], u, self.holding.ring_turn(u), margin)
+        return facing_flanks(
+            self.partition, self.elements.bodies[FLEXIBLE_SPLINE], u, self.holding.ring_turn(u), margin
+        )
 
     def overlooked(self) -> bool:
         """Whether flanks that the search left out have come into contact."""
@@ -195,9 +198,10 @@ class DiscreteProblem:
             self.elements.assemble(u, None, self.rows, self.slots)
             self.missing = self._contact(u, None, self.rows)
             self.holding.add_blocks(u, self.rows)
-            add_unit_diagonal(self.rows, self.partition, self.elements.idle, self.scale)
+            without_elements = self.elements.pattern.nodes_without_elements
+            add_unit_diagonal(self.rows, self.partition, without_elements, self.scale)
         # forces that follow from a last-digit error of every position
-        diagonal = self.rows.values[np.searchsorted(self.rows.keys, np.delete(self.own_keys, self.elements.idle))]
+        diagonal = self.rows.values[np.searchsorted(self.rows.keys, np.delete(self.own_keys, without_elements))]
         squares = float(np.einsum("nkk,nkk->", diagonal, diagonal))
         squares = self.partition.comm.allreduce(squares, op=MPI.SUM)
         self.round_off = np.finfo(float).eps * self.design.r_fs * np.sqrt(squares)

@@ -118,7 +118,7 @@ def test_any_number_of_ranks_gives_the_same(model: str) -> None:
     several, parallel = base(model)
     one, alone = loaded(small(model), MPI.COMM_SELF)
     assert_same(parallel, alone, 1e-8)
-    first, end = several.model.partition.owned(0)
+    first, end = several.model.partition.owned_sectors(0)
     mine, whole = (nodal_pressure(r.equilibrium, r.equilibrium.elements.bodies[0]) for r in (several, one))
     assert np.abs(mine - whole[first:end]).max() < 1e-6 * whole.max()
     assert parallel["output_angle_deg"] == pytest.approx(alone["output_angle_deg"], rel=1e-8)

@@ -33,15 +33,15 @@ def wave(model: DriveModel, angle: float, slip: float = 0.0) -> PETSc.Vec:
     x = create_vector(partition)
     teeth = [layout.mesh.n_sectors for layout in partition.layouts]
     for body, layout in enumerate(partition.layouts):
-        own = np.arange(*partition.owned(body))
+        own = np.arange(*partition.owned_sectors(body))
         coords = np.repeat(layout.mesh.coords[None], len(own), axis=0)
         turn = 0.0 if body == model.fixed_body else angle * (1.0 - teeth[model.fixed_body] / teeth[body]) + slip
-        at = layout.turn(layout.first_tooth + own)[:, None]
+        at = layout.sector_angle(layout.first_tooth + own)[:, None]
         place = rotated(coords, at + turn)
         around = np.arctan2(place[..., 1], place[..., 0])
         radial = np.stack([np.cos(around), np.sin(around), np.zeros_like(around)], axis=-1)
         values = place + np.cos(2.0 * (around - angle))[..., None] * radial - rotated(coords, at)
-        values[:, layout.absent] = 0.0
+        values[:, layout.numbering.without_unknowns] = 0.0
         write_field(partition, body, own, values, x)
     return x
 
@@ -52,7 +52,7 @@ def error(model: DriveModel, known: list[float], angle: float, slip: float = 0.0
     predict(model.partition, model.fixed_body, [(there, wave(model, there)) for there in known], x, angle, slip)
     exact, worst = wave(model, angle, slip), 0.0
     for body in range(len(model.partition.layouts)):
-        own = np.arange(*model.partition.owned(body))
+        own = np.arange(*model.partition.owned_sectors(body))
         gap = read_field(model.partition, body, own, x) - read_field(model.partition, body, own, exact)
         worst = max(worst, float(np.abs(gap).max(initial=0.0)))
     return model.comm.allreduce(worst, op=MPI.MAX)

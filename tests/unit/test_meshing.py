@@ -467,9 +467,9 @@ def test_plane_sectors(recipe: Path, overrides: tuple[str, ...]) -> None:
     """Two layers of the same nodes, of which one moves with the other; the quadrilaterals fill the exact section."""
     case = plane_design(*overrides)
     for gear, mesh in plane_meshes(recipe, *overrides).items():
-        lower = np.unique(mesh.tied)
-        assert np.array_equal(mesh.tied[lower], lower) and 2 * len(lower) == len(mesh.coords)
-        assert np.array_equal(mesh.coords[mesh.tied][:, :2], mesh.coords[:, :2])
+        lower = np.unique(mesh.lower_nodes)
+        assert np.array_equal(mesh.lower_nodes[lower], lower) and 2 * len(lower) == len(mesh.coords)
+        assert np.array_equal(mesh.coords[mesh.lower_nodes][:, :2], mesh.coords[:, :2])
         assert np.array_equal(np.unique(mesh.elements), lower)
         assert np.allclose(mesh.coords[lower, 2], -0.5 * case.drive.face_width)
         assert all(np.isin(nodes, lower).all() for nodes in mesh.node_sets.values())

@@ -8,7 +8,7 @@ import pytest
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar.design.design_file import load_design
-from swgpar.fem.condensed_sectors import CondensedSector, bend, condense
+from swgpar.fem.condensed_sectors import CondensedSector, condense, relative_end_rotation
 from swgpar.kernel import ReferenceElements, assemble_elements, reference_elements
 from swgpar.meshing import build_sector_meshes, load_recipe
 from swgpar.meshing.sector import SectorMesh
@@ -58,7 +58,7 @@ def test_the_inside_is_in_equilibrium_and_the_outer_forces_are_those_of_the_elem
     mesh, elements, condensed = sector
     outer, rows = moved(sector, 0.4, 1e-7)
     u = np.zeros_like(mesh.coords)
-    u[rows], u[condensed.inner] = outer, condensed.inside(ANGLE, outer[None])[0]
+    u[rows], u[condensed.inner] = outer, condensed.inner_displacement(ANGLE, outer[None])[0]
     energy, every = forces(elements, mesh.elements, u)
     own, kept = forces(condensed.reference, np.arange(len(rows))[None], outer)
     largest = np.abs(kept).max()
@@ -75,7 +75,7 @@ def test_rigid_motion_gives_no_force(sector: Sector) -> None:
     assert np.abs(kept).max() < 1e-12 * np.abs(condensed.reference.stiffness).max() * np.abs(mesh.coords).max()
     place = turned(mesh.coords[condensed.inner], ANGLE[0])
     exact = turned(place, 2.5) + [3.0, -2.0, 0.0] - place
-    assert np.abs(condensed.inside(ANGLE, outer[None])[0] - exact).max() < 1e-12 * np.abs(mesh.coords).max()
+    assert np.abs(condensed.inner_displacement(ANGLE, outer[None])[0] - exact).max() < 1e-12 * np.abs(mesh.coords).max()
 
 
 def test_the_tangent_is_the_derivative_of_the_forces(sector: Sector) -> None:
@@ -99,11 +99,11 @@ def test_the_tangent_is_the_derivative_of_the_forces(sector: Sector) -> None:
 def test_no_sectors_have_no_inside(sector: Sector) -> None:
     """Where there are more ranks than teeth."""
     _, _, condensed = sector
-    nothing = condensed.inside(np.zeros(0), np.zeros((0, len(condensed.outer), 3)))
+    nothing = condensed.inner_displacement(np.zeros(0), np.zeros((0, len(condensed.outer), 3)))
     assert nothing.shape == (0, len(condensed.inner), 3)
 
 
-def test_bend(sector: Sector) -> None:
+def test_relative_end_rotation(sector: Sector) -> None:
     """Cuts that turn by different angles about their middles, in sectors at different places."""
     mesh, angle, turns = sector[0], np.array([0.7, 2.0]), (0.03, 0.01)
     u = np.zeros((2, len(mesh.coords), 3))
@@ -111,4 +111,4 @@ def test_bend(sector: Sector) -> None:
         for nodes, turn in zip((mesh.ccw_nodes, mesh.cw_nodes), turns):
             x = turned(mesh.coords[nodes], place)
             u[k, nodes] = turned(x - x.mean(axis=0), turn) - x + x.mean(axis=0) + [0.1, 0.2, 0.0]
-    assert bend(mesh, angle, u) == pytest.approx(turns[0] - turns[1])
+    assert relative_end_rotation(mesh, angle, u) == pytest.approx(turns[0] - turns[1])

@@ -137,7 +137,7 @@ def toothed_ring(design: RingDesign, recipe: str) -> np.ndarray:
         ],
     )  # fmt: skip
     sector = build_sector_meshes(drive, load_recipe(recipe))["ring_gear"]
-    flat = np.flatnonzero(sector.tied == np.arange(len(sector.coords)))
+    flat = np.flatnonzero(sector.lower_nodes == np.arange(len(sector.coords)))
     count, number = sector.n_sectors, np.full(len(sector.coords), -1)
     # nodes on the clockwise side belong to the sector before: that one's counter-clockwise side is the same line
     shared = dict(zip(sector.cw_nodes.tolist(), sector.ccw_nodes.tolist(), strict=True))

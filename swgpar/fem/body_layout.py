@@ -1,0 +1,130 @@
+"""The modelled tooth sectors of one body, and where the unknowns of a sector's nodes are.
+
+A body is a chain of congruent tooth sectors. A node on the counter-clockwise side of sector k is a node on the
+clockwise side of sector k + 1. With twofold symmetry the chain is half a turn long: the sector after the last one is
+sector 0 rotated by 180 degrees, so a node of it is an *image*: its vectors are diag(-1, -1, 1) times those of the
+owner.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from swgpar.fem.condensed_sectors import CondensedSector
+from swgpar.meshing.sector import SectorMesh
+
+FLEXIBLE_SPLINE, RING_GEAR = 0, 1
+"""Indices of the bodies of a drive, in partitions, elements and layouts."""
+
+
+@dataclass(frozen=True)
+class SectorNumbering:
+    """Rows of a sector's nodes, of n_node nodes each, -1 where there is none.
+
+    Attributes
+    ----------
+    previous : (n_node,) int64
+        Node of the next sector (on its clockwise side) with which a node on the counter-clockwise side coincides.
+    owned_nodes : (n_owned,) int64
+        Nodes whose unknowns belong to this sector: all but those of the counter-clockwise side and those without
+        unknowns.
+    row : (n_node,) int64
+        Index of a node among the owned ones.
+    end_row : (n_node,) int64
+        Index of a clockwise-side node among those that close an open chain.
+    n_end : int
+        Nodes that close an open chain; 0 for a closed one.
+    without_unknowns : (n_node,) bool
+        Nodes that are fixed, or inside of a condensed sector.
+    """
+
+    previous: np.ndarray
+    owned_nodes: np.ndarray
+    row: np.ndarray
+    end_row: np.ndarray
+    n_end: int
+    without_unknowns: np.ndarray
+
+
+@dataclass(frozen=True)
+class BodyLayout:
+    """The modelled sectors of one body.
+
+    mesh : the congruent sector
+    first_tooth, count : modelled teeth first_tooth .. first_tooth + count - 1
+    closed : the chain closes on itself (with a half turn when the model is halved)
+    images : True when the model holds half a turn
+    fixed : (n_fixed,) local nodes that do not move
+    condensed : the sector as one element, whose inner nodes have no unknowns; None where they have
+    """
+
+    mesh: SectorMesh
+    first_tooth: int
+    count: int
+    closed: bool
+    images: bool
+    fixed: np.ndarray
+    condensed: CondensedSector | None = None
+
+    @cached_property
+    def numbering(self) -> SectorNumbering:
+        """Rows of the nodes of a sector."""
+        mesh, n = self.mesh, len(self.mesh.coords)
+        previous = np.full(n, -1, dtype=np.int64)
+        previous[mesh.ccw_nodes] = mesh.cw_nodes
+        without_unknowns = np.zeros(n, dtype=bool)
+        without_unknowns[self.fixed] = True
+        if self.condensed is not None:
+            without_unknowns[self.condensed.inner] = True
+        row = np.where(without_unknowns, -1, 0)
+        row[mesh.ccw_nodes] = -1
+        if mesh.lower_nodes is not None:
+            row[mesh.lower_nodes != np.arange(n)] = -1
+        owned_nodes = np.flatnonzero(row == 0)
+        row[owned_nodes] = np.arange(len(owned_nodes))
+        if mesh.lower_nodes is not None:
+            row = row[mesh.lower_nodes]
+        end_nodes = np.sort(mesh.cw_nodes[row[mesh.cw_nodes] >= 0])
+        end_row = np.full(n, -1, dtype=np.int64)
+        end_row[end_nodes] = np.arange(len(end_nodes))
+        if mesh.lower_nodes is not None:
+            without_unknowns = without_unknowns[mesh.lower_nodes]
+        n_end = 0 if self.closed else len(end_nodes)
+        return SectorNumbering(previous, owned_nodes, row, end_row, n_end, without_unknowns)
+
+    @property
+    def name(self) -> str:
+        """Name of the body, as in the design file."""
+        return self.mesh.body
+
+    @property
+    def teeth_per_period(self) -> int:
+        """Teeth after which the model repeats: half or all of them."""
+        return self.mesh.n_sectors // 2 if self.images else self.mesh.n_sectors
+
+    def sector_angle(self, tooth: np.ndarray) -> np.ndarray:
+        """Angle (rad) of the sectors of teeth about z, counter-clockwise from +y; any shape."""
+        return self.mesh.phase + np.asarray(tooth) * (2.0 * np.pi / self.mesh.n_sectors)
+
+    def sector_of_tooth(self, tooth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Index in the chain of any tooth (-1 where it is not modelled) and its image flag (uint8)."""
+        periods, rest = np.divmod(np.asarray(tooth) - self.first_tooth, self.teeth_per_period)
+        index = np.where(rest < self.count, rest, -1)
+        flip = (periods % 2).astype(np.uint8) if self.images else np.zeros_like(rest, dtype=np.uint8)
+        return index, flip
+
+    def with_inner_nodes(self, sectors: np.ndarray, field: np.ndarray) -> np.ndarray:
+        """Displacement with the values at the inner nodes of condensed sectors recovered.
+
+        sectors : (n,) indices in the chain;  field : (n, n_node, 3) mm, overwritten at these nodes
+        """
+        if self.condensed is not None:
+            angle = self.sector_angle(self.first_tooth + sectors)
+            outer = field[:, self.condensed.outer]
+            field[:, self.condensed.inner] = self.condensed.inner_displacement(angle, outer)
+            if self.mesh.lower_nodes is not None:
+                field = np.ascontiguousarray(field[:, self.mesh.lower_nodes])
+        return field
