@@ -13,8 +13,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
-from swgpar.design.drive_design import make_design
-from swgpar.geometry.cams import make_cam
+from swgpar.design.design_file import make_design
 
 DRIVERS = Path(__file__).parents[2] / "drivers"
 CAMS = {
@@ -44,7 +43,7 @@ figure, axes = plt.subplots(
 )
 angle = np.linspace(0.0, 2.0 * np.pi, 721)
 for panel, (name, design) in zip(axes, designs.items()):
-    outline = make_cam(design).outline(3600)
+    outline = design.cam().outline(3600)
     panel.plot(*np.vstack([outline, outline[:1]]).T, color="tab:orange")
     panel.plot(
         design.r_fs * np.sin(angle),
@@ -63,7 +62,7 @@ axes[0].set_ylabel("y (mm)")
 figure, panel = plt.subplots(figsize=(8.0, 4.5), layout="constrained")
 edges = np.linspace(-90.0, 90.0, 361)
 for name, design in designs.items():
-    x, y = make_cam(design).outline(7200).T
+    x, y = design.cam().outline(7200).T
     around = np.degrees(np.arctan2(x, y))
     radius = np.hypot(x, y)
     outside = [

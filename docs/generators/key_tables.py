@@ -1,0 +1,177 @@
+"""Tables of the keys of design files, mesh recipes and study files, made from their models.
+
+    python docs/generators/key_tables.py FOLDER
+
+writes `keys_<file>.md` into the folder, one for each kind of input file, for pages to include.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, Literal, get_args, get_origin
+
+from pydantic.fields import FieldInfo
+
+from swgpar.design.drive_design import DriveDesign
+from swgpar.gear_trains.cascade import CascadeDesign
+from swgpar.gear_trains.gear_pair import GearPairDesign
+from swgpar.gear_trains.planetary import PlanetaryDesign
+from swgpar.gear_trains.ring import RingDesign
+from swgpar.input.quantities import Section, show, unit_of
+from swgpar.meshing.recipe import MeshRecipe
+from swgpar.studies.spec import CaseSection, StudySection
+
+Row = tuple[str, str, str, str, str]
+"""Key, meaning, unit, default and allowed values."""
+
+GEARS = ("g1", "g2", "g3", "g4")
+MESHES = ("g1_g1", "g1_g2", "g3_g4")
+FILES: dict[str, tuple[type[Section], dict[str, str]]] = {
+    "drive": (DriveDesign, {"ring_gear": "flexible_spline"}),
+    "mesh_recipe": (MeshRecipe, {"ring_gear": "flexible_spline"}),
+    "cascade": (CascadeDesign, dict.fromkeys(GEARS, "pinion") | dict.fromkeys(MESHES, "rack_pinion")),
+    "gear_pair": (GearPairDesign, {"gear_2": "gear_1"}),
+    "planetary": (PlanetaryDesign, {}),
+    "ring": (RingDesign, {}),
+}
+"""Input files with sections: model, and sections whose rows are those of another one."""
+
+
+def choices(field: FieldInfo) -> list[type[Section]]:
+    """The sections a field may hold; none for a plain value."""
+    types = get_args(field.annotation) or (field.annotation,)
+    return [t for t in types if isinstance(t, type) and issubclass(t, Section)]
+
+
+def kind(section: type[Section]) -> str:
+    """Value of `type` that chooses a section."""
+    return get_args(section.model_fields["type"].annotation)[0]
+
+
+def allowed_values(field: FieldInfo) -> str:
+    """Range or choices in words."""
+    options = get_args(field.annotation)
+    if get_origin(field.annotation) is Literal:
+        return " or ".join(f"`{option}`" for option in options)
+    if field.annotation is bool:
+        return "true or false"
+    if field.annotation is str:
+        return "a text"
+    if get_origin(field.annotation) is list:
+        return "a list of texts" if options == (str,) else "a list of numbers"
+    if get_origin(field.annotation) is dict:
+        return "a table"
+    limits = {
+        name: show(getattr(limit, name))
+        for limit in field.metadata
+        for name in ("gt", "ge", "lt", "le")
+        if hasattr(limit, name)
+    }
+    if "ge" in limits and "le" in limits:
+        words = [f"{limits['ge']} to {limits['le']}"]
+    else:
+        form = {"gt": "above {}", "ge": "{} or more", "lt": "below {}", "le": "up to {}"}
+        words = [form[name].format(limits[name]) for name in form if name in limits]
+    kind_of_number = "whole number" if field.annotation is int else ""
+    return ", ".join(filter(None, [*words, kind_of_number])) or "any number"
+
+
+def default_value(field: FieldInfo) -> str:
+    """Default as it stands in TOML."""
+    if field.is_required():
+        return "**required**"
+    default: Any = field.get_default(call_default_factory=True)
+    if default is None or default in ("", [], {}):
+        return "none"
+    return f"`{show(default)}`"
+
+
+def row(key: str, field: FieldInfo) -> Row:
+    """The row of one plain key."""
+    unit = unit_of(field)
+    meaning = str(field.description).removesuffix(f" ({unit})").replace("|", "\\|")
+    return key, meaning, unit, default_value(field), allowed_values(field)
+
+
+def table(lines: list[Row]) -> str:
+    """A Markdown table."""
+    head = "| key | meaning | unit | default | allowed |\n|---|---|---|---|---|\n"
+    return head + "".join(f"| `{key}` | {' | '.join(cells)} |\n" for key, *cells in lines)
+
+
+def plain_rows(section: type[Section], prefix: str = "", skip: tuple[str, ...] = ()) -> Iterator[Row]:
+    """Rows of the plain keys of a section, and of the sections inside it that are no choice."""
+    for name, field in section.model_fields.items():
+        inner = choices(field)
+        if len(inner) == 1:
+            yield from plain_rows(inner[0], f"{prefix}{name}.")
+        elif not inner and name not in skip:
+            yield row(f"{prefix}{name}", field)
+
+
+def chosen(prefix: str, kinds: list[type[Section]]) -> dict[str, list[Row]]:
+    """Rows of a section with a choice of types: type and common keys, then by type; caption -> rows."""
+    first = kinds[0].model_fields
+    common = [
+        name
+        for name in first
+        if name != "type"
+        and all(name in other.model_fields for other in kinds)
+        and len({row(name, other.model_fields[name]) for other in kinds}) == 1
+    ]
+    types = " or ".join(f"`{kind(section)}`" for section in kinds)
+    shared = [(f"{prefix}type", str(first["type"].description), "", f'`"{kind(kinds[0])}"`', types)]
+    out = {"": shared + [row(f"{prefix}{name}", first[name]) for name in common]}
+    for section in kinds:
+        out[f'With `{prefix}type = "{kind(section)}"`:'] = list(plain_rows(section, prefix, ("type", *common)))
+    return out
+
+
+def section_rows(field: FieldInfo) -> dict[str, list[Row]]:
+    """All rows of a section of a file; caption -> rows."""
+    kinds = choices(field)
+    if len(kinds) > 1:
+        return chosen("", kinds)
+    out = {"": list(plain_rows(kinds[0]))}
+    for name, inner in kinds[0].model_fields.items():
+        if len(choices(inner)) > 1:
+            for caption, lines in chosen(f"{name}.", choices(inner)).items():
+                out.setdefault(caption, []).extend(lines)
+    return out
+
+
+def file_tables(design: type[Section], alike: dict[str, str]) -> str:
+    """Headings and tables of one kind of input file.
+
+    alike : section -> another one, whose rows are not repeated for it
+    """
+    parts = []
+    for name, field in design.model_fields.items():
+        parts.append(f"## `[{name}]`\n")
+        if not choices(field):
+            parts.append(f"{str(field.description).capitalize()}.\n")
+            continue
+        tables = section_rows(field)
+        if name in alike:
+            known = section_rows(design.model_fields[alike[name]])
+            tables = {c: [line for line in lines if line not in known.get(c, [])] for c, lines in tables.items()}
+            more = " and these:" if any(tables.values()) else "."
+            parts.append(f"The keys of `[{alike[name]}]`{more}\n")
+        for caption, lines in tables.items():
+            if lines:
+                parts.append(f"{caption}\n\n{table(lines)}" if caption else table(lines))
+    return "\n".join(parts)
+
+
+def main(folder: Path) -> None:
+    """Write all pages."""
+    for name, (design, alike) in FILES.items():
+        (folder / f"keys_{name}.md").write_text(file_tables(design, alike), encoding="utf-8")
+    for name, section in {"study": StudySection, "study_case": CaseSection}.items():
+        (folder / f"keys_{name}.md").write_text(table(list(plain_rows(section))), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))
