@@ -79,7 +79,7 @@ def press(
 ) -> dict[str, np.ndarray]:
     """Readings (n,) mm at the supports' travels (n,) mm: those of `READINGS`, and `top`, outward at the major axis."""
     # both supports are one curve, drawn apart by the pose: a stadium of which only the ends can touch
-    cam = simplified(design.r_fs, 0.5 * support_diameter)
+    cam = simplified(design.inner_radius, 0.5 * support_diameter)
     model = RingModel(design, counts, cam, np.radians(20.0), comm)
     kind = "plane" if design.plane else "solid"
     rows = []

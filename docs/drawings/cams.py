@@ -201,9 +201,9 @@ def cam_radius() -> Figure:
         points = design.cam().outline(7200)
         angle, radius = np.degrees(np.arctan2(-points[:, 0], points[:, 1])), np.hypot(*points.T)
         order = np.argsort(angle)
-        angle, height = angle[order], radius[order] - design.r_fs
+        angle, height = angle[order], radius[order] - design.inner_radius
         ax.plot(angle, np.where(height > -2.2, height, np.nan), lw=1.4, label=name)
-    for level, name in ((0.5 * design.d, "a"), (-0.5 * design.d, "b for C = 1")):
+    for level, name in ((0.5 * design.deflection, "a"), (-0.5 * design.deflection, "b for C = 1")):
         ax.axhline(level, color=INK, lw=0.6, ls="--")
         ax.text(91.0, level, name, va="center", fontsize=8)
     ax.axhline(0.0, color=SPLINE, lw=0.9)

@@ -42,7 +42,7 @@ def parts(design: DriveDesign) -> dict[str, np.ndarray]:
     spline, ring = (design.profile(gear) for gear in ("flexible_spline", "ring_gear"))
     half, cam_half = 0.5 * design.drive.face_width, 0.5 * design.wave_generator.face_width
     tip, root = spline.r_tip_circle, spline.r_root_circle
-    wall = np.concatenate([[(design.r_fs, -half)], inner, outer[::-1], [(root, half), (root, -half)]])
+    wall = np.concatenate([[(design.inner_radius, -half)], inner, outer[::-1], [(root, half), (root, -half)]])
     rings = ring.r_tip_circle, ring.r_root_circle, ring.r_root_circle + design.ring_gear.rim
 
     def box(z0: float, z1: float, r0: float, r1: float) -> np.ndarray:
@@ -53,7 +53,7 @@ def parts(design: DriveDesign) -> dict[str, np.ndarray]:
         "tooth": box(-half, half, root, tip),
         "ring tooth": box(-half, half, rings[0], rings[1]),
         "ring": box(-half, half, rings[1], rings[2]),
-        "cam": box(-cam_half, cam_half, 0.0, design.r_fs - 0.5 * design.d),
+        "cam": box(-cam_half, cam_half, 0.0, design.inner_radius - 0.5 * design.deflection),
     }
 
 
@@ -69,7 +69,7 @@ def section() -> Figure:
     fill(ax, outline["tooth"], SPLINE, alpha=0.45)
     fill(ax, outline["ring tooth"], RING, alpha=0.45)
     fill(ax, outline["ring"], RING)
-    end, outside = half + cup.length, design.r_fs + design.cup_thickness
+    end, outside = half + cup.length, design.inner_radius + design.cup_thickness
     axis_line(ax, (-16.0, 0.0), (end + 12.0, 0.0))
     axis_line(ax, (0.0, -3.0), (0.0, 74.0))
     ax.annotate("", xy=(end + 13.0, 0), xytext=(end + 8.0, 0), arrowprops={"arrowstyle": "-|>", "color": INK})
@@ -89,8 +89,8 @@ def section() -> Figure:
     dimension(ax, (-cam_half, 46.0), (cam_half, 46.0), "", at=(0.0, 46.0))
     leader(ax, (-15.5, 42.0), "wave_generator\n.face_width", (-0.6 * cam_half, 45.9))
     # radii
-    dimension(ax, (22.0, 0.0), (22.0, design.r_fs), "$r_{fs}$ (derived)", rotation=90)
-    extension(ax, (half, design.r_fs), (23.0, design.r_fs))
+    dimension(ax, (22.0, 0.0), (22.0, design.inner_radius), "$r_{fs}$ (derived)", rotation=90)
+    extension(ax, (half, design.inner_radius), (23.0, design.inner_radius))
     half_bore = 0.5 * cup.inner_radius
     dimension(
         ax, (end + 5.0, 0.0), (end + 5.0, 2.0 * half_bore), "$r_{ci}$  cup\n.inner_radius", at=(end + 11.0, half_bore)
@@ -99,9 +99,11 @@ def section() -> Figure:
     corner = end - cup.fillet_radius, outside - cup.fillet_radius
     touch = corner[0] + cup.fillet_radius * np.sqrt(0.5), corner[1] + cup.fillet_radius * np.sqrt(0.5)
     leader(ax, (end + 9.0, 64.0), "$r_{cf}$  cup.fillet_radius\n(outside of the wall)", touch)
-    leader(ax, (38.0, 48.0), "$c_c t_r$  cup.thickness_coef\ntimes flexible_spline.rim", (33.0, design.r_fs + 0.3))
+    leader(
+        ax, (38.0, 48.0), "$c_c t_r$  cup.thickness_coef\ntimes flexible_spline.rim", (33.0, design.inner_radius + 0.3)
+    )
     leader(ax, (38.0, 10.0), "closed end: the coupling\nacts on the bore", (end - 0.4, cup.inner_radius + 0.3))
-    leader(ax, (-16.0, 54.0), "open end", (-half, design.r_fs + 0.4))
+    leader(ax, (-16.0, 54.0), "open end", (-half, design.inner_radius + 0.4))
     ax.set_xlim(-22.0, end + 19.0)
     ax.set_ylim(-4.0, 78.0)
     return figure
@@ -131,8 +133,8 @@ def teeth() -> Figure:
         ax.plot([-half - 0.3, half + 0.3], [radius, radius], color=INK, lw=0.7, dashes=(12, 3, 2, 3))
         label(ax, (0.0, radius), text, color=INK)
     left, right = -half - 0.6, half + 0.7
-    inner, root, tip = design.r_fs, spline.r_root_circle, spline.r_tip_circle
-    for z, radii in ((left, (inner, root, tip)), (right, (design.r_fs + design.cup_thickness,))):
+    inner, root, tip = design.inner_radius, spline.r_root_circle, spline.r_tip_circle
+    for z, radii in ((left, (inner, root, tip)), (right, (design.inner_radius + design.cup_thickness,))):
         for radius in radii:
             extension(ax, (np.sign(z) * half, radius), (z - 0.2 if z < 0 else z + 0.2, radius))
     dimension(ax, (left, inner), (left, root), "$t_r$  flexible_spline.rim", at=(left - 2.4, 0.5 * (inner + root)))
@@ -175,10 +177,10 @@ def outline_of_gear(design: DriveDesign, gear: str, n: int = 24) -> np.ndarray:
 
 def deflected(design: DriveDesign, points: np.ndarray) -> np.ndarray:
     """Points (n, 2) of the undeformed spline on an inextensible ring: w = d/2 cos 2 psi, v = -d/4 sin 2 psi."""
-    r = design.r_fs + 0.5 * design.flexible_spline.rim
+    r = design.inner_radius + 0.5 * design.flexible_spline.rim
     psi = np.arctan2(-points[:, 0], points[:, 1])
-    w, v = 0.5 * design.d * np.cos(2 * psi), -0.25 * design.d * np.sin(2 * psi)
-    tilt = psi + (v + design.d * np.sin(2 * psi)) / r
+    w, v = 0.5 * design.deflection * np.cos(2 * psi), -0.25 * design.deflection * np.sin(2 * psi)
+    tilt = psi + (v + design.deflection * np.sin(2 * psi)) / r
     middle = (r + w) * np.array([-np.sin(psi + v / r), np.cos(psi + v / r)])
     height = np.hypot(*points.T) - r
     return (middle + height * np.array([-np.sin(tilt), np.cos(tilt)])).T
@@ -197,25 +199,27 @@ def front() -> Figure:
     ax.fill(*(outer * unit).T, fc=RING, ec=INK, lw=0.8)
     ax.fill(*ring.T, fc="white", ec=INK, lw=0.7)
     ax.fill(*deflected(design, spline).T, fc=SPLINE, ec=INK, lw=0.7, alpha=0.9)
-    ax.fill(*deflected(design, design.r_fs * unit).T, fc="white", ec=INK, lw=0.6)
-    cam = EllipticalCam(design.a, design.b).outline(720)
+    ax.fill(*deflected(design, design.inner_radius * unit).T, fc="white", ec=INK, lw=0.6)
+    cam = EllipticalCam(design.major_semi_axis, design.minor_semi_axis).outline(720)
     ax.fill(*cam.T, fc=CAM, ec=INK, lw=0.8, alpha=0.75)
-    ax.plot(*(design.r_fs * unit).T, color=INK, lw=0.7, ls="--")
+    ax.plot(*(design.inner_radius * unit).T, color=INK, lw=0.7, ls="--")
     far = outer + 3.0
     axis_line(ax, (0.0, -far), (0.0, far))
     axis_line(ax, (-far, 0.0), (far, 0.0))
     label(ax, (3.5, far + 0.8), "+y, major axis at 0 degrees", color=INK)
     label(ax, (far + 0.6, 0.0), "+x,\nminor\naxis", color=INK)
-    dimension(ax, (0.0, 0.0), (0.0, design.a), "a", at=(0.7, 0.55 * design.a))
-    dimension(ax, (0.0, 0.0), (design.b, 0.0), "b", at=(0.55 * design.b, 0.8))
+    dimension(ax, (0.0, 0.0), (0.0, design.major_semi_axis), "a", at=(0.7, 0.55 * design.major_semi_axis))
+    dimension(ax, (0.0, 0.0), (design.minor_semi_axis, 0.0), "b", at=(0.55 * design.minor_semi_axis, 0.8))
     direction = np.array([np.sin(np.radians(-52.0)), np.cos(np.radians(-52.0))])
-    tip = tuple(design.r_fs * direction)
-    dimension(ax, (0.0, 0.0), tip, "$r_{fs}$, undeformed", at=tuple(0.55 * design.r_fs * direction), rotation=-38)
+    tip = tuple(design.inner_radius * direction)
+    dimension(
+        ax, (0.0, 0.0), tip, "$r_{fs}$, undeformed", at=tuple(0.55 * design.inner_radius * direction), rotation=-38
+    )
     angle_mark(ax, (0.0, 0.0), 6.0, 90.0, 128.0, "wave generator\nturns", out=1.45)
     angle_mark(ax, (0.0, 0.0), outer + 1.2, 52.0, 40.0, "flexible spline turns\n(ring gear fixed)", out=1.2)
-    label(ax, (0.0, -0.45 * design.a), "wave generator", color=INK)
+    label(ax, (0.0, -0.45 * design.major_semi_axis), "wave generator", color=INK)
     leader(ax, (-outer - 1.5, -outer + 2.0), "ring gear", tuple(0.96 * outer * np.array([-0.72, -0.69])))
-    inside = design.r_fs + 0.5
+    inside = design.inner_radius + 0.5
     leader(ax, (outer + 1.0, -outer + 2.0), "flexible spline", tuple(inside * np.array([0.69, -0.72])))
     leader(ax, (-9.5, far), "teeth mesh at both\nends of the major axis", (-0.8, 0.5 * design.drive.teeth_rg))
     leader(ax, (far - 0.5, 8.5), "teeth are apart\nat the minor axis", (0.5 * design.drive.teeth_fs - 0.7, 2.2))

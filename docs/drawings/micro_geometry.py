@@ -15,7 +15,7 @@ from swgpar.geometry.micro_geometry import crowning
 def cam_height(design: DriveDesign, z: np.ndarray, minor: bool = False) -> np.ndarray:
     """Radial height (n,) mm of the modified cam's surface over the cam curve, at the major or the minor axis."""
     surface = design.cam_surface()
-    point = (design.b, 0.0) if minor else (0.0, design.a)
+    point = (design.minor_semi_axis, 0.0) if minor else (0.0, design.major_semi_axis)
     level, _, _ = surface.evaluate(np.column_stack([np.tile(point, (len(z), 1)), z]))
     return -level
 
@@ -48,7 +48,7 @@ def slope() -> Figure:
         for sign, colour, name in ((1, CAM, "wg_slope = +0.09"), (-1, SPLINE, "wg_slope = −0.09")):
             height = 1e3 * cam_height(with_micro(design, wg_slope=sign * s), z, minor)
             ax.plot(z, height, color=colour, lw=2.2, label=name)
-        cone = -1e3 * 0.5 * design.d / (design.cup.length + half) * z * (-1.0 if minor else 1.0)
+        cone = -1e3 * 0.5 * design.deflection / (design.cup.length + half) * z * (-1.0 if minor else 1.0)
         ax.plot(z, cone, color=INK, lw=1.0, ls="--", label="straight cone of the deflected cup")
         ax.set_ylim(-130, 130)
         ax.legend(fontsize=8, loc="upper center" if minor else "lower center")

@@ -46,8 +46,8 @@ for panel, (name, design) in zip(axes, designs.items()):
     outline = design.cam().outline(3600)
     panel.plot(*np.vstack([outline, outline[:1]]).T, color="tab:orange")
     panel.plot(
-        design.r_fs * np.sin(angle),
-        design.r_fs * np.cos(angle),
+        design.inner_radius * np.sin(angle),
+        design.inner_radius * np.cos(angle),
         "--",
         color="0.6",
         linewidth=0.8,
@@ -70,7 +70,9 @@ for name, design in designs.items():
         for low, high in zip(edges[:-1], edges[1:])
     ]
     panel.plot(
-        (edges[:-1] + edges[1:]) / 2.0, np.subtract(outside, design.r_fs), label=name
+        (edges[:-1] + edges[1:]) / 2.0,
+        np.subtract(outside, design.inner_radius),
+        label=name,
     )
 panel.axhline(0.0, color="0.6", linewidth=0.8)
 panel.set(

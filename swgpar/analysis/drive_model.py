@@ -67,7 +67,7 @@ class DriveModel:
         half_width = 0.5 * design.wave_generator.face_width * (1.0 + 1e-9)
         rigid = (
             surface,
-            design.r_fs,
+            design.inner_radius,
             half_width,
             design.contact.wg_quadrature,
             design.wg_penalty,

@@ -58,7 +58,7 @@ class LoadStepper:
         while done < 1.0:
             saved = x.copy()
             reach = min(1.0, done + share)
-            scene = origin.toward(target, reach, self.design.drive.module, self.design.d)
+            scene = origin.toward(target, reach, self.design.drive.module, self.design.deflection)
             if scene.angle != self.scene.angle:
                 self._turn_to(scene.angle)
             elif scene.control == "rotation" and scene.rotation != self.scene.rotation:

@@ -87,13 +87,13 @@ def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
         )
     changes: dict[str, Any] = {}
     solver: dict[str, Any] = {}
-    whole_period = design.steps.rotation >= np.degrees(design.pitch)
+    whole_period = design.steps.rotation >= np.degrees(design.period_angle)
     if "samples" not in design.steps.model_fields_set and whole_period:
         samples = next(count for least, count in SAMPLES if accuracy >= least)
         changes["steps"] = design.steps.model_copy(update={"samples": samples})
     if "rtol" not in design.solver.model_fields_set:
         solver["rtol"] = RTOL
-    small = design.drive.model == "plane" and design.sector_bend <= min(BEND * accuracy, OMITTED_BENDING)
+    small = design.drive.model == "plane" and design.omitted_bending <= min(BEND * accuracy, OMITTED_BENDING)
     if "condensed_sectors" not in design.solver.model_fields_set and small:
         solver["condensed_sectors"] = True
     return design.model_copy(update={**changes, "solver": design.solver.model_copy(update=solver)})

@@ -37,7 +37,7 @@ def continued(design: DriveDesign, rows: list[Row]) -> list[Row]:
     Rows that follow cost no time and no iterations.
     """
     out, period = list(rows), of_period(design, rows)
-    pitch, turns = np.degrees(design.pitch), 1
+    pitch, turns = np.degrees(design.period_angle), 1
     while True:
         for row in period:
             angle = row["wg_angle_deg"] + turns * pitch

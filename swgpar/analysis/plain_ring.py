@@ -57,7 +57,7 @@ class RingDesign:
         return 0.5 * self.outer_diameter
 
     @property
-    def r_fs(self) -> float:
+    def inner_radius(self) -> float:
         """Inner radius, mm."""
         return self.outer_radius - self.thickness
 
@@ -150,7 +150,7 @@ class RingBody:
         self, design: RingDesign, counts: RingCounts, comm: MPI.Comm, halved: bool, incompatible: bool = True
     ) -> None:
         self.design, self.halved = design, halved
-        inner, width, material = design.r_fs, design.width, design.material
+        inner, width, material = design.inner_radius, design.width, design.material
         mesh = ring_sector(inner, design.outer_radius, width, counts.sectors, counts.radial, counts.axial, design.plane)
         count = counts.sectors // 2 if halved else counts.sectors
         layout = BodyLayout(mesh, 0, count, True, halved, np.zeros(0, dtype=np.int32))
@@ -197,7 +197,7 @@ class RingModel:
         surface = RigidContact(
             self.body,
             Cylinder(cam),
-            design.r_fs,
+            design.inner_radius,
             0.5 * design.width * (1.0 + 1e-9),
             design.contact.wg_quadrature,
             design.wg_penalty,

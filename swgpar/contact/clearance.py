@@ -25,7 +25,7 @@ class Clearance:
     @property
     def reach(self) -> float:
         """Radius (mm) that no tooth is farther out than."""
-        return 0.5 * self.design.drive.teeth_rg * self.module + self.design.d
+        return 0.5 * self.design.drive.teeth_rg * self.module + self.design.deflection
 
     def gap(self) -> float:
         """Smallest gap (mm) of the loaded flanks; inf where none is near."""

@@ -42,27 +42,27 @@ class DriveDesign(Section):
     output: Output = Output()
 
     @property
-    def d(self) -> float:
-        """Diametral deflection, mm."""
+    def deflection(self) -> float:
+        """Diametral deflection d, mm."""
         return self.drive.module * (self.drive.teeth_rg - self.drive.teeth_fs)
 
     @property
-    def r_fs(self) -> float:
-        """Inner radius of the undeformed flexible spline, mm (eq. 3.1); a profile shift moves the root circle."""
+    def inner_radius(self) -> float:
+        """Inner radius r_fs of the undeformed flexible spline, mm (eq. 3.1); a profile shift moves the root circle."""
         g, profile = self.drive, self.flexible_spline.profile
         shift = profile.shift if isinstance(profile, RackInvolute) else 0.0
         return (0.5 * g.teeth_fs - g.dedendum_coef + shift) * g.module - self.flexible_spline.rim
 
     @property
-    def a(self) -> float:
-        """Major semi-axis of the wave generator, mm (eq. 3.3)."""
-        return self.r_fs + 0.5 * self.d
+    def major_semi_axis(self) -> float:
+        """Major semi-axis a of the wave generator, mm (eq. 3.3)."""
+        return self.inner_radius + 0.5 * self.deflection
 
     @property
-    def b(self) -> float | None:
-        """Minor semi-axis, mm (eqs 3.2, 3.4); None for rollers, which have none."""
+    def minor_semi_axis(self) -> float | None:
+        """Minor semi-axis b of the wave generator, mm (eqs 3.2, 3.4); None for rollers, which have none."""
         wave = self.wave_generator
-        return None if isinstance(wave, FourRoller) else wave.C * (self.r_fs - 0.5 * self.d)
+        return None if isinstance(wave, FourRoller) else wave.C * (self.inner_radius - 0.5 * self.deflection)
 
     @property
     def ratio(self) -> float:
@@ -71,13 +71,13 @@ class DriveDesign(Section):
         return (-g.teeth_fs if g.layout == "ring_fixed" else g.teeth_rg) / (g.teeth_rg - g.teeth_fs)
 
     @property
-    def pitch(self) -> float:
-        """Period of the motion, rad of the wave generator: one pitch of the fixed gear."""
+    def period_angle(self) -> float:
+        """Period of the motion, rad of the wave generator: one pitch angle of the fixed gear."""
         return 2.0 * np.pi / (self.drive.teeth_rg if self.drive.layout == "ring_fixed" else self.drive.teeth_fs)
 
     @property
     def periods(self) -> int:
-        """Periods that are computed with `steps.samples`: in the first of two, friction settles."""
+        """Periods that are computed with `steps.samples`: two with friction, whose state settles in the first."""
         return 2 if self.contact.friction else 1
 
     @property
@@ -87,36 +87,39 @@ class DriveDesign(Section):
         return float(np.pi * self.drive.module - sum(thickness))
 
     @property
-    def gamma(self) -> float:
-        """Turn that closes the backlash on one side, rad (eq. 6.4)."""
+    def backlash_angle(self) -> float:
+        """Rotation gamma of the flexible spline that closes the backlash on one side, rad (eq. 6.4)."""
         return self.backlash / (self.drive.teeth_fs * self.drive.module)
 
     @property
     def axial_travel(self) -> float:
-        """Way (mm) of a tooth at the major axis towards the closed end, on the cone of a cup that bends without strain.
+        """Axial displacement (mm) of a tooth at the major axis towards the closed end; 0 in the plane model.
 
-        A wall whose deflection d / 2 cos 2 phi grows from the closed end on moves axially by r d / (8 L) (Love's
-        inextensional mode), and the tooth leans by d / (2 L).
+        The cup is taken as a wall that bends without extension, with a radial deflection d / 2 cos 2 phi that grows
+        linearly from the closed end. Such a wall moves axially by r d / (8 L) (Love's inextensional mode), and the
+        tooth leans by d / (2 L).
         """
-        middle = self.r_fs + 0.5 * self.flexible_spline.rim
+        middle = self.inner_radius + 0.5 * self.flexible_spline.rim
         height = 0.5 * self.drive.teeth_fs * self.drive.module - middle
-        return 0.5 * self.d / self.cup.length * (0.25 * middle + height) if self.cup else 0.0
+        return 0.5 * self.deflection / self.cup.length * (0.25 * middle + height) if self.cup else 0.0
 
     @property
-    def sector_bend(self) -> float:
+    def omitted_bending(self) -> float:
         """Share of the bending strain that the plane model's condensed sectors leave out, at most.
 
-        The rim's change of curvature turns the ends of a sector, a pitch apart, by theta against each other: a strain
-        of theta^2 / 8 over that of bending. On an elliptical cam the curvature changes by 3 d / (2 r^2); a ring that
-        touches at its major axis only bends 1.4 times as much there, on rollers 70 degrees apart 2.9 times.
+        The change of the rim's curvature rotates the ends of a sector, a pitch apart, by theta relative to each other.
+        The strain left out is theta^2 / 8, here divided by the bending strain. On an elliptical cam the curvature
+        changes by 3 d / (2 r^2). A ring that touches at its major axis only bends 1.4 times as much there, on rollers
+        70 degrees apart 2.9 times: 3 covers both.
         """
-        sharper = 1.0 if self.wave_generator.type == "elliptical" else 3.0
-        curvature, pitch = sharper * 1.5 * self.d / self.r_fs**2, 2.0 * np.pi * self.r_fs / self.drive.teeth_fs
+        factor = 1.0 if self.wave_generator.type == "elliptical" else 3.0
+        curvature = factor * 1.5 * self.deflection / self.inner_radius**2
+        pitch = 2.0 * np.pi * self.inner_radius / self.drive.teeth_fs
         return (curvature * pitch) ** 2 / 8.0 / (0.5 * self.flexible_spline.rim * curvature)
 
     @property
     def cup_thickness(self) -> float:
-        """mm; the rim's thickness in the plane model, which has no cup."""
+        """Thickness of the cup's wall, mm; that of the rim in the plane model, which has no cup."""
         return (self.cup.thickness_coef if self.cup else 1.0) * self.flexible_spline.rim
 
     @property
@@ -148,7 +151,7 @@ class DriveDesign(Section):
 
     def cam(self) -> Cam:
         """Exact curve of the cam, major axis along +y. Raises InputError where its keys give no closed curve."""
-        return make_cam(self.wave_generator, self.a, self.b)
+        return make_cam(self.wave_generator, self.major_semi_axis, self.minor_semi_axis)
 
     def cam_surface(self) -> WaveGeneratorSurface:
         """Surface of the cam with crowning and slope."""

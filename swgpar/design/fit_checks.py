@@ -58,7 +58,7 @@ def _check_teeth(design: DriveDesign) -> None:
     if drive.dedendum_coef <= drive.addendum_coef:
         allowed = f"above {drive.addendum_coef:g} (the addendum) to 2 modules"
         _refuse("drive.dedendum_coef", drive.dedendum_coef, allowed)
-    if design.r_fs <= design.d:
+    if design.inner_radius <= design.deflection:
         allowed = "a rim that leaves an inner radius above the deflection"
         _refuse("flexible_spline.rim", design.flexible_spline.rim, allowed)
 
@@ -68,22 +68,22 @@ def _check_wave_generator(design: DriveDesign) -> None:
     if isinstance(wave, FourRoller):
         if wave.beta >= wave.pin_half_angle:
             _refuse("wave_generator.beta", wave.beta, f"above 0 to below {wave.pin_half_angle:g} deg (pin_half_angle)")
-    elif design.b < SMALLEST_MINOR_AXIS * design.r_fs:
+    elif design.minor_semi_axis < SMALLEST_MINOR_AXIS * design.inner_radius:
         allowed = f"values whose minor semi-axis is at least {SMALLEST_MINOR_AXIS:g} of the spline's inner radius"
         _refuse("wave_generator.C", wave.C, allowed)
 
 
 def _check_steps(design: DriveDesign) -> None:
-    steps, least = design.steps, np.degrees(design.pitch) * design.periods
+    steps, least = design.steps, np.degrees(design.period_angle) * design.periods
     if steps.samples and steps.rotation < 0.999999 * least:
         allowed = f"{least:.6g} deg (periods: {design.periods}) and more with steps.samples"
         _refuse("steps.rotation", steps.rotation, allowed)
 
 
 def _check_plane(design: DriveDesign) -> None:
-    if design.solver.condensed_sectors and design.sector_bend > OMITTED_BENDING:
+    if design.solver.condensed_sectors and design.omitted_bending > OMITTED_BENDING:
         raise InputError(
-            f"solver.condensed_sectors = true leaves out {design.sector_bend:.2g} of the bending strain: allowed "
+            f"solver.condensed_sectors = true leaves out {design.omitted_bending:.2g} of the bending strain: allowed "
             f"up to {OMITTED_BENDING:g}, with more teeth or a thicker flexible_spline.rim"
         )
     for key in ("wg_crowning", "wg_slope", "fs_crowning"):
@@ -108,7 +108,7 @@ def _check_cup(design: DriveDesign) -> None:
     if design.drive.face_width < narrowest:
         allowed = f"{narrowest:.4g} mm (axial travel of the teeth, half of the rim) to inf mm"
         _refuse("drive.face_width", design.drive.face_width, allowed)
-    closed_end = design.r_fs + design.cup_thickness - cup.fillet_radius
+    closed_end = design.inner_radius + design.cup_thickness - cup.fillet_radius
     if cup.inner_radius >= closed_end:
         allowed = f"above 0 to below {closed_end:g} mm (the closed end inside cup.fillet_radius)"
         _refuse("cup.inner_radius", cup.inner_radius, allowed)
@@ -117,7 +117,7 @@ def _check_cup(design: DriveDesign) -> None:
 def _check_micro_geometry(design: DriveDesign) -> None:
     micro, module = design.micro_geometry, design.drive.module
     # beyond a quarter of its width the cam is a cone of some 30 degrees, off which the spline slides
-    most = min(0.5 * design.d, 0.25 * design.wave_generator.face_width)
+    most = min(0.5 * design.deflection, 0.25 * design.wave_generator.face_width)
     limits = "half the deflection, a quarter of the cam's width"
     if micro.wg_crowning > most:
         _refuse("micro_geometry.wg_crowning", micro.wg_crowning, f"0 to {most:g} mm ({limits})")
@@ -131,8 +131,8 @@ def _check_micro_geometry(design: DriveDesign) -> None:
 def _check_outline(design: DriveDesign) -> None:
     """Both profiles and the cam can be built, and the cam's outline leaves room for the teeth."""
     spline, ring = (design.profile(gear) for gear in GEARS)
-    bulge = float(np.linalg.norm(design.cam().outline(OUTLINE_POINTS), axis=1).max()) - design.a
-    clearance = max(ring.r_root_circle - spline.r_tip_circle - 0.5 * design.d, 1e-6 * design.a)
+    bulge = float(np.linalg.norm(design.cam().outline(OUTLINE_POINTS), axis=1).max()) - design.major_semi_axis
+    clearance = max(ring.r_root_circle - spline.r_tip_circle - 0.5 * design.deflection, 1e-6 * design.major_semi_axis)
     if bulge > clearance:
         raise InputError(
             f"wave_generator ({design.wave_generator.type}) bulges {bulge:.3g} mm beyond its major semi-axis: "

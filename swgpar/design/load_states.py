@@ -71,7 +71,7 @@ class LoadState:
 
 def start(design: DriveDesign) -> LoadState:
     """Undeformed drive; pins, or the shrunk cam, touch the inner surface."""
-    travel = pin_travel(design.cam(), design.r_fs)
+    travel = pin_travel(design.cam(), design.inner_radius)
     return (
         LoadState(step=0, name="start", pins=travel)
         if design.steps.pins
@@ -81,7 +81,7 @@ def start(design: DriveDesign) -> LoadState:
 
 def load_sequence(design: DriveDesign) -> Iterator[LoadState]:
     """All increments of a run, in order."""
-    d, steps, module = design.d, design.steps, design.drive.module
+    d, steps, module = design.deflection, design.steps, design.drive.module
     torque = -np.copysign(1000.0 * design.load.torque, design.ratio)
     origin = start(design)
     n = steps.deflect_increments
@@ -120,6 +120,6 @@ def angles(design: DriveDesign) -> list[float]:
     steps = design.steps
     if steps.samples:
         count = 2 * steps.samples if design.contact.friction else steps.samples - 1
-        return [design.pitch * i / steps.samples for i in range(1, count + 1)]
+        return [design.period_angle * i / steps.samples for i in range(1, count + 1)]
     count = int(np.ceil(round(steps.rotation / steps.increment, 9)))
     return [float(np.radians(min(i * steps.increment, steps.rotation))) for i in range(1, count + 1)]

@@ -27,10 +27,10 @@ def _radii(design: DriveDesign, gear: str, recipe: ToothRecipe, r_root: float) -
     if gear == "ring_gear":
         return r_root + rim - lower, r_root + rim, False
     if design.drive.model == "plane":
-        return design.r_fs + lower, design.r_fs, False
+        return design.inner_radius + lower, design.inner_radius, False
     if design.cup_thickness > THICK_CUP * rim:
-        return design.r_fs + lower, design.r_fs, True
-    return design.r_fs + design.cup_thickness, design.r_fs, False
+        return design.inner_radius + lower, design.inner_radius, True
+    return design.inner_radius + design.cup_thickness, design.inner_radius, False
 
 
 def _swept(section: CrossSection, z: Floats, relief: Floats, amount: Floats) -> Floats:

@@ -23,14 +23,14 @@ def meridian(design: DriveDesign, recipe: CupRecipe) -> tuple[Floats, Floats]:
     cup, thickness = design.cup, design.cup_thickness
     back = 0.5 * design.drive.face_width
     # centre of the fillet's arcs
-    r_centre = design.r_fs + thickness - cup.fillet_radius
+    r_centre = design.inner_radius + thickness - cup.fillet_radius
     z_centre = back + cup.length - cup.fillet_radius
     z = back + (z_centre - back) * symmetric_steps(recipe.cylinder, recipe.end_ratio)
     angle = np.linspace(0.0, 0.5 * np.pi, recipe.fillet + 1)[1:]
     r = r_centre - (r_centre - cup.inner_radius) * symmetric_steps(recipe.closed_end, recipe.end_ratio)[1:]
     lines = []
     for offset in (0.0, thickness):
-        cylinder = np.stack((np.full_like(z, design.r_fs + offset), z), axis=-1)
+        cylinder = np.stack((np.full_like(z, design.inner_radius + offset), z), axis=-1)
         radius = cup.fillet_radius - thickness + offset
         fillet = np.stack((r_centre + radius * np.cos(angle), z_centre + radius * np.sin(angle)), axis=-1)
         end = np.stack((r, np.full_like(r, back + cup.length - thickness + offset)), axis=-1)
@@ -83,7 +83,7 @@ def cup_nodes(
     """
     inner, outer = meridian(design, recipe)
     columns = np.unique(section.quads[attached]).astype(np.int32)
-    fraction = depth_fractions(section, attached, design.r_fs, design.cup_thickness)[columns]
+    fraction = depth_fractions(section, attached, design.inner_radius, design.cup_thickness)[columns]
     angle = np.arctan2(*section.coords[columns].T)
     rz = inner[1:, None] + fraction[None, :, None] * (outer - inner)[1:, None]
     coords = np.stack((rz[..., 0] * np.sin(angle), rz[..., 0] * np.cos(angle), rz[..., 1]), axis=-1)

@@ -54,7 +54,7 @@ class SectorMesh:
         second of sector k + 1, in this order.
     faces : dict of (n_face, 4) int32
         Quadrilaterals whose right-hand normal points out of the material: ``inner`` (flexible spline, the
-        cylinder of radius r_fs within the face width) or ``outer`` (ring gear).
+        cylinder of the inner radius within the face width) or ``outer`` (ring gear).
     node_sets : dict of (n,) int32
         ``bore`` (flexible spline) or ``outer`` (ring gear).
     flanks : tuple of FlankGrid

@@ -204,7 +204,7 @@ class DiscreteProblem:
         diagonal = self.rows.values[np.searchsorted(self.rows.keys, np.delete(self.own_keys, without_elements))]
         squares = float(np.einsum("nkk,nkk->", diagonal, diagonal))
         squares = self.partition.comm.allreduce(squares, op=MPI.SUM)
-        self.round_off = np.finfo(float).eps * self.design.r_fs * np.sqrt(squares)
+        self.round_off = np.finfo(float).eps * self.design.inner_radius * np.sqrt(squares)
         with self.phases("insert"):
             fill_matrix(self.matrix, self.rows)
 

@@ -68,7 +68,7 @@ def test_the_output_turns_through_the_backlash() -> None:
     (a, near, _), (b, far, _) = backlash(0.9, *PLANE), backlash(0.8, *PLANE)
     turned = far["output_angle_deg"] - near["output_angle_deg"]
     # contact moves along the flanks, which are not radial: a per cent
-    assert turned == pytest.approx(np.degrees(b.design.gamma - a.design.gamma), rel=0.01)
+    assert turned == pytest.approx(np.degrees(b.design.backlash_angle - a.design.backlash_angle), rel=0.01)
     assert near["output_angle_deg"] > 0.0
 
 

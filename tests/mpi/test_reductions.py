@@ -142,14 +142,14 @@ def test_condensed_sectors_in_the_plane_leave_out_the_bend_of_a_sector(overrides
     assert 0.5 * runner.model.partition.n_global > condensed_runner.model.partition.n_global
     left_out = condensed_runner.model.bend_left_out()
     assert runner.model.bend_left_out() == 0.0
-    bending = 0.75 * design.material.E * design.flexible_spline.rim * design.d / design.r_fs**2
-    assert left_out == pytest.approx(design.sector_bend * bending, rel=0.2)
-    share = 1.5 * design.sector_bend
+    bending = 0.75 * design.material.E * design.flexible_spline.rim * design.deflection / design.inner_radius**2
+    assert left_out == pytest.approx(design.omitted_bending * bending, rel=0.2)
+    share = 1.5 * design.omitted_bending
     assert 1e-3 < share < 0.015
     assert_same(condensed, plain, share)
     # everywhere, inside too
     for fields, others in zip(stresses(condensed_runner.model)[1], stresses(runner.model)[1]):
-        assert np.abs(fields["displacement"] - others["displacement"]).max(initial=0.0) < 2e-3 * design.d
+        assert np.abs(fields["displacement"] - others["displacement"]).max(initial=0.0) < 2e-3 * design.deflection
         for name in ("s1", "s3", "vm"):
             assert np.abs(fields[name] - others[name]).max(initial=0.0) < share * plain["fs_vm"], name
 
@@ -203,11 +203,11 @@ def test_the_continued_history_is_that_of_a_longer_rotation() -> None:
         if item.step >= 3:
             rows.append({**runner.row(), **stresses(runner.model)[0], "wall_s": 1.0})
     again, following = continued(design, rows)[4:6]
-    assert again["wg_angle_deg"] == pytest.approx(np.degrees(design.pitch))
+    assert again["wg_angle_deg"] == pytest.approx(np.degrees(design.period_angle))
     assert {k: again[k] for k in STATE} == {k: rows[0][k] for k in STATE}
-    runner.advance(replace(runner.scene, angle=1.25 * design.pitch))
+    runner.advance(replace(runner.scene, angle=1.25 * design.period_angle))
     computed = {**runner.row(), **stresses(runner.model)[0]}
-    assert following["wg_angle_deg"] == pytest.approx(np.degrees(1.25 * design.pitch))
+    assert following["wg_angle_deg"] == pytest.approx(np.degrees(1.25 * design.period_angle))
     assert_same(following, computed, 1e-6)
 
 

@@ -291,9 +291,9 @@ def test_pins_fit_into_the_spline_and_end_at_the_cam(name: str, design_file: Cal
     inner = R_FS * np.stack([np.sin(angle), np.cos(angle)], axis=-1) + [0.0, travel]
     gap = cam.evaluate(inner)[0]
     assert abs(gap.min()) < 1e-5
-    assert travel >= 0.5 * design.d - 1e-12
+    assert travel >= 0.5 * design.deflection - 1e-12
     if name in ("elliptical", "simplified", "parabolic", "bilateral"):
-        assert travel == pytest.approx(0.5 * design.d, abs=1e-12)
+        assert travel == pytest.approx(0.5 * design.deflection, abs=1e-12)
     if name == "four_roller":
         x, y = cam.center
         assert travel == pytest.approx(y - np.sqrt((R_FS - cam.radius) ** 2 - x**2), rel=1e-5)

@@ -108,15 +108,15 @@ def section_area(case: DriveDesign, gear: str) -> float:
     along_flank = -0.5 * np.sum(x[:-1] * y[1:] - x[1:] * y[:-1])
     land, root = profile.polar_angle(0.0)[0], half - profile.polar_angle(profile.length)[0]
     teeth = 2.0 * along_flank + profile.r_tip_circle**2 * land + profile.r_root_circle**2 * root
-    free = case.r_fs if gear == "flexible_spline" else profile.r_root_circle + case.ring_gear.rim
+    free = case.inner_radius if gear == "flexible_spline" else profile.r_root_circle + case.ring_gear.rim
     return abs(teeth - free**2 * half)
 
 
 def cup_volume(case: DriveDesign) -> float:
     cup, t = case.cup, case.cup_thickness
     outer, inner = cup.fillet_radius, cup.fillet_radius - t
-    r_centre = case.r_fs + t - outer
-    cylinder = np.pi * ((case.r_fs + t) ** 2 - case.r_fs**2) * (cup.length - outer)
+    r_centre = case.inner_radius + t - outer
+    cylinder = np.pi * ((case.inner_radius + t) ** 2 - case.inner_radius**2) * (cup.length - outer)
     fillet = 2.0 * np.pi * (r_centre * np.pi / 4.0 * (outer**2 - inner**2) + (outer**3 - inner**3) / 3.0)
     return cylinder + fillet + np.pi * (r_centre**2 - cup.inner_radius**2) * t
 
@@ -200,7 +200,7 @@ def test_named_faces_look_out_of_the_material(recipe: Path, overrides: tuple[str
     case = design(*overrides)
     for gear, mesh in meshes(recipe, *overrides).items():
         name, direction = ("inner", -1.0) if gear == "flexible_spline" else ("outer", 1.0)
-        radius = case.r_fs if gear == "flexible_spline" else mesh.profile.r_root_circle + case.ring_gear.rim
+        radius = case.inner_radius if gear == "flexible_spline" else mesh.profile.r_root_circle + case.ring_gear.rim
         assert set(mesh.faces) == {name}
         x = mesh.coords[mesh.faces[name]]
         assert np.allclose(np.hypot(x[..., 0], x[..., 1]), radius, rtol=1e-13)
@@ -231,7 +231,7 @@ def test_section_area_converges_quadratically(gear: str) -> None:
     profile = case.profile(gear)
     exact = section_area(case, gear)
     interface, free = (
-        (case.r_fs + case.cup_thickness, case.r_fs)
+        (case.inner_radius + case.cup_thickness, case.inner_radius)
         if gear == "flexible_spline"
         else (profile.r_root_circle + 1.0, profile.r_root_circle + case.ring_gear.rim)
     )

@@ -262,13 +262,13 @@ def test_backlash_and_turn_of_both_kinds_of_profiles(design_file: Callable) -> N
     for c_P, printed in ((1.0, 0.0), (0.95, 0.07854), (0.90, 0.15708), (0.85, 0.23562), (0.80, 0.31416)):
         design = load_design(design_file({"ring_gear.profile": INITIAL}), [f"ring_gear.c_P={c_P}"])
         assert design.backlash == pytest.approx(printed, abs=5e-6)
-        assert design.gamma == pytest.approx(np.pi * (1.0 - c_P) / (2.0 * 120.0), abs=1e-13)
+        assert design.backlash_angle == pytest.approx(np.pi * (1.0 - c_P) / (2.0 * 120.0), abs=1e-13)
     sections = {"flexible_spline.profile": rack(shift=0.1, pressure_angle=20.4), "ring_gear.profile": shaper(shift=0.2)}
     design = load_design(design_file(sections), ["ring_gear.c_P=1.0"])
     expected = 2.0 * (0.2 * np.tan(ALPHA) - 0.1 * np.tan(np.radians(20.4)))
     assert design.backlash == pytest.approx(expected, rel=1e-11)
-    assert design.r_fs == pytest.approx(60.0 - 0.8 + 0.1 - 1.0)  # the rim lies below the shifted root circle
-    assert design.profile("flexible_spline").r_root_circle - design.r_fs == pytest.approx(1.0)
+    assert design.inner_radius == pytest.approx(60.0 - 0.8 + 0.1 - 1.0)  # the rim lies below the shifted root circle
+    assert design.profile("flexible_spline").r_root_circle - design.inner_radius == pytest.approx(1.0)
 
 
 def test_pressure_angles_of_both_gears(design_file: Callable) -> None:

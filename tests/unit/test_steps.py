@@ -13,7 +13,7 @@ from swgpar.design.load_states import load_sequence, start
 def test_every_increment_can_be_cut(torque: str) -> None:
     """Half of an increment is another scene than its end, and one that nears it."""
     design = load_design(DESIGN, [f"load.torque={torque}", "steps.rotation=4", "steps.increment=2"])
-    module, travel = design.drive.module, design.d
+    module, travel = design.drive.module, design.deflection
     before = start(design)
     keys = ("angle", "cam", "teeth", "pins", "rotation", "torque")
     for target in load_sequence(design):
@@ -28,6 +28,6 @@ def test_every_increment_can_be_cut(torque: str) -> None:
 def test_engagement_grows_from_a_clearance() -> None:
     design = load_design(DESIGN, [])
     deflected, engaged = (scene for scene, _ in zip(load_sequence(design), range(2)))
-    half = deflected.toward(engaged, 0.5, design.drive.module, design.d)
+    half = deflected.toward(engaged, 0.5, design.drive.module, design.deflection)
     assert half.cam > 0.0 and half.teeth > 0.0
-    assert half.pins == pytest.approx(0.125 * design.d)
+    assert half.pins == pytest.approx(0.125 * design.deflection)
