@@ -1,13 +1,14 @@
-"""Statistical linearisation: mean and covariance of a meshed system in time, for normally distributed coordinates.
+"""Statistical linearisation: mean and covariance over time of a gear-mesh system with normally distributed coordinates.
 
-Each mesh is replaced by f_0 + k_e (d - E[d]), with f_0 = E[f] and an equivalent stiffness k_e that follows from mean
-and deviation of its way at the same moment. The mean then obeys
+Each mesh is replaced by the linear law f_0 + k_e (d - E[d]) with f_0 = E[f] and an equivalent stiffness k_e. Both
+follow from mean and standard deviation of the mesh deflection d at the same time. The mean q of the coordinates obeys
 
     M q'' + C q' + K q + sum_j w_j f_0j = F
 
-and the covariance is that of the linear system with the k_ej. Both go by the Newmark scheme of `MeshedSystem`, so that
-the covariance stays symmetric and positive semi-definite. In print (eq. 4.51) k_e acts on the mean as well, beside f_0:
-then the mesh counts twice. Mean and covariance of a step are solved together, to convergence.
+and the covariance is that of the linear system with the stiffnesses k_ej. Both are integrated by the Newmark scheme of
+`GearMeshSystem`, so that the covariance stays symmetric and positive semi-definite. Mean and covariance of a step are
+solved together, to convergence. In print (eq. 4.51) k_e acts on the mean as well, beside f_0: then the mesh counts
+twice.
 """
 
 from __future__ import annotations
@@ -20,20 +21,24 @@ import numpy as np
 
 from swgpar.errors import ConvergenceError
 from swgpar.gear_trains.backlash import energy_stiffness, mean_force, mean_force_and_stiffness, mean_stiffness
-from swgpar.gear_trains.meshed_system import MeshedSystem
+from swgpar.gear_trains.gear_mesh_system import GearMeshSystem
 
 Criterion = Literal["energy", "force"]
 EQUIVALENT: dict[Criterion, Callable[..., np.ndarray]] = {"energy": energy_stiffness, "force": mean_stiffness}
+"""Equivalent stiffness of a mesh by criterion."""
 
 TOLERANCE, MAX_ITERATIONS = 1e-10, 60
-"""Change of mean forces and equivalent stiffnesses in the last iteration of a step, relative; how many it may take."""
+"""Relative change of mean forces and equivalent stiffnesses in the last iteration of a step; limit of iterations."""
+
+MEAN_TOLERANCE = 1e-8
+"""Relative change in the last Newton iteration of the mean; convergence is quadratic."""
 
 
 @dataclass(frozen=True)
 class Moments:
     """time : (rows,) s;  mean : (rows, n) of the coordinates, m
 
-    covariance : (rows, 2 n, 2 n) of coordinates and velocities, m and m/s, symmetric but for round-off
+    covariance : (rows, 2 n, 2 n) of coordinates and velocities, m and m/s; symmetric up to round-off
     """
 
     time: np.ndarray
@@ -41,70 +46,97 @@ class Moments:
     covariance: np.ndarray
 
 
-def linearised(
-    system: MeshedSystem, start: np.ndarray, h: float, count: int, every: int, criterion: Criterion
+@dataclass
+class _MeshState:
+    """Meshes at the end of a step.
+
+    stiffness : (m,) N/m;  rows : (m, n), mesh deflections per coordinate;  deviation : (m,) m, of the deflections
+    forces : (m,) N, expected forces;  equivalent : (m,) N/m, equivalent stiffnesses
+    """
+
+    stiffness: np.ndarray
+    rows: np.ndarray
+    deviation: np.ndarray
+    forces: np.ndarray
+    equivalent: np.ndarray
+
+
+def linearise(
+    system: GearMeshSystem, start: np.ndarray, h: float, count: int, every: int, criterion: Criterion
 ) -> Moments:
-    """Moments of a system that starts at rest at `start` (n,), at every so many of `count` steps of h seconds."""
-    n, half, equivalent = system.size, system.half_backlash, EQUIVALENT[criterion]
+    """Moments of a system that starts at rest at `start` (n,), after every `every` of `count` steps of h seconds."""
+    n, half_backlash, equivalent = system.size, system.half_backlash, EQUIVALENT[criterion]
     q, v, covariance = start.astype(float), np.zeros(n), np.zeros((2 * n, 2 * n))
-    noise = system.noise_of_step(h)
-    rows = [(0.0, q, covariance)]
-    stiffness, ways = system.mesh_stiffness(0.0), system.ways(0.0)
-    deviation = np.zeros(len(half))
-    pull = mean_force(stiffness, ways @ q, deviation, half)
-    spring = equivalent(stiffness, ways @ q, deviation, half)
+    saved = [(0.0, q, covariance)]
+    stiffness, rows, deviation = system.mesh_stiffness(0.0), system.deflection_rows(0.0), np.zeros(len(half_backlash))
+    meshes = _MeshState(
+        stiffness,
+        rows,
+        deviation,
+        mean_force(stiffness, rows @ q, deviation, half_backlash),
+        equivalent(stiffness, rows @ q, deviation, half_backlash),
+    )
     for step in range(1, count + 1):
         t = step * h
-        _, right = system.newmark(system.linear_stiffness(t - h, spring), h)
-        known = (
-            system.mass @ (2.0 / h * q + 2.0 * v)
-            + system.damping @ q
-            + 0.5 * h * (2.0 * system.force - system.stiffness @ q - ways.T @ pull)
-        )
-        stiffness, ways = system.mesh_stiffness(t), system.ways(t)
-        left_of_mean = 2.0 / h * system.mass + system.damping + 0.5 * h * system.stiffness
-        before, moved = q, q + h * v
-        for _ in range(MAX_ITERATIONS):
-            old_pull, old_spring = pull, spring
-            moved = _mean(left_of_mean, known, 0.5 * h, moved, ways, stiffness, deviation, half)
-            left, _ = system.newmark(system.linear_stiffness(t, spring), h)
-            transfer = np.linalg.solve(left, np.hstack([right, noise]))
-            old, shaken = transfer[:, : 2 * n], transfer[:, 2 * n :]
-            new = old @ covariance @ old.T + shaken @ shaken.T
-            deviation = np.sqrt(np.maximum(np.einsum("mi,ij,mj->m", ways, new[:n, :n], ways), 0.0))
-            pull = mean_force(stiffness, ways @ moved, deviation, half)
-            spring = equivalent(stiffness, ways @ moved, deviation, half)
-            change = np.abs(pull - old_pull).max() / (np.abs(stiffness) * half + np.abs(pull)).max()
-            change = max(change, np.abs((spring - old_spring) / stiffness).max())
-            if change < TOLERANCE:
-                break
-        else:
-            raise ConvergenceError(f"the linearisation did not converge at {t:g} s")
-        q, v = moved, 2.0 / h * (moved - before) - v
+        q, v, new = _step(system, t, h, (q, v, covariance), meshes, criterion)
         covariance = 0.5 * (new + new.T)
         if step % every == 0:
-            rows.append((t, q, new))
-    time, mean, covariances = (np.array(column) for column in zip(*rows, strict=True))
+            saved.append((t, q, new))
+    time, mean, covariances = (np.array(column) for column in zip(*saved, strict=True))
     return Moments(time, mean, covariances)
 
 
-def _mean(
-    left: np.ndarray,
-    known: np.ndarray,
-    weight: float,
-    q: np.ndarray,
-    ways: np.ndarray,
-    stiffness: np.ndarray,
-    deviation: np.ndarray,
-    half: np.ndarray,
-) -> np.ndarray:
-    """Solve left q + weight sum_j w_j E[f_j](w_j . q) = known by Newton's method; E[df/dd] is the derivative."""
+def _step(
+    system: GearMeshSystem,
+    t: float,
+    h: float,
+    moments: tuple[np.ndarray, np.ndarray, np.ndarray],
+    meshes: _MeshState,
+    criterion: Criterion,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Mean coordinates (n,), mean velocities (n,) and covariance (2 n, 2 n) at time t, h seconds after `moments`.
+
+    Updates `meshes`, which belong to the start of the step, to its end.
+    """
+    n, half_backlash, equivalent = system.size, system.half_backlash, EQUIVALENT[criterion]
+    q, v, covariance = moments
+    _, right = system.newmark(system.linear_stiffness(t - h, meshes.equivalent), h)
+    known = (
+        system.mass @ (2.0 / h * q + 2.0 * v)
+        + system.damping @ q
+        + 0.5 * h * (2.0 * system.force - system.stiffness @ q - meshes.rows.T @ meshes.forces)
+    )
+    meshes.stiffness, meshes.rows = system.mesh_stiffness(t), system.deflection_rows(t)
+    left_of_mean = 2.0 / h * system.mass + system.damping + 0.5 * h * system.stiffness
+    noise, new_q = system.noise_of_step(h), q + h * v
     for _ in range(MAX_ITERATIONS):
-        pull, slope = mean_force_and_stiffness(stiffness, ways @ q, deviation, half)
-        residual = left @ q + weight * ways.T @ pull - known
-        change = np.linalg.solve(left + weight * ways.T @ (slope[:, None] * ways), residual)
+        old_forces, old_equivalent = meshes.forces, meshes.equivalent
+        new_q = _mean(left_of_mean, known, 0.5 * h, new_q, meshes, half_backlash)
+        left, _ = system.newmark(system.linear_stiffness(t, meshes.equivalent), h)
+        transfer = np.linalg.solve(left, np.hstack([right, noise]))
+        of_state, of_noise = transfer[:, : 2 * n], transfer[:, 2 * n :]
+        new = of_state @ covariance @ of_state.T + of_noise @ of_noise.T
+        variances = np.einsum("mi,ij,mj->m", meshes.rows, new[:n, :n], meshes.rows)
+        meshes.deviation = np.sqrt(np.maximum(variances, 0.0))
+        law = meshes.stiffness, meshes.rows @ new_q, meshes.deviation, half_backlash
+        meshes.forces, meshes.equivalent = mean_force(*law), equivalent(*law)
+        change = np.abs(meshes.forces - old_forces).max()
+        change /= (np.abs(meshes.stiffness) * half_backlash + np.abs(meshes.forces)).max()
+        if max(change, np.abs((meshes.equivalent - old_equivalent) / meshes.stiffness).max()) < TOLERANCE:
+            return new_q, 2.0 / h * (new_q - q) - v, new
+    raise ConvergenceError(f"the linearisation did not converge at {t:g} s")
+
+
+def _mean(
+    left: np.ndarray, known: np.ndarray, weight: float, q: np.ndarray, meshes: _MeshState, half_backlash: np.ndarray
+) -> np.ndarray:
+    """Solve left q + weight sum_j w_j E[f_j](w_j . q) = known by Newton's method, with E[df/dd] as E[f]'."""
+    rows = meshes.rows
+    for _ in range(MAX_ITERATIONS):
+        forces, slope = mean_force_and_stiffness(meshes.stiffness, rows @ q, meshes.deviation, half_backlash)
+        residual = left @ q + weight * rows.T @ forces - known
+        change = np.linalg.solve(left + weight * rows.T @ (slope[:, None] * rows), residual)
         q = q - change
-        # quadratic convergence: the next change would be round-off
-        if np.abs(change).max() <= 1e-8 * np.abs(q).max():
+        if np.abs(change).max() <= MEAN_TOLERANCE * np.abs(q).max():
             return q
     raise ConvergenceError("the mean of the linearised system did not converge")

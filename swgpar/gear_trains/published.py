@@ -15,7 +15,7 @@ from swgpar.input.quantities import show
 Quantities = Mapping[str, tuple[str, int]]
 """What a model computes: name -> meaning with its unit, number of values."""
 
-KINDS = ("mean", "deviation")
+STATISTICS = ("mean", "deviation")
 """Of what varies at random."""
 
 
@@ -30,7 +30,7 @@ def numbered(name: str, count: int) -> list[str]:
     return [name] if count == 1 else [f"{name}[{place}]" for place in range(1, count + 1)]
 
 
-def label(value: float) -> str:
+def number_label(value: float) -> str:
     """A number in the name of a quantity."""
     return f"{value:g}".replace(".", "p").replace("+", "")
 

@@ -16,17 +16,17 @@ from swgpar.errors import ConvergenceError
 from swgpar.results.atomic import first_reason
 
 
-def generator(seed: int, *key: int) -> np.random.Generator:
+def random_stream(seed: int, *key: int) -> np.random.Generator:
     """The stream of a seed and a key, such as the number of a block."""
     return np.random.Generator(np.random.Philox(np.random.SeedSequence(seed, spawn_key=key)))
 
 
-def blocks(count: int, size: int) -> list[int]:
+def block_sizes(count: int, size: int) -> list[int]:
     """Sizes of the blocks that `count` samples are drawn in."""
     return [min(size, count - first) for first in range(0, count, size)]
 
 
-def share_out(comm: MPI.Comm, tasks: Sequence[Callable[[], Any]]) -> list[Any]:
+def run_tasks(comm: MPI.Comm, tasks: Sequence[Callable[[], Any]]) -> list[Any]:
     """Results of all tasks, in order and on every rank; each task runs on one rank only. Collective.
 
     A ConvergenceError of a task is raised on all ranks.

@@ -17,7 +17,7 @@ from mpi4py import MPI
 from swgpar import log
 from swgpar.errors import InputError
 from swgpar.gear_trains import cascade, gear_pair, planetary, ring
-from swgpar.gear_trains.keys import TrainDesign
+from swgpar.gear_trains.common_sections import TrainDesign
 from swgpar.gear_trains.published import Quantities, check_published, compare
 from swgpar.gear_trains.result import TrainResult, write
 from swgpar.input.quantities import show

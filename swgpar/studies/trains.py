@@ -13,7 +13,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.errors import InputError
-from swgpar.gear_trains.keys import TrainDesign
+from swgpar.gear_trains.common_sections import TrainDesign
 from swgpar.gear_trains.published import meaning_and_unit, numbered
 from swgpar.gear_trains.train import make_train, model_of, run_train
 from swgpar.input.quantities import show

@@ -11,7 +11,7 @@ from mpi4py import MPI
 from support.paths import DRIVERS, REFERENCE
 from swgpar.errors import ConvergenceError, InputError
 from swgpar.gear_trains.published import check_published, compare
-from swgpar.gear_trains.sampling import blocks, generator, share_out
+from swgpar.gear_trains.sampling import block_sizes, random_stream, run_tasks
 from swgpar.gear_trains.train import is_gear_train, load_train, model_of
 from swgpar.results.table import format_columns, read_columns
 
@@ -115,21 +115,21 @@ def test_published_beside_computed() -> None:
 
 
 def test_streams_are_independent_of_the_order_of_their_use() -> None:
-    assert blocks(7, 3) == [3, 3, 1]
-    first = generator(5, 0, 1).standard_normal(4)
-    generator(5, 0, 0).standard_normal(100)
-    assert (generator(5, 0, 1).standard_normal(4) == first).all()
-    assert (generator(5, 0, 2).standard_normal(4) != first).all()
-    assert (generator(6, 0, 1).standard_normal(4) != first).all()
+    assert block_sizes(7, 3) == [3, 3, 1]
+    first = random_stream(5, 0, 1).standard_normal(4)
+    random_stream(5, 0, 0).standard_normal(100)
+    assert (random_stream(5, 0, 1).standard_normal(4) == first).all()
+    assert (random_stream(5, 0, 2).standard_normal(4) != first).all()
+    assert (random_stream(6, 0, 1).standard_normal(4) != first).all()
 
 
 def test_tasks_come_back_in_order_and_their_errors_too() -> None:
     def fail() -> None:
         raise ConvergenceError("no")
 
-    assert share_out(MPI.COMM_WORLD, [lambda k=k: k * k for k in range(5)]) == [0, 1, 4, 9, 16]
+    assert run_tasks(MPI.COMM_WORLD, [lambda k=k: k * k for k in range(5)]) == [0, 1, 4, 9, 16]
     with pytest.raises(ConvergenceError, match="no"):
-        share_out(MPI.COMM_WORLD, [lambda: 1, fail])
+        run_tasks(MPI.COMM_WORLD, [lambda: 1, fail])
 
 
 def test_tables_read_back_to_the_last_bit(tmp_path: Path) -> None:

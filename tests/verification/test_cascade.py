@@ -11,12 +11,12 @@ from support.paths import DRIVERS
 from swgpar.gear_trains.cascade.design import CascadeDesign
 from swgpar.gear_trains.cascade.dynamics import Gearbox, natural_frequencies, no_errors
 from swgpar.gear_trains.cascade.flex_unit import FlexUnits
-from swgpar.gear_trains.cascade.layout import DOFS, FLYWHEEL, RACK, masses, meshes, rigid_ways, shafts
-from swgpar.gear_trains.cascade.motion import Period, braked_shares, one_period
+from swgpar.gear_trains.cascade.layout import DOFS, FLYWHEEL, RACK, masses, meshes, rigid_displacements, shafts
+from swgpar.gear_trains.cascade.load_cycle import LoadCycle, braked_load_shares, one_load_cycle
 from swgpar.gear_trains.cascade.population import block_shares, random_errors, static_shares, steady_velocities
-from swgpar.gear_trains.cascade.run import RANKS
-from swgpar.gear_trains.cascade.static import MESHES, first_crossing, path_gaps, static_sharing
-from swgpar.gear_trains.cascade.tolerances import contributions, stack_up
+from swgpar.gear_trains.cascade.run import RANKED_TOLERANCES
+from swgpar.gear_trains.cascade.static_sharing import MESH_COUNTS, first_crossing, path_gap_angles, static_sharing
+from swgpar.gear_trains.cascade.tolerance_stack_up import contributions, sample_stack_up
 from swgpar.gear_trains.train import load_train
 
 DRIVER = DRIVERS / "cascade.toml"
@@ -28,8 +28,8 @@ def design() -> CascadeDesign:
 
 
 @pytest.fixture(scope="module")
-def period(design: CascadeDesign) -> Period:
-    return one_period(design)
+def period(design: CascadeDesign) -> LoadCycle:
+    return one_load_cycle(design)
 
 
 def difference(computed: np.ndarray, published: list[float]) -> np.ndarray:
@@ -76,7 +76,7 @@ def stiff(design: CascadeDesign, factor: float) -> CascadeDesign:
         kind: getattr(design, kind).model_copy(
             update={"stiffness": factor * getattr(design, kind).stiffness, "variation": 0.0}
         )
-        for kind in MESHES
+        for kind in MESH_COUNTS
     }
     harder = {name: factor * value for name, value in design.shafts.model_dump().items()}
     return design.model_copy(update={**change, "shafts": design.shafts.model_copy(update=harder)})
@@ -84,17 +84,17 @@ def stiff(design: CascadeDesign, factor: float) -> CascadeDesign:
 
 def equilibrium(design: CascadeDesign, errors: np.ndarray, force: float) -> np.ndarray:
     """Pinion forces where the elastic gearbox rests against its brake, by Newton's method from the rigid state."""
-    box, at_rest, free = Gearbox(design, braked=True), np.zeros(DOFS), np.delete(np.arange(DOFS), FLYWHEEL)
-    ways = rigid_ways(design)
+    gearbox, at_rest, free = Gearbox(design, braked=True), np.zeros(DOFS), np.delete(np.arange(DOFS), FLYWHEEL)
+    ways = rigid_displacements(design)
     x = (ways - ways[FLYWHEEL] * (np.arange(DOFS) == FLYWHEEL)) * 2e-3 * np.linspace(1.0, 0.0, DOFS)
     for _ in range(200):
-        residual = box.kernel.forces(errors, x, at_rest)
+        residual = gearbox.kernel.forces(errors, x, at_rest)
         residual[RACK] -= force
-        stiffness = box.kernel.matrices(errors, x, at_rest)[0] + 1e-3 * np.eye(DOFS)  # gears between gaps float
+        stiffness = gearbox.kernel.matrices(errors, x, at_rest)[0] + 1e-3 * np.eye(DOFS)  # gears between gaps float
         step = np.linalg.solve(stiffness[np.ix_(free, free)], residual[free])
         x[free] -= step * min(1.0, 1e-4 / np.abs(step).max())
         if np.abs(residual[free]).max() < 1e-6 * force and np.abs(step).max() < 1e-12:
-            return box.pinion_forces(x[None], at_rest[None])[0]
+            return gearbox.pinion_forces(x[None], at_rest[None])[0]
     raise AssertionError("no equilibrium")
 
 
@@ -105,7 +105,9 @@ def test_rigid_gears_are_the_limit_of_stiff_ones(design: CascadeDesign, block: i
     if block is not None:
         errors["amplitude"] = random_errors(design, block, 1)["amplitude"][0]
         errors["phase"] = 0.5 * np.pi  # sin = 1 where the driven gears stand
-    by_kind = dict(zip(MESHES, np.split(errors["amplitude"], np.cumsum(list(MESHES.values()))[:-1]), strict=True))
+    by_kind = dict(
+        zip(MESH_COUNTS, np.split(errors["amplitude"], np.cumsum(list(MESH_COUNTS.values()))[:-1]), strict=True)
+    )
     rigid = static_sharing(design, "B", errors=by_kind).shares(120e3)
     off = []
     for factor in (100.0, 1000.0):
@@ -119,11 +121,11 @@ def test_rigid_gears_are_the_limit_of_stiff_ones(design: CascadeDesign, block: i
 
 def test_a_pinion_carries_when_its_own_path_is_closed(design: CascadeDesign) -> None:
     sharing = static_sharing(design, "B")
-    gap = path_gaps(design, "B")
+    gap = path_gap_angles(design, "B")
     assert gap[1] - gap[0] == pytest.approx(1e-3 * design.g1_g1.gap_B / design.radius("g1"))
     below = sharing.forces(np.array(gap[1] * design.radius("pinion") * 0.999))
     assert (below[::2] > 0.0).all() and (below[1::2] == 0.0).all()
-    assert np.ptp(path_gaps(design, "A")) < 1e-15
+    assert np.ptp(path_gap_angles(design, "A")) < 1e-15
 
 
 def test_flex_unit(design: CascadeDesign) -> None:
@@ -132,11 +134,11 @@ def test_flex_unit(design: CascadeDesign) -> None:
     slope = (units.torque(twist + h) - units.torque(twist - h)) / (2.0 * h)
     np.testing.assert_allclose(slope, units.tangent(twist), rtol=1e-6)
     assert units.tangent(np.array([units.end, 3.0 * units.end])) == pytest.approx(575.0 * 180.0 / np.pi)
-    box = Gearbox(design)
+    gearbox = Gearbox(design)
     x = np.zeros((1, DOFS))
     x[0, 1:9] = 0.7 * units.end * design.radius("pinion")
     expected = units.ratios * units.torque(0.7 * units.end) / design.radius("pinion")
-    np.testing.assert_allclose(box.pinion_forces(x, np.zeros((1, DOFS)))[0], expected, rtol=1e-13)
+    np.testing.assert_allclose(gearbox.pinion_forces(x, np.zeros((1, DOFS)))[0], expected, rtol=1e-13)
 
 
 # --- tolerances
@@ -144,12 +146,12 @@ def test_flex_unit(design: CascadeDesign) -> None:
 
 def test_spearman_ranks(design: CascadeDesign) -> None:
     """Table 2, and the closed form of Spearman's rank between a normal variable and a sum that holds it."""
-    _, ranks = stack_up(design, "rack_pinion")
+    _, ranks = sample_stack_up(design, "rack_pinion")
     published = design.published["spearman_rack_pinion"]
-    assert np.abs([ranks[name] - there for name, there in zip(RANKS, published, strict=True)]).max() < 0.05
-    for kind in MESHES:
+    assert np.abs([ranks[name] - there for name, there in zip(RANKED_TOLERANCES, published, strict=True)]).max() < 0.05
+    for kind in MESH_COUNTS:
         limits = contributions(design, kind)
-        samples, ranks = stack_up(design, kind)
+        samples, ranks = sample_stack_up(design, kind)
         total = np.sqrt(sum(limit**2 for limit in limits.values()))
         noise = 4.0 / np.sqrt(design.tolerances.samples)
         assert samples.std() == pytest.approx(total / design.tolerances.limit, rel=noise)
@@ -188,10 +190,10 @@ def test_kernel(design: CascadeDesign) -> None:
     """Forces against the vectors above; matrices are symmetric, and the forces' derivatives where nothing cycles."""
     random = np.random.default_rng(2)
     errors = random_errors(design, 0, 1)[0]
-    box = Gearbox(design)
+    gearbox = Gearbox(design)
     for _ in range(20):
         x, v = 3e-4 * random.standard_normal(DOFS), 0.1 * random.standard_normal(DOFS)
-        force = box.kernel.forces(errors, x, v)
+        force = gearbox.kernel.forces(errors, x, v)
         np.testing.assert_allclose(force, reference_forces(design, errors, x, v), atol=1e-10 * np.abs(force).max())
     smooth = Gearbox(stiff(design, 1.0))
     x, v, h = 3e-4 * random.standard_normal(DOFS), np.zeros(DOFS), 1e-9
@@ -209,9 +211,9 @@ def test_kernel(design: CascadeDesign) -> None:
 def test_natural_frequencies(design: CascadeDesign) -> None:
     """Against the kernel's matrix; 19 of 23 are different with equal units (Table 9 lists 11), the first is zero."""
     frequencies = natural_frequencies(design)
-    box = Gearbox(stiff(design, 1.0))
-    ways = 5e-3 * np.linspace(2.0, 1.0, DOFS) * rigid_ways(design) * np.r_[np.ones(9), 0.1 * np.ones(14)]
-    stiffness, _ = box.kernel.matrices(no_errors(), ways, np.zeros(DOFS))
+    gearbox = Gearbox(stiff(design, 1.0))
+    ways = 5e-3 * np.linspace(2.0, 1.0, DOFS) * rigid_displacements(design) * np.r_[np.ones(9), 0.1 * np.ones(14)]
+    stiffness, _ = gearbox.kernel.matrices(no_errors(), ways, np.zeros(DOFS))
     root = np.sqrt(masses(design))
     squares = np.linalg.eigvalsh(stiffness / root / root[:, None])
     np.testing.assert_allclose(np.sqrt(np.maximum(squares, 0.0))[1:] / (2.0 * np.pi), frequencies[1:], rtol=1e-8)
@@ -224,25 +226,25 @@ def test_natural_frequencies(design: CascadeDesign) -> None:
 def test_implicit_steps_are_of_second_order(design: CascadeDesign) -> None:
     """Against SciPy's integrator, from a state in contact under a growing force: shares in smooth motion."""
     calm = stiff(design, 1.0)
-    box = Gearbox(calm)
+    gearbox = Gearbox(calm)
 
     def force(t: np.ndarray) -> np.ndarray:
         return 100e3 + 50e3 * np.sin(20.0 * np.asarray(t))
 
-    closed = {kind: getattr(calm, kind).model_copy(update={"gap_A": 0.0, "gap_B": 0.0}) for kind in MESHES}
-    box = Gearbox(calm.model_copy(update=closed))
-    start, end = steady_velocities(calm, box), 0.02
-    x, v = box.integrate(force, start, np.array([0.0, end]), rtol=1e-10)
+    closed = {kind: getattr(calm, kind).model_copy(update={"gap_A": 0.0, "gap_B": 0.0}) for kind in MESH_COUNTS}
+    gearbox = Gearbox(calm.model_copy(update=closed))
+    start, end = steady_velocities(calm, gearbox), 0.02
+    x, v = gearbox.integrate(force, start, np.array([0.0, end]), rtol=1e-10)
     off = []
     for count in (200, 400, 800):
-        _, x_end, _ = box.simulate(force, start, end / count, count)
+        _, x_end, _ = gearbox.simulate(force, start, end / count, count)
         off.append(np.abs(x_end - x[-1]).max())
     assert off[-1] < 1e-7
     for coarse, fine in itertools.pairwise(off):
         assert np.log2(coarse / fine) == pytest.approx(2.0, abs=0.3)
 
 
-def test_dynamic_shares(design: CascadeDesign, period: Period) -> None:
+def test_dynamic_shares(design: CascadeDesign, period: LoadCycle) -> None:
     """Table 8: means of odd and even pinions within 3 %; the crossing within 5 % of 160 kN."""
     for force in (120, 207, 247):
         shares = period.shares_at(1e3 * force)
@@ -257,7 +259,7 @@ def test_dynamic_shares(design: CascadeDesign, period: Period) -> None:
 @pytest.mark.parametrize("direction", ["B", "A"])
 def test_braked_shares(design: CascadeDesign, direction: str) -> None:
     """The dynamic column of Table 10; small shares within 1.5 % as mesh stiffnesses are not given."""
-    off = difference(braked_shares(design, direction), design.published[f"braked_{direction}"])
+    off = difference(braked_load_shares(design, direction), design.published[f"braked_{direction}"])
     assert np.abs(off).max() < 0.015
 
 

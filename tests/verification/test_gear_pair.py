@@ -12,12 +12,18 @@ from scipy.linalg import eigh, expm, solve_continuous_lyapunov
 from support.paths import DRIVERS
 from swgpar.gear_trains import backlash
 from swgpar.gear_trains.gear_pair.design import GearPairDesign
-from swgpar.gear_trains.gear_pair.model import WAY, at_rest, combined_mass, natural_modes, system
+from swgpar.gear_trains.gear_pair.model import (
+    DEFLECTION_ROW,
+    combined_mass,
+    gear_pair_system,
+    natural_modes,
+    static_equilibrium,
+)
 from swgpar.gear_trains.gear_pair.monte_carlo import simulate
-from swgpar.gear_trains.linearisation import Moments, linearised
+from swgpar.gear_trains.linearisation import Moments, linearise
 from swgpar.gear_trains.mesh_stiffness import MeshStiffness
-from swgpar.gear_trains.sampling import generator
-from swgpar.gear_trains.sums import Sums
+from swgpar.gear_trains.sample_moments import SampleMoments
+from swgpar.gear_trains.sampling import random_stream
 from swgpar.gear_trains.train import load_train
 
 DRIVER = DRIVERS / "gear_pair.toml"
@@ -34,50 +40,54 @@ def design() -> GearPairDesign:
 @pytest.fixture(scope="module")
 def moments(design: GearPairDesign) -> dict[tuple[int, str], Moments]:
     return {
-        (case, method): linearised(system(design, case), at_rest(design, case), STEP, STEPS, EVERY, method)
+        (case, method): linearise(
+            gear_pair_system(design, case), static_equilibrium(design, case), STEP, STEPS, EVERY, method
+        )
         for case in range(3)
         for method in ("energy", "force")
     }
 
 
 @pytest.fixture(scope="module")
-def sums(design: GearPairDesign) -> list[Sums]:
+def sums(design: GearPairDesign) -> list[SampleMoments]:
     return [run(design, case, 8000) for case in range(3)]
 
 
-def run(design: GearPairDesign, case: int, samples: int, h: float = STEP, *, seed: int = 3) -> Sums:
+def run(design: GearPairDesign, case: int, samples: int, h: float = STEP, *, seed: int = 3) -> SampleMoments:
     ratio = round(STEP / h)
     grid = h, STEPS * ratio, EVERY * ratio
-    return simulate(system(design, case), at_rest(design, case), *grid, samples, generator(seed, case))
+    return simulate(
+        gear_pair_system(design, case), static_equilibrium(design, case), *grid, samples, random_stream(seed, case)
+    )
 
 
 # --- expectations
 
 
-def normal(mean: float, deviation: float, half: float) -> tuple[np.ndarray, np.ndarray]:
+def normal(mean: float, deviation: float, half_backlash: float) -> tuple[np.ndarray, np.ndarray]:
     """Points and weights of an integral over a normal density, ten deviations to both sides, cut where f has kinks."""
     ends = [mean - 10.0 * deviation, mean + 10.0 * deviation]
-    cuts = sorted([*ends, *(b for b in {half, -half} if ends[0] < b < ends[1])])
+    cuts = sorted([*ends, *(b for b in {half_backlash, -half_backlash} if ends[0] < b < ends[1])])
     x = np.concatenate([0.5 * (a + b + (b - a) * NODES) for a, b in itertools.pairwise(cuts)])
     w = np.concatenate([0.5 * (b - a) * WEIGHTS for a, b in itertools.pairwise(cuts)])
     return x, w * np.exp(-0.5 * ((x - mean) / deviation) ** 2) / (deviation * np.sqrt(2.0 * np.pi))
 
 
-@pytest.mark.parametrize(("mean", "deviation", "half"), STATES)
-def test_expectations(mean: float, deviation: float, half: float) -> None:
-    d, w = normal(mean, deviation, half)
-    force, energy = backlash.force(2.0, d, half), backlash.energy(2.0, d, half)
-    assert backlash.mean_force(2.0, mean, deviation, half) == pytest.approx(w @ force, abs=1e-9)
-    assert backlash.mean_energy(2.0, mean, deviation, half) == pytest.approx(w @ energy, abs=1e-9)
+@pytest.mark.parametrize(("mean", "deviation", "half_backlash"), STATES)
+def test_expectations(mean: float, deviation: float, half_backlash: float) -> None:
+    d, w = normal(mean, deviation, half_backlash)
+    force, energy = backlash.force(2.0, d, half_backlash), backlash.energy(2.0, d, half_backlash)
+    assert backlash.mean_force(2.0, mean, deviation, half_backlash) == pytest.approx(w @ force, abs=1e-9)
+    assert backlash.mean_energy(2.0, mean, deviation, half_backlash) == pytest.approx(w @ energy, abs=1e-9)
     slope = w @ (force * (d - mean)) / deviation**2
-    assert backlash.mean_stiffness(2.0, mean, deviation, half) == pytest.approx(slope, abs=1e-9)
-    # least squares of the energy counted from that of the mean way
-    rise = energy - backlash.energy(2.0, mean, half)
+    assert backlash.mean_stiffness(2.0, mean, deviation, half_backlash) == pytest.approx(slope, abs=1e-9)
+    # least squares of the energy counted from that of the mean deflection
+    rise = energy - backlash.energy(2.0, mean, half_backlash)
     terms = np.stack([d - mean, 0.5 * (d - mean) ** 2], axis=1)
     root = np.sqrt(w)[:, None]
     best = np.linalg.lstsq(root * terms, root[:, 0] * rise, rcond=None)[0]
-    assert backlash.mean_force(2.0, mean, deviation, half) == pytest.approx(best[0], abs=1e-8)
-    assert backlash.energy_stiffness(2.0, mean, deviation, half) == pytest.approx(best[1], abs=1e-8)
+    assert backlash.mean_force(2.0, mean, deviation, half_backlash) == pytest.approx(best[0], abs=1e-8)
+    assert backlash.energy_stiffness(2.0, mean, deviation, half_backlash) == pytest.approx(best[1], abs=1e-8)
 
 
 def test_a_mesh_in_contact_keeps_its_stiffness() -> None:
@@ -107,10 +117,10 @@ def test_one_rotation_for_two(design: GearPairDesign) -> None:
     squares = eigh(stiffness, np.diag([g1.mass, g2.mass, g1.inertia, g2.inertia]), eigvals_only=True)
     assert abs(squares[0]) < 1e-9 * squares[1]
     np.testing.assert_allclose(np.sqrt(squares[1:]), natural_modes(design)[0], rtol=1e-10)
-    pair = system(design, 0)
-    rest = at_rest(design, 0)
-    pull = backlash.force(pair.mesh_stiffness(0.0), WAY @ rest, pair.half_backlash)
-    np.testing.assert_allclose(pair.stiffness @ rest + WAY.T @ pull, pair.force, atol=1e-8 * pair.force[2])
+    pair = gear_pair_system(design, 0)
+    rest = static_equilibrium(design, 0)
+    pull = backlash.force(pair.mesh_stiffness(0.0), DEFLECTION_ROW @ rest, pair.half_backlash)
+    np.testing.assert_allclose(pair.stiffness @ rest + DEFLECTION_ROW.T @ pull, pair.force, atol=1e-8 * pair.force[2])
     assert pair.mass[2, 2] == combined_mass(design) == pytest.approx(15.4736, rel=1e-5)
 
 
@@ -126,7 +136,7 @@ def test_mesh_stiffness_is_a_rectangular_wave() -> None:
 
 def exact_covariance(design: GearPairDesign, t: float) -> np.ndarray:
     """Of the pair in contact at constant stiffness, after t from rest: the stationary one less what is left of it."""
-    pair = system(design, 0)
+    pair = gear_pair_system(design, 0)
     n, inverse = pair.size, np.linalg.inv(pair.mass)
     stiffness = pair.linear_stiffness(0.0, np.array([design.mesh.stiffness]))
     a = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ stiffness, -inverse @ pair.damping]])
@@ -146,9 +156,9 @@ def test_covariance_in_contact(design: GearPairDesign, method: str) -> None:
     expected = exact_covariance(pair, end)
     off = []
     for count in (100, 200, 400):
-        found = linearised(system(pair, 0), at_rest(pair, 0), end / count, count, count, method)
+        found = linearise(gear_pair_system(pair, 0), static_equilibrium(pair, 0), end / count, count, count, method)
         off.append(np.abs(found.covariance[-1, :3, :3] - expected).max() / np.abs(expected).max())
-        np.testing.assert_allclose(found.mean[-1], at_rest(pair, 0), rtol=1e-9)
+        np.testing.assert_allclose(found.mean[-1], static_equilibrium(pair, 0), rtol=1e-9)
     assert off[-1] < 1e-4
     for coarse, fine in itertools.pairwise(off):
         assert np.log2(coarse / fine) == pytest.approx(2.0, abs=0.1)
@@ -169,7 +179,7 @@ def test_linearisation_does_not_depend_on_the_step(design: GearPairDesign, metho
     """With impacts and tooth cycles: second order, by three steps."""
     end, ends = 5e-4, []
     for count in (50, 100, 200):
-        found = linearised(system(design, 1), at_rest(design, 1), end / count, count, count, method)
+        found = linearise(gear_pair_system(design, 1), static_equilibrium(design, 1), end / count, count, count, method)
         ends.append(np.concatenate([found.mean[-1], np.sqrt(np.diag(found.covariance[-1]))[:3]]))
     steps = [np.abs(fine / coarse - 1.0).max() for coarse, fine in itertools.pairwise(ends)]
     assert steps[-1] < 4e-3
@@ -183,19 +193,19 @@ def test_simulation_without_noise(design: GearPairDesign) -> None:
     """Against SciPy with impacts on both sides: the error falls by more than three from step to step."""
     soft = design.damping.model_copy(update={"stiffness": 2e-6})
     quiet = steady(design).model_copy(update={"damping": soft, "load": design.load.model_copy(update={"noise": 0.0})})
-    pair, start, end = system(quiet, 2), at_rest(quiet, 2) + np.array([0.0, 0.0, 6e-4]), 1.5e-3
+    pair, start, end = gear_pair_system(quiet, 2), static_equilibrium(quiet, 2) + np.array([0.0, 0.0, 6e-4]), 1.5e-3
 
     def rates(_: float, y: np.ndarray) -> np.ndarray:
         q, v = y[:3], y[3:]
-        pull = backlash.force(pair.mesh_stiffness(0.0), WAY @ q, pair.half_backlash)
-        rest = pair.force - pair.damping @ v - pair.stiffness @ q - WAY.T @ pull
+        pull = backlash.force(pair.mesh_stiffness(0.0), DEFLECTION_ROW @ q, pair.half_backlash)
+        rest = pair.force - pair.damping @ v - pair.stiffness @ q - DEFLECTION_ROW.T @ pull
         return np.concatenate([v, np.linalg.solve(pair.mass, rest)])
 
-    def crosses(half: float):
-        return lambda _, y: WAY[0] @ y[:3] - half
+    def crosses(half_backlash: float):
+        return lambda _, y: DEFLECTION_ROW[0] @ y[:3] - half_backlash
 
-    half = float(pair.half_backlash[0])
-    events = [crosses(half), crosses(-half)]
+    half_backlash = float(pair.half_backlash[0])
+    events = [crosses(half_backlash), crosses(-half_backlash)]
     grid = np.linspace(0.0, end, 11)
     exact = solve_ivp(
         rates,
@@ -211,7 +221,7 @@ def test_simulation_without_noise(design: GearPairDesign) -> None:
     assert all(len(times) > 0 for times in exact.t_events)
     off = []
     for count in (600, 1200, 2400):
-        found = simulate(pair, start, end / count, count, count // 10, 3, generator(1))
+        found = simulate(pair, start, end / count, count, count // 10, 3, random_stream(1))
         assert found.squares.max() < 1e-28
         off.append(np.abs(found.mean[:, :3] - exact.y[:3, 1:].T).max())
     assert off[-1] < 5e-7
@@ -220,14 +230,16 @@ def test_simulation_without_noise(design: GearPairDesign) -> None:
 
 def statistics(found: Moments) -> tuple[np.ndarray, np.ndarray]:
     """Means and deviations of the coordinates and the mesh's way over the second half of the time."""
-    ways = np.vstack([np.eye(3), WAY])
+    ways = np.vstack([np.eye(3), DEFLECTION_ROW])
     later = len(found.time) // 2
     variance = np.einsum("ki,tij,kj->tk", ways, found.covariance[later:, :3, :3], ways)
     return (found.mean[later:] @ ways.T).mean(axis=0), np.sqrt(variance).mean(axis=0)
 
 
 @pytest.mark.parametrize("method", ["energy", "force"])
-def test_linearisation_without_impact(moments: dict[tuple[int, str], Moments], sums: list[Sums], method: str) -> None:
+def test_linearisation_without_impact(
+    moments: dict[tuple[int, str], Moments], sums: list[SampleMoments], method: str
+) -> None:
     """Mean and deviation within 2 % of Monte Carlo; 8000 samples know a deviation to 0.8 %."""
     mean, deviation = statistics(moments[0, method])
     later = len(sums[0].mean) // 2
@@ -236,7 +248,7 @@ def test_linearisation_without_impact(moments: dict[tuple[int, str], Moments], s
     assert (sums[0].last > 20e-6).all()
 
 
-def test_errors_grow_towards_impacts(moments: dict[tuple[int, str], Moments], sums: list[Sums]) -> None:
+def test_errors_grow_towards_impacts(moments: dict[tuple[int, str], Moments], sums: list[SampleMoments]) -> None:
     """Single-sided, then double-sided impact: the deviation of the mesh's way is missed by more and more."""
     assert 0.1 < (sums[1].last < 20e-6).mean() < 0.5 and (sums[1].last > -20e-6).all()
     assert (sums[2].last < 20e-6).mean() > 0.6 and (sums[2].last < -20e-6).any()
@@ -252,7 +264,7 @@ def test_errors_grow_towards_impacts(moments: dict[tuple[int, str], Moments], su
         assert max(o[:2].max() for o in off) < 0.05
 
 
-def test_simulation_does_not_depend_on_the_step(design: GearPairDesign, sums: list[Sums]) -> None:
+def test_simulation_does_not_depend_on_the_step(design: GearPairDesign, sums: list[SampleMoments]) -> None:
     """Half the step and other samples, with impacts: means and deviations agree within four sampling errors."""
     for case in (1, 2):
         fine, coarse = run(design, case, 4000, STEP / 2.0, seed=8), sums[case]
@@ -266,10 +278,10 @@ def test_blocks_add_up() -> None:
     random = np.random.default_rng(0)
     values = 5.0 + random.standard_normal((7, 4, 3))
 
-    def of(part: np.ndarray) -> Sums:
-        return Sums(len(part), part.mean(axis=0), part.var(axis=0) * len(part), part[:, 0, 0])
+    def of(part: np.ndarray) -> SampleMoments:
+        return SampleMoments(len(part), part.mean(axis=0), part.var(axis=0) * len(part), part[:, 0, 0])
 
-    both = of(values[:3]).with_more(of(values[3:]))
+    both = of(values[:3]).merged_with(of(values[3:]))
     np.testing.assert_allclose(both.mean, values.mean(axis=0))
     np.testing.assert_allclose(both.deviation, values.std(axis=0, ddof=1))
     assert (both.last == values[:, 0, 0]).all()

@@ -12,16 +12,16 @@ from scipy.integrate import solve_ivp
 from support.paths import DRIVERS
 from swgpar.errors import ConvergenceError
 from swgpar.gear_trains.backlash import force
-from swgpar.gear_trains.cycles import slow_cycles
+from swgpar.gear_trains.dominant_cycles import dominant_cycles
 from swgpar.gear_trains.kernel import PlanetaryStepKernel
 from swgpar.gear_trains.planetary.design import PlanetaryDesign
-from swgpar.gear_trains.planetary.linearised import Moments, linearised
-from swgpar.gear_trains.planetary.model import Train, carrier, nodes, planet, radii
+from swgpar.gear_trains.planetary.linearisation import Moments, linearise
+from swgpar.gear_trains.planetary.model import PlanetaryModel, carrier_index, planet_index, radii, ring_index
+from swgpar.gear_trains.planetary.monitored import MONITORED_NAMES, monitored_rows
 from swgpar.gear_trains.planetary.monte_carlo import simulate
-from swgpar.gear_trains.planetary.steps import States, Steps
-from swgpar.gear_trains.planetary.watched import NAMES, watched
-from swgpar.gear_trains.planetary.wind import Wind
-from swgpar.gear_trains.sampling import generator
+from swgpar.gear_trains.planetary.time_stepping import ModalStates, TimeStepper
+from swgpar.gear_trains.planetary.wind_load import WindLoad
+from swgpar.gear_trains.sampling import random_stream
 from swgpar.gear_trains.train import load_train
 
 DRIVER = DRIVERS / "planetary.toml"
@@ -42,11 +42,11 @@ def small(design: PlanetaryDesign) -> PlanetaryDesign:
     return changed(changed(design, "ring", elements=6), "wind", length=2.0)
 
 
-def physical(train: Train, t: float) -> tuple[np.ndarray, np.ndarray]:
+def physical(train: PlanetaryModel, t: float) -> tuple[np.ndarray, np.ndarray]:
     """Damping (n, n) and ways (m, n) at a time, in the coordinates of the parts."""
-    ways, section = train.ways(t), train.design.damping
+    deflection_rows, section = train.deflection_rows(t), train.design.damping
     damping = section.mass * train.mass + section.stiffness * train.constant
-    return damping + ways.T @ (train.mesh_damping[:, None] * ways), ways
+    return damping + deflection_rows.T @ (train.mesh_damping[:, None] * deflection_rows), deflection_rows
 
 
 # --- equations
@@ -54,15 +54,18 @@ def physical(train: Train, t: float) -> tuple[np.ndarray, np.ndarray]:
 
 def test_kinematics(design: PlanetaryDesign) -> None:
     """A turn of the carrier and the sun's by 1 + 99/21 of it, in a ring at rest, is no way of any mesh or bearing."""
-    train = Train(design)
+    train = PlanetaryModel(design)
     sun, planets, centres = radii(design)
     x = np.zeros(train.size)
     turn, ratio = 1e-3, 1.0 + design.ring.teeth / 21.0
-    x[2], x[carrier(design) + 2] = sun * ratio * turn, centres * turn
+    x[2], x[carrier_index(design) + 2] = sun * ratio * turn, centres * turn
     for k in range(design.planet.count):
         # a planet turns backwards by the ring's teeth over its own, less the carrier's turn
-        x[planet(k) + 1 : planet(k) + 3] = centres * turn, -planets * centres / (planets / np.cos(np.pi / 9.0)) * turn
-    assert np.abs(train.ways(0.7) @ x).max() < 1e-4 * centres * turn
+        x[planet_index(k) + 1 : planet_index(k) + 3] = (
+            centres * turn,
+            -planets * centres / (planets / np.cos(np.pi / 9.0)) * turn,
+        )
+    assert np.abs(train.deflection_rows(0.7) @ x).max() < 1e-4 * centres * turn
     shaft = x[2] * train.constant[2, 2] * x[2]
     assert x @ train.constant @ x == pytest.approx(shaft, rel=1e-9)
     assert np.abs(train.constant - train.constant.T).max() < 1e-12 * np.abs(train.constant).max()
@@ -71,33 +74,33 @@ def test_kinematics(design: PlanetaryDesign) -> None:
 
 def test_statics(design: PlanetaryDesign) -> None:
     """The carrier's torque is that of all mesh forces; the sun's shaft takes its part, the ring's supports the rest."""
-    train = Train(design)
-    steps, torque = Steps(train, 1e-3, 1), 1e5
-    start, sides = steps.at_rest(torque)
+    train = PlanetaryModel(design)
+    steps, torque = TimeStepper(train, 1e-3, 1), 1e5
+    start, flanks = steps.static_equilibrium(torque)
     q = train.shapes @ start.q[:, 0]
-    f = force(steps.stiffness[0], train.ways(0.0) @ q, train.half)
+    f = force(steps.stiffness[0], train.deflection_rows(0.0) @ q, train.half_backlash)
     sun, _, centres = radii(design)
     cosine = np.cos(np.radians(design.mesh.pressure_angle))
-    assert (sides == -1.0).all()
+    assert (flanks == -1.0).all()
     np.testing.assert_allclose(f, -torque / (2.0 * design.planet.count * centres * cosine), rtol=1e-9)
     # three planets in phase between six supports: the sun stays in the middle, on a bearing of 100 N/m
     assert np.abs(q[:2]).max() < 1e-9 * abs(q[2])
     turn = q[2] / sun
     assert design.sun.torsional * turn == pytest.approx(-3.0 * f[0] * sun, rel=1e-9)
     # virtual work of a turn of the ring: what its supports hold
-    first, radius = nodes(design), train.ring.section.radius
+    first, radius = ring_index(design), train.ring.section.radius
     rigid = np.tile([0.0, 1.0, 1.0 / radius], design.ring.elements)
     held = rigid @ train.ring.stiffness @ q[first:]
     assert held == pytest.approx(-design.planet.count * f[3] * cosine, rel=1e-6)
-    # flanks push apart: forces on the sun away from planet 1, on planet 1 outward by the sun, on the ring outward
-    ways, outward = train.ways(0.0), first
-    assert -f[0] * ways[0, 0] < 0.0 < -f[0] * ways[0, planet(0)]
-    assert -f[3] * ways[3, planet(0)] < 0.0 < -f[3] * ways[3, outward]
+    # flanks load apart: forces on the sun away from planet 1, on planet 1 outward by the sun, on the ring outward
+    deflection_rows, outward = train.deflection_rows(0.0), first
+    assert -f[0] * deflection_rows[0, 0] < 0.0 < -f[0] * deflection_rows[0, planet_index(0)]
+    assert -f[3] * deflection_rows[3, planet_index(0)] < 0.0 < -f[3] * deflection_rows[3, outward]
 
 
 def test_planets_out_of_phase(design: PlanetaryDesign) -> None:
     """Four planets, 21 and 99 teeth: at the ring a planet is where the one before it was a quarter turn ago."""
-    train = Train(changed(design, "planet", count=4))
+    train = PlanetaryModel(changed(design, "planet", count=4))
     quarter = 0.5 * np.pi / design.carrier.speed
     for t in (0.0, 0.1, 0.37):
         now, later = train.mesh.at(t), train.mesh.at(t + quarter)
@@ -105,13 +108,13 @@ def test_planets_out_of_phase(design: PlanetaryDesign) -> None:
         # the sun has turned by 99/21 quarter turns more than the carrier: 21 teeth apart, 99 teeth on, a whole number
         np.testing.assert_allclose(now[1:4], later[:3], rtol=1e-12)
         assert np.ptp(now[4:]) > 0.01 * now[4]
-    together = Train(design).mesh.at(0.1)
+    together = PlanetaryModel(design).mesh.at(0.1)
     np.testing.assert_allclose(together[:3], together[0], rtol=1e-12)
     np.testing.assert_allclose(together[3:], together[3], rtol=1e-12)
 
 
 def test_modes_hold_the_matrices(small: PlanetaryDesign) -> None:
-    train = Train(small)
+    train = PlanetaryModel(small)
     s = train.shapes
     np.testing.assert_allclose(s.T @ train.mass @ s, np.eye(train.size), atol=1e-8)
     np.testing.assert_allclose(
@@ -122,24 +125,26 @@ def test_modes_hold_the_matrices(small: PlanetaryDesign) -> None:
 # --- steps
 
 
-def states_of(train: Train, h: float, q: np.ndarray, v: np.ndarray, steps: Steps, forces: np.ndarray) -> States:
+def states_of(
+    train: PlanetaryModel, h: float, q: np.ndarray, v: np.ndarray, steps: TimeStepper, forces: np.ndarray
+) -> ModalStates:
     modal = np.linalg.solve(train.shapes, np.column_stack([q, v]))
     y = 2.0 / h * modal[:, :1] + modal[:, 1:]
-    return States(modal[:, :1].copy(), y, steps.push(0, modal[:, :1], y, forces[:, None]))
+    return ModalStates(modal[:, :1].copy(), y, steps.mesh_term(0, modal[:, :1], y, forces[:, None]))
 
 
 def test_a_step_is_the_trapezoidal_rule(small: PlanetaryDesign) -> None:
     """Against the whole matrices of all parts, meshes without backlash, from a random state; linear and simulated."""
     design = changed(small, "mesh", half_backlash=0.0)
-    train, h = Train(design), 2e-3
-    steps, random = Steps(train, h, 1), np.random.default_rng(0)
+    train, h = PlanetaryModel(design), 2e-3
+    steps, random = TimeStepper(train, h, 1), np.random.default_rng(0)
     q, v, torque = 1e-5 * random.standard_normal(train.size), 1e-4 * random.standard_normal(train.size), 3e4
     (c0, w0), (c1, w1) = (physical(train, t) for t in (0.0, h))
     k0, k1 = (train.constant + w.T @ (k[:, None] * w) for w, k in zip((w0, w1), steps.stiffness, strict=True))
-    push = np.linalg.solve(train.shapes.T, train.torque_push) * torque
+    load = np.linalg.solve(train.shapes.T, train.torque_vector) * torque
     # M (v1 - v0) + h/2 (C0 v0 + C1 v1 + K0 q0 + K1 q1) = h F with q1 = q0 + h/2 (v0 + v1)
     left = train.mass + 0.5 * h * c1 + 0.25 * h * h * k1
-    right = train.mass @ v - 0.5 * h * (c0 @ v + k0 @ q + k1 @ (q + 0.5 * h * v)) + h * push
+    right = train.mass @ v - 0.5 * h * (c0 @ v + k0 @ q + k1 @ (q + 0.5 * h * v)) + h * load
     v1 = np.linalg.solve(left, right)
     q1 = q + 0.5 * h * (v + v1)
     for backlash in (False, True):
@@ -147,9 +152,9 @@ def test_a_step_is_the_trapezoidal_rule(small: PlanetaryDesign) -> None:
         torques = np.array([2.0 * torque])
         if backlash:
             # one state of many, that do not fill the kernel's lanes; all on the wrong flank at first
-            states = States(*(np.repeat(part, 19, axis=1) for part in (states.q, states.y, states.push)))
-            sides = -np.sign(w1 @ q1)
-            assert steps.simulate(0, states, np.repeat(torques[None], 19, axis=1), sides) == 19
+            states = ModalStates(*(np.repeat(part, 19, axis=1) for part in (states.q, states.y, states.mesh_term)))
+            flanks = -np.sign(w1 @ q1)
+            assert steps.simulate(0, states, np.repeat(torques[None], 19, axis=1), flanks) == 19
             assert (states.q == states.q[:, :1]).all()
         else:
             steps.linear(1, states, torques, steps.law(1, steps.stiffness[1]))
@@ -159,9 +164,9 @@ def test_a_step_is_the_trapezoidal_rule(small: PlanetaryDesign) -> None:
         np.testing.assert_allclose(velocities, v1, atol=1e-6 * np.abs(v1).max())
     # forces that are given, as those of the linearised mean are
     states, forces = states_of(train, h, q, v, steps, steps.stiffness[0] * (w0 @ q)), steps.stiffness[1] * (w1 @ q1)
-    free = steps.free_ways(1, states, torques)[:, 0]
+    free = steps.free_deflections(1, states, torques)[:, 0]
     np.testing.assert_allclose(
-        steps.damped[1] @ (w1 @ q1) + steps.give[1] @ forces, free, atol=1e-8 * np.abs(free).max()
+        steps.damped[1] @ (w1 @ q1) + steps.compliance[1] @ forces, free, atol=1e-8 * np.abs(free).max()
     )
     steps.linear(1, states, torques, steps.law(1, np.zeros_like(forces), forces))
     np.testing.assert_allclose(train.shapes @ states.q[:, 0], q1, atol=1e-8 * np.abs(q1).max())
@@ -171,35 +176,41 @@ def test_a_step_that_does_not_converge() -> None:
     """One mode and one mesh that pulls where it should push: d = 1.5 in contact asks for 0.5, in the gap, and back."""
     one, zero = np.ones(1), np.zeros(1)
     kernel = PlanetaryStepKernel(1e-3, 1.0, one, zero, zero, zero, np.ones((2, 1, 1)), np.full((2, 1, 1), -2.0), zero)
-    train = SimpleNamespace(half=1.0)
-    steps = SimpleNamespace(h=1e-3, kernel=kernel, train=train, stiffness=np.ones((2, 1)), touching=np.ones((2, 1, 1)))
-    states = States(np.full((1, 1), 1.5), np.zeros((1, 1)), np.zeros((1, 1)))
+    train = SimpleNamespace(half_backlash=1.0)
+    steps = SimpleNamespace(
+        h=1e-3, kernel=kernel, train=train, stiffness=np.ones((2, 1)), contact_inverse=np.ones((2, 1, 1))
+    )
+    states = ModalStates(np.full((1, 1), 1.5), np.zeros((1, 1)), np.zeros((1, 1)))
     with pytest.raises(ConvergenceError, match=r"did not converge at 0\.001 s"):
-        Steps.simulate(steps, 0, states, np.zeros((1, 1)), -one)
+        TimeStepper.simulate(steps, 0, states, np.zeros((1, 1)), -one)
 
 
 def test_load_reversal(small: PlanetaryDesign) -> None:
-    """The torque turns round: all meshes cross their backlash. Against SciPy's Radau, second order in the step."""
-    train, end, torque = Train(small), 0.6, 1e5
-    push = np.linalg.solve(train.shapes.T, train.torque_push)
+    """The torque reverses: all meshes cross their backlash. Against SciPy's Radau, second order in the step."""
+    train, end, torque = PlanetaryModel(small), 0.6, 1e5
+    torque_row = np.linalg.solve(train.shapes.T, train.torque_vector)
     inverse = np.linalg.inv(train.mass)
 
-    def load(t: float) -> float:
+    def torque_at(t: float) -> float:
         return torque * np.cos(np.pi * t / end)
 
     def rates(t: float, y: np.ndarray) -> np.ndarray:
         q, v = np.split(y, 2)
-        damping, ways = physical(train, t)
-        pull = train.constant @ q + damping @ v + ways.T @ force(train.mesh.at(t), ways @ q, train.half)
-        return np.concatenate([v, inverse @ (push * load(t) - pull)])
+        damping, deflection_rows = physical(train, t)
+        internal = (
+            train.constant @ q
+            + damping @ v
+            + deflection_rows.T @ force(train.mesh.at(t), deflection_rows @ q, train.half_backlash)
+        )
+        return np.concatenate([v, inverse @ (torque_row * torque_at(t) - internal)])
 
     def jacobian(t: float, y: np.ndarray) -> np.ndarray:
-        damping, ways = physical(train, t)
-        touching = np.abs(ways @ y[: train.size]) > train.half
-        k = train.constant + ways.T @ ((train.mesh.at(t) * touching)[:, None] * ways)
+        damping, deflection_rows = physical(train, t)
+        in_contact = np.abs(deflection_rows @ y[: train.size]) > train.half_backlash
+        k = train.constant + deflection_rows.T @ ((train.mesh.at(t) * in_contact)[:, None] * deflection_rows)
         return np.block([[np.zeros_like(k), np.eye(train.size)], [-inverse @ k, -inverse @ damping]])
 
-    start, _ = Steps(train, 1e-3, 1).at_rest(torque)
+    start, _ = TimeStepper(train, 1e-3, 1).static_equilibrium(torque)
     q = train.shapes @ start.q[:, 0]
     exact = solve_ivp(
         rates, (0.0, end), np.concatenate([q, 0.0 * q]), method="Radau", rtol=1e-7, atol=1e-12, jac=jacobian
@@ -208,13 +219,13 @@ def test_load_reversal(small: PlanetaryDesign) -> None:
     off = []
     for count in (150, 300, 600):
         h = end / count
-        steps = Steps(train, h, count)
-        states, sides = steps.at_rest(torque)
+        steps = TimeStepper(train, h, count)
+        states, flanks = steps.static_equilibrium(torque)
         lost = 0
         for step in range(1, count + 1):
-            torques = np.array([[load((step - 1) * h) + load(step * h)]])
-            lost += steps.simulate(step - 1, states, torques, sides)
-        values = watched(train, steps, count)
+            torques = np.array([[torque_at((step - 1) * h) + torque_at(step * h)]])
+            lost += steps.simulate(step - 1, states, torques, flanks)
+        values = monitored_rows(train, steps, count)
         off.append(np.abs(values @ states.q[:, 0] / (values @ expected) - 1.0).max())
     assert lost > count / 4
     assert off[-1] < 0.01
@@ -226,16 +237,19 @@ def test_load_reversal(small: PlanetaryDesign) -> None:
 
 def test_wind(design: PlanetaryDesign) -> None:
     h, section = 0.1, design.wind
-    wind = Wind.over(design, h)
+    wind = WindLoad.of(design, h)
     spread = np.zeros((2, 2))
     for _ in range(3000):
-        spread = wind.moved @ spread @ wind.moved.T + wind.root @ wind.root.T
+        spread = wind.transition @ spread @ wind.transition.T + wind.noise_root @ wind.noise_root.T
     # dT = factor V0 dV, and the steady part is factor V0² / 2
     deviation = np.sqrt(wind.turbulent @ spread @ wind.turbulent)
     assert deviation == pytest.approx(2.0 * section.turbulence * wind.steady, rel=1e-6)
-    half = Wind.over(design, 0.5 * h)
-    twice = half.moved @ half.root @ half.root.T @ half.moved.T + half.root @ half.root.T
-    np.testing.assert_allclose(twice, wind.root @ wind.root.T, rtol=1e-9)
+    half_step = WindLoad.of(design, 0.5 * h)
+    twice = (
+        half_step.transition @ half_step.noise_root @ half_step.noise_root.T @ half_step.transition.T
+        + half_step.noise_root @ half_step.noise_root.T
+    )
+    np.testing.assert_allclose(twice, wind.noise_root @ wind.noise_root.T, rtol=1e-9)
     v0, area = section.speed / 3.6, np.pi * section.rotor_radius**2
     ratio = design.carrier.speed * section.rotor_radius / v0
     torque = 0.5 * section.air_density * area * section.rotor_radius * section.power_coefficient / ratio * v0**2
@@ -245,9 +259,9 @@ def test_wind(design: PlanetaryDesign) -> None:
 # --- statistics
 
 
-def moments(design: PlanetaryDesign, h: float, count: int, every: int) -> tuple[Steps, Wind, Moments]:
-    steps, wind = Steps(Train(design), h, count), Wind.over(design, h)
-    return steps, wind, linearised(steps, wind, every)
+def moments(design: PlanetaryDesign, h: float, count: int, every: int) -> tuple[TimeStepper, WindLoad, Moments]:
+    steps, wind = TimeStepper(PlanetaryModel(design), h, count), WindLoad.of(design, h)
+    return steps, wind, linearise(steps, wind, every)
 
 
 def test_covariance_by_whole_matrices(small: PlanetaryDesign) -> None:
@@ -257,22 +271,22 @@ def test_covariance_by_whole_matrices(small: PlanetaryDesign) -> None:
     steps, wind, found = moments(design, h, count, count)
     train = steps.train
     n = train.size
-    push = np.linalg.solve(train.shapes.T, train.torque_push)[:, None]
+    load = np.linalg.solve(train.shapes.T, train.torque_vector)[:, None]
     spread = np.zeros((2 * n + 2, 2 * n + 2))
     for step in range(1, count + 1):
         (c0, w0), (c1, w1) = (physical(train, t) for t in ((step - 1) * h, step * h))
         k0, k1 = (train.constant + w.T @ (steps.stiffness[s][:, None] * w) for w, s in ((w0, step - 1), (w1, step)))
-        turbulent = push @ wind.turbulent[None]
+        turbulent = load @ wind.turbulent[None]
         eye = np.eye(n)
         left = np.block([[0.5 * h * k1, train.mass + 0.5 * h * c1], [eye, -0.5 * h * eye]])
         right = np.block([[-0.5 * h * k0, train.mass - 0.5 * h * c0], [eye, 0.5 * h * eye]])
         of_state = np.linalg.solve(left, right)
         of_wind = np.linalg.solve(left, np.vstack([0.5 * h * turbulent, 0.0 * turbulent]))
-        of_wind, of_noise = of_wind @ (np.eye(2) + wind.moved), of_wind @ wind.root
-        moved = np.block([[of_state, of_wind], [np.zeros((2, 2 * n)), wind.moved]])
-        added = np.vstack([of_noise, wind.root])
-        spread = moved @ spread @ moved.T + added @ added.T
-    values = np.linalg.solve(train.shapes.T, watched(train, steps, count).T).T
+        of_wind, of_noise = of_wind @ (np.eye(2) + wind.transition), of_wind @ wind.noise_root
+        transition = np.block([[of_state, of_wind], [np.zeros((2, 2 * n)), wind.transition]])
+        added = np.vstack([of_noise, wind.noise_root])
+        spread = transition @ spread @ transition.T + added @ added.T
+    values = np.linalg.solve(train.shapes.T, monitored_rows(train, steps, count).T).T
     expected = np.sqrt(np.einsum("pi,ij,pj->p", values, spread[:n, :n], values))
     np.testing.assert_allclose(found.deviation[-1], expected, rtol=1e-5)
 
@@ -284,7 +298,7 @@ def test_linearisation_does_not_depend_on_the_step(small: PlanetaryDesign) -> No
         _, _, found = moments(small, end / count, count, count // 10)
         results.append(np.concatenate([found.mean[-1], found.deviation[-1]]))
         # of all rows: displacements, velocities and wind together, before the covariance is made symmetric
-        assert found.least > -1e-12 and found.skew < 1e-10
+        assert found.smallest_eigenvalue > -1e-12 and found.asymmetry < 1e-10
     steps = [np.abs(fine / coarse - 1.0).max() for coarse, fine in itertools.pairwise(results)]
     assert steps[1] < 2e-3
     assert np.log2(steps[0] / steps[1]) > 1.6
@@ -293,7 +307,7 @@ def test_linearisation_does_not_depend_on_the_step(small: PlanetaryDesign) -> No
 def test_linearised_against_simulated(small: PlanetaryDesign) -> None:
     """No impact: means and deviations within 2 %; 16,000 samples know a deviation to 0.6 %."""
     steps, wind, found = moments(changed(small, "wind", turbulence=0.05), 8e-3, 100, 50)
-    sums, lost = simulate(steps, wind, 50, 16_000, generator(5))
+    sums, lost = simulate(steps, wind, 50, 16_000, random_stream(5))
     assert lost == 0
     np.testing.assert_allclose(found.mean, sums.mean, rtol=0.02)
     np.testing.assert_allclose(found.deviation, sums.deviation, rtol=0.02)
@@ -303,23 +317,23 @@ def test_linearised_against_simulated_on_the_driver(design: PlanetaryDesign) -> 
     """The driver's own train over a revolution, by 1000 steps: within 2 %; 16,000 samples know a deviation to 0.6 %."""
     count = 1000
     steps, wind, found = moments(design, design.end / count, count, 20)
-    sums, lost = simulate(steps, wind, 20, 16_000, generator(7))
+    sums, lost = simulate(steps, wind, 20, 16_000, random_stream(7))
     assert lost == 0
     later = slice(25, None)
     np.testing.assert_allclose(found.mean[later].mean(axis=0), sums.mean[later].mean(axis=0), rtol=0.02)
     np.testing.assert_allclose(found.deviation[later].mean(axis=0), sums.deviation[later].mean(axis=0), rtol=0.02)
     # round-off adds up over the steps in stiff modes, which the trapezoidal rule hardly damps
-    assert found.least > -1e-9 and found.skew < 1e-10
+    assert found.smallest_eigenvalue > -1e-9 and found.asymmetry < 1e-10
 
 
 def test_impacts_spoil_the_mesh(small: PlanetaryDesign) -> None:
     """With strong turbulence meshes lose contact: the ways' deviations go wrong, the turns' hardly."""
     steps, wind, found = moments(changed(small, "wind", turbulence=0.6), 5e-3, 200, 50)
-    sums, lost = simulate(steps, wind, 50, 2000, generator(6))
+    sums, lost = simulate(steps, wind, 50, 2000, random_stream(6))
     assert lost > 0.02 * 200 * 2000
     off = np.abs(found.deviation[-1] / sums.deviation[-1] - 1.0)
-    ways, turns = NAMES.index("sun_mesh"), NAMES.index("carrier_u")
-    assert off[ways] > 0.1 > off[turns]
+    mesh, turn = MONITORED_NAMES.index("sun_mesh"), MONITORED_NAMES.index("carrier_u")
+    assert off[mesh] > 0.1 > off[turn]
 
 
 def test_patterns_and_rims(design: PlanetaryDesign) -> None:
@@ -328,10 +342,14 @@ def test_patterns_and_rims(design: PlanetaryDesign) -> None:
     for rim in (87.0, 168.0):
         steps, wind, found = moments(changed(design, "ring", rim=rim), design.end / count, count, 2)
         largest[rim] = np.concatenate([np.abs(found.mean).max(axis=0), found.deviation.max(axis=0)])
-        assert slow_cycles(found.mean[:, NAMES.index("contact_v")], 1.0) == 6.0
-        assert slow_cycles(found.mean[:, NAMES.index("node_w")], 1.0) == 3.0
+        assert dominant_cycles(found.mean[:, MONITORED_NAMES.index("contact_v")], 1.0) == 6.0
+        assert dominant_cycles(found.mean[:, MONITORED_NAMES.index("node_w")], 1.0) == 3.0
         assert steps.train.size == 69 and wind.steady > 0.0
-    change = dict(zip(NAMES, largest[168.0][: len(NAMES)] / largest[87.0][: len(NAMES)], strict=True))
+    change = dict(
+        zip(
+            MONITORED_NAMES, largest[168.0][: len(MONITORED_NAMES)] / largest[87.0][: len(MONITORED_NAMES)], strict=True
+        )
+    )
     assert change["contact_v"] < 0.5 and change["node_w"] < 0.8
     assert 0.95 < change["carrier_u"] < 1.0 and 0.95 < change["planet_eta"] < 1.0
     assert change["sun_u"] == pytest.approx(1.0, abs=1e-5)

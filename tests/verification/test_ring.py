@@ -12,13 +12,13 @@ from scipy.sparse.linalg import eigsh
 from support.element_mesh import ElementMesh
 from support.paths import DRIVERS
 from swgpar.design.design_file import load_design
-from swgpar.gear_trains.cycles import slow_cycles
-from swgpar.gear_trains.meshed_system import MeshedSystem
-from swgpar.gear_trains.ring.beam import Ring, Section, free_frequencies
+from swgpar.gear_trains.dominant_cycles import dominant_cycles
+from swgpar.gear_trains.gear_mesh_system import GearMeshSystem
+from swgpar.gear_trains.ring.curved_beam import BeamSection, Ring, free_frequencies
 from swgpar.gear_trains.ring.design import RingDesign
-from swgpar.gear_trains.ring.moving_load import Modes, MovingLoads, middle_node
+from swgpar.gear_trains.ring.moving_load import ModalStepper, MovingLoads, middle_node
 from swgpar.gear_trains.ring.run import distinct_frequencies
-from swgpar.gear_trains.sampling import generator
+from swgpar.gear_trains.sampling import random_stream
 from swgpar.gear_trains.train import load_train
 from swgpar.meshing import build_sector_meshes, load_recipe
 
@@ -46,7 +46,7 @@ def free(design: RingDesign, elements: int) -> RingDesign:
 
 def test_free_ring(bolted: RingDesign) -> None:
     """Bending modes to 0.1 % of the closed form with 36 elements, at fourth order; three rigid motions."""
-    section, errors = Section.of(bolted), []
+    section, errors = BeamSection.of(bolted), []
     exact = np.array([free_frequencies(section, n)[0] for n in range(2, 6)]) / (2.0 * np.pi)
     for elements in (18, 36, 72):
         found, _ = distinct_frequencies(free(bolted, elements), 4)
@@ -61,7 +61,7 @@ def test_free_ring(bolted: RingDesign) -> None:
 
 def test_free_ring_is_the_thin_ring(bolted: RingDesign) -> None:
     """Without stretching and rotary inertia: n (n² - 1) / sqrt(n² + 1) times sqrt(E I / (density A R⁴)) (Hoppe)."""
-    thin = Section(1.0, 1.0, 1.0, 1.0, 1e-10)
+    thin = BeamSection(1.0, 1.0, 1.0, 1.0, 1e-10)
     for n in (2, 3, 4):
         hoppe = np.sqrt(thin.inertia) * n * (n * n - 1.0) / np.sqrt(n * n + 1.0)
         assert free_frequencies(thin, n)[0] == pytest.approx(hoppe, rel=1e-6)
@@ -73,10 +73,10 @@ def test_shape_functions_are_exact_at_rest(bolted: RingDesign) -> None:
     found = []
     for elements in (4, 16, 64):
         ring = Ring.of(changed(free(bolted, elements), "ring", inner_radius=519.0))
-        load = ring.at(0.0)[0] + ring.at(np.pi)[0]
+        load = ring.interpolation(0.0)[0] + ring.interpolation(np.pi)[0]
         u = np.linalg.lstsq(ring.stiffness, load, rcond=1e-12)[0]
         s = ring.section
-        found.append((ring.at(0.0)[0] + ring.at(np.pi)[0]) @ u * s.E * s.inertia / s.radius**3)
+        found.append((ring.interpolation(0.0)[0] + ring.interpolation(np.pi)[0]) @ u * s.E * s.inertia / s.radius**3)
     assert found == pytest.approx([found[0]] * 3, rel=1e-5)
     assert found[0] == pytest.approx(np.pi / 4.0 - 2.0 / np.pi, rel=1e-4)
 
@@ -91,14 +91,14 @@ def test_rigid_motions_cost_nothing(bolted: RingDesign) -> None:
         assert np.abs(ring.stiffness @ motion).max() < 1e-8 * np.abs(ring.stiffness).max()
     mass = 2.0 * np.pi * ring.section.radius * ring.section.density * ring.section.area
     assert along_x @ ring.mass @ along_x == pytest.approx(mass, rel=1e-12)
-    between = ring.at(0.3)
+    between = ring.interpolation(0.3)
     assert between[:2] @ along_x == pytest.approx([np.cos(0.3), -np.sin(0.3)], abs=1e-9)
 
 
 def test_supported_ring() -> None:
     """Table 5.2 within 1 %, on supports deduced from it; the mode of three waves is single, the others are pairs."""
     design = load_train(SUPPORTED)
-    section, ring = Section.of(design), Ring.of(design)
+    section, ring = BeamSection.of(design), Ring.of(design)
     unit = np.sqrt(section.density * section.area * section.radius**4 / (section.E * section.inertia))
     found, _ = distinct_frequencies(design, 3)
     assert 2.0 * np.pi * found * unit == pytest.approx(design.published["dimensionless"], rel=0.01)
@@ -112,7 +112,7 @@ def test_supported_ring() -> None:
 
 def test_supported_ring_of_the_source() -> None:
     """The source's own column of Table 5.2 within 0.15 %: I / (A R²) = 0.002 and springs of 1e4 E I / R³, deduced."""
-    section = Section(1.0, 1.0, 1.0, 1.0, 2e-3)
+    section = BeamSection(1.0, 1.0, 1.0, 1.0, 2e-3)
     ring = Ring(section, 60, (3, (1e4 * section.inertia, 0.0, 0.0)))
     rate = ring.modes()[0][[1, 3, 4]] / np.sqrt(section.inertia)
     assert rate == pytest.approx([1.640, 7.529, 10.205], rel=1.5e-3)
@@ -210,7 +210,7 @@ def test_moving_load_against_newmark(bolted: RingDesign) -> None:
     fine = MovingLoads(small(bolted, steps=3600, damping_stiffness=1e-4)).respond(speed)
     alpha = np.radians(load.pressure_angle)
     direction = np.array([np.sin(alpha), np.cos(alpha), 0.0])
-    system = MeshedSystem(
+    system = GearMeshSystem(
         mass=ring.mass,
         damping=load.damping_mass * ring.mass + load.damping_stiffness * ring.stiffness,
         stiffness=ring.stiffness,
@@ -223,7 +223,9 @@ def test_moving_load_against_newmark(bolted: RingDesign) -> None:
     n, end, off = ring.size, 0.5 * np.pi / speed, []
 
     def places(t: float) -> np.ndarray:
-        return np.array([direction @ ring.at(speed * t + 2.0 * np.pi * k / load.loads) for k in range(load.loads)])
+        return np.array(
+            [direction @ ring.interpolation(speed * t + 2.0 * np.pi * k / load.loads) for k in range(load.loads)]
+        )
 
     def force(t: float) -> np.ndarray:
         ahead = 2.0 * np.pi * np.arange(load.loads) / load.loads / speed
@@ -243,7 +245,7 @@ def test_moving_load_against_newmark(bolted: RingDesign) -> None:
             moved = np.linalg.solve(left, np.hstack([right, shaken, (right @ y + push)[:, None]]))
             y = moved[:, -1]
             spread = moved[:, : 2 * n] @ spread @ moved[:, : 2 * n].T + moved[:, 2 * n : -1] @ moved[:, 2 * n : -1].T
-        watched = np.array([ring.at(speed * end)[0], np.eye(ring.size)[3 * middle_node(design)]])
+        watched = np.array([ring.interpolation(speed * end)[0], np.eye(ring.size)[3 * middle_node(design)]])
         mean = watched @ y[:n]
         deviation = np.sqrt(np.einsum("pi,ij,pj->p", watched, spread[:n, :n], watched))
         row = 3600 // 4 - 1
@@ -258,7 +260,7 @@ def test_covariance_stays_positive(bolted: RingDesign) -> None:
     """Of displacements and velocities of all modes, each kind over its largest deviation, in every step of a turn."""
     loads, load = MovingLoads(small(bolted, steps=36)), bolted.moving_load
     squares, n = loads.frequencies**2, len(loads.frequencies)
-    modes = Modes(squares, load.damping_mass + load.damping_stiffness * squares, 2.0 * np.pi / 200.0 / 36)
+    modes = ModalStepper(squares, load.damping_mass + load.damping_stiffness * squares, 2.0 * np.pi / 200.0 / 36)
     spread = np.zeros((2, 2, n, n))
     for step in range(36):
         spread = modes.spread(spread, loads.noises(step))
@@ -270,7 +272,7 @@ def test_covariance_stays_positive(bolted: RingDesign) -> None:
 
 
 def test_steps_of_the_loads(bolted: RingDesign) -> None:
-    """At least second order in the way of the loads."""
+    """At least second order in the travel of the loads."""
     found = [MovingLoads(small(bolted, steps=steps)).respond(200.0) for steps in (180, 360, 720)]
     for kind in ("mean", "deviation"):
         coarse, middle, fine = (getattr(f, kind)[k - 1 :: k] for f, k in zip(found, (1, 2, 4), strict=True))
@@ -283,7 +285,7 @@ def test_simulations_of_the_ring(bolted: RingDesign) -> None:
     design = small(bolted, steps=180)
     loads, samples = MovingLoads(design), 400
     exact = loads.respond(200.0)
-    sums = loads.simulate(200.0, samples, generator(4))
+    sums = loads.simulate(200.0, samples, random_stream(4))
     assert (np.abs(sums.mean - exact.mean) < 5.0 * exact.deviation / np.sqrt(samples)).all()
     assert (np.abs(sums.deviation / exact.deviation - 1.0) < 5.0 / np.sqrt(2.0 * samples)).all()
 
@@ -292,13 +294,13 @@ def test_patterns_in_a_revolution(bolted: RingDesign) -> None:
     """Six cycles under the moving load (six supports), three at a node (three loads); slow: as at rest."""
     loads = MovingLoads(bolted)
     found = loads.respond(2.8)
-    assert [slow_cycles(column) for column in found.mean.T] == [6.0, 3.0]
-    ring, load, still = Ring.of(bolted), bolted.moving_load, loads.at_rest(2.8)
+    assert [dominant_cycles(column) for column in found.mean.T] == [6.0, 3.0]
+    ring, load, still = Ring.of(bolted), bolted.moving_load, loads.quasi_static(2.8)
     h = 2.0 * np.pi / 2.8 / load.steps
     for step in (100, 333, 600):
         force = loads.forces(step, (step + load.steps) * h, 2.8)
         at_rest = loads.shapes @ (force / loads.frequencies**2)
-        expected = [ring.at(2.0 * np.pi * step / load.steps)[0] @ at_rest, at_rest[3 * middle_node(bolted)]]
+        expected = [ring.interpolation(2.0 * np.pi * step / load.steps)[0] @ at_rest, at_rest[3 * middle_node(bolted)]]
         assert still[step - 1] == pytest.approx(expected, abs=1e-9 * np.abs(still).max())
     assert np.abs(found.mean - still).max() < 0.03 * np.abs(still).max()
 
@@ -307,7 +309,7 @@ def test_published_speeds_are_slow(bolted: RingDesign) -> None:
     """22 to 50 rad/s: means as without inertia, at the published critical speeds as well."""
     loads = MovingLoads(changed(bolted, "moving_load", steps=180))
     for speed in (22.0, 31.3, 34.19, 36.6, 40.55, 44.0, 50.0):
-        still = loads.at_rest(speed)
+        still = loads.quasi_static(speed)
         assert np.abs(loads.respond(speed).mean - still).max() < 0.05 * np.abs(still).max()
 
 

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from annotated_types import Len
 
 from swgpar.errors import InputError
-from swgpar.gear_trains.keys import GearTrain, Output, Positive, TrainDesign
+from swgpar.gear_trains.common_sections import GearTrain, Output, Positive, TrainDesign
 from swgpar.input.quantities import Section, quantity
 
 PINIONS = 8
@@ -22,7 +22,7 @@ class Train(GearTrain):
 
 class Rack(Section):
     mass: float = quantity(unit="kg", text="mass of the rack", gt=0.0)
-    length: float = quantity(unit="m", text="toothed length, taken as the pitch circle in its tolerances", gt=0.0)
+    length: float = quantity(unit="m", text="toothed length; the circumference in the tolerance formulas", gt=0.0)
     pitch_grade: float = quantity(text="ISO 1328 grade of the pitch deviation", **GRADES)
     runout_grade: float = quantity(text="ISO 1328 grade of the runout", **GRADES)
 
@@ -33,23 +33,29 @@ class Gear(Section):
     face_width: float = quantity(unit="mm", text="face width", gt=0.0)
     pitch_grade: float = quantity(text="ISO 1328 grade of the pitch deviation", **GRADES)
     runout_grade: float = quantity(text="ISO 1328 grade of the runout", **GRADES)
-    position: float = quantity(unit="mm", text="tolerance of the shaft's position, plus or minus", ge=0.0)
-    axle_angle: float = quantity(unit="mrad", text="tolerance of the shaft's direction, plus or minus", ge=0.0)
+    position: float = quantity(unit="mm", text="tolerance of the shaft position, plus or minus", ge=0.0)
+    axle_angle: float = quantity(unit="mrad", text="tolerance of the shaft direction, plus or minus", ge=0.0)
 
 
 class Mesh(Section):
     module: float = quantity(unit="mm", text="module", gt=0.0)
     stiffness: float = quantity(unit="N/m", text="mean mesh stiffness", gt=0.0)
     variation: float = quantity(0.0, text="amplitude of the mesh stiffness over its mean", ge=0.0, lt=1.0)
-    gap_A: float = quantity(0.0, unit="mm", text="way at the pitch line before the flanks of direction A meet", ge=0.0)
-    gap_B: float = quantity(0.0, unit="mm", text="way at the pitch line before the flanks of direction B meet", ge=0.0)
+    gap_A: float = quantity(
+        0.0, unit="mm", text="backlash at the pitch line up to the flanks that carry load in direction A", ge=0.0
+    )
+    gap_B: float = quantity(
+        0.0, unit="mm", text="backlash at the pitch line up to the flanks that carry load in direction B", ge=0.0
+    )
 
 
 class FlexUnit(Section):
-    ratio: Ratios = quantity(text="stiffness over the mean of all units, of pinions 1 to 8 (Table 3); each above 0")
+    ratio: Ratios = quantity(
+        text="stiffness ratios of the units of pinions 1 to 8 to their mean \(Table 3\), each above 0"
+    )
     stiffness: float = quantity(unit="N·m/deg", text="mean stiffness beyond `linear_above`", gt=0.0)
     linear_above: float = quantity(unit="mm", text="deformation beyond which the stiffness is constant", gt=0.0)
-    initial_stiffness: float = quantity(unit="N·m/deg", text="mean stiffness at no deformation", gt=0.0)
+    initial_stiffness: float = quantity(unit="N·m/deg", text="mean stiffness at zero deformation", gt=0.0)
     radius: float = quantity(unit="mm", text="radius at which the deformation is measured", gt=0.0)
 
 
@@ -60,38 +66,46 @@ class Shafts(Section):
 
 class Flywheel(Section):
     inertia: float = quantity(unit="kg·m²", text="moment of inertia with the generator", gt=0.0)
-    generator: float = quantity(unit="N·m·s/rad", text="torque of the generator over its speed", gt=0.0)
+    generator: float = quantity(unit="N·m·s/rad", text="damping constant of the generator: torque over speed", gt=0.0)
 
 
 class Damping(Section):
     metal: float = quantity(unit="s", text="damping over stiffness of meshes in contact and of shafts", ge=0.0)
     flex: float = quantity(unit="s", text="damping over stiffness of the flexible units", ge=0.0)
     contact_ramp: float = quantity(
-        unit="µm", text="approach of the flanks over which their damping sets in (the S-shaped step of eq. 10)", gt=0.0
+        unit="µm",
+        text="penetration of the flanks over which the contact damping rises to its full value \(smooth step, eq. 10\)",
+        gt=0.0,
     )
 
 
 class Load(Section):
-    forces: Forces = quantity(text="rack forces that load shares are given for (kN), each above 0")
-    peak: float = quantity(unit="kN", text="largest rack force, of the period and the populations", gt=0.0)
-    period: float = quantity(unit="s", text="period of the rack force; direction B comes first", gt=0.0)
-    braked: float = quantity(unit="kN", text="rack force against the flywheel held by its brake", gt=0.0)
-    braked_ramp: float = quantity(0.2, unit="s", text="time in which the rack force rises against the brake", gt=0.0)
-    braked_hold: float = quantity(0.2, unit="s", text="time for which it is held; its second half is averaged", gt=0.0)
-    overload: float = quantity(text="share of the whole load above 1/8 that a pinion may carry", ge=0.0, lt=0.875)
+    forces: Forces = quantity(text="rack forces for which load shares are reported (kN), each above 0")
+    peak: float = quantity(unit="kN", text="largest rack force, of the period and the population_tasks", gt=0.0)
+    period: float = quantity(
+        unit="s", text="period of the sinusoidal rack force; its first half is direction B", gt=0.0
+    )
+    braked: float = quantity(unit="kN", text="rack force with the flywheel fixed by its brake", gt=0.0)
+    braked_ramp: float = quantity(0.2, unit="s", text="rise time of the rack force against the brake", gt=0.0)
+    braked_hold: float = quantity(
+        0.2, unit="s", text="hold time of that force; load shares are means over its second half", gt=0.0
+    )
+    overload: float = quantity(text="allowed excess of a load share over 1/8", ge=0.0, lt=0.875)
 
 
 class Tolerances(Section):
-    samples: int = quantity(text="samples of the stack-up", ge=10, le=10_000_000)
+    samples: int = quantity(text="samples of the tolerance stack-up", ge=10, le=10_000_000)
     pressure_angle: float = quantity(20.0, unit="deg", text="pressure angle of all meshes", gt=0.0, lt=45.0)
-    limit: float = quantity(3.0, unit="standard deviations", text="where the tolerance limits lie", gt=0.0)
+    limit: float = quantity(
+        3.0, unit="standard deviations", text="distance of the tolerance limits from the mean", gt=0.0
+    )
 
 
 class Population(Section):
-    gearboxes: int = quantity(text="gearboxes with random errors", ge=1, le=1_000_000)
-    ramp: float = quantity(unit="s", text="time in which the rack force of the dynamic population rises", gt=0.0)
-    hold: float = quantity(unit="s", text="time for which it is held, over which load shares are averaged", gt=0.0)
-    step: float = quantity(unit="s", text="time step of the dynamic population", gt=0.0)
+    gearboxes: int = quantity(text="gearboxes with random pitch errors", ge=1, le=1_000_000)
+    ramp: float = quantity(unit="s", text="rise time of the rack force of the population in motion", gt=0.0)
+    hold: float = quantity(unit="s", text="hold time of that force; load shares are means over it", gt=0.0)
+    step: float = quantity(unit="s", text="time step of the population in motion", gt=0.0)
 
 
 class CascadeDesign(TrainDesign):

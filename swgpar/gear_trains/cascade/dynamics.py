@@ -1,19 +1,20 @@
 """Motion of the cascade gearbox: meshes with backlash and errors, flexible units, shafts, generator.
 
-The equations follow from the energy of meshes and shafts, so that their matrices are symmetric.
-In print (eqs 9 to 23) the backlash and the errors are moved into an alternating force, and the contact function
-multiplies stiffness and force once each; here a mesh simply has the force
+The equations follow from the energy of meshes and shafts: their matrices are symmetric. In print (eqs 9 to 23) backlash
+and errors are moved into an alternating force, and the contact function multiplies stiffness and force once each; here
+a mesh has the force
 
     f = k g(p) + h(g) c dp/dt,    p = x_driver - x_driven - e,
 
-g the approach of the flanks beyond the gap, h the S-shaped step of eq. (10). While flanks part fast, the damper may
-make f pull, as in print; load shares with f cut off at zero are the same to 1e-5 from 120 kN on (docs/gear_trains.md).
+p the mesh deflection, g the penetration of the flanks beyond the backlash, h the smooth step of eq. (10). While flanks
+separate fast, the damper may make f pull, as in print. Load shares with f limited to pushing are the same to 1e-5 from
+120 kN on (docs/verification/gear_trains.md).
 Further deviations from print:
 
 - gaps of the two directions are given separately: the source's geometric difference lies in one of them;
-- the phase of stiffness and error follows the way of the driven gear, not a constant frequency times the time: the rack
-  stops and turns back. Tooth cycle and pitch error are parameters of the motion, as in print: their derivatives with
-  respect to the way are no part of the force;
+- the phase of stiffness and error follows the displacement of the driven gear, not a constant frequency times the time:
+  the rack stops and reverses. Tooth cycle and pitch error are parameters of the motion, as in print: the force has no
+  terms of their derivatives with respect to the displacement;
 - G4 and flywheel are always coupled.
 """
 
@@ -27,7 +28,7 @@ from scipy.linalg import eigh
 
 from swgpar.errors import ConvergenceError
 from swgpar.gear_trains.cascade.design import PINIONS, CascadeDesign
-from swgpar.gear_trains.cascade.layout import DOFS, FLYWHEEL, N_MESHES, RACK, masses, meshes, shafts
+from swgpar.gear_trains.cascade.layout import DOFS, FLYWHEEL, MESHES, RACK, masses, meshes, shafts
 from swgpar.gear_trains.kernel import MESH_ERROR, GearboxKernel
 
 Force = Callable[[np.ndarray], np.ndarray]
@@ -35,12 +36,12 @@ Force = Callable[[np.ndarray], np.ndarray]
 
 
 def ramp(size: float, duration: float) -> Force:
-    """A rack force in N that rises for some time in s, and is held."""
+    """A rack force that rises to `size` N within `duration` s and then stays constant."""
     return lambda t: size * np.minimum(t / duration, 1.0)
 
 
 class Gearbox:
-    """A gearbox that moves. braked : the flywheel is held"""
+    """A gearbox in motion. braked : the flywheel is fixed"""
 
     def __init__(self, design: CascadeDesign, *, braked: bool = False) -> None:
         self.mass, self.braked = masses(design), braked
@@ -59,7 +60,7 @@ class Gearbox:
     ) -> tuple[np.ndarray, np.ndarray]:
         """Ways (m) and velocities (m/s), (n, 23), at `times` (n,) s by SciPy's LSODA, with the exact matrices.
 
-        v : (23,) velocities at the first of the times, where all ways are zero
+        v : (23,) velocities at the first of the times, where all displacements are zero
         errors : (18,) of the kernel's MESH_ERROR, none by default
         """
         errors = no_errors() if errors is None else errors
@@ -87,9 +88,9 @@ class Gearbox:
     def simulate(
         self, force: Force, v: np.ndarray, step: float, count: int, *, errors: np.ndarray | None = None
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Move on by `count` implicit steps of `step` s from no way and velocities v (23,).
+        """Simulate `count` implicit steps of `step` s from zero displacements and velocities v (23,).
 
-        Returns the pinion forces after each step, (count, 8) N, and ways and velocities at the end, (23,).
+        Returns the pinion forces after each step, (count, 8) N, and displacements and velocities at the end, (23,).
         """
         x, v = np.zeros(DOFS), np.array(v, dtype=float)
         errors = no_errors() if errors is None else errors
@@ -102,15 +103,15 @@ class Gearbox:
     def pinion_forces(self, x: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Forces (n, 8) in N at the pitch lines of the pinions that their flexible units pass on (eq. 23).
 
-        x, v : (n, 23) ways and velocities
+        x, v : (n, 23) displacements and velocities
         """
-        ways, rates = np.ascontiguousarray(x), np.ascontiguousarray(v)
-        return self.kernel.torques(ways, rates)[:, :PINIONS] / self.pinion_radius
+        displacements, rates = np.ascontiguousarray(x), np.ascontiguousarray(v)
+        return self.kernel.torques(displacements, rates)[:, :PINIONS] / self.pinion_radius
 
 
 def no_errors() -> np.ndarray:
     """Meshes without errors and all in phase, (18,) of the kernel's MESH_ERROR."""
-    return np.zeros(N_MESHES, dtype=MESH_ERROR)
+    return np.zeros(MESHES, dtype=MESH_ERROR)
 
 
 def natural_frequencies(design: CascadeDesign) -> np.ndarray:
@@ -122,8 +123,8 @@ def natural_frequencies(design: CascadeDesign) -> np.ndarray:
     for mesh in meshes(design):
         _add(stiffness, mesh["driver"], mesh["driven"], 1.0, -1.0, mesh["stiffness"])
     for shaft in shafts(design):
-        ways = 1.0 / shaft["first_radius"], -1.0 / shaft["second_radius"]
-        _add(stiffness, shaft["first"], shaft["second"], *ways, shaft["stiffness"])
+        row = 1.0 / shaft["first_radius"], -1.0 / shaft["second_radius"]
+        _add(stiffness, shaft["first"], shaft["second"], *row, shaft["stiffness"])
     squares = eigh(stiffness, np.diag(masses(design)), eigvals_only=True)
     return np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi)
 

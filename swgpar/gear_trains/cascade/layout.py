@@ -1,7 +1,7 @@
 """Which gear meshes with which, and which sit on one shaft: the 23 degrees of freedom of the cascade gearbox.
 
-Every gear moves along its pitch line (m), rack first; all ways are positive in direction B. Order of the 23: rack,
-pinions 1 to 8, G1 1 to 8, G2 1 and 2, G3 1 and 2, G4, flywheel (at the pitch radius of G4, as it has no teeth).
+The coordinate of every gear is its displacement along its pitch line (m), positive in direction B. Order of the 23:
+rack, pinions 1 to 8, G1 1 to 8, G2 1 and 2, G3 1 and 2, G4, flywheel (at the pitch radius of G4, as it has no teeth).
 18 meshes: rack with every pinion, even with odd G1 of a pair, odd G1 with the G2 of its side, G3 with G4. 11 shafts: a
 flexible unit between every pinion and its G1, G2 with G3, G4 with the flywheel.
 """
@@ -12,11 +12,11 @@ import numpy as np
 
 from swgpar.gear_trains.cascade.design import PINIONS, CascadeDesign
 from swgpar.gear_trains.cascade.flex_unit import FlexUnits
-from swgpar.gear_trains.cascade.static import MESHES, PAIRS, SIDES
+from swgpar.gear_trains.cascade.static_sharing import MESH_COUNTS, PAIRS, SIDES
 from swgpar.gear_trains.kernel import MESH, SHAFT
 
 RACK, PINION, G1, G2, G3, G4, FLYWHEEL = 0, 1, 9, 17, 19, 21, 22
-DOFS, N_MESHES, N_SHAFTS = 23, 18, 11
+DOFS, MESHES, SHAFTS = 23, 18, 11
 
 
 def radii(design: CascadeDesign) -> np.ndarray:
@@ -32,22 +32,22 @@ def masses(design: CascadeDesign) -> np.ndarray:
     return np.concatenate([[design.rack.mass], inertia / radii(design)[1:] ** 2])
 
 
-def rigid_ways(design: CascadeDesign) -> np.ndarray:
-    """Ways of all gears per way of the rack when nothing gives, (23,)."""
-    ways = np.ones(DOFS)
-    ways[G1:G3] = design.radius("g1") / design.radius("pinion")
-    ways[G3:] = ways[G2] * design.radius("g3") / design.radius("g2")
-    return ways
+def rigid_displacements(design: CascadeDesign) -> np.ndarray:
+    """Displacements of all gears per displacement of the rack if nothing deforms, (23,)."""
+    displacements = np.ones(DOFS)
+    displacements[G1:G3] = design.radius("g1") / design.radius("pinion")
+    displacements[G3:] = displacements[G2] * design.radius("g3") / design.radius("g2")
+    return displacements
 
 
 def meshes(design: CascadeDesign) -> np.ndarray:
     """All meshes, (18,) of the kernel's MESH."""
     odd, side = G1 + 2 * np.arange(PAIRS), np.arange(SIDES)
-    out = np.zeros(N_MESHES, dtype=MESH)
+    out = np.zeros(MESHES, dtype=MESH)
     out["driver"] = np.concatenate([np.full(PINIONS, RACK), odd + 1, odd, G3 + side])
     out["driven"] = np.concatenate([PINION + np.arange(PINIONS), odd, G2 + np.arange(PAIRS) // 2, np.full(SIDES, G4)])
     out["driven_radius"] = radii(design)[out["driven"]]
-    sections = [getattr(design, kind) for kind, count in MESHES.items() for _ in range(count)]
+    sections = [getattr(design, kind) for kind, count in MESH_COUNTS.items() for _ in range(count)]
     for key, scale in (("stiffness", 1.0), ("variation", 1.0), ("gap_A", 1e-3), ("gap_B", 1e-3), ("module", 1e-3)):
         out[key] = [scale * getattr(section, key) for section in sections]
     out["damping"] = design.damping.metal * out["stiffness"]
@@ -57,7 +57,7 @@ def meshes(design: CascadeDesign) -> np.ndarray:
 def shafts(design: CascadeDesign) -> np.ndarray:
     """Flexible units and shafts, (11,) of the kernel's SHAFT."""
     side, units = np.arange(SIDES), FlexUnits.of(design)
-    out = np.zeros(N_SHAFTS, dtype=SHAFT)
+    out = np.zeros(SHAFTS, dtype=SHAFT)
     out["first"] = np.concatenate([PINION + np.arange(PINIONS), G2 + side, [G4]])
     out["second"] = np.concatenate([G1 + np.arange(PINIONS), G3 + side, [FLYWHEEL]])
     out["first_radius"], out["second_radius"] = radii(design)[out["first"]], radii(design)[out["second"]]

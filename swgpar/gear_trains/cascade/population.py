@@ -9,19 +9,19 @@ import numpy as np
 
 from swgpar.gear_trains.cascade.design import PINIONS, CascadeDesign
 from swgpar.gear_trains.cascade.dynamics import Gearbox, ramp
-from swgpar.gear_trains.cascade.layout import FLYWHEEL, N_MESHES, rigid_ways
-from swgpar.gear_trains.cascade.static import MESHES, static_sharing
-from swgpar.gear_trains.cascade.tolerances import standard_deviation
+from swgpar.gear_trains.cascade.layout import FLYWHEEL, MESHES, rigid_displacements
+from swgpar.gear_trains.cascade.static_sharing import MESH_COUNTS, static_sharing
+from swgpar.gear_trains.cascade.tolerance_stack_up import standard_deviation
 from swgpar.gear_trains.kernel import MESH_ERROR
-from swgpar.gear_trains.sampling import blocks, generator
+from swgpar.gear_trains.sampling import block_sizes, random_stream
 
-BLOCK = 25
+BLOCK_SIZE = 25
 STREAM = 1
 """First number of the keys of these samples' streams."""
 
 
 @dataclass(frozen=True)
-class Shares:
+class PopulationShares:
     """Load shares of some gearboxes, (n, 8) each: at rest; in motion, as means and largest values over the hold."""
 
     static: np.ndarray
@@ -35,46 +35,46 @@ def random_errors(design: CascadeDesign, block: int, count: int) -> np.ndarray:
     The amplitude is a sample of the stack-up of its kind of mesh, phases are uniform. At rest the amplitude is the
     error itself.
     """
-    random = generator(design.gear_train.seed, STREAM, block)
-    deviations = [standard_deviation(design, kind) for kind, number in MESHES.items() for _ in range(number)]
-    errors = np.zeros((count, N_MESHES), dtype=MESH_ERROR)
-    errors["amplitude"] = random.standard_normal((count, N_MESHES)) * deviations
-    errors["phase"], errors["tooth_phase"] = random.uniform(0.0, 2.0 * np.pi, (2, count, N_MESHES))
+    random = random_stream(design.gear_train.seed, STREAM, block)
+    deviations = [standard_deviation(design, kind) for kind, number in MESH_COUNTS.items() for _ in range(number)]
+    errors = np.zeros((count, MESHES), dtype=MESH_ERROR)
+    errors["amplitude"] = random.standard_normal((count, MESHES)) * deviations
+    errors["phase"], errors["tooth_phase"] = random.uniform(0.0, 2.0 * np.pi, (2, count, MESHES))
     return errors
 
 
 def static_shares(design: CascadeDesign, errors: np.ndarray) -> np.ndarray:
     """Load shares (n, 8) at rest."""
-    ends = np.cumsum(list(MESHES.values()))[:-1]
-    by_kind = dict(zip(MESHES, np.split(errors["amplitude"], ends, axis=1), strict=True))
+    ends = np.cumsum(list(MESH_COUNTS.values()))[:-1]
+    by_kind = dict(zip(MESH_COUNTS, np.split(errors["amplitude"], ends, axis=1), strict=True))
     return static_sharing(design, "B", errors=by_kind).shares(np.full(len(errors), 1e3 * design.load.peak))
 
 
-def steady_velocities(design: CascadeDesign, box: Gearbox) -> np.ndarray:
+def steady_velocities(design: CascadeDesign, gearbox: Gearbox) -> np.ndarray:
     """Velocities (23,) in m/s at which the generator balances the largest rack force."""
-    ways = rigid_ways(design)
+    displacements = rigid_displacements(design)
     generator = design.flywheel.generator / design.radius("g4") ** 2
-    return 1e3 * design.load.peak / (generator * ways[FLYWHEEL] ** 2) * ways
+    return 1e3 * design.load.peak / (generator * displacements[FLYWHEEL] ** 2) * displacements
 
 
-def block_shares(design: CascadeDesign, block: int, count: int) -> Shares:
+def block_shares(design: CascadeDesign, block: int, count: int) -> PopulationShares:
     """All load shares of the gearboxes of a block.
 
-    In motion the gears start at their steady speed without touching, the rack force rises and is held.
+    In motion the gears start at their steady speed without contact; the rack force rises and then stays constant.
     """
-    section, errors, box = design.population, random_errors(design, block, count), Gearbox(design)
+    section, errors, gearbox = design.population, random_errors(design, block, count), Gearbox(design)
     rising, holding = (int(np.ceil(t / section.step)) for t in (section.ramp, section.hold))
     force = ramp(1e3 * design.load.peak, rising * section.step)
-    start = steady_velocities(design, box)
+    start = steady_velocities(design, gearbox)
     means, largest = np.empty((count, PINIONS)), np.empty((count, PINIONS))
     for k in range(count):
-        carried, _, _ = box.simulate(force, start, section.step, rising + holding, errors=errors[k])
+        carried, _, _ = gearbox.simulate(force, start, section.step, rising + holding, errors=errors[k])
         share = carried[rising:] / carried[rising:].sum(axis=1, keepdims=True)
         means[k], largest[k] = share.mean(axis=0), share.max(axis=0)
-    return Shares(static_shares(design, errors), means, largest)
+    return PopulationShares(static_shares(design, errors), means, largest)
 
 
-def populations(design: CascadeDesign) -> list[Callable[[], Shares]]:
+def population_tasks(design: CascadeDesign) -> list[Callable[[], PopulationShares]]:
     """Tasks for all blocks of the population."""
-    sizes = blocks(design.population.gearboxes, BLOCK)
+    sizes = block_sizes(design.population.gearboxes, BLOCK_SIZE)
     return [lambda block=block, size=size: block_shares(design, block, size) for block, size in enumerate(sizes)]

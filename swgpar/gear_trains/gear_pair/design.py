@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from annotated_types import Len
 
 from swgpar.errors import InputError
-from swgpar.gear_trains.keys import Damping, GearTrain, MonteCarlo, Output, Positive, TrainDesign
+from swgpar.gear_trains.common_sections import Damping, GearTrain, MonteCarlo, Output, Positive, TrainDesign
 from swgpar.input.quantities import Section, quantity, show
 
 Torques = Annotated[list[Positive], Len(1)]

@@ -16,12 +16,12 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import eigh
 
+from swgpar.gear_trains.gear_mesh_system import GearMeshSystem
 from swgpar.gear_trains.gear_pair.design import GearPairDesign
 from swgpar.gear_trains.mesh_stiffness import MeshStiffness
-from swgpar.gear_trains.meshed_system import MeshedSystem
 
 COORDINATES = ("y1", "y2", "z")
-WAY = np.array([[1.0, -1.0, 1.0]])
+DEFLECTION_ROW = np.array([[1.0, -1.0, 1.0]])
 
 
 def combined_mass(design: GearPairDesign) -> float:
@@ -38,12 +38,14 @@ def mesh_force(design: GearPairDesign, case: int) -> float:
     return combined_mass(design) * (first + second)
 
 
-def system(design: GearPairDesign, case: int) -> MeshedSystem:
+def gear_pair_system(design: GearPairDesign, case: int) -> GearMeshSystem:
     """The equations of motion under the torques of a case."""
     mesh = design.mesh
     mass = np.diag([design.gear_1.mass, design.gear_2.mass, combined_mass(design)])
     bearings = np.diag([design.gear_1.bearing, design.gear_2.bearing, 0.0])
-    damping = design.damping.mass * mass + design.damping.stiffness * (bearings + mesh.stiffness * WAY.T @ WAY)
+    damping = design.damping.mass * mass + design.damping.stiffness * (
+        bearings + mesh.stiffness * DEFLECTION_ROW.T @ DEFLECTION_ROW
+    )
     stiffness = MeshStiffness(
         np.array([mesh.stiffness]),
         np.array([mesh.variation * mesh.stiffness]),
@@ -53,11 +55,11 @@ def system(design: GearPairDesign, case: int) -> MeshedSystem:
         np.zeros(1),
     )
     noise = design.load.noise * np.sqrt(2.0 * np.pi * design.load.spectral_density)
-    return MeshedSystem(
+    return GearMeshSystem(
         mass=mass,
         damping=damping,
         stiffness=bearings,
-        ways=lambda t: WAY,
+        deflection_rows=lambda t: DEFLECTION_ROW,
         mesh_stiffness=stiffness.at,
         half_backlash=np.array([1e-6 * mesh.half_backlash]),
         force=np.array([0.0, 0.0, mesh_force(design, case)]),
@@ -65,16 +67,16 @@ def system(design: GearPairDesign, case: int) -> MeshedSystem:
     )
 
 
-def at_rest(design: GearPairDesign, case: int) -> np.ndarray:
+def static_equilibrium(design: GearPairDesign, case: int) -> np.ndarray:
     """Coordinates (3,) in m where the pair rests under the steady torques: simulations start there."""
-    force, stiffness = mesh_force(design, case), system(design, case).mesh_stiffness(0.0)[0]
+    force, stiffness = mesh_force(design, case), gear_pair_system(design, case).mesh_stiffness(0.0)[0]
     y1, y2 = -force / design.gear_1.bearing, force / design.gear_2.bearing
     return np.array([y1, y2, 1e-6 * design.mesh.half_backlash + force / stiffness - y1 + y2])
 
 
 def natural_modes(design: GearPairDesign) -> tuple[np.ndarray, np.ndarray]:
     """Natural frequencies (3,) in rad/s of the pair in contact, and their damping ratios (3,)."""
-    pair = system(design, 0)
+    pair = gear_pair_system(design, 0)
     squares, shapes = eigh(pair.linear_stiffness(0.0, np.array([design.mesh.stiffness])), pair.mass)
     frequencies = np.sqrt(squares)
     return frequencies, np.einsum("ji,jk,ki->i", shapes, pair.damping, shapes) / (2.0 * frequencies)

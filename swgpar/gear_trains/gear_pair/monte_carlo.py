@@ -1,4 +1,4 @@
-"""Simulations of the nonlinear gear pair, many at once, by the steps of `MeshedSystem`.
+"""Simulations of the nonlinear gear pair, many at once, by the steps of `GearMeshSystem`.
 
 The implicit step needs the mesh force at its end, f1. Coordinates at the end are linear in the state, the noise and
 f1, so that d1 = d - a f1 with a > 0, and f1 = k / (1 + a k) (d beyond the gap): no iteration. What remains is one
@@ -10,41 +10,47 @@ from __future__ import annotations
 import numpy as np
 
 from swgpar.gear_trains.backlash import dead_zone, force
-from swgpar.gear_trains.gear_pair.model import WAY
-from swgpar.gear_trains.meshed_system import MeshedSystem
-from swgpar.gear_trains.sums import Sums
+from swgpar.gear_trains.gear_mesh_system import GearMeshSystem
+from swgpar.gear_trains.gear_pair.model import DEFLECTION_ROW
+from swgpar.gear_trains.sample_moments import SampleMoments
 
-BLOCK = 2000
+BLOCK_SIZE = 2000
 
 
 def simulate(
-    system: MeshedSystem, start: np.ndarray, h: float, count: int, every: int, samples: int, random: np.random.Generator
-) -> Sums:
+    system: GearMeshSystem,
+    start: np.ndarray,
+    h: float,
+    count: int,
+    every: int,
+    samples: int,
+    random: np.random.Generator,
+) -> SampleMoments:
     """Move `samples` pairs on from rest at `start` (3,) by `count` steps of h s, noting every so many of them."""
-    n, half = system.size, float(system.half_backlash[0])
+    n, half_backlash = system.size, float(system.half_backlash[0])
     left, right = system.newmark(system.stiffness, h)
-    push = np.concatenate([-0.5 * h * WAY[0], np.zeros(n)])[:, None]
+    force_column = np.concatenate([-0.5 * h * DEFLECTION_ROW[0], np.zeros(n)])[:, None]
     steady = np.linalg.solve(left, np.concatenate([h * system.force, np.zeros(n)]))
     # columns of (q, v, N1, N2, f0, f1)
-    step = np.linalg.solve(left, np.hstack([right, system.noise_of_step(h), push, push]))
-    way = WAY[0] @ step[:n]
-    give = -way[-1]
+    step = np.linalg.solve(left, np.hstack([right, system.noise_of_step(h), force_column, force_column]))
+    deflection_of = DEFLECTION_ROW[0] @ step[:n]
+    compliance = -deflection_of[-1]
 
     state = np.zeros((2 * n + 4, samples))
     state[:n] = start[:, None]
     q, noise, f0, f1 = state[: 2 * n], state[2 * n : 2 * n + 2], state[-2], state[-1]
     rows = count // every
     mean, squares = np.empty((rows, n + 1)), np.empty((rows, n + 1))
-    f0[:] = force(system.mesh_stiffness(0.0)[0], float(WAY[0] @ start), half)
+    f0[:] = force(system.mesh_stiffness(0.0)[0], float(DEFLECTION_ROW[0] @ start), half_backlash)
     for number in range(1, count + 1):
         random.standard_normal(out=noise)
         k = system.mesh_stiffness(number * h)[0]
-        free = way[:-1] @ state[:-1] + WAY[0] @ steady[:n]
-        f1[:] = k / (1.0 + give * k) * dead_zone(free, half)
+        free_deflection = deflection_of[:-1] @ state[:-1] + DEFLECTION_ROW[0] @ steady[:n]
+        f1[:] = k / (1.0 + compliance * k) * dead_zone(free_deflection, half_backlash)
         q[:] = step @ state + steady[:, None]
         f0[:] = f1
         if number % every == 0:
-            values = np.vstack([q[:n], WAY @ q[:n]])
+            values = np.vstack([q[:n], DEFLECTION_ROW @ q[:n]])
             mean[number // every - 1] = values.mean(axis=1)
             squares[number // every - 1] = values.var(axis=1) * samples
-    return Sums(samples, mean, squares, WAY[0] @ q[:n])
+    return SampleMoments(samples, mean, squares, DEFLECTION_ROW[0] @ q[:n])

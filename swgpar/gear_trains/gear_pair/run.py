@@ -13,13 +13,20 @@ from mpi4py import MPI
 from scipy.stats import norm
 
 from swgpar.gear_trains.gear_pair.design import GearPairDesign
-from swgpar.gear_trains.gear_pair.model import COORDINATES, WAY, at_rest, mesh_force, natural_modes, system
-from swgpar.gear_trains.gear_pair.monte_carlo import BLOCK, simulate
-from swgpar.gear_trains.linearisation import EQUIVALENT, Moments, linearised
-from swgpar.gear_trains.published import KINDS, Quantities
+from swgpar.gear_trains.gear_pair.model import (
+    COORDINATES,
+    DEFLECTION_ROW,
+    gear_pair_system,
+    mesh_force,
+    natural_modes,
+    static_equilibrium,
+)
+from swgpar.gear_trains.gear_pair.monte_carlo import BLOCK_SIZE, simulate
+from swgpar.gear_trains.linearisation import EQUIVALENT, Moments, linearise
+from swgpar.gear_trains.published import STATISTICS, Quantities
 from swgpar.gear_trains.result import Table, TrainResult
-from swgpar.gear_trains.sampling import blocks, generator, share_out
-from swgpar.gear_trains.sums import Sums
+from swgpar.gear_trains.sample_moments import SampleMoments
+from swgpar.gear_trains.sampling import block_sizes, random_stream, run_tasks
 from swgpar.log import logger
 
 METHODS = (*EQUIVALENT, "monte_carlo")
@@ -35,7 +42,7 @@ def quantities(design: GearPairDesign) -> Quantities:
     for case in range(1, len(design.load.input) + 1):
         known[f"out_of_contact_{case}"] = (f"share of samples of case {case} out of contact at the end", 1)
         known[f"far_flank_{case}"] = (f"share of samples of case {case} on the far flank at the end", 1)
-        for kind, method, name in product(KINDS, EQUIVALENT, VALUES):
+        for kind, method, name in product(STATISTICS, EQUIVALENT, VALUES):
             text = f"difference of the {method}-based {kind} of {name} from Monte Carlo's, case {case} (%)"
             known[f"error_{kind}_{method}_{name}_{case}"] = (text, 1)
     return known
@@ -60,21 +67,21 @@ def _timed(task: Callable[[], Any]) -> tuple[Any, float]:
 def compute(design: GearPairDesign, comm: MPI.Comm) -> TrainResult:
     """All results of a design, the same on all ranks; collective."""
     cases, every = range(len(design.load.input)), design.every
-    sizes = blocks(design.monte_carlo.samples, BLOCK)
+    sizes = block_sizes(design.monte_carlo.samples, BLOCK_SIZE)
     grid = (design.step, design.steps, every)
     tasks: list[Callable[[], Any]] = [
-        partial(linearised, system(design, case), at_rest(design, case), *grid, criterion)
+        partial(linearise, gear_pair_system(design, case), static_equilibrium(design, case), *grid, criterion)
         for case in cases
         for criterion in EQUIVALENT
     ]
     simulated: list[Callable[[], Any]] = [
         partial(
             simulate,
-            system(design, case),
-            at_rest(design, case),
+            gear_pair_system(design, case),
+            static_equilibrium(design, case),
             *grid,
             size,
-            generator(design.gear_train.seed, case, block),
+            random_stream(design.gear_train.seed, case, block),
         )
         for case in cases
         for block, size in enumerate(sizes)
@@ -87,17 +94,17 @@ def compute(design: GearPairDesign, comm: MPI.Comm) -> TrainResult:
         design.monte_carlo.samples,
         comm.size,
     )
-    done = share_out(comm, [partial(_timed, task) for task in (*tasks, *simulated)])
+    done = run_tasks(comm, [partial(_timed, task) for task in (*tasks, *simulated)])
     results, seconds = [result for result, _ in done], [s for _, s in done]
     moments = {key: results[k] for k, key in enumerate((c, m) for c in cases for m in EQUIVALENT)}
     parts = results[len(tasks) :]
-    sums = [reduce(Sums.with_more, parts[c * len(sizes) : (c + 1) * len(sizes)]) for c in cases]
+    sums = [reduce(SampleMoments.merged_with, parts[c * len(sizes) : (c + 1) * len(sizes)]) for c in cases]
 
-    half = 1e-6 * design.mesh.half_backlash
+    half_backlash = 1e-6 * design.mesh.half_backlash
     values: dict[str, float | list[float]] = {}
     for case in cases:
-        values[f"out_of_contact_{case + 1}"] = float((sums[case].last < half).mean())
-        values[f"far_flank_{case + 1}"] = float((sums[case].last < -half).mean())
+        values[f"out_of_contact_{case + 1}"] = float((sums[case].last < half_backlash).mean())
+        values[f"far_flank_{case + 1}"] = float((sums[case].last < -half_backlash).mean())
     statistics = {
         (case, method): _statistics(moments[case, method])
         if method in EQUIVALENT
@@ -117,15 +124,15 @@ def compute(design: GearPairDesign, comm: MPI.Comm) -> TrainResult:
 
 def _statistics(moments: Moments) -> tuple[np.ndarray, np.ndarray]:
     """Means and deviations (rows, 4) of coordinates and mesh, without the start."""
-    n, ways = len(COORDINATES), np.vstack([np.eye(len(COORDINATES)), WAY])
-    variances = np.einsum("ki,tij,kj->tk", ways, moments.covariance[1:, :n, :n], ways)
-    return moments.mean[1:] @ ways.T, np.sqrt(np.maximum(variances, 0.0))
+    n, deflection_rows = len(COORDINATES), np.vstack([np.eye(len(COORDINATES)), DEFLECTION_ROW])
+    variances = np.einsum("ki,tij,kj->tk", deflection_rows, moments.covariance[1:, :n, :n], deflection_rows)
+    return moments.mean[1:] @ deflection_rows.T, np.sqrt(np.maximum(variances, 0.0))
 
 
 def _errors(statistics: dict[tuple[int, str], tuple[np.ndarray, np.ndarray]], cases: int) -> dict[str, float]:
     """Mean and deviation over the second half of the time: percent by which they differ from Monte Carlo's."""
     out = {}
-    for case, (k, kind) in product(range(cases), enumerate(KINDS)):
+    for case, (k, kind) in product(range(cases), enumerate(STATISTICS)):
         settled = {m: statistics[case, m][k][len(statistics[case, m][k]) // 2 :].mean(axis=0) for m in METHODS}
         for method in EQUIVALENT:
             errors = (100.0 * (settled[method] / settled["monte_carlo"] - 1.0)).tolist()
@@ -141,13 +148,13 @@ def _history(design: GearPairDesign, statistics: dict[tuple[int, str], tuple[np.
         "time_s": np.tile(design.time.end * np.arange(1, rows + 1) / rows, cases),
     }
     for method in METHODS:
-        for k, kind in enumerate(KINDS):
+        for k, kind in enumerate(STATISTICS):
             columns = np.concatenate([statistics[case, method][k] for case in range(cases)])
             out |= {f"{method}_{kind}_{v}_um": 1e6 * c for v, c in zip(VALUES, columns.T, strict=True)}
     return out
 
 
-def _density(sums: Sums, case: int, moments: dict[tuple[int, str], Moments]) -> Table:
+def _density(sums: SampleMoments, case: int, moments: dict[tuple[int, str], Moments]) -> Table:
     """Densities of the mesh's way at the end, per µm."""
     counts, edges = np.histogram(1e6 * sums.last, bins=BINS, density=True)
     middle = 0.5 * (edges[1:] + edges[:-1])

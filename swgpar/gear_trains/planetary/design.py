@@ -8,14 +8,14 @@ from typing import Annotated, Literal
 from annotated_types import Len
 
 from swgpar.errors import InputError
-from swgpar.gear_trains.keys import Damping, GearTrain, MonteCarlo, Output, Positive, TrainDesign
-from swgpar.gear_trains.ring.design import held
+from swgpar.gear_trains.common_sections import Damping, GearTrain, MonteCarlo, Output, Positive, TrainDesign
+from swgpar.gear_trains.ring.design import supports_restrain_ring
 from swgpar.input.quantities import Section, quantity
 
 Thicknesses = Annotated[list[Positive], Len(1)]
 
 
-class Train(GearTrain):
+class PlanetaryModel(GearTrain):
     model: Literal["planetary"] = quantity(text="the gear train")
 
 
@@ -91,7 +91,7 @@ class Time(Section):
 class PlanetaryDesign(TrainDesign):
     """A planetary gear train and its wind. Attributes are the sections of the design file."""
 
-    gear_train: Train
+    gear_train: PlanetaryModel
     sun: Sun
     planet: Planet
     carrier: Carrier
@@ -132,10 +132,10 @@ def check_fit(design: PlanetaryDesign) -> None:
             f"ring.supports = {ring.supports} is out of range: allowed divisors of {ring.elements} (ring.elements)"
         )
     radius = 1e-3 * (ring.root_radius + 0.5 * ring.rim)
-    if not held(ring.supports, ring.radial, ring.tangential, ring.torsional, radius):
+    if not supports_restrain_ring(ring.supports, ring.radial, ring.tangential, ring.torsional, radius):
         raise InputError(
             f"ring.supports = {ring.supports} is out of range: allowed supports whose stiffnesses hold the ring "
-            "against every shift and turn"
+            "against rigid translation and rotation"
         )
     for name in ("steps", "linearised_steps"):
         if getattr(time, name) % time.rows:

@@ -21,7 +21,7 @@ the other way; as z_s + z_r is a multiple of the number of planets, both are one
 planet are `mesh.phase` apart.
 
 The ring meshes move along the ring. All time dependence is in their six ways and in the mesh stiffnesses: the rest is
-constant, and its modes separate mass, stiffness and damping. `Train` holds everything in these modes.
+constant, and its modes separate mass, stiffness and damping. `PlanetaryModel` holds everything in these modes.
 """
 
 from __future__ import annotations
@@ -31,24 +31,24 @@ from scipy.linalg import eigh
 
 from swgpar.gear_trains.mesh_stiffness import MeshStiffness
 from swgpar.gear_trains.planetary.design import PlanetaryDesign
-from swgpar.gear_trains.ring.beam import Ring, Section
+from swgpar.gear_trains.ring.curved_beam import BeamSection, Ring
 
 SUN = 0
 
 
-def planet(number: int) -> int:
+def planet_index(number: int) -> int:
     """First coordinate of a planet."""
     return 3 + 3 * number
 
 
-def carrier(design: PlanetaryDesign) -> int:
+def carrier_index(design: PlanetaryDesign) -> int:
     """First coordinate of the carrier."""
     return 3 + 3 * design.planet.count
 
 
-def nodes(design: PlanetaryDesign) -> int:
+def ring_index(design: PlanetaryDesign) -> int:
     """First coordinate of the ring."""
-    return carrier(design) + 3
+    return carrier_index(design) + 3
 
 
 def radii(design: PlanetaryDesign) -> tuple[float, float, float]:
@@ -63,18 +63,18 @@ def elastic_ring(design: PlanetaryDesign) -> Ring:
     r = design.ring
     thickness, width = 1e-3 * r.rim, 1e-3 * r.face_width
     radius = 1e-3 * (r.root_radius + 0.5 * r.rim)
-    section = Section(1e9 * r.E, r.density, radius, width * thickness, width * thickness**3 / 12.0)
+    section = BeamSection(1e9 * r.E, r.density, radius, width * thickness, width * thickness**3 / 12.0)
     return Ring(section, r.elements, (r.supports, (r.radial, r.tangential, r.torsional)))
 
 
-class Train:
+class PlanetaryModel:
     """The gear train in the modes of all but its meshes.
 
     Attributes
     ----------
     shapes : (n, n), columns are modes;  stiffness, damping : (n,) of unit modal masses
     mesh : MeshStiffness of the meshes, sun meshes first;  mesh_damping : (m,) N·s/m
-    half : half backlash, m;  torque_push : (n,) modal forces of a unit torque on the carrier
+    half_backlash : half backlash, m;  torque_vector : (n,) modal forces of a unit torque on the carrier
     """
 
     def __init__(self, design: PlanetaryDesign) -> None:
@@ -94,11 +94,11 @@ class Train:
             2.0 * np.pi * np.repeat([0.0, m.phase], count) + np.tile(design.sun.teeth * self.angles, 2),
         )
         self.mesh_damping = design.damping.stiffness * mean
-        self.half = 1e-6 * m.half_backlash
-        push = np.zeros(self.size)
-        push[carrier(design) + 2] = 1.0 / radii(design)[2]
-        self.torque_push = self.shapes.T @ push
-        self._fixed_ways = self._lumped_ways()
+        self.half_backlash = 1e-6 * m.half_backlash
+        torque_row = np.zeros(self.size)
+        torque_row[carrier_index(design) + 2] = 1.0 / radii(design)[2]
+        self.torque_vector = self.shapes.T @ torque_row
+        self._fixed_rows = self._fixed_deflection_rows()
 
     @property
     def size(self) -> int:
@@ -107,24 +107,24 @@ class Train:
 
     def _matrices(self) -> tuple[np.ndarray, np.ndarray]:
         """Mass and stiffness (n, n) without meshes."""
-        design, first = self.design, nodes(self.design)
+        design, first = self.design, ring_index(self.design)
         n = first + self.ring.size
         mass, stiffness = np.zeros((n, n)), np.zeros((n, n))
         sun_radius, planet_radius, centres = radii(design)
-        lumped = [(SUN, design.sun, sun_radius), (carrier(design), design.carrier, centres)]
-        lumped += [(planet(k), design.planet, planet_radius) for k in range(design.planet.count)]
-        for place, section, radius in lumped:
-            at = place + np.arange(3)
+        lumped = [(SUN, design.sun, sun_radius), (carrier_index(design), design.carrier, centres)]
+        lumped += [(planet_index(k), design.planet, planet_radius) for k in range(design.planet.count)]
+        for first_index, section, radius in lumped:
+            at = first_index + np.arange(3)
             mass[at, at] = section.mass, section.mass, section.inertia / radius**2
-        for place, section in ((SUN, design.sun), (carrier(design), design.carrier)):
-            at = place + np.arange(2)
+        for first_index, section in ((SUN, design.sun), (carrier_index(design), design.carrier)):
+            at = first_index + np.arange(2)
             stiffness[at, at] = section.bearing
         stiffness[SUN + 2, SUN + 2] = design.sun.torsional / sun_radius**2
         for k, psi in enumerate(self.angles):
             stretches = np.zeros((2, n))
-            c = carrier(design)
-            stretches[0, [planet(k), c, c + 1]] = 1.0, -np.cos(psi), -np.sin(psi)
-            stretches[1, [planet(k) + 1, c, c + 1, c + 2]] = 1.0, np.sin(psi), -np.cos(psi), -1.0
+            c = carrier_index(design)
+            stretches[0, [planet_index(k), c, c + 1]] = 1.0, -np.cos(psi), -np.sin(psi)
+            stretches[1, [planet_index(k) + 1, c, c + 1, c + 2]] = 1.0, np.sin(psi), -np.cos(psi), -1.0
             stiffness += design.planet.bearing * stretches.T @ stretches
         mass[first:, first:], stiffness[first:, first:] = self.ring.mass, self.ring.stiffness
         return mass, stiffness
@@ -134,25 +134,25 @@ class Train:
         """Angles of the planets in the carrier's frame, (planets,) rad (eq. 3.3)."""
         return 2.0 * np.pi * np.arange(self.design.planet.count) / self.design.planet.count
 
-    def _lumped_ways(self) -> np.ndarray:
+    def _fixed_deflection_rows(self) -> np.ndarray:
         """Ways (m, n) of the meshes without the ring's part."""
         count, a = self.design.planet.count, np.radians(self.design.mesh.pressure_angle)
-        ways = np.zeros((2 * count, self.size))
+        deflection_rows = np.zeros((2 * count, self.size))
         for k, psi in enumerate(self.angles):
-            ways[k, SUN : SUN + 3] = -np.sin(psi + a), np.cos(psi + a), 1.0
-            ways[k, planet(k) : planet(k) + 3] = np.sin(a), -np.cos(a), 1.0
-            ways[count + k, planet(k) : planet(k) + 3] = -np.sin(a), -np.cos(a), -1.0
-        return ways
+            deflection_rows[k, SUN : SUN + 3] = -np.sin(psi + a), np.cos(psi + a), 1.0
+            deflection_rows[k, planet_index(k) : planet_index(k) + 3] = np.sin(a), -np.cos(a), 1.0
+            deflection_rows[count + k, planet_index(k) : planet_index(k) + 3] = -np.sin(a), -np.cos(a), -1.0
+        return deflection_rows
 
-    def ways(self, t: float) -> np.ndarray:
+    def deflection_rows(self, t: float) -> np.ndarray:
         """Ways (m, n) of the meshes per coordinate at a time in s."""
-        out, count = self._fixed_ways.copy(), self.design.planet.count
+        out, count = self._fixed_rows.copy(), self.design.planet.count
         a = np.radians(self.design.mesh.pressure_angle)
         for k, psi in enumerate(self.angles):
-            along = self.ring.at(self.design.carrier.speed * t + psi)
-            out[count + k, nodes(self.design) :] = np.cos(a) * along[1] + np.sin(a) * along[0]
+            along = self.ring.interpolation(self.design.carrier.speed * t + psi)
+            out[count + k, ring_index(self.design) :] = np.cos(a) * along[1] + np.sin(a) * along[0]
         return out
 
-    def modal_ways(self, times: np.ndarray) -> np.ndarray:
+    def modal_deflection_rows(self, times: np.ndarray) -> np.ndarray:
         """Ways (times, m, n) per mode."""
-        return np.array([self.ways(t) for t in times]) @ self.shapes
+        return np.array([self.deflection_rows(t) for t in times]) @ self.shapes

@@ -8,7 +8,7 @@ import numpy as np
 from annotated_types import Len
 
 from swgpar.errors import InputError
-from swgpar.gear_trains.keys import GearTrain, Output, Positive, TrainDesign
+from swgpar.gear_trains.common_sections import GearTrain, Output, Positive, TrainDesign
 from swgpar.input.quantities import Section, quantity
 
 Speeds = Annotated[list[Positive], Len(1)]
@@ -69,7 +69,7 @@ class RingDesign(TrainDesign):
     output: Output = Output()
 
 
-def held(supports: int, radial: float, tangential: float, torsional: float, radius: float) -> bool:
+def supports_restrain_ring(supports: int, radial: float, tangential: float, torsional: float, radius: float) -> bool:
     """Whether equally spaced supports (N/m, N/m, N·m/rad) hold a ring of some radius (m) against all rigid motions."""
     angle = 2.0 * np.pi * np.arange(supports) / supports
     none, one = np.zeros(supports), np.ones(supports)
@@ -101,10 +101,10 @@ def check_fit(design: RingDesign) -> None:
     if design.supports is None:
         raise InputError("supports is missing: allowed only without moving_load, which would carry the ring away")
     s, radius = design.supports, 0.5e-3 * (body.inner_radius + body.outer_radius)
-    if not held(s.count, s.radial, s.tangential, s.torsional, radius):
+    if not supports_restrain_ring(s.count, s.radial, s.tangential, s.torsional, radius):
         raise InputError(
             f"supports.tangential = {s.tangential:g} is out of range: allowed stiffnesses of the supports that "
-            "hold the ring under moving_load against every shift and turn"
+            "hold the ring under moving_load against rigid translation and rotation"
         )
     if load.damping_mass + load.damping_stiffness <= 0.0:
         raise InputError(

@@ -19,9 +19,9 @@ from functools import cached_property
 import numpy as np
 from scipy.linalg import expm
 
-from swgpar.gear_trains.ring.beam import Ring
+from swgpar.gear_trains.ring.curved_beam import Ring
 from swgpar.gear_trains.ring.design import RingDesign
-from swgpar.gear_trains.sums import Sums
+from swgpar.gear_trains.sample_moments import SampleMoments
 
 
 @dataclass(frozen=True)
@@ -53,8 +53,8 @@ class MovingLoads:
         alpha, n = np.radians(self.load.pressure_angle), self.load.steps
         direction = np.array([np.sin(alpha), np.cos(alpha), 0.0])
         # at the ends of all steps, and in their middle for the noise
-        at = [ring.at(np.pi * k / n) for k in range(2 * n)]
-        self.push = np.array([direction @ rows for rows in at]) @ self.shapes
+        at = [ring.interpolation(np.pi * k / n) for k in range(2 * n)]
+        self.load_vectors = np.array([direction @ rows for rows in at]) @ self.shapes
         self.outward = np.array([rows[0] for rows in at[::2]]) @ self.shapes
         self.middle = self.shapes[3 * middle_node(design)]
 
@@ -63,21 +63,24 @@ class MovingLoads:
         load = self.load
         ahead = 2.0 * np.pi * np.arange(load.loads) / load.loads
         sizes = load.force + load.harmonic * np.sin(load.frequency * (time + ahead / speed))
-        return sizes @ self.push[[self._place(2 * step, k) for k in range(load.loads)]]
+        return sizes @ self.load_vectors[[self._position_index(2 * step, k) for k in range(load.loads)]]
 
     def noises(self, step: int) -> np.ndarray:
         """Modal forces (modes, loads) of unit white noises, in the middle of a step."""
-        return self.load.noise * np.array([self.push[self._place(2 * step - 1, k)] for k in range(self.load.loads)]).T
+        return (
+            self.load.noise
+            * np.array([self.load_vectors[self._position_index(2 * step - 1, k)] for k in range(self.load.loads)]).T
+        )
 
-    def _place(self, half_steps: int, number: int) -> int:
-        count = len(self.push)
+    def _position_index(self, half_steps: int, number: int) -> int:
+        count = len(self.load_vectors)
         return (half_steps + number * count // self.load.loads) % count
 
     def respond(self, speed: float) -> Response:
         """Go round at a speed (rad/s), from rest at the steady deflection under the loads at their first places."""
         load, n = self.load, self.load.steps
         h = 2.0 * np.pi / speed / n
-        modes = Modes(self.frequencies**2, load.damping_mass + load.damping_stiffness * self.frequencies**2, h)
+        modes = ModalStepper(self.frequencies**2, load.damping_mass + load.damping_stiffness * self.frequencies**2, h)
         force = self.forces(0, 0.0, speed)
         q, v = force / modes.k, np.zeros_like(force)
         spread = np.zeros((2, 2, len(q), len(q)))
@@ -93,7 +96,7 @@ class MovingLoads:
                 deviation[row] = np.sqrt(np.maximum(np.einsum("pi,ij,pj->p", watched, spread[0, 0], watched), 0.0))
         return Response(2.0 * np.pi * np.arange(1, n + 1) / n, mean, deviation)
 
-    def at_rest(self, speed: float) -> np.ndarray:
+    def quasi_static(self, speed: float) -> np.ndarray:
         """Mean displacements (rows, 2), m, as in `Response` of a ring without inertia and damping."""
         load, n = self.load, self.load.steps
         h, mean = 2.0 * np.pi / speed / n, np.empty((n, 2))
@@ -103,11 +106,11 @@ class MovingLoads:
             mean[row] = np.stack([self.outward[step % n], self.middle]) @ (force / self.frequencies**2)
         return mean
 
-    def simulate(self, speed: float, samples: int, random: np.random.Generator) -> Sums:
+    def simulate(self, speed: float, samples: int, random: np.random.Generator) -> SampleMoments:
         """The displacements (rows, 2) of `Response` in `samples` simulations at a speed; noise alone varies."""
         load, n = self.load, self.load.steps
         h = 2.0 * np.pi / speed / n
-        modes = Modes(self.frequencies**2, load.damping_mass + load.damping_stiffness * self.frequencies**2, h)
+        modes = ModalStepper(self.frequencies**2, load.damping_mass + load.damping_stiffness * self.frequencies**2, h)
         root = modes.noise_root()
         force = self.forces(0, 0.0, speed)
         q, v = np.tile(force / modes.k, (samples, 1)), np.zeros((samples, len(force)))
@@ -123,10 +126,10 @@ class MovingLoads:
             if row >= 0:
                 values = q @ np.stack([self.outward[step % n], self.middle]).T
                 mean[row], squares[row] = values.mean(axis=0), values.var(axis=0) * samples
-        return Sums(samples, mean, squares, values[:, 1])
+        return SampleMoments(samples, mean, squares, values[:, 1])
 
 
-class Modes:
+class ModalStepper:
     """Separate unit masses with stiffness k and damping c (modes,), moved on by steps of h seconds exactly.
 
     The force is linear in a step; white noise has unit intensity, one and the same for all modes.
@@ -141,10 +144,10 @@ class Modes:
         big[:, :2, :2] = rates
         big[:, 1, 2] = 1.0
         big[:, 2, 3] = 1.0 / h
-        moved = expm(h * big)
-        self.of_state = moved[:, :2, :2].transpose(1, 2, 0)  # (2, 2, modes)
-        self.of_start = (moved[:, :2, 2] - moved[:, :2, 3]).T
-        self.of_end = moved[:, :2, 3].T
+        transition = expm(h * big)
+        self.of_state = transition[:, :2, :2].transpose(1, 2, 0)  # (2, 2, modes)
+        self.of_start = (transition[:, :2, 2] - transition[:, :2, 3]).T
+        self.of_end = transition[:, :2, 3].T
         self.rates = rates
 
     @cached_property

@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.gear_trains.cycles import slow_cycles
-from swgpar.gear_trains.published import KINDS, Quantities, label
+from swgpar.gear_trains.dominant_cycles import dominant_cycles
+from swgpar.gear_trains.published import STATISTICS, Quantities, number_label
 from swgpar.gear_trains.result import Table, TrainResult
-from swgpar.gear_trains.ring.beam import Ring, Section, free_frequencies
+from swgpar.gear_trains.ring.curved_beam import BeamSection, Ring, free_frequencies
 from swgpar.gear_trains.ring.design import RingDesign
 from swgpar.gear_trains.ring.moving_load import MovingLoads, Response
-from swgpar.gear_trains.sampling import blocks, generator, share_out
-from swgpar.gear_trains.sums import Sums
+from swgpar.gear_trains.sample_moments import SampleMoments
+from swgpar.gear_trains.sampling import block_sizes, random_stream, run_tasks
 from swgpar.log import logger
 
 POINTS = ("moving_point", "middle_node")
@@ -27,7 +27,7 @@ ROWS = 400
 SHAPES, AROUND = 6, 361
 """Modes that are drawn, and points around each."""
 
-BLOCK = 50
+BLOCK_SIZE = 50
 RIGID = 1e-3
 """Modes below this share of the first free bending frequency are rigid motions."""
 
@@ -42,8 +42,11 @@ def quantities(design: RingDesign) -> Quantities:
     if load is not None:
         for point in POINTS:
             name = point.replace("_", " ")
-            for speed, kind in product(load.speeds, KINDS):
-                known[f"{kind}_{point}_{label(speed)}"] = (f"largest {kind} of the {name} at {speed:g} rad/s (m)", 1)
+            for speed, kind in product(load.speeds, STATISTICS):
+                known[f"{kind}_{point}_{number_label(speed)}"] = (
+                    f"largest {kind} of the {name} at {speed:g} rad/s (m)",
+                    1,
+                )
             known[f"cycles_{point}"] = (f"dominant slow cycles of the {name} in a revolution at the first speed", 1)
         known["critical_speeds"] = ("the five highest peaks of the mean of the middle node, by speed (rad/s)", 5)
     return known
@@ -61,7 +64,7 @@ def distinct_frequencies(design: RingDesign, count: int) -> tuple[np.ndarray, np
 
 def derived(design: RingDesign) -> dict[str, float]:
     """What follows from the design file at once, for `swgpar check`."""
-    section = Section.of(design)
+    section = BeamSection.of(design)
     out = {
         "radius of the centre line (mm)": 1e3 * section.radius,
         "mass (kg)": 2.0 * np.pi * section.radius * section.density * section.area,
@@ -79,7 +82,7 @@ def compute(design: RingDesign, comm: MPI.Comm) -> TrainResult:
     """All results of a design, the same on all ranks; collective."""
     logger.info("elastic ring: %d elements; %d ranks", design.ring.elements, comm.size)
     frequencies, shapes = distinct_frequencies(design, design.ring.modes)
-    section = Section.of(design)
+    section = BeamSection.of(design)
     unit = np.sqrt(section.density * section.area * section.radius**4 / (section.E * section.inertia))
     values: dict[str, float | list[float]] = {
         "frequencies": frequencies.tolist(),
@@ -92,7 +95,7 @@ def compute(design: RingDesign, comm: MPI.Comm) -> TrainResult:
         return TrainResult(modes, tables, values)
     responses, curve, simulated = _moving(design, comm)
     values |= _extremes(design.moving_load.speeds, responses) | {"critical_speeds": _peaks(curve)}
-    values |= {f"cycles_{point}": slow_cycles(responses[0].mean[:, k]) for k, point in enumerate(POINTS)}
+    values |= {f"cycles_{point}": dominant_cycles(responses[0].mean[:, k]) for k, point in enumerate(POINTS)}
     tables |= {"critical_speeds": curve, "monte_carlo": simulated}
     return TrainResult(_history(design, responses), tables, values)
 
@@ -102,22 +105,22 @@ def _moving(design: RingDesign, comm: MPI.Comm) -> tuple[list[Response], Table, 
     load = design.moving_load
     loads = MovingLoads(design)
     sweep = np.linspace(*load.sweep, load.sweep_speeds)
-    sizes = blocks(load.samples, BLOCK)
+    sizes = block_sizes(load.samples, BLOCK_SIZE)
     tasks: list[Callable[[], Any]] = [partial(loads.respond, float(speed)) for speed in (*load.speeds, *sweep)]
     simulations = [
-        partial(loads.simulate, load.speeds[0], size, generator(design.gear_train.seed, block))
+        partial(loads.simulate, load.speeds[0], size, random_stream(design.gear_train.seed, block))
         for block, size in enumerate(sizes)
     ]
-    done = share_out(comm, [*tasks, *simulations])
+    done = run_tasks(comm, [*tasks, *simulations])
     responses, parts = done[: len(load.speeds)], done[len(load.speeds) : len(tasks)]
     curve = {"speed_rad_s": sweep}
     for k, point in enumerate(POINTS):
         curve |= {
             f"mean_{point}_m": np.array([np.abs(part.mean[:, k]).max() for part in parts]),
             f"deviation_{point}_m": np.array([part.deviation[:, k].max() for part in parts]),
-            f"without_inertia_{point}_m": np.array([np.abs(loads.at_rest(s)[:, k]).max() for s in sweep]),
+            f"without_inertia_{point}_m": np.array([np.abs(loads.quasi_static(s)[:, k]).max() for s in sweep]),
         }
-    sums = reduce(Sums.with_more, done[len(tasks) :])
+    sums = reduce(SampleMoments.merged_with, done[len(tasks) :])
     every = max(1, load.steps // ROWS)
     rows = slice(every - 1, None, every)
     simulated = {"angle_rad": responses[0].angle[rows]}
@@ -130,8 +133,8 @@ def _extremes(speeds: list[float], responses: list[Response]) -> dict[str, float
     out = {}
     for speed, response in zip(speeds, responses, strict=True):
         for k, point in enumerate(POINTS):
-            out[f"mean_{point}_{label(speed)}"] = float(np.abs(response.mean[:, k]).max())
-            out[f"deviation_{point}_{label(speed)}"] = float(response.deviation[:, k].max())
+            out[f"mean_{point}_{number_label(speed)}"] = float(np.abs(response.mean[:, k]).max())
+            out[f"deviation_{point}_{number_label(speed)}"] = float(response.deviation[:, k].max())
     return out
 
 
@@ -146,7 +149,7 @@ def _peaks(curve: Table) -> list[float]:
 def _shapes(design: RingDesign, shapes: np.ndarray) -> Table:
     """Outward and tangential displacement around the ring, each mode with its largest displacement 1."""
     ring, angle = Ring.of(design), np.linspace(0.0, 2.0 * np.pi, AROUND)
-    values = np.array([ring.at(a)[:2] @ shapes for a in angle])
+    values = np.array([ring.interpolation(a)[:2] @ shapes for a in angle])
     values /= np.abs(values).max(axis=(0, 1))
     out = {"angle_rad": angle}
     for k in range(shapes.shape[1]):

@@ -8,7 +8,7 @@ import numpy as np
 
 
 @dataclass(frozen=True)
-class Sums:
+class SampleMoments:
     """Samples of some blocks added up.
 
     Attributes
@@ -23,13 +23,13 @@ class Sums:
     squares: np.ndarray
     last: np.ndarray
 
-    def with_more(self, other: Sums) -> Sums:
+    def merged_with(self, other: SampleMoments) -> SampleMoments:
         """Both together (Chan, Golub and LeVeque 1979)."""
         count = self.count + other.count
         apart = other.mean - self.mean
         mean = self.mean + apart * (other.count / count)
         squares = self.squares + other.squares + apart**2 * (self.count * other.count / count)
-        return Sums(count, mean, squares, np.concatenate([self.last, other.last]))
+        return SampleMoments(count, mean, squares, np.concatenate([self.last, other.last]))
 
     @property
     def deviation(self) -> np.ndarray:

@@ -21,10 +21,10 @@ import numpy as np
 from scipy.stats import spearmanr
 
 from swgpar.gear_trains.cascade.design import CascadeDesign
-from swgpar.gear_trains.cascade.static import MESHES
-from swgpar.gear_trains.sampling import blocks, generator
+from swgpar.gear_trains.cascade.static_sharing import MESH_COUNTS
+from swgpar.gear_trains.sampling import block_sizes, random_stream
 
-BLOCK = 10_000
+BLOCK_SIZE = 10_000
 STREAM = 0
 """First number of the keys of these samples' streams."""
 
@@ -63,21 +63,21 @@ def standard_deviation(design: CascadeDesign, kind: str) -> float:
     return float(np.sqrt(sum(limit**2 for limit in contributions(design, kind).values())) / design.tolerances.limit)
 
 
-def stack_up(design: CascadeDesign, kind: str) -> tuple[np.ndarray, dict[str, float]]:
+def sample_stack_up(design: CascadeDesign, kind: str) -> tuple[np.ndarray, dict[str, float]]:
     """Samples of the stack-up (n,), m, and Spearman's rank of each tolerance with it (eq. 2)."""
     limits = contributions(design, kind)
     sizes = np.array(list(limits.values())) / design.tolerances.limit
-    number = list(MESHES).index(kind)
+    number = list(MESH_COUNTS).index(kind)
     parts = np.concatenate(
         [
-            generator(design.gear_train.seed, STREAM, number, block).standard_normal((size, len(sizes)))
-            for block, size in enumerate(blocks(design.tolerances.samples, BLOCK))
+            random_stream(design.gear_train.seed, STREAM, number, block).standard_normal((size, len(sizes)))
+            for block, size in enumerate(block_sizes(design.tolerances.samples, BLOCK_SIZE))
         ]
     )
     total = parts @ sizes
     return total, {name: float(spearmanr(parts[:, k], total).statistic) for k, name in enumerate(limits)}
 
 
-def stack_ups(design: CascadeDesign) -> list[Callable[[], tuple[np.ndarray, dict[str, float]]]]:
-    """Tasks for the stack-ups of all kinds of meshes, in the order of MESHES."""
-    return [lambda kind=kind: stack_up(design, kind) for kind in MESHES]
+def stack_up_tasks(design: CascadeDesign) -> list[Callable[[], tuple[np.ndarray, dict[str, float]]]]:
+    """Tasks for the stack-ups of all kinds of meshes, in the order of MESH_COUNTS."""
+    return [lambda kind=kind: sample_stack_up(design, kind) for kind in MESH_COUNTS]

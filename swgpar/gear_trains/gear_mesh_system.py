@@ -22,13 +22,13 @@ import numpy as np
 
 
 @dataclass(frozen=True)
-class MeshedSystem:
+class GearMeshSystem:
     """A system of n coordinates, m meshes and r noises.
 
     Attributes
     ----------
     mass, damping, stiffness : (n, n) symmetric; the stiffness without that of the meshes
-    ways : function of the time, (m, n)
+    deflection_rows : function of the time, (m, n)
     mesh_stiffness : function of the time, (m,) N/m
     half_backlash : (m,) m
     force : (n,) N
@@ -38,7 +38,7 @@ class MeshedSystem:
     mass: np.ndarray
     damping: np.ndarray
     stiffness: np.ndarray
-    ways: Callable[[float], np.ndarray]
+    deflection_rows: Callable[[float], np.ndarray]
     mesh_stiffness: Callable[[float], np.ndarray]
     half_backlash: np.ndarray
     force: np.ndarray
@@ -51,8 +51,8 @@ class MeshedSystem:
 
     def linear_stiffness(self, t: float, equivalent: np.ndarray) -> np.ndarray:
         """K with meshes of given stiffness (m,), (n, n)."""
-        ways = self.ways(t)
-        return self.stiffness + ways.T @ (equivalent[:, None] * ways)
+        deflection_rows = self.deflection_rows(t)
+        return self.stiffness + deflection_rows.T @ (equivalent[:, None] * deflection_rows)
 
     def newmark(self, stiffness: np.ndarray, h: float) -> tuple[np.ndarray, np.ndarray]:
         """Left matrix of the scheme at the end of a step and right matrix at its start, (2 n, 2 n) each, for p = K q.

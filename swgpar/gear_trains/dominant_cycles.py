@@ -8,7 +8,7 @@ SLOWEST_WAVE = 18
 """Largest number of cycles in a revolution that counts as slow: tooth meshes come faster."""
 
 
-def slow_cycles(values: np.ndarray, revolutions: float = 1.0) -> float:
+def dominant_cycles(values: np.ndarray, revolutions: float = 1.0) -> float:
     """Number of slow cycles in a revolution with the largest amplitude; values : (n,), equally spaced in all time."""
     amplitude = np.abs(np.fft.rfft(values))[: int(SLOWEST_WAVE * revolutions) + 1]
     return float((1 + np.argmax(amplitude[1:])) / revolutions)

@@ -29,7 +29,7 @@ QUADRATURE = 8
 
 
 @dataclass(frozen=True)
-class Section:
+class BeamSection:
     """Of a ring. E : Pa;  density : kg/m³;  radius : m, of the centre line;  area : m²;  inertia : m⁴"""
 
     E: float
@@ -39,7 +39,7 @@ class Section:
     inertia: float
 
     @classmethod
-    def of(cls, design: RingDesign) -> Section:
+    def of(cls, design: RingDesign) -> BeamSection:
         """The rectangular section of a design."""
         body = design.ring
         thickness, width = 1e-3 * (body.outer_radius - body.inner_radius), 1e-3 * body.face_width
@@ -52,7 +52,7 @@ class Section:
         return self.inertia / (self.area * self.radius**2)
 
 
-def solutions(section: Section, angle: float) -> np.ndarray:
+def solutions(section: BeamSection, angle: float) -> np.ndarray:
     """P: (3, 6), values of u, w (m) and r (rad) of the six solutions at an angle from the element's middle."""
     a, c, s, j = angle, np.cos(angle), np.sin(angle), 1.0 + section.slenderness
     values = np.array(
@@ -66,7 +66,7 @@ def solutions(section: Section, angle: float) -> np.ndarray:
     return values
 
 
-def _strains(section: Section, angle: float) -> np.ndarray:
+def _strains(section: BeamSection, angle: float) -> np.ndarray:
     """(2, 6): e and k of the six solutions."""
     out = np.zeros((2, 6))
     out[0, 0] = -section.slenderness / section.radius
@@ -81,7 +81,7 @@ class Element:
     inverse : Q⁻¹ (6, 6)
     """
 
-    section: Section
+    section: BeamSection
     angle: float
     bending: np.ndarray
     stretching: np.ndarray
@@ -89,7 +89,7 @@ class Element:
     inverse: np.ndarray
 
     @classmethod
-    def over(cls, section: Section, angle: float) -> Element:
+    def over(cls, section: BeamSection, angle: float) -> Element:
         """The element of a ring whose ends are `angle` rad apart."""
         inverse = np.linalg.inv(np.vstack([solutions(section, -0.5 * angle), solutions(section, 0.5 * angle)]))
         points, weights = np.polynomial.legendre.leggauss(QUADRATURE)
@@ -107,9 +107,9 @@ class Element:
         """(6, 6)"""
         return self.bending + self.stretching
 
-    def shape(self, place: float) -> np.ndarray:
+    def shape_functions(self, angle: float) -> np.ndarray:
         """(3, 6): u, w, r at an angle from the middle per displacements of the two nodes (eq. 6.5)."""
-        return solutions(self.section, place) @ self.inverse
+        return solutions(self.section, angle) @ self.inverse
 
 
 class Ring:
@@ -125,7 +125,7 @@ class Ring:
 
     def __init__(
         self,
-        section: Section,
+        section: BeamSection,
         elements: int,
         supports: tuple[int, tuple[float, float, float]] | None = None,
         teeth: tuple[int, tuple[float, float, float]] | None = None,
@@ -145,7 +145,7 @@ class Ring:
         """The ring of a design."""
         s, t = design.supports, design.teeth
         return cls(
-            Section.of(design),
+            BeamSection.of(design),
             design.ring.elements,
             (s.count, (s.radial, s.tangential, s.torsional)) if s is not None else None,
             (t.count, (t.mass, t.mass, t.inertia)) if t is not None else None,
@@ -171,29 +171,29 @@ class Ring:
         first = 3 * element
         return (first + np.arange(6)) % self.size
 
-    def at(self, angle: float) -> np.ndarray:
+    def interpolation(self, angle: float) -> np.ndarray:
         """(3, unknowns): u, w, r at an angle (rad) on the ring."""
         width = self.element.angle
         turned = angle % (2.0 * np.pi)
         number = min(int(turned / width), self.elements - 1)
         rows = np.zeros((3, self.size))
-        rows[:, self.unknowns(number)] = self.element.shape(turned - (number + 0.5) * width)
+        rows[:, self.unknowns(number)] = self.element.shape_functions(turned - (number + 0.5) * width)
         return rows
 
     def _assembled(self, matrix: np.ndarray) -> np.ndarray:
         out = np.zeros((self.size, self.size))
         for number in range(self.elements):
-            place = self.unknowns(number)
-            out[np.ix_(place, place)] += matrix
+            indices = self.unknowns(number)
+            out[np.ix_(indices, indices)] += matrix
         return out
 
     def _add(self, matrix: np.ndarray, count: int, values: tuple[float, float, float]) -> None:
         for node in range(0, self.elements, self.elements // count):
-            place = 3 * node + np.arange(3)
-            matrix[place, place] += values
+            indices = 3 * node + np.arange(3)
+            matrix[indices, indices] += values
 
 
-def free_frequencies(section: Section, waves: int) -> np.ndarray:
+def free_frequencies(section: BeamSection, waves: int) -> np.ndarray:
     """Both natural frequencies (2,) in rad/s of a free ring with `waves` waves around it: bending, then stretching.
 
     Exact for the energy above: u = U cos(n a), w = W sin(n a).

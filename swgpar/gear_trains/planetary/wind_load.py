@@ -20,22 +20,23 @@ from swgpar.gear_trains.planetary.design import PlanetaryDesign
 
 
 @dataclass(frozen=True)
-class Wind:
-    """Torque = steady + turbulent . (c, c'), N·m; c moves on by a step of the filter exactly.
+class WindLoad:
+    """Torque = steady + turbulent . (c, c'), N·m; the filter state (c, c') is advanced exactly over a step.
 
     Attributes
     ----------
     steady : N·m;  turbulent : (2,) N·m per unit of c and c'
-    moved : (2, 2), what a step makes of (c, c');  root : (2, 2), lower; root root^T is the covariance that a step adds
+    transition : (2, 2), of (c, c') over a step
+    noise_root : (2, 2), lower triangular; noise_root noise_rootᵀ is the covariance that a step adds
     """
 
     steady: float
     turbulent: np.ndarray
-    moved: np.ndarray
-    root: np.ndarray
+    transition: np.ndarray
+    noise_root: np.ndarray
 
     @classmethod
-    def over(cls, design: PlanetaryDesign, h: float) -> Wind:
+    def of(cls, design: PlanetaryDesign, h: float) -> WindLoad:
         """The wind of a design with steps of h seconds."""
         wind, v0 = design.wind, design.wind.speed / 3.6
         period = wind.length / v0
@@ -48,5 +49,10 @@ class Wind:
         factor = wind.air_density * np.pi * wind.rotor_radius**3 * wind.power_coefficient / ratio
         # van Loan's block exponential: the difference of stationary covariances would be round-off for small steps
         blocks = expm(h * np.block([[-rates, noise @ noise.T], [np.zeros((2, 2)), rates.T]]))
-        moved = blocks[2:, 2:].T
-        return cls(0.5 * factor * v0**2, factor * v0 * gain * output, moved, np.linalg.cholesky(moved @ blocks[:2, 2:]))
+        transition = blocks[2:, 2:].T
+        return cls(
+            0.5 * factor * v0**2,
+            factor * v0 * gain * output,
+            transition,
+            np.linalg.cholesky(transition @ blocks[:2, 2:]),
+        )

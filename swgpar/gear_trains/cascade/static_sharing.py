@@ -21,29 +21,31 @@ from swgpar.gear_trains.cascade.flex_unit import FlexUnits
 
 Direction = Literal["A", "B"]
 PAIRS, SIDES = PINIONS // 2, 2
-MESHES = {"rack_pinion": PINIONS, "g1_g1": PAIRS, "g1_g2": PAIRS, "g3_g4": SIDES}
+MESH_COUNTS = {"rack_pinion": PINIONS, "g1_g1": PAIRS, "g1_g2": PAIRS, "g3_g4": SIDES}
 """Meshes of the gearbox by kind: rack with pinions 1 to 8; even with odd G1 of a pair; odd G1 with G2; G3 with G4."""
 
 
-def even_pinions() -> np.ndarray:
+def even_pinion_mask() -> np.ndarray:
     """(8,) bool"""
     return np.arange(PINIONS) % 2 == 1
 
 
-def path_gaps(design: CascadeDesign, direction: Direction, errors: dict[str, np.ndarray] | None = None) -> np.ndarray:
+def path_gap_angles(
+    design: CascadeDesign, direction: Direction, errors: dict[str, np.ndarray] | None = None
+) -> np.ndarray:
     """Twist of the pinions that the gaps on their paths take, rad, (..., 8).
 
     errors : by kind of mesh (..., number of its meshes), m; they add to the gaps at the pitch line
     """
     gaps = {}
-    for kind, count in MESHES.items():
+    for kind, count in MESH_COUNTS.items():
         nominal = 1e-3 * getattr(getattr(design, kind), f"gap_{direction}")
         gaps[kind] = nominal + (errors[kind] if errors else np.zeros(count))
     pinion = np.arange(PINIONS)
     pair, side = pinion // 2, pinion // 4
     g1, per_g2 = design.radius("g1"), design.g2.teeth / design.g1.teeth
     twist = gaps["rack_pinion"] / design.radius("pinion")
-    twist = twist + np.where(even_pinions(), gaps["g1_g1"][..., pair], 0.0) / g1
+    twist = twist + np.where(even_pinion_mask(), gaps["g1_g1"][..., pair], 0.0) / g1
     twist = twist + gaps["g1_g2"][..., pair] / g1
     return twist + gaps["g3_g4"][..., side] / design.radius("g3") * per_g2
 
@@ -52,7 +54,7 @@ def path_gaps(design: CascadeDesign, direction: Direction, errors: dict[str, np.
 class StaticSharing:
     """Pinion forces at given rack forces.
 
-    units : the flexible units;  radius : of the pinions, m;  gaps : (..., 8) from `path_gaps`
+    units : the flexible units;  radius : of the pinions, m;  gaps : (..., 8) from `path_gap_angles`
     """
 
     units: FlexUnits
@@ -94,7 +96,7 @@ def static_sharing(
     units = FlexUnits.of(design)
     if equal_units:
         units = FlexUnits(units.stiffness, units.initial, units.end, np.ones(PINIONS))
-    return StaticSharing(units, design.radius("pinion"), path_gaps(design, direction, errors))
+    return StaticSharing(units, design.radius("pinion"), path_gap_angles(design, direction, errors))
 
 
 def first_crossing(sharing: StaticSharing, highest: float) -> float:
@@ -108,9 +110,13 @@ def first_crossing(sharing: StaticSharing, highest: float) -> float:
     for i, j in combinations(range(PINIONS), 2):
         difference = share[:, i] - share[:, j]
         both = (share[:-1, i] > 0.0) & (share[:-1, j] > 0.0)
-        turns = np.flatnonzero((difference[:-1] * difference[1:] < 0.0) & both)
-        if len(turns):
-            found.append(np.interp(0.0, *_rising(difference[turns[0] : turns[0] + 2], force[turns[0] : turns[0] + 2])))
+        crossings = np.flatnonzero((difference[:-1] * difference[1:] < 0.0) & both)
+        if len(crossings):
+            found.append(
+                np.interp(
+                    0.0, *_rising(difference[crossings[0] : crossings[0] + 2], force[crossings[0] : crossings[0] + 2])
+                )
+            )
     return float(min(found, default=np.nan))
 
 

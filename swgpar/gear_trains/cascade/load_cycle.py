@@ -1,4 +1,4 @@
-"""The gearbox without errors in motion: one period of the rack force, and the flywheel held by its brake."""
+"""The gearbox without errors in motion: one period of the rack force, and the flywheel fixed by its brake."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from swgpar.gear_trains.cascade.design import CascadeDesign
 from swgpar.gear_trains.cascade.dynamics import Gearbox, ramp
 from swgpar.gear_trains.cascade.layout import DOFS, RACK
-from swgpar.gear_trains.cascade.static import Direction, even_pinions
+from swgpar.gear_trains.cascade.static_sharing import Direction, even_pinion_mask
 
 ROWS = 4000
 """Of the history of one period."""
@@ -22,12 +22,16 @@ FITTED = 0.25
 
 
 @dataclass(frozen=True)
-class Period:
-    """time : (n,) s;  rack_force : (n,) N;  way, velocity : (n,) of the rack, m and m/s;  pinion_forces : (n, 8) N"""
+class LoadCycle:
+    """One period of the rack force.
+
+    time : (n,) s;  rack_force : (n,) N;  displacement, velocity : (n,) of the rack, m and m/s
+    pinion_forces : (n, 8) N
+    """
 
     time: np.ndarray
     rack_force: np.ndarray
-    way: np.ndarray
+    displacement: np.ndarray
     velocity: np.ndarray
     pinion_forces: np.ndarray
 
@@ -52,7 +56,7 @@ class Period:
         loaded = (self.rack_force > FITTED * self.rack_force.max()) & np.isfinite(self.shares).all(axis=1)
         terms = np.stack([np.ones(loaded.sum()), 1.0 / self.rack_force[loaded]], axis=1)
         a, b = np.linalg.lstsq(terms, self.shares[loaded], rcond=None)[0]
-        even = even_pinions()
+        even = even_pinion_mask()
         constant, falling = a[even][:, None] - a[~even], b[even][:, None] - b[~even]
         with np.errstate(divide="ignore"):
             roots = -falling / constant
@@ -60,23 +64,23 @@ class Period:
         return float(roots[inside].min()) if inside.any() else float("nan")
 
 
-def one_period(design: CascadeDesign) -> Period:
+def one_load_cycle(design: CascadeDesign) -> LoadCycle:
     """From rest through one period of the rack force, direction B first."""
-    box, peak = Gearbox(design), 1e3 * design.load.peak
+    gearbox, peak = Gearbox(design), 1e3 * design.load.peak
     time = np.linspace(0.0, design.load.period, ROWS + 1)
 
     def force(t: np.ndarray) -> np.ndarray:
         return peak * np.sin(2.0 * np.pi * t / design.load.period)
 
-    x, v = box.integrate(force, np.zeros(DOFS), time)
-    return Period(time, force(time), x[:, RACK], v[:, RACK], box.pinion_forces(x, v))
+    x, v = gearbox.integrate(force, np.zeros(DOFS), time)
+    return LoadCycle(time, force(time), x[:, RACK], v[:, RACK], gearbox.pinion_forces(x, v))
 
 
-def braked_shares(design: CascadeDesign, direction: Direction) -> np.ndarray:
-    """Load shares (8,) at the braked force, the flywheel held: the source's comparison with measurements."""
-    box, sign = Gearbox(design, braked=True), 1.0 if direction == "B" else -1.0
+def braked_load_shares(design: CascadeDesign, direction: Direction) -> np.ndarray:
+    """Load shares (8,) at the braked force, with the flywheel fixed: the source's comparison with measurements."""
+    gearbox, sign = Gearbox(design, braked=True), 1.0 if direction == "B" else -1.0
     rising, hold, size = design.load.braked_ramp, design.load.braked_hold, sign * 1e3 * design.load.braked
     time = np.linspace(0.0, rising + hold, 401)
-    x, v = box.integrate(ramp(size, rising), np.zeros(DOFS), time)
-    carried = box.pinion_forces(x, v)[time > rising + 0.5 * hold].sum(axis=0)
+    x, v = gearbox.integrate(ramp(size, rising), np.zeros(DOFS), time)
+    carried = gearbox.pinion_forces(x, v)[time > rising + 0.5 * hold].sum(axis=0)
     return carried / carried.sum()
