@@ -51,7 +51,7 @@ class Mesh(Section):
 
 class FlexUnit(Section):
     ratio: Ratios = quantity(
-        text="stiffness ratios of the units of pinions 1 to 8 to their mean \(Table 3\), each above 0"
+        text="stiffness ratios of the units of pinions 1 to 8 to their mean (Table 3), each above 0"
     )
     stiffness: float = quantity(unit="N·m/deg", text="mean stiffness beyond `linear_above`", gt=0.0)
     linear_above: float = quantity(unit="mm", text="deformation beyond which the stiffness is constant", gt=0.0)
@@ -74,7 +74,7 @@ class Damping(Section):
     flex: float = quantity(unit="s", text="damping over stiffness of the flexible units", ge=0.0)
     contact_ramp: float = quantity(
         unit="µm",
-        text="penetration of the flanks over which the contact damping rises to its full value \(smooth step, eq. 10\)",
+        text="penetration of the flanks over which the contact damping rises to its full value (smooth step, eq. 10)",
         gt=0.0,
     )
 
