@@ -1,14 +1,27 @@
-"""Under mpirun only rank 0 reports; the outcome of a test is the worst over all ranks."""
+"""Tests on several ranks: only rank 0 reports, a test fails on all ranks or on none, and no failure can hang.
+
+A test says by `@pytest.mark.parallel` (plugin mpi-pytest) on how many ranks it runs; without that it runs on one. The
+setting `-m parallel[match]` selects the tests of the number of ranks that pytest itself was started on.
+"""
+
+from __future__ import annotations
 
 import os
+import sys
+import time
 
 import pytest
 from mpi4py import MPI
 
+WAIT = 60.0
+"""s that a rank on which a test has failed waits for the other ranks, before it ends all of them."""
+
+ranks = MPI.COMM_WORLD.Dup()  # not the communicator of the tests: their messages must not be taken for these
+
 
 @pytest.hookimpl(trylast=True)
 def pytest_configure(config: pytest.Config) -> None:
-    if MPI.COMM_WORLD.rank != 0:
+    if ranks.rank != 0:
         reporter = config.pluginmanager.get_plugin("terminalreporter")
         if reporter is not None:
             reporter._tw._file = open(os.devnull, "w")
@@ -17,8 +30,21 @@ def pytest_configure(config: pytest.Config) -> None:
 @pytest.hookimpl(hookwrapper=True)
 def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo):
     outcome = yield
-    if call.when == "call" and MPI.COMM_WORLD.size > 1:
-        report = outcome.get_result()
-        worst = MPI.COMM_WORLD.allreduce(int(report.failed), op=MPI.MAX)
-        if worst and not report.failed:
-            report.outcome, report.longrepr = "failed", "failed on another rank"
+    if call.when == "teardown" or ranks.size == 1:
+        return
+    report = outcome.get_result()
+    meet(report)
+    texts = ranks.allgather(report.longreprtext if report.failed else "")
+    if any(texts) and not report.failed:
+        report.outcome = "failed"
+        report.longrepr = "\n".join(f"on rank {rank}:\n{text}" for rank, text in enumerate(texts) if text)
+
+
+def meet(report: pytest.TestReport) -> None:
+    """Wait for all ranks; a rank whose test has failed does not wait for ever, as the others may wait for it."""
+    request, begin = ranks.Ibarrier(), time.monotonic()
+    while not request.Test():
+        if report.failed and time.monotonic() - begin > WAIT:
+            print(f"rank {ranks.rank}: {report.nodeid}\n{report.longreprtext}", file=sys.stderr, flush=True)
+            ranks.Abort(1)
+        time.sleep(1e-3)

@@ -34,6 +34,7 @@ CONDENSED = (*PLANE, "solver.condensed_sectors=true")
         (*CONDENSED, "contact.friction=0.2"),
     ],
 )
+@pytest.mark.parallel([1, 2, 3])
 def test_tangent_is_the_derivative_of_the_residual(overrides: tuple[str, ...], monkeypatch) -> None:
     monkeypatch.setattr("swgpar.design.fit_checks.OMITTED_BENDING", 1.0)  # 40 teeth: of no account here
     design = load_design(DESIGN, overrides)

@@ -52,6 +52,7 @@ def backlash(c_p: float, *more: str) -> tuple[LoadStepper, dict[str, float], int
         ((*PLANE, "drive.layout=spline_fixed"), 0.8),
     ],
 )
+@pytest.mark.parallel([1, 2])
 def test_large_backlash_closes_in_one_solve(more: tuple[str, ...], c_p: float) -> None:
     runner, row, cuts = backlash(c_p, *more)
     print(f"{c_p}: {row['newton_iterations']} iterations, output at {row['output_angle_deg']:.4f} degrees")
@@ -63,6 +64,7 @@ def test_large_backlash_closes_in_one_solve(more: tuple[str, ...], c_p: float) -
     assert row["torque_balance_Nmm"] < 1e-6 * torque
 
 
+@pytest.mark.parallel([1, 2])
 def test_the_output_turns_through_the_backlash() -> None:
     """Against the output's motion, by eq. 6.4; what the teeth and the bent spline give is common to both drives."""
     (a, near, _), (b, far, _) = backlash(0.9, *PLANE), backlash(0.8, *PLANE)
@@ -72,6 +74,7 @@ def test_the_output_turns_through_the_backlash() -> None:
     assert near["output_angle_deg"] > 0.0
 
 
+@pytest.mark.parallel([1, 2])
 def test_a_drive_that_has_parted_is_loaded_again() -> None:
     """From the middle of its backlash, where nothing holds the output, the torque brings it back to the same state."""
     design = load_design(DESIGN, [*PLANE, "ring_gear.c_P=0.8"])

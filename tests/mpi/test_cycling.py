@@ -127,6 +127,7 @@ def test_sets_that_return() -> None:
     assert not visited.returns(2, 7.0)
 
 
+@pytest.mark.parallel([1, 2, 3])
 def test_fingerprint_is_that_of_all_ranks() -> None:
     points = np.arange(12) % 3 == 0
     first = fingerprint(WORLD, [points, points[:5]])

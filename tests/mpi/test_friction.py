@@ -111,9 +111,8 @@ def assert_same(a: dict[str, float], b: dict[str, float], rel: float) -> None:
         assert a[name] == pytest.approx(b[name], rel=rel), name
 
 
+@pytest.mark.parallel([2, 3])
 def test_any_number_of_ranks_gives_the_same() -> None:
-    if WORLD.size == 1:
-        pytest.skip("compares several ranks with one: runs under mpirun")
     several, one = (turn(loaded(0.1, comm), 0.3 * PITCH) for comm in (WORLD, MPI.COMM_SELF))
     assert_same(several, one, 1e-8)
 

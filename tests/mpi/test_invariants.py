@@ -78,6 +78,7 @@ def assert_same(a: dict[str, float], b: dict[str, float], rel: float) -> None:
 
 
 @both_models
+@pytest.mark.parallel([1, 2, 3])
 def test_torques_balance(model: str) -> None:
     _, r = base(model)
     total = r["wg_torque_Nmm"] + r["tooth_torque_Nmm"] + r["output_torque_Nmm"]
@@ -87,6 +88,7 @@ def test_torques_balance(model: str) -> None:
 
 
 @both_models
+@pytest.mark.parallel([1, 2])
 def test_torques_balance_in_the_other_layout(model: str) -> None:
     """The load acts on the ring gear: it equals the teeth's torque on the spline, whose support takes the rest."""
     runner, r = other_layout(model)
@@ -112,9 +114,8 @@ def test_layouts_agree(model: str) -> None:
 
 
 @both_models
+@pytest.mark.parallel([2, 3])
 def test_any_number_of_ranks_gives_the_same(model: str) -> None:
-    if WORLD.size == 1:
-        pytest.skip("compares several ranks with one: runs under mpirun")
     several, parallel = base(model)
     one, alone = loaded(small(model), MPI.COMM_SELF)
     assert_same(parallel, alone, 1e-8)
@@ -124,9 +125,8 @@ def test_any_number_of_ranks_gives_the_same(model: str) -> None:
     assert parallel["output_angle_deg"] == pytest.approx(alone["output_angle_deg"], rel=1e-8)
 
 
+@pytest.mark.parallel([2, 3])
 def test_ranks_and_the_other_layout() -> None:
-    if WORLD.size == 1:
-        pytest.skip("compares several ranks with one: runs under mpirun")
     design = small("plane", "drive.layout=spline_fixed")
     (_, parallel), (_, alone) = loaded(design), loaded(design, MPI.COMM_SELF)
     assert_same(parallel, alone, 1e-8)
@@ -135,7 +135,13 @@ def test_ranks_and_the_other_layout() -> None:
 
 @pytest.mark.parametrize(
     ("model", "layout", "samples"),
-    [("cup", "ring_fixed", 6), ("cup", "spline_fixed", 6), ("plane", "ring_fixed", 24), ("plane", "spline_fixed", 24)],
+    [
+        ("cup", "ring_fixed", 6),
+        ("cup", "spline_fixed", 6),
+        ("plane", "ring_fixed", 24),
+        ("plane", "spline_fixed", 24),
+        pytest.param("plane", "spline_fixed", 24, marks=pytest.mark.parallel(2), id="nprocs=2"),
+    ],
 )
 def test_period_and_work(model: str, layout: str, samples: int) -> None:
     """After one pitch of the fixed gear the state repeats, the output turned by pitch / ratio; mean input T / ratio."""
@@ -163,6 +169,7 @@ def test_period_and_work(model: str, layout: str, samples: int) -> None:
 
 
 @pytest.mark.parametrize(("layout", "teeth", "ratio"), [("ring_fixed", 42, -20.0), ("spline_fixed", 40, 21.0)])
+@pytest.mark.parallel([1, 2])
 def test_any_turn_of_the_output(layout: str, teeth: int, ratio: float) -> None:
     """A quarter, nearly half, and more than half a turn of the output away, at the same place in the period."""
     runner, _ = loaded(small("plane", f"drive.layout={layout}"))
@@ -177,6 +184,7 @@ def test_any_turn_of_the_output(layout: str, teeth: int, ratio: float) -> None:
 
 
 @both_models
+@pytest.mark.parallel([1, 2, 3])
 def test_rotating_the_whole_spline_changes_no_stress(model: str) -> None:
     """The loaded spline and its wave generator turned by 0.7 rad: the same stresses, the forces turned alike."""
     runner, _ = base(model)
@@ -211,6 +219,7 @@ def test_half_the_drive_equals_the_whole(model: str) -> None:
     assert_same(half, whole, 1e-6)
 
 
+@pytest.mark.parallel([1, 2])
 def test_half_the_drive_equals_the_whole_in_the_other_layout() -> None:
     layout = "drive.layout=spline_fixed"
     (_, half), (_, whole) = (
@@ -249,11 +258,11 @@ def test_enforcement_does_not_show(
         assert other[name] == pytest.approx(r[name], rel=5e-3), name
 
 
-@both_models
-def test_an_augmentation_that_leads_to_no_solution_is_taken_back(model: str, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parallel([1, 2])
+def test_an_augmentation_that_leads_to_no_solution_is_taken_back(monkeypatch: pytest.MonkeyPatch) -> None:
     """One that poisons the multipliers: the state is that without augmentation, and they are as they were."""
     soft = (*stiffness(10, 10), "contact.penetration_tolerance=5e-5")
-    _, without = loaded(small(model, *soft, "contact.max_augmentations=0"))
+    _, without = loaded(small("plane", *soft, "contact.max_augmentations=0"))
     poisoned = []
 
     def poison(contact: RigidContact | FlankContact) -> None:
@@ -262,13 +271,14 @@ def test_an_augmentation_that_leads_to_no_solution_is_taken_back(model: str, mon
 
     for contact in (RigidContact, FlankContact):
         monkeypatch.setattr(contact, "augment", poison)
-    runner, taken = loaded(small(model, *soft, "contact.max_augmentations=10"))
+    runner, taken = loaded(small("plane", *soft, "contact.max_augmentations=10"))
     assert poisoned and runner.equilibrium.augmentations == 0
     assert all(np.all(contact.multiplier == 0.0) for contact in runner.equilibrium.contacts)
     assert_same(taken, without, 1e-6)
 
 
 @both_models
+@pytest.mark.parallel([1, 2])
 def test_segments_are_kept_where_those_cut_anew_lead_nowhere(model: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The way out of a cycle is taken in every solve, and no residual can be evaluated with segments cut after it."""
     _, r = base(model)
@@ -300,6 +310,7 @@ def test_segments_are_kept_where_those_cut_anew_lead_nowhere(model: str, monkeyp
 
 
 @both_models
+@pytest.mark.parallel([1, 2])
 def test_careful_line_search_reaches_the_same_state(model: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Every active set taken for one that returns, so that all steps are searched for carefully."""
     _, r = base(model)

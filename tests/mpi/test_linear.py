@@ -37,6 +37,7 @@ def system(overrides: tuple[str, ...], control: str) -> tuple[DriveModel, PETSc.
 
 
 @pytest.mark.parametrize("overrides", [(), PLANE])
+@pytest.mark.parallel([1, 2, 3])
 def test_iterative_equals_direct(overrides: tuple[str, ...]) -> None:
     model, right = system(overrides, "rotation")
     equilibrium, partition = model.equilibrium, model.partition
@@ -57,6 +58,7 @@ def test_iterative_equals_direct(overrides: tuple[str, ...]) -> None:
 
 
 @pytest.mark.parametrize(("option", "value", "word"), [("14", -99, "more memory"), ("23", 1, "cannot factorise")])
+@pytest.mark.parallel([1, 2])
 def test_mumps_out_of_memory(option: str, value: int, word: str, monkeypatch) -> None:
     """An estimate that is too small is raised; what is forbidden gives a step that is not finite, and is named."""
     model, right = system(PLANE, "rotation")
@@ -88,6 +90,7 @@ def test_options_of_one_model_are_not_those_of_the_next() -> None:
 
 
 @pytest.mark.parametrize("overrides", [(), ("drive.layout=spline_fixed",), PLANE])
+@pytest.mark.parallel([1, 2, 3])
 def test_the_loaded_motion_is_bounded(overrides: tuple[str, ...]) -> None:
     """Without a bound that matters the step is that of a system without the loaded border; with one it ends there."""
     model, right = system(overrides, "torque")

@@ -12,6 +12,7 @@ from swgpar.geometry.cams.simplified import simplified
 
 
 @pytest.mark.parametrize("plane", [True, False])
+@pytest.mark.parallel([2, 3])
 def test_ranks_do_not_matter(plane: bool) -> None:
     design = RingDesign(136.0, 4.5, 10.0, plane, Material(E=206e3, nu=0.29))
     readings = []

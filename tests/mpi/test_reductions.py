@@ -57,6 +57,7 @@ def plain() -> dict[str, float]:
     return rotated(*PLAIN)[1]
 
 
+@pytest.mark.parallel([1, 2])
 def test_a_kept_factor_changes_nothing(plain: dict[str, float]) -> None:
     runner, row = rotated("solver.far_teeth=modelled")
     counts = runner.equilibrium.border.kept.iterations
@@ -110,6 +111,7 @@ def test_a_start_on_a_coarser_mesh_changes_nothing(plain: dict[str, float]) -> N
 
 
 @pytest.mark.parametrize("count", [1, 2])
+@pytest.mark.parallel([1, 2])
 def test_a_start_on_coarser_meshes_changes_nothing_in_the_plane(count: int) -> None:
     refined = "plane_coarse"
     _, step_by_step = rotated(*PLAIN, *PLANE, recipe=refined)
@@ -117,6 +119,7 @@ def test_a_start_on_coarser_meshes_changes_nothing_in_the_plane(count: int) -> N
     assert_same(row, step_by_step, 1e-6)
 
 
+@pytest.mark.parallel([1, 2])
 def test_far_teeth_change_little() -> None:
     """80 teeth, of which a third is out of reach; measured are changes of 1e-12 in stresses and 1e-8 in the torque."""
     many = ("drive.teeth_fs=80", "drive.teeth_rg=82", *PLANE, "solver.keep_factor=false")
@@ -154,6 +157,7 @@ def test_condensed_sectors_in_the_plane_leave_out_the_bend_of_a_sector(overrides
             assert np.abs(fields[name] - others[name]).max(initial=0.0) < share * plain["fs_vm"], name
 
 
+@pytest.mark.parallel([1, 2, 3])
 def test_what_is_read_of_condensed_sectors_is_complete() -> None:
     """Sectors of any rank, images too, with what is inside of them."""
     runner, _ = rotated(*CONDENSED)
@@ -165,6 +169,7 @@ def test_what_is_read_of_condensed_sectors_is_complete() -> None:
         assert np.abs(field - body.displacement(u)).max(initial=0.0) < 1e-14
 
 
+@pytest.mark.parallel([1, 2])
 def test_condensed_sectors_with_all_that_applies() -> None:
     refined = "plane_coarse"
     _, row = rotated(*CONDENSED, recipe=refined)
@@ -186,9 +191,8 @@ def test_a_start_on_a_coarser_mesh_takes_over_what_is_inside() -> None:
     assert iterations[1] <= iterations[0] + 1
 
 
+@pytest.mark.parallel([2, 3])
 def test_condensed_sectors_on_any_number_of_ranks() -> None:
-    if MPI.COMM_WORLD.size == 1:
-        pytest.skip("compares several ranks with one: runs under mpirun")
     _, row = rotated(*CONDENSED)
     _, alone = rotated(*CONDENSED, comm=MPI.COMM_SELF)
     assert_same(row, alone, 1e-7)  # the input torque is what is left of moments 1e3 times as large
@@ -211,6 +215,7 @@ def test_the_continued_history_is_that_of_a_longer_rotation() -> None:
     assert_same(following, computed, 1e-6)
 
 
+@pytest.mark.parallel(2)
 def test_a_mesh_is_chosen_alike_on_any_number_of_ranks(monkeypatch: pytest.MonkeyPatch) -> None:
     """The recipe, the loaded state on it and its estimated errors; every group is tried, in space as well."""
     monkeypatch.setattr(accuracy, "LARGEST", {3: 12_000})
