@@ -23,10 +23,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from swgpar.geometry.cams import Cam
-from swgpar.geometry.cams.chain import Parabola
 from swgpar.geometry.cams.elliptical import EllipticalCam
 from swgpar.geometry.cams.four_roller import four_roller
 from swgpar.geometry.cams.parabolic import Side, parabolic, solve_quarter
+from swgpar.geometry.cams.piecewise import Parabola
 from swgpar.geometry.cams.simplified import simplified
 
 R_FS, D, A, B = 10.0, 4.0, 12.0, 8.0

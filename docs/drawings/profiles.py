@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.geometry.profiles import ToothProfile
-from swgpar.geometry.profiles.curve import Segment
+from swgpar.geometry.profiles.flank import Segment
 
 COLOURS = {"tip": "#8c4fb0", "addendum": "#2f7fd0", "straight": "#111111", "dedendum": "#2d9a57", "root": "#d07a20"}
 
@@ -31,7 +31,7 @@ def design_with(profile: dict[str, object]) -> DriveDesign:
 def center(segment: Segment) -> np.ndarray:
     """Centre (2,) mm of an arc of a flank."""
     normal = np.array([-np.sin(segment.direction), np.cos(segment.direction)])
-    return np.asarray(segment.start) + normal / segment.turn
+    return np.asarray(segment.start) + normal / segment.curvature
 
 
 def draw_profile(ax: Axes, profile: ToothProfile, r_pitch: float, spots: Spot) -> None:
@@ -58,7 +58,7 @@ def draw_profile(ax: Axes, profile: ToothProfile, r_pitch: float, spots: Spot) -
     for segment in profile.segments:
         points = segment.point(np.linspace(0.0, segment.length, 60))
         ax.plot(*points.T, color=COLOURS[segment.name], lw=2.6, solid_capstyle="butt")
-        if segment.turn:
+        if segment.curvature:
             middle, at = points[len(points) // 2], center(segment)
             ax.plot(*at, "+", color=COLOURS[segment.name], ms=9, mew=1.5)
             for point in (points[0], points[-1]):
@@ -70,7 +70,7 @@ def draw_profile(ax: Axes, profile: ToothProfile, r_pitch: float, spots: Spot) -
             label(ax, tuple(text), f"$r_{short}$", color=COLOURS[segment.name], fontsize=9)
             name = f"O{short}"
             if segment.name in ("addendum", "dedendum"):
-                radius, colour = 0.3 / abs(segment.turn), COLOURS[segment.name]
+                radius, colour = 0.3 / abs(segment.curvature), COLOURS[segment.name]
                 angles = np.degrees(np.arctan2(*(np.array([points[0], points[-1]]) - at).T[::-1]))
                 swept = (angles[1] - angles[0] + 180.0) % 360.0 - 180.0
                 mark = arc(tuple(at), radius, angles[0], angles[0] + swept)

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import splu
 
-from swgpar.geometry.profiles.curve import ToothProfile
+from swgpar.geometry.profiles.flank import ToothProfile
 from swgpar.meshing.sector import Floats
 from swgpar.meshing.tooth import CrossSection
 

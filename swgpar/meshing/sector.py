@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from swgpar.geometry.profiles.curve import ToothProfile
+from swgpar.geometry.profiles.flank import ToothProfile
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]

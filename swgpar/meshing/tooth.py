@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from swgpar.geometry.profiles.curve import ToothProfile
+from swgpar.geometry.profiles.flank import ToothProfile
 from swgpar.meshing.mapped import MappedBlocks, QuadMesh
 from swgpar.meshing.recipe import ToothRecipe
 

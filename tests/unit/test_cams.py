@@ -16,9 +16,9 @@ from swgpar.design.design_file import load_design
 from swgpar.design.load_states import load_sequence, start
 from swgpar.errors import InputError
 from swgpar.geometry.cams import EllipticalCam, pin_travel, taut_length
-from swgpar.geometry.cams.chain import ChainCam, Parabola
 from swgpar.geometry.cams.four_roller import four_roller
 from swgpar.geometry.cams.parabolic import Side, parabolic
+from swgpar.geometry.cams.piecewise import Parabola, PiecewiseCam
 from swgpar.geometry.cams.simplified import simplified
 from swgpar.geometry.micro_geometry import crowning
 
@@ -144,7 +144,7 @@ CAMS = {
     "bilateral": (parabolic(A, B, Side(*OTHER), Side(*IMPROVED)), parabola(A, B, OTHER, IMPROVED, 0.0)),
     "four_roller": (four_roller(A, BETA, 8.0), rollers(A, BETA, 8.0)),
 }
-CHAINS = [name for name, (cam, _) in CAMS.items() if isinstance(cam, ChainCam)]
+CHAINS = [name for name, (cam, _) in CAMS.items() if isinstance(cam, PiecewiseCam)]
 SIDE, OTHER_SIDE = ({"a_p": a_p, "C_p": C_p, "r_c": r_c} for a_p, C_p, r_c in (IMPROVED, OTHER))
 
 

@@ -13,7 +13,7 @@ from support.paths import RECIPE, REFERENCE
 from swgpar.design.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutputError
-from swgpar.geometry.profiles.curve import Segment, ToothProfile
+from swgpar.geometry.profiles.flank import Segment, ToothProfile
 from swgpar.meshing import MeshRecipe, SectorMesh, body, build_sector_meshes, load_recipe
 from swgpar.meshing.cup import meridian
 from swgpar.meshing.export import mesh_report, whole_body, whole_drive, write_mesh

@@ -13,10 +13,10 @@ from scipy.optimize import brentq
 
 from swgpar.design.design_file import load_design
 from swgpar.errors import InputError
-from swgpar.geometry.profiles.curve import ToothProfile, check_flank
 from swgpar.geometry.profiles.double_arc import double_arc, straight_length
-from swgpar.geometry.profiles.frame import FlankFrame
+from swgpar.geometry.profiles.flank import ToothProfile, check_flank
 from swgpar.geometry.profiles.involute import Cutter, involute
+from swgpar.geometry.profiles.pitch_point import PitchPointFrame
 from swgpar.geometry.profiles.quadruple_arc import quadruple_arc
 
 ALPHA = np.radians(20.0)
@@ -37,8 +37,8 @@ CUTTERS = {
 }
 
 
-def frame(teeth: int, external: bool, c_P: float = 1.0) -> FlankFrame:
-    return FlankFrame(teeth, 1.0, ALPHA, 0.6, 0.8, external, c_P)
+def frame(teeth: int, external: bool, c_P: float = 1.0) -> PitchPointFrame:
+    return PitchPointFrame(teeth, 1.0, ALPHA, 0.6, 0.8, external, c_P)
 
 
 def differences_agree(p: ToothProfile) -> None:
@@ -220,7 +220,7 @@ def test_involute_profile(name: str) -> None:
 def test_curved_segments_run_by_arc_length(name: str) -> None:
     for segment in involute(CUTTERS[name]).segments:
         for t in (0.013, 0.37, 0.991):
-            exact = quad(lambda x, f=segment.local: f(np.array([x])).speed[0], 0.0, t, epsabs=1e-13, epsrel=1e-13)[0]
+            exact = quad(lambda x, f=segment.evaluate: f(np.array([x])).speed[0], 0.0, t, epsabs=1e-13, epsrel=1e-13)[0]
             assert segment.arc_length(np.array([t]))[0] == pytest.approx(exact, rel=1e-11)
             assert segment.parameter(np.array([exact]))[0] == pytest.approx(t, rel=1e-11)
 

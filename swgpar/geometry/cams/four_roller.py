@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from swgpar.errors import InputError
-from swgpar.geometry.cams.chain import Circle, Result
+from swgpar.geometry.cams.piecewise import Circle, SignedDistance
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class FourRollerCam:
         reach = self.a - self.radius
         return float(reach * np.sin(self.beta)), float(reach * np.cos(self.beta))
 
-    def evaluate(self, xy: np.ndarray) -> Result:
+    def evaluate(self, xy: np.ndarray) -> SignedDistance:
         """Signed distance to the nearest roller, its outward normal and Hessian factor at points (n, 2), mm.
 
         On the two axes the nearest roller changes, and the normal with it: points there are far from the surface.

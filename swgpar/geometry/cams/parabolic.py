@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from swgpar.errors import InputError
-from swgpar.geometry.cams.chain import ChainCam, Circle, Parabola
+from swgpar.geometry.cams.piecewise import Circle, Parabola, PiecewiseCam
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ def solve_quarter(parabola: Parabola, b: float, side: Side) -> Quarter:
     return Quarter(start, end, alpha, theta, connector, Circle((b - radius, 0.0), radius))
 
 
-def parabolic(a: float, b: float, right: Side, left: Side, tilt: float = 0.0) -> ChainCam:
+def parabolic(a: float, b: float, right: Side, left: Side, tilt: float = 0.0) -> PiecewiseCam:
     """Parabolic cam with semi-axes a (along y) and b, mm; `tilt` (rad) turns the parabolas about their apexes."""
     r = solve_quarter(Parabola(a, right.a_p, tilt), b, right)
     # the left side is the mirror image of a right side with the opposite tilt
@@ -89,4 +89,4 @@ def parabolic(a: float, b: float, right: Side, left: Side, tilt: float = 0.0) ->
     )
     joints = np.array([r.start, r.end, (0.0, a), m.end * mirror, m.start * mirror])
     angles = np.array([r.alpha, r.theta, 0.5 * np.pi + tilt, np.pi - m.theta, np.pi - m.alpha])
-    return ChainCam(pieces, joints, np.column_stack([-np.sin(angles), np.cos(angles)]))
+    return PiecewiseCam(pieces, joints, np.column_stack([-np.sin(angles), np.cos(angles)]))

@@ -10,9 +10,8 @@ from dataclasses import asdict
 import numpy as np
 
 from swgpar.errors import InputError
-from swgpar.geometry.profiles.curve import ToothProfile, check_flank
 from swgpar.geometry.profiles.double_arc import double_arc
-from swgpar.geometry.profiles.frame import FlankFrame
+from swgpar.geometry.profiles.flank import ToothProfile, check_flank
 from swgpar.geometry.profiles.involute import Cutter, involute
 from swgpar.geometry.profiles.keys import (
     DoubleArc,
@@ -22,6 +21,7 @@ from swgpar.geometry.profiles.keys import (
     RackInvolute,
     ShaperInvolute,
 )
+from swgpar.geometry.profiles.pitch_point import PitchPointFrame
 from swgpar.geometry.profiles.quadruple_arc import quadruple_arc
 from swgpar.geometry.profiles.teeth import Teeth
 from swgpar.input.quantities import show
@@ -44,12 +44,12 @@ def make_profile(
     """
     name = f"{gear}.profile"
     if isinstance(keys, QuadrupleArc):
-        frame = FlankFrame(**asdict(teeth), c_P=c_P)
+        frame = PitchPointFrame(**asdict(teeth), c_P=c_P)
         profile = quadruple_arc(
             frame, c_l, keys.r_tip, keys.r_addendum, keys.straight_l, keys.r_dedendum, keys.r_root, name
         )
     elif isinstance(keys, DoubleArc):
-        profile = double_arc(FlankFrame(**asdict(teeth), c_P=c_P), c_l, keys.r_addendum, keys.r_dedendum, name)
+        profile = double_arc(PitchPointFrame(**asdict(teeth), c_P=c_P), c_l, keys.r_addendum, keys.r_dedendum, name)
     else:
         _refuse_direct_keys(c_P, c_l, gear)
         profile = involute(_cutter(keys, teeth), name)

@@ -10,20 +10,23 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 from scipy.spatial import cKDTree
 
-from swgpar.geometry.profiles.curve import Floats
+from swgpar.geometry.profiles.flank import Floats
 
 PANELS, ORDER = 64, 6
 """Panels of the arc length's table and Gauss points in each: round-off for the smooth curves of a tooth."""
 
 
 @dataclass(frozen=True)
-class Local:
-    """The curve at parameters t (n,): points (n, 2) mm; angles of the tangents, rad; |dx/dt| mm; d angle/dt (n,)."""
+class CurvePoints:
+    """A curve at parameters t (n,).
+
+    point : (n, 2) mm;  angle : (n,) rad, of the tangents;  speed : (n,) mm, |dx/dt|;  angle_rate : (n,) rad, d angle/dt
+    """
 
     point: Floats
     angle: Floats
     speed: Floats
-    spin: Floats
+    angle_rate: Floats
 
 
 @dataclass(frozen=True)
@@ -33,12 +36,12 @@ class CurvedSegment:
     Attributes
     ----------
     name : str
-    local : callable
-        Gives the `Local` at parameters (n,); exact, defined a little beyond 0 and 1, with a speed above 0.
+    evaluate : callable
+        Gives the `CurvePoints` at parameters (n,); exact, defined a little beyond 0 and 1, with a speed above 0.
     """
 
     name: str
-    local: Callable[[Floats], Local]
+    evaluate: Callable[[Floats], CurvePoints]
 
     @cached_property
     def _table(self) -> tuple[Floats, Floats]:
@@ -48,7 +51,7 @@ class CurvedSegment:
 
     def _lengths(self, point: Floats, weight: Floats) -> Floats:
         start = np.arange(PANELS)[:, None] / PANELS
-        speed = self.local((start + point / PANELS).ravel()).speed.reshape(PANELS, -1)
+        speed = self.evaluate((start + point / PANELS).ravel()).speed.reshape(PANELS, -1)
         return np.concatenate(([0.0], np.cumsum(speed @ weight / PANELS)))
 
     @property
@@ -61,20 +64,20 @@ class CurvedSegment:
         (point, weight), ends = self._table
         panel = np.clip((t * PANELS).astype(int), 0, PANELS - 1)
         part = t - panel / PANELS
-        speed = self.local((panel[:, None] / PANELS + part[:, None] * point).ravel()).speed
+        speed = self.evaluate((panel[:, None] / PANELS + part[:, None] * point).ravel()).speed
         return ends[panel] + part * (speed.reshape(len(t), -1) @ weight)
 
     @cached_property
     def _inverse(self) -> CubicHermiteSpline:
         t, ends = np.linspace(0.0, 1.0, PANELS + 1), self._table[1]
-        return CubicHermiteSpline(ends, t, 1.0 / self.local(t).speed)
+        return CubicHermiteSpline(ends, t, 1.0 / self.evaluate(t).speed)
 
     def parameter(self, s: Floats) -> Floats:
         """Return the parameters (n,) at the arc lengths `s` : (n,) mm, by Newton's method from the table."""
         s = np.asarray(s, dtype=np.float64)
         t = self._inverse(s)
         for _ in range(6):
-            step = (self.arc_length(t) - s) / self.local(t).speed
+            step = (self.arc_length(t) - s) / self.evaluate(t).speed
             t = t - step
             if np.max(np.abs(step), initial=0.0) < 1e-8:  # the next step would be its square
                 break
@@ -82,33 +85,33 @@ class CurvedSegment:
 
     def point(self, s: Floats) -> Floats:
         """Return the points (n, 2), mm, at the local arc lengths `s` : (n,) mm."""
-        return self.local(self.parameter(s)).point
+        return self.evaluate(self.parameter(s)).point
 
     def angle(self, s: Floats) -> Floats:
         """Return the angles of the tangents (n,), rad, at the local arc lengths `s` : (n,) mm."""
-        return self.local(self.parameter(s)).angle
+        return self.evaluate(self.parameter(s)).angle
 
-    def bend(self, s: Floats) -> Floats:
-        """Return the change of that angle per arc length (n,), 1/mm."""
-        here = self.local(self.parameter(s))
-        return here.spin / here.speed
+    def signed_curvature(self, s: Floats) -> Floats:
+        """Return the change of the tangents' angle per arc length (n,), 1/mm, at `s` : (n,) mm."""
+        curve = self.evaluate(self.parameter(s))
+        return curve.angle_rate / curve.speed
 
     @cached_property
     def _samples(self) -> cKDTree:
-        return cKDTree(self.local(np.linspace(0.0, 1.0, 257)).point)
+        return cKDTree(self.evaluate(np.linspace(0.0, 1.0, 257)).point)
 
     def nearest(self, points: Floats) -> Floats:
         """Return the local arc length (n,), mm, of the point of the segment nearest to `points` (n, 2), mm."""
         t = self._samples.query(points)[1] / 256.0
-        moving = np.arange(len(points))
+        moving = np.arange(len(points))  # points whose iteration goes on
         for _ in range(20):
-            here = self.local(t[moving])
-            c, s = np.cos(here.angle), np.sin(here.angle)
-            x, y = (here.point - points[moving]).T
+            curve = self.evaluate(t[moving])
+            c, s = np.cos(curve.angle), np.sin(curve.angle)
+            x, y = (curve.point - points[moving]).T
             # half the slope of the squared distance and its derivative, over the speed
             value = x * c + y * s
-            slope = here.speed - here.spin * (x * s - y * c)
-            step = value / np.where(slope > 0.1 * here.speed, slope, here.speed)
+            slope = curve.speed - curve.angle_rate * (x * s - y * c)
+            step = value / np.where(slope > 0.1 * curve.speed, slope, curve.speed)
             new = np.clip(t[moving] - step, 0.0, 1.0)
             still = np.abs(new - t[moving]) > 1e-14
             t[moving] = new

@@ -10,26 +10,26 @@ from __future__ import annotations
 import numpy as np
 
 from swgpar.errors import InputError
-from swgpar.geometry.profiles.curve import ToothProfile
-from swgpar.geometry.profiles.frame import FlankFrame
+from swgpar.geometry.profiles.flank import ToothProfile
+from swgpar.geometry.profiles.pitch_point import PitchPointFrame
 
 
-def straight_length(frame: FlankFrame, c_l: float, r_dedendum: float, name: str = "profile") -> float:
+def straight_length(frame: PitchPointFrame, c_l: float, r_dedendum: float, name: str = "profile") -> float:
     """Length l of the straight segment, mm; refuses radii that leave none."""
     if c_l >= 1.0:
         raise InputError(
             f"{name.rpartition('.')[0]}.c_l = {c_l:g} is out of range: allowed 0 to below 1 with a double_arc profile"
         )
-    s = frame.side
-    center = frame.pitch + r_dedendum * frame.n(frame.star)
-    along = float(center @ frame.up)
-    wanted = frame.r_root_circle + s * r_dedendum
-    # |center - depth t| = wanted, the root nearer to the pitch point
-    square = along**2 - float(center @ center) + wanted**2
-    depth = along - s * np.sqrt(square) if square >= 0.0 and wanted > 0.0 else -1.0
+    s = frame.sign
+    center = frame.pitch_point + r_dedendum * frame.normal(frame.base_angle)
+    along = float(center @ frame.towards_tip)
+    target = frame.r_root_circle + s * r_dedendum
+    # |center - depth t| = target, the root nearer to the pitch point
+    square = along**2 - float(center @ center) + target**2
+    depth = along - s * np.sqrt(square) if square >= 0.0 and target > 0.0 else -1.0
     if depth < 0.0:
         # with l = 0 the arc starts at the pitch point: |P + r n| = r_D + s r gives the largest radius
-        pitch, normal = frame.pitch, frame.n(frame.star)
+        pitch, normal = frame.pitch_point, frame.normal(frame.base_angle)
         limit = 0.5 * (frame.r_root_circle**2 - pitch @ pitch) / (pitch @ normal - s * frame.r_root_circle)
         raise InputError(
             f"{name}.r_dedendum = {r_dedendum:g} is out of range: allowed above 0 to {limit:.6g} mm, where no straight "
@@ -39,12 +39,15 @@ def straight_length(frame: FlankFrame, c_l: float, r_dedendum: float, name: str 
 
 
 def double_arc(
-    frame: FlankFrame, c_l: float, r_addendum: float, r_dedendum: float, name: str = "profile"
+    frame: PitchPointFrame, c_l: float, r_addendum: float, r_dedendum: float, name: str = "profile"
 ) -> ToothProfile:
     """Build the flank; lengths in mm, `c_l` is the share of the straight segment above the pitch point."""
     length = straight_length(frame, c_l, r_dedendum, name)
-    s, star, n = frame.side, frame.star, frame.n
-    top, bottom = frame.pitch + c_l * length * frame.up, frame.pitch - (1.0 - c_l) * length * frame.up
+    s, star, n = frame.sign, frame.base_angle, frame.normal
+    top, bottom = (
+        frame.pitch_point + c_l * length * frame.towards_tip,
+        frame.pitch_point - (1.0 - c_l) * length * frame.towards_tip,
+    )
     o_a, o_d = top - r_addendum * n(star), bottom + r_dedendum * n(star)
     # |O_a + r_a n(beta)| = r_A (eqs 3.36, 3.39), with O_a at the inclination beta_a and the distance |O_a|
     reach = float(np.hypot(*o_a))
@@ -55,7 +58,7 @@ def double_arc(
         )
     beta_a = float(np.arctan2(s * o_a[1], o_a[0]))
     beta_t = beta_a - s * float(np.arccos(cosine))
-    beta_r = frame.beta_of(o_d)
+    beta_r = frame.inclination(o_d)
     pieces = [
         ("addendum", o_a + r_addendum * n(beta_t), beta_t, 1.0 / r_addendum, r_addendum * (beta_t - star)),
         ("straight", top, star, 0.0, length),

@@ -21,9 +21,12 @@ import numpy as np
 from scipy.optimize import brentq
 
 from swgpar.errors import InputError
-from swgpar.geometry.profiles.curve import Floats, ToothProfile
-from swgpar.geometry.profiles.curved_segment import CurvedSegment, Local
+from swgpar.geometry.profiles.curved_segment import CurvedSegment, CurvePoints
+from swgpar.geometry.profiles.flank import Floats, ToothProfile
 from swgpar.geometry.profiles.teeth import Teeth
+
+Center = Callable[[Floats], tuple[Floats, Floats]]
+"""Centre C (n, 2) mm of the rounded tip of the cutter, and dC/dpsi (n, 2), at generating angles psi (n,)."""
 
 
 @dataclass(frozen=True)
@@ -49,30 +52,32 @@ class Cutter(Teeth):
     @property
     def half_thickness(self) -> float:
         """Half the angular thickness of the gear's teeth at the pitch circle, alpha_P."""
-        return (0.5 * np.pi + 2.0 * self.side * self.shift * np.tan(self.pressure_angle)) / self.n_teeth
+        return (0.5 * np.pi + 2.0 * self.sign * self.shift * np.tan(self.pressure_angle)) / self.n_teeth
 
     @property
     def depth(self) -> float:
         """How far the cutter's teeth reach beyond the pitch circle."""
-        return self.dedendum - self.side * self.shift * self.module
+        return self.dedendum - self.sign * self.shift * self.module
 
     @property
     def r_tip_circle(self) -> float:
-        return self.r_pitch + self.side * self.addendum + self.shift * self.module
+        """Addendum radius."""
+        return self.r_pitch + self.sign * self.addendum + self.shift * self.module
 
     @property
     def r_root_circle(self) -> float:
-        return self.r_pitch - self.side * self.depth
+        """Dedendum radius."""
+        return self.r_pitch - self.sign * self.depth
 
     @property
     def r_cutter(self) -> float:
         """Pitch radius of the shaper."""
         return 0.5 * self.cutter_teeth * self.module
 
-    def contact_place(self, radius: float) -> float:
-        """Place w on the line of action where the involute reaches `radius`."""
+    def contact_distance(self, radius: float) -> float:
+        """Distance w from the pitch point, along the line of action, at which the involute reaches `radius`; mm."""
         base = np.sqrt(radius**2 - self.r_base**2)
-        return self.side * (base - self.r_base * np.tan(self.pressure_angle))
+        return self.sign * (base - self.r_base * np.tan(self.pressure_angle))
 
 
 def _check_tip(cut: Cutter, limit: float, name: str) -> None:
@@ -89,7 +94,7 @@ def _check_tip(cut: Cutter, limit: float, name: str) -> None:
         )
 
 
-def _rack_tip(cut: Cutter, name: str) -> tuple[float, float, Callable[[Floats], tuple[Floats, Floats]]]:
+def _rack_tip(cut: Cutter, name: str) -> tuple[float, float, Center]:
     """Generating angles at the start and the end of the fillet, and C (n, 2) with dC/dpsi (n, 2)."""
     tangent, rho = np.tan(cut.pressure_angle), cut.tip_radius
     rise = (1.0 - np.sin(cut.pressure_angle)) / np.cos(cut.pressure_angle)
@@ -106,7 +111,7 @@ def _rack_tip(cut: Cutter, name: str) -> tuple[float, float, Callable[[Floats], 
     return (-below / tangent - across) / cut.r_pitch, -across / cut.r_pitch, center
 
 
-def _shaper_tip(cut: Cutter, name: str) -> tuple[float, float, Callable[[Floats], tuple[Floats, Floats]]]:
+def _shaper_tip(cut: Cutter, name: str) -> tuple[float, float, Center]:
     """The same as `_rack_tip` for the tip of a shaper's tooth."""
     alpha, rho, ratio = cut.pressure_angle, cut.tip_radius, cut.n_teeth / cut.cutter_teeth
     r_g, r_b = cut.r_cutter, cut.r_cutter * np.cos(alpha)
@@ -122,19 +127,20 @@ def _shaper_tip(cut: Cutter, name: str) -> tuple[float, float, Callable[[Floats]
     if margin(limit) < 0.0 < margin(0.0):
         limit = float(brentq(margin, 0.0, limit, xtol=1e-12 * cut.module))
     _check_tip(cut, limit if margin(0.0) > 0.0 else 0.0, name)
-    place = np.pi / cut.cutter_teeth - margin(rho)
+    offset = np.pi / cut.cutter_teeth - margin(rho)
 
     def center(psi: Floats) -> tuple[Floats, Floats]:
-        angle = place + ratio * psi
+        angle = offset + ratio * psi
         c = np.stack((r_c * np.sin(angle), r_c * np.cos(angle) - r_g), axis=-1)
         return c, ratio * r_c * np.stack((np.cos(angle), -np.sin(angle)), axis=-1)
 
     # C on the line of action, at the distance w_c from I on the far side of the flank's contact
     w_c = np.sqrt(r_c**2 - r_b**2) - r_b * np.tan(alpha)
-    return (-np.arcsin(w_c * np.cos(alpha) / r_c) - place) / ratio, -place / ratio, center
+    return (-np.arcsin(w_c * np.cos(alpha) / r_c) - offset) / ratio, -offset / ratio, center
 
 
 Contact = Callable[[Floats], tuple[Floats, Floats, Floats, Floats]]
+"""K (n, 2) mm, dK/dpsi (n, 2), angle of the normal (n,) rad and its derivative (n,) at generating angles psi (n,)."""
 
 
 def _curve(cut: Cutter, name: str, ends: tuple[float, float], contact: Contact) -> CurvedSegment:
@@ -144,37 +150,30 @@ def _curve(cut: Cutter, name: str, ends: tuple[float, float], contact: Contact) 
     """
     first, span = ends[0], ends[1] - ends[0]
 
-    def local(t: Floats) -> Local:
+    def local(t: Floats) -> CurvePoints:
         psi = first + span * t
         k, dk, normal, dnormal = contact(psi)
         arm = k + (0.0, cut.r_pitch)
         c, s = np.cos(psi), np.sin(psi)
         point = np.stack((c * arm[:, 0] - s * arm[:, 1], s * arm[:, 0] + c * arm[:, 1]), axis=-1)
-        # velocity in the gear's frame, seen from the fixed one: dK + the turn of the arm
+        # velocity in the gear's frame, in components of the fixed one: dK + the rotation of the arm
         velocity = dk + np.stack((-arm[:, 1], arm[:, 0]), axis=-1)
-        angle = normal - cut.side * 0.5 * np.pi
+        angle = normal - cut.sign * 0.5 * np.pi
         speed = span * (velocity[:, 0] * np.cos(angle) + velocity[:, 1] * np.sin(angle))
-        return Local(point, angle + psi, speed, span * (dnormal + 1.0))
+        return CurvePoints(point, angle + psi, speed, span * (dnormal + 1.0))
 
     return CurvedSegment(name, local)
 
 
 @lru_cache(maxsize=16)
 def involute(cut: Cutter, name: str = "profile") -> ToothProfile:
-    """Build the flank: involute from the addendum circle, fillet down to the dedendum circle."""
-    s, alpha, r_b, rho = cut.side, cut.pressure_angle, cut.r_base, cut.tip_radius
-    if cut.r_tip_circle <= r_b:
-        raise InputError(
-            f"{name}.pressure_angle = {np.degrees(alpha):g} is out of range: allowed are angles whose base circle "
-            f"({r_b:.6g} mm) lies inside the addendum circle ({cut.r_tip_circle:.6g} mm)"
-        )
-    if cut.depth <= 0.0 or cut.addendum + s * cut.shift * cut.module <= 0.0:
-        low, high = sorted((-s * cut.addendum / cut.module, s * cut.dedendum / cut.module))
-        raise InputError(
-            f"{name}.shift = {cut.shift:g} is out of range: allowed above {low:g} to below {high:g} modules, where the "
-            "pitch circle crosses the teeth"
-        )
-    w_tip = cut.contact_place(cut.r_tip_circle)
+    """Build the flank: involute from the addendum circle, fillet down to the dedendum circle.
+
+    name : section of the design file, for messages. Raises InputError where gear and cutter give no flank.
+    """
+    _check_sizes(cut, name)
+    s, alpha, r_b, rho = cut.sign, cut.pressure_angle, cut.r_base, cut.tip_radius
+    w_tip = cut.contact_distance(cut.r_tip_circle)
     if not cut.external:
         _check_shaper(cut, w_tip, name)
     first, last, center = (_rack_tip if cut.external else _shaper_tip)(cut, name)
@@ -194,10 +193,10 @@ def involute(cut: Cutter, name: str = "profile") -> ToothProfile:
     def fillet(psi: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         c, dc = center(psi)
         reach = np.hypot(c[:, 0], c[:, 1])
-        turn = (c[:, 0] * dc[:, 1] - c[:, 1] * dc[:, 0]) / reach**2
+        rate = (c[:, 0] * dc[:, 1] - c[:, 1] * dc[:, 0]) / reach**2
         across = np.stack((-c[:, 1], c[:, 0]), axis=-1) / reach[:, None]
         k = c * (1.0 + rho / reach)[:, None]
-        return k, dc + (rho * turn)[:, None] * across, np.arctan2(-c[:, 1], -c[:, 0]), turn
+        return k, dc + (rho * rate)[:, None] * across, np.arctan2(-c[:, 1], -c[:, 0]), rate
 
     ends = w_tip / r_b - cut.half_thickness, w_form / r_b - cut.half_thickness
     segments = _curve(cut, "involute", ends, flank), _curve(cut, "fillet", (first, last), fillet)
@@ -205,6 +204,21 @@ def involute(cut: Cutter, name: str = "profile") -> ToothProfile:
     if not cut.external:
         _check_trimming(cut, profile, center, name)
     return profile
+
+
+def _check_sizes(cut: Cutter, name: str) -> None:
+    """The base circle must lie inside the teeth, and the pitch circle must cross them."""
+    if cut.r_tip_circle <= cut.r_base:
+        raise InputError(
+            f"{name}.pressure_angle = {np.degrees(cut.pressure_angle):g} is out of range: allowed are angles whose "
+            f"base circle ({cut.r_base:.6g} mm) lies inside the addendum circle ({cut.r_tip_circle:.6g} mm)"
+        )
+    if cut.depth <= 0.0 or cut.addendum + cut.sign * cut.shift * cut.module <= 0.0:
+        low, high = sorted((-cut.sign * cut.addendum / cut.module, cut.sign * cut.dedendum / cut.module))
+        raise InputError(
+            f"{name}.shift = {cut.shift:g} is out of range: allowed above {low:g} to below {high:g} modules, where the "
+            "pitch circle crosses the teeth"
+        )
 
 
 def _check_shaper(cut: Cutter, w_tip: float, name: str) -> None:
@@ -217,7 +231,7 @@ def _check_shaper(cut: Cutter, w_tip: float, name: str) -> None:
         )
 
 
-def _check_trimming(cut: Cutter, profile: ToothProfile, center: Callable, name: str) -> None:
+def _check_trimming(cut: Cutter, profile: ToothProfile, center: Center, name: str) -> None:
     """The shaper's tips must pass the ring's tips without cutting them on their way in and out."""
     psi = np.linspace(-np.pi, np.pi, 7201) * cut.cutter_teeth / cut.n_teeth
     c = center(psi)[0] + (0.0, cut.r_pitch)

@@ -1,6 +1,6 @@
 """The quadruple-circular-arc (QCA) flank: tip, addendum, straight, dedendum and root (section 3.3.3).
 
-With s = +1 for external and -1 for internal teeth, the normals n of `FlankFrame` and its inclination alpha* at the
+With s = +1 for external and -1 for internal teeth, the normals n of `PitchPointFrame` and its inclination alpha* at the
 pitch point P:
 
     O_a = P_a - r_a n(alpha*),  O_t = O_a + (r_a - r_t) n(alpha* + alpha_a),  |O_t| + s r_t = r_A
@@ -9,30 +9,32 @@ pitch point P:
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from scipy.optimize import brentq
 
 from swgpar.errors import InputError
-from swgpar.geometry.profiles.curve import ToothProfile
-from swgpar.geometry.profiles.frame import FlankFrame
+from swgpar.geometry.profiles.flank import ToothProfile
+from swgpar.geometry.profiles.pitch_point import PitchPointFrame
 
 
-def _close(radius, wanted: float, what: str) -> float:
-    """Smallest angle in (0, pi/2) where `radius` meets `wanted`; refuses when there is none.
+def _closing_angle(radius: Callable[[float], float], target: float, refusal: str) -> float:
+    """Smallest angle in (0, pi/2) at which `radius` (mm) is `target`; raises InputError with `refusal` without one.
 
     Long arcs reach their circle twice: `radius` has one extremum in between.
     """
     angles = np.linspace(0.0, 0.5 * np.pi, 91)
-    side = np.sign([radius(angle) - wanted for angle in angles])
+    side = np.sign([radius(angle) - target for angle in angles])
     crossed = np.flatnonzero(side[1:] != side[:-1])
     if len(crossed) == 0:
-        raise InputError(f"{what}: allowed are radii for which the arcs close on the addendum and dedendum circles")
+        raise InputError(f"{refusal}: allowed are radii for which the arcs close on the addendum and dedendum circles")
     low, high = angles[crossed[0] : crossed[0] + 2]
-    return float(brentq(lambda angle: radius(angle) - wanted, low, high, xtol=1e-15, rtol=1e-15))
+    return float(brentq(lambda angle: radius(angle) - target, low, high, xtol=1e-15, rtol=1e-15))
 
 
 def quadruple_arc(
-    frame: FlankFrame,
+    frame: PitchPointFrame,
     c_l: float,
     r_tip: float,
     r_addendum: float,
@@ -42,9 +44,9 @@ def quadruple_arc(
     name: str = "profile",
 ) -> ToothProfile:
     """Build the flank; lengths in mm, `c_l` is the share of the straight segment above the pitch point."""
-    s, star, n = frame.side, frame.star, frame.n
-    top = frame.pitch + c_l * straight_l * frame.up
-    bottom = frame.pitch - (1.0 - c_l) * straight_l * frame.up
+    s, star, n = frame.sign, frame.base_angle, frame.normal
+    top = frame.pitch_point + c_l * straight_l * frame.towards_tip
+    bottom = frame.pitch_point - (1.0 - c_l) * straight_l * frame.towards_tip
     o_a, o_d = top - r_addendum * n(star), bottom + r_dedendum * n(star)
 
     def tip_center(angle: float) -> np.ndarray:
@@ -53,18 +55,18 @@ def quadruple_arc(
     def root_center(angle: float) -> np.ndarray:
         return o_d - (r_dedendum - r_root) * n(star + angle)
 
-    a_a = _close(
+    a_a = _closing_angle(
         lambda t: float(np.hypot(*tip_center(t))) + s * r_tip,
         frame.r_tip_circle,
         f"{name}.r_tip = {r_tip:g} with r_addendum = {r_addendum:g} cannot close",
     )
-    a_d = _close(
+    a_d = _closing_angle(
         lambda t: float(np.hypot(*root_center(t))) - s * r_root,
         frame.r_root_circle,
         f"{name}.r_root = {r_root:g} with r_dedendum = {r_dedendum:g} cannot close",
     )
     o_t, o_r = tip_center(a_a), root_center(a_d)
-    beta_t, beta_r = frame.beta_of(o_t), frame.beta_of(o_r)
+    beta_t, beta_r = frame.inclination(o_t), frame.inclination(o_r)
     pieces = [
         ("tip", o_t + r_tip * n(beta_t), beta_t, 1.0 / r_tip, r_tip * (beta_t - star - a_a)),
         ("addendum", o_a + r_addendum * n(star + a_a), star + a_a, 1.0 / r_addendum, r_addendum * a_a),

@@ -1,4 +1,4 @@
-"""What the teeth of every profile start from: their number and size, and the pitch circle."""
+"""Number and sizes of the teeth, from which every profile starts, and the pitch circle."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Teeth:
     external: bool
 
     @property
-    def side(self) -> float:
+    def sign(self) -> float:
         """+1 for external, -1 for internal teeth."""
         return 1.0 if self.external else -1.0
 

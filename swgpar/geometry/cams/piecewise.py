@@ -7,13 +7,15 @@ from typing import Protocol
 
 import numpy as np
 
-Result = tuple[np.ndarray, np.ndarray, np.ndarray]
+SignedDistance = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Signed distance (n,) mm, outward unit normal (n, 2), and k (n,) 1/mm with the distance's Hessian k t t^T."""
 
 
 class Piece(Protocol):
-    def evaluate(self, xy: np.ndarray) -> Result:
-        """Result at points (n, 2), mm, for the whole circle, line or parabola the piece is a part of."""
+    """A part of a circle, a line or a parabola."""
+
+    def evaluate(self, xy: np.ndarray) -> SignedDistance:
+        """Signed distance, normal and k at points (n, 2), mm, of the whole circle, line or parabola."""
 
 
 @dataclass(frozen=True)
@@ -23,10 +25,10 @@ class Circle:
     center: tuple[float, float]
     radius: float
 
-    def evaluate(self, xy: np.ndarray) -> Result:
+    def evaluate(self, xy: np.ndarray) -> SignedDistance:
         away = xy - self.center
         reach = np.hypot(away[:, 0], away[:, 1])
-        # a point in the centre has no normal, and no place near the surface either: any finite answer will do
+        # a point in the centre has no normal and is far from the surface: any finite value will do
         safe = np.maximum(reach, 1e-12 * self.radius)
         return reach - self.radius, away / safe[:, None], 1.0 / safe
 
@@ -38,14 +40,14 @@ class Line:
     point: tuple[float, float]
     normal: tuple[float, float]
 
-    def evaluate(self, xy: np.ndarray) -> Result:
+    def evaluate(self, xy: np.ndarray) -> SignedDistance:
         normal = np.asarray(self.normal)
         return (xy - self.point) @ normal, np.broadcast_to(normal, xy.shape), np.zeros(len(xy))
 
 
 @dataclass(frozen=True)
 class Parabola:
-    """Parabola y = height - p x^2 (eq. 3.5), turned about its apex (0, height) by `tilt`, material below.
+    """Parabola y = height - p x^2 (eq. 3.5), rotated about its apex (0, height) by `tilt`, material below.
 
     Attributes
     ----------
@@ -58,7 +60,7 @@ class Parabola:
     p: float
     tilt: float = 0.0
 
-    def _turn(self) -> np.ndarray:
+    def _rotation(self) -> np.ndarray:
         c, s = np.cos(self.tilt), np.sin(self.tilt)
         return np.array([[c, -s], [s, c]])
 
@@ -66,15 +68,15 @@ class Parabola:
         """Point (2,) mm and outward unit normal (2,) at the abscissa x of the parabola's own frame (eqs 3.5, 3.7)."""
         point = np.array([x, -self.p * x * x])
         normal = np.array([2.0 * self.p * x, 1.0]) / np.hypot(1.0, 2.0 * self.p * x)
-        return self._turn() @ point + (0.0, self.height), self._turn() @ normal
+        return self._rotation() @ point + (0.0, self.height), self._rotation() @ normal
 
-    def evaluate(self, xy: np.ndarray) -> Result:
+    def evaluate(self, xy: np.ndarray) -> SignedDistance:
         """The foot's abscissa is a root of x^3 + u x = v, by its closed form and a Newton step.
 
         It is the root of largest size, on the point's side of the axis: the only one until the point lies more than
         1 / (2 p) below the apex.
         """
-        x, y = ((xy - (0.0, self.height)) @ self._turn()).T
+        x, y = ((xy - (0.0, self.height)) @ self._rotation()).T
         p = self.p
         u, v = (0.5 + p * y) / p**2, 0.5 * x / p**2
         root = np.sqrt(np.maximum(np.abs(u), 1e-12 / p**2) / 3.0)
@@ -90,12 +92,12 @@ class Parabola:
         normal = np.column_stack([slope, np.ones_like(slope)]) / length[:, None]
         distance = (x - foot) * normal[:, 0] + (y + p * foot**2) * normal[:, 1]
         curvature = 2.0 * p / length**3
-        return distance, normal @ self._turn().T, curvature / (1.0 + curvature * distance)
+        return distance, normal @ self._rotation().T, curvature / (1.0 + curvature * distance)
 
 
 @dataclass(frozen=True)
-class ChainCam:
-    """Convex curve with continuous tangent that equals itself turned by 180 degrees.
+class PiecewiseCam:
+    """Convex curve with continuous tangent that equals itself after a rotation by 180 degrees.
 
     The nearest piece to a point near the curve follows from which side of the joints' normals it lies on, on the
     point's own side of the major axis: this holds as long as the point is nearer than the smallest radius of curvature.
@@ -112,7 +114,7 @@ class ChainCam:
     joints: np.ndarray
     tangents: np.ndarray
 
-    def evaluate(self, xy: np.ndarray) -> Result:
+    def evaluate(self, xy: np.ndarray) -> SignedDistance:
         """Signed distance, outward normal and Hessian factor at points (n, 2), mm, near the curve."""
         xy = np.asarray(xy, dtype=float)
         sign = np.where(xy[:, 1] < 0.0, -1.0, 1.0)

@@ -27,7 +27,7 @@ class FlankSegment(Protocol):
     def angle(self, s: Floats) -> Floats:
         """Angles (n,), rad, of the unit tangents from +x, counter-clockwise, at `s` : (n,)."""
 
-    def bend(self, s: Floats) -> Floats:
+    def signed_curvature(self, s: Floats) -> Floats:
         """Change of that angle per arc length (n,), 1/mm, at `s` : (n,)."""
 
     def nearest(self, points: Floats) -> Floats:
@@ -46,7 +46,7 @@ class Segment:
         First point (x, y).
     direction : float, rad
         Angle of the unit tangent at `start` from +x, counter-clockwise.
-    turn : float, 1/mm
+    curvature : float, 1/mm
         Change of that angle per arc length; 0 for a straight line.
     length : float, mm
         Arc length.
@@ -55,20 +55,20 @@ class Segment:
     name: str
     start: tuple[float, float]
     direction: float
-    turn: float
+    curvature: float
     length: float
 
     def angle(self, s: Floats) -> Floats:
         """Return the angles of the tangents (n,), rad, at the local arc lengths `s` : (n,) mm."""
-        return self.direction + self.turn * s
+        return self.direction + self.curvature * s
 
-    def bend(self, s: Floats) -> Floats:
-        """Return `turn` at each of the local arc lengths `s` : (n,) mm."""
-        return np.full_like(s, self.turn)
+    def signed_curvature(self, s: Floats) -> Floats:
+        """Return `curvature` at each of the local arc lengths `s` : (n,) mm."""
+        return np.full_like(s, self.curvature)
 
     def point(self, s: Floats) -> Floats:
         """Return the points at the local arc lengths `s` : (n,) mm, as (n, 2) mm."""
-        half = 0.5 * self.turn * s
+        half = 0.5 * self.curvature * s
         # chord of an arc: exact for any curvature, the straight line included
         chord = s * np.sinc(half / np.pi)
         middle = self.direction + half
@@ -80,12 +80,12 @@ class Segment:
         tangent = np.array((np.cos(self.direction), np.sin(self.direction)))
         along = offset @ tangent
         across = offset @ np.array((-tangent[1], tangent[0]))
-        if self.turn == 0.0:
+        if self.curvature == 0.0:
             return np.clip(along, 0.0, self.length)
         # polar angle about the centre of the arc, measured from the middle of the arc so that the cut lies opposite
-        radius = 1.0 / self.turn
+        radius = 1.0 / self.curvature
         angle = np.arctan2(along * np.sign(radius), (radius - across) * np.sign(radius))
-        middle = 0.5 * self.turn * self.length
+        middle = 0.5 * self.curvature * self.length
         angle = middle + np.remainder(angle - middle + np.pi, 2.0 * np.pi) - np.pi
         return np.clip(angle * radius, 0.0, self.length)
 
@@ -124,7 +124,7 @@ class ToothProfile:
 
     @property
     def _side(self) -> float:
-        # the outward normal is the tangent turned by +90 degrees on external teeth, by -90 degrees on internal ones
+        # the outward normal is the tangent rotated by +90 degrees on external teeth, by -90 degrees on internal ones
         return 1.0 if self.external else -1.0
 
     def _split(self, s: ArrayLike) -> tuple[Floats, NDArray[np.intp], Floats]:
@@ -132,14 +132,14 @@ class ToothProfile:
         index = np.clip(np.searchsorted(self.breaks, s, side="right") - 1, 0, len(self.segments) - 1)
         return s, index, s - self.breaks[index]
 
-    def _gather(self, what: str, s: ArrayLike, *shape: int) -> Floats:
-        """Call the method `what` of each segment for the arc lengths that lie on it."""
+    def _gather(self, quantity: str, s: ArrayLike, *shape: int) -> Floats:
+        """Values (n, *shape) of the segments' method `quantity` at the arc lengths `s` (n,) that lie on them."""
         s, index, local = self._split(s)
         values = np.empty((s.size, *shape))
         for k, segment in enumerate(self.segments):
             inside = index == k
             if inside.any():
-                values[inside] = getattr(segment, what)(local[inside])
+                values[inside] = getattr(segment, quantity)(local[inside])
         return values
 
     def point(self, s: ArrayLike) -> Floats:
@@ -158,7 +158,7 @@ class ToothProfile:
 
     def curvature(self, s: ArrayLike) -> Floats:
         """Return the curvature (n,), 1/mm: d tangent / d s = curvature * normal; negative where convex."""
-        return self._side * self._gather("bend", s)
+        return self._side * self._gather("signed_curvature", s)
 
     def crowning_weight(self, s: ArrayLike) -> Floats:
         """Return the share (n,) of the crowning that is applied at the arc lengths `s` : (n,) mm.

@@ -1,4 +1,4 @@
-"""What the directly defined profiles have in common: the pitch point, and the directions at it (section 3.3.2)."""
+"""The pitch point of directly defined profiles, and the directions at it (section 3.3.2)."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from swgpar.errors import InputError
-from swgpar.geometry.profiles.curve import Segment, ToothProfile
+from swgpar.geometry.profiles.flank import Segment, ToothProfile
 from swgpar.geometry.profiles.teeth import Teeth
 
 Piece = tuple[str, np.ndarray, float, float, float]
-"""Name, start, inclination, convexity and length of a segment, as `FlankFrame.segment` takes them."""
+"""Name, start, inclination, convexity and length of a segment, as `PitchPointFrame.segment` takes them."""
 
 
 @dataclass(frozen=True)
-class FlankFrame(Teeth):
+class PitchPointFrame(Teeth):
     """Flank at x > 0 of a tooth centred on +y.
 
     Attributes
@@ -29,12 +29,12 @@ class FlankFrame(Teeth):
     @property
     def r_tip_circle(self) -> float:
         """Addendum radius, mm (eq. 3.16)."""
-        return self.r_pitch + self.side * self.addendum
+        return self.r_pitch + self.sign * self.addendum
 
     @property
     def r_root_circle(self) -> float:
         """Dedendum radius, mm (eq. 3.17)."""
-        return self.r_pitch - self.side * self.dedendum
+        return self.r_pitch - self.sign * self.dedendum
 
     @property
     def half_thickness(self) -> float:
@@ -42,28 +42,28 @@ class FlankFrame(Teeth):
         return 0.5 * self.c_P * np.pi / self.n_teeth
 
     @property
-    def star(self) -> float:
-        """Angle of the normal at the pitch point, rad (eq. 3.27)."""
-        return self.pressure_angle - self.side * self.half_thickness
+    def base_angle(self) -> float:
+        """Angle alpha* of the normal at the pitch point, rad (eq. 3.27)."""
+        return self.pressure_angle - self.sign * self.half_thickness
 
     @property
-    def pitch(self) -> np.ndarray:
+    def pitch_point(self) -> np.ndarray:
         """Pitch point (2,), mm (eq. 3.23)."""
         return self.r_pitch * np.array([np.sin(self.half_thickness), np.cos(self.half_thickness)])
 
     @property
-    def up(self) -> np.ndarray:
+    def towards_tip(self) -> np.ndarray:
         """Unit tangent (2,) at the pitch point, towards the tip (eq. 3.29)."""
-        return np.array([-np.sin(self.star), self.side * np.cos(self.star)])
+        return np.array([-np.sin(self.base_angle), self.sign * np.cos(self.base_angle)])
 
-    def n(self, beta: float) -> np.ndarray:
+    def normal(self, beta: float) -> np.ndarray:
         """Outward normal (2,) of inclination beta, rad (eqs 3.28, 3.34)."""
-        return np.array([np.cos(beta), self.side * np.sin(beta)])
+        return np.array([np.cos(beta), self.sign * np.sin(beta)])
 
-    def beta_of(self, center: np.ndarray) -> float:
+    def inclination(self, center: np.ndarray) -> float:
         """Inclination, rad, of the normal common to an arc about `center` (2,) and to a circle about the axis."""
-        x, y = self.side * center / np.hypot(*center)
-        return float(np.arctan2(self.side * y, x))
+        x, y = self.sign * center / np.hypot(*center)
+        return float(np.arctan2(self.sign * y, x))
 
     def segment(self, name: str, start: np.ndarray, beta: float, convexity: float, length: float) -> Segment:
         """Segment from `start` (2,), mm, where the normal's inclination is beta.
@@ -71,7 +71,7 @@ class FlankFrame(Teeth):
         `convexity` is its curvature, 1/mm, above 0 where the tooth is convex, and `length` its arc length, mm.
         """
         direction = beta - 0.5 * np.pi if self.external else 0.5 * np.pi - beta
-        return Segment(name, (float(start[0]), float(start[1])), direction, -self.side * convexity, float(length))
+        return Segment(name, (float(start[0]), float(start[1])), direction, -self.sign * convexity, float(length))
 
     def profile(self, pieces: list[Piece], name: str, allowed: str) -> ToothProfile:
         """Flank of `pieces` from tip to root; those of no length are left out, a negative length is refused.
