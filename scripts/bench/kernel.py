@@ -9,7 +9,7 @@ from collections.abc import Callable
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.analysis.drive_model import DriveModel
+from swgpar.analysis.drive_model import build_drive_model
 from swgpar.design.design_file import load_design
 from swgpar.fem.sparse import create_matrix, fill_matrix
 from swgpar.meshing import load_recipe
@@ -32,12 +32,12 @@ def main() -> None:
     options.add_argument("--repeat", type=int, default=3)
     arguments = options.parse_args()
     design = load_design(arguments.design, ["solver.twofold_symmetry=false"])
-    model = DriveModel(design, load_recipe(arguments.mesh), MPI.COMM_SELF)
-    equilibrium, elements = model.equilibrium, model.elements
-    rows, slots = elements.rows(np.zeros(0, dtype=np.int64), equilibrium.local.number)
+    model = build_drive_model(design, load_recipe(arguments.mesh), comm=MPI.COMM_SELF)
+    local, elements = model.problem.local, model.elements
+    rows, slots = elements.rows(np.zeros(0, dtype=np.int64), local.number)
     matrix = create_matrix(model.partition, rows)
     # every element turned and strained a little, so that none takes a short way
-    u = np.random.default_rng(1).uniform(-1e-3, 1e-3, (len(equilibrium.local), 3))
+    u = np.random.default_rng(1).uniform(-1e-3, 1e-3, (len(local), 3))
     residual = np.zeros_like(u)
 
     def both() -> None:

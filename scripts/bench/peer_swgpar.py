@@ -15,8 +15,8 @@ from mpi4py import MPI
 from peer_problems import CAM, CAM_HALF_ANGLE, INNER, OUTER, PENALTY, PROBLEMS, STEEL, WIDTH, Problem, line
 
 from swgpar.analysis.plain_ring import RingBody, RingCounts, RingDesign, RingModel
-from swgpar.contact.rigid_surface import CamPose
-from swgpar.design.load_states import LoadState
+from swgpar.contact.contact import NO_KEYS
+from swgpar.design.load_states import LoadState, Stage
 from swgpar.design.sections import Contact
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.sparse import BlockRows
@@ -26,26 +26,50 @@ from swgpar.solve.line_search import LineSearch
 
 
 class DeadLoad:
-    """Forces on nodes in the place of a rigid surface, so that convergence is judged by them."""
+    """Forces on nodes in the role of a contact, so that convergence is judged by them; meets the protocol `Contact`.
 
-    penalty, pressure = 0.0, np.zeros(0)
+    nodes : (n,) local;  force : (n, 3) N
+    """
 
     def __init__(self, nodes: np.ndarray, force: np.ndarray) -> None:
-        """nodes : (n,) local;  force : (n, 3) N"""
         self.nodes, self.force = nodes, force
+        self.multiplier = np.zeros(0)
 
-    def evaluate(self, u: np.ndarray, pose: CamPose, residual: np.ndarray | None, rows: BlockRows | None) -> None:
+    def is_active(self, state: LoadState) -> bool:
+        """The forces always act."""
+        return True
+
+    def evaluate(
+        self, u: np.ndarray, state: LoadState, residual: np.ndarray | None, rows: BlockRows | None
+    ) -> np.ndarray:
+        """Add the forces to residual (n_local, 3) N; they have no tangent."""
         if residual is not None:
             residual[self.nodes] -= self.force
+        return NO_KEYS
+
+    def add_owned_forces(self, u: np.ndarray, state: LoadState, residual: np.ndarray) -> None:
+        """Add the forces to residual (n_local, 3) N."""
+        self.evaluate(u, state, residual, None)
 
     def reset(self) -> None:
         """There are no multipliers."""
+
+    def scale_penalty(self, share: float) -> None:
+        """There is no penalty."""
 
     def augment(self) -> None:
         """There are no multipliers."""
 
     def penetration(self) -> float:
+        """There is no penetration."""
         return 0.0
+
+    def active_sets(self) -> list[np.ndarray]:
+        """There are no active sets."""
+        return []
+
+    def owned_pressure(self) -> None:
+        """There is no pressure."""
 
 
 def pinched(design: RingDesign, counts: RingCounts, force: float) -> tuple[BodyElements, np.ndarray, int]:
@@ -54,17 +78,17 @@ def pinched(design: RingDesign, counts: RingCounts, force: float) -> tuple[BodyE
     nodes, share = line(ring.mesh.coords)
     sectors = ring.body.sectors[ring.body.owned]
     local, forces = [np.zeros(0, dtype=np.int64)], [np.zeros((0, 3))]
-    for place, direction in ((0, -1.0), (counts.sectors // 2, 1.0)):
-        for k in np.flatnonzero(sectors == place):
+    for sector, direction in ((0, -1.0), (counts.sectors // 2, 1.0)):
+        for k in np.flatnonzero(sectors == sector):
             local.append(ring.body.local[ring.body.owned][k, nodes])
             forces.append(force * direction * share[:, None] * (0.0, 1.0, 0.0))
     # the search is made for contact: in bending without it a full step, which stretches the ring, is the way out
     LineSearch.TRIALS = 0
-    equilibrium = ring.equilibrium(DeadLoad(np.concatenate(local), np.concatenate(forces)))
-    solved = equilibrium.solve(LoadState(1, "load", cam=0.0))
+    solver = ring.solver(DeadLoad(np.concatenate(local), np.concatenate(forces)))
+    solved = solver.solve(LoadState(Stage.LOAD, 3, cam_clearance=0.0))
     if not solved.converged:
         raise SystemExit(f"not converged: {solved}")
-    return ring.body, equilibrium.displacement(), solved.iterations
+    return ring.body, solver.problem.displacement(), solved.iterations
 
 
 def main() -> None:
@@ -77,7 +101,7 @@ def main() -> None:
         cam = EllipticalCam(*CAM)
         model = RingModel(design, counts, cam, np.radians(CAM_HALF_ANGLE), MPI.COMM_WORLD, halved=False)
         iterations, body = model.spread(problem.travel), model.body
-        u = model.equilibrium.displacement()
+        u = model.problem.displacement()
     else:
         body, u, iterations = pinched(design, counts, problem.force)
     fields = body_fields(body, u)

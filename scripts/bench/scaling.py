@@ -27,7 +27,7 @@ def measure(mesh: str, linear: str) -> None:
     petsc4py.init([])
     from mpi4py import MPI
 
-    from swgpar.analysis.drive_model import DriveModel
+    from swgpar.analysis.drive_model import build_drive_model
     from swgpar.design.design_file import load_design
     from swgpar.design.load_states import load_sequence
     from swgpar.fem.vectors import create_vector
@@ -35,11 +35,9 @@ def measure(mesh: str, linear: str) -> None:
 
     comm = MPI.COMM_WORLD
     design = load_design("drivers/cup_45deg.toml", [f"solver.linear={linear}"])
-    model = DriveModel(design, load_recipe(mesh), comm)
-    equilibrium, border = model.equilibrium, model.equilibrium.border
-    equilibrium.scene = next(iter(load_sequence(design)))
-    equilibrium.search()
-    equilibrium.history = []
+    model = build_drive_model(design, load_recipe(mesh), comm=comm)
+    problem, system, state = model.problem, model.solver.system, next(iter(load_sequence(design)))
+    problem.search(state)
     right, x, product = (create_vector(model.partition) for _ in range(3))
 
     def timed(call) -> float:
@@ -49,24 +47,26 @@ def measure(mesh: str, linear: str) -> None:
         comm.Barrier()
         return time.perf_counter() - begin
 
-    residual = timed(lambda: equilibrium.snes.computeFunction(equilibrium.x, right))
-    shell = equilibrium.snes.getJacobian()[0]
-    tangent = timed(lambda: equilibrium.snes.computeJacobian(equilibrium.x, shell))
+    residual = timed(lambda: problem.residual(problem.x, right, state))
+    u = problem.displacement()
+    tangent = timed(lambda: problem.tangent(u, state))
+    border, rows = problem.supports.border(u, state)
+    system.set_system(problem.matrix, problem.supports.ground_vectors, border, rows)
     row = {
         "mesh": mesh,
         "solver": linear,
         "ranks": comm.size,
         "unknowns": sum(b["dofs"] for b in model.counts().values()),
     }
-    row |= {"assembly_s": residual + tangent, "setup_s": timed(border.prepare)}
+    row |= {"assembly_s": residual + tangent, "setup_s": timed(system.prepare)}
     if linear == "direct":  # without the analysis of the pattern, which is done once
-        border.matrix.stateIncrease()
-        row["factor_s"] = timed(border.prepare)
-    row["solve_s"] = timed(lambda: border.solve_grounded(right, x))
-    row["product_s"] = timed(lambda: border.multiply(x, product))
-    row["iterations"] = border.ksp.getIterationNumber() if linear == "iterative" else 1
+        system.matrix.stateIncrease()
+        row["factor_s"] = timed(system.prepare)
+    row["solve_s"] = timed(lambda: system.solve_grounded(right, x))
+    row["product_s"] = timed(lambda: system.multiply(x, product))
+    row["iterations"] = system.ksp.getIterationNumber() if linear == "iterative" else 1
     if linear == "direct":
-        factor = border.ksp.getPC().getFactorMatrix()
+        factor = system.ksp.getPC().getFactorMatrix()
         entries = factor.getMumpsInfog(29)  # in millions where it is negative
         row["factor_entries"] = entries if entries >= 0 else -1_000_000 * entries
         row["factor_Gflop"] = 1e-9 * factor.getMumpsRinfog(3)

@@ -26,7 +26,7 @@ from support.drive_groups import MESH, REPEATED, UNITS, UNITS_GROUP, Group, drif
 from support.element_limits import element_rows
 from support.paths import ROOT
 from support.small_drive import PLANE
-from swgpar.analysis.load_stepping import LOADED
+from swgpar.design.load_states import Stage
 from swgpar.results import history
 
 Row = dict[str, Any]
@@ -103,7 +103,7 @@ def measured(folder: Path, case: dict[str, Any]) -> Row:
         "cutbacks": log.count("cut back to"),
         "cycles": log.count("contacts do not settle"),
     }
-    loaded = [r for r in rows if int(r["step"]) >= LOADED]
+    loaded = [r for r in rows if int(r["step"]) >= Stage.LOAD]
     torque = max((abs(r["output_torque_Nmm"]) for r in loaded), default=0.0)
     if torque and case.get("load.torque") != 0.0:  # without a load both are round-off
         out["unbalanced"] = max(r["torque_balance_Nmm"] for r in loaded) / torque

@@ -1,8 +1,8 @@
-"""Start on coarser meshes: pins, engagement and torque there, the loaded state interpolated onto the finer mesh.
+"""Start on coarser meshes: deflection, engagement and torque there, then interpolation onto the finer mesh.
 
 Most Newton iterations of a start find out which points touch. On a mesh with half of the elements in every direction
-they cost an eighth and less, and its loaded state is so close that a few iterations remain. Without friction the loaded
-state does not depend on the way to it, so that the result is the same to the solver's tolerance.
+they cost an eighth or less. Its loaded state is so close that a few iterations remain on the finer mesh. Without
+friction the loaded state does not depend on the path to it, so that the result is the same to the solver's tolerance.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from swgpar.analysis.drive_model import DriveModel, stresses
-from swgpar.analysis.load_stepping import LOADED, LoadStepper
+from swgpar.analysis.drive_model import DriveModel, build_drive_model
+from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.load_states import LoadState
+from swgpar.design.load_states import LoadState, Stage, from_loaded
 from swgpar.errors import SwgparError
 from swgpar.fem.vectors import read_field, write_field
 from swgpar.geometry.rotation import rotated
@@ -44,7 +44,7 @@ def transfer(coarse: DriveModel, x: PETSc.Vec, fine: DriveModel, y: PETSc.Vec) -
 def levels(design: DriveDesign, recipe: MeshRecipe) -> list[MeshRecipe]:
     """Recipes of the coarser meshes of a start, the coarsest first.
 
-    None with friction, under which the loaded state depends on the way to it.
+    None with friction, because the loaded state then depends on the path to it.
     """
     found: list[MeshRecipe] = []
     while len(found) < design.steps.start_levels and not design.contact.friction:
@@ -53,12 +53,6 @@ def levels(design: DriveDesign, recipe: MeshRecipe) -> list[MeshRecipe]:
             break
         found.insert(0, simpler)
     return found
-
-
-def from_loaded(items: list[LoadState]) -> list[LoadState]:
-    """The increments from the loaded state on."""
-    loaded = max(k for k, item in enumerate(items) if item.step == LOADED)
-    return items[loaded:]
 
 
 @dataclass(frozen=True)
@@ -71,58 +65,62 @@ class Level:
 
 def level_of(model: DriveModel) -> Level:
     """Elements and stresses of a model in its loaded state."""
-    return Level(model.elements_whole(), stresses(model)[0])
+    return Level(model.n_elements(), model.stresses()[0])
 
 
 def load(
-    design: DriveDesign, recipe: MeshRecipe, items: list[LoadState], comm: MPI.Comm, below: DriveModel | None = None
+    design: DriveDesign,
+    recipe: MeshRecipe,
+    load_states: list[LoadState],
+    comm: MPI.Comm,
+    coarse: DriveModel | None = None,
 ) -> DriveModel:
-    """The drive on one mesh in its loaded state, from that on another one, the model `below`, which is released.
+    """The drive on one mesh in its loaded state, from the loaded state of the model `coarse`, which is released.
 
-    items : all increments of the run. Raises ConvergenceError or InputError where a mesh does not allow it.
+    load_states : all increments of the run. Raises ConvergenceError or InputError where a mesh does not allow it.
     """
-    way = None
+    stepper = None
     try:
-        way = LoadStepper(DriveModel(design, recipe, comm))
-        todo = [item for item in items if item.step <= LOADED]
-        if below is not None:
-            todo, taken, below = todo[-1:], below, None
-            take_over(taken, way, todo[-1])
+        stepper = LoadStepper(build_drive_model(design, recipe, comm=comm))
+        remaining = [state for state in load_states if state.stage <= Stage.LOAD]
+        if coarse is not None:
+            remaining, source, coarse = remaining[-1:], coarse, None
+            take_over(source, stepper, remaining[-1])
         iterations = []
-        for item in todo:
-            way.increment(item)
-            iterations.append(way.iterations)
+        for state in remaining:
+            stepper.advance(state)
+            iterations.append(stepper.iterations)
     except SwgparError:
-        for model in (below, way and way.model):
+        for model in (coarse, stepper and stepper.model):
             if model is not None:
                 model.destroy()
         raise
     counted = " + ".join(map(str, iterations))
-    logger.info("loaded on a mesh of %d elements, Newton iterations %s", way.model.elements_whole(), counted)
-    return way.model
+    logger.info("loaded on a mesh of %d elements, Newton iterations %s", stepper.model.n_elements(), counted)
+    return stepper.model
 
 
-def start_loaded(runner: LoadStepper, recipes: list[MeshRecipe], items: list[LoadState]) -> Level:
-    """Bring `runner` to the loaded state by way of coarser meshes, the coarsest of `recipes` first.
+def start_loaded(stepper: LoadStepper, recipes: list[MeshRecipe], load_states: list[LoadState]) -> Level:
+    """Bring `stepper` to the loaded state by way of coarser meshes, the coarsest of `recipes` first.
 
-    items : all increments of the run. Raises ConvergenceError or InputError where a mesh does not allow it; `runner` is
-    then to be reset.
+    load_states : all increments of the run. Raises ConvergenceError or InputError where a mesh does not allow it;
+    `stepper` is then to be reset.
     """
-    target, below = runner.model, None
-    loaded = from_loaded(items)[0]
+    target, coarse = stepper.model, None
+    loaded = from_loaded(load_states)[0]
     with target.phases("start"):
         for recipe in recipes:
-            below = load(target.design, recipe, items, target.comm, below)
-        level = level_of(below)
-        take_over(below, runner, loaded)
-        runner.increment(loaded)
+            coarse = load(target.design, recipe, load_states, target.comm, coarse)
+        level = level_of(coarse)
+        take_over(coarse, stepper, loaded)
+        stepper.advance(loaded)
     return level
 
 
-def take_over(below: DriveModel, runner: LoadStepper, loaded: LoadState) -> None:
-    """Take over the loaded state of the model on another mesh, and release that."""
+def take_over(coarse: DriveModel, stepper: LoadStepper, loaded: LoadState) -> None:
+    """Take over the loaded state of the model on another mesh, and release that model."""
     try:
-        transfer(below, below.equilibrium.x, runner.model, runner.equilibrium.x)
+        transfer(coarse, coarse.problem.x, stepper.model, stepper.problem.x)
     finally:
-        below.destroy()
-    runner.scene = loaded
+        coarse.destroy()
+    stepper.load_state = loaded

@@ -1,7 +1,8 @@
-"""The drive as it is computed: meshes, ownership, elements, contact, supports and solver."""
+"""The drive as it is computed: meshes, ownership, elements, contacts, supports and solver, built by factories."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -9,121 +10,94 @@ from mpi4py import MPI
 
 from swgpar.constraints.distributing_coupling import DistributingCoupling, Housing
 from swgpar.constraints.supports import Supports
-from swgpar.contact.flanks import FlankContact
-from swgpar.contact.rigid_surface import RigidContact
-from swgpar.contact.search import largest
+from swgpar.contact.contact import largest
+from swgpar.contact.flanks import Crowning, FlankContact, SearchRange
+from swgpar.contact.rigid_surface import RigidContact, cam_pose, pin_pose
 from swgpar.design.drive_design import DriveDesign
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR, BodyLayout
 from swgpar.fem.condensed_sectors import condense, relative_end_rotation
 from swgpar.fem.elements import Elements
+from swgpar.fem.inactive_sectors import InactiveSectors
 from swgpar.fem.partition import Partition
 from swgpar.fem.stress import body_fields, maxima
-from swgpar.kernel import reference_elements
+from swgpar.kernel import ReferenceElements, reference_elements
 from swgpar.log import Phases
-from swgpar.meshing import MeshRecipe, build_sector_meshes
-from swgpar.solve.discrete_problem import near
+from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes
+from swgpar.solve.discrete_problem import ContactSearch, DiscreteProblem
 from swgpar.solve.newton import NewtonSolver
+from swgpar.solve.solve_state import NewtonSettings
 
 PRESSURE_LIMIT = 0.02
 """Bound of contact pressures in the tangent's geometric terms, as a share of E: above any real pressure."""
 
+NEAR, TOUCH, TIP_MARGIN = 0.25, 0.05, 0.1
+"""Distances of the contact search over the module: faces that are evaluated, faces with blocks in the tangent's
+pattern, radial distance of the tips."""
 
-def halved(design: DriveDesign) -> bool:
-    """Whether the drive equals itself turned by 180 degrees and the design lets the model use it."""
+FOOT_REACH = 0.5
+"""Largest gap over the module at which a foot point is looked for."""
+
+EDGE = 1.0 + 1e-9
+"""Factor on the width of a rigid surface: points on its edge belong to it."""
+
+
+def is_halved(design: DriveDesign) -> bool:
+    """Whether the model is half of the drive: it equals itself rotated by 180 degrees, and the design allows it."""
     even = design.drive.teeth_fs % 2 == 0 and design.drive.teeth_rg % 2 == 0
     return design.solver.twofold_symmetry and even
 
 
-class DriveModel:
-    """Everything that exists once per run: meshes, ownership, equilibrium.
+def search_distance(design: DriveDesign) -> float:
+    """Distance (mm) within which flanks are followed: under torque all those that the backlash may bring together."""
+    return max(NEAR * design.drive.module, TOUCH * design.drive.module + design.backlash)
 
-    Parameters
-    ----------
-    design, recipe : the drive and how it is meshed
-    comm : communicator
+
+@dataclass(eq=False)
+class DriveModel:
+    """Everything that exists once per run; made by `build_drive_model`.
+
+    design, comm : what is computed, and the communicator
+    meshes : one sector of each body by name
+    partition, elements : ownership and elements
+    problem, solver : discrete problem and its Newton solver
+    phases : wall seconds
     """
 
-    def __init__(self, design: DriveDesign, recipe: MeshRecipe, comm: MPI.Comm) -> None:
-        self.design, self.comm, self.phases = design, comm, Phases()
-        images = halved(design)
-        with self.phases("mesh"):
-            self.meshes = build_sector_meshes(design, recipe)
-        layouts, references = [], []
-        for name, mesh in self.meshes.items():
-            with self.phases("elements"):
-                coords = mesh.coords[mesh.elements]
-                reference = reference_elements(coords, design.material.E, design.material.nu, design.drive.face_width)
-                condensed = condense(mesh, reference) if design.solver.condensed_sectors else None
-            references.append(reference)
-            clamped = name == "ring_gear" and design.drive.layout == "ring_fixed"
-            fixed = mesh.node_sets["outer"] if clamped else np.zeros(0, dtype=np.int32)
-            count = mesh.n_sectors // 2 if images else mesh.n_sectors
-            layouts.append(BodyLayout(mesh, 0, count, True, images, fixed, condensed))
-        self.partition = Partition(layouts, comm)
-        with self.phases("elements"):
-            self.elements = Elements(self.partition, references, symmetric=design.contact.friction == 0.0)
-        spline, ring = self.elements.bodies
-        surface = design.cam_surface()
-        half_width = 0.5 * design.wave_generator.face_width * (1.0 + 1e-9)
-        rigid = (
-            surface,
-            design.inner_radius,
-            half_width,
-            design.contact.wg_quadrature,
-            design.wg_penalty,
-            np.radians(design.wave_generator.pin_half_angle),
-            PRESSURE_LIMIT * design.material.E,
-        )
-        micro = design.micro_geometry
-        teeth = FlankContact(
-            self.partition,
-            spline,
-            ring,
-            design.contact.quadrature,
-            micro.fs_crowning,
-            design.drive.face_width,
-            micro.crowning_shape,
-            design.penalty,
-            max(0.5 * design.drive.module, near(design)),
-            PRESSURE_LIMIT * design.material.E,
-            design.contact.friction,
-        )
-        couplings, housing = [DistributingCoupling(self.partition, spline, "bore", images)], None
-        if design.drive.layout == "spline_fixed":
-            couplings.append(DistributingCoupling(self.partition, ring, "outer", images))
-            outer = float(np.hypot(*couplings[-1].reference[:, :2].T).max(initial=0.0))
-            area = 2.0 * np.pi * outer * design.drive.face_width / (2.0 if images else 1.0)
-            housing = Housing(couplings[-1], area, design.penalty)
-        scale = design.material.E * design.drive.module
-        self.equilibrium = NewtonSolver(
-            design,
-            self.partition,
-            self.elements,
-            Supports(self.partition, couplings, housing, scale, 0.5 if images else 1.0),
-            RigidContact(spline, *rigid),
-            RigidContact(spline, *rigid),
-            teeth,
-            self.phases,
-        )
-        self.copies = 2 if images else 1
-        self.fixed_body = RING_GEAR if design.drive.layout == "ring_fixed" else FLEXIBLE_SPLINE
+    design: DriveDesign
+    comm: MPI.Comm
+    meshes: dict[str, SectorMesh]
+    partition: Partition
+    elements: Elements
+    problem: DiscreteProblem
+    solver: NewtonSolver
+    phases: Phases
 
     def destroy(self) -> None:
-        """Release the solver and its factor, which Python cannot: PETSc holds references in a circle. Collective."""
-        self.equilibrium.destroy()
+        """Release the solver and its factor. Python cannot: PETSc holds references in a circle. Collective."""
+        self.solver.destroy()
 
-    def bend_left_out(self) -> float:
+    @property
+    def copies(self) -> int:
+        """How many times the model makes the whole drive: 2 where it is half of it."""
+        return 2 if is_halved(self.design) else 1
+
+    @property
+    def fixed_body(self) -> int:
+        """Index of the gear that does not rotate."""
+        return RING_GEAR if self.design.drive.layout == "ring_fixed" else FLEXIBLE_SPLINE
+
+    def omitted_bending_stress(self) -> float:
         """Stress (MPa) that condensed sectors leave out in the present state: E theta^2 / 8 where they bend most."""
         body = self.elements.bodies[FLEXIBLE_SPLINE]
         if body.layout.condensed is None:
             return 0.0
         angle = body.layout.sector_angle(body.layout.first_tooth + body.sectors[body.owned])
-        angle = relative_end_rotation(
-            body.layout.mesh, angle, body.displacement(self.equilibrium.displacement())[body.owned]
+        theta = relative_end_rotation(
+            body.layout.mesh, angle, body.displacement(self.problem.displacement())[body.owned]
         )
-        return largest(self.comm, self.design.material.E * float((angle**2).max(initial=0.0)) / 8.0)
+        return largest(self.comm, self.design.material.E * float((theta**2).max(initial=0.0)) / 8.0)
 
-    def elements_whole(self) -> int:
+    def n_elements(self) -> int:
         """Elements of the whole drive."""
         return sum(b["elements_whole"] for b in self.counts().values())
 
@@ -143,13 +117,140 @@ class DriveModel:
             }
         return out
 
+    def stresses(self) -> tuple[dict[str, float], list[dict[str, np.ndarray]]]:
+        """Largest stresses (MPa) by column of the history, and the nodal fields of both bodies."""
+        u = self.problem.displacement()
+        values, fields = {}, []
+        for prefix, body in zip(("fs", "rg"), self.elements.bodies):
+            field = body_fields(body, u)
+            fields.append(field)
+            values.update({f"{prefix}_{k}": v for k, v in maxima(self.comm, field).items()})
+        return values, fields
 
-def stresses(model: DriveModel) -> tuple[dict[str, float], list[dict[str, np.ndarray]]]:
-    """Maxima for the history and nodal fields of both bodies."""
-    u = model.equilibrium.displacement()
-    values, fields = {}, []
-    for prefix, body in zip(("fs", "rg"), model.elements.bodies):
-        field = body_fields(body, u)
-        fields.append(field)
-        values.update({f"{prefix}_{k}": v for k, v in maxima(model.comm, field).items()})
-    return values, fields
+
+def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm) -> DriveModel:
+    """Mesh the drive and set up its discrete problem and solver; collective.
+
+    Raises InputError where the recipe gives no mesh of this design.
+    """
+    phases = Phases()
+    with phases("mesh"):
+        meshes = build_sector_meshes(design, recipe)
+    with phases("elements"):
+        references = {name: _reference(design, mesh) for name, mesh in meshes.items()}
+        layouts = [_layout(design, mesh, references[name]) for name, mesh in meshes.items()]
+    partition = Partition(layouts, comm)
+    with phases("elements"):
+        symmetric = design.contact.friction == 0.0
+        elements = Elements(partition, list(references.values()), symmetric=symmetric)
+    supports = build_supports(design, partition=partition, elements=elements)
+    problem = DiscreteProblem(
+        partition=partition,
+        elements=elements,
+        supports=supports,
+        rigid_contacts=build_rigid_contacts(design, elements=elements),
+        flanks=(
+            build_flank_contact(design, partition=partition, elements=elements, supports=supports),
+            contact_search(design),
+        ),
+        module=design.drive.module,
+        inner_radius=design.inner_radius,
+        inactive=InactiveSectors(layouts[RING_GEAR].count) if _leaves_out_sectors(design) else None,
+        phases=phases,
+    )
+    solver = NewtonSolver(problem, newton_settings(design))
+    return DriveModel(design, comm, meshes, partition, elements, problem, solver, phases)
+
+
+def _reference(design: DriveDesign, mesh: SectorMesh) -> ReferenceElements:
+    material = design.material
+    return reference_elements(mesh.coords[mesh.elements], material.E, material.nu, design.drive.face_width)
+
+
+def _layout(design: DriveDesign, mesh: SectorMesh, reference: ReferenceElements) -> BodyLayout:
+    halved = is_halved(design)
+    clamped = mesh.body == "ring_gear" and design.drive.layout == "ring_fixed"
+    fixed = mesh.node_sets["outer"] if clamped else np.zeros(0, dtype=np.int32)
+    count = mesh.n_sectors // 2 if halved else mesh.n_sectors
+    condensed = condense(mesh, reference) if design.solver.condensed_sectors else None
+    return BodyLayout(mesh, 0, count, True, halved, fixed, condensed)
+
+
+def _leaves_out_sectors(design: DriveDesign) -> bool:
+    return design.solver.far_teeth == "left_out" and design.drive.layout == "ring_fixed"
+
+
+def build_supports(design: DriveDesign, *, partition: Partition, elements: Elements) -> Supports:
+    """Coupling of the bore; with the spline fixed also that of the ring gear, and the housing."""
+    spline, ring = elements.bodies
+    halved = is_halved(design)
+    couplings, housing = [DistributingCoupling(partition, spline, "bore", halved)], None
+    if design.drive.layout == "spline_fixed":
+        couplings.append(DistributingCoupling(partition, ring, "outer", halved))
+        outer = float(np.hypot(*couplings[-1].reference[:, :2].T).max(initial=0.0))
+        area = 2.0 * np.pi * outer * design.drive.face_width / (2.0 if halved else 1.0)
+        housing = Housing(couplings[-1], area, design.penalty)
+    scale = design.material.E * design.drive.module
+    return Supports(partition, couplings, housing=housing, scale=scale, share=0.5 if halved else 1.0)
+
+
+def build_rigid_contacts(design: DriveDesign, *, elements: Elements) -> list[RigidContact]:
+    """Contact of the cam and of the pins on the inner surface."""
+    surface = design.cam_surface()
+    return [
+        RigidContact(
+            elements.bodies[FLEXIBLE_SPLINE],
+            surface,
+            pose,
+            radius=design.inner_radius,
+            half_width=0.5 * design.wave_generator.face_width * EDGE,
+            n_quadrature=design.contact.wg_quadrature,
+            penalty=design.wg_penalty,
+            pin_half_angle=float(np.radians(design.wave_generator.pin_half_angle)),
+            pressure_limit=PRESSURE_LIMIT * design.material.E,
+        )
+        for pose in (cam_pose, pin_pose)
+    ]
+
+
+def build_flank_contact(
+    design: DriveDesign, *, partition: Partition, elements: Elements, supports: Supports
+) -> FlankContact:
+    """Contact of the flexible spline's flanks on the ring gear's."""
+    spline, ring = elements.bodies
+    micro = design.micro_geometry
+    return FlankContact(
+        partition,
+        spline,
+        ring,
+        supports,
+        order=design.contact.quadrature,
+        crowning=Crowning(micro.fs_crowning, design.drive.face_width, micro.crowning_shape),
+        penalty=design.penalty,
+        reach=max(FOOT_REACH * design.drive.module, search_distance(design)),
+        pressure_limit=PRESSURE_LIMIT * design.material.E,
+        friction_coefficient=design.contact.friction,
+    )
+
+
+def contact_search(design: DriveDesign) -> ContactSearch:
+    """Distances of the contact search."""
+    module = design.drive.module
+    return ContactSearch(
+        tip_margin=TIP_MARGIN * module,
+        distances=SearchRange(near=search_distance(design), touch=TOUCH * module),
+        reach=0.5 * design.drive.teeth_rg * module + design.deflection,
+    )
+
+
+def newton_settings(design: DriveDesign) -> NewtonSettings:
+    """Settings of the solver; factors are reused in space with the direct solver."""
+    solver, contact = design.solver, design.contact
+    return NewtonSettings(
+        rtol=solver.rtol,
+        max_iterations=solver.max_iterations,
+        max_augmentations=contact.max_augmentations,
+        penetration_tolerance=contact.penetration_tolerance * design.drive.module,
+        linear=solver.linear,
+        reuse_factor=solver.keep_factor and solver.linear == "direct" and design.drive.model == "cup",
+    )

@@ -1,140 +1,155 @@
-"""The load steps: increments with prediction and cut-back, backlash, history rows."""
+"""Load stepping: one increment after the other, with prediction, cut-back and closing of the backlash."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 import numpy as np
-from mpi4py import MPI
 
 from swgpar.analysis.drive_model import DriveModel
-from swgpar.analysis.predictor import State, predict
+from swgpar.analysis.predictor import KnownState, predict
 from swgpar.analysis.torques import torques
-from swgpar.design.load_states import LoadState, start
+from swgpar.design.load_states import LoadState, Stage, start_state
 from swgpar.errors import ConvergenceError
 from swgpar.log import logger
+from swgpar.solve.solve_state import SolveResult
 
-LOADED = 3
-"""Step from which states repeat with the period."""
-
-MEMORY = 40
+MAX_KNOWN_STATES = 40
 """States of the rotation that are kept to predict the next ones from."""
 
-CLOSING = 10
-"""Turns in which a backlash is closed: each leaves some eighth of it, by the pressure angle."""
+MAX_CLOSING_ROTATIONS = 10
+"""Rotations in which a backlash is closed: each leaves about an eighth of it, by the pressure angle."""
 
 
 class LoadStepper:
-    """Goes through the sequence, one increment after the other; `row` describes the state reached."""
+    """Takes the model from one load state to the next.
+
+    Parameters
+    ----------
+    model : the drive
+
+    Attributes
+    ----------
+    load_state : the state reached;  iterations, residual : Newton iterations and last residual of the last increment
+    known_states : periodic states that predictions start from
+    """
 
     def __init__(self, model: DriveModel) -> None:
         self.model, self.design = model, model.design
-        self.equilibrium = model.equilibrium
-        self.scene = start(model.design)
+        self.problem, self.solver = model.problem, model.solver
+        self.load_state = start_state(model.design)
         self.iterations = 0
         self.residual = 0.0
-        self.visited: list[State] = []
+        self.known_states: list[KnownState] = []
 
     def reset(self) -> None:
         """Go back to the undeformed drive."""
-        self.scene, self.visited = start(self.design), []
-        self.equilibrium.x.set(0.0)
-        self.equilibrium.resume({})
+        self.load_state, self.known_states = start_state(self.design), []
+        self.problem.x.set(0.0)
+        self.problem.resume({})
 
-    def take(self, scene: LoadState) -> None:
-        """Take the model's present state as that of `scene`."""
-        self.scene = scene
-        self.visited = [(scene.angle, self.equilibrium.x.copy())]
+    def resume_at(self, load_state: LoadState) -> None:
+        """Take the model's present x as the state of `load_state`."""
+        self.load_state = load_state
+        self.known_states = [KnownState(load_state.angle, self.problem.x.copy())]
 
     def advance(self, target: LoadState) -> None:
-        """Solve up to `target`, halving the way when Newton's iteration fails; raises ConvergenceError at the end."""
-        origin, x = self.scene, self.equilibrium.x
+        """Solve up to `target`, with smaller steps where Newton's iteration fails.
+
+        Raises ConvergenceError after `solver.max_cutbacks` halvings; x is then the last converged state.
+        """
+        self.iterations = 0
+        origin, x = self.load_state, self.problem.x
         if origin.control == "rotation" and target.control == "torque":
-            # cut, the way begins with the torque that holds the output
-            held = self.equilibrium.holding.reactions(self.equilibrium.multipliers(x))
-            origin = replace(origin, torque=float(held[-1]))
+            # after a cut-back the increment begins with the torque that held the output
+            reactions = self.problem.supports.reactions(self.problem.multipliers())
+            origin = replace(origin, torque=float(reactions[-1]))
             self._close_backlash(target)
-        done, share, cuts = 0.0, 1.0, 0
+        done, share, cutbacks = 0.0, 1.0, 0
         while done < 1.0:
             saved = x.copy()
-            reach = min(1.0, done + share)
-            scene = origin.toward(target, reach, self.design.drive.module, self.design.deflection)
-            if scene.angle != self.scene.angle:
-                self._turn_to(scene.angle)
-            elif scene.control == "rotation" and scene.rotation != self.scene.rotation:
-                self._slip(scene.rotation - self.scene.rotation)
-            elif scene.name == "deflect" and self.scene.name == "deflect":
-                # the ring bends in proportion to the travel of the pins, or to the growth of the cam
-                first, old, new = (s.cam if s.pins is None else s.pins for s in (start(self.design), self.scene, scene))
-                x.scale((first - new) / (first - old))
-            contacts = [value is not None for value in (scene.cam, scene.pins, scene.teeth)]
-            before = [value is not None for value in (self.scene.cam, self.scene.pins, self.scene.teeth)]
-            fresh = self.scene.step == 0 or any(new and not old for new, old in zip(contacts, before))
-            solved = self.equilibrium.solve(scene, soft=fresh)
-            self.iterations += solved.iterations
-            if solved.converged:
-                self.scene, self.residual, done = scene, solved.residual, reach
-                if target.step >= LOADED:
-                    self.visited = [*self.visited, (scene.angle, x.copy())][-MEMORY:]
+            end = min(1.0, done + share)
+            state = origin.interpolate(target, end, self.design.drive.module, self.design.deflection)
+            self._predict(state)
+            result = self.solver.solve(state, establish_contact=state.switches_on(self.load_state))
+            self.iterations += result.iterations
+            if result.converged:
+                self._take(state, result)
+                done = end
                 continue
             saved.copy(x)
-            cuts += 1
-            if cuts > self.design.solver.max_cutbacks or origin == target:  # nothing to halve
-                raise ConvergenceError(
-                    f"step {target.step} ({target.name}) did not converge at a wave-generator angle of "
-                    f"{np.degrees(scene.angle):.4g} degrees after {cuts - 1} cut-backs: {solved.reason}, residual "
-                    f"{solved.residual:.1e} of the contact force"
-                )
+            cutbacks += 1
+            if cutbacks > self.design.solver.max_cutbacks or origin == target:  # nothing to halve
+                raise ConvergenceError(self._failure(target, state, result, cutbacks - 1))
             share *= 0.5
             logger.info(
-                "   cut back to %.3g of the increment (%s, residual %.1e)", share, solved.reason, solved.residual
+                "   cut back to %.3g of the increment (%s, residual %.1e)", share, result.reason, result.residual
             )
 
+    def _take(self, state: LoadState, result: SolveResult) -> None:
+        self.load_state, self.residual = state, result.residual
+        if state.is_periodic:
+            self.known_states = [*self.known_states, KnownState(state.angle, self.problem.x.copy())]
+            self.known_states = self.known_states[-MAX_KNOWN_STATES:]
+
+    @staticmethod
+    def _failure(target: LoadState, state: LoadState, result: SolveResult, cutbacks: int) -> str:
+        return (
+            f"step {target.step} ({target.stage.label}) did not converge at a wave-generator angle of "
+            f"{np.degrees(state.angle):.4g} degrees after {cutbacks} cut-backs: {result.reason}, residual "
+            f"{result.residual:.1e} of the contact force"
+        )
+
+    def _predict(self, state: LoadState) -> None:
+        """Set x to a guess of the state."""
+        here = self.load_state
+        if state.angle != here.angle:
+            self._predict_rotation(state.angle)
+        elif state.control == "rotation" and state.output_rotation != here.output_rotation:
+            self._rotate_output(state.output_rotation - here.output_rotation)
+        elif state.stage == here.stage == Stage.DEFLECT:
+            # the ring bends in proportion to the travel of the pins, or to the growth of the cam
+            first, old, new = (
+                s.cam_clearance if s.pin_inset is None else s.pin_inset for s in (start_state(self.design), here, state)
+            )
+            self.problem.x.scale((first - new) / (first - old))
+
     def _close_backlash(self, target: LoadState) -> None:
-        """Turn the output until the flanks that are to carry nearly meet.
+        """Rotate the output until the flanks that are to carry nearly meet.
 
-        The drive's pattern turns along, past the cam: Newton's steps turn the spline straight ahead, which lifts it off
-        the cam, so that a turn by a fraction of the backlash costs them several iterations.
+        The deformed pattern rotates along, past the cam. Newton's steps move the nodes of the spline straight ahead,
+        which lifts it off the cam, so that a rotation by a fraction of the backlash would take several iterations.
         """
-        for _ in range(CLOSING):
-            turn = self.equilibrium.closing_turn(target)
-            if turn == 0.0:
+        for _ in range(MAX_CLOSING_ROTATIONS):
+            rotation = self.problem.closing_rotation(target)
+            if rotation == 0.0:
                 break
-            self._slip(turn)
+            self._rotate_output(rotation)
 
-    def _slip(self, turn: float) -> None:
-        """Turn the output in its pattern (rad)."""
-        x = self.equilibrium.x
-        predict(self.model.partition, self.model.fixed_body, [(0.0, x)], x, 0.0, turn)
+    def _rotate_output(self, rotation: float) -> None:
+        """Rotate the output in its deformed pattern (rad)."""
+        x = self.problem.x
+        predict(self.model.partition, self.model.fixed_body, [KnownState(0.0, x)], x, 0.0, rotation)
 
-    def _turn_to(self, angle: float) -> None:
-        """Predict the state at a cam angle (rad) from those visited, or from the present one."""
-        x = self.equilibrium.x
-        predict(self.model.partition, self.model.fixed_body, self.visited or [(self.scene.angle, x)], x, angle)
-
-    def increment(self, target: LoadState) -> None:
-        """Do one entry of the sequence."""
-        self.iterations = 0
-        self.advance(target)
+    def _predict_rotation(self, angle: float) -> None:
+        """Predict the state at an angle of the wave generator (rad) from the known states, or from the present one."""
+        x = self.problem.x
+        known = self.known_states or [KnownState(self.load_state.angle, x)]
+        predict(self.model.partition, self.model.fixed_body, known, x, angle)
 
     def row(self) -> dict[str, float]:
-        """The history row of the present state, without stresses and times."""
-        equilibrium, copies = self.equilibrium, self.model.copies
-        torque = torques(equilibrium)
-        pairs = (
-            self.model.comm.allreduce(equilibrium.teeth.touching_pairs(), op=MPI.SUM)
-            if self.scene.teeth is not None
-            else 0
-        )
+        """The history's row of the present state, without stresses and times; collective."""
+        state, problem = self.load_state, self.problem
+        torque = torques(problem, state)
         return {
-            "step": self.scene.step,
-            "wg_angle_deg": float(np.degrees(self.scene.angle)),
-            "output_angle_deg": float(np.degrees(equilibrium.rotation())),
-            "wg_torque_Nmm": torque["wg"],
-            "tooth_torque_Nmm": torque["teeth"],
-            "output_torque_Nmm": torque["output"],
-            "torque_balance_Nmm": torque["balance"],
-            "pairs_in_contact": copies * pairs,
-            "max_penetration_mm": equilibrium.penetration(),
+            "step": state.step,
+            "wg_angle_deg": float(np.degrees(state.angle)),
+            "output_angle_deg": float(np.degrees(problem.output_rotation())),
+            "wg_torque_Nmm": torque.wave_generator,
+            "tooth_torque_Nmm": torque.teeth,
+            "output_torque_Nmm": torque.output,
+            "torque_balance_Nmm": torque.balance,
+            "pairs_in_contact": self.model.copies * problem.touching_pairs(),
+            "max_penetration_mm": problem.penetration(),
             "newton_iterations": self.iterations,
         }

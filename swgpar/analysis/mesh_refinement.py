@@ -83,7 +83,7 @@ def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
     if design.contact.friction:
         raise InputError(
             f"--accuracy needs contact.friction = 0, not {design.contact.friction:g}: with friction the loaded state "
-            "depends on the way to it and cannot be taken over from a coarser mesh"
+            "depends on the path to it and cannot be taken over from a coarser mesh"
         )
     changes: dict[str, Any] = {}
     solver: dict[str, Any] = {}
@@ -117,12 +117,12 @@ class Refinement:
 
     Parameters
     ----------
-    design, items, comm : the drive, all increments of its run, communicator
+    design, load_states, comm : the drive, all increments of its run, communicator
     recipe : what is refined; coarsened where a group could not be doubled below the largest size
     """
 
-    def __init__(self, design: DriveDesign, recipe: MeshRecipe, items: list[LoadState], comm: MPI.Comm) -> None:
-        self.design, self.items, self.comm = design, items, comm
+    def __init__(self, design: DriveDesign, recipe: MeshRecipe, load_states: list[LoadState], comm: MPI.Comm) -> None:
+        self.design, self.load_states, self.comm = design, load_states, comm
         self.dimensions = 2 if design.drive.model == "plane" else 3
         self.groups = {name: counts for name, counts in GROUPS.items() if self.dimensions == 3 or name != "length"}
         self.base, self.doublings = recipe, (0,) * len(self.groups)
@@ -131,8 +131,8 @@ class Refinement:
                 break
             self.base = coarser(self.base)
         self.levels: dict[Doublings, Level] = {}
-        self.left_out: dict[Doublings, float] = {}
-        self.model = load(design, coarser(self.base), items, comm)
+        self.omitted_stress: dict[Doublings, float] = {}
+        self.model = load(design, coarser(self.base), load_states, comm)
 
     def recipe(self, doublings: Doublings) -> MeshRecipe:
         """With every group doubled as many times as `doublings` says."""
@@ -152,14 +152,14 @@ class Refinement:
 
     def load(self, doublings: Doublings) -> Level:
         """Bring the drive to its loaded state there, from that of the last mesh, or else from the start."""
-        recipe, below = self.recipe(doublings), self.model
+        recipe, coarse = self.recipe(doublings), self.model
         try:
-            self.model = load(self.design, recipe, self.items, self.comm, below)
+            self.model = load(self.design, recipe, self.load_states, self.comm, coarse)
         except (ConvergenceError, InputError) as error:
             logger.info("the state of another mesh does not lead to that of this one: %s", error)
-            self.model = load(self.design, recipe, self.items, self.comm)
+            self.model = load(self.design, recipe, self.load_states, self.comm)
         self.doublings, self.levels[doublings] = doublings, level_of(self.model)
-        self.left_out[doublings] = self.model.bend_left_out()
+        self.omitted_stress[doublings] = self.model.omitted_bending_stress()
         return self.levels[doublings]
 
 
@@ -168,48 +168,50 @@ def one_more(doublings: Doublings, group: int) -> Doublings:
     return tuple(count + (k == group) for k, count in enumerate(doublings))
 
 
-def choose(design: DriveDesign, recipe: MeshRecipe, items: list[LoadState], accuracy: float, comm: MPI.Comm) -> Chosen:
+def choose(
+    design: DriveDesign, recipe: MeshRecipe, load_states: list[LoadState], accuracy: float, comm: MPI.Comm
+) -> Chosen:
     """Refine `recipe` until the estimated relative error of the largest tensile stress is at most `accuracy`.
 
     Every group of counts has an error, first from what doubling it alone changes; then the group is doubled that has
     the largest error for the elements of the finer mesh.
 
-    items : all increments of the run. Ends below the largest size where the accuracy is out of reach, and says so.
-    Raises ConvergenceError or InputError like a run on one of the meshes.
+    load_states : all increments of the run. Ends below the largest size where the accuracy is out of reach, and says
+    so. Raises ConvergenceError or InputError like a run on one of the meshes.
     """
-    way = Refinement(design, recipe, items, comm)
-    doublings, every = way.doublings, range(len(way.groups))
-    here, changes = way.load(doublings), []
-    for k in every:
-        trial = way.load(one_more(doublings, k)).stresses if way.size(one_more(doublings, k)) else None
+    refinement = Refinement(design, recipe, load_states, comm)
+    doublings, groups = refinement.doublings, range(len(refinement.groups))
+    level, changes = refinement.load(doublings), []
+    for k in groups:
+        trial = refinement.load(one_more(doublings, k)).stresses if refinement.size(one_more(doublings, k)) else None
         # what the doubling before this one would have changed
         changes.append(
-            {name: 2.0**ORDER * (trial[name] - value) if trial else np.inf for name, value in here.stresses.items()}
+            {name: 2.0**ORDER * (trial[name] - value) if trial else np.inf for name, value in level.stresses.items()}
         )
     errors = [{name: error_after(value) for name, value in change.items()} for change in changes]
     while True:
-        stress = here.stresses[MEASURE]
-        left_out = way.left_out[doublings]
-        error = relative(sum(one[MEASURE] for one in errors) + left_out, stress)
+        stress = level.stresses[MEASURE]
+        omitted = refinement.omitted_stress[doublings]
+        error = relative(sum(one[MEASURE] for one in errors) + omitted, stress)
         parts = ", ".join(
-            f"{name} {100.0 * relative(one[MEASURE], stress):.2g}" for name, one in zip(way.groups, errors)
+            f"{name} {100.0 * relative(one[MEASURE], stress):.2g}" for name, one in zip(refinement.groups, errors)
         )
-        logger.info("%d elements: s1 %.1f MPa under load, estimated errors (%%): %s", here.elements, stress, parts)
+        logger.info("%d elements: s1 %.1f MPa under load, estimated errors (%%): %s", level.elements, stress, parts)
         if error <= accuracy:
             break
-        sizes = [way.size(one_more(doublings, k)) for k in every]
-        stays = left_out + sum(one[MEASURE] for one, size in zip(errors, sizes) if not size)
+        sizes = [refinement.size(one_more(doublings, k)) for k in groups]
+        stays = omitted + sum(one[MEASURE] for one, size in zip(errors, sizes) if not size)
         if relative(stays, stress) > accuracy or not any(sizes):
-            logger.info("no finer mesh that helps is taken up to %d elements", LARGEST[way.dimensions])
+            logger.info("no finer mesh that helps is taken up to %d elements", LARGEST[refinement.dimensions])
             break
-        k = max((k for k in every if sizes[k]), key=lambda k: errors[k][MEASURE] / sizes[k])
-        doublings, before = one_more(doublings, k), here.stresses
-        here = way.levels[doublings] if doublings in way.levels else way.load(doublings)
-        change = {name: value - before[name] for name, value in here.stresses.items()}
+        k = max((k for k in groups if sizes[k]), key=lambda k: errors[k][MEASURE] / sizes[k])
+        doublings, before = one_more(doublings, k), level.stresses
+        level = refinement.levels[doublings] if doublings in refinement.levels else refinement.load(doublings)
+        change = {name: value - before[name] for name, value in level.stresses.items()}
         errors[k] = {name: error_after(value, changes[k][name]) for name, value in change.items()}
         changes[k] = change
-    if way.doublings != doublings:
-        way.load(doublings)
-    total = {name: sum(one[name] for one in errors) for name in here.stresses}
+    if refinement.doublings != doublings:
+        refinement.load(doublings)
+    total = {name: sum(one[name] for one in errors) for name in level.stresses}
     known = {name: value for name, value in total.items() if np.isfinite(value)}
-    return Chosen(way.model, way.recipe(doublings), error, known)
+    return Chosen(refinement.model, refinement.recipe(doublings), error, known)

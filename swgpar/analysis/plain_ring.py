@@ -7,35 +7,33 @@ from dataclasses import dataclass
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.analysis.drive_model import PRESSURE_LIMIT
+from swgpar.analysis.drive_model import EDGE, PRESSURE_LIMIT
 from swgpar.constraints.distributing_coupling import DistributingCoupling
 from swgpar.constraints.supports import Supports
-from swgpar.contact.rigid_surface import RigidContact
-from swgpar.design.load_states import LoadState
-from swgpar.design.sections import Contact, Material, Solver
+from swgpar.contact.contact import Contact
+from swgpar.contact.rigid_surface import RigidContact, SurfacePose, cam_pose, pin_pose
+from swgpar.design import sections
+from swgpar.design.load_states import LoadState, Stage
 from swgpar.errors import ConvergenceError
-from swgpar.fem.body_layout import BodyLayout
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE, BodyLayout
 from swgpar.fem.elements import Elements
-from swgpar.fem.local_nodes import LocalNodes
 from swgpar.fem.partition import Partition
 from swgpar.fem.stress import body_fields, maxima
 from swgpar.geometry.cams import Cam
 from swgpar.kernel import reference_elements
 from swgpar.log import Phases
 from swgpar.meshing.ring import AROUND, ring_sector
+from swgpar.solve.discrete_problem import DiscreteProblem
 from swgpar.solve.newton import NewtonSolver
+from swgpar.solve.solve_state import NewtonSettings
 
-
-@dataclass(frozen=True)
-class Lengths:
-    """module : mm, the length that penalties and tolerances refer to; a ring has no module"""
-
-    module: float = 1.0
+REFERENCE_LENGTH = 1.0
+"""Length (mm) that penalties and tolerances refer to; a ring has no module."""
 
 
 @dataclass(frozen=True)
 class RingDesign:
-    """A ring and how its contact is computed; what `NewtonSolver` reads of a design has the same names here.
+    """A ring and how its contact is computed.
 
     outer_diameter, thickness, width : mm;  plane : plane stress instead of a solid
     """
@@ -44,12 +42,10 @@ class RingDesign:
     thickness: float
     width: float
     plane: bool
-    material: Material
+    material: sections.Material
     # a support touches over tenths of a millimetre: many points per facet, and a penalty as of the flanks
-    contact: Contact = Contact(wg_penalty_coef=50.0, wg_quadrature=7, penetration_tolerance=1e-4)
-    solver: Solver = Solver()
-    drive: Lengths = Lengths()
-    backlash: float = 0.0
+    contact: sections.Contact = sections.Contact(wg_penalty_coef=50.0, wg_quadrature=7, penetration_tolerance=1e-4)
+    solver: sections.Solver = sections.Solver()
 
     @property
     def outer_radius(self) -> float:
@@ -62,14 +58,9 @@ class RingDesign:
         return self.outer_radius - self.thickness
 
     @property
-    def penalty(self) -> float:
-        """MPa / mm; there are no flanks that could use it."""
-        return self.wg_penalty
-
-    @property
     def wg_penalty(self) -> float:
         """Penalty of the contact with the rigid surface, MPa / mm."""
-        return self.contact.wg_penalty_coef * self.material.E / self.drive.module
+        return self.contact.wg_penalty_coef * self.material.E / REFERENCE_LENGTH
 
 
 @dataclass(frozen=True)
@@ -101,40 +92,6 @@ class Cylinder:
         return distance, gradient, hessian
 
 
-class NoTeeth:
-    """Stands for the flank contact of a body that has no flanks; scenes keep it switched off."""
-
-    penalty, turn, symmetric, frozen = 0.0, 0.0, True, False
-    multiplier = np.zeros((0, 0))
-
-    def bind(self, local: LocalNodes) -> None:
-        """There is nothing to bind."""
-
-    def numbers(self, pairs: list) -> np.ndarray:
-        """Global numbers of the nodes of no flanks."""
-        return np.zeros(0, dtype=np.int64)
-
-    def select(self, u: np.ndarray, near: float, touch: float) -> np.ndarray:
-        """Blocks of the tangent that flank contact needs: none."""
-        return np.zeros(0, dtype=np.int64)
-
-    def hold(self) -> None:
-        """There are no segments to keep."""
-
-    def release(self) -> None:
-        """Nor to cut anew."""
-
-    def lag(self) -> tuple[float, float]:
-        """There is no friction."""
-        return 0.0, 0.0
-
-    def augment(self) -> None:
-        """There are no multipliers."""
-
-    def accept(self) -> None:
-        """There are no tractions to remember."""
-
-
 class RingBody:
     """A ring's mesh, ownership and elements; its mean motion is held.
 
@@ -157,15 +114,37 @@ class RingBody:
         self.mesh, self.partition = mesh, Partition([layout], comm)
         reference = reference_elements(mesh.coords[mesh.elements], material.E, material.nu, width, incompatible)
         self.elements = Elements(self.partition, [reference])
-        self.body = self.elements.bodies[0]
+        self.body = self.elements.bodies[FLEXIBLE_SPLINE]
 
-    def equilibrium(self, surface: RigidContact) -> NewtonSolver:
-        """Equilibrium of the ring on one surface: a scene takes it as the cam, or as the pins, which move."""
+    def solver(self, contact: Contact) -> NewtonSolver:
+        """Solver of the ring with one contact."""
+        design, solver = self.design, self.design.solver
         couplings = [DistributingCoupling(self.partition, self.body, "bore", self.halved)]
-        scale = self.design.material.E * self.design.drive.module
-        share = 0.5 if self.halved else 1.0
-        holding = Supports(self.partition, couplings, None, scale, share)
-        return NewtonSolver(self.design, self.partition, self.elements, holding, surface, surface, NoTeeth(), Phases())
+        scale, share = design.material.E * REFERENCE_LENGTH, 0.5 if self.halved else 1.0
+        problem = DiscreteProblem(
+            partition=self.partition,
+            elements=self.elements,
+            supports=Supports(self.partition, couplings, scale=scale, share=share),
+            rigid_contacts=[contact],
+            flanks=None,
+            module=REFERENCE_LENGTH,
+            inner_radius=design.inner_radius,
+            phases=Phases(),
+        )
+        settings = NewtonSettings(
+            rtol=solver.rtol,
+            max_iterations=solver.max_iterations,
+            max_augmentations=design.contact.max_augmentations,
+            penetration_tolerance=design.contact.penetration_tolerance * REFERENCE_LENGTH,
+            linear=solver.linear,
+            reuse_factor=solver.keep_factor and solver.linear == "direct" and not design.plane,
+        )
+        return NewtonSolver(problem, settings)
+
+
+def cam_or_part_pose(state: LoadState) -> SurfacePose | None:
+    """Pose of the surface: that of the cam, or of its parts that move along the major axis like pins."""
+    return pin_pose(state) if state.cam_clearance is None else cam_pose(state)
 
 
 class RingModel:
@@ -194,51 +173,55 @@ class RingModel:
         layers = mesh.node_sets["outer"].reshape(-1, AROUND + 1)
         self.outline = layers[np.abs(mesh.coords[layers[:, 0], 2]).argmin()]  # counter-clockwise
         self.travel = 0.0
-        surface = RigidContact(
+        self.surface = RigidContact(
             self.body,
             Cylinder(cam),
-            design.inner_radius,
-            0.5 * design.width * (1.0 + 1e-9),
-            design.contact.wg_quadrature,
-            design.wg_penalty,
-            half_angle,
-            PRESSURE_LIMIT * design.material.E,
+            cam_or_part_pose,
+            radius=design.inner_radius,
+            half_width=0.5 * design.width * EDGE,
+            n_quadrature=design.contact.wg_quadrature,
+            penalty=design.wg_penalty,
+            pin_half_angle=half_angle,
+            pressure_limit=PRESSURE_LIMIT * design.material.E,
         )
-        self.equilibrium = self.ring.equilibrium(surface)
+        self.solver = self.ring.solver(self.surface)
+        self.problem = self.solver.problem
 
     def destroy(self) -> None:
         """Release the solver; collective."""
-        self.equilibrium.destroy()
+        self.solver.destroy()
 
     def spread(self, travel: float) -> int:
         """Equilibrium with both parts moved outward by `travel` (mm, above 0) each; returns Newton's iterations."""
-        fresh = self.travel == 0.0
-        if not fresh:
-            self.equilibrium.x.scale(travel / self.travel)  # the ring bends nearly in proportion
-        iterations = self._solve(LoadState(1, "deflect", pins=-travel), fresh)
+        first = self.travel == 0.0
+        if not first:
+            self.problem.x.scale(travel / self.travel)  # the ring bends nearly in proportion
+        iterations = self._solve(LoadState(Stage.DEFLECT, 1, pin_inset=-travel), first)
         self.travel = travel
         return iterations
 
     def mount(self) -> int:
         """Equilibrium on the whole surface, first pushed out by its parts; returns Newton's iterations."""
-        return self._solve(LoadState(1, "deflect", pins=0.0), True) + self._solve(LoadState(2, "engage", cam=0.0), True)
+        return self._solve(LoadState(Stage.DEFLECT, 1, pin_inset=0.0), True) + self._solve(
+            LoadState(Stage.ENGAGE, 2, cam_clearance=0.0), True
+        )
 
-    def _solve(self, scene: LoadState, soft: bool) -> int:
-        solved = self.equilibrium.solve(scene, soft=soft)
-        if not solved.converged:
+    def _solve(self, state: LoadState, establish_contact: bool) -> int:
+        result = self.solver.solve(state, establish_contact=establish_contact)
+        if not result.converged:
             raise ConvergenceError(
-                f"the ring did not converge ({scene}): PETSc says {solved.reason}, residual "
-                f"{solved.residual:.1e} of the contact force"
+                f"the ring did not converge ({state}): {result.reason}, residual {result.residual:.1e} "
+                "of the contact force"
             )
-        return solved.iterations
+        return result.iterations
 
     def stresses(self) -> dict[str, float]:
         """Largest s1, s3 (positive in compression) and von Mises stress of the nodal averages, MPa."""
-        return maxima(self.comm, body_fields(self.body, self.equilibrium.displacement()))
+        return maxima(self.comm, body_fields(self.body, self.problem.displacement()))
 
     def contact_force(self) -> float:
         """Contact pressure integrated over the whole inner surface, N."""
-        surface = self.equilibrium.rigid
+        surface = self.surface
         copies = 2.0 if self.ring.halved else 1.0
         return copies * self.comm.allreduce(float((surface.pressure * surface.weight)[surface.owned].sum()), op=MPI.SUM)
 
@@ -251,16 +234,16 @@ class RingModel:
         moved : mm, by which the dial travels along the major axis, with the support at +y
         """
         nodes, radius = self.outline, self.design.outer_radius
-        u = self.body.displacement(self.equilibrium.displacement())[self.body.owned][:, nodes, :2]
-        place = self.body.positions()[self.body.owned][:, nodes, :2]
+        u = self.body.displacement(self.problem.displacement())[self.body.owned][:, nodes, :2]
+        position = self.body.positions()[self.body.owned][:, nodes, :2]
         along = np.array([-np.sin(angle), np.cos(angle)])
         foot = radius * along + (0.0, moved)
-        away = place + u - foot
+        away = position + u - foot
         beside = away[..., 1] * along[0] - away[..., 0] * along[1]
         start, end = beside[:, :-1], beside[:, 1:]
         k, i = np.nonzero((start >= 0.0) & (end < 0.0) | (start <= 0.0) & (end > 0.0))
         t = start[k, i] / (start[k, i] - end[k, i])
-        between = (1.0 - t)[:, None] * place[k, i] + t[:, None] * place[k, i + 1]
+        between = (1.0 - t)[:, None] * position[k, i] + t[:, None] * position[k, i + 1]
         between *= radius / np.linalg.norm(between, axis=1, keepdims=True)  # on the circle, not on its chord
         between += (1.0 - t)[:, None] * u[k, i] + t[:, None] * u[k, i + 1]
         outward = (between - foot) @ along

@@ -16,16 +16,16 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from swgpar import log
-from swgpar.analysis.coarse_start import Level, from_loaded, levels, start_loaded
+from swgpar.analysis.coarse_start import Level, levels, start_loaded
 from swgpar.analysis.contact_pressure import nodal_pressure
-from swgpar.analysis.drive_model import DriveModel, stresses
+from swgpar.analysis.drive_model import DriveModel, build_drive_model
 from swgpar.analysis.error_estimate import estimate
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.mesh_refinement import choose, with_accuracy
 from swgpar.analysis.period import continued, of_period, sampling_error
 from swgpar.contact import friction
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.load_states import LoadState, load_sequence
+from swgpar.design.load_states import LoadState, from_loaded, load_sequence
 from swgpar.errors import ConvergenceError, InputError, SwgparError
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.fem.vectors import write_field
@@ -107,9 +107,9 @@ class Recorder:
 
         seconds : wall time of the increment;  elapsed : of the whole run, restarts included
         """
-        model, equilibrium = self.model, self.model.equilibrium
+        model, problem = self.model, self.model.problem
         with model.phases("stress"):
-            values, fields = stresses(model)
+            values, fields = model.stresses()
         row = {**runner.row(), **values, "wall_s": seconds}
         self.rows.append(history.plain_row(row))
         self.done += 1
@@ -119,7 +119,9 @@ class Recorder:
                 for k, body in enumerate(model.elements.bodies)
             ]
             if self.writer is not None:
-                fields[0]["pressure"] = nodal_pressure(equilibrium, model.elements.bodies[FLEXIBLE_SPLINE])
+                fields[0]["pressure"] = nodal_pressure(
+                    problem, runner.load_state, model.elements.bodies[FLEXIBLE_SPLINE]
+                )
                 self.names = {
                     name: {f: a.shape[2] if a.ndim == 3 else 1 for f, a in field.items()}
                     for (name, *_), field in zip(ranges, fields)
@@ -135,15 +137,15 @@ class Recorder:
             }
             if model.design.contact.friction:
                 first, end = model.partition.owned_sectors(FLEXIBLE_SPLINE)
-                for name, values in equilibrium.teeth.history_rows(first, end).items():
-                    blocks[name] = values, first, model.partition.layouts[FLEXIBLE_SPLINE].count
+                for name, values in problem.flanks.traction_rows(first, end).items():
+                    blocks[name] = values, first, model.partition.layouts[0].count
             state = {
                 "identity": self.identity,
                 "done": self.done,
                 "rows": self.rows,
                 "names": self.names,
-                "scene": runner.scene.to_dict(),
-                "multipliers": equilibrium.multipliers(equilibrium.x).tolist(),
+                "load_state": runner.load_state.to_dict(),
+                "multipliers": problem.multipliers().tolist(),
                 "wall_s": elapsed,
                 "phases_s": model.phases.slowest(self.comm),
                 "coarser": self.coarser and asdict(self.coarser),
@@ -174,7 +176,7 @@ class Recorder:
                 f"--restart: {path} belongs to another design, recipe, --accuracy or solver setting; allowed are the "
                 "same ones, only steps.rotation, the output, solver.linear, keep_factor and far_teeth may differ"
             )
-        last = LoadState(**state["scene"])
+        last = LoadState.from_dict(state["load_state"])
         if state["coarser"] or state["accuracy"]:
             items = from_loaded(items)
         if state["done"] > len(items) or items[state["done"] - 1] != last:
@@ -183,7 +185,7 @@ class Recorder:
                 f"ends at {np.degrees(last.angle):g} degrees; allowed are values with this angle among their increments"
             )
         arrays, _ = checkpoint.read_checkpoint(path, self.comm, ranges)
-        x = model.equilibrium.x
+        x = model.problem.x
         for k, body in enumerate(model.elements.bodies):
             first, end = model.partition.owned_sectors(k)
             write_field(model.partition, k, np.arange(first, end), arrays[body.layout.name], x)
@@ -191,13 +193,13 @@ class Recorder:
             x.array[-model.partition.n_multipliers :] = state["multipliers"]
         if model.design.contact.friction:
             # a rank needs the flanks that its ring teeth face too
-            every = (0, model.partition.layouts[FLEXIBLE_SPLINE].count)
+            every = (0, model.partition.layouts[0].count)
             rows, _ = checkpoint.read_checkpoint(path, self.comm, dict.fromkeys(friction.ROWS, every))
-            model.equilibrium.resume(friction.from_rows(rows))
+            model.problem.resume(friction.from_rows(rows))
         self.rows, self.done, self.names = state["rows"], state["done"], state["names"]
         self.coarser = state["coarser"] and Level(**state["coarser"])
         self.accuracy = state["accuracy"] and Accuracy(**state["accuracy"])
-        runner.take(last)
+        runner.resume_at(last)
         for name, value in state["phases_s"].items():
             model.phases.seconds[name] += value
         if self.writer is not None:
@@ -234,7 +236,7 @@ def summarise(
     means = {k: float(np.mean([r[k] for r in sampled])) for k in MEANS} if sampled else {}
     counts = model.counts()
     memory = comm.allgather(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0)
-    elements = model.elements_whole()
+    elements = model.n_elements()
     by_mesh = mesh_error(rows, elements, coarser, model.partition.dims) if coarser else None
     expected = 1000.0 * design.load.torque / abs(design.ratio)
     return {
@@ -258,7 +260,7 @@ def summarise(
         "means": means,
         "accuracy": accuracy and {key: value for key, value in asdict(accuracy).items() if key != "mesh_error"},
         "mesh_error": accuracy.mesh_error if accuracy else by_mesh,
-        "condensed_MPa": model.bend_left_out() if design.solver.condensed_sectors else None,
+        "condensed_MPa": model.omitted_bending_stress() if design.solver.condensed_sectors else None,
         "sampling_error": sampling_error(design, rows, MEANS) if design.steps.samples and means else None,
         "newton_iterations_mean": float(np.mean([r["newton_iterations"] for r in turning])) if turning else None,
         "balance_error_Nmm": max((r["torque_balance_Nmm"] for r in rows), default=0.0),
@@ -303,7 +305,7 @@ def run_drive(
         recipe = chosen.recipe
     elif accuracy is not None:
         recipe = on_all(comm, lambda: load_recipe(out / RECIPE))
-    model = DriveModel(design, recipe, comm) if chosen is None else chosen.model
+    model = build_drive_model(design, recipe, comm=comm) if chosen is None else chosen.model
     recorder = Recorder(out, model, identity(design, recipe, accuracy))
     try:
         if chosen is not None:
@@ -346,7 +348,7 @@ def _compute(
     counts = model.counts()
     logger.info(
         "%d elements, %d nodes in the whole drive; %d unknowns modelled%s; %d ranks",
-        model.elements_whole(),
+        model.n_elements(),
         sum(b["nodes_whole"] for b in counts.values()),
         sum(b["dofs"] for b in counts.values()),
         " (half of it, by symmetry)" if model.copies == 2 else "",
@@ -360,22 +362,24 @@ def _compute(
     elif restart:
         logger.info("no increment was saved: starting from the beginning")
     if recorder.accuracy is not None and not resumed:  # the model has been loaded on the way to its mesh
-        runner.take(from_loaded(items)[0])
+        runner.resume_at(from_loaded(items)[0])
     elif not resumed:
         recorder.coarser = _start_on_coarser(runner, recipe, items)
     if not resumed and (recorder.coarser or recorder.accuracy):
         items = from_loaded(items)
     with IncrementProgress(comm, len(items), done=recorder.done, terminal=on_increment is None) as progress:
-        model.equilibrium.on_iteration = lambda scene, its, ratio: progress.newton(
-            scene.name, np.degrees(scene.angle), its, ratio
+        model.solver.monitor = lambda state, its, ratio: progress.newton(
+            state.stage.label, np.degrees(state.angle), its, ratio
         )
         for item in items[recorder.done :]:
             start = time.perf_counter()
-            if item != runner.scene:  # a start on coarser meshes ends with the first one
-                runner.increment(item)
+            if item != runner.load_state:  # a start on coarser meshes ends with the first one
+                runner.advance(item)
             seconds = time.perf_counter() - start
             recorder.record(runner, seconds, before + time.perf_counter() - begin)
-            progress.increment(item.name, float(np.degrees(item.angle)), runner.iterations, runner.residual, seconds)
+            progress.increment(
+                item.stage.label, float(np.degrees(item.angle)), runner.iterations, runner.residual, seconds
+            )
             if on_increment is not None:
                 on_increment()
     rows, seconds = recorder.rows, before + time.perf_counter() - begin

@@ -1,43 +1,55 @@
-"""Torques of the drive at a converged state."""
+"""Torques of the drive in a converged state."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.contact.rigid_surface import CamPose
+from swgpar.design.load_states import LoadState
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
-from swgpar.solve.newton import NewtonSolver
+from swgpar.solve.discrete_problem import DiscreteProblem
 
 
-def torques(equilibrium: NewtonSolver) -> dict[str, float]:
-    """Torques about z (N mm): wave generator (and pins) and teeth on the flexible spline, load on the output.
+@dataclass(frozen=True)
+class Torques:
+    """Torques about z of the whole drive, N mm.
 
-    "balance" is what is left of the largest sum that should vanish, over the bodies that are free to turn.
+    wave_generator, teeth : on the flexible spline, of the wave generator with its pins and of the teeth
+    output : load on the output
+    balance : largest sum that should vanish, over the bodies that are free to rotate
     """
-    u, scene, partition = equilibrium.displacement(), equilibrium.scene, equilibrium.partition
-    body = equilibrium.elements.bodies[FLEXIBLE_SPLINE]
+
+    wave_generator: float
+    teeth: float
+    output: float
+    balance: float
+
+
+def torques(problem: DiscreteProblem, state: LoadState) -> Torques:
+    """Torques of the present x, which is in equilibrium under `state`; collective."""
+    u, supports, comm = problem.displacement(), problem.supports, problem.partition.comm
+    body = problem.elements.bodies[FLEXIBLE_SPLINE]
     rigid, teeth = np.zeros_like(u), np.zeros_like(u)
-    if scene.cam is not None:
-        equilibrium.rigid.evaluate(u, CamPose(scene.angle, scene.cam), rigid, None, owned_only=True)
-    if scene.pins is not None:
-        equilibrium.pins.evaluate(u, CamPose(scene.angle, inset=scene.pins), rigid, None, owned_only=True)
-    if scene.teeth is not None:
-        teeth = equilibrium.teeth.owned_forces(u, scene.teeth)
+    for contact in problem.rigid_contacts:
+        contact.add_owned_forces(u, state, rigid)
+    if problem.flanks is not None:
+        problem.flanks.add_owned_forces(u, state, teeth)
     spline = np.zeros(len(u), dtype=bool)
     spline[body.local[body.local >= 0]] = True
-    x = equilibrium.positions() + u
+    x = problem.positions() + u
 
     def moment(residual: np.ndarray) -> float:
         r = residual[spline]
         local = -float(np.sum(x[spline, 0] * r[:, 1] - x[spline, 1] * r[:, 0]))
-        return partition.comm.allreduce(local, op=MPI.SUM) / equilibrium.share
+        return comm.allreduce(local, op=MPI.SUM) / supports.share
 
-    held = equilibrium.holding.reactions(equilibrium.multipliers(equilibrium.x))
-    output = scene.torque if scene.control == "torque" else float(held[-1])
-    wg, teeth_torque = moment(rigid), moment(teeth)
-    if len(held) == 1:
-        balance = abs(wg + teeth_torque + output)
+    reactions = supports.reactions(problem.multipliers())
+    output = state.torque if state.control == "torque" else float(reactions[-1])
+    wave_generator, tooth = moment(rigid), moment(teeth)
+    if len(reactions) == 1:
+        balance = abs(wave_generator + tooth + output)
     else:
-        balance = max(abs(wg + teeth_torque + float(held[0])), abs(output - teeth_torque))
-    return {"wg": wg, "teeth": teeth_torque, "output": output, "balance": balance}
+        balance = max(abs(wave_generator + tooth + float(reactions[0])), abs(output - tooth))
+    return Torques(wave_generator, tooth, output, balance)

@@ -1,4 +1,4 @@
-"""The distributing coupling on the bore (in the plane on the inner surface), or on the ring gear's outer surface.
+"""Distributing coupling on the bore (in the plane on the inner surface) or on the ring gear's outer surface.
 
 The coupling ties six quantities of a surface to a reference point without stiffening it: the mean
 displacement, the mean tilts and the mean rotation about z of its nodes, weighted by their area. The rotation
@@ -19,8 +19,11 @@ from mpi4py import MPI
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.partition import Partition
 
-ROTATION = 5
-"""Coupled quantities: displacement x, y, z, tilts about x and y, rotation about z."""
+X, Y, Z, TILT_X, TILT_Y, ROTATION = range(6)
+"""Coupled quantities: displacements along x, y and z, tilts about x and y, rotation about z."""
+
+N_COUPLED = 6
+"""Coupled quantities of a surface."""
 
 
 @dataclass
@@ -104,29 +107,29 @@ class DistributingCoupling:
             self.sum(np.column_stack([w * arm[:, 1] * v[:, 2], -w * arm[:, 0] * v[:, 2]])) * 2.0 / self.radius2
         )
         value = np.array([*mean, tilt_x, tilt_y, np.arctan2(sine, cosine)])
-        gradient = np.zeros((6, len(w), 3))
-        for k in range(3):
+        gradient = np.zeros((N_COUPLED, len(w), 3))
+        for k in (X, Y, Z):
             gradient[k, :, k] = w
-        gradient[3, :, 2] = 2.0 / self.radius2 * w * arm[:, 1]
-        gradient[4, :, 2] = -2.0 / self.radius2 * w * arm[:, 0]
+        gradient[TILT_X, :, 2] = 2.0 / self.radius2 * w * arm[:, 1]
+        gradient[TILT_Y, :, 2] = -2.0 / self.radius2 * w * arm[:, 0]
         norm = cosine * cosine + sine * sine
-        gradient[5, :, 0] = w * (-cosine * arm[:, 1] - sine * arm[:, 0]) / norm
-        gradient[5, :, 1] = w * (cosine * arm[:, 0] - sine * arm[:, 1]) / norm
+        gradient[ROTATION, :, 0] = w * (-cosine * arm[:, 1] - sine * arm[:, 0]) / norm
+        gradient[ROTATION, :, 1] = w * (cosine * arm[:, 0] - sine * arm[:, 1]) / norm
         return MeanMotion(value, gradient)
 
     def supports(self) -> np.ndarray:
-        """Unit directions (n, n_local, 3) on single nodes that hold the body rigidly.
+        """Unit directions (n, n_local, 3) on single nodes that support the body rigidly.
 
         They ground the structure inside a factorisation and are taken out again exactly; see `BorderedSystem`. A solid
-        needs six of them, axial and tangential at three nodes, a plane body the tangential ones only; half a model
-        needs those of one node.
+        body needs six of them, axial and tangential at three nodes. A plane body needs the tangential ones only. Half a
+        model needs those of one node.
         """
-        places = (0.0,) if self.images else (0.0, 2.0 * np.pi / 3.0, 4.0 * np.pi / 3.0)
+        wanted_angles = (0.0,) if self.images else (0.0, 2.0 * np.pi / 3.0, 4.0 * np.pi / 3.0)
         angle = np.mod(np.arctan2(-self.arm[:, 0], self.arm[:, 1]), 2.0 * np.pi)
-        picked = []
-        for place in places:
+        directions = []
+        for wanted in wanted_angles:
             # the first node at the smallest angular distance, by rank: exactly one node in the whole model
-            distance = np.abs(np.mod(angle - place + np.pi, 2.0 * np.pi) - np.pi)
+            distance = np.abs(np.mod(angle - wanted + np.pi, 2.0 * np.pi) - np.pi)
             best = (
                 (float(np.round(distance.min(), 9)), self.comm.rank, int(distance.argmin()))
                 if len(distance)
@@ -139,8 +142,8 @@ class DistributingCoupling:
                 a = self.arm[node]
                 axial[node, 2] = 1.0
                 tangential[node, :2] = np.array([-a[1], a[0]]) / np.hypot(a[0], a[1])
-            picked += [axial, tangential] if self.solid else [tangential]
-        return np.array(picked)
+            directions += [axial, tangential] if self.solid else [tangential]
+        return np.array(directions)
 
 
 class Housing:
@@ -154,13 +157,13 @@ class Housing:
     """
 
     def __init__(self, coupling: DistributingCoupling, area: float, penalty: float) -> None:
-        self.nodes, self.place = coupling.nodes, coupling.reference[:, :2]
-        self.radius = np.hypot(*self.place.T)
+        self.nodes, self.position = coupling.nodes, coupling.reference[:, :2]
+        self.radius = np.hypot(*self.position.T)
         self.stiffness = penalty * area * coupling.weight
 
     def _radial(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Radii (n,) mm, outward normals (n, 2) and forces along them (n,) N at displacement u (n_local, 3)."""
-        x = self.place + u[self.nodes, :2]
+        x = self.position + u[self.nodes, :2]
         r = np.hypot(*x.T)
         return r, x / r[:, None], self.stiffness * (r - self.radius)
 

@@ -22,9 +22,6 @@ SAMPLES = 8
 STIFFNESS = 1.0
 """Tangential stiffness over the normal penalty: a point that sticks has moved less than mu times its penetration."""
 
-FIRST_STEP = 3
-"""Friction acts from this step on: cam and teeth growing into place are no motion of the drive."""
-
 PairKey = tuple[int, int, int]
 """Sector of the flexible spline, side of its tooth, number of the ring gear's tooth."""
 
@@ -79,9 +76,9 @@ def interpolated(samples: np.ndarray, segments: Segments) -> np.ndarray:
     """Values (n, n_q, k) at the points of segments from samples (n_face, SAMPLES, SAMPLES, k) of all faces."""
     low, share = [], []
     for x in (segments.a, segments.b):
-        place = np.clip(SAMPLES * x - 0.5, 0.0, SAMPLES - 1.0)
-        low.append(np.minimum(place.astype(np.int64), SAMPLES - 2))
-        share.append((place - low[-1])[..., None])
+        position = np.clip(SAMPLES * x - 0.5, 0.0, SAMPLES - 1.0)
+        low.append(np.minimum(position.astype(np.int64), SAMPLES - 2))
+        share.append((position - low[-1])[..., None])
     (i, j), (s, t), face = low, share, segments.parent[:, None]
     return (1 - s) * ((1 - t) * samples[face, i, j] + t * samples[face, i, j + 1]) + s * (
         (1 - t) * samples[face, i + 1, j] + t * samples[face, i + 1, j + 1]
@@ -105,13 +102,13 @@ def to_rows(store: Mapping[PairKey, np.ndarray], first: int, end: int, n_face: i
     traction = np.zeros((end - first, 2, n_face, SAMPLES, SAMPLES, 2))
     for (sector, side, ring_tooth), values in store.items():
         if first <= sector < end:
-            place = sector - first, int(side < 0)
-            tooth[place], traction[place] = ring_tooth, values
+            entry = sector - first, int(side < 0)
+            tooth[entry], traction[entry] = ring_tooth, values
     return dict(zip(ROWS, (tooth, traction)))
 
 
 def from_rows(rows: Mapping[str, np.ndarray]) -> dict[PairKey, np.ndarray]:
     """The tractions that `to_rows` made rows of, those of all sectors from 0 on."""
     tooth, traction = (rows[name] for name in ROWS)
-    there = zip(*np.nonzero(tooth != NO_TOOTH))
-    return {(int(k), (1, -1)[side], int(tooth[k, side])): traction[k, side] for k, side in there}
+    present = zip(*np.nonzero(tooth != NO_TOOTH))
+    return {(int(k), (1, -1)[side], int(tooth[k, side])): traction[k, side] for k, side in present}

@@ -6,12 +6,15 @@ point is h at the point of the facet plus the distance from the facet to the exa
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
+from swgpar.contact.contact import NO_KEYS, FacePressure
 from swgpar.contact.enforcement import penetration, pressure
+from swgpar.design.load_states import LoadState
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.sparse import BlockRows
 from swgpar.geometry.rotation import HALF_TURN
@@ -19,33 +22,52 @@ from swgpar.kernel import add_face_blocks
 
 
 class Surface(Protocol):
+    """A rigid surface in the frame of the cam, major axis along +y."""
+
     def evaluate(self, xyz: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Level function (n,), gradient (n, 3), Hessian (n, 3, 3) in the cam's frame, major axis along +y."""
+        """Level function (n,) mm, gradient (n, 3), Hessian (n, 3, 3) 1/mm at points (n, 3) mm."""
 
 
 @dataclass(frozen=True)
-class CamPose:
-    """Where the rigid surface is: turned by `angle` (rad), every gap opened by `opening` (mm).
+class SurfacePose:
+    """Position of the rigid surface: rotated by `angle` (rad), every gap opened by `clearance` (mm).
 
     inset : None for the cam; for the pins, the distance (mm) by which each is drawn in along the major axis
     """
 
     angle: float
-    opening: float = 0.0
+    clearance: float = 0.0
     inset: float | None = None
+
+    def rotation(self) -> np.ndarray:
+        """Matrix (3, 3) that takes vectors from the cam's frame to the fixed one."""
+        c, s = np.cos(self.angle), np.sin(self.angle)
+        return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def cam_pose(state: LoadState) -> SurfacePose | None:
+    """Pose of the cam; None while it is switched off."""
+    return None if state.cam_clearance is None else SurfacePose(state.angle, state.cam_clearance)
+
+
+def pin_pose(state: LoadState) -> SurfacePose | None:
+    """Pose of the pins; None while they are out."""
+    return None if state.pin_inset is None else SurfacePose(state.angle, inset=state.pin_inset)
 
 
 class RigidContact:
-    """Face quadrature of the inner surface against a rigid surface.
+    """Face quadrature of the inner surface against a rigid surface; meets the protocol `Contact`.
 
     Parameters
     ----------
     body : elements of the flexible spline, bound to local nodes
     surface : rigid surface in the cam's frame
+    pose : position of the surface in a load state, None while it is switched off
     radius : mm, exact inner radius
     half_width : mm, the surface ends at |z| = half_width
     n_quadrature : Gauss points per direction
-    pin_half_angle : rad, half of the angle a pin covers
+    penalty : MPa / mm
+    pin_half_angle : rad, half of the angle that a pin covers
     pressure_limit : MPa, bound of the pressure in the tangent's geometric term
     """
 
@@ -53,6 +75,8 @@ class RigidContact:
         self,
         body: BodyElements,
         surface: Surface,
+        pose: Callable[[LoadState], SurfacePose | None],
+        *,
         radius: float,
         half_width: float,
         n_quadrature: int,
@@ -60,7 +84,9 @@ class RigidContact:
         pin_half_angle: float,
         pressure_limit: float,
     ) -> None:
-        self.surface, self.penalty, self.pressure_limit = surface, penalty, pressure_limit
+        self.surface, self.pose = surface, pose
+        self.full_penalty = self.penalty = penalty
+        self.pressure_limit = pressure_limit
         faces = body.layout.mesh.faces["inner"]
         first = body.owned.start
         sectors = np.r_[np.flatnonzero(body.preceding), np.arange(first, body.owned.stop)]
@@ -84,67 +110,109 @@ class RigidContact:
         self.inside = np.abs(x[..., 2]) <= half_width
         self.cosine = np.abs(x[..., 1]) / radial
         self.angle_limit = np.cos(pin_half_angle)
-        self.reset()
-
-    def reset(self) -> None:
-        """Forget the multipliers."""
         self.multiplier = np.zeros_like(self.weight)
         self.gap = np.full_like(self.weight, np.inf)
         self.pressure = np.zeros_like(self.weight)
+
+    def is_active(self, state: LoadState) -> bool:
+        """Whether the load state switches this contact on."""
+        return self.pose(state) is not None
+
+    def reset(self) -> None:
+        """Forget multipliers, gaps and pressures."""
+        self.multiplier = np.zeros_like(self.weight)
+        self.gap = np.full_like(self.weight, np.inf)
+        self.pressure = np.zeros_like(self.weight)
+
+    def scale_penalty(self, share: float) -> None:
+        """Use this share of the full penalty."""
+        self.penalty = share * self.full_penalty
 
     def augment(self) -> None:
         """Take the pressures of the last evaluation as multipliers."""
         self.multiplier = self.pressure.copy()
 
     def evaluate(
-        self,
-        u: np.ndarray,
-        pose: CamPose,
-        residual: np.ndarray | None,
-        rows: BlockRows | None,
-        owned_only: bool = False,
-    ) -> None:
-        """Gaps and pressures at displacement u (n_local, 3); adds to residual (n_local, 3) and tangent rows."""
+        self, u: np.ndarray, state: LoadState, residual: np.ndarray | None, rows: BlockRows | None
+    ) -> np.ndarray:
+        """Compute gaps and pressures at u (n_local, 3) mm; add to residual (n_local, 3) N and to the tangent's rows.
+
+        Returns no keys: a face's blocks are in the pattern of its elements.
+        """
+        pose = self.pose(state)
+        if pose is None:
+            return NO_KEYS
+        gradient, hessian = self._find_gaps(u, pose)
+        rotation = pose.rotation()
+        touching = np.flatnonzero((self.pressure > 0.0).any(axis=1))
+        normal = gradient[touching] @ rotation.T
+        if residual is not None:
+            self._add_forces(normal, touching, residual)
+        if rows is not None:
+            self._add_blocks(normal, rotation @ hessian[touching] @ rotation.T, touching, rows)
+        return NO_KEYS
+
+    def add_owned_forces(self, u: np.ndarray, state: LoadState, residual: np.ndarray) -> None:
+        """Add the forces of the faces that this rank owns to residual (n_local, 3) N."""
+        pose = self.pose(state)
+        if pose is not None:
+            gradient, _ = self._find_gaps(u, pose)
+            touching = np.flatnonzero((self.pressure > 0.0).any(axis=1) & self.owned)
+            self._add_forces(gradient[touching] @ pose.rotation().T, touching, residual)
+
+    def _find_gaps(self, u: np.ndarray, pose: SurfacePose) -> tuple[np.ndarray, np.ndarray]:
+        """Set gaps and pressures.
+
+        Returns gradients (n_face, n_q, 3) and Hessians (n_face, n_q, 3, 3) of the level in the cam's frame.
+        """
         field = np.where(self.conn[..., None] >= 0, u[self.conn], 0.0)
         field[self.flip == 1] *= HALF_TURN
         x = np.einsum("qa,fai->fqi", self.shape, self.coords + field)
-        c, s = np.cos(pose.angle), np.sin(pose.angle)
-        turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-        points = (x @ turn).reshape(-1, 3)
-        active = self.inside
+        points = (x @ pose.rotation()).reshape(-1, 3)
+        reachable = self.inside
         if pose.inset is not None:
             points[:, 1] += pose.inset * np.sign(points[:, 1])
-            active = active & (self.cosine >= self.angle_limit)
+            reachable = reachable & (self.cosine >= self.angle_limit)
         level, gradient, hessian = self.surface.evaluate(points)
         shape = self.weight.shape
-        self.gap = np.where(active, level.reshape(shape) + self.offset + pose.opening, np.inf)
-        self.pressure = np.where(active, pressure(np.where(active, self.gap, 0.0), self.multiplier, self.penalty), 0.0)
-        touching = (self.pressure > 0.0).any(axis=1)
-        if owned_only:
-            touching &= self.owned
-        pick = np.flatnonzero(touching)
-        gradient = (gradient.reshape(*shape, 3)[pick]) @ turn.T
-        force = (self.pressure * self.weight)[pick]
-        if residual is not None:
-            nodal = -np.einsum("fq,qa,fqi->fai", force, self.shape, gradient)
-            flip, conn = self.flip[pick], self.conn[pick]
-            nodal[flip == 1] *= HALF_TURN
-            free = conn >= 0
-            for axis in range(3):
-                residual[:, axis] += np.bincount(conn[free], nodal[..., axis][free], minlength=len(residual))
-        if rows is not None:
-            bend = turn @ hessian.reshape(*shape, 3, 3)[pick] @ turn.T
-            stiff = np.where(self.pressure[pick] > 0.0, self.penalty * self.weight[pick], 0.0)
-            # far from the solution the penalty's pressure is meaningless, and its geometric term would make the
-            # tangent indefinite: it is bounded there
-            geometric = np.minimum(force, self.pressure_limit * self.weight[pick])
-            core = (
-                stiff[..., None, None] * gradient[..., :, None] * gradient[..., None, :]
-                - geometric[..., None, None] * bend
-            )
-            blocks = np.einsum("fqij,qa,qb->fabij", core, self.shape, self.shape, optimize=True)
-            add_face_blocks(self.conn[pick], self.flip[pick], np.ascontiguousarray(blocks), rows)
+        self.gap = np.where(reachable, level.reshape(shape) + self.offset + pose.clearance, np.inf)
+        trial = pressure(np.where(reachable, self.gap, 0.0), self.multiplier, self.penalty)
+        self.pressure = np.where(reachable, trial, 0.0)
+        return gradient.reshape(*shape, 3), hessian.reshape(*shape, 3, 3)
+
+    def _add_forces(self, normal: np.ndarray, faces: np.ndarray, residual: np.ndarray) -> None:
+        """Add the pressure's forces on `faces` along the level's gradients `normal` (n, n_q, 3)."""
+        force = (self.pressure * self.weight)[faces]
+        nodal = -np.einsum("fq,qa,fqi->fai", force, self.shape, normal)
+        flip, conn = self.flip[faces], self.conn[faces]
+        nodal[flip == 1] *= HALF_TURN
+        free = conn >= 0
+        for axis in range(3):
+            residual[:, axis] += np.bincount(conn[free], nodal[..., axis][free], minlength=len(residual))
+
+    def _add_blocks(self, normal: np.ndarray, curvature: np.ndarray, faces: np.ndarray, rows: BlockRows) -> None:
+        """Add the tangent: penalty times normal times normal, less the pressure times the curvature (n, n_q, 3, 3)."""
+        force = (self.pressure * self.weight)[faces]
+        stiffness = np.where(self.pressure[faces] > 0.0, self.penalty * self.weight[faces], 0.0)
+        # far from the solution the penalty's pressure is meaningless, and its geometric term would make the
+        # tangent indefinite: it is bounded there
+        geometric = np.minimum(force, self.pressure_limit * self.weight[faces])
+        core = (
+            stiffness[..., None, None] * normal[..., :, None] * normal[..., None, :]
+            - geometric[..., None, None] * curvature
+        )
+        blocks = np.einsum("fqij,qa,qb->fabij", core, self.shape, self.shape, optimize=True)
+        add_face_blocks(self.conn[faces], self.flip[faces], np.ascontiguousarray(blocks), rows)
 
     def penetration(self) -> float:
         """Largest penetration (mm) of the last evaluation on this rank."""
         return penetration(self.gap, self.pressure)
+
+    def active_sets(self) -> list[np.ndarray]:
+        """Quadrature points with pressure of the last evaluation on this rank."""
+        return [self.pressure > 0.0]
+
+    def owned_pressure(self) -> FacePressure:
+        """Pressures of the last evaluation on owned faces."""
+        own = self.owned
+        return FacePressure(self.conn[own], self.shape, self.weight[own], self.pressure[own])

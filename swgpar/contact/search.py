@@ -10,7 +10,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from mpi4py import MPI
 
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.fem.elements import BodyElements
@@ -39,11 +38,11 @@ class FlankPair:
 
 
 def facing_flanks(
-    partition: Partition, spline: BodyElements, u: np.ndarray, turn: float, margin: float
+    partition: Partition, spline: BodyElements, u: np.ndarray, ring_rotation: float, margin: float
 ) -> list[FlankPair]:
     """Pairs of flanks that can meet at displacement u (n_local, 3); the same list on every rank.
 
-    turn : rad, of the ring gear
+    ring_rotation : rad, of the ring gear as a whole
     margin : mm, how far the tip of a tooth may stay inside the tip circle of the ring gear
     """
     layout, ring = partition.layouts
@@ -62,14 +61,9 @@ def facing_flanks(
     pitch = 2.0 * np.pi / ring.mesh.n_sectors
     pairs = []
     for k in np.flatnonzero(table[:, 1] > ring.mesh.profile.r_tip_circle - margin):
-        slot = int(np.rint((table[k, 0] - turn) / pitch))
+        slot = int(np.rint((table[k, 0] - ring_rotation) / pitch))
         for side, tooth in ((1, slot - 1), (-1, slot)):
             index, flip = ring.sector_of_tooth(np.array(tooth))
             if index >= 0:
                 pairs.append(FlankPair(int(k), side, int(index), int(flip), tooth))
     return pairs
-
-
-def largest(comm: MPI.Comm, value: float) -> float:
-    """Maximum over all ranks."""
-    return float(comm.allreduce(value, op=MPI.MAX))

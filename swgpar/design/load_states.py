@@ -1,121 +1,190 @@
-"""What is active when: the sequence pins, engagement, torque, rotation (sections 3.4.5 and 3.5.5).
+"""Load states: what is active at the end of every increment (sections 3.4.5 and 3.5.5).
 
-1 the pins, the halves of the cam, push the flexible spline outward by d / 2 each (more for a cam that bulges beside
-its tips), or without `steps.pins` the cam grows out of the circle; 2 the wave generator grows into place while the pins
-are drawn back, and the teeth may touch; 3 the torque is applied, and the output turns until the teeth carry it; 4 ...
-the wave generator turns in increments. Without a torque a drive with backlash has no definite output angle: the output
-is then held at its kinematic angle, and the torque this takes is reported.
+The stages follow each other:
+
+1. DEFLECT: the pins, the two halves of the cam, push the flexible spline outward by d / 2 each. A cam that bulges
+   beside its tips pushes farther. With `steps.pins = false` the cam grows out of the circle instead.
+2. ENGAGE: the wave generator grows into place, the pins are drawn back, and the flanks may touch.
+3. LOAD: the torque is applied. The output rotates until the flanks carry it.
+4. ROTATE: the wave generator rotates in increments.
+
+Without a torque, a drive with backlash has no definite output angle. The output is then held at its kinematic angle,
+and the torque that this takes is reported.
 """
 
 from __future__ import annotations
 
+import enum
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.geometry.cams import pin_travel
 
-PINS_BACK = 0.25
-"""How far the pins are drawn back during engagement, as a share of the deflection d."""
+PIN_RETRACTION = 0.25
+"""Distance by which the pins are drawn back during engagement, as a share of the deflection d."""
 
-CAM_START, TEETH_START = 0.05, 0.05
+CAM_START_CLEARANCE, FLANK_START_CLEARANCE = 0.05, 0.05
 """Clearance from which cam and flanks grow into place, as a share of the module."""
+
+
+class Stage(enum.IntEnum):
+    """Stage of the load sequence; its value is the number in the column `step` of the first increment."""
+
+    START = 0
+    DEFLECT = 1
+    ENGAGE = 2
+    LOAD = 3
+    ROTATE = 4
+
+    @property
+    def label(self) -> str:
+        """Name in messages: "deflect", "engage", …"""
+        return self.name.lower()
 
 
 @dataclass(frozen=True)
 class LoadState:
     """Prescribed state of the drive at the end of an increment.
 
-    step : number of the step;  name : what it does
-    angle : rad, wave generator;  cam, teeth : mm, clearance added to every gap, None while switched off
-    pins : mm, inset of the pins, None when they are out
-    control : "rotation" (output held at `rotation`, rad) or "torque" (`torque`, N mm, against the output's motion)
+    stage : what the increment does
+    step : number in the history's column `step`; increments of the rotation count on from 4
+    angle : rad, of the wave generator
+    cam_clearance, flank_clearance : mm, added to every gap of the cam or the flanks; None while they are switched off
+    pin_inset : mm, by which each pin is drawn in along the major axis; None when the pins are out
+    control : "rotation" (output held at `output_rotation`, rad) or "torque" (`torque`, N mm, against the output's
+    motion)
     """
 
+    stage: Stage
     step: int
-    name: str
     angle: float = 0.0
-    cam: float | None = None
-    teeth: float | None = None
-    pins: float | None = None
-    control: str = "rotation"
-    rotation: float = 0.0
+    cam_clearance: float | None = None
+    flank_clearance: float | None = None
+    pin_inset: float | None = None
+    control: Literal["rotation", "torque"] = "rotation"
+    output_rotation: float = 0.0
     torque: float = 0.0
 
-    def toward(self, target: LoadState, share: float, module: float, travel: float) -> LoadState:
-        """Load state between this one (share 0) and `target` (share 1).
+    @property
+    def friction_acts(self) -> bool:
+        """Whether friction acts: cam and flanks that grow into place are no motion of the drive."""
+        return self.stage >= Stage.LOAD
 
-        What the target switches on grows from the clearances `CAM_START`, `TEETH_START`; pins that it takes out are
-        drawn back by `PINS_BACK` on the way. module : mm;  travel : mm, deflection d of the drive
+    @property
+    def is_periodic(self) -> bool:
+        """Whether the state belongs to the drive's periodic motion: loaded, or rotating."""
+        return self.stage >= Stage.LOAD
+
+    def switches_on(self, before: LoadState) -> bool:
+        """Whether a contact is active here that is not in the state `before`; the first state switches all on."""
+
+        def active(state: LoadState) -> list[bool]:
+            return [value is not None for value in (state.cam_clearance, state.pin_inset, state.flank_clearance)]
+
+        return before.stage == Stage.START or any(new and not old for new, old in zip(active(self), active(before)))
+
+    def interpolate(self, target: LoadState, share: float, module: float, deflection: float) -> LoadState:
+        """State between this one (share 0) and `target` (share 1).
+
+        What the target switches on grows from `CAM_START_CLEARANCE` and `FLANK_START_CLEARANCE`. Pins that it takes out
+        are drawn back by `PIN_RETRACTION`.
+
+        module : mm;  deflection : mm, d of the drive
         """
         if share == 1.0:
             return target
         values: dict[str, Any] = {}
-        for key in ("angle", "rotation", "torque"):
+        for key in ("angle", "output_rotation", "torque"):
             old, new = getattr(self, key), getattr(target, key)
             values[key] = old + share * (new - old)
-        for key, clearance in (("cam", CAM_START * module), ("teeth", TEETH_START * module)):
+        starts = {"cam_clearance": CAM_START_CLEARANCE * module, "flank_clearance": FLANK_START_CLEARANCE * module}
+        for key, clearance in starts.items():
             old, new = getattr(self, key), getattr(target, key)
             values[key] = None if new is None else (1.0 - share) * (clearance if old is None else old) + share * new
-        if self.pins is not None:
-            back = PINS_BACK * travel if target.pins is None else target.pins
-            values["pins"] = self.pins + share * (back - self.pins)
+        if self.pin_inset is not None:
+            inset = PIN_RETRACTION * deflection if target.pin_inset is None else target.pin_inset
+            values["pin_inset"] = self.pin_inset + share * (inset - self.pin_inset)
         return replace(target, **values)
 
     def to_dict(self) -> dict[str, Any]:
-        return asdict(self)
+        """Content for a checkpoint; `from_dict` reads it."""
+        return {**asdict(self), "stage": self.stage.name}
+
+    @classmethod
+    def from_dict(cls, content: dict[str, Any]) -> LoadState:
+        """State from the content of a checkpoint."""
+        return cls(**{**content, "stage": Stage[content["stage"]]})
 
 
-def start(design: DriveDesign) -> LoadState:
-    """Undeformed drive; pins, or the shrunk cam, touch the inner surface."""
+def start_state(design: DriveDesign) -> LoadState:
+    """Undeformed drive; the pins, or the shrunk cam, touch the inner surface."""
     travel = pin_travel(design.cam(), design.inner_radius)
-    return (
-        LoadState(step=0, name="start", pins=travel)
-        if design.steps.pins
-        else LoadState(step=0, name="start", cam=travel)
-    )
+    if design.steps.pins:
+        return LoadState(Stage.START, 0, pin_inset=travel)
+    return LoadState(Stage.START, 0, cam_clearance=travel)
 
 
 def load_sequence(design: DriveDesign) -> Iterator[LoadState]:
-    """All increments of a run, in order."""
-    d, steps, module = design.deflection, design.steps, design.drive.module
+    """Load states at the ends of all increments of a run, in order."""
+    yield from _deflection(design)
+    yield from _engagement(design)
     torque = -np.copysign(1000.0 * design.load.torque, design.ratio)
-    origin = start(design)
-    n = steps.deflect_increments
-    for i in range(1, n + 1):
-        if steps.pins:
-            yield LoadState(1, "deflect", pins=origin.pins * (1.0 - i / n))
-        else:
-            yield LoadState(1, "deflect", cam=origin.cam * (1.0 - i / n))
-    n = steps.engage_increments
-    for i in range(1, n + 1):
-        t = i / n
-        yield LoadState(
-            2,
-            "engage",
-            cam=CAM_START * module * (1.0 - t) if steps.pins else 0.0,
-            teeth=TEETH_START * module * (1.0 - t),
-            pins=PINS_BACK * d * t if steps.pins and i < n else None,
-        )
-    loaded = LoadState(3, "load", cam=0.0, teeth=0.0, control="torque" if torque else "rotation")
+    control: Literal["rotation", "torque"] = "torque" if torque else "rotation"
+    loaded = LoadState(Stage.LOAD, 3, cam_clearance=0.0, flank_clearance=0.0, control=control)
     if torque:
-        n = steps.load_increments
+        n = design.steps.load_increments
         for i in range(1, n + 1):
             yield replace(loaded, torque=torque * i / n)
     else:
         yield loaded
-    for i, angle in enumerate(angles(design), start=1):
-        yield replace(loaded, step=3 + i, name="rotate", angle=angle, torque=torque, rotation=angle / design.ratio)
+    for i, angle in enumerate(rotation_angles(design), start=1):
+        yield replace(
+            loaded,
+            stage=Stage.ROTATE,
+            step=3 + i,
+            angle=angle,
+            torque=torque,
+            output_rotation=angle / design.ratio,
+        )
 
 
-def angles(design: DriveDesign) -> list[float]:
-    """Angles (rad) of the wave generator at the ends of the increments of its rotation that are computed.
+def _deflection(design: DriveDesign) -> Iterator[LoadState]:
+    origin, n = start_state(design), design.steps.deflect_increments
+    for i in range(1, n + 1):
+        if origin.pin_inset is not None:
+            yield LoadState(Stage.DEFLECT, 1, pin_inset=origin.pin_inset * (1.0 - i / n))
+        else:
+            yield LoadState(Stage.DEFLECT, 1, cam_clearance=origin.cam_clearance * (1.0 - i / n))
 
-    With `steps.samples` those of one period, whose last angle is left out, as the drive is there in its loaded state
-    again; with friction those of two periods, in the first of which it settles.
+
+def _engagement(design: DriveDesign) -> Iterator[LoadState]:
+    pins, module, n = design.steps.pins, design.drive.module, design.steps.engage_increments
+    for i in range(1, n + 1):
+        t = i / n
+        yield LoadState(
+            Stage.ENGAGE,
+            2,
+            cam_clearance=CAM_START_CLEARANCE * module * (1.0 - t) if pins else 0.0,
+            flank_clearance=FLANK_START_CLEARANCE * module * (1.0 - t),
+            pin_inset=PIN_RETRACTION * design.deflection * t if pins and i < n else None,
+        )
+
+
+def from_loaded(states: list[LoadState]) -> list[LoadState]:
+    """The load states from the fully loaded one on."""
+    loaded = max(k for k, state in enumerate(states) if state.stage == Stage.LOAD)
+    return states[loaded:]
+
+
+def rotation_angles(design: DriveDesign) -> list[float]:
+    """Angles (rad) of the wave generator at the ends of the computed increments of its rotation.
+
+    With `steps.samples` these are the angles of one period. The last one is left out, because the drive is then in its
+    loaded state again. With friction they are the angles of two periods; the slip settles in the first one.
     """
     steps = design.steps
     if steps.samples:

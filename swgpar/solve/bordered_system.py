@@ -1,6 +1,8 @@
-"""Linear systems: the grounded stiffness, bordered by the constraints of the couplings, factorised or iterated on."""
+"""Linear systems: the grounded stiffness, bordered by the couplings' constraints; direct or iterative solver."""
 
 from __future__ import annotations
+
+from collections.abc import Mapping
 
 import numpy as np
 from petsc4py import PETSc
@@ -40,17 +42,27 @@ GAMG_DEFAULTS = {
 }
 
 
-_own: set[str] = set()
-"""Options of PETSc that this process has set itself; all others are the user's."""
+class OptionDefaults:
+    """PETSc options that the program sets unless the user has set them.
+
+    PETSc keeps options for all solvers of a prefix and reads some of them late, so that one table serves a process: it
+    distinguishes the program's own options from the user's.
+    """
+
+    def __init__(self) -> None:
+        self._own: set[str] = set()
+
+    def set(self, prefix: str, defaults: Mapping[str, object]) -> None:
+        """Set the options that the user has not set."""
+        options = PETSc.Options(prefix)
+        for name, value in defaults.items():
+            if prefix + name in self._own or not options.hasName(name):
+                options[name] = value
+                self._own.add(prefix + name)
 
 
-def set_defaults(prefix: str, defaults: dict[str, object]) -> None:
-    """Set options that the user has not set; PETSc keeps them for all solvers of a prefix, and reads some late."""
-    options = PETSc.Options(prefix)
-    for name, value in defaults.items():
-        if prefix + name in _own or not options.hasName(name):
-            options[name] = value
-            _own.add(prefix + name)
+option_defaults = OptionDefaults()
+"""The table of this process."""
 
 
 class BorderedSystem:
@@ -65,11 +77,16 @@ class BorderedSystem:
 
     gives x = z + Z_B s - Z_C l exactly, whether K is symmetric or not: the grounding leaves no trace.
 
-    The last border is the motion of the output. Where it is not prescribed but loaded, its Newton step is the one at
-    which its l vanishes, and it is bounded: a drive whose teeth have parted floats, and there the step has no end.
-    All other unknowns follow the bounded motion.
+    The last border is the motion of the output. Where it is loaded and not prescribed, its Newton step is the one at
+    which its l vanishes. That step is bounded: a drive without touching flanks floats, and its step is unlimited. All
+    other unknowns follow the bounded motion.
 
-    keep : use a factor for later tangents too, see `ReusedFactor`
+    Parameters
+    ----------
+    partition : ownership;  linear, positions : see above
+    options_prefix : of PETSc's options of the linear solver
+    symmetric : whether K is
+    reuse : use a factor for later tangents too, see `ReusedFactor`
     """
 
     def __init__(
@@ -78,8 +95,9 @@ class BorderedSystem:
         linear: str,
         positions: np.ndarray,
         options_prefix: str,
+        *,
         symmetric: bool = True,
-        keep: bool = False,
+        reuse: bool = False,
     ) -> None:
         self.partition = partition
         self.ksp = PETSc.KSP().create(comm=partition.comm)
@@ -97,16 +115,37 @@ class BorderedSystem:
             self.ksp.setType(PETSc.KSP.Type.GMRES)
             pc.setType(PETSc.PC.Type.GAMG)
             self.defaults = GAMG_DEFAULTS
-            place = positions[:, : partition.dims].ravel()
-            place = PETSc.Vec().createWithArray(place, bsize=partition.dims, comm=partition.comm)
-            self.modes = PETSc.NullSpace().createRigidBody(place)
-        set_defaults(options_prefix, self.defaults)
+            coords = positions[:, : partition.dims].ravel()
+            coords = PETSc.Vec().createWithArray(coords, bsize=partition.dims, comm=partition.comm)
+            self.modes = PETSc.NullSpace().createRigidBody(coords)
+        option_defaults.set(options_prefix, self.defaults)
         self.ksp.setFromOptions()
         self.grounding: list[PETSc.Vec] = []
         self.border: list[PETSc.Vec] = []
         self.rows: list[int] = []
         self.columns: list[PETSc.Vec] = []
-        self.kept = ReusedFactor(create_vector(partition), self.multiply, self.solve_with_factor) if keep else None
+        self.matrix: PETSc.Mat | None = None
+        self.bound: float | None = None
+        self.n_loaded = 0
+        self.small_system = np.zeros((0, 0))
+        self.failed = False
+        self.reused = ReusedFactor(create_vector(partition), self.multiply, self.solve_with_factor) if reuse else None
+
+    def destroy(self) -> None:
+        """Release the solvers and their matrices; collective."""
+        for owned in (self.ksp, self.unblocked, self.reused):
+            if owned is not None:
+                owned.destroy()
+
+    @property
+    def uses_old_factor(self) -> bool:
+        """Whether the factor in use is that of an earlier tangent."""
+        return self.reused is not None and not self.reused.fresh
+
+    def set_goal(self, norm: float) -> None:
+        """Norm (N) of the residual at which Newton's iteration ends at the latest."""
+        if self.reused is not None:
+            self.reused.goal = norm
 
     def solve_grounded(self, right: PETSc.Vec, x: PETSc.Vec) -> None:
         """x = K'^-1 right; in the plane the matrix has no z, and x gets a zero there."""
@@ -134,25 +173,25 @@ class BorderedSystem:
         bound : of C x in the last row when that is loaded instead of prescribed
         """
         self.matrix, self.grounding, self.border, self.rows, self.bound = matrix, grounding, border, rows, bound
-        self.free = 0 if bound is None else 1
+        self.n_loaded = 0 if bound is None else 1
 
     def setUp(self, pc: PETSc.PC) -> None:
-        """Factorise the matrix of the last `set_system`, unless the kept factor still serves."""
-        if self.kept is None or not self.kept.serves(self._layout(), self._price()):
+        """Factorise the matrix of the last `set_system`, unless the reused factor is still good."""
+        if self.reused is None or not self.reused.is_good_for(self._layout(), self._price()):
             self.factorise()
 
     def _layout(self) -> tuple[int, ...]:
-        return len(self.grounding), len(self.border), self.free
+        return len(self.grounding), len(self.border), self.n_loaded
 
-    def renew(self) -> None:
-        """Take no kept factor for the next system, which has little in common with the last one."""
-        if self.kept is not None:
-            self.kept.stale = True
+    def discard_factor(self) -> None:
+        """Reuse no factor for the next system, which has little in common with the last one."""
+        if self.reused is not None:
+            self.reused.discarded = True
 
     def prepare(self) -> None:
         """Factor, or the set-up of the multigrid, of the present matrix."""
         matrix = self.matrix
-        set_defaults(self.ksp.getOptionsPrefix(), self.defaults)  # another model may have set its own since
+        option_defaults.set(self.ksp.getOptionsPrefix(), self.defaults)  # another model may have set its own since
         if self.modes is not None:  # GAMG has no triangular storage
             if self.unblocked is not None:
                 self.unblocked.destroy()
@@ -163,10 +202,10 @@ class BorderedSystem:
         self.ksp.getPC().setReusePreconditioner(False)
         self.ksp.setUp()
         if self.modes is None:
-            self._mend_factor(matrix)
-        self.ksp.getPC().setReusePreconditioner(self.kept is not None)  # the matrix changes below a kept factor
+            self._retry_with_memory(matrix)
+        self.ksp.getPC().setReusePreconditioner(self.reused is not None)  # the matrix changes, the factor does not
 
-    def _mend_factor(self, matrix: PETSc.Mat) -> None:
+    def _retry_with_memory(self, matrix: PETSc.Mat) -> None:
         """Factorise again with more memory where MUMPS ran out of what it had estimated (users' guide, section 8)."""
         pc, options = self.ksp.getPC(), PETSc.Options(self.ksp.getOptionsPrefix())
         for more in MORE_MEMORY:
@@ -204,10 +243,10 @@ class BorderedSystem:
         system[:nb, nb:] = small[:nb, nb:]
         system[nb:, :nb] = small[nb:, :nb]
         system[nb:, nb:] = -small[nb:, nb:]
-        self.system = system
+        self.small_system = system
         self.factored = self.matrix
-        if self.kept is not None:
-            self.kept.renewed(self._layout())
+        if self.reused is not None:
+            self.reused.renew(self._layout())
 
     def _solve_sides(self, sides: list[PETSc.Vec]) -> None:
         """Columns Z, the solutions for the borders."""
@@ -237,11 +276,12 @@ class BorderedSystem:
         self.ksp.setInitialGuessNonzero(False)
 
     def apply(self, pc: PETSc.PC, right: PETSc.Vec, x: PETSc.Vec) -> None:
-        if self.kept is not None:
-            self.kept.faces(right)
-        if self.kept is not None and not self.kept.fresh:
+        """Solve the system of the last `set_system`: x from right; called by PETSc."""
+        if self.reused is not None:
+            self.reused.set_tolerance(right)
+        if self.uses_old_factor:
             # the bound needs the answer to a unit of load, which GMRES does not give
-            if self.kept.solve(right, x) and (self.bound is None or abs(self.border[-1].dot(x)) < self.bound):
+            if self.reused.solve(right, x) and (self.bound is None or abs(self.border[-1].dot(x)) < self.bound):
                 return
             self.factorise()
         self.solve_with_factor(right, x, self.bound)
@@ -249,7 +289,7 @@ class BorderedSystem:
     def multiply(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
         """y = [K' - B B^T, C^T; C, 0] x of the last `set_system`; multipliers that it does not use stand alone."""
         n, last = self.partition.n_multipliers, self.partition.comm.rank == self.partition.comm.size - 1
-        used = self.rows[: len(self.border) - self.free]
+        used = self.rows[: len(self.border) - self.n_loaded]
         multipliers = read_multipliers(self.partition, x)
         moved = x.copy()
         if last:
@@ -272,17 +312,17 @@ class BorderedSystem:
             x.set(np.nan)  # the residual at such a step is not finite: the increment is cut back
             return
         nb = len(self.grounding)
-        prescribed = len(self.columns) - self.free
+        prescribed = len(self.columns) - self.n_loaded
         used = self.rows[: prescribed - nb]
         sides = (self.grounding + self.border)[: prescribed if bound is None else None]
         load = np.array([v.dot(x) for v in sides])
         load[nb:] *= -1.0
         load[nb:prescribed] += read_multipliers(self.partition, right)[used]
         if bound is None:
-            answer = np.linalg.solve(self.system[:prescribed, :prescribed], load)
+            answer = np.linalg.solve(self.small_system[:prescribed, :prescribed], load)
         else:
-            answer = np.linalg.solve(self.system, load)
-            unit = np.linalg.solve(self.system, np.eye(len(load))[-1])
+            answer = np.linalg.solve(self.small_system, load)
+            unit = np.linalg.solve(self.small_system, np.eye(len(load))[-1])
             force, stiffness = answer[-1], -unit[-1]
             motion = force / stiffness if stiffness * bound > abs(force) else np.sign(force) * bound
             answer += motion * unit

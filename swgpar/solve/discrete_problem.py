@@ -1,7 +1,11 @@
-"""Forces and stiffness of the discrete drive at a displacement: structure, contact, what holds and loads the bodies."""
+"""The discrete problem: residual and tangent of the drive at a displacement.
+
+Its parts are the structure (elements), the contacts, and the supports with the load.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,13 +13,13 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from swgpar.constraints.supports import Supports
-from swgpar.contact.flanks import FlankContact
-from swgpar.contact.friction import FIRST_STEP, PairKey
-from swgpar.contact.rigid_surface import CamPose, RigidContact
-from swgpar.contact.search import FlankPair, facing_flanks, largest
-from swgpar.design.drive_design import DriveDesign
+from swgpar.contact.clearance import FlankClearance
+from swgpar.contact.contact import Contact, largest
+from swgpar.contact.flanks import ActiveSegments, FlankContact, SearchRange
+from swgpar.contact.friction import PairKey
+from swgpar.contact.search import FlankPair, facing_flanks
 from swgpar.design.load_states import LoadState
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.fem.elements import Elements
 from swgpar.fem.inactive_sectors import InactiveSectors
 from swgpar.fem.partition import Partition
@@ -24,210 +28,331 @@ from swgpar.fem.vectors import Exchange, create_vector, read_multipliers
 from swgpar.geometry.rotation import HALF_TURN
 from swgpar.log import Phases
 
-NEAR, TOUCH, TIP_MARGIN = 0.25, 0.05, 0.1
-"""Search distances as shares of the module: faces evaluated (farther off in a drive with more backlash), blocks
-foreseen, tip overlap."""
+FORCE_FLOOR = 1e-6
+"""Contact force below which a residual is not judged by it, as a share of E times the module squared."""
 
 
-def near(design: DriveDesign) -> float:
-    """Distance (mm) within which flanks are followed: under torque all those that the backlash may bring together."""
-    return max(NEAR * design.drive.module, TOUCH * design.drive.module + design.backlash)
+@dataclass(frozen=True)
+class ContactSearch:
+    """How far the contact search of the flanks looks.
+
+    tip_margin : mm, radial distance of a tooth's tip inside the ring gear's tip circle up to which its flanks are
+    followed
+    distances : of the faces
+    reach : mm, radius that no tooth is farther out than
+    """
+
+    tip_margin: float
+    distances: SearchRange
+    reach: float
 
 
-@dataclass(eq=False, repr=False)
+@dataclass(frozen=True)
+class ResidualInfo:
+    """What comes with a residual.
+
+    contact_force : N, norm of the contact forces over all nodes
+    collapsed : whether an element has collapsed; the residual is then not valid
+    """
+
+    contact_force: float
+    collapsed: bool
+
+
 class DiscreteProblem:
-    """The discrete drive: which flanks can meet, the forces that are left over at a displacement, and their tangent.
+    """Residual and tangent of a body, or of a drive, with contact; no solver.
 
     Parameters
     ----------
-    design : the drive;  partition, elements : ownership and elements, bound to their local nodes
-    holding : what holds and loads the bodies
-    rigid, pins : cam and pins on the inner surface;  teeth : flank contact
+    partition, elements : ownership and elements, bound to their local nodes
+    supports : couplings, housing, grounding and load
+    rigid_contacts : contacts with rigid surfaces
+    flanks : contact of the tooth flanks and its search; None for a body without teeth
+    module : mm, length that bounds and floors refer to;  inner_radius : mm, size of the body
+    inactive : ring-gear sectors that are left out; None where all are modelled
+    phases : wall seconds
 
-    `x` is the state, `accepted` the last one that was found in equilibrium. `residual` leaves the norm of the contact
-    forces in `reference`, N, and whether an element has collapsed in `failed`; `tangent` leaves `matrix`, contact
-    blocks that have no room in it in `missing`, and what round-off can make of the forces in `round_off`, N.
+    Attributes
+    ----------
+    x : state vector: displacements (mm) and multipliers;  accepted : the last state found in equilibrium
+    matrix : the tangent of the last `tangent`;  rows : its blocks on this rank
+    round_off : N, largest force that a last-digit error of the positions makes, of the last `tangent`
     """
 
-    design: DriveDesign
-    partition: Partition
-    elements: Elements
-    holding: Supports
-    rigid: RigidContact
-    pins: RigidContact
-    teeth: FlankContact
-    phases: Phases
-
-    def __post_init__(self) -> None:
-        design, partition, elements, holding = self.design, self.partition, self.elements, self.holding
-        self.contacts = self.rigid, self.pins, self.teeth
-        self.scale, self.share = holding.scale, holding.share
+    def __init__(
+        self,
+        *,
+        partition: Partition,
+        elements: Elements,
+        supports: Supports,
+        rigid_contacts: Sequence[Contact],
+        flanks: tuple[FlankContact, ContactSearch] | None,
+        module: float,
+        inner_radius: float,
+        inactive: InactiveSectors | None = None,
+        phases: Phases,
+    ) -> None:
+        self.partition, self.elements, self.supports, self.phases = partition, elements, supports, phases
+        self.rigid_contacts = list(rigid_contacts)
+        self.flanks, self.contact_search = flanks if flanks is not None else (None, None)
+        self.contacts: list[Contact] = [*rigid_contacts] if self.flanks is None else [*rigid_contacts, self.flanks]
+        self.clearance = (
+            None
+            if self.flanks is None
+            else FlankClearance(self.flanks, partition.comm, module=module, reach=self.contact_search.reach)
+        )
+        self.module, self.inner_radius, self.inactive = module, inner_radius, inactive
+        self.scale = supports.scale
         self.x, self.accepted = create_vector(partition), create_vector(partition)
-        self.near = near(design)
-        self.scene: LoadState | None = None
+        self.local = elements.local
+        self.exchange = Exchange(partition, self.local.number)
+        self.pattern: np.ndarray | None = None
+        self.rows: BlockRows | None = None
+        self.slots: list[np.ndarray] = []
         self.matrix: PETSc.Mat | None = None
-        self.rebind(np.zeros(0, dtype=np.int64))
-        self.keys: np.ndarray | None = None
-        ring_stands = design.solver.far_teeth == "left_out" and holding.housing is None and len(elements.bodies) == 2
-        self.far = InactiveSectors(partition.layouts[RING_GEAR].count) if ring_stands else None
-        own = np.arange(partition.row_start, partition.row_start + partition.n_own)
-        self.own_keys = own * partition.n_global + own
         self.round_off = 0.0
+
+    def destroy(self) -> None:
+        """Release the tangent; collective."""
+        if self.matrix is not None:
+            self.matrix.destroy()
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether the tangent is symmetric."""
+        return self.flanks is None or self.flanks.symmetric
+
+    @property
+    def force_floor(self) -> float:
+        """Smallest contact force (N) that residuals are compared with."""
+        return FORCE_FLOOR * self.scale * self.module
 
     # -- local data ------------------------------------------------------------------------------------
 
-    def rebind(self, further: np.ndarray) -> None:
-        """Take further global nodes (n,) into this rank's view."""
-        self.local = self.elements.local.extended(further)
-        self.exchange = Exchange(self.partition, self.local.number)
-        self.teeth.bind(self.local)
-        self.teeth.turn = self.holding.ring_turn(self.displacement())
-
     def displacement(self, x: PETSc.Vec | None = None) -> np.ndarray:
-        """(n_local, 3) mm, ghosts included."""
+        """Displacement (n_local, 3) mm of the state x (default: `self.x`), ghosts included."""
         return self.exchange(self.x if x is None else x)
 
     def positions(self) -> np.ndarray:
-        """Undeformed positions (n_local, 3) mm, as their owners see them; zero for the multipliers."""
-        place = np.zeros((len(self.local), 3))
+        """Undeformed positions (n_local, 3) mm as their owners see them; zero for the multipliers."""
+        out = np.zeros((len(self.local), 3))
         for body in self.elements.bodies:
-            seen, where = body.local >= 0, body.positions()
-            where[body.flip == 1] *= HALF_TURN
-            place[body.local[seen]] = where[seen]
-        return place
+            seen, position = body.local >= 0, body.positions()
+            position[body.flip == 1] *= HALF_TURN
+            out[body.local[seen]] = position[seen]
+        return out
 
-    def multipliers(self, x: PETSc.Vec) -> np.ndarray:
-        """Of the couplings, on every rank."""
-        return read_multipliers(self.partition, x)
+    def multipliers(self, x: PETSc.Vec | None = None) -> np.ndarray:
+        """Multipliers of the couplings (n_multipliers,), on every rank; collective."""
+        return read_multipliers(self.partition, self.x if x is None else x)
 
-    # -- search ----------------------------------------------------------------------------------------
+    def clear_unused_multipliers(self, state: LoadState) -> None:
+        """Set the multipliers of x to zero that the load state does not use."""
+        if self.partition.comm.rank == self.partition.comm.size - 1:
+            unused = self.supports.unused_multipliers(state)
+            self.x.array[-len(unused) :][unused] = 0.0
 
-    def search(self) -> None:
-        """Find the flanks and faces that can meet at the present displacement and lay out the tangent for them."""
+    # -- contact search --------------------------------------------------------------------------------
+
+    def search(self, state: LoadState) -> None:
+        """Find the flanks and faces that can meet at the present x; make room for them in the tangent; collective."""
         with self.phases("search"):
-            further = np.zeros(0, dtype=np.int64)
-            if self.scene is not None and self.scene.teeth is not None:
-                margin = TIP_MARGIN * self.design.drive.module
-                pairs = self._facing(margin)
-                further = self.teeth.numbers(pairs)
-            else:
-                self.teeth.numbers([])
-            self.rebind(further)
-            keys = self.teeth.select(self.displacement(), self.near, TOUCH * self.design.drive.module)
-            if self.far is not None:
-                near = np.concatenate(self.partition.comm.allgather(self.teeth.picked_rings()))
-                if self.far.update(near, self.elements):
-                    self.keys = None
-                self.x.array.reshape(-1, 3)[self.elements.pattern.nodes_without_elements] = 0.0
-            if not self.teeth.symmetric and self.scene is not None and self.scene.step >= FIRST_STEP:
-                self.teeth.resist(self.displacement(self.accepted))
-        self.rigid.reset()
-        self.pins.reset()
-        self.lay_out(keys)
+            pairs = self._facing_pairs(state, self.contact_search.tip_margin) if self.flanks is not None else []
+            further = self.flanks.node_numbers(pairs) if self.flanks is not None else np.zeros(0, dtype=np.int64)
+            self.local = self.elements.local.extended(further)
+            self.exchange = Exchange(self.partition, self.local.number)
+            pattern = np.zeros(0, dtype=np.int64)
+            if self.flanks is not None:
+                accepted = None
+                if not self.flanks.symmetric and state.friction_acts:
+                    accepted = self.displacement(self.accepted)
+                u = self.displacement()
+                pattern = self.flanks.search(pairs, self.local, u, self.contact_search.distances, accepted)
+                self._choose_modelled_sectors()
+        for contact in self.rigid_contacts:
+            contact.reset()
+        self.set_pattern(pattern)
 
-    def _facing(self, margin: float) -> list[FlankPair]:
+    def _facing_pairs(self, state: LoadState, margin: float) -> list[FlankPair]:
+        """Pairs of flanks that can meet at x, of this rank; none while the flanks are switched off."""
+        if not self.flanks.is_active(state):
+            return []
         u = self.displacement()
-        return facing_flanks(
-            self.partition, self.elements.bodies[FLEXIBLE_SPLINE], u, self.holding.ring_turn(u), margin
-        )
+        rotation = self.supports.ring_rotation(u)
+        pairs = facing_flanks(self.partition, self.elements.bodies[FLEXIBLE_SPLINE], u, rotation, margin)
+        return [pair for pair in pairs if self.flanks.takes_part(pair)]
 
-    def overlooked(self) -> bool:
-        """Whether flanks that the search left out have come into contact."""
-        if self.scene.teeth is None:
+    def _choose_modelled_sectors(self) -> None:
+        if self.inactive is None:
+            return
+        near = np.concatenate(self.partition.comm.allgather(self.flanks.ring_sectors()))
+        if self.inactive.update(near, self.elements):
+            self.pattern = None
+        self.x.array.reshape(-1, 3)[self.elements.pattern.nodes_without_elements] = 0.0
+
+    def overlooked(self, state: LoadState) -> bool:
+        """Whether flanks that the search left out have come into contact; collective."""
+        if self.flanks is None or not self.flanks.is_active(state):
             return False
         with self.phases("search"):
-            pairs = self._facing(0.0)
-            found = self.teeth.overlooked(pairs, self.displacement(), self.scene.teeth)
+            pairs = self._facing_pairs(state, 0.0)
+            found = self.flanks.overlooked(pairs, self.displacement(), state)
         return bool(self.partition.comm.allreduce(int(found), op=MPI.MAX))
 
-    def lay_out(self, keys: np.ndarray) -> None:
-        """Make room in the tangent for contact blocks, keys row * n_global + column, where they are other ones."""
+    def set_pattern(self, pattern: np.ndarray) -> None:
+        """Make room in the tangent for contact blocks, keys row * n_global + column (n,), where they are other ones."""
         with self.phases("pattern"):
-            changed = self.keys is None or not np.array_equal(keys, self.keys)
+            changed = self.pattern is None or not np.array_equal(pattern, self.pattern)
             if not self.partition.comm.allreduce(int(changed), op=MPI.MAX):
                 self.rows.number = self.local.number
                 return
-            self.keys = keys
-            self.rows, self.slots = self.elements.rows(keys, self.local.number)
+            self.pattern = pattern
+            self.rows, self.slots = self.elements.rows(pattern, self.local.number)
             if self.matrix is not None:
                 self.matrix.destroy()
             self.matrix = create_matrix(self.partition, self.rows)
 
+    def extend_pattern(self, missing: np.ndarray) -> None:
+        """Make room for further contact blocks, keys (n,) that `tangent` returned; collective."""
+        self.set_pattern(np.union1d(self.pattern, missing))
+
     # -- residual and tangent --------------------------------------------------------------------------
 
-    def _contact(self, u: np.ndarray, residual: np.ndarray | None, rows: BlockRows | None) -> np.ndarray:
-        scene = self.scene
-        if scene.cam is not None:
-            self.rigid.evaluate(u, CamPose(scene.angle, scene.cam), residual, rows)
-        if scene.pins is not None:
-            self.pins.evaluate(u, CamPose(scene.angle, inset=scene.pins), residual, rows)
-        if scene.teeth is None:
-            return np.zeros(0, dtype=np.int64)
-        self.teeth.turn = self.holding.ring_turn(u)
-        missing = self.teeth.evaluate(u, scene.teeth, residual, rows)
-        if residual is not None:
-            # the flanks' heights over their chords turn with the ring gear
-            self.holding.add_ring_moment(u, self.teeth.moment, residual)
-        return missing
+    def _evaluate_contacts(
+        self, u: np.ndarray, state: LoadState, residual: np.ndarray | None, rows: BlockRows | None
+    ) -> np.ndarray:
+        """Add the forces and blocks of all contacts; returns keys of blocks that the pattern lacks."""
+        missing = [contact.evaluate(u, state, residual, rows) for contact in self.contacts]
+        return np.concatenate(missing)
 
-    def residual(self, x: PETSc.Vec, f: PETSc.Vec) -> None:
-        """Set f to the forces left over at x, N."""
+    def residual(self, x: PETSc.Vec, f: PETSc.Vec, state: LoadState) -> ResidualInfo:
+        """Set f to the residual at x, N; collective."""
+        comm, n_own = self.partition.comm, self.partition.n_own
         with self.phases("residual"):
             u = self.displacement(x)
-            n_own = self.partition.n_own
             contact = np.zeros_like(u)
-            self.failed = False
+            collapsed = False
             try:
-                self._contact(u, contact, None)
+                self._evaluate_contacts(u, state, contact, None)
                 residual = contact.copy()
                 self.elements.assemble(u, residual, None, None)
             except FloatingPointError:
-                self.failed, residual = True, contact
-            if self.partition.comm.allreduce(int(self.failed), op=MPI.MAX):
-                self.failed = True
-            self.reference = np.sqrt(self.partition.comm.allreduce(float(np.sum(contact[:n_own] ** 2))))
-            tail = self.holding.add_forces(u, self.scene, self.multipliers(x), residual)
+                collapsed, residual = True, contact
+            collapsed = bool(comm.allreduce(int(collapsed), op=MPI.MAX))
+            contact_force = np.sqrt(comm.allreduce(float(np.sum(contact[:n_own] ** 2))))
+            tail = self.supports.add_forces(u, state, self.multipliers(x), residual)
             f.array[:] = residual[:n_own].ravel()
-            if self.partition.comm.rank == self.partition.comm.size - 1:
+            if comm.rank == comm.size - 1:
                 f.array[-len(tail) :] = tail
+        return ResidualInfo(float(contact_force), collapsed)
 
-    def tangent(self, u: np.ndarray) -> None:
-        """Fill `matrix` at displacement u (n_local, 3) mm."""
+    def tangent(self, u: np.ndarray, state: LoadState) -> np.ndarray:
+        """Fill `matrix` at displacement u (n_local, 3) mm; collective.
+
+        Returns keys (n,) of contact blocks on this rank that have no room in it.
+        """
         with self.phases("tangent"):
             self.rows.values[:] = 0.0
             self.elements.assemble(u, None, self.rows, self.slots)
-            self.missing = self._contact(u, None, self.rows)
-            self.holding.add_blocks(u, self.rows)
-            without_elements = self.elements.pattern.nodes_without_elements
-            add_unit_diagonal(self.rows, self.partition, without_elements, self.scale)
-        # forces that follow from a last-digit error of every position
-        diagonal = self.rows.values[np.searchsorted(self.rows.keys, np.delete(self.own_keys, without_elements))]
-        squares = float(np.einsum("nkk,nkk->", diagonal, diagonal))
-        squares = self.partition.comm.allreduce(squares, op=MPI.SUM)
-        self.round_off = np.finfo(float).eps * self.design.inner_radius * np.sqrt(squares)
+            missing = self._evaluate_contacts(u, state, None, self.rows)
+            self.supports.add_blocks(u, self.rows)
+            add_unit_diagonal(self.rows, self.partition, self.elements.pattern.nodes_without_elements, self.scale)
+        self.round_off = self._round_off()
         with self.phases("insert"):
             fill_matrix(self.matrix, self.rows)
+        return missing
+
+    def _round_off(self) -> float:
+        """Norm (N) of the forces that follow from a last-digit error of every position."""
+        own = np.arange(self.partition.row_start, self.partition.row_start + self.partition.n_own)
+        keys = np.delete(own * self.partition.n_global + own, self.elements.pattern.nodes_without_elements)
+        diagonal = self.rows.values[np.searchsorted(self.rows.keys, keys)]
+        squares = float(np.einsum("nkk,nkk->", diagonal, diagonal))
+        squares = self.partition.comm.allreduce(squares, op=MPI.SUM)
+        return float(np.finfo(float).eps * self.inner_radius * np.sqrt(squares))
+
+    def output_step_bound(self, state: LoadState) -> float | None:
+        """Bound of the output's motion in a Newton step, in units of the last border; None where it is prescribed."""
+        if state.control != "torque":
+            return None
+        return self.scale * self.clearance.largest_rotation()
+
+    def closing_rotation(self, state: LoadState) -> float:
+        """Rotation (rad) of the output, in the direction of the torque of `state`, that brings its flanks together.
+
+        0 where they are so close that a Newton step does the rest, or where none is near. Collective.
+        """
+        self.search(state)
+        self.flanks.evaluate(self.displacement(), state, None, None)
+        return float(np.copysign(self.clearance.closing_rotation(), state.torque))
+
+    # -- segments of the flanks ------------------------------------------------------------------------
+
+    def freeze_segments(self) -> None:
+        """Freeze the segments of the flanks."""
+        if self.flanks is not None:
+            self.flanks.freeze_segments()
+
+    def release_segments(self) -> None:
+        """Cut the segments of the flanks anew in every evaluation."""
+        if self.flanks is not None:
+            self.flanks.release_segments()
+
+    def segments_frozen(self) -> bool:
+        """Whether segments are frozen on any rank: many ranks have no flanks in reach. Collective."""
+        frozen = self.flanks is not None and self.flanks.frozen
+        return bool(self.partition.comm.allreduce(int(frozen), op=MPI.MAX))
+
+    def freeze_friction_bounds(self) -> tuple[float, float]:
+        """Let the present pressures bound the friction on frozen segments.
+
+        Returns the largest change of these pressures and the largest of them, MPa, over all ranks; 0 without friction.
+        """
+        values = (0.0, 0.0) if self.flanks is None else self.flanks.freeze_friction_bound()
+        change, top = (largest(self.partition.comm, value) for value in values)
+        return change, top
+
+    def saved_segments(self) -> ActiveSegments | None:
+        """The present segments of the flanks, for `restore_segments`."""
+        return None if self.flanks is None else self.flanks.saved_segments()
+
+    def restore_segments(self, saved: ActiveSegments | None) -> None:
+        """Freeze the segments that were saved."""
+        if self.flanks is not None:
+            self.flanks.restore_segments(saved)
 
     # -- state -----------------------------------------------------------------------------------------
 
+    def active_sets(self, state: LoadState) -> list[np.ndarray]:
+        """Active sets of the contacts that the load state switches on, on this rank."""
+        return [part for contact in self.contacts if contact.is_active(state) for part in contact.active_sets()]
+
+    def scale_penalties(self, share: float) -> None:
+        """Use this share of the full penalty in every contact."""
+        for contact in self.contacts:
+            contact.scale_penalty(share)
+
+    def penetration(self) -> float:
+        """Largest penetration (mm) of the last evaluation, over all ranks; collective."""
+        return largest(self.partition.comm, max(contact.penetration() for contact in self.contacts))
+
+    def touching_pairs(self) -> int:
+        """Flank pairs of the model in contact, over all ranks; collective."""
+        pairs = 0 if self.flanks is None else self.flanks.touching_pairs()
+        return int(self.partition.comm.allreduce(pairs, op=MPI.SUM))
+
     def accept(self) -> None:
-        """Make x the state from which friction counts the slip of the next solve."""
+        """Take x as the state from which friction counts the slip of the next solve."""
         self.x.copy(self.accepted)
-        self.teeth.accept()
+        if self.flanks is not None:
+            self.flanks.accept()
 
     def resume(self, tractions: dict[PairKey, np.ndarray]) -> None:
         """Take x and these tractions of the flanks as an accepted state."""
         self.x.copy(self.accepted)
-        self.teeth.history = tractions
+        if self.flanks is not None:
+            self.flanks.tractions = tractions
 
-    def penetration(self) -> float:
-        """Largest penetration (mm) of the last evaluation, over all ranks."""
-        scene, depth = self.scene, 0.0
-        for contact, on in zip(self.contacts, (scene.cam, scene.pins, scene.teeth)):
-            if on is not None:
-                depth = max(depth, contact.penetration())
-        return largest(self.partition.comm, depth)
-
-    def rotation(self) -> float:
-        """Turn of the output (rad)."""
-        return self.holding.turn(self.displacement())
+    def output_rotation(self) -> float:
+        """Rotation of the output (rad); collective."""
+        return self.supports.output_rotation(self.displacement())

@@ -1,4 +1,4 @@
-"""A factor that serves later systems too: GMRES on the present one, preconditioned by the kept factor.
+"""A factor that is reused for later systems: GMRES on the present system, preconditioned by the old factor.
 
 In the cup drive one factorisation costs as much as 5 (coarse) to 12 (full) solves with it, the
 analysis of another pattern once or twice that, and from one Newton iteration to the next, or one increment to
@@ -12,14 +12,14 @@ from collections.abc import Callable
 from petsc4py import PETSc
 
 RTOL = 1e-4
-"""Of GMRES: a Newton step that exact loses nothing but its last, quadratic, iteration. Looser steps while contacts
-switch spare a few iterations of GMRES and cost some of Newton's."""
+"""Relative tolerance of GMRES. A Newton step with it loses nothing but its last, quadratic, iteration. Looser steps
+while contacts switch save a few iterations of GMRES and cost some of Newton's."""
 
-ENOUGH, LAST = 0.2, 0.1
+GOAL_SHARE, LOOSEST = 0.2, 0.1
 """Share of the residual at which Newton's iteration ends that GMRES leaves, and of the present one at most: more
 exactness is of no use to the last step."""
 
-LONGEST = 40
+MAX_ITERATIONS = 40
 """Iterations of GMRES after which a factor is made at once."""
 
 INTENSITY = 40.0
@@ -36,7 +36,7 @@ def price(operations: float, entries: float, analysed: bool) -> float:
 
     analysed : whether its pattern is known
 
-    A count, and no clock: a run takes the same way every time.
+    It is a count and no time: a run makes the same decisions every time.
     """
     return operations / (INTENSITY * entries) * (1.0 if analysed else 1.0 + ANALYSIS)
 
@@ -46,7 +46,7 @@ Operation = Callable[[PETSc.Vec, PETSc.Vec], None]
 
 
 class ReusedFactor:
-    """Whether a factor is kept, and GMRES with it.
+    """Decides whether a factor is reused, and solves by GMRES with it.
 
     Parameters
     ----------
@@ -54,14 +54,14 @@ class ReusedFactor:
     multiply, solve : with the present system; with the factor
 
     `goal` is the residual's norm that ends Newton's iteration at the latest; `fresh` says that the factor is that of
-    the present system, `stale` that it is to be renewed before its next use; `iterations` are those of all solves.
+    the present system, `discarded` that it is to be renewed before its next use; `iterations` are those of all solves.
     """
 
     def __init__(self, like: PETSc.Vec, multiply: Operation, solve: Operation) -> None:
-        self.fresh, self.stale = False, True
+        self.fresh, self.discarded = False, True
         self.layout: tuple[int, ...] = ()
         self.iterations: list[int] = []
-        self.goal, self.least, self.lost, self.last = 0.0, LONGEST, 0, 0
+        self.goal, self.fewest, self.surplus, self.last = 0.0, MAX_ITERATIONS, 0, 0
         operator = PETSc.Mat().createPython([like.getSizes()] * 2, _Multiply(multiply), comm=like.comm)
         operator.setUp()
         self.ksp = PETSc.KSP().create(comm=like.comm)
@@ -69,7 +69,7 @@ class ReusedFactor:
         self.ksp.setOperators(operator)
         self.ksp.setType(PETSc.KSP.Type.GMRES)
         self.ksp.setPCSide(PETSc.PC.Side.RIGHT)
-        self.ksp.setGMRESRestart(LONGEST)
+        self.ksp.setGMRESRestart(MAX_ITERATIONS)
         pc = self.ksp.getPC()
         pc.setType(PETSc.PC.Type.PYTHON)
         pc.setPythonContext(_Solve(solve))
@@ -79,34 +79,34 @@ class ReusedFactor:
         """Release GMRES, which refers to the system; collective."""
         self.ksp.destroy()
 
-    def renewed(self, layout: tuple[int, ...]) -> None:
+    def renew(self, layout: tuple[int, ...]) -> None:
         """The factor is that of the present system now. layout : what a system must share to be served"""
-        self.fresh, self.stale, self.layout = True, False, layout
-        self.least, self.lost, self.last = LONGEST, 0, 0
+        self.fresh, self.discarded, self.layout = True, False, layout
+        self.fewest, self.surplus, self.last = MAX_ITERATIONS, 0, 0
 
-    def serves(self, layout: tuple[int, ...], price: float) -> bool:
-        """Whether the factor is to be used with a new system.
+    def is_good_for(self, layout: tuple[int, ...], price: float) -> bool:
+        """Whether the factor is to be reused for a new system.
 
         price : of a factor of that system, in iterations. It is due when the iterations beyond those of the old one's
         best solve have cost its price, which takes at most twice the time of the best choice, or when one solve has
         cost more than that.
         """
         self.fresh = False
-        return not self.stale and self.layout == layout and max(self.lost, self.last) <= price
+        return not self.discarded and self.layout == layout and max(self.surplus, self.last) <= price
 
-    def faces(self, right: PETSc.Vec) -> None:
-        """Take note of Newton's residual, the right-hand side of the present system."""
+    def set_tolerance(self, right: PETSc.Vec) -> None:
+        """Set the tolerance by Newton's residual, the right-hand side of the present system."""
         norm = right.norm()
-        enough = min(ENOUGH * self.goal / norm, LAST) if norm > 0.0 else LAST
-        self.ksp.setTolerances(rtol=max(RTOL, enough), max_it=LONGEST)
+        enough = min(GOAL_SHARE * self.goal / norm, LOOSEST) if norm > 0.0 else LOOSEST
+        self.ksp.setTolerances(rtol=max(RTOL, enough), max_it=MAX_ITERATIONS)
 
     def solve(self, right: PETSc.Vec, x: PETSc.Vec) -> bool:
-        """Solve the present system as exactly as its place in Newton's iteration asks; whether GMRES converged."""
+        """Solve the present system to the tolerance; returns whether GMRES converged."""
         self.ksp.solve(right, x)
         self.last = self.ksp.getIterationNumber()
         self.iterations.append(self.last)
-        self.least = min(self.least, self.last)
-        self.lost += self.last - self.least
+        self.fewest = min(self.fewest, self.last)
+        self.surplus += self.last - self.fewest
         return self.ksp.getConvergedReason() > 0
 
 

@@ -1,291 +1,341 @@
-"""Equilibrium of one load state by SNES: Newton's iteration, the way out where contacts do not settle, augmentation."""
+"""Equilibrium of one load state: Newton's iteration on SNES, contact searches, cycle breaker, augmentation.
+
+A solve goes through phases (`Phase`). Every phase is one run of SNES; `NewtonSolver` decides by its outcome which phase
+follows:
+
+    SOFTENED   contact is being established: reduced penalties, loose tolerance
+    FULL       full penalties; segments of the flanks are cut anew until the solution is near
+    FROZEN     cycle breaker: frozen segments, frozen friction bounds, descending line search
+    AUGMENTED  multipliers take over the pressures, until the penetration is below its tolerance
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
 
 import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from swgpar.contact.clearance import Clearance
-from swgpar.contact.search import largest
 from swgpar.design.load_states import LoadState
 from swgpar.fem.vectors import create_vector
 from swgpar.log import logger
 from swgpar.solve.active_set_cycles import (
-    AGREEMENT,
-    MOST,
+    MAX_ITERATIONS_FACTOR,
+    MIN_DECREASE,
     PATIENCE,
-    PROGRESS,
-    ROUNDS,
-    CycleBreaker,
     VisitedSets,
-    exhausted,
-    falls,
     fingerprint,
+    is_decreasing,
+    is_exhausted,
 )
 from swgpar.solve.bordered_system import BorderedSystem
-from swgpar.solve.discrete_problem import DiscreteProblem
+from swgpar.solve.discrete_problem import DiscreteProblem, ResidualInfo
 from swgpar.solve.line_search import LineSearch
+from swgpar.solve.solve_state import (
+    AcceptableState,
+    CycleBreaker,
+    NewtonSettings,
+    Outcome,
+    Phase,
+    SolveResult,
+    SolveState,
+)
 
-SOFTENING, SOFT_TOLERANCE = (1e-3, 3e-2), 1e-2
-"""Shares of the penalty, and residual over contact force, of the first rough solves while contact is established."""
+SOFT_PENALTIES, SOFT_TOLERANCE = (1e-3, 3e-2), 1e-2
+"""Shares of the penalty, and residual over contact force, of the first rough runs while contact is established."""
 
-HOLD = 0.6
-"""Power of the tolerance: residual over contact force below which segments of the flanks are kept. Newton's iteration
-is then quadratic: the next step or the one after it ends. Kept at 1e-3, segments make the state depend on the way to it
-by 4e-5 of the input torque where teeth are wedged, at 1e-4 by 1e-6; kept later, a solve takes some iterations more."""
+FREEZING_POWER = 0.6
+"""Power of the tolerance that gives the residual over contact force below which segments are frozen.
 
-SEARCHES = 3
-"""Further contact searches of a solve, at states in which flanks touch that the last one left out."""
+Newton's iteration is then quadratic: the next step or the one after it is the last. With segments frozen at 1e-3 the
+input torque depends on the path to the solution by 4e-5 where teeth are wedged, at 1e-4 by 1e-6. Frozen later, a solve
+takes some iterations more."""
 
-FARTHEST = 0.2
-"""Largest way (modules) of a node in a Newton step beside teeth: tangents are no guide over their clearance."""
+MAX_FURTHER_SEARCHES = 3
+"""Further contact searches of a solve, in states where flanks touch that the last search left out."""
 
-SECURE = 0.01
-"""Share of tolerance and floor with a kept factor, whose steps do not square the error as Newton's own do."""
+MAX_NODE_STEP = 0.2
+"""Largest displacement (modules) of a node in a Newton step while flanks may touch: the tangent ignores clearances."""
 
-FLOOR = 0.05
-"""Share of the round-off that a residual can hold below which it counts as zero; 0.01 to 0.06 of it is reached."""
+REUSED_FACTOR_MARGIN = 0.01
+"""Factor on tolerance and round-off floor with a reused factor, whose steps do not square the error."""
 
+ROUND_OFF_SHARE = 0.05
+"""Share of the round-off below which a residual counts as zero; runs reach 0.01 to 0.06 of it."""
 
-@dataclass(frozen=True)
-class Solved:
-    """What a solve did: Newton iterations, last residual over the contact force, why it ended."""
+STALL = 0.3
+"""Ratio of two residuals above which the iteration has stalled close to the round-off."""
 
-    converged: bool
-    iterations: int
-    residual: float
-    reason: str
+MAX_FRICTION_ROUNDS, FRICTION_AGREEMENT = 20, 1e-3
+"""Largest number of problems with given friction bounds, and the relative agreement of the last two."""
 
 
-@dataclass(eq=False, repr=False)
-class NewtonSolver(DiscreteProblem):
-    """The discrete drive and its Newton solver; parameters of `DiscreteProblem`."""
+IterationMonitor = Callable[[LoadState, int, float], None]
+"""Called after every Newton iteration with load state, iteration and residual over the contact force."""
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        design, partition, teeth = self.design, self.partition, self.teeth
-        self.clearance = Clearance(design, teeth, partition.comm)
-        self.on_iteration = None
-        self.tried: tuple[np.ndarray, np.ndarray] | None = None
-        self.softness = 1.0
-        self.snes = PETSc.SNES().create(comm=partition.comm)
-        self.snes.setType(PETSc.SNES.Type.NEWTONLS)
+
+class NewtonSolver:
+    """Solves a discrete problem for load states.
+
+    Parameters
+    ----------
+    problem : residual and tangent;  settings : tolerances and limits
+    """
+
+    def __init__(self, problem: DiscreteProblem, settings: NewtonSettings) -> None:
+        self.problem, self.settings = problem, settings
+        self.monitor: IterationMonitor | None = None
+        self.state: SolveState | None = None
+        self.last_residual = ResidualInfo(0.0, False)
+        self._trial_cache: tuple[np.ndarray, np.ndarray] | None = None
+        positions = problem.positions()[: problem.partition.n_own]
+        self.system = BorderedSystem(
+            problem.partition,
+            settings.linear,
+            positions,
+            "stiffness_",
+            symmetric=problem.symmetric,
+            reuse=settings.reuse_factor,
+        )
+        self.line_search = LineSearch(self.system, self._trial_residual, problem.x, problem.phases)
+        self.snes = self._create_snes()
+
+    def _create_snes(self) -> PETSc.SNES:
+        problem = self.problem
+        snes = PETSc.SNES().create(comm=problem.partition.comm)
+        snes.setType(PETSc.SNES.Type.NEWTONLS)
         options = PETSc.Options()
         if not options.hasName("snes_linesearch_type"):
             options["snes_linesearch_type"] = "basic"
-        self.snes.setFunction(self._function, create_vector(partition))
-        self.snes.setConvergenceTest(self._converged)
-        keep = design.solver.keep_factor and design.solver.linear == "direct" and partition.dims == 3
-        place = self.positions()[: partition.n_own]
-        self.border = BorderedSystem(partition, design.solver.linear, place, "stiffness_", teeth.symmetric, keep)
-        ksp = self.snes.getKSP()
+        snes.setFunction(self._residual, create_vector(problem.partition))
+        snes.setConvergenceTest(self._test_convergence)
+        ksp = snes.getKSP()
         ksp.setType(PETSc.KSP.Type.PREONLY)
         ksp.getPC().setType(PETSc.PC.Type.PYTHON)
-        self.step = LineSearch(self.border, self._trial, self.x, self.phases)
-        ksp.getPC().setPythonContext(self.step)
-        self.snes.setFromOptions()
-        # SNES sees vectors of three unknowns per node, the matrix may have two: it is known to the border alone
-        shell = PETSc.Mat().create(comm=partition.comm)
-        shell.setSizes([self.x.getSizes()] * 2)
+        ksp.getPC().setPythonContext(self.line_search)
+        snes.setFromOptions()
+        # SNES sees vectors of three unknowns per node. The matrix has two in the plane: only the bordered system knows
+        # it.
+        shell = PETSc.Mat().create(comm=problem.partition.comm)
+        shell.setSizes([problem.x.getSizes()] * 2)
         shell.setType(PETSc.Mat.Type.SHELL)
         shell.setUp()
-        self.snes.setJacobian(self._jacobian, shell, shell)
+        snes.setJacobian(self._tangent, shell, shell)
+        return snes
 
     def destroy(self) -> None:
         """Release the solvers, which refer to this object, and their matrices; collective."""
-        for held in (self.snes, self.border.ksp, self.border.unblocked, self.border.kept, self.matrix):
-            if held is not None:
-                held.destroy()
+        self.snes.destroy()
+        self.system.destroy()
+        self.problem.destroy()
 
-    def _function(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
-        tried, self.tried = self.tried, None
-        if tried is not None:
+    # -- callbacks of SNES -----------------------------------------------------------------------------
+
+    def _residual(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
+        cached, self._trial_cache = self._trial_cache, None
+        if cached is not None:
             # SNES asks for the residual at the end of the step that was tried last
-            other = int(not np.array_equal(x.array_r, tried[0]))
-            if not self.partition.comm.allreduce(other, op=MPI.MAX):
-                f.array[:] = tried[1]
+            other = int(not np.array_equal(x.array_r, cached[0]))
+            if not self.problem.partition.comm.allreduce(other, op=MPI.MAX):
+                f.array[:] = cached[1]
                 return
-        self.residual(x, f)
+        self.last_residual = self.problem.residual(x, f, self.state.load_state)
 
-    def _trial(self, x: PETSc.Vec, f: PETSc.Vec) -> bool:
-        """Residual f at x; whether an element has collapsed there."""
-        self.tried = None
-        self._function(self.snes, x, f)
-        self.tried = x.array_r.copy(), f.array_r.copy()
-        return self.failed
+    def _trial_residual(self, x: PETSc.Vec, f: PETSc.Vec) -> bool:
+        """Set f to the residual at x; returns whether an element has collapsed there."""
+        self.last_residual = self.problem.residual(x, f, self.state.load_state)
+        self._trial_cache = x.array_r.copy(), f.array_r.copy()
+        return self.last_residual.collapsed
 
-    def _jacobian(self, snes: PETSc.SNES, x: PETSc.Vec, j: PETSc.Mat, p: PETSc.Mat) -> None:
-        PETSc.garbage_cleanup(self.partition.comm)  # PETSc keeps what Python lets go of, such as the last border
-        u = self.displacement(x)
-        self.tangent(u)
-        self.stale = bool(self.partition.comm.allreduce(int(len(self.missing) > 0), op=MPI.MAX))
+    def _tangent(self, snes: PETSc.SNES, x: PETSc.Vec, j: PETSc.Mat, p: PETSc.Mat) -> None:
+        problem, state = self.problem, self.state
+        PETSc.garbage_cleanup(problem.partition.comm)  # PETSc keeps what Python lets go of, such as the last border
+        u = problem.displacement(x)
+        state.pattern_misses = problem.tangent(u, state.load_state)
+        missing = int(len(state.pattern_misses) > 0)
+        state.incomplete_pattern = bool(problem.partition.comm.allreduce(missing, op=MPI.MAX))
         p.stateIncrease()
-        bound = self.scale * self.clearance.longest_turn() if self.scene.control == "torque" else None
-        border, rows = self.holding.border(u, self.scene)
-        self.border.set_system(self.matrix, self.holding.ground_vectors, border, rows, bound)
+        bound = problem.output_step_bound(state.load_state)
+        border, rows = problem.supports.border(u, state.load_state)
+        self.system.set_system(problem.matrix, problem.supports.ground_vectors, border, rows, bound)
 
-    def closing_turn(self, scene: LoadState) -> float:
-        """Turn (rad) of the output, the way the torque of `scene` acts, by which its flanks do not meet yet.
-
-        0 where they are so close that a Newton step does the rest, or where none is near.
-        """
-        self.scene = scene
-        self.search()
-        u = self.displacement()
-        self.teeth.turn = self.holding.ring_turn(u)
-        self.teeth.evaluate(u, scene.teeth, None, None)
-        return float(np.copysign(self.clearance.closing_turn(), scene.torque))
-
-    # -- solve -------------------------------------------------------------------------------------------
-
-    def _converged(self, snes: PETSc.SNES, its: int, norms: tuple[float, float, float]) -> int | None:
-        _, step, norm = norms
-        reference = max(self.reference, 1e-6 * self.scale * self.design.drive.module)
+    def _test_convergence(self, snes: PETSc.SNES, its: int, norms: tuple[float, float, float]) -> int | None:
+        """Convergence test of SNES: its reason, or None to go on."""
+        state, norm = self.state, norms[2]
+        reference = max(self.last_residual.contact_force, self.problem.force_floor)
         ratio = norm / reference
-        self.history.append(ratio)
-        if self.on_iteration is not None:
-            self.on_iteration(self.scene, its, ratio)
-        if self.failed or not np.isfinite(norm):
+        state.residuals.append(ratio)
+        if self.monitor is not None:
+            self.monitor(state.load_state, its, ratio)
+        if self.last_residual.collapsed or not np.isfinite(norm):
             return PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN
-        kept = self.border.kept
-        secure = 1.0 if kept is None or kept.fresh else SECURE
-        if kept is not None:
-            kept.goal = reference * (SECURE * self.design.solver.rtol if self.softness == 1.0 else SOFT_TOLERANCE)
-        if ratio < self.design.solver.rtol**HOLD and self.softness == 1.0:
-            self.teeth.hold()
-        if ratio <= (secure * self.design.solver.rtol if self.softness == 1.0 else SOFT_TOLERANCE):
+        softened, rtol = state.phase is Phase.SOFTENED, self.settings.rtol
+        margin = REUSED_FACTOR_MARGIN if self.system.uses_old_factor else 1.0
+        self.system.set_goal(reference * (SOFT_TOLERANCE if softened else REUSED_FACTOR_MARGIN * rtol))
+        if ratio < rtol**FREEZING_POWER and not softened:
+            self.problem.freeze_segments()
+        if ratio <= (SOFT_TOLERANCE if softened else margin * rtol) or self._is_round_off(its, norm, margin):
             return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
-        # round-off floor: what positions known to 16 digits leave of the forces, or no decrease close to it
-        stalled = its > 1 and ratio > 0.3 * self.history[-2]
-        if norm <= (1.0 if stalled else secure * FLOOR) * self.round_off:
-            return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
-        if self.stale and its > 0:
+        if state.incomplete_pattern and its > 0:
             return PETSc.SNES.ConvergedReason.CONVERGED_ITS
-        if exhausted(self.history, self.design.solver.max_iterations):
+        if is_exhausted(state.residuals, self.settings.max_iterations):
             return PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT
-        if not self.step.careful and self._unsettled(ratio):
-            logger.info("   contacts do not settle in Newton iteration %d: careful line search", its)
-            self.step.careful = True
-            if not self.way_out.begun and not self._frozen():
-                self.teeth.hold()
-                self.teeth.lag()
-                self.way_out.active = self.way_out.begun = self._frozen()
+        if not self.line_search.descending and self._is_cycling(ratio):
+            logger.info("   contacts do not settle in Newton iteration %d: descending line search", its)
+            self._break_cycle()
         return None
 
-    def _frozen(self) -> bool:
-        """Whether segments are held, on any rank: many have no teeth in reach."""
-        return bool(self.partition.comm.allreduce(int(self.teeth.frozen), op=MPI.MAX))
+    def _is_round_off(self, its: int, norm: float, margin: float) -> bool:
+        """Whether a residual is round-off: that of positions with 16 digits, or one near it that does not decrease."""
+        residuals = self.state.residuals
+        stalled = its > 1 and residuals[-1] > STALL * residuals[-2]
+        return norm <= (1.0 if stalled else margin * ROUND_OFF_SHARE) * self.problem.round_off
 
-    def _unsettled(self, ratio: float) -> bool:
-        """Whether active sets come back, or the residual does not fall."""
-        returns = self.visited.returns(fingerprint(self.partition.comm, self._active_sets()), ratio)
-        return returns or not falls(self.history, PATIENCE, PROGRESS)
+    def _is_cycling(self, ratio: float) -> bool:
+        """Whether an active set returns, or the residual does not decrease."""
+        state = self.state
+        sets = self.problem.active_sets(state.load_state)
+        returns = state.visited.returns(fingerprint(self.problem.partition.comm, sets), ratio)
+        return returns or not is_decreasing(state.residuals, PATIENCE, MIN_DECREASE)
 
-    def _active_sets(self) -> list[np.ndarray]:
-        scene = self.scene
-        sets = [c.pressure > 0.0 for c, on in ((self.rigid, scene.cam), (self.pins, scene.pins)) if on is not None]
-        return sets if scene.teeth is None else sets + self.teeth.active_set()
+    def _break_cycle(self) -> None:
+        """Search descending, and once per solve with frozen segments and friction bounds."""
+        state = self.state
+        self.line_search.descending = True
+        if not state.breaker.started and not self.problem.segments_frozen():
+            self.problem.freeze_segments()
+            self.problem.freeze_friction_bounds()
+            state.breaker.active = state.breaker.started = self.problem.segments_frozen()
 
-    def solve(self, scene: LoadState, soft: bool = False) -> Solved:
-        """Solve for equilibrium from the present x; x is the solution, or garbage when not converged.
+    # -- solve -----------------------------------------------------------------------------------------
 
-        soft : contact is being established: approach through softened penalties
+    def solve(self, load_state: LoadState, *, establish_contact: bool = False) -> SolveResult:
+        """Solve for equilibrium from the present x; x is the solution, or not valid when the result says not converged.
+
+        establish_contact : contacts are switched on: approach through softened penalties
         """
-        self.scene = scene
-        if self.partition.comm.rank == self.partition.comm.size - 1:
-            unused = self.holding.unused(scene)
-            self.x.array[-len(unused) :][unused] = 0.0
-        self.step.longest = np.inf if scene.teeth is None else FARTHEST * self.design.drive.module
-        self.search()
-        iterations, self.augmentations, searches, before_augmentation = 0, 0, 0, None
-        most = MOST * self.design.solver.max_iterations
-        self.way_out = way_out = CycleBreaker()
-        soften = list(SOFTENING) if soft else []
-        tolerance = self.design.contact.penetration_tolerance * self.design.drive.module
-        while True:
-            self.history, self.stale, self.tried = [], False, None
-            self.visited, self.step.careful = VisitedSets(), way_out.active
-            self.soften(soften.pop(0) if soften else 1.0)
-            self.snes.setTolerances(max_it=max(1, most - iterations))
-            self.snes.solve(None, self.x)
+        self.state = state = self._begin(load_state, establish_contact)
+        while state.result is None:
+            outcome = self._iterate(state)
+            if outcome is Outcome.FAILED:
+                self._after_failure(state)
+            elif outcome is Outcome.INCOMPLETE_PATTERN:
+                self.problem.extend_pattern(state.pattern_misses)
+                state.softenings.insert(0, state.penalty_share)
+            elif state.phase is Phase.SOFTENED:
+                state.breaker = CycleBreaker()
+                self.problem.release_segments()
+            elif state.phase is Phase.FROZEN:
+                self._after_frozen(state)
+            else:
+                self._after_converged(state)
+        return state.result
+
+    def _begin(self, load_state: LoadState, establish_contact: bool) -> SolveState:
+        problem = self.problem
+        problem.clear_unused_multipliers(load_state)
+        bounded = problem.flanks is not None and problem.flanks.is_active(load_state)
+        self.line_search.max_node_step = MAX_NODE_STEP * problem.module if bounded else np.inf
+        problem.search(load_state)
+        softenings = list(SOFT_PENALTIES) if establish_contact else []
+        return SolveState(load_state, softenings, MAX_ITERATIONS_FACTOR * self.settings.max_iterations)
+
+    def _iterate(self, state: SolveState) -> Outcome:
+        """One run of Newton's iteration in the present phase."""
+        state.residuals, state.incomplete_pattern, self._trial_cache = [], False, None
+        state.visited, self.line_search.descending = VisitedSets(), state.breaker.active
+        self._set_penalty_share(state, state.softenings.pop(0) if state.softenings else 1.0)
+        self.snes.setTolerances(max_it=max(1, state.max_iterations - state.iterations))
+        self.snes.solve(None, self.problem.x)
+        state.iterations += self.snes.getIterationNumber()
+        reason = self.snes.getConvergedReason()
+        if reason < 0:
+            return Outcome.FAILED
+        if reason != PETSc.SNES.ConvergedReason.CONVERGED_ITS:
+            return Outcome.CONVERGED
+        return Outcome.INCOMPLETE_PATTERN if state.iterations < state.max_iterations else Outcome.FAILED
+
+    def _set_penalty_share(self, state: SolveState, share: float) -> None:
+        """Use this share of the contact penalties; below 1 the phase is SOFTENED."""
+        if share != state.penalty_share:
+            self.system.discard_factor()
+        state.penalty_share = share
+        self.problem.scale_penalties(share)
+
+    def _after_failure(self, state: SolveState) -> None:
+        """Go back to what the cycle breaker or the step before an augmentation has found, or end the solve."""
+        self.system.discard_factor()
+        breaker, before = state.breaker, state.before_augmentation
+        if breaker.solution is not None and state.iterations < state.max_iterations:
+            logger.info("   the frozen segments stay: with segments cut anew the contacts do not settle")
+            x, segments = breaker.solution
+            x.copy(self.problem.x)
+            self.problem.restore_segments(segments)
+            breaker.solution = None
+        elif before is not None:
+            self._take_back(state, before)
+            state.result = SolveResult(True, state.iterations, before.residual, "converged")
+        else:
             reason = self.snes.getConvergedReason()
-            iterations += self.snes.getIterationNumber()
-            ratio = self.history[-1] if self.history else np.inf
-            stale = reason == PETSc.SNES.ConvergedReason.CONVERGED_ITS
-            if reason < 0 or (stale and iterations >= most):
-                self.border.renew()
-                if way_out.solution is not None and iterations < most:
-                    logger.info("   segments of the flanks are kept: cut anew they do not settle")
-                    x, held = way_out.solution
-                    x.copy(self.x)
-                    self.teeth.hold_again(held)
-                    way_out.solution = None
-                    continue
-                if before_augmentation is not None:
-                    ratio, *state = before_augmentation
-                    self._take_back(*state)
-                    return Solved(True, iterations, ratio, "converged")
-                text = REASONS.get(reason, str(reason)) if reason < 0 else f"{iterations} iterations in all"
-                return Solved(False, iterations, ratio, text)
-            if stale:
-                self.lay_out(np.union1d(self.keys, self.missing))
-                soften.insert(0, self.softness)
-                continue
-            if self.softness != 1.0:
-                self.way_out = way_out = CycleBreaker()
-                self.teeth.release()
-                continue
-            if way_out.active:
-                change, top = (largest(self.partition.comm, value) for value in self.teeth.lag())
-                if way_out.rounds < ROUNDS and change > AGREEMENT * top:
-                    way_out.rounds += 1
-                    continue
-                way_out.active, way_out.solution = False, (self.x.copy(), self.teeth.held())
-                self.teeth.release()
-                continue
-            way_out.solution = None
-            if self.overlooked():
-                # the state searched at was too far off: the found one is closer to the solution
-                if searches == SEARCHES:
-                    return Solved(False, iterations, ratio, f"contact outside of {SEARCHES + 1} searches")
-                self.search()
-                searches += 1
-                before_augmentation = None
-                continue
-            penetration = self.penetration()
-            if penetration <= tolerance or self.augmentations >= self.design.contact.max_augmentations:
-                if penetration > tolerance and self.design.contact.max_augmentations:
-                    self._warn(penetration)
-                self.accept()
-                return Solved(True, iterations, ratio, "converged")
-            self.augmentations += 1
-            before_augmentation = ratio, self.x.copy(), [contact.multiplier for contact in self.contacts]
-            for contact in self.contacts:
-                contact.augment()
+            text = REASONS.get(reason, str(reason)) if reason < 0 else f"{state.iterations} iterations in all"
+            state.result = SolveResult(False, state.iterations, state.residual, text)
 
-    def _warn(self, penetration: float) -> None:
-        logger.warning("   penetration of %.2g mm remains after %d augmentations", penetration, self.augmentations)
+    def _after_frozen(self, state: SolveState) -> None:
+        """Repeat with friction bounds from the present pressures until they agree; then cut the segments anew."""
+        breaker = state.breaker
+        change, top = self.problem.freeze_friction_bounds()
+        if breaker.rounds < MAX_FRICTION_ROUNDS and change > FRICTION_AGREEMENT * top:
+            breaker.rounds += 1
+            return
+        breaker.active, breaker.solution = False, (self.problem.x.copy(), self.problem.saved_segments())
+        self.problem.release_segments()
 
-    def _take_back(self, x: PETSc.Vec, multipliers: list[np.ndarray]) -> None:
-        """Accept the state before an augmentation that led to none."""
-        x.copy(self.x)
-        for contact, multiplier in zip(self.contacts, multipliers):
+    def _after_converged(self, state: SolveState) -> None:
+        """Search again where contact was overlooked; else augment while the penetration is too large; else accept."""
+        problem, settings = self.problem, self.settings
+        state.breaker.solution = None
+        if problem.overlooked(state.load_state):
+            # the state of the last search was too far off; the present one is closer to the solution
+            if state.searches == MAX_FURTHER_SEARCHES:
+                reason = f"contact outside of {MAX_FURTHER_SEARCHES + 1} searches"
+                state.result = SolveResult(False, state.iterations, state.residual, reason)
+                return
+            problem.search(state.load_state)
+            state.searches += 1
+            state.before_augmentation = None
+            return
+        penetration = problem.penetration()
+        if penetration > settings.penetration_tolerance and state.augmentations < settings.max_augmentations:
+            self._augment(state)
+            return
+        if penetration > settings.penetration_tolerance and settings.max_augmentations:
+            self._warn(state, penetration)
+        problem.accept()
+        state.result = SolveResult(True, state.iterations, state.residual, "converged")
+
+    def _augment(self, state: SolveState) -> None:
+        contacts = self.problem.contacts
+        multipliers = [contact.multiplier for contact in contacts]
+        state.before_augmentation = AcceptableState(state.residual, self.problem.x.copy(), multipliers)
+        state.augmentations += 1
+        for contact in contacts:
+            contact.augment()
+
+    def _take_back(self, state: SolveState, before: AcceptableState) -> None:
+        """Accept the state before an augmentation that failed."""
+        problem = self.problem
+        before.x.copy(problem.x)
+        for contact, multiplier in zip(problem.contacts, before.multipliers):
             contact.multiplier = multiplier
-        self._trial(self.x, self.x.duplicate())  # pressures and gaps of that state
-        self.augmentations -= 1
-        self._warn(self.penetration())
-        self.accept()
+        self._trial_residual(problem.x, problem.x.duplicate())  # pressures and gaps of that state
+        state.augmentations -= 1
+        self._warn(state, problem.penetration())
+        problem.accept()
 
-    def soften(self, share: float) -> None:
-        """Use this share of the contact penalty."""
-        if share != self.softness:
-            self.border.renew()
-        self.softness = share
-        self.rigid.penalty = self.pins.penalty = share * self.design.wg_penalty
-        self.teeth.penalty = share * self.design.penalty
+    def _warn(self, state: SolveState, penetration: float) -> None:
+        logger.warning("   penetration of %.2g mm remains after %d augmentations", penetration, state.augmentations)
 
 
 REASONS = {value: name for name, value in vars(PETSc.SNES.ConvergedReason).items() if isinstance(value, int)}
+"""Names of PETSc's reasons."""

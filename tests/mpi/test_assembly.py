@@ -9,9 +9,9 @@ from mpi4py import MPI
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from support.stiffness import without_grounding
-from swgpar.analysis.drive_model import DriveModel
+from swgpar.analysis.drive_model import build_drive_model
 from swgpar.design.design_file import load_design
-from swgpar.design.load_states import LoadState
+from swgpar.design.load_states import LoadState, Stage
 from swgpar.fem.vectors import create_vector
 from swgpar.meshing import load_recipe
 
@@ -38,35 +38,38 @@ CONDENSED = (*PLANE, "solver.condensed_sectors=true")
 def test_tangent_is_the_derivative_of_the_residual(overrides: tuple[str, ...], monkeypatch) -> None:
     monkeypatch.setattr("swgpar.design.fit_checks.OMITTED_BENDING", 1.0)  # 40 teeth: of no account here
     design = load_design(DESIGN, overrides)
-    model = DriveModel(design, load_recipe(RECIPE), MPI.COMM_WORLD)
-    equilibrium, partition, dims = model.equilibrium, model.partition, model.partition.dims
+    model = build_drive_model(design, load_recipe(RECIPE), comm=MPI.COMM_WORLD)
+    problem, partition, dims = model.problem, model.partition, model.partition.dims
     # undeformed, the cam overlaps at the major axis; shrunk teeth overlap slightly at the minor axis
-    equilibrium.scene = LoadState(4, "rotate", angle=0.01, cam=-0.001, teeth=-0.02, control="torque", torque=2000.0)
+    state = LoadState(
+        Stage.ROTATE, 4, angle=0.01, cam_clearance=-0.001, flank_clearance=-0.02, control="torque", torque=2000.0
+    )
     rng = np.random.default_rng(3)
     own = slice(partition.row_start, partition.row_start + partition.n_own)
     # with friction: points of the flanks have come from here, most of them slip
     before = 1e-2 * rng.standard_normal((partition.n_global, 3))
     before[:, dims:] = 0.0
-    equilibrium.accepted.array[:] = before[own].ravel()
-    equilibrium.search()
+    problem.accepted.array[:] = before[own].ravel()
+    problem.search(state)
     # the overlaps here are far beyond any real pressure: the bound of the geometric terms must not act
-    equilibrium.rigid.pressure_limit = equilibrium.teeth.pressure_limit = np.inf
-    every = 1e-5 * rng.standard_normal((partition.n_global, 3))
-    way = rng.standard_normal((partition.n_global, 3))
-    for vectors in (way, every):
+    for contact in problem.contacts:
+        contact.pressure_limit = np.inf
+    base = 1e-5 * rng.standard_normal((partition.n_global, 3))
+    direction = rng.standard_normal((partition.n_global, 3))
+    for vectors in (direction, base):
         vectors[partition.multiplier_nodes] = vectors[:, dims:] = 0.0
-    x, d = equilibrium.x, create_vector(partition)
-    x.array[:], d.array[:] = every[own].ravel(), way[own].ravel()
-    equilibrium._function(None, x, create_vector(partition))
-    equilibrium.teeth.hold()  # the tangent does not know how the segments' edges move
-    equilibrium._jacobian(None, x, None, equilibrium.matrix)
-    assert not equilibrium.stale
-    product = without_grounding(equilibrium, d)
+    x, d = problem.x, create_vector(partition)
+    x.array[:], d.array[:] = base[own].ravel(), direction[own].ravel()
+    problem.residual(x, create_vector(partition), state)
+    problem.freeze_segments()  # the tangent does not contain the motion of the segments' edges
+    missing = problem.tangent(problem.displacement(x), state)
+    assert partition.comm.allreduce(len(missing)) == 0
+    product = without_grounding(problem, d)
     step, sides = 1e-8, []
     for sign in (1.0, -1.0):
         trial, force = x.copy(), create_vector(partition)
         trial.axpy(sign * step, d)
-        equilibrium._function(None, trial, force)
+        problem.residual(trial, force, state)
         sides.append(force)
     sides[0].axpy(-1.0, sides[1])
     sides[0].scale(0.5 / step)
@@ -74,10 +77,10 @@ def test_tangent_is_the_derivative_of_the_residual(overrides: tuple[str, ...], m
     difference.axpy(-1.0, product)
     if partition.comm.rank == partition.comm.size - 1:
         difference.array[-partition.n_multipliers :] = 0.0  # the couplings' rows are in the border, not in the matrix
-    assert equilibrium.penetration() > 0.0
+    assert problem.penetration() > 0.0
     if design.contact.friction:
-        law = equilibrium.teeth.friction
-        slipping = 0 if law is None else np.count_nonzero(np.linalg.norm(law.now, axis=2))
+        active = problem.flanks.saved_segments()
+        slipping = 0 if active is None else np.count_nonzero(np.linalg.norm(active.friction.now, axis=2))
         assert partition.comm.allreduce(slipping) > 0
     print(f"relative difference {difference.norm() / sides[0].norm():.1e}")
     # left out of the tangent: the second derivative of the coupling's rotation, and that flanks turn with a ring gear

@@ -11,10 +11,10 @@ from mpi4py import MPI
 
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
-from swgpar.analysis.drive_model import DriveModel
+from swgpar.analysis.drive_model import build_drive_model
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.design.design_file import load_design
-from swgpar.design.load_states import load_sequence
+from swgpar.design.load_states import Stage, load_sequence
 from swgpar.meshing import load_recipe
 
 
@@ -22,19 +22,19 @@ from swgpar.meshing import load_recipe
 def loaded(*overrides: str) -> tuple[LoadStepper, dict[str, float], int]:
     """The small drive after step 3, its row, and how often increments were cut."""
     design = load_design(DESIGN, overrides)
-    runner = LoadStepper(DriveModel(design, load_recipe(RECIPE), MPI.COMM_WORLD))
+    runner = LoadStepper(build_drive_model(design, load_recipe(RECIPE), comm=MPI.COMM_WORLD))
     solves = 0
-    solve = runner.equilibrium.solve
+    solve = runner.solver.solve
 
     def counted(*arguments, **words):
         nonlocal solves
         solves += 1
         return solve(*arguments, **words)
 
-    runner.equilibrium.solve = counted
-    items = [item for item in load_sequence(design) if item.step <= 3]
+    runner.solver.solve = counted
+    items = [item for item in load_sequence(design) if item.stage <= Stage.LOAD]
     for item in items:
-        runner.increment(item)
+        runner.advance(item)
     return runner, runner.row(), solves - len(items)
 
 
@@ -78,12 +78,12 @@ def test_the_output_turns_through_the_backlash() -> None:
 def test_a_drive_that_has_parted_is_loaded_again() -> None:
     """From the middle of its backlash, where nothing holds the output, the torque brings it back to the same state."""
     design = load_design(DESIGN, [*PLANE, "ring_gear.c_P=0.8"])
-    runner = LoadStepper(DriveModel(design, load_recipe(RECIPE), MPI.COMM_WORLD))
-    items = [item for item in load_sequence(design) if item.step <= 3]
+    runner = LoadStepper(build_drive_model(design, load_recipe(RECIPE), comm=MPI.COMM_WORLD))
+    items = [item for item in load_sequence(design) if item.stage <= Stage.LOAD]
     for item in items:
-        runner.increment(item)
+        runner.advance(item)
     before = runner.row()
-    middle = replace(items[-1], control="rotation", rotation=0.0, torque=0.0)
+    middle = replace(items[-1], control="rotation", output_rotation=0.0, torque=0.0)
     runner.advance(middle)
     assert runner.row()["pairs_in_contact"] == 0
     runner.iterations = 0

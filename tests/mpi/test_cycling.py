@@ -11,7 +11,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from swgpar.log import Phases
-from swgpar.solve.active_set_cycles import VisitedSets, exhausted, fingerprint
+from swgpar.solve.active_set_cycles import VisitedSets, fingerprint, is_exhausted
 from swgpar.solve.line_search import LineSearch
 
 WORLD = MPI.COMM_WORLD
@@ -53,12 +53,12 @@ class Block:
 def newton(block: Block, watch: bool, longest: float = 1e9) -> tuple[float, int, bool]:
     """Last residual, iterations, and whether active sets have returned."""
     search, visited = LineSearch(block, block.residual, block.x, Phases()), VisitedSets()
-    search.longest = longest
+    search.max_node_step = longest
     force, step, returned, k = block.x.duplicate(), block.x.duplicate(), False, 0
     block.residual(block.x, force)
     while force.norm() > 1e-12 and k < 50:
         returned = visited.returns(fingerprint(MPI.COMM_SELF, block.sets()), force.norm()) or returned
-        search.careful = watch and returned
+        search.descending = watch and returned
         search.apply(None, force, step)
         block.x.axpy(-1.0, step)
         block.residual(block.x, force)
@@ -105,7 +105,7 @@ def test_longest_way_of_a_node() -> None:
     """In space, and without the multipliers, which have other units."""
     block = Block(width=1e-2)
     search = LineSearch(block, block.residual, block.x, Phases())
-    search.longest = 0.25
+    search.max_node_step = 0.25
     step = block.x.duplicate()
     step.array[:] = 0.3, 0.0, 0.4, 7.0, 0.0, 0.0
     assert search._bound(step) == pytest.approx(0.5)
@@ -116,8 +116,8 @@ def test_longest_way_of_a_node() -> None:
 def test_residuals_that_fall_get_more_iterations() -> None:
     slow = [0.9**k for k in range(40)]  # halves within seven
     stuck = slow[:20] + [slow[19]] * 20
-    assert not any(exhausted(slow[:k], 10) for k in range(1, 40))
-    assert exhausted(stuck, 10) and not exhausted(stuck, 40) and not exhausted(stuck[:22], 10)
+    assert not any(is_exhausted(slow[:k], 10) for k in range(1, 40))
+    assert is_exhausted(stuck, 10) and not is_exhausted(stuck, 40) and not is_exhausted(stuck[:22], 10)
 
 
 def test_sets_that_return() -> None:

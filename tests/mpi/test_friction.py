@@ -9,11 +9,11 @@ import pytest
 from mpi4py import MPI
 
 from support.paths import DESIGN, RECIPE
-from swgpar.analysis.drive_model import DriveModel
+from swgpar.analysis.drive_model import build_drive_model
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.contact.segments import Segments
 from swgpar.design.design_file import load_design
-from swgpar.design.load_states import load_sequence
+from swgpar.design.load_states import Stage, load_sequence
 from swgpar.meshing import load_recipe
 
 WORLD = MPI.COMM_WORLD
@@ -23,16 +23,16 @@ PITCH = 2.0 * np.pi / 42
 def loaded(friction: float, comm: MPI.Comm = WORLD) -> LoadStepper:
     """The small drive after step 3."""
     design = load_design(DESIGN, [f"contact.friction={friction}"])
-    runner = LoadStepper(DriveModel(design, load_recipe(RECIPE), comm))
+    runner = LoadStepper(build_drive_model(design, load_recipe(RECIPE), comm=comm))
     for item in load_sequence(design):
-        if item.step > 3:
+        if item.stage > Stage.LOAD:
             break
-        runner.increment(item)
+        runner.advance(item)
     return runner
 
 
 def turn(runner: LoadStepper, angle: float) -> dict[str, float]:
-    runner.advance(replace(runner.scene, step=4, name="rotate", angle=angle))
+    runner.advance(replace(runner.load_state, stage=Stage.ROTATE, step=4, angle=angle))
     return runner.row()
 
 
@@ -48,29 +48,29 @@ class Forces:
 
 def forces(runner: LoadStepper) -> tuple[Forces, float]:
     """Forces of the present state, and their work over the slip since the one before; metric taken as one."""
-    teeth, u = runner.equilibrium.teeth, runner.equilibrium.displacement()
-    if teeth.faces is None:
+    flanks, u = runner.problem.flanks, runner.problem.displacement()
+    active = flanks.saved_segments()
+    if active is None:
         none = np.zeros((0, 4, 2))
         return Forces([], Segments(np.zeros(0, dtype=np.int64), *np.zeros((3, 0, 4))), none, none), 0.0
-    place = teeth._contact(teeth.faces, u, teeth.multiplier, 0.0, None, None)[2]
-    force = teeth.faces.weight[..., None] * teeth.friction.now
-    force[~teeth.pair_owned[teeth.faces.patch]] = 0.0
-    work = float(np.nansum(force * (place - teeth.friction.place)))
-    return Forces([p.key for p in teeth.pairs], teeth.segments, force, place), work
+    place = flanks.foot_points(active.faces, u)
+    force = active.faces.weight[..., None] * active.friction.now
+    force[~flanks.found.owned[active.faces.patch]] = 0.0
+    work = float(np.nansum(force * (place - active.friction.place)))
+    return Forces([p.key for p in flanks.pairs], active.segments, force, place), work
 
 
 def onward(runner: LoadStepper, old: Forces) -> float:
     """Work of the forces of the state before over the slip since then."""
-    teeth, u = runner.equilibrium.teeth, runner.equilibrium.displacement()
-    now = {p.key: k for k, p in enumerate(teeth.pairs)}
-    pair, local = np.divmod(old.segments.parent, teeth.n_face)
+    flanks, u = runner.problem.flanks, runner.problem.displacement()
+    now = {p.key: k for k, p in enumerate(flanks.pairs)}
+    pair, local = np.divmod(old.segments.parent, flanks.n_face)
     new = np.array([now.get(key, -1) for key in old.keys], dtype=np.int64)[pair]
     keep = np.flatnonzero((new >= 0) & (np.abs(old.force).sum(axis=(1, 2)) > 0.0))
     if not len(keep):
         return 0.0
     part = Segments(np.arange(len(keep)), *(getattr(old.segments, n)[keep] for n in ("a", "b", "share")))
-    faces = teeth.all.cut(new[keep] * teeth.n_face + local[keep], part)
-    place = teeth._contact(faces, u, np.zeros_like(faces.weight), 0.0, None, None)[2]
+    place = flanks.foot_points(flanks.found.faces.cut(new[keep] * flanks.n_face + local[keep], part), u)
     return float(np.nansum(old.force[keep] * (place - old.place[keep])))
 
 
@@ -82,17 +82,17 @@ def test_input_work_is_output_work_and_dissipation() -> None:
     samples, torque, ratio = 12, 2000.0, 20.0
     runner = loaded(0.1)
     first = turn(runner, 0.2 * PITCH)
-    equilibrium, (old, _), dissipated = runner.equilibrium, forces(runner), 0.0
-    accept = equilibrium.accept
+    problem, (old, _), dissipated = runner.problem, forces(runner), 0.0
+    accept = problem.accept
 
     def measure() -> None:
         nonlocal old, dissipated
         after = onward(runner, old)
         old, before = forces(runner)
-        dissipated += 0.5 * (after + before) / equilibrium.share
+        dissipated += 0.5 * (after + before) / problem.supports.share
         accept()
 
-    equilibrium.accept = measure
+    problem.accept = measure
     rows = [turn(runner, (0.2 + k / samples) * PITCH) for k in range(1, samples + 1)]
     for r in rows:
         assert abs(r["wg_torque_Nmm"] + r["tooth_torque_Nmm"] + r["output_torque_Nmm"]) < 1e-6 * torque

@@ -12,13 +12,14 @@ from mpi4py import MPI
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar.analysis.contact_pressure import nodal_pressure
-from swgpar.analysis.drive_model import DriveModel, stresses
+from swgpar.analysis.drive_model import build_drive_model
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.contact.flanks import FlankContact, FrozenSegments
-from swgpar.contact.rigid_surface import CamPose, RigidContact
+from swgpar.contact.flanks import ActiveSegments, FlankContact
+from swgpar.contact.rigid_surface import RigidContact
 from swgpar.design.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.load_states import load_sequence
+from swgpar.design.load_states import Stage, load_sequence
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.fem.stress import body_fields
 from swgpar.meshing import load_recipe
 from swgpar.solve import active_set_cycles as cycling
@@ -34,16 +35,16 @@ both_models = pytest.mark.parametrize("model", MODELS)
 
 def loaded(design: DriveDesign, comm: MPI.Comm = WORLD) -> tuple[LoadStepper, dict[str, float]]:
     """The small drive after step 3, and its history row."""
-    runner = LoadStepper(DriveModel(design, load_recipe(RECIPE), comm))
+    runner = LoadStepper(build_drive_model(design, load_recipe(RECIPE), comm=comm))
     for item in load_sequence(design):
-        if item.step > 3:
+        if item.stage > Stage.LOAD:
             break
-        runner.increment(item)
+        runner.advance(item)
     return runner, row(runner)
 
 
 def row(runner: LoadStepper) -> dict[str, float]:
-    return {**runner.row(), **stresses(runner.model)[0]}
+    return {**runner.row(), **runner.model.stresses()[0]}
 
 
 def small(model: str, *overrides: str) -> DriveDesign:
@@ -64,7 +65,7 @@ def other_layout(model: str) -> tuple[LoadStepper, dict[str, float]]:
 def turn(runner: LoadStepper, angle: float) -> dict[str, float]:
     """Row after turning the wave generator to `angle` (rad)."""
     runner.iterations = 0
-    runner.advance(replace(runner.scene, step=4, name="rotate", angle=angle))
+    runner.advance(replace(runner.load_state, stage=Stage.ROTATE, step=4, angle=angle))
     return row(runner)
 
 
@@ -119,8 +120,10 @@ def test_any_number_of_ranks_gives_the_same(model: str) -> None:
     several, parallel = base(model)
     one, alone = loaded(small(model), MPI.COMM_SELF)
     assert_same(parallel, alone, 1e-8)
-    first, end = several.model.partition.owned_sectors(0)
-    mine, whole = (nodal_pressure(r.equilibrium, r.equilibrium.elements.bodies[0]) for r in (several, one))
+    first, end = several.model.partition.owned_sectors(FLEXIBLE_SPLINE)
+    mine, whole = (
+        nodal_pressure(r.problem, r.load_state, r.model.elements.bodies[FLEXIBLE_SPLINE]) for r in (several, one)
+    )
     assert np.abs(mine - whole[first:end]).max() < 1e-6 * whole.max()
     assert parallel["output_angle_deg"] == pytest.approx(alone["output_angle_deg"], rel=1e-8)
 
@@ -188,22 +191,23 @@ def test_any_turn_of_the_output(layout: str, teeth: int, ratio: float) -> None:
 def test_rotating_the_whole_spline_changes_no_stress(model: str) -> None:
     """The loaded spline and its wave generator turned by 0.7 rad: the same stresses, the forces turned alike."""
     runner, _ = base(model)
-    equilibrium, scene, angle = runner.equilibrium, runner.scene, 0.7
+    problem, state, angle = runner.problem, runner.load_state, 0.7
     c, s = np.cos(angle), np.sin(angle)
     turned = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-    spline = equilibrium.elements.bodies[0]
+    spline = problem.elements.bodies[FLEXIBLE_SPLINE]
     nodes = np.unique(spline.local[spline.local >= 0])
-    place, u = equilibrium.positions(), equilibrium.displacement()
+    place, u = problem.positions(), problem.displacement()
     v = u.copy()
     v[nodes] = (place + u)[nodes] @ turned.T - place[nodes]
 
-    def forces(w: np.ndarray, pose: CamPose) -> np.ndarray:
+    def forces(w: np.ndarray, wg_angle: float) -> np.ndarray:
         r = np.zeros_like(w)
-        equilibrium.elements.assemble(w, r, None, None)
-        equilibrium.rigid.evaluate(w, pose, r, None)
-        return r[nodes[nodes < equilibrium.partition.n_own]]
+        problem.elements.assemble(w, r, None, None)
+        for contact in problem.rigid_contacts:
+            contact.evaluate(w, replace(state, angle=wg_angle), r, None)
+        return r[nodes[nodes < problem.partition.n_own]]
 
-    after, before = forces(v, CamPose(scene.angle + angle, scene.cam)), forces(u, CamPose(scene.angle, scene.cam))
+    after, before = forces(v, state.angle + angle), forces(u, state.angle)
     largest = WORLD.allreduce(np.abs(before).max(), op=MPI.MAX)
     assert np.abs(after - before @ turned.T).max() < 1e-8 * largest
     first, second = body_fields(spline, u), body_fields(spline, v)
@@ -253,7 +257,7 @@ def test_enforcement_does_not_show(
 ) -> None:
     _, r = base(model)
     runner, other = loaded(small(model, *overrides))
-    assert (runner.equilibrium.augmentations > 0) == augmented
+    assert (runner.solver.state.augmentations > 0) == augmented
     for name in (f"{gear}_{stress}" for gear in gears for stress in ("s1", "s3", "vm")):
         assert other[name] == pytest.approx(r[name], rel=5e-3), name
 
@@ -272,8 +276,8 @@ def test_an_augmentation_that_leads_to_no_solution_is_taken_back(monkeypatch: py
     for contact in (RigidContact, FlankContact):
         monkeypatch.setattr(contact, "augment", poison)
     runner, taken = loaded(small("plane", *soft, "contact.max_augmentations=10"))
-    assert poisoned and runner.equilibrium.augmentations == 0
-    assert all(np.all(contact.multiplier == 0.0) for contact in runner.equilibrium.contacts)
+    assert poisoned and runner.solver.state.augmentations == 0
+    assert all(np.all(contact.multiplier == 0.0) for contact in runner.problem.contacts)
     assert_same(taken, without, 1e-6)
 
 
@@ -282,14 +286,14 @@ def test_an_augmentation_that_leads_to_no_solution_is_taken_back(monkeypatch: py
 def test_segments_are_kept_where_those_cut_anew_lead_nowhere(model: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The way out of a cycle is taken in every solve, and no residual can be evaluated with segments cut after it."""
     _, r = base(model)
-    release, again, evaluate = FlankContact.release, FlankContact.hold_again, FlankContact.evaluate
+    release, again, evaluate = FlankContact.release_segments, FlankContact.restore_segments, FlankContact.evaluate
     solve, solving, kept = NewtonSolver.solve, [], []
 
     def torn(self: FlankContact) -> None:
         release(self)
-        self.torn = bool(solving) and solving[-1].way_out.solution is not None
+        self.torn = bool(solving) and solving[-1].state.breaker.solution is not None
 
-    def whole(self: FlankContact, held: FrozenSegments) -> None:
+    def whole(self: FlankContact, held: ActiveSegments | None) -> None:
         again(self, held)
         self.torn = False
         kept.append(held)
@@ -300,8 +304,8 @@ def test_segments_are_kept_where_those_cut_anew_lead_nowhere(model: str, monkeyp
         return evaluate(self, *arguments)
 
     monkeypatch.setattr(cycling.VisitedSets, "returns", lambda *_: True)
-    monkeypatch.setattr(FlankContact, "release", torn)
-    monkeypatch.setattr(FlankContact, "hold_again", whole)
+    monkeypatch.setattr(FlankContact, "release_segments", torn)
+    monkeypatch.setattr(FlankContact, "restore_segments", whole)
     monkeypatch.setattr(FlankContact, "evaluate", fail)
     monkeypatch.setattr(NewtonSolver, "solve", lambda self, *a, **k: (solving.append(self), solve(self, *a, **k))[1])
     _, state = loaded(small(model))
@@ -316,7 +320,7 @@ def test_careful_line_search_reaches_the_same_state(model: str, monkeypatch: pyt
     _, r = base(model)
     monkeypatch.setattr(cycling.VisitedSets, "returns", lambda *_: True)
     runner, careful = loaded(small(model))
-    assert runner.equilibrium.step.careful
+    assert runner.solver.line_search.descending
     assert_same(careful, r, 1e-6)
 
 

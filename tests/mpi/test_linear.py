@@ -10,9 +10,9 @@ from petsc4py import PETSc
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from support.stiffness import without_grounding
-from swgpar.analysis.drive_model import DriveModel
+from swgpar.analysis.drive_model import DriveModel, build_drive_model
 from swgpar.design.design_file import load_design
-from swgpar.design.load_states import LoadState
+from swgpar.design.load_states import LoadState, Stage
 from swgpar.fem.vectors import create_vector
 from swgpar.log import logger
 from swgpar.meshing import load_recipe
@@ -21,18 +21,26 @@ from swgpar.solve.bordered_system import ORDERING, BorderedSystem
 
 def system(overrides: tuple[str, ...], control: str) -> tuple[DriveModel, PETSc.Vec]:
     """A drive with its tangent set up, and a random right side."""
-    model = DriveModel(load_design(DESIGN, overrides), load_recipe(RECIPE), MPI.COMM_WORLD)
-    equilibrium, partition = model.equilibrium, model.partition
-    equilibrium.scene = LoadState(4, "rotate", angle=0.01, cam=-0.001, teeth=-0.02, control=control, rotation=1e-3)
-    equilibrium.search()
+    model = build_drive_model(load_design(DESIGN, overrides), load_recipe(RECIPE), comm=MPI.COMM_WORLD)
+    problem, partition = model.problem, model.partition
+    state = LoadState(
+        Stage.ROTATE, 4, angle=0.01, cam_clearance=-0.001, flank_clearance=-0.02, control=control, output_rotation=1e-3
+    )
+    problem.search(state)
     # without the geometric terms the undeformed drive's stiffness is positive: overlaps here are beyond real pressures
-    equilibrium.rigid.pressure_limit = equilibrium.teeth.pressure_limit = 0.0
-    equilibrium._function(None, equilibrium.x, create_vector(partition))
-    equilibrium._jacobian(None, equilibrium.x, equilibrium.matrix, equilibrium.matrix)
+    for contact in problem.contacts:
+        contact.pressure_limit = 0.0
+    u = problem.displacement()
+    problem.residual(problem.x, create_vector(partition), state)
+    problem.tangent(u, state)
+    border, rows = problem.supports.border(u, state)
+    model.solver.system.set_system(
+        problem.matrix, problem.supports.ground_vectors, border, rows, problem.output_step_bound(state)
+    )
     right, size = create_vector(partition), (partition.n_global, 3)
-    every = np.random.default_rng(1).standard_normal(size)
-    every[: partition.multiplier_nodes[0], partition.dims :] = 0.0
-    right.array[:] = every[partition.row_start : partition.row_start + partition.n_own].ravel()
+    values = np.random.default_rng(1).standard_normal(size)
+    values[: partition.multiplier_nodes[0], partition.dims :] = 0.0
+    right.array[:] = values[partition.row_start : partition.row_start + partition.n_own].ravel()
     return model, right
 
 
@@ -40,14 +48,14 @@ def system(overrides: tuple[str, ...], control: str) -> tuple[DriveModel, PETSc.
 @pytest.mark.parallel([1, 2, 3])
 def test_iterative_equals_direct(overrides: tuple[str, ...]) -> None:
     model, right = system(overrides, "rotation")
-    equilibrium, partition = model.equilibrium, model.partition
-    positions = equilibrium.positions()[: partition.n_own]
+    solver, problem, partition = model.solver, model.problem, model.partition
+    positions = problem.positions()[: partition.n_own]
     solutions = []
     for linear in ("direct", "iterative"):
         border = BorderedSystem(partition, linear, positions, f"test_{linear}_")
-        solved = equilibrium.border
-        border.set_system(equilibrium.matrix, equilibrium.holding.ground_vectors, solved.border, solved.rows)
-        pc = equilibrium.snes.getKSP().getPC()
+        solved = solver.system
+        border.set_system(problem.matrix, problem.supports.ground_vectors, solved.border, solved.rows)
+        pc = solver.snes.getKSP().getPC()
         border.setUp(pc)
         solutions.append(create_vector(partition))
         border.apply(pc, right, solutions[-1])
@@ -62,11 +70,11 @@ def test_iterative_equals_direct(overrides: tuple[str, ...]) -> None:
 def test_mumps_out_of_memory(option: str, value: int, word: str, monkeypatch) -> None:
     """An estimate that is too small is raised; what is forbidden gives a step that is not finite, and is named."""
     model, right = system(PLANE, "rotation")
-    equilibrium, partition = model.equilibrium, model.partition
+    solver, problem, partition = model.solver, model.problem, model.partition
     PETSc.Options()[f"short_{option}_mat_mumps_icntl_{option}"] = value
-    border = BorderedSystem(partition, "direct", equilibrium.positions()[: partition.n_own], f"short_{option}_")
-    solved, pc = equilibrium.border, equilibrium.snes.getKSP().getPC()
-    border.set_system(equilibrium.matrix, equilibrium.holding.ground_vectors, solved.border, solved.rows)
+    border = BorderedSystem(partition, "direct", problem.positions()[: partition.n_own], f"short_{option}_")
+    solved, pc = solver.system, solver.snes.getKSP().getPC()
+    border.set_system(problem.matrix, problem.supports.ground_vectors, solved.border, solved.rows)
     x = create_vector(partition)
     said: list[str] = []
     for level in ("info", "warning"):
@@ -83,7 +91,7 @@ def test_options_of_one_model_are_not_those_of_the_next() -> None:
     options["mat_mumps_icntl_13"] = 0
     for overrides, dims in ((PLANE, 2), ((), 3), (PLANE, 2)):
         model, _ = system(overrides, "rotation")
-        place = model.equilibrium.positions()[: model.partition.n_own]
+        place = model.problem.positions()[: model.partition.n_own]
         BorderedSystem(model.partition, "direct", place, "both_")
         assert options.getInt("mat_mumps_icntl_7") == ORDERING[dims]
         assert options.getInt("mat_mumps_icntl_13") == 0
@@ -94,13 +102,13 @@ def test_options_of_one_model_are_not_those_of_the_next() -> None:
 def test_the_loaded_motion_is_bounded(overrides: tuple[str, ...]) -> None:
     """Without a bound that matters the step is that of a system without the loaded border; with one it ends there."""
     model, right = system(overrides, "torque")
-    equilibrium, partition = model.equilibrium, model.partition
-    pc, solved = equilibrium.snes.getKSP().getPC(), equilibrium.border
+    solver, problem, partition = model.solver, model.problem, model.partition
+    pc, solved = solver.snes.getKSP().getPC(), solver.system
     output = solved.border[-1]
 
     def step(border: list[PETSc.Vec], rows: list[int], bound: float | None) -> PETSc.Vec:
-        test = BorderedSystem(partition, "direct", equilibrium.positions()[: partition.n_own], "test_")
-        test.set_system(equilibrium.matrix, equilibrium.holding.ground_vectors, border, rows, bound)
+        test = BorderedSystem(partition, "direct", problem.positions()[: partition.n_own], "test_")
+        test.set_system(problem.matrix, problem.supports.ground_vectors, border, rows, bound)
         test.setUp(pc)
         x = create_vector(partition)
         test.apply(pc, right, x)
@@ -120,10 +128,10 @@ def test_the_loaded_motion_is_bounded(overrides: tuple[str, ...]) -> None:
         held = step(solved.border, solved.rows, bound)
         assert output.dot(held) == pytest.approx(np.sign(motion) * bound, rel=1e-6)
         # the rest of the drive follows: what is left of its equations points along the output's motion
-        left = without_grounding(equilibrium, held)
+        left = without_grounding(problem, held)
         left.aypx(-1.0, right)
         for k, row in enumerate(solved.rows[:-1]):
-            left.axpy(-float(equilibrium.multipliers(held)[row]), solved.border[k])
+            left.axpy(-float(problem.multipliers(held)[row]), solved.border[k])
         if partition.comm.rank == partition.comm.size - 1:
             left.array[-partition.n_multipliers :] = 0.0
         along = output.dot(left) / output.dot(output)

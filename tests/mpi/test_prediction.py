@@ -9,8 +9,8 @@ from petsc4py import PETSc
 
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
-from swgpar.analysis.drive_model import DriveModel
-from swgpar.analysis.predictor import predict, supports
+from swgpar.analysis.drive_model import DriveModel, build_drive_model
+from swgpar.analysis.predictor import KnownState, interpolation_points, predict
 from swgpar.design.design_file import load_design
 from swgpar.fem.vectors import create_vector, read_field, write_field
 from swgpar.geometry.rotation import rotated
@@ -21,7 +21,7 @@ CASES = ((), ("drive.layout=spline_fixed",), ("solver.twofold_symmetry=false",))
 
 @pytest.fixture(scope="module", params=CASES, ids=["ring fixed", "spline fixed", "whole drive"])
 def model(request: pytest.FixtureRequest) -> DriveModel:
-    return DriveModel(load_design(DESIGN, [*PLANE, *request.param]), load_recipe(RECIPE), MPI.COMM_WORLD)
+    return build_drive_model(load_design(DESIGN, [*PLANE, *request.param]), load_recipe(RECIPE), comm=MPI.COMM_WORLD)
 
 
 def wave(model: DriveModel, angle: float, slip: float = 0.0) -> PETSc.Vec:
@@ -49,7 +49,7 @@ def wave(model: DriveModel, angle: float, slip: float = 0.0) -> PETSc.Vec:
 def error(model: DriveModel, known: list[float], angle: float, slip: float = 0.0) -> float:
     """Largest error (mm) of a prediction from the states at known angles, over all ranks."""
     x = create_vector(model.partition)
-    predict(model.partition, model.fixed_body, [(there, wave(model, there)) for there in known], x, angle, slip)
+    predict(model.partition, model.fixed_body, [KnownState(at, wave(model, at)) for at in known], x, angle, slip)
     exact, worst = wave(model, angle, slip), 0.0
     for body in range(len(model.partition.layouts)):
         own = np.arange(*model.partition.owned_sectors(body))
@@ -91,13 +91,13 @@ def test_more_states_make_it_better(model: DriveModel) -> None:
 
 def test_weights_reproduce_cubic_polynomials_and_the_latest_state_counts() -> None:
     shifts = [0.3, 0.05, -0.4, 1.05]  # the last is the second again, one tooth on
-    found = supports(shifts)
-    assert 1 not in {state for state, *_ in found}
+    found = interpolation_points(shifts)
+    assert 1 not in {point.index for point in found}
     for power in range(4):
-        total = sum(weight * (tooth + shifts[state]) ** power for state, tooth, weight in found)
+        total = sum(point.weight * (point.teeth + shifts[point.index]) ** power for point in found)
         assert total == pytest.approx(float(power == 0), abs=1e-12)
 
 
 def test_states_close_together_do_not_extrapolate() -> None:
-    found = supports([0.4, 0.4001, 0.4002])
-    assert max(abs(weight) for *_, weight in found) < 2.0
+    found = interpolation_points([0.4, 0.4001, 0.4002])
+    assert max(abs(point.weight) for point in found) < 2.0

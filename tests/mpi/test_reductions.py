@@ -9,19 +9,18 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-import swgpar.solve.discrete_problem
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar.analysis import mesh_refinement as accuracy
-from swgpar.analysis.coarse_start import from_loaded, level_of, levels, start_loaded
-from swgpar.analysis.drive_model import DriveModel, stresses
+from swgpar.analysis.coarse_start import level_of, levels, start_loaded
+from swgpar.analysis.drive_model import build_drive_model
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.period import continued
 from swgpar.design.design_file import load_design
-from swgpar.design.load_states import load_sequence
+from swgpar.design.load_states import Stage, from_loaded, load_sequence
 from swgpar.fem.vectors import read_field
 from swgpar.meshing import load_recipe
-from swgpar.solve.factor_reuse import LONGEST
+from swgpar.solve.factor_reuse import MAX_ITERATIONS
 
 PHYSICAL = ("fs_s1", "fs_s3", "fs_vm", "rg_vm", "wg_torque_Nmm", "output_angle_deg")
 STATE = ("fs_s1", "fs_s3", "fs_vm", "rg_vm", "wg_torque_Nmm")
@@ -34,7 +33,7 @@ def rotated(
     """The small drive turned by two increments of 1.5 degrees, and its last history row."""
     design = load_design(DESIGN, ["steps.rotation=3", "steps.increment=1.5", *overrides])
     mesh = load_recipe(recipe)
-    runner = LoadStepper(DriveModel(design, mesh, comm))
+    runner = LoadStepper(build_drive_model(design, mesh, comm=comm))
     items = list(load_sequence(design))
     if design.steps.start_levels:
         recipes = levels(design, mesh)
@@ -42,8 +41,8 @@ def rotated(
         start_loaded(runner, recipes, items)
         items = from_loaded(items)[1:]
     for item in items:
-        runner.increment(item)
-    return runner, {**runner.row(), **stresses(runner.model)[0]}
+        runner.advance(item)
+    return runner, {**runner.row(), **runner.model.stresses()[0]}
 
 
 def assert_same(row: dict[str, float], other: dict[str, float], rel: float) -> None:
@@ -60,9 +59,9 @@ def plain() -> dict[str, float]:
 @pytest.mark.parallel([1, 2])
 def test_a_kept_factor_changes_nothing(plain: dict[str, float]) -> None:
     runner, row = rotated("solver.far_teeth=modelled")
-    counts = runner.equilibrium.border.kept.iterations
+    counts = runner.solver.system.reused.iterations
     print(f"GMRES iterations {counts}")
-    assert np.mean(np.array(counts) < LONGEST) > 0.8 and np.median(counts) < 20
+    assert np.mean(np.array(counts) < MAX_ITERATIONS) > 0.8 and np.median(counts) < 20
     assert_same(row, plain, 1e-6)
 
 
@@ -84,13 +83,11 @@ def test_a_start_without_pins_changes_nothing(overrides: tuple[str, ...]) -> Non
 
 def test_search_over_candidate_teeth_only(plain: dict[str, float], monkeypatch) -> None:
     """Flanks as far as five modules apart instead of those that can meet."""
-    margin = swgpar.solve.discrete_problem.TIP_MARGIN
-    monkeypatch.setattr("swgpar.solve.discrete_problem.TIP_MARGIN", 5.0)
+    monkeypatch.setattr("swgpar.analysis.drive_model.TIP_MARGIN", 5.0)
     runner, row = rotated(*PLAIN)
-    wide = len(runner.equilibrium.teeth.pairs)
-    monkeypatch.setattr("swgpar.solve.discrete_problem.TIP_MARGIN", margin)
-    runner.equilibrium.search()
-    near = len(runner.equilibrium.teeth.pairs)
+    wide = len(runner.problem.flanks.pairs)
+    monkeypatch.undo()
+    near = len(rotated(*PLAIN)[0].problem.flanks.pairs)
     print(f"{near} of {wide} pairs of flanks")
     assert near < wide
     assert_same(row, plain, 1e-6)
@@ -100,7 +97,7 @@ def test_search_over_candidate_teeth_only(plain: dict[str, float], monkeypatch) 
 def test_a_kept_factor_with_friction_and_in_the_other_layout(override: str, rel: float) -> None:
     """Friction's tractions live at segments that Newton's iterates fix, here other ones: 8e-6 of the ring's stress."""
     runner, row = rotated(override)
-    assert np.median(runner.equilibrium.border.kept.iterations) < 20
+    assert np.median(runner.solver.system.reused.iterations) < 20
     _, alone = rotated(*PLAIN, override)
     assert_same(row, alone, rel)
 
@@ -125,8 +122,8 @@ def test_far_teeth_change_little() -> None:
     many = ("drive.teeth_fs=80", "drive.teeth_rg=82", *PLANE, "solver.keep_factor=false")
     _, all_teeth = rotated("solver.far_teeth=modelled", *many)
     runner, near_teeth = rotated(*many)
-    print(f"{runner.equilibrium.far.active.sum()} of 41 ring-gear sectors")
-    assert runner.equilibrium.far.active.sum() < 38
+    print(f"{runner.problem.inactive.active.sum()} of 41 ring-gear sectors")
+    assert runner.problem.inactive.active.sum() < 38
     assert_same(near_teeth, all_teeth, 1e-6)
 
 
@@ -143,15 +140,15 @@ def test_condensed_sectors_in_the_plane_leave_out_the_bend_of_a_sector(overrides
     condensed_runner, condensed = rotated(*CONDENSED, *overrides)
     design = runner.design
     assert 0.5 * runner.model.partition.n_global > condensed_runner.model.partition.n_global
-    left_out = condensed_runner.model.bend_left_out()
-    assert runner.model.bend_left_out() == 0.0
+    left_out = condensed_runner.model.omitted_bending_stress()
+    assert runner.model.omitted_bending_stress() == 0.0
     bending = 0.75 * design.material.E * design.flexible_spline.rim * design.deflection / design.inner_radius**2
     assert left_out == pytest.approx(design.omitted_bending * bending, rel=0.2)
     share = 1.5 * design.omitted_bending
     assert 1e-3 < share < 0.015
     assert_same(condensed, plain, share)
     # everywhere, inside too
-    for fields, others in zip(stresses(condensed_runner.model)[1], stresses(runner.model)[1]):
+    for fields, others in zip(condensed_runner.model.stresses()[1], runner.model.stresses()[1]):
         assert np.abs(fields["displacement"] - others["displacement"]).max(initial=0.0) < 2e-3 * design.deflection
         for name in ("s1", "s3", "vm"):
             assert np.abs(fields[name] - others[name]).max(initial=0.0) < share * plain["fs_vm"], name
@@ -162,10 +159,10 @@ def test_what_is_read_of_condensed_sectors_is_complete() -> None:
     """Sectors of any rank, images too, with what is inside of them."""
     runner, _ = rotated(*CONDENSED)
     model = runner.model
-    u = model.equilibrium.displacement()
+    u = model.problem.displacement()
     for k, body in enumerate(model.elements.bodies):
         assert np.abs(body.displacement(u)).max(initial=0.0) > 0.0
-        field = read_field(model.partition, k, body.sectors, model.equilibrium.x)
+        field = read_field(model.partition, k, body.sectors, model.problem.x)
         assert np.abs(field - body.displacement(u)).max(initial=0.0) < 1e-14
 
 
@@ -184,7 +181,7 @@ def test_a_start_on_a_coarser_mesh_takes_over_what_is_inside() -> None:
     for condensed in (False, True):
         overrides = [*CONDENSED[:-1], "steps.start_levels=1", f"solver.condensed_sectors={str(condensed).lower()}"]
         design, mesh = load_design(DESIGN, overrides), load_recipe("plane_coarse")
-        runner = LoadStepper(DriveModel(design, mesh, MPI.COMM_WORLD))
+        runner = LoadStepper(build_drive_model(design, mesh, comm=MPI.COMM_WORLD))
         start_loaded(runner, levels(design, mesh), list(load_sequence(design)))
         iterations.append(runner.iterations)
     print(iterations)
@@ -200,17 +197,17 @@ def test_condensed_sectors_on_any_number_of_ranks() -> None:
 
 def test_the_continued_history_is_that_of_a_longer_rotation() -> None:
     design = load_design(DESIGN, [*PLANE, "steps.samples=4", "steps.rotation=11"])
-    runner = LoadStepper(DriveModel(design, load_recipe(RECIPE), MPI.COMM_WORLD))
+    runner = LoadStepper(build_drive_model(design, load_recipe(RECIPE), comm=MPI.COMM_WORLD))
     rows = []
     for item in load_sequence(design):
-        runner.increment(item)
-        if item.step >= 3:
-            rows.append({**runner.row(), **stresses(runner.model)[0], "wall_s": 1.0})
+        runner.advance(item)
+        if item.stage >= Stage.LOAD:
+            rows.append({**runner.row(), **runner.model.stresses()[0], "wall_s": 1.0})
     again, following = continued(design, rows)[4:6]
     assert again["wg_angle_deg"] == pytest.approx(np.degrees(design.period_angle))
     assert {k: again[k] for k in STATE} == {k: rows[0][k] for k in STATE}
-    runner.advance(replace(runner.scene, angle=1.25 * design.period_angle))
-    computed = {**runner.row(), **stresses(runner.model)[0]}
+    runner.advance(replace(runner.load_state, angle=1.25 * design.period_angle))
+    computed = {**runner.row(), **runner.model.stresses()[0]}
     assert following["wg_angle_deg"] == pytest.approx(np.degrees(1.25 * design.period_angle))
     assert_same(following, computed, 1e-6)
 
@@ -223,7 +220,7 @@ def test_a_mesh_is_chosen_alike_on_any_number_of_ranks(monkeypatch: pytest.Monke
     found = []
     for comm in (MPI.COMM_WORLD, MPI.COMM_SELF):
         chosen = accuracy.choose(design, load_recipe(RECIPE), list(load_sequence(design)), 0.05, comm)
-        assert np.isfinite(chosen.error) and chosen.model.elements_whole() <= 12_000
+        assert np.isfinite(chosen.error) and chosen.model.n_elements() <= 12_000
         found.append((chosen, level_of(chosen.model).stresses))
         chosen.model.destroy()
     (here, stress), (alone, other) = found

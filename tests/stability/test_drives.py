@@ -11,7 +11,7 @@ from mpi4py import MPI
 from support.commands import assert_same_history, run_command, succeed
 from support.drive_groups import MESH, ONCE_FAILED, drift, groups, table_of
 from support.small_drive import PLANE
-from swgpar.analysis.drive_model import DriveModel, stresses
+from swgpar.analysis.drive_model import build_drive_model
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.design.design_file import make_design
 from swgpar.design.load_states import load_sequence
@@ -35,12 +35,12 @@ HARDEST = [
 def run(group: str, case: str) -> None:
     """Every increment converges, torques balance, and without friction the state repeats."""
     design = make_design(table_of(ALL[group].design, ALL[group].cases()[case]))
-    runner = LoadStepper(DriveModel(design, load_recipe(MESH), WORLD))
+    runner = LoadStepper(build_drive_model(design, load_recipe(MESH), comm=WORLD))
     rows = []
     try:
         for scene in load_sequence(design):
-            runner.increment(scene)
-            rows.append({**runner.row(), **stresses(runner.model)[0]})
+            runner.advance(scene)
+            rows.append({**runner.row(), **runner.model.stresses()[0]})
     finally:
         runner.model.destroy()
     torque = 1000.0 * design.load.torque

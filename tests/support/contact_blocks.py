@@ -10,7 +10,8 @@ from scipy.sparse.linalg import spsolve
 
 from support.element_mesh import ElementMesh
 from swgpar.contact import friction
-from swgpar.contact.flanks import CONTINUED, Faces, Flanks, PlacedFaces
+from swgpar.contact.flank_pairs import Faces, MasterFlanks, PlacedFaces
+from swgpar.contact.flanks import CONTINUATION
 from swgpar.contact.segments import Segments, cut_faces
 from swgpar.kernel import contact_flanks
 
@@ -38,10 +39,10 @@ class Rows:
         return full.reshape(3 * self.n_own, -1)
 
 
-def master(points: np.ndarray, tangents: np.ndarray, s: np.ndarray, z: np.ndarray, first: int) -> Flanks:
+def master(points: np.ndarray, tangents: np.ndarray, s: np.ndarray, z: np.ndarray, first: int) -> MasterFlanks:
     """One flank whose nodes are numbered from `first`; the tangent runs to +x, the outward normal to +y."""
     n = len(s) * len(z)
-    return Flanks(
+    return MasterFlanks(
         s,
         z,
         points[None].copy(),
@@ -76,7 +77,7 @@ class Blocks:
     points: np.ndarray
     hexes: np.ndarray
     n_surface: int
-    flanks: Flanks
+    flanks: MasterFlanks
     placed: PlacedFaces
     fixed: np.ndarray
     young: float
@@ -100,7 +101,7 @@ class Blocks:
                 if augmentation == 0:
                     corners = self.placed.corners(pick)
                     zero = np.zeros((len(pick), 4))
-                    foot = contact_flanks(self.flanks, corners, u, zero, *settings, None, None, beyond=CONTINUED)[2]
+                    foot = contact_flanks(self.flanks, corners, u, zero, *settings, None, None, beyond=CONTINUATION)[2]
                     segments = cut_faces(foot, self.placed.size, self.flanks.s, self.flanks.z, self.order)
                     faces = self.placed.cut(pick, segments)
                     multiplier = np.zeros(faces.weight.shape)

@@ -16,7 +16,7 @@ from petsc4py import PETSc
 
 from support.contact_blocks import block
 from support.element_mesh import ElementMesh
-from swgpar.solve.bordered_system import GAMG_DEFAULTS, mumps_defaults, set_defaults
+from swgpar.solve.bordered_system import GAMG_DEFAULTS, mumps_defaults, option_defaults
 
 GAMG_RTOL = 1e-9
 """Residual at which GAMG's iteration ends: far below the errors of all meshes."""
@@ -82,7 +82,7 @@ def solve(mesh: ElementMesh, fixed: np.ndarray, load: np.ndarray, linear: str) -
         ksp.setType(PETSc.KSP.Type.GMRES)
         ksp.getPC().setType(PETSc.PC.Type.GAMG)
     defaults = mumps_defaults(dims) if linear == "direct" else {**GAMG_DEFAULTS, "ksp_rtol": GAMG_RTOL}
-    set_defaults("element_", defaults)
+    option_defaults.set("element_", defaults)
     ksp.setFromOptions()
     ksp.setOperators(matrix)
     right, answer = matrix.createVecs()

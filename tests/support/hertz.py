@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from support.contact_blocks import Blocks, block, master
-from swgpar.contact.flanks import PlacedFaces
+from swgpar.contact.flank_pairs import PlacedFaces
 from swgpar.contact.segments import SAMPLES, face_corners
 
 YOUNG, POISSON, RADIUS, SIZE = 210e3, 0.3, 1000.0, 50.0

@@ -13,7 +13,7 @@ from scipy.special import ellipe
 
 from support.paths import REFERENCE
 from swgpar.design.design_file import load_design
-from swgpar.design.load_states import load_sequence, start
+from swgpar.design.load_states import Stage, load_sequence, start_state
 from swgpar.errors import InputError
 from swgpar.geometry.cams import EllipticalCam, pin_travel, taut_length
 from swgpar.geometry.cams.four_roller import four_roller
@@ -297,8 +297,8 @@ def test_pins_fit_into_the_spline_and_end_at_the_cam(name: str, design_file: Cal
     if name == "four_roller":
         x, y = cam.center
         assert travel == pytest.approx(y - np.sqrt((R_FS - cam.radius) ** 2 - x**2), rel=1e-5)
-    assert start(design).pins == travel
-    assert [i.pins for i in load_sequence(design) if i.step == 1][-1] == 0.0
+    assert start_state(design).pin_inset == travel
+    assert [i.pin_inset for i in load_sequence(design) if i.stage == Stage.DEFLECT][-1] == 0.0
 
 
 @pytest.mark.parametrize("name", SECTIONS)

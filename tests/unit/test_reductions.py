@@ -12,7 +12,7 @@ from support.small_drive import PLANE
 from swgpar.analysis.coarse_start import levels
 from swgpar.analysis.period import continued
 from swgpar.design.design_file import load_design
-from swgpar.design.load_states import angles, load_sequence
+from swgpar.design.load_states import load_sequence, rotation_angles
 from swgpar.errors import InputError
 from swgpar.fem.body_layout import RING_GEAR
 from swgpar.fem.inactive_sectors import LEAST, MARGIN, InactiveSectors
@@ -75,7 +75,7 @@ def test_levels() -> None:
 def test_one_period_is_continued_over_the_rotation() -> None:
     design = load_design(DESIGN, ["steps.samples=4", "steps.rotation=30"])
     pitch = 360.0 / 42
-    assert np.degrees(angles(design)) == pytest.approx([pitch * k / 4 for k in (1, 2, 3)])
+    assert np.degrees(rotation_angles(design)) == pytest.approx([pitch * k / 4 for k in (1, 2, 3)])
     assert len(list(load_sequence(design))) == 6
     rows = [
         {
@@ -86,7 +86,7 @@ def test_one_period_is_continued_over_the_rotation() -> None:
             "newton_iterations": 4,
             "wall_s": 1.0,
         }
-        for k, a in enumerate([0.0, *angles(design)])  # the loaded state is the first of the period
+        for k, a in enumerate([0.0, *rotation_angles(design)])  # the loaded state is the first of the period
     ]
     history = continued(design, rows)
     assert history[:4] == rows
@@ -101,7 +101,7 @@ def test_one_period_is_continued_over_the_rotation() -> None:
 
 def test_with_friction_a_period_settles_first() -> None:
     design = load_design(DESIGN, ["steps.samples=4", "steps.rotation=30", "contact.friction=0.1"])
-    assert len(angles(design)) == 8
+    assert len(rotation_angles(design)) == 8
     with pytest.raises(InputError, match="steps.rotation = 10 is out of range: allowed 17.1429 deg"):
         load_design(DESIGN, ["steps.samples=4", "steps.rotation=10", "contact.friction=0.1"])
 

@@ -7,7 +7,8 @@ import pytest
 
 from support.contact_blocks import Blocks, Rows, block, master
 from support.hertz import hertz
-from swgpar.contact.flanks import CONTINUED, Faces, Flanks, PlacedFaces
+from swgpar.contact.flank_pairs import Faces, MasterFlanks, PlacedFaces
+from swgpar.contact.flanks import CONTINUATION
 from swgpar.contact.segments import SAMPLES, bilinear, cut_faces, face_corners
 from swgpar.kernel import contact_flanks
 
@@ -21,8 +22,8 @@ def shape_functions(order: int) -> tuple[np.ndarray, np.ndarray]:
     return bilinear(a, b), np.outer(w, w).ravel()
 
 
-def pressed() -> tuple[Flanks, Faces, np.ndarray, np.ndarray]:
-    """Flanks, faces, places and displacements (n, 3) of all nodes, the face's four first.
+def pressed() -> tuple[MasterFlanks, Faces, np.ndarray, np.ndarray]:
+    """MasterFlanks, faces, places and displacements (n, 3) of all nodes, the face's four first.
 
     Master: an arc of radius 2 with random nodal displacement; slave: one tilted face pressed into it.
     """
@@ -95,8 +96,9 @@ def over_the_end(along: float, across: float) -> float:
         np.zeros(1, np.int32),
     )
     u, pick, settings = np.zeros((4 + flanks.conn.size, 3)), np.zeros(1, dtype=np.int64), (PENALTY, 0.0, 0.1, np.inf)
-    place = contact_flanks(flanks, faces.corners(pick), u, np.zeros((1, 4)), *settings, None, None, beyond=CONTINUED)[2]
-    cut, r = faces.cut(pick, cut_faces(place, faces.size, s, z, 2)), np.zeros_like(u)
+    corners, zero = faces.corners(pick), np.zeros((1, 4))
+    foot_point = contact_flanks(flanks, corners, u, zero, *settings, None, None, beyond=CONTINUATION)[2]
+    cut, r = faces.cut(pick, cut_faces(foot_point, faces.size, s, z, 2)), np.zeros_like(u)
     contact_flanks(flanks, cut, u, np.zeros(cut.weight.shape), *settings, r, None)
     return -r[:4, 1].sum() / (PENALTY * depth)
 

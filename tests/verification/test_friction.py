@@ -7,7 +7,7 @@ import pytest
 
 from support.contact_blocks import Blocks, Rows, block, master
 from swgpar.contact import friction
-from swgpar.contact.flanks import Faces, PlacedFaces
+from swgpar.contact.flank_pairs import Faces, PlacedFaces
 from swgpar.contact.segments import SAMPLES, Segments, bilinear, face_corners
 from swgpar.kernel import contact_flanks
 

@@ -1,0 +1,75 @@
+"""What every contact of the drive offers: cam, pins, flanks and the surface of a plain ring meet this protocol."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from mpi4py import MPI
+
+from swgpar.design.load_states import LoadState
+from swgpar.fem.sparse import BlockRows
+
+NO_KEYS = np.zeros(0, dtype=np.int64)
+"""No blocks of the tangent."""
+
+
+@dataclass(frozen=True)
+class FacePressure:
+    """Pressures of the last evaluation on faces that this rank owns.
+
+    conn : (n_face, 4) local nodes, -1 without unknowns
+    shape : (n_q, 4) or (n_face, n_q, 4) shape functions;  weight : (n_face, n_q) mm²;  pressure : (n_face, n_q) MPa
+    """
+
+    conn: np.ndarray
+    shape: np.ndarray
+    weight: np.ndarray
+    pressure: np.ndarray
+
+
+class Contact(Protocol):
+    """One contact. `reset` begins it anew at every contact search; all other methods may follow in any order.
+
+    multiplier : (n_face, n_q) MPa, of the augmented Lagrangian
+    """
+
+    multiplier: np.ndarray
+
+    def is_active(self, state: LoadState) -> bool:
+        """Whether the load state switches this contact on."""
+
+    def reset(self) -> None:
+        """Forget multipliers, gaps and pressures."""
+
+    def evaluate(
+        self, u: np.ndarray, state: LoadState, residual: np.ndarray | None, rows: BlockRows | None
+    ) -> np.ndarray:
+        """Compute gaps and pressures at u (n_local, 3) mm; add to residual (n_local, 3) N and to the tangent's rows.
+
+        Returns keys (n,) of blocks that the pattern of `rows` lacks.
+        """
+
+    def add_owned_forces(self, u: np.ndarray, state: LoadState, residual: np.ndarray) -> None:
+        """Add the forces of the faces that this rank owns, each face once over all ranks."""
+
+    def scale_penalty(self, share: float) -> None:
+        """Use this share of the full penalty."""
+
+    def augment(self) -> None:
+        """Take the pressures of the last evaluation as multipliers."""
+
+    def penetration(self) -> float:
+        """Largest penetration (mm) of the last evaluation on this rank."""
+
+    def active_sets(self) -> list[np.ndarray]:
+        """Arrays that tell which points or faces touch, and which slip, in the last evaluation on this rank."""
+
+    def owned_pressure(self) -> FacePressure | None:
+        """Pressures of the last evaluation on owned faces; None without faces."""
+
+
+def largest(comm: MPI.Comm, value: float) -> float:
+    """Maximum over all ranks; collective."""
+    return float(comm.allreduce(value, op=MPI.MAX))

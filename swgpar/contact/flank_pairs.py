@@ -1,0 +1,209 @@
+"""Arrays of flank pairs in the form that the kernel reads: master flanks, slave faces and their quadrature points."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from swgpar.contact.search import FlankPair
+from swgpar.contact.segments import MIRROR, FlankFaces, Segments, bilinear, lagrange
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR
+from swgpar.fem.elements import BodyElements
+from swgpar.fem.local_nodes import LocalNodes
+from swgpar.fem.partition import Partition
+from swgpar.meshing.sector import FlankGrid
+
+LINE_WINDOW = (2, 1)
+"""Facets beside that of a foot point, along the profile and along z, whose nodes may couple with the slave face."""
+
+
+@dataclass
+class MasterFlanks:
+    """Flanks of the ring gear, one for each pair; see `swgpar.kernel.contact_flanks`."""
+
+    s: np.ndarray
+    z: np.ndarray
+    point: np.ndarray
+    tangent: np.ndarray
+    orientation: np.ndarray
+    turn: np.ndarray
+    conn: np.ndarray
+    flip: np.ndarray
+
+
+@dataclass
+class Faces:
+    """Slave faces with their quadrature points; see `swgpar.kernel.contact_flanks`."""
+
+    conn: np.ndarray
+    flip: np.ndarray
+    coords: np.ndarray
+    normal: np.ndarray
+    shape: np.ndarray
+    weight: np.ndarray
+    offset: np.ndarray
+    patch: np.ndarray
+
+    def subset(self, chosen: np.ndarray) -> Faces:
+        """The faces of a mask (n_face,)."""
+        return Faces(*(np.ascontiguousarray(getattr(self, f.name)[chosen]) for f in fields(Faces)))
+
+
+@dataclass
+class PlacedFaces:
+    """Whole faces of all pairs at their undeformed positions; see `Faces` and `FlankFaces`."""
+
+    conn: np.ndarray
+    flip: np.ndarray
+    coords: np.ndarray
+    normal: np.ndarray
+    size: np.ndarray
+    offset: np.ndarray
+    patch: np.ndarray
+
+    @classmethod
+    def joined(cls, parts: list[PlacedFaces]) -> PlacedFaces:
+        """The faces of several pairs, one after the other."""
+        names = [f.name for f in fields(cls)]
+        return cls(*(np.ascontiguousarray(np.concatenate([getattr(f, n) for f in parts])) for n in names))
+
+    def cut(self, chosen: np.ndarray, segments: Segments) -> Faces:
+        """The segments of the faces `chosen` (n,) as faces of their own."""
+        face = chosen[segments.parent]
+        area = self.size[face, 0] * self.size[face, 1]
+        offset = np.einsum(
+            "fij,fqi,fqj->fq", self.offset[face], lagrange(segments.a), lagrange(segments.b), optimize=True
+        )
+        return Faces(
+            self.conn[face],
+            self.flip[face],
+            self.coords[face],
+            self.normal[face],
+            bilinear(segments.a, segments.b),
+            area[:, None] * segments.share,
+            offset,
+            self.patch[face],
+        )
+
+    def corners(self, chosen: np.ndarray) -> Faces:
+        """The faces `chosen` (n,) with their corners as points and zero offsets."""
+        a, b = (np.tile(v, (len(chosen), 1)) for v in ([0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 1.0]))
+        faces = self.cut(chosen, Segments(np.arange(len(chosen)), a, b, np.ones_like(a)))
+        faces.offset[:] = 0.0
+        return faces
+
+    def centers(self) -> Faces:
+        """All faces with their middle as the only point."""
+        indices = np.arange(len(self.conn))
+        half = np.full((len(indices), 1), 0.5)
+        return self.cut(indices, Segments(indices, half, half, np.ones_like(half)))
+
+
+class FlankPairs:
+    """The pairs of one contact search that this rank takes part in, with their arrays in local numbering.
+
+    Parameters
+    ----------
+    partition, spline, ring : ownership and the elements of both bodies
+    slaves : faces of the flexible spline's flanks by side;  masters : grids of the ring gear's flanks by side
+    pairs : pairs of flanks;  local : local nodes, those of the pairs among them
+
+    Attributes
+    ----------
+    masters : arrays of the ring gear's flanks;  faces : of the flexible spline's, None without pairs
+    owned : (n_pair,) bool, whether this rank owns the tooth of the flexible spline
+    """
+
+    def __init__(
+        self,
+        partition: Partition,
+        spline: BodyElements,
+        ring: BodyElements,
+        slaves: Mapping[int, FlankFaces],
+        masters: Mapping[int, FlankGrid],
+        pairs: list[FlankPair],
+        local: LocalNodes,
+    ) -> None:
+        self.partition, self.spline, self.ring = partition, spline, ring
+        self.pairs, self.local = pairs, local
+        self.masters = self._master_flanks(masters)
+        placed = [self._placed(slaves[p.side], p, k) for k, p in enumerate(pairs)]
+        self.faces = PlacedFaces.joined(placed) if placed else None
+        owner = np.array(
+            [partition.owner_of_sector(FLEXIBLE_SPLINE, np.array(p.sector)) for p in pairs], dtype=np.int64
+        )
+        self.owned = owner == partition.comm.rank
+
+    def _master_flanks(self, grids: Mapping[int, FlankGrid]) -> MasterFlanks:
+        grid, n_pair = self.ring.layout.mesh.flanks[0], len(self.pairs)
+        flanks = MasterFlanks(
+            grid.s,
+            grid.z,
+            *(np.zeros((n_pair, len(grid.s), 2)) for _ in range(2)),
+            np.zeros(n_pair),
+            np.zeros((n_pair, 2)),
+            np.zeros((n_pair, *grid.nodes.shape), dtype=np.int32),
+            np.zeros((n_pair, *grid.nodes.shape), dtype=np.uint8),
+        )
+        profile = self.ring.layout.mesh.profile
+        for k, p in enumerate(self.pairs):
+            grid = grids[-p.side]
+            mirror = MIRROR if grid.side < 0 else np.ones(2)
+            tangent = profile.tangent(grid.s) * mirror
+            flanks.point[k], flanks.tangent[k] = profile.point(grid.s) * mirror, tangent
+            # tangent (T to R) x z points to the right of the tangent: compare with the outward normal
+            right = np.column_stack([tangent[:, 1], -tangent[:, 0]])
+            flanks.orientation[k] = np.sign(np.sum(right * profile.normal(grid.s) * mirror))
+            angle = self.ring.layout.sector_angle(np.array(p.ring_tooth))
+            flanks.turn[k] = np.cos(angle), np.sin(angle)
+            number, flip = self.partition.node_numbers(RING_GEAR, np.array([p.ring]), grid.nodes.ravel())
+            flanks.conn[k] = self.local.index(number).reshape(grid.nodes.shape)
+            flanks.flip[k] = np.where(number >= 0, flip ^ p.ring_flip, 0).reshape(grid.nodes.shape)
+        return flanks
+
+    def _placed(self, slave: FlankFaces, pair: FlankPair, patch: int) -> PlacedFaces:
+        layout = self.spline.layout
+        number, flip = self.partition.node_numbers(FLEXIBLE_SPLINE, np.array([pair.sector]), slave.corners.ravel())
+        angle = layout.sector_angle(np.array(layout.first_tooth + pair.sector))
+        c, s = np.cos(angle), np.sin(angle)
+        rotation = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+        return PlacedFaces(
+            self.local.index(number).reshape(-1, 4),
+            flip.reshape(-1, 4).copy(),
+            layout.mesh.coords[slave.corners] @ rotation,
+            slave.normal @ rotation,
+            slave.size,
+            slave.offset,
+            np.full(len(slave.corners), patch, dtype=np.int32),
+        )
+
+    def block_keys(self, chosen: np.ndarray, foot_point: np.ndarray, symmetric: bool) -> np.ndarray:
+        """Keys row * n_global + column of the blocks that faces and the master facets at their foot points couple.
+
+        chosen : (n,) faces;  foot_point : (n, 2) mm, arc length and z on the master
+        symmetric : keep the upper triangle only
+        """
+        masters = self.masters
+        n_s, n_z = len(masters.s), len(masters.z)
+        facet = np.column_stack(
+            [
+                np.searchsorted(line, value, side="right") - 1
+                for line, value in zip((masters.s, masters.z), foot_point.T)
+            ]
+        )
+        number = self.local.number.astype(np.int64)
+        slave, patch = self.faces.conn[chosen], self.faces.patch[chosen]
+        columns = [np.where(slave >= 0, number[slave], -1)]
+        for di in range(-LINE_WINDOW[0], LINE_WINDOW[0] + 2):
+            for dj in range(-LINE_WINDOW[1], LINE_WINDOW[1] + 2):
+                i, j = facet[:, 0] + di, facet[:, 1] + dj
+                ok = (i >= 0) & (i < n_s) & (j >= 0) & (j < n_z)
+                node = np.where(ok, masters.conn[patch, np.where(ok, i, 0), np.where(ok, j, 0)], -1)
+                columns.append(np.where(node >= 0, number[node], -1)[:, None])
+        nodes = np.concatenate(columns, axis=1)
+        row, col = nodes[:, :, None], nodes[:, None, :]
+        first = self.local.row_start
+        valid = (row >= first) & (row < first + self.local.n_own) & (col >= (row if symmetric else 0))
+        return np.unique((row * self.partition.n_global + col)[valid])

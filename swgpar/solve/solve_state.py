@@ -1,0 +1,128 @@
+"""State of one Newton solve: its phase, counters, and the states that it can go back to."""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass, field
+
+import numpy as np
+from petsc4py import PETSc
+
+from swgpar.contact.flanks import ActiveSegments
+from swgpar.design.load_states import LoadState
+from swgpar.solve.active_set_cycles import VisitedSets
+
+
+class Phase(enum.Enum):
+    """What one run of Newton's iteration is for."""
+
+    SOFTENED = enum.auto()
+    FULL = enum.auto()
+    FROZEN = enum.auto()
+    AUGMENTED = enum.auto()
+
+
+class Outcome(enum.Enum):
+    """How one run of Newton's iteration ended."""
+
+    CONVERGED = enum.auto()
+    INCOMPLETE_PATTERN = enum.auto()
+    FAILED = enum.auto()
+
+
+@dataclass(frozen=True)
+class SolveResult:
+    """Result of a solve: whether it converged, Newton iterations, last residual over the contact force, reason."""
+
+    converged: bool
+    iterations: int
+    residual: float
+    reason: str
+
+
+@dataclass(frozen=True)
+class NewtonSettings:
+    """Settings of the solver.
+
+    rtol : residual over contact force at convergence
+    max_iterations : before a solve fails, unless the residual still decreases
+    max_augmentations : in one solve;  penetration_tolerance : mm
+    linear : "direct" (MUMPS) or "iterative" (GMRES with GAMG);  reuse_factor : for later tangents
+    """
+
+    rtol: float
+    max_iterations: int
+    max_augmentations: int
+    penetration_tolerance: float
+    linear: str = "direct"
+    reuse_factor: bool = False
+
+
+@dataclass
+class CycleBreaker:
+    """State of the cycle breaker in one solve; see `swgpar.solve.active_set_cycles`.
+
+    active : segments and friction bounds are frozen, and the line search is descending
+    started : it is or was active; afterwards the iteration starts close to the solution
+    rounds : problems with given friction bounds that were solved
+    solution : state found with frozen segments, as long as the iteration with segments cut anew has not converged
+    """
+
+    active: bool = False
+    started: bool = False
+    rounds: int = 0
+    solution: tuple[PETSc.Vec, ActiveSegments | None] | None = None
+
+
+@dataclass
+class AcceptableState:
+    """State before an augmentation: acceptable if the augmentation fails. multipliers : of all contacts, MPa"""
+
+    residual: float
+    x: PETSc.Vec
+    multipliers: list[np.ndarray]
+
+
+@dataclass
+class SolveState:
+    """State of one solve.
+
+    load_state : what is solved for
+    softenings : shares of the penalty of the runs that follow before the full penalty
+    penalty_share : of the present run
+    max_iterations : of the whole solve
+    iterations, searches, augmentations : so far
+    residuals : over the contact force, of the present run
+    pattern_misses : keys of contact blocks on this rank that the tangent's pattern lacks
+    incomplete_pattern : whether any rank misses blocks
+    visited : active sets of the present run
+    """
+
+    load_state: LoadState
+    softenings: list[float]
+    max_iterations: int
+    penalty_share: float = 1.0
+    iterations: int = 0
+    searches: int = 0
+    augmentations: int = 0
+    residuals: list[float] = field(default_factory=list)
+    pattern_misses: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    incomplete_pattern: bool = False
+    visited: VisitedSets = field(default_factory=VisitedSets)
+    breaker: CycleBreaker = field(default_factory=CycleBreaker)
+    before_augmentation: AcceptableState | None = None
+    result: SolveResult | None = None
+
+    @property
+    def phase(self) -> Phase:
+        """Phase of the present run."""
+        if self.penalty_share != 1.0:
+            return Phase.SOFTENED
+        if self.breaker.active:
+            return Phase.FROZEN
+        return Phase.AUGMENTED if self.augmentations else Phase.FULL
+
+    @property
+    def residual(self) -> float:
+        """Last residual over the contact force."""
+        return self.residuals[-1] if self.residuals else np.inf
