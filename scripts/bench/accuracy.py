@@ -80,7 +80,8 @@ def summary(rows: list[Row]) -> str:
 def main() -> None:
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("--out", default="results/bench/accuracy", help="finished cases")
-    options.add_argument("--tables", default="docs/benchmarks")
+    options.add_argument("--tables", default="docs/verification/data")
+    options.add_argument("--page", default="docs/verification/accuracy.md")
     options.add_argument("--ranks", type=int, default=2, help="of the drives")
     options.add_argument("--only", nargs="+", default=list(FAMILIES), choices=list(FAMILIES), help="families")
     options.add_argument("--finest", type=int, default=None, help="number of levels at most, for a quick look")
@@ -91,7 +92,7 @@ def main() -> None:
         cases = Cases(Path(arguments.out) / family, arguments.ranks, arguments.finest, show)
         importlib.import_module(FAMILIES[family]).compute(cases)
         write(cases.rows, tables, family)
-        put(tables / "accuracy.md", family, summary(cases.rows))
+        put(Path(arguments.page), family, summary(cases.rows))
         cases.check()
 
 

@@ -1,7 +1,7 @@
 """Gear trains with as many samples as the sources have: seconds on some ranks beside the targets and published times.
 
-Takes about ten minutes on 2 ranks, most of it for 100,000 planetary simulations. Writes docs/benchmarks/gear_trains.csv
-and .md; rows of runs that are not asked for are kept.
+Takes about ten minutes on 2 ranks, most of it for 100,000 planetary simulations. Writes
+docs/verification/gear_train_seconds.md and gear_trains.csv, .json in its folder data. Rows of other runs are kept.
 
 Seconds: "run" is the wall time of a whole run inside the program, from the design file to the last table (without start
 of Python and without figures); "simulation" is the time of the simulating tasks over the ranks; "linearisation" is that
@@ -22,7 +22,8 @@ import program
 from swgpar.results.table import format_csv, read_columns
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGES = ROOT / "docs" / "benchmarks"
+PAGES = ROOT / "docs" / "verification"
+DATA = PAGES / "data"
 HOUR = 3600.0
 ONE_RIM = ["ring.rims=[87.0]"]
 RUNS: dict[str, tuple[str, list[str]]] = {
@@ -46,13 +47,19 @@ ROWS = [
 STEPS = (625, 1250, 2500, 5000, 10_000)
 """Of the linearised planetary revolution."""
 
-INTRODUCTION = """# Seconds of the gear trains
+INTRODUCTION = """# Gear trains: seconds
 
-    scripts/bench/gear_trains                  # all rows; --only RUN ... for some, the others are kept
+```bash
+scripts/bench/gear_trains                  # all rows; --only RUN ... for some of them
+```
 
-*Run*: wall time of a whole run inside the program, without the start of Python and without figures. *Simulation*: the
-simulating tasks over the ranks. *Linearisation*: the slowest such task, on one rank, with its matrices. Published times
-are those of the sources (docs/gear_trains.md) on their computers, of one case each.
+| part | what is measured |
+|---|---|
+| run | wall time of a whole run inside the program, without the start of Python and without figures |
+| simulation | the simulating tasks over the ranks |
+| linearisation | the slowest such task, on one rank, with its matrices |
+
+Published times are those of the [sources](../references.md) on their computers, of one case each.
 
 | what | part | ranks | published | target | seconds | met |
 |---|---|---|---|---|---|---|
@@ -60,8 +67,8 @@ are those of the sources (docs/gear_trains.md) on their computers, of one case e
 STEPS_OF_A_REVOLUTION = """
 ## Steps of the linearised planetary train
 
-One carrier revolution, 27 s. Change against half as many steps: the largest over all watched quantities and moments,
-over the largest value of the quantity.
+One carrier revolution takes 27 s. The change is the one against half as many steps: the largest over all
+watched quantities and moments, over the largest value of the quantity.
 
 | steps | step (ms) | seconds, 1 rank | change of means | change of deviations |
 |---|---|---|---|---|
@@ -159,7 +166,7 @@ def main() -> None:
     parser.add_argument("--only", nargs="+", choices=[*RUNS, "steps"], default=[*RUNS, "steps"])
     arguments = parser.parse_args()
     out = arguments.out.resolve()
-    kept = PAGES / "gear_trains.json"
+    kept = DATA / "gear_trains.json"
     old = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {"timings": [], "steps": []}
     new = timings([name for name in RUNS if name in arguments.only], out, arguments.ranks)
     asked = {row["run"] for row in new}
@@ -170,9 +177,9 @@ def main() -> None:
     )
     steps = step_study(out) if "steps" in arguments.only else old["steps"]
     kept.write_text(json.dumps({"timings": rows, "steps": steps}, indent=1) + "\n", encoding="utf-8")
-    (PAGES / "gear_trains.csv").write_bytes(format_csv(rows))
-    (PAGES / "gear_trains.md").write_text(page(rows, steps), encoding="utf-8")
-    print((PAGES / "gear_trains.md").read_text(encoding="utf-8"))
+    (DATA / "gear_trains.csv").write_bytes(format_csv(rows))
+    (PAGES / "gear_train_seconds.md").write_text(page(rows, steps), encoding="utf-8")
+    print(page(rows, steps))
 
 
 if __name__ == "__main__":

@@ -113,14 +113,14 @@ def compare(name: str, counts: tuple[int, int, int], out: Path, cores: int) -> R
     return row
 
 
-def write(rows: list[Row], tables: Path) -> None:
+def write(rows: list[Row], tables: Path, page: Path) -> None:
     tables.mkdir(parents=True, exist_ok=True)
     (tables / "peer.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
     with (tables / "peer.csv").open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
         writer.writeheader()
         writer.writerows({k: f"{v:.6g}" if isinstance(v, float) else v for k, v in row.items()} for row in rows)
-    put(tables / "peer.md", "table", markdown([HEAD, *map(line_of, rows)]))
+    put(page, "table", markdown([HEAD, *map(line_of, rows)]))
 
 
 HEAD = (
@@ -145,7 +145,8 @@ def line_of(row: Row) -> list[str]:
 def main() -> None:
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--out", default="results/bench/peer", help="jobs and logs")
-    options.add_argument("--tables", default="docs/benchmarks")
+    options.add_argument("--tables", default="docs/verification/data")
+    options.add_argument("--page", default="docs/verification/peer.md")
     options.add_argument("--cores", type=int, default=2, help="threads of CalculiX, ranks of this program")
     options.add_argument("--only", nargs="+", default=list(PROBLEMS), help="first words of the problems to run")
     options.add_argument(
@@ -167,7 +168,7 @@ def main() -> None:
             print(" | ".join(line_of(row)), flush=True)
             rows = [r for r in rows if any(r[k] != row[k] for k in ("problem", "dofs", "cores"))] + [row]
             rows.sort(key=lambda r: (r["cores"], order.index(r["problem"]), r["dofs"]))
-            write(rows, tables)
+            write(rows, tables, Path(arguments.page))
     print(f"written {tables}/peer.csv, peer.json")
 
 

@@ -61,7 +61,8 @@ def main() -> None:
     options.add_argument("--design", default="drivers/cup_45deg.toml")
     options.add_argument("--mesh", default="coarse")
     options.add_argument("--out", default="results/bench/reductions")
-    options.add_argument("--table", default="docs/benchmarks/reductions_cup.csv")
+    options.add_argument("--table", default="docs/verification/data/reductions_cup.csv")
+    options.add_argument("--page", default="docs/verification/reductions.md")
     options.add_argument("--ranks", type=int, default=2)
     options.add_argument("--samples", type=int, default=4, help="angles in a period")
     options.add_argument("--set", nargs="+", default=[], help="further overrides, for all runs")
@@ -90,7 +91,7 @@ def main() -> None:
             writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
             writer.writeheader()
             writer.writerows(rows)
-        put(table.with_name("reductions.md"), table.stem, markdown([HEAD, *map(cells, rows)]))
+        put(Path(arguments.page), table.stem, markdown([HEAD, *map(cells, rows)]))
 
 
 if __name__ == "__main__":

@@ -82,7 +82,7 @@ def main() -> None:
     options.add_argument("--solvers", nargs="+", default=["direct", "iterative"], choices=["direct", "iterative"])
     options.add_argument("--ranks", nargs="+", type=int, default=[1, 2])
     options.add_argument("--largest-iterative", type=int, default=3, help="number of meshes GAMG is tried on")
-    options.add_argument("--table", default="docs/benchmarks/scaling.csv")
+    options.add_argument("--table", default="docs/verification/data/scaling.csv")
     options.add_argument("--case", nargs=2, metavar=("MESH", "SOLVER"), help=argparse.SUPPRESS)
     arguments = options.parse_args()
     if arguments.case:

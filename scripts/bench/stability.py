@@ -168,7 +168,8 @@ def write_page(page: Path, rows: list[Row]) -> None:
 def main() -> int:
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--out", default="results/bench/stability")
-    options.add_argument("--tables", default="docs/benchmarks")
+    options.add_argument("--tables", default="docs/verification/data")
+    options.add_argument("--page", default="docs/verification/stability.md")
     options.add_argument("--at-once", type=int, default=2, help="cases that are computed at once")
     options.add_argument("--most-ranks", type=int, default=8, help="largest number of ranks on one case")
     options.add_argument("--random", type=int, default=200, help="number of random plane designs")
@@ -198,9 +199,9 @@ def main() -> int:
             writer = csv.DictWriter(file, COLUMNS, restval="", lineterminator="\n")
             writer.writeheader()
             writer.writerows(rows)
-        write_page(table.with_suffix(".md"), rows)
+        write_page(Path(arguments.page), rows)
     failed = sum(row["status"] == "failed" for row in rows)
-    print(f"{failed} of {len(rows)} cases failed; written {table} and {table.with_suffix('.md')}")
+    print(f"{failed} of {len(rows)} cases failed; written {table} and {arguments.page}")
     return 1 if failed else 0
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 ORDER = 1
 """Order in the element size that the estimate assumes. The largest stresses sit on the surface, to where those of the
-elements are extrapolated: docs/benchmarks/accuracy_elements.csv has orders of 0.8 to 1 there."""
+elements are extrapolated: docs/verification/data/accuracy_elements.csv has orders of 0.8 to 1 there."""
 
 
 @dataclass(frozen=True)

@@ -57,7 +57,7 @@ GROUPS: dict[str, Counts] = {
     "length": {"face_width": ("elements",), "cup": ("cylinder", "fillet", "closed_end")},
 }
 """Counts that are refined together. The largest tension sits in the root or at the inner surface below it, and most of
-its error comes from the counts there (docs/benchmarks/accuracy.md, plane drive)."""
+its error comes from the counts there (docs/verification/accuracy.md, plane drive)."""
 
 LARGEST = {2: 1_500_000, 3: 700_000}
 """Elements of the whole drive, plane and solid, beyond which no finer mesh is taken: some 7 and 12 GB."""

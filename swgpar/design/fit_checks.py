@@ -103,7 +103,7 @@ def _check_cup(design: DriveDesign) -> None:
         _refuse("cup.fillet_radius", cup.fillet_radius, f"{design.cup_thickness:g} (the cup's thickness) to inf mm")
     if cup.length <= cup.fillet_radius:
         _refuse("cup.length", cup.length, f"above {cup.fillet_radius:g} mm (cup.fillet_radius)")
-    # narrower splines leave the ring gear's width (docs/benchmarks/stability.md)
+    # narrower splines leave the ring gear's width (docs/verification/stability.md)
     narrowest = max(design.axial_travel, 0.5 * design.flexible_spline.rim)
     if design.drive.face_width < narrowest:
         allowed = f"{narrowest:.4g} mm (axial travel of the teeth, half of the rim) to inf mm"
