@@ -44,12 +44,7 @@ exclude_patterns = [
     "auto_gallery/*.py",
     "auto_gallery/*.ipynb",
     # pages that wait for their place in a section
-    "benchmarks",
     "gear_trains.md",
-    "geometry.md",
-    "method.md",
-    "results.md",
-    "scale.md",
     "studies.md",
 ]
 suppress_warnings = ["toc.empty_glob", "config.cache"]
