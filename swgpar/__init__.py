@@ -1,5 +1,74 @@
-"""swgpar: contact finite-element analysis of strain wave gears."""
+"""swgpar: contact finite-element analysis of strain wave gears.
+
+    design = swgpar.load_design("drive.toml", {"load.torque": 10.0})
+    result = swgpar.run(design, mesh="coarse")
+    result.history["fs_s1"], result.summary["means"], result.field("vm"), result.plot.stress()
+
+Names are imported when they are used: PETSc starts with the first one that needs it.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 from swgpar.version import __version__
 
-__all__ = ["__version__"]
+if TYPE_CHECKING:
+    from swgpar.analysis.drive_result import DriveResult
+    from swgpar.api import check, load_design, load_mesh, mesh, open_result, run
+    from swgpar.design.drive_design import DriveDesign
+    from swgpar.errors import ConvergenceError, InputError, OutputError, SwgparError
+    from swgpar.gear_trains.result import TrainResult
+    from swgpar.meshing.drive_mesh import DriveMesh
+    from swgpar.meshing.recipe import MeshRecipe
+
+_MODULES = {
+    "load_design": "api",
+    "load_mesh": "api",
+    "run": "api",
+    "open_result": "api",
+    "check": "api",
+    "mesh": "api",
+    "DriveDesign": "design.drive_design",
+    "MeshRecipe": "meshing.recipe",
+    "DriveMesh": "meshing.drive_mesh",
+    "DriveResult": "analysis.drive_result",
+    "TrainResult": "gear_trains.result",
+    "SwgparError": "errors",
+    "InputError": "errors",
+    "OutputError": "errors",
+    "ConvergenceError": "errors",
+}
+"""Public name -> module that it is imported from."""
+
+__all__ = [
+    "ConvergenceError",
+    "DriveDesign",
+    "DriveMesh",
+    "DriveResult",
+    "InputError",
+    "MeshRecipe",
+    "OutputError",
+    "SwgparError",
+    "TrainResult",
+    "__version__",
+    "check",
+    "load_design",
+    "load_mesh",
+    "mesh",
+    "open_result",
+    "run",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _MODULES:
+        raise AttributeError(f"module 'swgpar' has no attribute {name!r}")
+    value = getattr(import_module(f"swgpar.{_MODULES[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_MODULES})

@@ -7,13 +7,10 @@ import difflib
 import sys
 import traceback
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
 
 from swgpar.errors import InputError, StudyError, SwgparError
 from swgpar.version import __version__
-
-if TYPE_CHECKING:
-    from mpi4py import MPI
 
 OPTIONS = ("--set", "--mesh", "--accuracy", "--out", "--restart", "--overwrite", "--format", "--help", "--version")
 
@@ -124,122 +121,25 @@ def parser() -> argparse.ArgumentParser:
 def _run(arguments: argparse.Namespace) -> None:
     from mpi4py import MPI
 
-    from swgpar.analysis.run_drive import run_drive
-    from swgpar.design.design_file import load_design
-    from swgpar.gear_trains.train import is_gear_train
-    from swgpar.meshing import load_recipe
+    from swgpar import api
     from swgpar.results.atomic import on_all
+    from swgpar.systems import system_of
 
     comm = MPI.COMM_WORLD
-    if on_all(comm, lambda: is_gear_train(arguments.design)):
-        _run_train(arguments, comm)
-        return
-    if arguments.mesh is None:
-        raise InputError("the following arguments are required: --mesh (see swgpar run --help)")
-    design = on_all(comm, lambda: load_design(arguments.design, arguments.overrides))
-    recipe = on_all(comm, lambda: load_recipe(arguments.mesh))
-    result = run_drive(
+    design = on_all(comm, lambda: api.load_design(arguments.design, arguments.overrides))
+    result = api.run(
         design,
-        recipe,
+        arguments.mesh,
         arguments.out,
+        accuracy=arguments.accuracy,
         restart=arguments.restart,
         overwrite=arguments.overwrite,
+        progress=True,
         comm=comm,
-        recipe_name=arguments.mesh,
-        accuracy=arguments.accuracy,
     )
     if comm.rank == 0:
-        _print_result(result)
-        if design.output.figures:
-            _figures(arguments.out)
-    comm.Barrier()
-
-
-def _run_train(arguments: argparse.Namespace, comm: MPI.Comm) -> None:
-    from swgpar.gear_trains.terminal import print_compared
-    from swgpar.gear_trains.train import load_train, run_train
-    from swgpar.results.atomic import on_all
-
-    for option in ("mesh", "accuracy", "restart"):
-        if getattr(arguments, option):
-            raise InputError(f"--{option} has no meaning for a gear train: leave it out")
-    design = on_all(comm, lambda: load_train(arguments.design, arguments.overrides))
-    compared = run_train(design, arguments.out, overwrite=arguments.overwrite, comm=comm)
-    if comm.rank == 0:
-        print_compared(compared)
-        if design.output.figures:
-            _figures(arguments.out)
-    comm.Barrier()
-
-
-def _print_result(result) -> None:
-    from rich import box
-    from rich.table import Table
-
-    from swgpar.log import console
-
-    title = "largest stresses over the bodies (MPa, nodal averages); torque in N·mm, angles in degrees"
-    table = Table(title=title, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))  # fits into 80 columns
-    columns = {
-        "wg_angle_deg": ("input", ".1f"),
-        "output_angle_deg": ("output", ".4f"),
-        "fs_s1": ("fs s1", ".1f"),
-        "fs_s3": ("fs |s3|", ".1f"),
-        "fs_vm": ("fs vm", ".1f"),
-        "rg_vm": ("rg vm", ".1f"),
-        "wg_torque_Nmm": ("torque", ".2f"),
-        "pairs_in_contact": ("pairs", "d"),
-        "newton_iterations": ("Newton", "d"),
-    }
-    table.add_column("step", justify="right", no_wrap=True)
-    for title, _ in columns.values():
-        table.add_column(title, justify="right", no_wrap=True)
-    for row in result.rows:
-        table.add_row(str(row["step"]), *(format(row[k], spec) for k, (_, spec) in columns.items()))
-    console.print(table)
-    if result.means:
-        m = result.means
-        console.print(
-            f"means over the rotation: flexible spline s1 {m['fs_s1']:.1f}, |s3| {m['fs_s3']:.1f}, von Mises "
-            f"{m['fs_vm']:.1f} MPa; ring gear von Mises {m['rg_vm']:.1f} MPa; input torque "
-            f"{m['wg_torque_Nmm']:.2f} N·mm (energy balance {result.summary['wg_torque_expected_Nmm']:.2f})"
-        )
-    asked = result.summary["accuracy"]
-    if error := result.summary["mesh_error"]:
-        others = "others on the way" if asked else "the one of the start"
-        console.print(
-            f"estimated error by the mesh, under load: s1 {error['fs_s1']:.1f}, |s3| {error['fs_s3']:.1f}, "
-            f"von Mises {error['fs_vm']:.1f} MPa (from this mesh and {others})"
-        )
-    if asked:
-        console.print(
-            f"accuracy of the largest tensile stress: {asked['asked']:g} asked for, {asked['estimated']:.2g} "
-            f"estimated{'' if asked['reached'] else ', NOT reached: no finer mesh that helps is taken'}"
-        )
-    if left_out := result.summary["condensed_MPa"]:
-        console.print(f"condensed sectors leave out {left_out:.2g} MPa of bending stress")
-    if error := result.summary["sampling_error"]:
-        console.print(
-            f"half as many angles change the means by: s1 {error['fs_s1']:.2f}, |s3| {error['fs_s3']:.2f}, "
-            f"von Mises {error['fs_vm']:.2f} MPa"
-        )
-    console.print(
-        f"torque balance error {result.summary['balance_error_Nmm']:.1e} N·mm; "
-        f"{result.summary['wall_s']:.0f} s on {result.summary['ranks']} ranks"
-    )
-
-
-def _figures(out: str) -> None:
-    from pathlib import Path
-
-    from swgpar.analysis.figures import make_figures
-    from swgpar.log import console
-
-    try:
-        for path in make_figures(Path(out)):
-            console.print(f"figure {path}")
-    except Exception as error:  # a picture that fails must not cost the run
-        console.print(f"figures could not be drawn: {error}")
+        system_of(design).print(result)
+    comm.Barrier()  # mpirun ends all ranks when one of them fails
 
 
 def _study(arguments: argparse.Namespace) -> None:
@@ -265,43 +165,29 @@ def _study(arguments: argparse.Namespace) -> None:
 
 
 def _mesh(arguments: argparse.Namespace) -> None:
-    from pathlib import Path
+    from swgpar import api
 
-    from swgpar.design.design_file import load_design
-    from swgpar.meshing import build_sector_meshes, load_recipe
-    from swgpar.meshing.export import mesh_report, write_mesh
-
-    design = load_design(arguments.design, arguments.overrides)
-    meshes = build_sector_meshes(design, load_recipe(arguments.mesh))
-    write_mesh(design, meshes, Path(arguments.out), tuple(arguments.format))
-    for body, values in mesh_report(meshes).items():
+    design = api.load_design(arguments.design, arguments.overrides)
+    mesh = api.mesh(design, arguments.mesh, arguments.out, arguments.format)
+    for body, values in mesh.quality.items():
         print(body)
         for name, value in values.items():
             print(f"  {name:30s} {value:.6g}")
 
 
 def _check(arguments: argparse.Namespace) -> None:
-    from swgpar.design.derived_geometry import derived_geometry
-    from swgpar.design.design_file import load_design
-    from swgpar.gear_trains.train import is_gear_train, load_train, model_of
+    from swgpar import api
 
-    if is_gear_train(arguments.design):
-        train = load_train(arguments.design, arguments.overrides)
-        values = model_of(train).derived(train)
-    else:
-        values = derived_geometry(load_design(arguments.design, arguments.overrides))
-    for name, value in values.items():
+    for name, value in api.check(arguments.design, arguments.overrides).items():
         print(f"{name:40s} {value:.6g}")
 
 
 def _report(arguments: argparse.Namespace) -> None:
-    from pathlib import Path
+    from swgpar import api
 
-    from swgpar.analysis.figures import make_figures
-    from swgpar.log import console
-
-    for path in make_figures(Path(arguments.out)):
-        console.print(f"figure {path}")
+    result = api.open_result(arguments.out)
+    for path in result.plot.save(result.folder):
+        print(f"figure {path}")
 
 
 def _check_rest(rest: Sequence[str], petsc: bool) -> None:

@@ -44,7 +44,7 @@ class _RunLog(logging.FileHandler):
 
 
 def start(comm: MPI.Comm, *, level: int = logging.INFO, terminal: bool = True) -> logging.Logger:
-    """Send the log of rank 0 to the terminal; further calls change nothing.
+    """Send the log of rank 0 to the terminal; a further call replaces the earlier choice.
 
     Parameters
     ----------
@@ -52,8 +52,8 @@ def start(comm: MPI.Comm, *, level: int = logging.INFO, terminal: bool = True) -
     level : smallest level that is shown
     terminal : False keeps the terminal free; the log then goes into files only
     """
-    if logger.handlers:
-        return logger
+    for handler in [h for h in logger.handlers if not isinstance(h, _RunLog)]:
+        logger.removeHandler(handler)
     logger.propagate = False
     logger.setLevel(level)
     if comm.rank != 0:
@@ -81,7 +81,6 @@ def start(comm: MPI.Comm, *, level: int = logging.INFO, terminal: bool = True) -
 
 def to_file(path: Path, comm: MPI.Comm) -> None:
     """Append the log of rank 0 to a file as well; an earlier log file of this process is closed."""
-    start(comm)
     if comm.rank != 0:
         return
     close_file()

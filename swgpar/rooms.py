@@ -22,7 +22,9 @@ PURPOSE = {
     "results": "history, fields and checkpoints in a results folder",
     "gear_trains": "lumped models of gear trains around strain wave gears",
     "analysis": "a run of the drive: model, load stepping, prediction, mesh refinement, figures",
+    "systems": "registry of what can be computed, drives and gear trains, for the interfaces and studies",
     "studies": "many runs: cases, schedule, tables, report",
+    "api": "the Python interface",
     "cli": "the command line",
 }
 """Purpose of each room, in the order of the rooms."""

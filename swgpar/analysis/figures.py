@@ -1,146 +1,217 @@
-"""Figures of a run, drawn from its files."""
+"""Figures of a drive's result."""
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
+from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from swgpar.errors import OutputError
-from swgpar.gear_trains.train import SECTION, train_figures
-from swgpar.results import history
-from swgpar.results.fields import FOLDER, MESH, increment_name
-from swgpar.results.parallel_hdf5 import h5py
+from swgpar.design.sections import GEARS
+from swgpar.results.figure_set import Drawings, FigureSet
+from swgpar.results.history import loaded_increments, transmission_error
+
+if TYPE_CHECKING:
+    import pyvista
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from swgpar.analysis.drive_result import DriveResult, FlankPressure
 
 MAGNIFICATION = 5.0
 """Of displacements in the picture of the deformed cup drive; that of the plane model is true to scale."""
 
+SMALLEST_PEAK = 0.02
+"""Flanks with a lower peak pressure, as a share of the highest, are left out of the contact pattern."""
 
-def make_figures(out: Path) -> list[Path]:
-    """Draw all figures that the files in `out` allow, into out/figures; call it on one rank."""
-    out = Path(out)
-    for name in (history.NAME, "summary.json"):
-        if not (out / name).exists():
-            raise OutputError(f"{out} has no {name}: figures are drawn from the files of a finished run")
-    figures = out / "figures"
-    figures.mkdir(exist_ok=True)
-    summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
-    if SECTION in summary["design"]:
-        return train_figures(out, summary)
-    rows = history.read_history(out / history.NAME)
-    made = [_stress(rows, figures), _torque(rows, summary, figures)]
-    if (out / "fields.h5").exists():
-        last = summary.get("increments", len(rows))
-        made += [_deformed(out, last, summary, figures), _pattern(out, last, summary, figures)]
-    return made
+MOST_FLANKS = 12
+"""In the contact pattern."""
+
+ANGLE = "angle of the wave generator (degrees)"
+
+STRESSES = {
+    "fs_s1": "flexible spline, tensile s1",
+    "fs_s3": "flexible spline, compressive |s3|",
+    "fs_vm": "flexible spline, von Mises",
+    "rg_vm": "ring gear, von Mises",
+}
+"""Columns of the history in the figure of stresses."""
+
+VON_MISES = "von Mises stress (MPa)"
 
 
-def _axes(title: str, ylabel: str):
+class DriveFigures(FigureSet):
+    """Figures of a drive: each method draws one and returns a matplotlib figure.
+
+    `save` writes all of them; every rank calls a method whose figure shows fields.
+    """
+
+    exact_size = ("deformed_drive",)
+
+    def __init__(self, result: DriveResult) -> None:
+        self._result = result
+
+    @property
+    def drawings(self) -> Drawings:
+        found: dict[str, Callable[[], Figure]] = {
+            "stress": self.stress,
+            "torque_and_transmission_error": self.torque_and_transmission_error,
+        }
+        if self._result.increments:
+            found |= {"deformed_drive": self.deformed, "contact_pattern": self.contact_pattern}
+        return found
+
+    def stress(self) -> Figure:
+        """Largest stresses of both bodies (MPa) against the angle of the wave generator, under load."""
+        figure, (axes,) = _panels(1)
+        history, loaded = self._result.history, loaded_increments(self._result.history)
+        for name, label in STRESSES.items():
+            axes.plot(history["wg_angle_deg"][loaded], history[name][loaded], "o-", ms=3, label=label)
+        axes.set(ylabel="stress (MPa)", title="largest stresses (nodal averages)")
+        axes.set_ylim(bottom=0.0)
+        axes.legend(fontsize=8)
+        return figure
+
+    def torque(self) -> Figure:
+        """Input torque (N·mm) against the angle of the wave generator, beside that of the energy balance."""
+        figure, (axes,) = _panels(1)
+        self._draw_torque(axes)
+        return figure
+
+    def transmission_error(self) -> Figure:
+        """Angle of the output less its kinematic value (arc seconds) against the angle of the wave generator."""
+        figure, (axes,) = _panels(1)
+        self._draw_transmission_error(axes)
+        return figure
+
+    def torque_and_transmission_error(self) -> Figure:
+        """Input torque and transmission error in one figure."""
+        figure, (upper, lower) = _panels(2)
+        self._draw_torque(upper)
+        self._draw_transmission_error(lower)
+        return figure
+
+    def _draw_torque(self, axes: Axes) -> None:
+        history, loaded = self._result.history, loaded_increments(self._result.history)
+        axes.plot(history["wg_angle_deg"][loaded], history["wg_torque_Nmm"][loaded], "o-", ms=3, label="wave generator")
+        expected = self._result.summary["wg_torque_expected_Nmm"]
+        axes.axhline(expected, color="0.4", ls="--", label="energy balance, T / ratio")
+        axes.set(ylabel="torque (N·mm)", title="input torque")
+        axes.legend(fontsize=8)
+
+    def _draw_transmission_error(self, axes: Axes) -> None:
+        history, loaded = self._result.history, loaded_increments(self._result.history)
+        angle = history["wg_angle_deg"][loaded]
+        error = transmission_error(angle, history["output_angle_deg"][loaded], self._result.summary["ratio"])
+        axes.plot(angle, error, "o-", ms=3)
+        axes.set(ylabel="arc seconds", title="transmission error: output angle less its kinematic value")
+
+    def contact_pattern(self, increment: int = -1) -> Figure:
+        """Contact pressure (MPa) on the flanks in contact, over arc length and face width.
+
+        In the plane model over arc length. increment : among those with fields, as in `DriveResult.field`
+        """
+        from matplotlib.figure import Figure
+
+        contact = self._result.flank_pressure(increment)
+        peak = contact.pressure.max(axis=(2, 3))
+        touching = list(zip(*np.nonzero(peak > SMALLEST_PEAK * max(peak.max(), 1e-300)), strict=True))
+        flanks = sorted(sorted(touching, key=lambda flank: -peak[flank])[:MOST_FLANKS])
+        figure = Figure(figsize=(10.0, 6.0), layout="constrained")
+        if not flanks:
+            figure.text(0.5, 0.5, "no flank is in contact", ha="center")
+        elif self._result.is_plane:
+            _draw_pressure_lines(figure, contact, flanks)
+        else:
+            _draw_pressure_maps(figure, contact, flanks)
+        return figure
+
+    def deformed(self, increment: int = -1, magnification: float | None = None) -> Figure:
+        """The deformed drive, coloured by von Mises stress: seen from its open end, a plane model along its axis.
+
+        Parameters
+        ----------
+        increment : among those with fields, as in `DriveResult.field`
+        magnification : of the displacements; 5 for the cup drive, 1 for the plane model
+        """
+        import pyvista
+
+        plane = self._result.is_plane
+        factor = magnification if magnification is not None else 1.0 if plane else MAGNIFICATION
+        limit = float(np.percentile(self._result.field("vm", increment), 99.9))
+        pyvista.OFF_SCREEN = True
+        plotter = pyvista.Plotter(off_screen=True, window_size=(1400, 1100))
+        for body in GEARS:
+            grid = self._result.grid(increment, body, whole=True)
+            grid.points = grid.points + factor * grid.point_data["displacement"]
+            grid.point_data[VON_MISES] = grid.point_data["vm"]
+            plotter.add_mesh(
+                grid.extract_surface(algorithm="dataset_surface"),
+                scalars=VON_MISES,
+                cmap="turbo",
+                clim=(0.0, limit),
+                smooth_shading=False,
+                scalar_bar_args={
+                    "title": "von Mises, MPa",
+                    "vertical": True,
+                    "position_x": 0.9,
+                    "position_y": 0.25,
+                    "height": 0.5,
+                },
+            )
+        plotter.add_text("true to scale" if factor == 1.0 else f"displacements x {factor:g}", font_size=12)
+        _set_camera(plotter, plane)
+        picture = plotter.screenshot(return_img=True)
+        plotter.close()
+        return _as_figure(picture)
+
+
+def _panels(count: int) -> tuple[Figure, list[Axes]]:
+    """A figure with panels above one another, over the angle of the wave generator."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(7.0, 4.2), layout="constrained")
-    axes = figure.add_subplot()
-    axes.set(xlabel="angle of the wave generator (degrees)", ylabel=ylabel, title=title)
-    axes.grid(alpha=0.3)
-    return figure, axes
-
-
-def _turning(rows: list[dict]) -> list[dict]:
-    """Loaded increments: the last of step 3 and the rotation."""
-    loaded = [r for r in rows if int(r["step"]) >= 3]
-    return loaded or rows
-
-
-def _stress(rows: list[dict], figures: Path) -> Path:
-    rows = _turning(rows)
-    figure, axes = _axes("largest stresses (nodal averages)", "stress (MPa)")
-    angle = history.column(rows, "wg_angle_deg")
-    labels = {
-        "fs_s1": "flexible spline, tensile s1",
-        "fs_s3": "flexible spline, compressive |s3|",
-        "fs_vm": "flexible spline, von Mises",
-        "rg_vm": "ring gear, von Mises",
-    }
-    for name, label in labels.items():
-        axes.plot(angle, history.column(rows, name), "o-", ms=3, label=label)
-    axes.set_ylim(bottom=0.0)
-    axes.legend(fontsize=8)
-    path = figures / "stress.png"
-    figure.savefig(path, dpi=150)
-    return path
-
-
-def _torque(rows: list[dict], summary: dict, figures: Path) -> Path:
-    from matplotlib.figure import Figure
-
-    rows = _turning(rows)
-    angle = history.column(rows, "wg_angle_deg")
-    error = 3600.0 * (history.column(rows, "output_angle_deg") - angle / summary["ratio"])
-    figure = Figure(figsize=(7.0, 6.0), layout="constrained")
-    upper, lower = figure.subplots(2, 1, sharex=True)
-    upper.plot(angle, history.column(rows, "wg_torque_Nmm"), "o-", ms=3, label="wave generator")
-    upper.axhline(summary["wg_torque_expected_Nmm"], color="0.4", ls="--", label="energy balance, T / ratio")
-    upper.set(ylabel="torque (N·mm)", title="input torque")
-    lower.plot(angle, error, "o-", ms=3)
-    lower.set(
-        xlabel="angle of the wave generator (degrees)",
-        ylabel="arc seconds",
-        title="transmission error: output angle less its kinematic value",
-    )
-    for axes in (upper, lower):
+    figure = Figure(figsize=(7.0, 4.2 if count == 1 else 3.0 * count), layout="constrained")
+    panels = list(figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0])
+    for axes in panels:
         axes.grid(alpha=0.3)
-    upper.legend(fontsize=8)
-    path = figures / "torque_and_transmission_error.png"
-    figure.savefig(path, dpi=150)
-    return path
+    panels[-1].set_xlabel(ANGLE)
+    return figure, panels
 
 
-def _read(out: Path, index: int, body: str, name: str) -> np.ndarray:
-    with h5py.File(out / FOLDER / f"{increment_name(index)}.h5", "r") as file:
-        return file[f"{body}/{name}"][:]
-
-
-def _mesh(out: Path, body: str) -> dict[str, np.ndarray]:
-    with h5py.File(out / FOLDER / f"{MESH}.h5", "r") as file:
-        return {name: file[f"{body}/{name}"][:] for name in ("points", "cells", "flank_nodes", "flank_s", "flank_z")}
-
-
-def _is_plane(summary: dict) -> bool:
-    return summary["design"]["drive"]["model"] == "plane"
-
-
-def _flank(tooth: int, side: int) -> str:
+def _flank_name(tooth: int, side: int) -> str:
     return f"tooth {tooth}, {'clockwise' if side == 0 else 'counter-clockwise'} flank"
 
 
-def _deformed(out: Path, index: int, summary: dict, figures: Path) -> Path:
-    """The deformed drive, seen from its open end, coloured by von Mises stress; the plane model seen along its axis."""
-    import pyvista
+def _draw_pressure_lines(figure: Figure, contact: FlankPressure, flanks: list[tuple[int, int]]) -> None:
+    axes = figure.add_subplot()
+    for flank in flanks:
+        axes.plot(contact.s, contact.pressure[flank][:, 0], "o-", ms=3, label=_flank_name(*flank))
+    axes.set(xlabel="arc length from the tip (mm)", ylabel="contact pressure, nodal mean (MPa)", ylim=(0.0, None))
+    axes.grid(alpha=0.3)
+    axes.legend(fontsize=8)
 
-    plane = _is_plane(summary)
-    magnification = 1.0 if plane else MAGNIFICATION
-    pyvista.OFF_SCREEN = True
-    plotter = pyvista.Plotter(off_screen=True, window_size=(1400, 1100))
-    copies = (1.0, -1.0) if summary["twofold_symmetry"] else (1.0,)
-    limit = 0.0
-    grids = []
-    for body in ("flexible_spline", "ring_gear"):
-        mesh, u, vm = _mesh(out, body), _read(out, index, body, "displacement"), _read(out, index, body, "vm")
-        if body == "flexible_spline":
-            limit = float(np.percentile(vm, 99.9))
-        cells = np.hstack([np.full((len(mesh["cells"]), 1), 8), mesh["cells"]]).ravel()
-        kinds = np.full(len(mesh["cells"]), pyvista.CellType.HEXAHEDRON)
-        for sign in copies:
-            turn = np.array([sign, sign, 1.0])
-            grid = pyvista.UnstructuredGrid(cells, kinds, (mesh["points"] + magnification * u) * turn)
-            grid.point_data["von Mises stress (MPa)"] = vm
-            grids.append(grid.extract_surface(algorithm="dataset_surface"))
-    look = {"cmap": "turbo", "clim": (0.0, limit), "smooth_shading": False}
-    beside = {"title": "von Mises, MPa", "vertical": True, "position_x": 0.9, "position_y": 0.25, "height": 0.5}
-    for grid in grids:
-        plotter.add_mesh(grid, scalars="von Mises stress (MPa)", scalar_bar_args=beside, **look)
-    plotter.add_text("true to scale" if plane else f"displacements x {magnification:g}", font_size=12)
+
+def _draw_pressure_maps(figure: Figure, contact: FlankPressure, flanks: list[tuple[int, int]]) -> None:
+    columns = min(4, len(flanks))
+    for number, flank in enumerate(flanks, start=1):
+        axes = figure.add_subplot(-(-len(flanks) // columns), columns, number)
+        image = axes.pcolormesh(
+            contact.z,
+            contact.s,
+            contact.pressure[flank],
+            shading="gouraud",
+            vmin=0.0,
+            vmax=float(contact.pressure.max()),
+            cmap="magma",
+        )
+        axes.invert_yaxis()
+        axes.set_title(_flank_name(*flank), fontsize=8)
+        axes.set_xlabel("z (mm)", fontsize=8)
+        axes.set_ylabel("from the tip (mm)", fontsize=8)
+    figure.colorbar(image, ax=figure.axes, label="contact pressure (MPa)")
+
+
+def _set_camera(plotter: pyvista.Plotter, plane: bool) -> None:
     if plane:
         plotter.enable_parallel_projection()
         plotter.view_xy()
@@ -148,54 +219,15 @@ def _deformed(out: Path, index: int, summary: dict, figures: Path) -> Path:
     else:
         plotter.camera_position = [(60.0, 60.0, -170.0), (0.0, 0.0, 10.0), (0.0, 1.0, 0.0)]
         plotter.reset_camera()
-    path = figures / "deformed_drive.png"
-    plotter.screenshot(path)
-    plotter.close()
-    return path
 
 
-def _pattern(out: Path, index: int, summary: dict, figures: Path) -> Path:
-    """Pressure on the flanks with contact, over arc length and face width; in the plane over arc length."""
+def _as_figure(picture: np.ndarray) -> Figure:
+    """A figure that shows a picture (height, width, 3) pixel by pixel."""
     from matplotlib.figure import Figure
 
-    mesh, pressure = _mesh(out, "flexible_spline"), _read(out, index, "flexible_spline", "pressure")
-    n_sectors = summary["bodies"]["flexible_spline"]["elements"] // (
-        summary["bodies"]["flexible_spline"]["elements_whole"] // summary["design"]["drive"]["teeth_fs"]
-    )
-    n_local = len(pressure) // n_sectors
-    field = pressure.reshape(n_sectors, n_local)[:, mesh["flank_nodes"]]  # sector, side, s, z
-    peak = field.max(axis=(2, 3))
-    chosen = [(k, side) for k, side in zip(*np.nonzero(peak > 0.02 * max(peak.max(), 1e-300)))]
-    chosen = sorted(chosen, key=lambda item: -peak[item])[:12]
-    figure = Figure(figsize=(10.0, 6.0), layout="constrained")
-    if not chosen:
-        figure.text(0.5, 0.5, "no flank is in contact", ha="center")
-    if _is_plane(summary) and chosen:
-        axes = figure.add_subplot()
-        for k, side in sorted(chosen):
-            axes.plot(mesh["flank_s"], field[k, side, :, 0], "o-", ms=3, label=_flank(k, side))
-        axes.set(xlabel="arc length from the tip (mm)", ylabel="contact pressure, nodal mean (MPa)", ylim=(0.0, None))
-        axes.grid(alpha=0.3)
-        axes.legend(fontsize=8)
-        chosen = []
-    columns = min(4, max(1, len(chosen)))
-    for place, (k, side) in enumerate(sorted(chosen)):
-        axes = figure.add_subplot(-(-len(chosen) // columns), columns, place + 1)
-        image = axes.pcolormesh(
-            mesh["flank_z"],
-            mesh["flank_s"],
-            field[k, side],
-            shading="gouraud",
-            vmin=0.0,
-            vmax=float(peak.max()),
-            cmap="magma",
-        )
-        axes.invert_yaxis()
-        axes.set_title(_flank(k, side), fontsize=8)
-        axes.set_xlabel("z (mm)", fontsize=8)
-        axes.set_ylabel("from the tip (mm)", fontsize=8)
-    if chosen:
-        figure.colorbar(image, ax=figure.axes, label="contact pressure (MPa)")
-    path = figures / "contact_pattern.png"
-    figure.savefig(path, dpi=150)
-    return path
+    height, width = picture.shape[:2]
+    figure = Figure(figsize=(width / 100.0, height / 100.0), dpi=100)
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.imshow(picture)
+    axes.set_axis_off()
+    return figure

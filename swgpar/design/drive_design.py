@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from swgpar.design.sections import (
@@ -22,10 +24,10 @@ from swgpar.design.sections import (
 from swgpar.geometry.cams import Cam, FourRoller, WaveGenerator, make_cam
 from swgpar.geometry.micro_geometry import WaveGeneratorSurface
 from swgpar.geometry.profiles import RackInvolute, Teeth, ToothProfile, make_profile
-from swgpar.input.quantities import Section
+from swgpar.input.design import Design
 
 
-class DriveDesign(Section):
+class DriveDesign(Design):
     """A drive, its load and how it is computed. Attributes are the keys of the design file."""
 
     drive: Drive
@@ -40,6 +42,13 @@ class DriveDesign(Section):
     steps: Steps = Steps()
     solver: Solver = Solver()
     output: Output = Output()
+
+    @classmethod
+    def from_table(cls, table: dict[str, Any]) -> DriveDesign:
+        """A checked design from the content of its file; every problem is an InputError of one sentence."""
+        from swgpar.design.design_file import make_design  # it imports this module
+
+        return make_design(table)
 
     @property
     def deflection(self) -> float:

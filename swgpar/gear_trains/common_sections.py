@@ -6,16 +6,23 @@ from typing import Annotated, Any
 
 from annotated_types import Ge, Gt
 
+from swgpar.input.design import Design
 from swgpar.input.quantities import Section, quantity
 
 Positive = Annotated[float, Gt(0.0)]
 NotNegative = Annotated[float, Ge(0.0)]
 
 
-class TrainDesign(Section):
+class TrainDesign(Design):
     """What every gear train's design file may hold beside its own sections."""
 
     published: dict[str, Any] = quantity({}, text="published values by quantity")
+
+    @classmethod
+    def from_table(cls, table: dict[str, Any]) -> TrainDesign:
+        from swgpar.gear_trains.train import make_train  # it imports all trains, which import this module
+
+        return make_train(table)
 
 
 class GearTrain(Section):

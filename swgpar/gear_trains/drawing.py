@@ -1,12 +1,15 @@
-"""Frames of figures: panels above one another, and their files."""
+"""Frames of figures: panels above one another."""
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 
-def axes(title: str, xlabel: str, *ylabels: str) -> tuple[Any, list[Any]]:
+def axes(title: str, xlabel: str, *ylabels: str) -> tuple[Figure, list[Axes]]:
     """A figure with one panel for each label of a vertical axis."""
     from matplotlib.figure import Figure
 
@@ -18,10 +21,3 @@ def axes(title: str, xlabel: str, *ylabels: str) -> tuple[Any, list[Any]]:
         axis.grid(alpha=0.3)
     panels[-1].set_xlabel(xlabel)
     return figure, panels
-
-
-def save(figure: Any, out: Path, name: str) -> Path:
-    """Write a figure into out/figures."""
-    path = out / "figures" / f"{name}.png"
-    figure.savefig(path, dpi=150)
-    return path

@@ -1,7 +1,9 @@
-"""What the run of a gear train leaves behind: history.csv, tables, published.csv and summary.json."""
+"""Result of a gear train, in memory or in files: history.csv, tables, published.csv and summary.json."""
 
 from __future__ import annotations
 
+import csv
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -10,8 +12,10 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
+from swgpar.errors import OutputError
 from swgpar.results import history
 from swgpar.results.atomic import agreed, to_json, write_from_root
+from swgpar.results.figure_set import NamedFigures
 from swgpar.results.folder import TABLES
 from swgpar.results.table import format_columns, format_csv, read_columns
 
@@ -23,31 +27,62 @@ PUBLISHED = "published.csv"
 
 @dataclass(frozen=True)
 class TrainResult:
-    """Results of a gear train, the same on all ranks.
+    """What a run of a gear train gives; the same on every rank.
 
-    history : columns of history.csv;  tables : further tables by name
-    quantities : what can be compared with published values;  summary : content of summary.json
+    Attributes
+    ----------
+    history : dict of (n,) arrays
+        Columns of history.csv; their names end with the unit. ``pandas.DataFrame(result.history)`` makes a table of it.
+    tables : dict of tables like the history, by name
+    quantities : dict
+        What can be compared with published values: a number or a list of numbers by name.
+    summary : dict
+        Content of summary.json.
+    compared : list of dict
+        Published values of the design file beside the computed ones: rows of published.csv.
+    folder : Path or None
+        The results folder; None when the run was in memory.
+    plot : NamedFigures
+        The figures: ``plot.names`` lists them, ``plot.NAME()`` returns a matplotlib figure.
     """
 
     history: Table
     tables: Mapping[str, Table]
     quantities: Mapping[str, float | list[float]]
     summary: dict[str, Any] = field(default_factory=dict)
+    compared: list[dict[str, Any]] = field(default_factory=list)
+    folder: Path | None = None
+    plot: NamedFigures = field(default_factory=lambda: NamedFigures({}), repr=False)
 
 
-def write(result: TrainResult, compared: list[dict[str, Any]], out: Path, comm: MPI.Comm) -> None:
+def write(result: TrainResult, out: Path, comm: MPI.Comm) -> None:
     """Write all tables, the summary last; collective."""
     with agreed(comm, out / TABLES):
         if comm.rank == 0:
             (out / TABLES).mkdir(exist_ok=True)
     for name, table in result.tables.items():
         write_from_root(comm, out / TABLES / f"{name}.csv", format_columns(table))
-    if compared:
-        write_from_root(comm, out / PUBLISHED, format_csv(compared))
+    if result.compared:
+        write_from_root(comm, out / PUBLISHED, format_csv(result.compared))
     write_from_root(comm, out / history.NAME, format_columns(result.history))
     write_from_root(comm, out / "summary.json", to_json(result.summary))
 
 
-def read_table(out: Path, name: str) -> dict[str, np.ndarray]:
-    """A table of a finished run."""
-    return read_columns(out / TABLES / f"{name}.csv")
+def read(out: Path) -> TrainResult:
+    """Result of a finished run from its folder, without figures; every rank reads the files."""
+    for name in (history.NAME, "summary.json"):
+        if not (out / name).exists():
+            raise OutputError(f"{out} has no {name}: allowed are the folders of finished runs")
+    summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
+    tables = {path.stem: read_columns(path) for path in sorted((out / TABLES).glob("*.csv"))}
+    compared = _read_compared(out / PUBLISHED) if (out / PUBLISHED).exists() else []
+    return TrainResult(read_columns(out / history.NAME), tables, summary["quantities"], summary, compared, out)
+
+
+def _read_compared(path: Path) -> list[dict[str, Any]]:
+    texts = ("quantity", "meaning")
+    with open(path, newline="", encoding="utf-8") as file:
+        return [
+            {name: value if name in texts else float(value) if value else None for name, value in row.items()}
+            for row in csv.DictReader(file)
+        ]

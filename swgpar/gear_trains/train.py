@@ -5,7 +5,7 @@ from __future__ import annotations
 import platform
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -19,12 +19,12 @@ from swgpar.errors import InputError
 from swgpar.gear_trains import cascade, gear_pair, planetary, ring
 from swgpar.gear_trains.common_sections import TrainDesign
 from swgpar.gear_trains.published import Quantities, check_published, compare
-from swgpar.gear_trains.result import TrainResult, write
+from swgpar.gear_trains.result import TrainResult, read, write
 from swgpar.input.quantities import show
 from swgpar.input.toml_file import apply_overrides, read_toml, validate
 from swgpar.log import logger
-from swgpar.results.atomic import agreed
-from swgpar.results.folder import prepare
+from swgpar.results.figure_set import Drawings, NamedFigures
+from swgpar.results.folder import open_log, prepare
 from swgpar.version import __version__
 
 SECTION = "gear_train"
@@ -36,7 +36,8 @@ class TrainModel:
     """A kind of gear train.
 
     design : its design file;  check_fit : refuses values that do not fit each other
-    quantities : what can be compared;  derived : for `swgpar check`;  compute : all results;  draw : all figures
+    quantities : what can be compared;  derived : for `swgpar check`
+    compute : all results;  drawings : all figures of a result
     """
 
     design: type[TrainDesign]
@@ -44,11 +45,11 @@ class TrainModel:
     quantities: Callable[[Any], Quantities]
     derived: Callable[[Any], dict[str, float]]
     compute: Callable[[Any, MPI.Comm], TrainResult]
-    draw: Callable[[Path, dict[str, Any]], list[Path]]
+    drawings: Callable[[TrainResult], Drawings]
 
 
 def _model(package: ModuleType, design: type[TrainDesign]) -> TrainModel:
-    return TrainModel(design, package.check_fit, package.quantities, package.derived, package.compute, package.draw)
+    return TrainModel(design, package.check_fit, package.quantities, package.derived, package.compute, package.drawings)
 
 
 MODELS = {
@@ -91,37 +92,66 @@ def model_of(design: TrainDesign) -> TrainModel:
 
 
 def run_train(
-    design: TrainDesign, out_dir: str | Path, *, overwrite: bool = False, comm: MPI.Comm = MPI.COMM_WORLD
-) -> list[dict[str, Any]]:
-    """Compute a gear train and write its results to `out_dir`; collective.
+    design: TrainDesign,
+    out: str | Path | None = None,
+    *,
+    overwrite: bool = False,
+    comm: MPI.Comm = MPI.COMM_WORLD,
+    terminal: bool = False,
+) -> TrainResult:
+    """Compute a gear train; collective.
 
-    Returns the rows of published.csv on all ranks. Raises InputError, OutputError or ConvergenceError on all ranks.
+    Parameters
+    ----------
+    out : results folder; None keeps everything in memory
+    overwrite : replace results that the folder already holds
+    terminal : whether rank 0 reports on the terminal
+
+    Raises
+    ------
+    InputError, OutputError, ConvergenceError
+        On all ranks.
     """
-    out, begin, model = Path(out_dir), time.perf_counter(), model_of(design)
-    prepare(out, comm, False, overwrite)
-    log.start(comm)
-    with agreed(comm, out / "run.log"):
-        log.to_file(out / "run.log", comm)
-    result = model.compute(design, comm)
-    compared = compare(design.published, result.quantities, model.quantities(design))
-    summary = {
-        "quantities": dict(result.quantities),
-        **result.summary,
-        "ranks": comm.size,
-        "versions": {
-            "swgpar": __version__,
-            "python": platform.python_version(),
-            "numpy": np.__version__,
-            "scipy": scipy.__version__,
+    folder, begin, model = None if out is None else Path(out), time.perf_counter(), model_of(design)
+    if folder is not None:
+        prepare(folder, comm, False, overwrite)
+    log.start(comm, terminal=terminal)
+    open_log(folder, comm)
+    computed = model.compute(design, comm)
+    seconds = comm.bcast(time.perf_counter() - begin)
+    result = replace(
+        computed,
+        summary={
+            "quantities": dict(computed.quantities),
+            **computed.summary,
+            "ranks": comm.size,
+            "versions": _versions(),
+            "wall_s": seconds,
+            "design": design.model_dump(),
         },
-        "wall_s": time.perf_counter() - begin,
-        "design": design.model_dump(),
+        compared=compare(design.published, computed.quantities, model.quantities(design)),
+        folder=folder,
+    )
+    if folder is not None:
+        write(result, folder, comm)
+    logger.info("finished in %.1f s on %d ranks", seconds, comm.size)
+    return _with_figures(result)
+
+
+def open_train(folder: Path) -> TrainResult:
+    """Result of a finished run from its folder; every rank reads the files."""
+    return _with_figures(read(folder))
+
+
+def _with_figures(result: TrainResult) -> TrainResult:
+    model = MODELS[result.summary["design"][SECTION]["model"]]
+    return replace(result, plot=NamedFigures(model.drawings(result)))
+
+
+def _versions() -> dict[str, str]:
+    return {
+        "swgpar": __version__,
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "scipy": scipy.__version__,
     }
-    write(TrainResult(result.history, result.tables, result.quantities, summary), compared, out, comm)
-    logger.info("finished in %.1f s on %d ranks", summary["wall_s"], comm.size)
-    return compared
-
-
-def train_figures(out: Path, summary: dict[str, Any]) -> list[Path]:
-    """Draw all figures of a finished run into out/figures; call it on one rank. summary : content of summary.json"""
-    return MODELS[summary["design"][SECTION]["model"]].draw(out, summary)

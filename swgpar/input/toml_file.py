@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -45,12 +45,29 @@ def parse_value(text: str) -> Any:
     return table["value"] if set(table) == {"value"} else text
 
 
-def apply_overrides(table: dict[str, Any], overrides: Sequence[str]) -> dict[str, Any]:
-    """Return a copy of `table` with each ``section.key=value`` of `overrides` set, in order."""
+Overrides = Sequence[str] | Mapping[str, Any]
+"""Values for keys of a design file: texts ``"section.key=value"``, or a mapping from ``"section.key"`` to the value."""
+
+
+def apply_overrides(table: dict[str, Any], overrides: Overrides) -> dict[str, Any]:
+    """Return a copy of `table` with the keys of `overrides` set, in order."""
+    if isinstance(overrides, Mapping):
+        values = {key: _plain(value) for key, value in overrides.items()}
+        for key, value in values.items():
+            table = with_value(table, key, value)
+        return table
     for override in overrides:
         key, text = split_override(override)
         table = with_value(table, key, parse_value(text))
     return table
+
+
+def _plain(value: Any) -> Any:
+    """A value as TOML would give it: no NumPy numbers, arrays or tuples."""
+    value = value.tolist() if hasattr(value, "tolist") else value
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    return {key: _plain(item) for key, item in value.items()} if isinstance(value, Mapping) else value
 
 
 def split_override(override: str) -> tuple[str, str]:

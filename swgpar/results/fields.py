@@ -23,11 +23,23 @@ MESH = "mesh"
 
 
 def increment_name(index: int) -> str:
+    """Name of the part file of increment `index`, from 1."""
     return f"increment_{index:04d}"
 
 
 TENSOR6 = [0, 3, 5, 1, 4, 2]
 """Components xx yy zz xy yz zx in XDMF's order xx xy xz yy yz zz."""
+
+
+def stored(name: str, values: np.ndarray) -> np.ndarray:
+    """Nodal values (n_sectors, n_local[, n_components]) in the form in which they are kept, on disk and in memory.
+
+    Tensors have the components xx xy xz yy yz zz. Displacements are float64, all other fields float32.
+    """
+    if values.ndim == 3 and values.shape[2] == 6:
+        values = values[..., TENSOR6]
+    kind = np.float64 if name == "displacement" else np.float32
+    return np.ascontiguousarray(values.reshape(-1, *values.shape[2:]), dtype=kind)
 
 
 class FieldWriter:
@@ -78,13 +90,7 @@ class FieldWriter:
         for body, (values, first, total) in fields.items():
             for name, array in values.items():
                 n_local = array.shape[1]
-                if array.ndim == 3 and array.shape[2] == 6:
-                    array = array[..., TENSOR6]
-                rows = array.reshape(-1, *array.shape[2:])
-                kind = np.float64 if name == "displacement" else np.float32
-                blocks[f"{body}/{name}"] = Block(
-                    np.ascontiguousarray(rows, dtype=kind), first * n_local, total * n_local
-                )
+                blocks[f"{body}/{name}"] = Block(stored(name, array), first * n_local, total * n_local)
         parallel_hdf5.write(self.out / FOLDER / f"{increment_name(index)}.h5", self.comm, blocks)
 
     def write_index(self, increments: Sequence[tuple[int, float]], names: Mapping[str, Mapping[str, int]]) -> None:

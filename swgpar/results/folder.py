@@ -6,6 +6,7 @@ from pathlib import Path
 
 from mpi4py import MPI
 
+from swgpar import log
 from swgpar.errors import OutputError
 from swgpar.results import checkpoint, history
 from swgpar.results.atomic import TEMPORARY, agreed, discard, write_file
@@ -16,6 +17,8 @@ RECIPE = "recipe.toml"
 
 TABLES = "tables"
 """Folder of the tables that a gear train adds to its history."""
+
+LOG = "run.log"
 
 RESULTS = (
     history.NAME,
@@ -28,9 +31,17 @@ RESULTS = (
     "fields.h5",
     f"{FOLDER}/*.h5",
     "figures/*.png",
-    "run.log",
+    LOG,
 )
 """What `overwrite` removes."""
+
+
+def open_log(out: Path | None, comm: MPI.Comm) -> None:
+    """Send the log into run.log of the folder from now on, or into no file; collective."""
+    log.close_file()
+    if out is not None:
+        with agreed(comm, out / LOG):
+            log.to_file(out / LOG, comm)
 
 
 def prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> bool:

@@ -4,13 +4,19 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 NAME = "history.csv"
+
+LOADED, FIRST_ROTATION = 3, 4
+"""Values of the column `step`: of the loaded state, and of the first increment of the rotation."""
+
+Row = dict[str, Any]
+"""One increment: a value for every column."""
 
 UNITS = {
     "step": "",
@@ -57,6 +63,12 @@ def format_rows(rows: Iterable[Mapping[str, Any]]) -> bytes:
     return text.getvalue().encode()
 
 
+def columns(rows: Sequence[Mapping[str, Any]]) -> dict[str, np.ndarray]:
+    """The history by columns, each (n,): int64 for `step` and for counts, else float64."""
+    whole = _WHOLE | _TEXT
+    return {name: np.array([row[name] for row in rows], dtype=np.int64 if name in whole else float) for name in COLUMNS}
+
+
 def read_history(path: Path) -> list[dict[str, Any]]:
     """Rows of a history.csv."""
     with open(path, newline="", encoding="utf-8") as file:
@@ -66,3 +78,27 @@ def read_history(path: Path) -> list[dict[str, Any]]:
 def column(rows: Iterable[Mapping[str, Any]], name: str) -> np.ndarray:
     """One column as (n,) float64."""
     return np.array([row[name] for row in rows], dtype=float)
+
+
+def transmission_error(wg_angle: np.ndarray, output_angle: np.ndarray, ratio: float) -> np.ndarray:
+    """Angle of the output less its kinematic value, (n,) arc seconds.
+
+    Parameters
+    ----------
+    wg_angle, output_angle : (n,) degrees; that of the output may be given within half a turn
+    ratio : speed of the wave generator over that of the output
+    """
+    error = output_angle - wg_angle / ratio
+    return 3600.0 * (error - 360.0 * np.round(error / 360.0))
+
+
+def loaded_increments(history: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Indices of the increments under load, the last of the loading and all of the rotation; all where there are none.
+
+    history : columns, as `columns` gives them
+    """
+    step = history["step"]
+    rotation = np.flatnonzero(step >= FIRST_ROTATION)
+    last_of_loading = np.flatnonzero(step == LOADED)[-1:]
+    found = np.concatenate([last_of_loading, rotation])
+    return found if len(found) else np.arange(len(step))

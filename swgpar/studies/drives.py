@@ -9,7 +9,9 @@ from typing import Any
 
 from mpi4py import MPI
 
-from swgpar.analysis.run_drive import MEANS, identity, run_drive
+from swgpar.analysis.restart import identity
+from swgpar.analysis.run_drive import run_drive
+from swgpar.analysis.summary import MEANS
 from swgpar.design.design_file import make_design
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import load_sequence

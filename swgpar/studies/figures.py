@@ -7,9 +7,8 @@ import textwrap
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-from swgpar.analysis.run_drive import FIRST_ROTATION
 from swgpar.results import history
-from swgpar.results.history import UNITS
+from swgpar.results.history import FIRST_ROTATION, UNITS
 from swgpar.studies.drives import MEANINGS
 from swgpar.studies.system import Case, Outcome, Quantity
 from swgpar.studies.table import by_case, shown, shown_quantities

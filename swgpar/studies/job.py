@@ -14,11 +14,12 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from swgpar import log
-from swgpar.analysis.figures import make_figures
 from swgpar.errors import InputError, SwgparError
 from swgpar.log import logger
 from swgpar.results.atomic import agreed, sentence, to_json, write_file, write_from_root
+from swgpar.results.figure_set import save_figures
 from swgpar.studies.system import Job, Outcome
+from swgpar.systems import system_of
 
 STATUS = "status.json"
 """In the folder of a job: status ("started", "failed", "finished"), identity of what is computed, reason."""
@@ -105,11 +106,8 @@ def _finished(job: Job, folder: Path, comm: MPI.Comm) -> Outcome:
 
 
 def _figures(job: Job, folder: Path, comm: MPI.Comm) -> None:
-    if comm.rank == 0 and job.case.design.output.figures:
-        try:
-            make_figures(folder)
-        except Exception as error:  # a picture that fails must not cost the case
-            logger.warning("figures could not be drawn: %s", error)
+    if job.case.design.output.figures:
+        save_figures(system_of(job.case.design).open(folder).plot, folder, comm)
 
 
 def _release(comm: MPI.Comm) -> None:

@@ -5,7 +5,7 @@ Source: a master's thesis on the cascade gearbox, KTH Royal Institute of Technol
 """
 
 from swgpar.gear_trains.cascade.design import CascadeDesign, check_fit
-from swgpar.gear_trains.cascade.figures import draw
+from swgpar.gear_trains.cascade.figures import drawings
 from swgpar.gear_trains.cascade.run import compute, derived, quantities
 
-__all__ = ["CascadeDesign", "check_fit", "compute", "derived", "draw", "quantities"]
+__all__ = ["CascadeDesign", "check_fit", "compute", "derived", "drawings", "quantities"]

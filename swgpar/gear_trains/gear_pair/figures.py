@@ -2,31 +2,33 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Any
+from functools import partial
+from typing import TYPE_CHECKING
 
-from swgpar.gear_trains.drawing import axes, save
+from swgpar.gear_trains.drawing import axes
 from swgpar.gear_trains.linearisation import EQUIVALENT
-from swgpar.gear_trains.result import read_table
-from swgpar.results import history
-from swgpar.results.table import read_columns
+from swgpar.gear_trains.result import TrainResult
+from swgpar.results.figure_set import Drawings
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 STYLES = {"monte_carlo": ("k-", "Monte Carlo"), "energy": ("C0--", "energy-based"), "force": ("C1:", "force-based")}
 VALUES = ("y1", "y2", "z", "mesh")
 
 
-def draw(out: Path, summary: dict[str, Any]) -> list[Path]:
-    """All figures of a run, into out/figures."""
-    load = summary["design"]["load"]
-    made = []
+def drawings(result: TrainResult) -> Drawings:
+    """All figures of a run."""
+    load, half = result.summary["design"]["load"], result.summary["half_backlash_um"]
+    found = {}
     for case, torque in enumerate(load["input"], start=1):
-        made += [_moments(out, case, torque, value) for value in VALUES]
-        made.append(_density(out, case, torque, summary["half_backlash_um"]))
-    return made
+        found |= {f"case_{case}_{value}": partial(_moments, result, case, torque, value) for value in VALUES}
+        found[f"case_{case}_density"] = partial(_density, result, case, torque, half)
+    return found
 
 
-def _moments(out: Path, case: int, torque: float, value: str) -> Path:
-    table = read_columns(out / history.NAME)
+def _moments(result: TrainResult, case: int, torque: float, value: str) -> Figure:
+    table = result.history
     rows = table["case"] == case
     title = f"{'way of the mesh' if value == 'mesh' else value}, input torque {torque:g} N·m"
     figure, panels = axes(title, "time (s)", "mean (µm)", "standard deviation (µm)")
@@ -34,11 +36,11 @@ def _moments(out: Path, case: int, torque: float, value: str) -> Path:
         for method, (style, name) in STYLES.items():
             axis.plot(table["time_s"][rows], table[f"{method}_{kind}_{value}_um"][rows], style, label=name)
     panels[0].legend(fontsize=8)
-    return save(figure, out, f"case_{case}_{value}")
+    return figure
 
 
-def _density(out: Path, case: int, torque: float, half: float) -> Path:
-    table = read_table(out, f"density_{case}")
+def _density(result: TrainResult, case: int, torque: float, half: float) -> Figure:
+    table = result.tables[f"density_{case}"]
     figure, (axis,) = axes(
         f"density of the mesh's way at the end, input torque {torque:g} N·m", "way of the mesh (µm)", "density (1/µm)"
     )
@@ -49,4 +51,4 @@ def _density(out: Path, case: int, torque: float, half: float) -> Path:
     axis.axvspan(-half, half, color="0.9", label="backlash")
     axis.set_xlim(table["mesh_way_um"][0], table["mesh_way_um"][-1])
     axis.legend(fontsize=8)
-    return save(figure, out, f"case_{case}_density")
+    return figure

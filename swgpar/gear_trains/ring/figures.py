@@ -2,35 +2,37 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Any
+from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from swgpar.gear_trains.drawing import axes, save
-from swgpar.gear_trains.result import read_table
-from swgpar.results import history
-from swgpar.results.table import read_columns
+from swgpar.gear_trains.drawing import axes
+from swgpar.gear_trains.result import TrainResult
+from swgpar.results.figure_set import Drawings
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 POINTS = {"moving_point": "point of the first load", "middle_node": "node between two supports"}
 SCALE = 0.15
 """Largest displacement of a drawn mode over the radius."""
 
 
-def draw(out: Path, summary: dict[str, Any]) -> list[Path]:
-    """All figures of a run, into out/figures."""
-    made = [_shapes(out)]
-    if summary["design"]["moving_load"] is not None:
-        made += [_speeds(out, point) for point in POINTS]
-        made += [_monte_carlo(out, point) for point in POINTS]
-        made.append(_critical(out))
-    return made
+def drawings(result: TrainResult) -> Drawings:
+    """All figures of a run."""
+    found = {"mode_shapes": partial(_shapes, result)}
+    if result.summary["design"]["moving_load"] is not None:
+        found |= {f"speeds_{point}": partial(_speeds, result, point) for point in POINTS}
+        found |= {f"monte_carlo_{point}": partial(_monte_carlo, result, point) for point in POINTS}
+        found["critical_speeds"] = partial(_critical, result)
+    return found
 
 
-def _shapes(out: Path) -> Path:
+def _shapes(result: TrainResult) -> Figure:
     from matplotlib.figure import Figure
 
-    modes, table = read_table(out, "modes"), read_table(out, "mode_shapes")
+    modes, table = result.tables["modes"], result.tables["mode_shapes"]
     count = sum(name.startswith("outward") for name in table)
     figure = Figure(figsize=(7.5, 2.6 * ((count + 2) // 3)), layout="constrained")
     angle = table["angle_rad"]
@@ -45,11 +47,11 @@ def _shapes(out: Path) -> Path:
         axis.plot(x, y, lw=1.5)
         axis.set_aspect("equal")
         axis.set_title(f"{modes['frequency_Hz'][k - 1]:.4g} Hz", fontsize=9)
-    return save(figure, out, "mode_shapes")
+    return figure
 
 
-def _speeds(out: Path, point: str) -> Path:
-    table = read_columns(out / history.NAME)
+def _speeds(result: TrainResult, point: str) -> Figure:
+    table = result.history
     figure, panels = axes(POINTS[point], "angle of the first load (rad)", "mean (µm)", "standard deviation (µm)")
     for speed in dict.fromkeys(table["speed_rad_s"].tolist()):
         rows = table["speed_rad_s"] == speed
@@ -58,11 +60,11 @@ def _speeds(out: Path, point: str) -> Path:
                 table["angle_rad"][rows], 1e6 * table[f"{kind}_{point}_m"][rows], lw=0.9, label=f"{speed:g} rad/s"
             )
     panels[0].legend(fontsize=8)
-    return save(figure, out, f"speeds_{point}")
+    return figure
 
 
-def _monte_carlo(out: Path, point: str) -> Path:
-    table, simulated = read_columns(out / history.NAME), read_table(out, "monte_carlo")
+def _monte_carlo(result: TrainResult, point: str) -> Figure:
+    table, simulated = result.history, result.tables["monte_carlo"]
     speed = table["speed_rad_s"][0]
     rows = table["speed_rad_s"] == speed
     title = f"{POINTS[point]}, {speed:g} rad/s"
@@ -71,11 +73,11 @@ def _monte_carlo(out: Path, point: str) -> Path:
         axis.plot(simulated["angle_rad"], 1e6 * simulated[f"{kind}_{point}_m"], "k", lw=0.7, label="Monte Carlo")
         axis.plot(table["angle_rad"][rows], 1e6 * table[f"{kind}_{point}_m"][rows], "C0--", label="mean and covariance")
     panels[0].legend(fontsize=8)
-    return save(figure, out, f"monte_carlo_{point}")
+    return figure
 
 
-def _critical(out: Path) -> Path:
-    table = read_table(out, "critical_speeds")
+def _critical(result: TrainResult) -> Figure:
+    table = result.tables["critical_speeds"]
     panels = ("mean over that of the first", "deviation over that of the first")
     figure, (upper, lower) = axes("largest displacements against the speed", "speed (rad/s)", *panels)
     for k, (point, label) in enumerate(POINTS.items()):
@@ -84,4 +86,4 @@ def _critical(out: Path) -> Path:
         upper.plot(table["speed_rad_s"], still / mean[0], "k:", lw=0.9, label=None if k else "without inertia")
         lower.plot(table["speed_rad_s"], deviation / deviation[0], f"C{k}", lw=1.0)
     upper.legend(fontsize=8, ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1.0))  # the curves fill the panel
-    return save(figure, out, "critical_speeds")
+    return figure

@@ -1,0 +1,232 @@
+"""Result of a drive: history, summary, mesh and fields, in memory or from the files of a run."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from swgpar.analysis.figures import DriveFigures
+from swgpar.design.sections import GEARS, GearName
+from swgpar.errors import InputError, OutputError
+from swgpar.results import history
+from swgpar.results.field_sources import BodyMesh, FieldFiles, FieldSource, chosen_increment
+from swgpar.results.history import Row
+
+if TYPE_CHECKING:
+    import pyvista
+
+ROTATED = {"displacement": (-1.0, -1.0, 1.0), "stress": (1.0, 1.0, -1.0, 1.0, -1.0, 1.0)}
+"""Signs of the components of vectors, and of tensors xx xy xz yy yz zz, after half a turn about z."""
+
+
+SPLINE: GearName = "flexible_spline"
+
+
+class FlankPressure(NamedTuple):
+    """Contact pressure on the flanks of the flexible spline.
+
+    s : (n_s,) mm, arc length from the tip;  z : (n_z,) mm, along the face width
+    pressure : (teeth, 2, n_s, n_z) MPa, nodal means; the clockwise flank of every tooth first
+    """
+
+    s: np.ndarray
+    z: np.ndarray
+    pressure: np.ndarray
+
+
+class DriveResult:
+    """What a run of a drive gives; the same on every rank.
+
+    Every rank calls the methods together: fields that are in memory are gathered.
+
+    Attributes
+    ----------
+    history : dict of (n,) arrays
+        Columns of history.csv, a value for every increment, for example ``history["fs_s1"]`` in MPa.
+        ``pandas.DataFrame(result.history)`` makes a table of it.
+    summary : dict
+        Content of summary.json, among it ``means`` and ``maxima`` over the rotation, ``torque_ripple`` (of the input
+        torque, relative) and ``transmission_error_arcsec`` (peak to peak).
+    folder : Path or None
+        The results folder; None when the run was in memory.
+
+    Examples
+    --------
+    >>> result = swgpar.run(design, mesh="plane_coarse")
+    >>> result.history["wg_torque_Nmm"].mean(), result.summary["transmission_error_arcsec"]
+    >>> stress = result.field("vm", body="flexible_spline")
+    >>> result.plot.stress().savefig("stress.png")
+    """
+
+    def __init__(
+        self, rows: Sequence[Row], summary: dict[str, Any], fields: FieldSource | None, folder: Path | None = None
+    ) -> None:
+        self.history: dict[str, np.ndarray] = history.columns(rows)
+        self.summary = summary
+        self.folder = folder
+        self._fields = fields
+
+    def __repr__(self) -> str:
+        where = f" in {self.folder}" if self.folder else ""
+        return f"<DriveResult of {len(self.history['step'])} increments, {self.increments} with fields{where}>"
+
+    @property
+    def increments(self) -> int:
+        """Number of increments with fields; 0 with ``output.fields = false``."""
+        return len(self._fields.increments) if self._fields is not None else 0
+
+    @property
+    def field_rows(self) -> np.ndarray:
+        """Rows of the history that the increments with fields belong to; (increments,)."""
+        return np.array(self._fields.increments if self._fields is not None else [], dtype=np.int64) - 1
+
+    @property
+    def is_plane(self) -> bool:
+        """Whether the drive is a plane model."""
+        return self.summary["design"]["drive"]["model"] == "plane"
+
+    @property
+    def plot(self) -> DriveFigures:
+        """The figures: ``plot.stress()`` and so on return matplotlib figures, ``plot.names`` lists them."""
+        return DriveFigures(self)
+
+    def mesh(self, body: GearName = SPLINE) -> BodyMesh:
+        """Undeformed mesh of the modelled part of a body.
+
+        A drive with even tooth numbers is modelled by half of it. Nodes are numbered sector by sector, so that those
+        between two sectors appear twice. A plane model is one layer of elements.
+
+        Parameters
+        ----------
+        body : "flexible_spline" or "ring_gear"
+
+        Returns
+        -------
+        points : (n, 3) float64, mm
+        cells : (m, 8) int64, hexahedra in the order of VTK
+
+        Raises
+        ------
+        InputError
+            The run kept no fields, or there is no such body.
+        """
+        return self._source(body).mesh(body)
+
+    def names(self, body: GearName = SPLINE, increment: int = -1) -> tuple[str, ...]:
+        """Names of the fields of a body at an increment."""
+        source = self._source(body)
+        return source.names(body, chosen_increment(source, increment))
+
+    def field(self, name: str, increment: int = -1, body: GearName = SPLINE) -> np.ndarray:
+        """A nodal field.
+
+        Parameters
+        ----------
+        name : str
+            "displacement" (mm), "stress" (MPa; components xx xy xz yy yz zz), "s1", "s3", "vm" (MPa; largest and
+            smallest principal stress, von Mises stress), on the flexible spline also "pressure" (MPa; contact).
+        increment : int
+            Number of the increment among those with fields, from 0; negative ones count from the end.
+        body : "flexible_spline" or "ring_gear"
+
+        Returns
+        -------
+        (n,) or (n, components) array
+            A value for every node of ``mesh(body)``, the same on every rank.
+
+        Raises
+        ------
+        InputError
+            There is no such field, increment or body.
+        """
+        source = self._source(body)
+        number = chosen_increment(source, increment)
+        known = source.names(body, number)
+        if name not in known:
+            raise InputError(f"field {name!r} is not available on {body}: allowed {', '.join(known)}")
+        return source.read(body, name, number)
+
+    def flank_pressure(self, increment: int = -1) -> FlankPressure:
+        """Contact pressure on the flanks of the modelled teeth of the flexible spline.
+
+        increment : as in `field`
+        """
+        pressure = self.field("pressure", increment)
+        grids = self._source(SPLINE).flanks(SPLINE)
+        counts, design = self.summary["bodies"][SPLINE], self.summary["design"]
+        teeth = counts["elements"] // (counts["elements_whole"] // design["drive"]["teeth_fs"])
+        return FlankPressure(grids.s, grids.z, pressure.reshape(teeth, -1)[:, grids.nodes])
+
+    def grid(
+        self, increment: int = -1, body: GearName | None = None, *, whole: bool = False
+    ) -> pyvista.UnstructuredGrid:
+        """Undeformed mesh with all fields of an increment as point data.
+
+        ``grid.warp_by_vector("displacement")`` is the deformed drive.
+
+        Parameters
+        ----------
+        increment : as in `field`
+        body : "flexible_spline", "ring_gear", or None for both
+            With both, the cell data "body" is 0 for the flexible spline and 1 for the ring gear; a field that a body
+            does not have is NaN there.
+        whole : bool
+            Add the half that symmetry left out, if the model is half of the drive.
+        """
+        import pyvista
+
+        bodies = GEARS if body is None else (body,)
+        parts = [self._part(name, increment) for name in bodies]
+        if whole and self.summary["twofold_symmetry"]:
+            parts += [_rotated(*part) for part in parts]
+            bodies = (*bodies, *bodies)
+        first = np.cumsum([0, *(len(points) for points, _, _ in parts)])
+        cells = np.concatenate([cells + start for start, (_, cells, _) in zip(first, parts, strict=False)])
+        kinds = np.full(len(cells), pyvista.CellType.HEXAHEDRON)
+        grid = pyvista.UnstructuredGrid(
+            np.hstack([np.full((len(cells), 1), 8), cells]).ravel(), kinds, np.concatenate([part[0] for part in parts])
+        )
+        for name, example in {name: values for *_, fields in parts for name, values in fields.items()}.items():
+            missing = np.nan * np.empty((1, *example.shape[1:]), dtype=example.dtype)
+            grid.point_data[name] = np.concatenate(
+                [fields.get(name, np.repeat(missing, len(points), axis=0)) for points, _, fields in parts]
+            )
+        numbers = [np.full(len(part[1]), GEARS.index(name)) for name, part in zip(bodies, parts, strict=True)]
+        grid.cell_data["body"] = np.concatenate(numbers)
+        return grid
+
+    def _part(self, body: GearName, increment: int) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
+        points, cells = self.mesh(body)
+        return points, cells, {name: self.field(name, increment, body) for name in self.names(body, increment)}
+
+    def _source(self, body: GearName) -> FieldSource:
+        if body not in GEARS:
+            raise InputError(f"body {body!r} is not available: allowed {' or '.join(GEARS)}")
+        if self._fields is None or not self._fields.increments:
+            raise InputError("this run kept no fields: allowed with output.fields = true")
+        return self._fields
+
+
+def _rotated(
+    points: np.ndarray, cells: np.ndarray, fields: dict[str, np.ndarray]
+) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
+    """A part of the drive after half a turn about z."""
+    turned = {
+        name: values * np.array(ROTATED[name], values.dtype) if name in ROTATED else values
+        for name, values in fields.items()
+    }
+    return points * np.array(ROTATED["displacement"]), cells, turned
+
+
+def open_drive(folder: Path) -> DriveResult:
+    """Result of a finished run from its folder; every rank reads the files."""
+    for name in (history.NAME, "summary.json"):
+        if not (folder / name).exists():
+            raise OutputError(f"{folder} has no {name}: allowed are the folders of finished runs")
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    fields = FieldFiles(folder) if (folder / "fields.h5").exists() else None
+    return DriveResult(history.read_history(folder / history.NAME), summary, fields, folder)

@@ -1,0 +1,170 @@
+"""What a run keeps of its increments: on disk in a results folder, or in memory."""
+
+from __future__ import annotations
+
+import json
+from abc import ABC, abstractmethod
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from swgpar.analysis.coarse_start import Level
+from swgpar.analysis.contact_pressure import nodal_pressure
+from swgpar.analysis.drive_model import DriveModel
+from swgpar.analysis.drive_result import DriveResult, open_drive
+from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.analysis.restart import write_state
+from swgpar.analysis.summary import Accuracy
+from swgpar.design.sections import GEARS
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.meshing import SectorMesh
+from swgpar.results import history
+from swgpar.results.atomic import to_json, write_from_root
+from swgpar.results.field_sources import BodyPart, FieldParts, FlankGrids
+from swgpar.results.fields import FieldWriter
+from swgpar.results.history import Row
+
+NodalFields = dict[str, dict[str, np.ndarray]]
+"""Body -> name of the field -> values (n_sectors, n_local[, n_components]) of the owned sectors."""
+
+
+class Recorder(ABC):
+    """Rows of the history and how the mesh was chosen; how fields and rows are kept is that of the two kinds.
+
+    Every call is collective.
+
+    Attributes
+    ----------
+    rows : history of the increments computed so far
+    coarser : level that the run started from, if it started on a coarser mesh
+    accuracy : what was asked for and reached, if an accuracy was asked for
+    """
+
+    def __init__(self, model: DriveModel) -> None:
+        self.model, self.comm = model, model.comm
+        self.rows: list[Row] = []
+        self.coarser: Level | None = None
+        self.accuracy: Accuracy | None = None
+
+    def record(self, stepper: LoadStepper, seconds: float, elapsed: float) -> None:
+        """Keep the state after an increment.
+
+        seconds : wall time of the increment;  elapsed : of the whole run, restarts included
+        """
+        model = self.model
+        with model.phases("stress"):
+            values, body_fields = model.stresses()
+        self.rows.append(history.plain_row({**stepper.row(), **values, "wall_s": seconds}))
+        with model.phases("output"):
+            fields = dict(zip(GEARS, body_fields, strict=True))
+            if model.design.output.fields:
+                spline = model.elements.bodies[FLEXIBLE_SPLINE]
+                fields[spline.layout.name]["pressure"] = nodal_pressure(model.problem, stepper.load_state, spline)
+            self._keep(stepper, fields, elapsed)
+
+    @abstractmethod
+    def begin(self) -> None:
+        """Keep the undeformed mesh, if the design asks for fields."""
+
+    @abstractmethod
+    def _keep(self, stepper: LoadStepper, fields: NodalFields, elapsed: float) -> None:
+        """Keep the last of `rows`, and the fields if the design asks for them."""
+
+    @abstractmethod
+    def finish(self, rows: list[Row], summary: dict[str, Any]) -> DriveResult:
+        """The result, with the whole history `rows` and the summary."""
+
+
+class MemoryRecorder(Recorder):
+    """Keeps everything in memory: each rank the fields of the sectors that it owns."""
+
+    def __init__(self, model: DriveModel) -> None:
+        super().__init__(model)
+        self._parts: FieldParts | None = None
+
+    def begin(self) -> None:
+        if not self.model.design.output.fields:
+            return
+        bodies = {}
+        for k, body in enumerate(self.model.elements.bodies):
+            mesh, (first, _) = body.layout.mesh, self.model.partition.owned_sectors(k)
+            bodies[mesh.body] = BodyPart(
+                points=body.positions()[body.owned],
+                cells=mesh.hexes.astype(np.int64),
+                first=first,
+                total=body.layout.count,
+                flanks=_flank_grids(mesh),
+            )
+        self._parts = FieldParts(self.comm, bodies)
+
+    def _keep(self, stepper: LoadStepper, fields: NodalFields, elapsed: float) -> None:
+        if self._parts is not None:
+            self._parts.keep(len(self.rows), fields)
+
+    def finish(self, rows: list[Row], summary: dict[str, Any]) -> DriveResult:
+        summary, rows = self.comm.bcast((json.loads(to_json(summary)), rows))
+        return DriveResult(rows, summary, self._parts)
+
+
+class FolderRecorder(Recorder):
+    """Keeps everything on disk, complete after every increment.
+
+    Parameters
+    ----------
+    model : the drive
+    out : results folder
+    identity : of what is computed, for restarts
+    """
+
+    def __init__(self, model: DriveModel, out: Path, identity: str) -> None:
+        super().__init__(model)
+        self.out, self.identity = out, identity
+        self.names: dict[str, dict[str, int]] = {}
+        self._writer = FieldWriter(out, self.comm) if model.design.output.fields else None
+
+    def begin(self) -> None:
+        if self._writer is None:
+            return
+        bodies, extra = {}, {}
+        for k, body in enumerate(self.model.elements.bodies):
+            mesh, (first, _) = body.layout.mesh, self.model.partition.owned_sectors(k)
+            bodies[mesh.body] = (body.positions()[body.owned], mesh.hexes.astype(np.int64), first, body.layout.count)
+            grids = _flank_grids(mesh)
+            extra |= {f"{mesh.body}/flank_{name}": values for name, values in grids._asdict().items()}
+        self._writer.write_mesh(bodies, extra)
+
+    def _keep(self, stepper: LoadStepper, fields: NodalFields, elapsed: float) -> None:
+        """Write the fields, the history and the checkpoint, in this order: the checkpoint marks all as complete."""
+        if self._writer is not None:
+            self.names = {
+                body: {name: a.shape[2] if a.ndim == 3 else 1 for name, a in values.items()}
+                for body, values in fields.items()
+            }
+            ranges = {
+                body.layout.name: (self.model.partition.owned_sectors(k)[0], body.layout.count)
+                for k, body in enumerate(self.model.elements.bodies)
+            }
+            self._writer.write_increment(
+                len(self.rows), {name: (values, *ranges[name]) for name, values in fields.items()}
+            )
+        self.write_index()
+        write_state(self, stepper, {body: values["displacement"] for body, values in fields.items()}, elapsed)
+
+    def write_index(self) -> None:
+        """Write the index of the fields, and the history."""
+        if self._writer is not None:
+            # increments computed with output.fields = false have no fields, and a restart may ask for them
+            written = [(i, row["wg_angle_deg"]) for i, row in enumerate(self.rows, start=1) if self._writer.has(i)]
+            self._writer.write_index(self.comm.bcast(written), self.names)
+        write_from_root(self.comm, self.out / history.NAME, history.format_rows(self.rows))
+
+    def finish(self, rows: list[Row], summary: dict[str, Any]) -> DriveResult:
+        if len(rows) > len(self.rows):
+            write_from_root(self.comm, self.out / history.NAME, history.format_rows(rows))
+        write_from_root(self.comm, self.out / "summary.json", to_json(summary))
+        return open_drive(self.out)
+
+
+def _flank_grids(mesh: SectorMesh) -> FlankGrids:
+    return FlankGrids(np.array([grid.nodes for grid in mesh.flanks]), mesh.flanks[0].s, mesh.flanks[0].z)

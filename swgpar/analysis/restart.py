@@ -1,0 +1,128 @@
+"""Checkpoint of a run: what is written after every increment, and how a run continues from it."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from swgpar.analysis.coarse_start import Level
+from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.analysis.summary import Accuracy
+from swgpar.contact import friction
+from swgpar.design.drive_design import DriveDesign
+from swgpar.design.load_states import LoadState, from_loaded
+from swgpar.errors import InputError
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.vectors import write_field
+from swgpar.meshing import MeshRecipe
+from swgpar.results import checkpoint
+from swgpar.results.atomic import to_json
+
+if TYPE_CHECKING:
+    from swgpar.analysis.recorder import FolderRecorder
+
+SOLVER_CHOICES = {"linear", "keep_factor", "far_teeth"}
+"""Keys of [solver] that a restart may change: they are about how systems are solved."""
+
+
+def identity(design: DriveDesign, recipe: MeshRecipe, accuracy: float | None) -> str:
+    """Identity of what is computed: everything but the output, the rotation and how systems are solved."""
+    content = design.model_dump(exclude={"output": True, "steps": {"rotation"}, "solver": SOLVER_CHOICES})
+    content = {"design": content, "recipe": recipe.model_dump(), "accuracy": accuracy}
+    return hashlib.sha256(to_json(content)).hexdigest()
+
+
+def write_state(
+    recorder: FolderRecorder, stepper: LoadStepper, displacement: Mapping[str, np.ndarray], elapsed: float
+) -> None:
+    """Write the checkpoint of the present state; collective.
+
+    displacement : body -> (n_sectors, n_local, 3) mm of the owned sectors;  elapsed : wall seconds of the whole run
+    """
+    model, problem = recorder.model, recorder.model.problem
+    blocks = {}
+    for k, body in enumerate(model.elements.bodies):
+        first, _ = model.partition.owned_sectors(k)
+        blocks[body.layout.name] = (np.ascontiguousarray(displacement[body.layout.name]), first, body.layout.count)
+    if model.design.contact.friction:
+        first, end = model.partition.owned_sectors(FLEXIBLE_SPLINE)
+        for name, values in problem.flanks.traction_rows(first, end).items():
+            blocks[name] = values, first, model.partition.layouts[FLEXIBLE_SPLINE].count
+    state = {
+        "identity": recorder.identity,
+        "done": len(recorder.rows),
+        "rows": recorder.rows,
+        "names": recorder.names,
+        "load_state": stepper.load_state.to_dict(),
+        "multipliers": problem.multipliers().tolist(),
+        "wall_s": elapsed,
+        "phases_s": model.phases.slowest(model.comm),
+        "coarser": recorder.coarser and asdict(recorder.coarser),
+        "accuracy": recorder.accuracy and asdict(recorder.accuracy),
+    }
+    checkpoint.write_checkpoint(recorder.out, model.comm, blocks, state)
+
+
+def resume(recorder: FolderRecorder, stepper: LoadStepper, items: list[LoadState]) -> tuple[list[LoadState], float]:
+    """Bring back the state of the checkpoint, on any number of ranks; collective.
+
+    items : the sequence that is to be continued. Returns those of it that the run consists of, without the first
+    ones where they were computed on other meshes, and the wall seconds spent so far.
+    """
+    model, path = recorder.model, recorder.out / checkpoint.NAME
+    _, state = checkpoint.read_checkpoint(path, model.comm)
+    if state.get("identity") != recorder.identity:
+        raise InputError(
+            f"--restart: {path} belongs to another design, recipe, --accuracy or solver setting; allowed are the "
+            "same ones, only steps.rotation, the output, solver.linear, keep_factor and far_teeth may differ"
+        )
+    last = _last_state(path, state)
+    if state["coarser"] or state["accuracy"]:
+        items = from_loaded(items)
+    if state["done"] > len(items) or items[state["done"] - 1] != last:
+        raise InputError(
+            f"--restart: steps.rotation = {model.design.steps.rotation:g} does not continue {path}, which "
+            f"ends at {np.degrees(last.angle):g} degrees; allowed are values with this angle among their increments"
+        )
+    _restore_vector(recorder, state)
+    recorder.rows, recorder.names = state["rows"], state["names"]
+    recorder.coarser = state["coarser"] and Level(**state["coarser"])
+    recorder.accuracy = state["accuracy"] and Accuracy(**state["accuracy"])
+    stepper.resume_at(last)
+    for name, value in state["phases_s"].items():
+        model.phases.seconds[name] += value
+    recorder.write_index()
+    return items, float(state["wall_s"])
+
+
+def _last_state(path: Path, state: dict[str, Any]) -> LoadState:
+    try:
+        return LoadState.from_dict(state["load_state"])
+    except (KeyError, TypeError):
+        raise InputError(f"--restart: {path} was written by another version of swgpar: start again") from None
+
+
+def _restore_vector(recorder: FolderRecorder, state: dict[str, Any]) -> None:
+    """Displacements, multipliers and friction's history of the checkpoint."""
+    model, path = recorder.model, recorder.out / checkpoint.NAME
+    ranges = {}
+    for k, body in enumerate(model.elements.bodies):
+        first, end = model.partition.owned_sectors(k)
+        ranges[body.layout.name] = (first, end - first)
+    arrays, _ = checkpoint.read_checkpoint(path, model.comm, ranges)
+    x = model.problem.x
+    for k, body in enumerate(model.elements.bodies):
+        first, end = model.partition.owned_sectors(k)
+        write_field(model.partition, k, np.arange(first, end), arrays[body.layout.name], x)
+    if model.comm.rank == model.comm.size - 1:
+        x.array[-model.partition.n_multipliers :] = state["multipliers"]
+    if model.design.contact.friction:
+        # a rank needs the flanks that its ring teeth face too
+        indices = (0, model.partition.layouts[FLEXIBLE_SPLINE].count)
+        rows, _ = checkpoint.read_checkpoint(path, model.comm, dict.fromkeys(friction.ROWS, indices))
+        model.problem.resume(friction.from_rows(rows))

@@ -1,0 +1,139 @@
+"""Summary of a run: sizes, means and extremes over the rotation, error estimates; the content of summary.json."""
+
+from __future__ import annotations
+
+import platform
+import resource
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from petsc4py import PETSc
+
+from swgpar.analysis.coarse_start import Level
+from swgpar.analysis.drive_model import DriveModel
+from swgpar.analysis.error_estimate import estimate
+from swgpar.analysis.period import of_period, sampling_error
+from swgpar.results.history import FIRST_ROTATION, Row, column, transmission_error
+from swgpar.version import __version__
+
+STRESSES = ("fs_s1", "fs_s3", "fs_vm", "rg_s1", "rg_s3", "rg_vm")
+"""Columns of the history with the largest stresses of both bodies."""
+
+INPUT_TORQUE = "wg_torque_Nmm"
+
+MEANS = (*STRESSES, INPUT_TORQUE)
+"""Columns of the history whose means and maxima over the rotation are taken."""
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """Relative accuracy of the largest tensile stress under load.
+
+    asked : what was asked for;  estimated : by mesh refinement;  reached : whether the estimate is small enough
+    mesh_error : estimated errors of all largest stresses, MPa
+    """
+
+    asked: float
+    estimated: float
+    reached: bool
+    mesh_error: dict[str, float]
+
+
+def mesh_error(rows: Sequence[Row], elements: int, coarser: Level, dimensions: int) -> dict[str, float]:
+    """Estimated errors (MPa) of the loaded state's largest stresses, from this mesh and the next coarser one."""
+    found = {
+        name: estimate(value, rows[0][name], coarser.elements, elements, dimensions)
+        for name, value in coarser.stresses.items()
+    }
+    return {name: value.error for name, value in found.items() if value is not None}
+
+
+def over_rotation(rows: Sequence[Row], ratio: float) -> dict[str, Any]:
+    """Means, maxima, torque ripple and transmission error over the increments `rows` of the rotation.
+
+    `torque_ripple` is the largest less the smallest input torque, over the mean; `transmission_error_arcsec` is the
+    largest less the smallest transmission error. ratio : speed of the wave generator over that of the output
+    """
+    if not rows:
+        return {"means": {}, "maxima": {}, "torque_ripple": None, "transmission_error_arcsec": None}
+    torque = column(rows, INPUT_TORQUE)
+    error = transmission_error(column(rows, "wg_angle_deg"), column(rows, "output_angle_deg"), ratio)
+    mean = float(torque.mean())
+    return {
+        "means": {name: float(np.mean([row[name] for row in rows])) for name in MEANS},
+        "maxima": {name: float(column(rows, name).max()) for name in MEANS},
+        "torque_ripple": float(np.ptp(torque)) / abs(mean) if mean else None,
+        "transmission_error_arcsec": float(np.ptp(error)),
+    }
+
+
+def summarise(
+    model: DriveModel,
+    rows: list[Row],
+    coarser: Level | None,
+    recipe_name: str,
+    accuracy: Accuracy | None,
+    seconds: float,
+) -> dict[str, Any]:
+    """Content of summary.json; collective.
+
+    Parameters
+    ----------
+    rows : history of the increments that were computed
+    coarser : level that the run started from
+    recipe_name : the mesh recipe as the user named it
+    accuracy : what was asked for and reached
+    seconds : wall time of the run, restarts included
+    """
+    design = model.design
+    rotation = [row for row in rows if int(row["step"]) >= FIRST_ROTATION]
+    sampled = of_period(design, rows) if design.steps.samples else rotation
+    values = over_rotation(sampled, design.ratio)
+    by_mesh = mesh_error(rows, model.n_elements(), coarser, model.partition.dims) if coarser else None
+    sampled_period = design.steps.samples and values["means"]
+    return {
+        "recipe": recipe_name,
+        **_sizes(model),
+        "increments": len(rows),
+        **_program(model, seconds),
+        **values,
+        "accuracy": accuracy and {key: value for key, value in asdict(accuracy).items() if key != "mesh_error"},
+        "mesh_error": accuracy.mesh_error if accuracy else by_mesh,
+        "condensed_MPa": model.omitted_bending_stress() if design.solver.condensed_sectors else None,
+        "sampling_error": sampling_error(design, rows, MEANS) if sampled_period else None,
+        "newton_iterations_mean": float(np.mean([r["newton_iterations"] for r in rotation])) if rotation else None,
+        "balance_error_Nmm": max((r["torque_balance_Nmm"] for r in rows), default=0.0),
+        "wg_torque_expected_Nmm": 1000.0 * design.load.torque / abs(design.ratio),
+        "ratio": design.ratio,
+        "design": design.model_dump(),
+    }
+
+
+def _sizes(model: DriveModel) -> dict[str, Any]:
+    counts = model.counts()
+    return {
+        "bodies": counts,
+        "nodes": sum(body["nodes_whole"] for body in counts.values()),
+        "elements": model.n_elements(),
+        "dofs": sum(body["dofs"] for body in counts.values()),
+        "twofold_symmetry": model.copies == 2,
+    }
+
+
+def _program(model: DriveModel, seconds: float) -> dict[str, Any]:
+    """Versions, times and memory; collective."""
+    memory = model.comm.allgather(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0)
+    return {
+        "ranks": model.comm.size,
+        "versions": {
+            "swgpar": __version__,
+            "python": platform.python_version(),
+            "numpy": np.__version__,
+            "petsc": ".".join(map(str, PETSc.Sys.getVersion())),
+        },
+        "wall_s": seconds,
+        "phases_s": {name: round(value, 3) for name, value in model.phases.slowest(model.comm).items()},
+        "peak_memory_MB_per_rank": [round(value, 1) for value in memory],
+    }

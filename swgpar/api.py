@@ -1,0 +1,263 @@
+"""The Python interface: what the command line, drivers and notebooks call. The names are those of `import swgpar`.
+
+Under mpirun every rank calls the same functions with the same arguments; results are the same on all ranks.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from mpi4py import MPI
+
+from swgpar import log
+from swgpar.design.drive_design import DriveDesign
+from swgpar.errors import InputError, OutputError
+from swgpar.input.design import Design
+from swgpar.input.toml_file import Overrides, apply_overrides, read_toml
+from swgpar.meshing import MeshRecipe, build_sector_meshes
+from swgpar.meshing import load_recipe as _load_recipe
+from swgpar.meshing.drive_mesh import DriveMesh
+from swgpar.meshing.recipe import make_recipe
+from swgpar.results.figure_set import save_figures
+from swgpar.systems import Result, System, system_of, system_of_table
+
+DesignLike = Design | str | Path | Mapping[str, Any]
+"""A design, the path of its file, or the content of one."""
+
+MeshLike = MeshRecipe | str | Path | Mapping[str, Any]
+"""A mesh recipe, its name in the package, the path of its file, or the content of one."""
+
+
+def load_design(design: str | Path | Mapping[str, Any], overrides: Overrides = ()) -> Design:
+    """Read and check a design.
+
+    Parameters
+    ----------
+    design : path or mapping
+        A design file (TOML), or its content as a dict of sections: of a drive, or of a gear train.
+    overrides : mapping or sequence of str
+        Values for keys, ``{"load.torque": 10.0}`` or ``["load.torque=10.0"]``, in the units of the design file.
+
+    Returns
+    -------
+    Design
+        A `DriveDesign` or the design of a gear train; attributes are the sections.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or a key or value is refused.
+
+    Examples
+    --------
+    >>> design = swgpar.load_design("drivers/cup_45deg.toml", {"load.torque": 10.0})
+    >>> design.drive.teeth_fs
+    120
+    """
+    table = dict(design) if isinstance(design, Mapping) else read_toml(design)
+    return system_of_table(table).load(apply_overrides(table, overrides))
+
+
+def load_mesh(mesh: str | Path | Mapping[str, Any]) -> MeshRecipe:
+    """Read and check a mesh recipe: how many elements go where.
+
+    Parameters
+    ----------
+    mesh : str, path or mapping
+        A name (coarse, medium, full; plane_coarse, plane, plane_fine), the path of a recipe (TOML), or its content.
+
+    Raises
+    ------
+    InputError
+        There is no such recipe, or a key or value is refused.
+
+    Examples
+    --------
+    >>> swgpar.load_mesh("coarse").cup.cylinder
+    10
+    """
+    return make_recipe(dict(mesh)) if isinstance(mesh, Mapping) else _load_recipe(mesh)
+
+
+def run(
+    design: DesignLike,
+    mesh: MeshLike | None = None,
+    out: str | Path | None = None,
+    *,
+    accuracy: float | None = None,
+    restart: bool = False,
+    overwrite: bool = False,
+    progress: bool | None = None,
+    comm: MPI.Comm | None = None,
+) -> Result:
+    """Run a design; collective.
+
+    Parameters
+    ----------
+    design : design, path or mapping
+        As `load_design` returns or takes it.
+    mesh : recipe, name, path or mapping
+        As `load_mesh` returns or takes it. Gear trains have none.
+    out : path
+        Results folder. Without it the run is in memory and leaves no files.
+    accuracy : float
+        Refine the mesh until the estimated relative error of the largest tensile stress under load is at most this
+        (0.001 to 0.2); drives without friction only.
+    restart : bool
+        Continue from the checkpoint in `out`.
+    overwrite : bool
+        Replace results that `out` already holds.
+    progress : bool
+        Report every increment on the terminal; without it, if there is one.
+    comm : communicator
+        MPI.COMM_WORLD unless given.
+
+    Returns
+    -------
+    DriveResult or TrainResult
+        The same on every rank.
+
+    Raises
+    ------
+    InputError
+        Design, mesh and options do not fit.
+    ConvergenceError
+        An increment did not converge. With `out`, the increments before it are kept and `restart` continues them.
+    OutputError
+        The folder cannot be written, or holds other results.
+
+    Examples
+    --------
+    >>> result = swgpar.run("drivers/plane_half_turn.toml", mesh="plane_coarse")
+    >>> result.history["fs_s1"].max()
+    """
+    comm = MPI.COMM_WORLD if comm is None else comm
+    checked = _design(design)
+    system = system_of(checked)
+    _check_options(system, {"mesh": mesh, "accuracy": accuracy, "restart": restart})
+    try:
+        result = system.run(
+            checked,
+            _recipe(mesh),
+            None if out is None else Path(out),
+            recipe_name=str(mesh) if isinstance(mesh, (str, Path)) else "",
+            accuracy=accuracy,
+            restart=restart,
+            overwrite=overwrite,
+            comm=comm,
+            terminal=log.console.is_terminal if progress is None else progress,
+            on_increment=_nothing,
+        )
+        if result.folder is not None and checked.output.figures:
+            save_figures(result.plot, result.folder, comm)
+    finally:
+        log.close_file()
+    return result
+
+
+def open_result(folder: str | Path) -> Result:
+    """Read the result of a finished run from its folder.
+
+    Returns
+    -------
+    DriveResult or TrainResult
+
+    Raises
+    ------
+    OutputError
+        The folder is not that of a finished run.
+
+    Examples
+    --------
+    >>> swgpar.open_result("results/plane").summary["means"]["fs_s1"]
+    """
+    folder = Path(folder)
+    return _system_of_folder(folder).open(folder)
+
+
+def check(design: DesignLike, overrides: Overrides = ()) -> dict[str, float]:
+    """Derived geometry of a design, without a run.
+
+    Returns
+    -------
+    dict of float
+        Values by name; the names have units.
+
+    Raises
+    ------
+    InputError
+        As `load_design`.
+
+    Examples
+    --------
+    >>> swgpar.check("drivers/cup_45deg.toml")["ratio (wave generator / output)"]
+    -60.0
+    """
+    checked = _design(design, overrides)
+    return system_of(checked).check(checked)
+
+
+def mesh(
+    design: DesignLike, mesh: MeshLike, out: str | Path | None = None, formats: Sequence[str] = ("vtu",)
+) -> DriveMesh:
+    """The mesh of a whole drive.
+
+    Parameters
+    ----------
+    design : design, path or mapping
+    mesh : recipe, name, path or mapping
+    out : path
+        Folder into which rank 0 writes the mesh.
+    formats : sequence of str
+        Files to write: "vtu" (ParaView), "msh" (Gmsh), "inp" (Abaqus, CalculiX).
+
+    Raises
+    ------
+    InputError
+        The design is not that of a drive, or the recipe turns an element inside out.
+    OutputError
+        The folder cannot be written.
+
+    Examples
+    --------
+    >>> swgpar.mesh("drivers/cup_45deg.toml", "coarse").quality["ring_gear"]["min_scaled_jacobian"]
+    """
+    checked = _design(design)
+    if not isinstance(checked, DriveDesign):
+        raise InputError(f"{system_of(checked).noun} has no mesh: allowed are drives")
+    found = DriveMesh(checked, build_sector_meshes(checked, _recipe(mesh)))
+    if out is not None and MPI.COMM_WORLD.rank == 0:
+        found.write(out, formats)
+    return found
+
+
+def _design(design: DesignLike, overrides: Overrides = ()) -> Design:
+    if not isinstance(design, Design):
+        return load_design(design, overrides)
+    return design.with_values(overrides) if overrides else design
+
+
+def _recipe(mesh: MeshLike | None) -> MeshRecipe | None:
+    return mesh if mesh is None or isinstance(mesh, MeshRecipe) else load_mesh(mesh)
+
+
+def _check_options(system: System, options: Mapping[str, Any]) -> None:
+    for name, value in options.items():
+        given = value is not None and value is not False
+        if given and name not in system.options:
+            raise InputError(f"{name} has no meaning for {system.noun}: leave it out")
+
+
+def _system_of_folder(folder: Path) -> System:
+    try:
+        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+        return system_of_table(summary["design"])
+    except (OSError, ValueError, KeyError, TypeError):
+        raise OutputError(f"{folder} has no summary.json of a finished run") from None
+
+
+def _nothing() -> None:
+    """After an increment."""

@@ -1,0 +1,37 @@
+"""A design: the checked content of a design file, from which changed designs are made."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Self
+
+from swgpar.input.quantities import Section
+from swgpar.input.toml_file import apply_overrides
+
+
+class Design(Section):
+    """The content of a design file. Attributes are its sections; a design never changes."""
+
+    @classmethod
+    def from_table(cls, table: dict[str, Any]) -> Self:
+        """A checked design from the content of its file; every problem is an InputError of one sentence."""
+        raise NotImplementedError
+
+    def with_values(self, values: Mapping[str, Any]) -> Self:
+        """A new, checked design with other values.
+
+        Parameters
+        ----------
+        values : mapping
+            ``"section.key"`` -> value, in the units of the design file; a whole section is given as a dict.
+
+        Raises
+        ------
+        InputError
+            An unknown key, or a value that is out of range or does not fit the others.
+
+        Examples
+        --------
+        >>> lighter = design.with_values({"load.torque": 5.0, "steps.rotation": 10.0})
+        """
+        return self.from_table(apply_overrides(self.model_dump(exclude_unset=True), values))

@@ -1,0 +1,90 @@
+"""The mesh of a whole drive, to look at and to write."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from swgpar.design.drive_design import DriveDesign
+from swgpar.meshing.export import FORMATS, mesh_report, whole_body, write_mesh
+from swgpar.meshing.sector import SectorMesh
+
+if TYPE_CHECKING:
+    import pyvista
+
+
+class WholeBody(NamedTuple):
+    """A body with all its teeth. points : (n, 3) mm;  cells : (m, 8), or (m, 4) in the plane model, in VTK order"""
+
+    points: np.ndarray
+    cells: np.ndarray
+
+
+@dataclass(frozen=True)
+class DriveMesh:
+    """The mesh of a whole drive: all teeth of both gears, undeformed.
+
+    Attributes
+    ----------
+    design : the drive
+    sectors : one tooth sector of every body, by its name
+
+    Examples
+    --------
+    >>> mesh = swgpar.mesh("drivers/cup_45deg.toml", "coarse")
+    >>> mesh.quality["flexible_spline"]["elements"]
+    30960
+    >>> mesh.grid().plot()
+    >>> mesh.write("results/mesh", formats=("vtu", "inp"))
+    """
+
+    design: DriveDesign
+    sectors: dict[str, SectorMesh]
+
+    @cached_property
+    def bodies(self) -> dict[str, WholeBody]:
+        """Points and cells of every body, by its name."""
+        return {name: WholeBody(*whole_body(mesh)) for name, mesh in self.sectors.items()}
+
+    @cached_property
+    def quality(self) -> dict[str, dict[str, float]]:
+        """Counts and worst element quality of every body, by its name (see `swgpar.meshing.export.mesh_report`)."""
+        return mesh_report(self.sectors)
+
+    def write(self, folder: str | Path, formats: Sequence[str] = FORMATS) -> list[Path]:
+        """Write the mesh into a folder and return the files; call it on one rank.
+
+        Parameters
+        ----------
+        formats : any of "vtu" (ParaView), "msh" (Gmsh), "inp" (Abaqus, CalculiX)
+
+        Raises
+        ------
+        InputError
+            An unknown format.
+        OutputError
+            The folder cannot be written.
+        """
+        return write_mesh(self.design, self.sectors, folder, formats)
+
+    def grid(self) -> pyvista.UnstructuredGrid:
+        """The mesh for PyVista; the cell data "body" is 0 for the flexible spline and 1 for the ring gear."""
+        import pyvista
+
+        bodies = list(self.bodies.values())
+        first = np.cumsum([0, *(len(body.points) for body in bodies)])
+        cells = np.concatenate([body.cells + start for start, body in zip(first, bodies, strict=False)])
+        corners = cells.shape[1]
+        kind = pyvista.CellType.HEXAHEDRON if corners == 8 else pyvista.CellType.QUAD
+        grid = pyvista.UnstructuredGrid(
+            np.hstack([np.full((len(cells), 1), corners), cells]).ravel(),
+            np.full(len(cells), kind),
+            np.concatenate([body.points for body in bodies]),
+        )
+        grid.cell_data["body"] = np.repeat(np.arange(len(bodies)), [len(body.cells) for body in bodies])
+        return grid

@@ -1,0 +1,84 @@
+"""What a user sees on the terminal after the run of a drive."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from rich import box
+from rich.table import Table
+
+from swgpar.log import console
+
+COLUMNS = {
+    "step": ("step", "d"),
+    "wg_angle_deg": ("input", ".1f"),
+    "output_angle_deg": ("output", ".4f"),
+    "fs_s1": ("fs s1", ".1f"),
+    "fs_s3": ("fs |s3|", ".1f"),
+    "fs_vm": ("fs vm", ".1f"),
+    "rg_vm": ("rg vm", ".1f"),
+    "wg_torque_Nmm": ("torque", ".2f"),
+    "pairs_in_contact": ("pairs", "d"),
+    "newton_iterations": ("Newton", "d"),
+}
+"""Columns of the history: title and format of their values."""
+
+
+def print_drive(history: Mapping[str, np.ndarray], summary: Mapping[str, Any]) -> None:
+    """Print history and summary of a run; call it on one rank."""
+    _print_history(history)
+    if summary["means"]:
+        _print_means(summary)
+    _print_errors(summary)
+    console.print(
+        f"torque balance error {summary['balance_error_Nmm']:.1e} N·mm; "
+        f"{summary['wall_s']:.0f} s on {summary['ranks']} ranks"
+    )
+
+
+def _print_history(history: Mapping[str, np.ndarray]) -> None:
+    title = "largest stresses over the bodies (MPa, nodal averages); torque in N·mm, angles in degrees"
+    table = Table(title=title, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))  # fits into 80 columns
+    for heading, _ in COLUMNS.values():
+        table.add_column(heading, justify="right", no_wrap=True)
+    for values in zip(*(history[name] for name in COLUMNS), strict=True):
+        table.add_row(*(format(value, spec) for value, (_, spec) in zip(values, COLUMNS.values(), strict=True)))
+    console.print(table)
+
+
+def _print_means(summary: Mapping[str, Any]) -> None:
+    means = summary["means"]
+    console.print(
+        f"means over the rotation: flexible spline s1 {means['fs_s1']:.1f}, |s3| {means['fs_s3']:.1f}, von Mises "
+        f"{means['fs_vm']:.1f} MPa; ring gear von Mises {means['rg_vm']:.1f} MPa; input torque "
+        f"{means['wg_torque_Nmm']:.2f} N·mm (energy balance {summary['wg_torque_expected_Nmm']:.2f})"
+    )
+    if (ripple := summary["torque_ripple"]) is not None:
+        console.print(
+            f"over the rotation: input torque varies by {100.0 * ripple:.1f} % of its mean, transmission error by "
+            f"{summary['transmission_error_arcsec']:.1f} arc seconds"
+        )
+
+
+def _print_errors(summary: Mapping[str, Any]) -> None:
+    asked = summary["accuracy"]
+    if error := summary["mesh_error"]:
+        others = "the meshes before it" if asked else "the coarser one of the start"
+        console.print(
+            f"estimated error by the mesh, under load: s1 {error['fs_s1']:.1f}, |s3| {error['fs_s3']:.1f}, "
+            f"von Mises {error['fs_vm']:.1f} MPa (from this mesh and {others})"
+        )
+    if asked:
+        console.print(
+            f"accuracy of the largest tensile stress: {asked['asked']:g} asked for, {asked['estimated']:.2g} "
+            f"estimated{'' if asked['reached'] else ', NOT reached: no finer mesh that helps is taken'}"
+        )
+    if left_out := summary["condensed_MPa"]:
+        console.print(f"condensed sectors leave out {left_out:.2g} MPa of bending stress")
+    if error := summary["sampling_error"]:
+        console.print(
+            f"half as many angles change the means by: s1 {error['fs_s1']:.2f}, |s3| {error['fs_s3']:.2f}, "
+            f"von Mises {error['fs_vm']:.2f} MPa"
+        )

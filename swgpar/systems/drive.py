@@ -1,0 +1,152 @@
+"""Strain wave gears on meshes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+
+from swgpar.analysis.drive_result import DriveResult, open_drive
+from swgpar.analysis.restart import identity
+from swgpar.analysis.run_drive import run_drive
+from swgpar.analysis.summary import MEANS
+from swgpar.design.derived_geometry import derived_geometry
+from swgpar.design.design_file import make_design
+from swgpar.design.drive_design import DriveDesign
+from swgpar.design.load_states import load_sequence
+from swgpar.errors import InputError
+from swgpar.input.toml_file import apply_overrides
+from swgpar.meshing import MeshRecipe
+from swgpar.results.history import FIRST_ROTATION, UNITS
+from swgpar.results.terminal import print_drive
+from swgpar.systems.protocol import Measured, Quantity, System
+
+MAIN = ("fs_s1", "fs_s3", "fs_vm", "rg_vm", "wg_torque_Nmm")
+"""Columns whose means over the rotation tables and figures show."""
+
+MEANINGS = {
+    "fs_s1": "flexible spline, tensile s1",
+    "fs_s3": "flexible spline, compressive |s3|",
+    "fs_vm": "flexible spline, von Mises",
+    "rg_s1": "ring gear, tensile s1",
+    "rg_s3": "ring gear, compressive |s3|",
+    "rg_vm": "ring gear, von Mises",
+    "wg_torque_Nmm": "torque of the wave generator",
+}
+"""Of columns of the history; the names of the others say it themselves."""
+
+COLUMNS = tuple(name for name in UNITS if name not in ("step", "wall_s"))
+"""Columns of the history that are quantities."""
+
+GROUPS = range(1, FIRST_ROTATION + 1)
+"""Steps with quantities of their own; all increments of the rotation count as the last one."""
+
+
+class Drives(System):
+    """The drive's adapter: analysis, results and quantities under the names that all systems share."""
+
+    noun = "a drive"
+    section = "drive"
+    design_type = DriveDesign
+    options = frozenset({"mesh", "accuracy", "restart"})
+
+    def load(self, table: dict[str, Any]) -> DriveDesign:
+        return make_design(table)
+
+    def check(self, design: DriveDesign) -> dict[str, float]:
+        return derived_geometry(design)
+
+    def run(
+        self,
+        design: DriveDesign,
+        recipe: MeshRecipe | None,
+        out: Path | None,
+        *,
+        recipe_name: str,
+        accuracy: float | None,
+        restart: bool,
+        overwrite: bool,
+        comm: MPI.Comm,
+        terminal: bool,
+        on_increment: Callable[[], None],
+    ) -> DriveResult:
+        if recipe is None:
+            raise InputError("mesh is missing: a drive needs the name or the path of a mesh recipe")
+        return run_drive(
+            design,
+            recipe,
+            out,
+            recipe_name=recipe_name,
+            accuracy=accuracy,
+            restart=restart,
+            overwrite=overwrite,
+            comm=comm,
+            terminal=terminal,
+            on_increment=on_increment,
+        )
+
+    def open(self, folder: Path) -> DriveResult:
+        return open_drive(folder)
+
+    def print(self, result: DriveResult) -> None:
+        print_drive(result.history, result.summary)
+
+    def without_output(self, table: dict[str, Any]) -> dict[str, Any]:
+        return apply_overrides(table, ["output.fields=false", "output.figures=false"])  # fields fill the disk
+
+    def quantities(self, design: DriveDesign) -> dict[str, Quantity]:
+        """ "mean.fs_s1" over the rotation and so on, "step1.fs_s1" at the last increment of a step."""
+
+        def quantity(column: str, when: str) -> Quantity:
+            return Quantity(f"{MEANINGS.get(column, column)}, {when}", UNITS[column])
+
+        known = {f"mean.{name}": quantity(name, "mean over the rotation") for name in MEANS}
+        return known | {f"step{k}.{name}": quantity(name, f"end of step {k}") for k in GROUPS for name in COLUMNS}
+
+    def main_quantities(self, known: Mapping[str, Quantity]) -> tuple[str, ...]:
+        return tuple(f"mean.{name}" for name in MAIN)
+
+    def describe_names(self, known: Mapping[str, Quantity]) -> str:
+        return f"mean. with {', '.join(MEANS)}, or step1. to step{GROUPS[-1]}. with a column of history.csv"
+
+    def check_published(self, design: DriveDesign, names: Iterable[str]) -> None:
+        for name in names:
+            if design.steps.start_levels and name.startswith(("step1.", "step2.")):
+                raise InputError(
+                    f"steps.start_levels = {design.steps.start_levels} leaves out {name}: allowed 0 with it"
+                )
+
+    def increments(self, design: DriveDesign) -> int:
+        return sum(1 for _ in load_sequence(design))
+
+    def dimensions(self, design: DriveDesign) -> int:
+        return 2 if design.drive.model == "plane" else 3
+
+    def identity(self, design: DriveDesign, recipe: MeshRecipe | None) -> dict[str, Any]:
+        return {"identity": identity(design, recipe, None), "rotation": design.steps.rotation}
+
+    def measure(self, result: DriveResult) -> Measured:
+        summary = result.summary
+        return Measured(
+            values=values(summary["means"], result.history),
+            wall_s=summary["wall_s"],
+            elements=summary["elements"],
+            newton_mean=summary["newton_iterations_mean"],
+            history=result.history,
+        )
+
+
+def values(means: Mapping[str, float], history: Mapping[str, np.ndarray]) -> dict[str, float]:
+    """Quantities of a run from its means and its history, without those of steps that it does not have."""
+    found = {f"mean.{name}": value for name, value in means.items()}
+    group = np.minimum(history["step"], GROUPS[-1])
+    for k in GROUPS:
+        for last in np.flatnonzero(group == k)[-1:]:
+            found |= {f"step{k}.{name}": float(history[name][last]) for name in COLUMNS if name in history}
+    return found
+
+
+DRIVE = Drives()

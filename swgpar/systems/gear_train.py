@@ -1,0 +1,101 @@
+"""Gear trains: lumped models without meshes, each with quantities of its own."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+
+from swgpar.gear_trains.common_sections import TrainDesign
+from swgpar.gear_trains.published import meaning_and_unit, numbered
+from swgpar.gear_trains.result import TrainResult
+from swgpar.gear_trains.terminal import print_compared
+from swgpar.gear_trains.train import SECTION, make_train, model_of, open_train, run_train
+from swgpar.input.toml_file import apply_overrides
+from swgpar.meshing import MeshRecipe
+from swgpar.results.atomic import to_json
+from swgpar.systems.protocol import Measured, Quantity, System
+
+
+class GearTrains(System):
+    """The gear trains' adapter: their runs, results and quantities under the names that all systems share."""
+
+    noun = "a gear train"
+    section = SECTION
+    design_type = TrainDesign
+    options = frozenset()
+
+    def load(self, table: dict[str, Any]) -> TrainDesign:
+        return make_train(table)
+
+    def check(self, design: TrainDesign) -> dict[str, float]:
+        return model_of(design).derived(design)
+
+    def run(
+        self,
+        design: TrainDesign,
+        recipe: MeshRecipe | None,
+        out: Path | None,
+        *,
+        recipe_name: str,
+        accuracy: float | None,
+        restart: bool,
+        overwrite: bool,
+        comm: MPI.Comm,
+        terminal: bool,
+        on_increment: Callable[[], None],
+    ) -> TrainResult:
+        return run_train(design, out, overwrite=overwrite, comm=comm, terminal=terminal)
+
+    def open(self, folder: Path) -> TrainResult:
+        return open_train(folder)
+
+    def print(self, result: TrainResult) -> None:
+        print_compared(result.compared)
+
+    def without_output(self, table: dict[str, Any]) -> dict[str, Any]:
+        # published values of the file belong to its own design, and may name what a varied one does not compute
+        table = {key: value for key, value in table.items() if key != "published"}
+        return apply_overrides(table, ["output.figures=false"])
+
+    def quantities(self, design: TrainDesign) -> dict[str, Quantity]:
+        return {
+            number: Quantity(*meaning_and_unit(text))
+            for name, (text, count) in model_of(design).quantities(design).items()
+            for number in numbered(name, count)
+        }
+
+    def main_quantities(self, known: Mapping[str, Quantity]) -> tuple[str, ...]:
+        return tuple(known)
+
+    def describe_names(self, known: Mapping[str, Quantity]) -> str:
+        return ", ".join(dict.fromkeys(name.partition("[")[0] for name in known))
+
+    def check_published(self, design: TrainDesign, names: Iterable[str]) -> None:
+        """A run of a gear train leaves nothing out."""
+
+    def increments(self, design: TrainDesign) -> int:
+        return 1
+
+    def dimensions(self, design: TrainDesign) -> int:
+        return 0
+
+    def identity(self, design: TrainDesign, recipe: MeshRecipe | None) -> dict[str, Any]:
+        content = design.model_dump(exclude={"output": True, "published": True})
+        return {"identity": hashlib.sha256(to_json(content)).hexdigest()}
+
+    def measure(self, result: TrainResult) -> Measured:
+        values: dict[str, float] = {}
+        for name, found in result.quantities.items():
+            numbers = np.atleast_1d(found).tolist()
+            finite = zip(numbered(name, len(numbers)), numbers, strict=True)
+            values |= {number: value for number, value in finite if math.isfinite(value)}
+        return Measured(values, result.summary["wall_s"])
+
+
+GEAR_TRAIN = GearTrains()

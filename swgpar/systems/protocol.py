@@ -1,0 +1,147 @@
+"""What the command line, the Python API and studies need of a kind of systems."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+from mpi4py import MPI
+
+from swgpar.meshing import MeshRecipe
+from swgpar.results.figure_set import FigureSet
+
+
+class Result(Protocol):
+    """Result of a run, the same on every rank; `DriveResult` and `TrainResult` are results."""
+
+    @property
+    def history(self) -> Mapping[str, np.ndarray]:
+        """Columns of history.csv, each (n,)."""
+
+    @property
+    def summary(self) -> Mapping[str, Any]:
+        """Content of summary.json."""
+
+    @property
+    def folder(self) -> Path | None:
+        """The results folder; None when the run was in memory."""
+
+    @property
+    def plot(self) -> FigureSet:
+        """The figures."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number that a run gives. meaning : without its unit;  unit : empty for a pure number"""
+
+    meaning: str
+    unit: str
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Numbers that a study takes from a run.
+
+    values : all quantities by name, without those that the run does not have
+    wall_s : seconds;  elements, newton_mean : of the mesh, and Newton iterations of an increment; None without a mesh
+    history : columns of the history that are drawn against the angle of the wave generator; empty without one
+    """
+
+    values: dict[str, float]
+    wall_s: float
+    elements: int | None = None
+    newton_mean: float | None = None
+    history: Mapping[str, np.ndarray] = field(default_factory=dict)
+
+
+class System(ABC):
+    """A kind of systems: its design files, runs and results. Designs are those of its own `design_type`.
+
+    Attributes
+    ----------
+    noun : what one is called in messages, with its article
+    section : the section of a design file by which the kind is recognised
+    design_type : class of its designs
+    options : which of the options "mesh", "accuracy" and "restart" a run has
+    """
+
+    noun: str
+    section: str
+    design_type: type
+    options: frozenset[str]
+
+    @abstractmethod
+    def load(self, table: dict[str, Any]) -> Any:
+        """A checked design from the content of its file; every problem is an InputError of one sentence."""
+
+    @abstractmethod
+    def check(self, design: Any) -> dict[str, float]:
+        """What follows from a design at once; the names have units."""
+
+    @abstractmethod
+    def run(
+        self,
+        design: Any,
+        recipe: MeshRecipe | None,
+        out: Path | None,
+        *,
+        recipe_name: str,
+        accuracy: float | None,
+        restart: bool,
+        overwrite: bool,
+        comm: MPI.Comm,
+        terminal: bool,
+        on_increment: Callable[[], None],
+    ) -> Result:
+        """Run a design, in memory without a folder `out`; collective. Options are those of `options`."""
+
+    @abstractmethod
+    def open(self, folder: Path) -> Result:
+        """Result of a finished run from its folder; every rank reads the files."""
+
+    @abstractmethod
+    def print(self, result: Result) -> None:
+        """Show a result on the terminal; call it on one rank."""
+
+    # what studies need
+
+    @abstractmethod
+    def without_output(self, table: dict[str, Any]) -> dict[str, Any]:
+        """The content of a design file without what the many runs of a study should not write."""
+
+    @abstractmethod
+    def quantities(self, design: Any) -> dict[str, Quantity]:
+        """What a run of the design gives, by name."""
+
+    @abstractmethod
+    def main_quantities(self, known: Mapping[str, Quantity]) -> tuple[str, ...]:
+        """Names of the quantities in tables and figures when the study names none."""
+
+    @abstractmethod
+    def describe_names(self, known: Mapping[str, Quantity]) -> str:
+        """The names of quantities that are allowed, in words."""
+
+    @abstractmethod
+    def check_published(self, design: Any, names: Iterable[str]) -> None:
+        """Refuse published quantities that a run of this design leaves out, with an InputError."""
+
+    @abstractmethod
+    def increments(self, design: Any) -> int:
+        """Increments of the whole run."""
+
+    @abstractmethod
+    def dimensions(self, design: Any) -> int:
+        """Dimensions of the mesh: 2 or 3; 0 without one."""
+
+    @abstractmethod
+    def identity(self, design: Any, recipe: MeshRecipe | None) -> dict[str, Any]:
+        """What is computed, for restarts: "identity", and further values that a finished run must have in common."""
+
+    @abstractmethod
+    def measure(self, result: Result) -> Measured:
+        """The numbers that a study takes from a result."""
