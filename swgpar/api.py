@@ -21,6 +21,7 @@ from swgpar.meshing import MeshRecipe, build_sector_meshes
 from swgpar.meshing import load_recipe as _load_recipe
 from swgpar.meshing.drive_mesh import DriveMesh
 from swgpar.meshing.recipe import make_recipe
+from swgpar.results.atomic import on_all
 from swgpar.results.figure_set import save_figures
 from swgpar.systems import Result, System, system_of, system_of_table
 
@@ -135,13 +136,12 @@ def run(
     >>> result.history["fs_s1"].max()
     """
     comm = MPI.COMM_WORLD if comm is None else comm
-    checked = _design(design)
+    checked, recipe = on_all(comm, lambda: _checked(design, mesh, accuracy, restart))
     system = system_of(checked)
-    _check_options(system, {"mesh": mesh, "accuracy": accuracy, "restart": restart})
     try:
         result = system.run(
             checked,
-            _recipe(mesh),
+            recipe,
             None if out is None else Path(out),
             recipe_name=str(mesh) if isinstance(mesh, (str, Path)) else "",
             accuracy=accuracy,
@@ -244,11 +244,17 @@ def _recipe(mesh: MeshLike | None) -> MeshRecipe | None:
     return mesh if mesh is None or isinstance(mesh, MeshRecipe) else load_mesh(mesh)
 
 
-def _check_options(system: System, options: Mapping[str, Any]) -> None:
-    for name, value in options.items():
-        given = value is not None and value is not False
-        if given and name not in system.options:
+def _checked(
+    design: DesignLike, mesh: MeshLike | None, accuracy: float | None, restart: bool
+) -> tuple[Design, MeshRecipe | None]:
+    """Design and recipe of a run; refuses options that the design's system does not have."""
+    checked = _design(design)
+    system = system_of(checked)
+    given = {"mesh": mesh is not None, "accuracy": accuracy is not None, "restart": restart}
+    for name in given:
+        if given[name] and name not in system.options:
             raise InputError(f"{name} has no meaning for {system.noun}: leave it out")
+    return checked, _recipe(mesh)
 
 
 def _system_of_folder(folder: Path) -> System:

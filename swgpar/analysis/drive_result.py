@@ -226,7 +226,7 @@ def open_drive(folder: Path) -> DriveResult:
     """Result of a finished run from its folder; every rank reads the files."""
     for name in (history.NAME, "summary.json"):
         if not (folder / name).exists():
-            raise OutputError(f"{folder} has no {name}: allowed are the folders of finished runs")
+            raise OutputError(f"{folder} has no {name} of a finished run")
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     fields = FieldFiles(folder) if (folder / "fields.h5").exists() else None
     return DriveResult(history.read_history(folder / history.NAME), summary, fields, folder)

@@ -72,7 +72,7 @@ def read(out: Path) -> TrainResult:
     """Result of a finished run from its folder, without figures; every rank reads the files."""
     for name in (history.NAME, "summary.json"):
         if not (out / name).exists():
-            raise OutputError(f"{out} has no {name}: allowed are the folders of finished runs")
+            raise OutputError(f"{out} has no {name} of a finished run")
     summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
     tables = {path.stem: read_columns(path) for path in sorted((out / TABLES).glob("*.csv"))}
     compared = _read_compared(out / PUBLISHED) if (out / PUBLISHED).exists() else []

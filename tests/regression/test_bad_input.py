@@ -57,7 +57,9 @@ def test_bad_command_line(arguments: tuple[object, ...], words: str) -> None:
 
 def test_report_of_nothing(tmp_path: Path) -> None:
     done = execute(swgpar("report", tmp_path), timeout=120.0)
-    assert done.returncode == 4 and "has no history.csv" in done.stderr and not list(tmp_path.iterdir())
+    assert (
+        done.returncode == 4 and "has no summary.json of a finished run" in done.stderr and not list(tmp_path.iterdir())
+    )
 
 
 def test_mpirun_passes_the_exit_code_on(tmp_path: Path) -> None:

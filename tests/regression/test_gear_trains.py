@@ -61,8 +61,8 @@ def test_results_are_the_same_on_any_number_of_ranks(name: str, tmp_path: Path) 
 @pytest.mark.parametrize(
     ("arguments", "reason"),
     [
-        (("--restart",), "--restart has no meaning for a gear train"),
-        (("--mesh", "x.toml"), "--mesh has no meaning for a gear train"),
+        (("--restart",), "restart has no meaning for a gear train"),
+        (("--mesh", "x.toml"), "mesh has no meaning for a gear train"),
         (("--set", "gear_train.model=belt"), 'gear_train.model = "belt" is not available'),
     ],
 )
@@ -75,4 +75,4 @@ def test_refused_on_all_ranks(arguments: tuple[str, ...], reason: str, tmp_path:
 
 def test_a_drive_needs_its_mesh(tmp_path: Path) -> None:
     done = execute(swgpar("run", DRIVERS / "cup_45deg.toml", "--out", tmp_path / "run"), timeout=120.0)
-    assert done.returncode == 2 and "arguments are required: --mesh" in done.stderr
+    assert done.returncode == 2 and "mesh is missing" in done.stderr
