@@ -15,7 +15,8 @@ from swgpar.analysis.coarse_start import Level
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.error_estimate import estimate
 from swgpar.analysis.period import of_period, sampling_error
-from swgpar.results.history import FIRST_ROTATION, Row, column, transmission_error
+from swgpar.design.load_states import Stage
+from swgpar.results.history import Row, column, transmission_error
 from swgpar.version import __version__
 
 STRESSES = ("fs_s1", "fs_s3", "fs_vm", "rg_s1", "rg_s3", "rg_vm")
@@ -88,7 +89,7 @@ def summarise(
     seconds : wall time of the run, restarts included
     """
     design = model.design
-    rotation = [row for row in rows if int(row["step"]) >= FIRST_ROTATION]
+    rotation = [row for row in rows if int(row["step"]) >= Stage.ROTATE]
     sampled = of_period(design, rows) if design.steps.samples else rotation
     values = over_rotation(sampled, design.ratio)
     by_mesh = mesh_error(rows, model.n_elements(), coarser, model.partition.dims) if coarser else None

@@ -10,10 +10,9 @@ from typing import Any
 
 import numpy as np
 
-NAME = "history.csv"
+from swgpar.design.load_states import Stage
 
-LOADED, FIRST_ROTATION = 3, 4
-"""Values of the column `step`: of the loaded state, and of the first increment of the rotation."""
+NAME = "history.csv"
 
 Row = dict[str, Any]
 """One increment: a value for every column."""
@@ -98,7 +97,7 @@ def loaded_increments(history: Mapping[str, np.ndarray]) -> np.ndarray:
     history : columns, as `columns` gives them
     """
     step = history["step"]
-    rotation = np.flatnonzero(step >= FIRST_ROTATION)
-    last_of_loading = np.flatnonzero(step == LOADED)[-1:]
+    rotation = np.flatnonzero(step >= Stage.ROTATE)
+    last_of_loading = np.flatnonzero(step == Stage.LOAD)[-1:]
     found = np.concatenate([last_of_loading, rotation])
     return found if len(found) else np.arange(len(step))

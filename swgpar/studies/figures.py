@@ -7,8 +7,9 @@ import textwrap
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
+from swgpar.design.load_states import Stage
 from swgpar.results import history
-from swgpar.results.history import FIRST_ROTATION, UNITS
+from swgpar.results.history import UNITS
 from swgpar.studies.drives import MEANINGS
 from swgpar.studies.system import Case, Outcome, Quantity
 from swgpar.studies.table import by_case, shown, shown_quantities
@@ -56,8 +57,8 @@ def over_angle(results: Sequence[Result]) -> Iterator[bytes]:
 
 def turning(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     """The loaded drive: last increment of the load, and the rotation."""
-    loaded = [row for row in rows if int(row["step"]) == FIRST_ROTATION - 1]
-    return loaded[-1:] + [row for row in rows if int(row["step"]) >= FIRST_ROTATION]
+    loaded = [row for row in rows if int(row["step"]) == Stage.LOAD]
+    return loaded[-1:] + [row for row in rows if int(row["step"]) >= Stage.ROTATE]
 
 
 def over_key(results: Sequence[Result], key: str, *, in_step: bool) -> Iterator[bytes]:

@@ -16,11 +16,11 @@ from swgpar.analysis.summary import MEANS
 from swgpar.design.derived_geometry import derived_geometry
 from swgpar.design.design_file import make_design
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.load_states import load_sequence
+from swgpar.design.load_states import Stage, load_sequence
 from swgpar.errors import InputError
 from swgpar.input.toml_file import apply_overrides
 from swgpar.meshing import MeshRecipe
-from swgpar.results.history import FIRST_ROTATION, UNITS
+from swgpar.results.history import UNITS
 from swgpar.results.terminal import print_drive
 from swgpar.systems.protocol import Measured, Quantity, System
 
@@ -41,7 +41,7 @@ MEANINGS = {
 COLUMNS = tuple(name for name in UNITS if name not in ("step", "wall_s"))
 """Columns of the history that are quantities."""
 
-GROUPS = range(1, FIRST_ROTATION + 1)
+GROUPS = range(Stage.DEFLECT, Stage.ROTATE + 1)
 """Steps with quantities of their own; all increments of the rotation count as the last one."""
 
 
