@@ -28,7 +28,7 @@ class MasterFlanks:
     point: np.ndarray
     tangent: np.ndarray
     orientation: np.ndarray
-    turn: np.ndarray
+    rotation: np.ndarray
     conn: np.ndarray
     flip: np.ndarray
 
@@ -157,7 +157,7 @@ class FlankPairs:
             right = np.column_stack([tangent[:, 1], -tangent[:, 0]])
             flanks.orientation[k] = np.sign(np.sum(right * profile.normal(grid.s) * mirror))
             angle = self.ring.layout.sector_angle(np.array(p.ring_tooth))
-            flanks.turn[k] = np.cos(angle), np.sin(angle)
+            flanks.rotation[k] = np.cos(angle), np.sin(angle)
             number, flip = self.partition.node_numbers(RING_GEAR, np.array([p.ring]), grid.nodes.ravel())
             flanks.conn[k] = self.local.index(number).reshape(grid.nodes.shape)
             flanks.flip[k] = np.where(number >= 0, flip ^ p.ring_flip, 0).reshape(grid.nodes.shape)

@@ -400,7 +400,7 @@ class FlankContact:
             k, local = divmod(int(face), self.n_face)
             shape = (self.n_face, friction.SAMPLES, friction.SAMPLES, 2)
             store = self.tractions.setdefault(self.pairs[k].key, np.zeros(shape))
-            store[local] = friction.sampled(active.segments, active.friction.now, face)
+            store[local] = friction.sampled(active.segments, active.friction.current, face)
 
     def traction_rows(self, first: int, end: int) -> dict[str, np.ndarray]:
         """The kept tractions of the sectors first .. end - 1, as rows for a file."""
@@ -417,7 +417,7 @@ class FlankContact:
         sets = [touching]
         if active.friction is not None:
             limit = SLIP_SHARE * self.friction_coefficient * active.pressure
-            sets.append(touching & (np.linalg.norm(active.friction.now, axis=2) >= limit))
+            sets.append(touching & (np.linalg.norm(active.friction.current, axis=2) >= limit))
         return [np.unique(active.segments.parent[points.any(axis=1)]) for points in sets]
 
     def touching_pairs(self) -> int:

@@ -31,23 +31,23 @@ class Friction:
     """Law and history at the quadrature points of the present segments; see `swgpar.kernel.contact_flanks`.
 
     coefficient : of friction;  stiffness : MPa / mm
-    place (n_face, n_q, 2) mm, gap (n_face, n_q) mm : of the last converged state, nan and inf without a foot
+    foot_point (n_face, n_q, 2) mm, gap (n_face, n_q) mm : of the last converged state, nan and inf without a foot
     traction (n_face, n_q, 2) MPa : of the last converged state
-    now (n_face, n_q, 2) MPa : set by the kernel
+    current (n_face, n_q, 2) MPa : set by the kernel
     lagged (n_face, n_q) MPa : pressures that stand for the present ones in the law, or None
     """
 
     coefficient: float
     stiffness: float
-    place: np.ndarray
+    foot_point: np.ndarray
     gap: np.ndarray
     traction: np.ndarray
-    now: np.ndarray
+    current: np.ndarray
     lagged: np.ndarray | None = None
 
     def picked(self, rows: np.ndarray) -> Friction:
         """The same of some of the faces."""
-        arrays = (self.place, self.gap, self.traction, self.now)
+        arrays = (self.foot_point, self.gap, self.traction, self.current)
         lagged = None if self.lagged is None else np.ascontiguousarray(self.lagged[rows])
         return Friction(self.coefficient, self.stiffness, *(np.ascontiguousarray(a[rows]) for a in arrays), lagged)
 

@@ -1,7 +1,7 @@
-"""C++ kernels behind Cython: elements and contact."""
+"""C++ kernels of elements, contact and friction, behind Cython."""
 
 from swgpar.kernel._contact import add_face_blocks, contact_flanks
-from swgpar.kernel._kernel import ReferenceElements, assemble_elements, recover_stress, reference_elements
+from swgpar.kernel._elements import ReferenceElements, assemble_elements, recover_stress, reference_elements
 
 __all__ = [
     "ReferenceElements",

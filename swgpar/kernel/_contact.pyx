@@ -18,7 +18,7 @@ cdef extern from "contact_batch.hpp" namespace "swgpar" nogil:
         const double* point
         const double* tangent
         const double* orientation
-        const double* turn
+        const double* rotation
         double body_cosine, body_sine
         const int32_t* conn
         const uint8_t* flip
@@ -42,22 +42,22 @@ cdef extern from "contact_batch.hpp" namespace "swgpar" nogil:
         bint symmetric
     struct Friction:
         double coefficient, stiffness
-        const double* place
+        const double* foot_point
         const double* gap
         const double* traction
-        double* now
+        double* current
         const double* lagged
     int64_t flank_contact(const FlankBatch&, const FaceBatch&, const double* u, const double* multiplier,
                           double penalty, double opening, double reach, double beyond, double limit, const Friction& friction,
-                          double* residual, const BlockRows& rows, double* gap, double* pressure, double* place,
+                          double* residual, const BlockRows& rows, double* gap, double* pressure, double* foot_point,
                           double* moment)
     int64_t add_blocks(int64_t n, int m, const int32_t* conn, const uint8_t* flip, const double* blocks,
                        const BlockRows& rows)
 
 
 OVERHANG = 1e-4
-"""Facets by which points that touch may lie past the ends of a flank: flanks that end together are to touch up to there,
-however they move by elastic deformation."""
+"""Facets by which points in contact may lie past the ends of a flank. Flanks that end at the same z then touch up to
+their ends also where elastic deformation moves one end past the other."""
 
 
 cdef BlockRows rows_of(rows):
@@ -68,15 +68,15 @@ cdef BlockRows rows_of(rows):
 
 
 cdef Friction friction_of(law, int64_t n_face, int64_t n_q) except *:
-    cdef const double[:, :, ::1] place = law.place, traction = law.traction
+    cdef const double[:, :, ::1] foot_point = law.foot_point, traction = law.traction
     cdef const double[:, ::1] gap = law.gap
-    cdef double[:, :, ::1] now = law.now
-    for array in (law.place, law.traction, law.gap, law.now, law.gap if law.lagged is None else law.lagged):
+    cdef double[:, :, ::1] current = law.current
+    for array in (law.foot_point, law.traction, law.gap, law.current, law.gap if law.lagged is None else law.lagged):
         if array.shape[0] != n_face or array.shape[1] != n_q:
-            raise ValueError("contact_flanks: arrays of the friction have another shape than the faces")
-    law.now[...] = 0.0  # also where the last evaluation had contact and this one has not
+            raise ValueError("contact_flanks: arrays of the friction do not have the shape (faces, points)")
+    law.current[...] = 0.0  # also at points that were in contact in the last evaluation only
     cdef Friction made = Friction(
-        law.coefficient, law.stiffness, &place[0, 0, 0], &gap[0, 0], &traction[0, 0, 0], &now[0, 0, 0], NULL
+        law.coefficient, law.stiffness, &foot_point[0, 0, 0], &gap[0, 0], &traction[0, 0, 0], &current[0, 0, 0], NULL
     )
     cdef const double[:, ::1] lagged
     if law.lagged is not None:
@@ -87,8 +87,8 @@ cdef Friction friction_of(law, int64_t n_face, int64_t n_q) except *:
 
 def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] multiplier, double penalty,
                    double opening, double reach, double limit, double[:, ::1] residual, rows, friction=None,
-                   double turn=0.0, double[::1] moment=None, double beyond=OVERHANG):
-    """Forces and tangent of slave faces against master flank patches.
+                   double rotation=0.0, double[::1] moment=None, double beyond=OVERHANG):
+    """Gaps, forces and tangent of slave faces against master flanks (kernel/contact.hpp, kernel/friction.hpp).
 
     Parameters
     ----------
@@ -101,21 +101,23 @@ def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] 
     reach : mm, points farther from the master surface than this are not in contact
     residual : (n_local, 3) N, added to; None to skip
     rows : record with start, column, values, number, n_own, symmetric; None to skip the tangent
-    friction : record of the last converged state, where tractions are put (`swgpar.contact.friction.Friction`), or None
-    turn : rad, of the master body as a whole
+    friction : record of the last converged state, which takes the tractions (`swgpar.contact.friction.Friction`), or None
+    rotation : rad, of the master body as a whole
     beyond : facets by which foot points may lie past the ends of the flank, which goes on straight there
-    moment : (n_face,) N mm, derivative of the contact's energy with respect to `turn`, added to with the residual
+    moment : (n_face,) N mm, derivative of the contact's energy with respect to `rotation`, added to with the residual
 
     Returns
     -------
     gap : (n_face, n_q) mm, +inf where there is no foot point
     pressure : (n_face, n_q) MPa
-    place : (n_face, n_q, 2) mm, arc length and z of the foot point on the master, nan where there is none
+    foot_point : (n_face, n_q, 2) mm, arc length and z of the foot point on the master, nan where there is none
     missing : number of blocks the pattern lacks
+
+    Raises ValueError for shapes that disagree.
     """
     cdef const double[::1] s = patches.s, z = patches.z, orientation = patches.orientation
     cdef const double[:, :, ::1] point = patches.point, tangent = patches.tangent
-    cdef const double[:, ::1] place_of = patches.turn
+    cdef const double[:, ::1] rotations = patches.rotation
     cdef const int32_t[:, :, ::1] pconn = patches.conn
     cdef const uint8_t[:, :, ::1] pflip = patches.flip
     cdef const int32_t[:, ::1] conn = faces.conn
@@ -127,18 +129,18 @@ def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] 
     cdef int64_t n_face = conn.shape[0], n_q = shape.shape[1], n_patch = pconn.shape[0]
     gap_array = np.full((n_face, n_q), np.inf)
     pressure_array = np.zeros((n_face, n_q))
-    place_array = np.full((n_face, n_q, 2), np.nan)
+    foot_point_array = np.full((n_face, n_q, 2), np.nan)
     if n_face == 0 or n_patch == 0:
-        return gap_array, pressure_array, place_array, 0
+        return gap_array, pressure_array, foot_point_array, 0
     if not (coords.shape[0] == normal.shape[0] == shape.shape[0] == weight.shape[0] == offset.shape[0] == patch.shape[0] == n_face
             and multiplier.shape[0] == n_face and multiplier.shape[1] == n_q and weight.shape[1] == n_q
             and pconn.shape[1] == s.shape[0] and pconn.shape[2] == z.shape[0] and point.shape[0] == n_patch
             and point.shape[1] == s.shape[0] and tangent.shape[1] == s.shape[0] and u.shape[1] == 3):
         raise ValueError("contact_flanks: array shapes disagree")
     cdef double[:, ::1] gap = gap_array, pressure = pressure_array
-    cdef double[:, :, ::1] place = place_array
+    cdef double[:, :, ::1] foot_point = foot_point_array
     cdef FlankBatch p = FlankBatch(n_patch, s.shape[0] - 1, z.shape[0] - 1, &s[0], &z[0], &point[0, 0, 0],
-                                   &tangent[0, 0, 0], &orientation[0], &place_of[0, 0], cos(turn), sin(turn),
+                                   &tangent[0, 0, 0], &orientation[0], &rotations[0, 0], cos(rotation), sin(rotation),
                                    &pconn[0, 0, 0], &pflip[0, 0, 0])
     cdef FaceBatch f = FaceBatch(n_face, n_q, &conn[0, 0], &flip[0, 0], &coords[0, 0, 0], &normal[0, 0],
                                  &shape[0, 0, 0], &weight[0, 0], &offset[0, 0], &patch[0])
@@ -157,12 +159,16 @@ def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] 
         raise ValueError("contact_flanks: moment must have an entry for each face")
     with nogil:
         missing = flank_contact(p, f, &u[0, 0], &multiplier[0, 0], penalty, opening, reach, beyond, limit, law, p_residual, r,
-                                &gap[0, 0], &pressure[0, 0], &place[0, 0, 0], &moments[0])
-    return gap_array, pressure_array, place_array, missing
+                                &gap[0, 0], &pressure[0, 0], &foot_point[0, 0, 0], &moments[0])
+    return gap_array, pressure_array, foot_point_array, missing
 
 
 def add_face_blocks(const int32_t[:, ::1] conn, const uint8_t[:, ::1] flip, const double[:, :, :, :, ::1] blocks, rows):
-    """Add dense blocks (n, m, m, 3, 3) of nodes conn (n, m) to the owned rows; returns misses."""
+    """Add dense blocks (n, m, m, 3, 3), N/mm, of nodes conn (n, m) to the owned rows of a tangent.
+
+    flip : (n, m), 1 for images under the half turn;  rows : record as for `contact_flanks`
+    Returns the number of blocks that the pattern lacks. Raises ValueError for shapes that disagree.
+    """
     cdef int64_t n = conn.shape[0], missing
     cdef BlockRows r = rows_of(rows)
     cdef int m = conn.shape[1]

@@ -2,9 +2,12 @@
 //
 // The master flank is the exact tooth profile plus the finite-element displacement: between two profile
 // nodes the curve is the cubic Hermite interpolant of their exact points and tangents, so that its normal
-// is continuous; the displacement is bilinear over the facet. The curve's height over its chord turns with the
-// body, so that a body turned as a whole has the turned flank. A point of the slave surface is projected
-// onto it orthogonally; the gap's first and second variations are exact for that surface at that turn.
+// is continuous; the displacement is bilinear over the facet. The curve's height over its chord rotates with the
+// body, so that a body rotated as a whole has the rotated flank. A point of the slave surface is projected
+// onto it orthogonally; the gap's first and second variations are exact for that surface at that rotation.
+//
+// Words: the foot point is the projection of a slave point onto the master flank; the gap is its distance along the
+// outward normal there, negative in penetration. Lengths in mm, forces in N, pressures in MPa, penalties in MPa / mm.
 #pragma once
 
 #include <Eigen/Dense>
@@ -19,13 +22,23 @@ using Vec3 = Eigen::Vector3d;
 using Mat2 = Eigen::Matrix2d;
 using Mat3 = Eigen::Matrix3d;
 
-// Vector of local node `node` (-1: fixed), turned by 180 degrees about z when it is an image.
+// Limits of the projection onto a flank; eta and zeta are counted in facets.
+constexpr double kOverlap = 0.02;     // a facet's parameters may exceed it by this before the next one is taken
+constexpr double kLastStep = 1e-10;   // of Newton's iteration: round-off of positions far from the axis allows 1e-13
+constexpr double kLongestStep = 1.0;  // of Newton's iteration: one facet, after which the next facet is taken
+constexpr int kMostSteps = 40;        // some 5 within a facet, the rest walk over the flank
+constexpr double kConvex = 0.2;       // smallest share of the metric that the Hessian of the squared distance may
+                                      // have: below it the metric stands in (Gauss-Newton), which always descends
+constexpr double kGivenUp = 1.0;      // facets past the end of the grid beyond which there is no foot point
+
+// Vector of local node `node` (-1: fixed), rotated by 180 degrees about z when it is an image.
 inline Vec3 nodal(const double* u, std::int32_t node, std::uint8_t flip) {
   if (node < 0) return Vec3::Zero();
   const double s = flip ? -1.0 : 1.0;
   return Vec3(s * u[3 * node], s * u[3 * node + 1], u[3 * node + 2]);
 }
 
+// Adds the force f to the vector r (n_local, 3) at a local node; the counterpart of `nodal`.
 inline void add_nodal(double* r, std::int32_t node, std::uint8_t flip, const Vec3& f) {
   if (node < 0) return;
   const double s = flip ? -1.0 : 1.0;
@@ -79,53 +92,62 @@ struct BlockRows {
 // One flank of the master body: a grid of (n_s + 1) x (n_z + 1) nodes.
 struct Patch {
   int n_s, n_z;
-  const double* s;           // (n_s + 1) arc length
-  const double* z;           // (n_z + 1)
-  const double* point;       // (n_s + 1, 2) exact profile, sector frame
-  const double* tangent;     // (n_s + 1, 2) unit
-  double orientation;        // sign that makes x_s cross x_z point out of the material
-  double c, si;              // cosine and sine of the tooth's turn
-  double cb, sb;             // cosine and sine of the body's turn
-  const std::int32_t* conn;  // (n_s + 1, n_z + 1)
+  const double* s;                  // (n_s + 1) arc length
+  const double* z;                  // (n_z + 1)
+  const double* point;              // (n_s + 1, 2) exact profile, sector frame
+  const double* tangent;            // (n_s + 1, 2) unit
+  double orientation;               // sign that makes x_s cross x_z point out of the material
+  double tooth_cosine, tooth_sine;  // of the angle of the tooth
+  double body_cosine, body_sine;    // of the rotation of the body as a whole
+  const std::int32_t* conn;         // (n_s + 1, n_z + 1)
   const std::uint8_t* flip;
 
   std::int32_t node(int i, int j) const { return conn[i * (n_z + 1) + j]; }
   std::uint8_t image(int i, int j) const { return flip[i * (n_z + 1) + j]; }
-  Vec2 turned(const double* p) const { return Vec2(c * p[0] - si * p[1], si * p[0] + c * p[1]); }
-  Vec2 carried(const Vec2& v) const { return Vec2(cb * v[0] - sb * v[1], sb * v[0] + cb * v[1]); }
-  Vec3 bent(int i) const {  // third derivative of the curve between profile nodes i and i + 1
+  // Vector of the sector's frame in that of the undeformed drive.
+  Vec2 placed(const double* p) const {
+    return Vec2(tooth_cosine * p[0] - tooth_sine * p[1], tooth_sine * p[0] + tooth_cosine * p[1]);
+  }
+  // Vector of the undeformed drive, rotated with the body.
+  Vec2 rotated(const Vec2& v) const {
+    return Vec2(body_cosine * v[0] - body_sine * v[1], body_sine * v[0] + body_cosine * v[1]);
+  }
+  // Third derivative by eta of the curve between the profile nodes i and i + 1.
+  Vec3 third_derivative(int i) const {
     const double len = s[i + 1] - s[i];
-    const Vec2 d = 12 * (turned(point + 2 * i) - turned(point + 2 * i + 2)) +
-                   6 * len * (turned(tangent + 2 * i) + turned(tangent + 2 * i + 2));
-    const Vec2 now = carried(d);
+    const Vec2 d = 12 * (placed(point + 2 * i) - placed(point + 2 * i + 2)) +
+                   6 * len * (placed(tangent + 2 * i) + placed(tangent + 2 * i + 2));
+    const Vec2 now = rotated(d);
     return Vec3(now[0], now[1], 0);
   }
 };
 
-// Foot point on a patch and what the variations of the gap need there.
-struct Foot {
-  int i = 0, j = 0;
+// Foot point on a patch and what the variations of the gap need there: the position x (mm) and its derivatives by the
+// facet's coordinates eta (along the profile) and zeta (along the width), 0 .. 1 on the facet.
+struct FootPoint {
+  int i = 0, j = 0;  // facet
   double eta = 0.5, zeta = 0.5, gap = 0.0;
   Vec3 x, x_eta, x_zeta, x_etaeta, x_etazeta, normal;
   Vec2 height, height_eta;               // of the curve over its chord, and its derivative
   bool found = false, straight = false;  // straight: past the ends of the profile
 };
 
-inline void evaluate(const Patch& p, const double* u, Foot& f) {
+// Position and derivatives at the coordinates of f; u : (n_local, 3) displacements.
+inline void evaluate(const Patch& p, const double* u, FootPoint& f) {
   const int i = f.i, j = f.j;
   // past the ends of the profile the curve goes on straight
   const double past = i == 0 && f.eta < 0 ? f.eta : i == p.n_s - 1 && f.eta > 1 ? f.eta - 1 : 0.0;
   f.straight = past != 0.0;
   const double t = f.eta - past, t2 = t * t, t3 = t2 * t, len = p.s[i + 1] - p.s[i];
-  const Vec2 a = p.turned(p.point + 2 * i), b = p.turned(p.point + 2 * i + 2);
-  const Vec2 ta = len * p.turned(p.tangent + 2 * i), tb = len * p.turned(p.tangent + 2 * i + 2);
+  const Vec2 a = p.placed(p.point + 2 * i), b = p.placed(p.point + 2 * i + 2);
+  const Vec2 ta = len * p.placed(p.tangent + 2 * i), tb = len * p.placed(p.tangent + 2 * i + 2);
   const Vec2 chord = b - a;
-  f.height_eta = p.carried((6 * t - 6 * t2 - 1) * chord + (3 * t2 - 4 * t + 1) * ta + (3 * t2 - 2 * t) * tb);
-  f.height = p.carried((3 * t2 - 2 * t3 - t) * chord + (t3 - 2 * t2 + t) * ta + (t3 - t2) * tb) + past * f.height_eta;
+  f.height_eta = p.rotated((6 * t - 6 * t2 - 1) * chord + (3 * t2 - 4 * t + 1) * ta + (3 * t2 - 2 * t) * tb);
+  f.height = p.rotated((3 * t2 - 2 * t3 - t) * chord + (t3 - 2 * t2 + t) * ta + (t3 - t2) * tb) + past * f.height_eta;
   const Vec2 x = a + f.eta * chord + f.height;
   const Vec2 d = chord + f.height_eta;
   Vec2 dd = Vec2::Zero();
-  if (!f.straight) dd = p.carried((6 - 12 * t) * chord + (6 * t - 4) * ta + (6 * t - 2) * tb);
+  if (!f.straight) dd = p.rotated((6 - 12 * t) * chord + (6 * t - 4) * ta + (6 * t - 2) * tb);
   const double z0 = p.z[j], dz = p.z[j + 1] - z0, e = f.eta, q = f.zeta;
   const Vec3 u00 = nodal(u, p.node(i, j), p.image(i, j)), u10 = nodal(u, p.node(i + 1, j), p.image(i + 1, j));
   const Vec3 u01 = nodal(u, p.node(i, j + 1), p.image(i, j + 1));
@@ -137,17 +159,15 @@ inline void evaluate(const Patch& p, const double* u, Foot& f) {
   f.x_etazeta = u00 - u10 - u01 + u11;
 }
 
-// Orthogonal projection of a point onto a patch. Not found: it lies beside the flank, by more than `beyond` facets.
-inline Foot project(const Patch& p, const double* u, const Vec3& xs, double beyond) {
-  constexpr double kOverlap = 0.02;  // a facet's parameters may exceed it by this before the next one is taken
-  constexpr double kStep = 1e-10;    // last step, in facets: round-off of positions far from the axis allows 1e-13
-  Foot f;
+// Foot point from which the projection of a point starts: next to the nearest profile node.
+inline FootPoint nearest_node(const Patch& p, const double* u, const Vec3& xs) {
+  FootPoint f;
   int j = 0;
   while (j < p.n_z - 1 && p.z[j + 1] < xs[2]) ++j;
   double best = 1e300;
   int row = 0;
   for (int i = 0; i <= p.n_s; ++i) {
-    const Vec2 x = p.turned(p.point + 2 * i);
+    const Vec2 x = p.placed(p.point + 2 * i);
     const Vec3 d = nodal(u, p.node(i, j), p.image(i, j));
     const double dist = (Vec2(xs[0], xs[1]) - x - d.head<2>()).squaredNorm();
     if (dist < best) best = dist, row = i;
@@ -156,8 +176,36 @@ inline Foot project(const Patch& p, const double* u, const Vec3& xs, double beyo
   f.eta = row == f.i ? 0.0 : 1.0;
   f.j = j;
   f.zeta = (xs[2] - p.z[j]) / (p.z[j + 1] - p.z[j]);
-  if (f.zeta < -1 - beyond || f.zeta > 2 + beyond) return f;
-  for (int it = 0; it < 40; ++it) {
+  return f;
+}
+
+// Moves to the neighbouring facet when a parameter exceeds the facet by more than the overlap; false when none does.
+inline bool change_facet(const Patch& p, FootPoint& f) {
+  if (f.eta > 1 + kOverlap && f.i < p.n_s - 1) {
+    f.eta = std::min(1.0, (f.eta - 1) * (p.s[f.i + 1] - p.s[f.i]) / (p.s[f.i + 2] - p.s[f.i + 1]));
+    ++f.i;
+  } else if (f.eta < -kOverlap && f.i > 0) {
+    f.eta = std::max(0.0, 1 + f.eta * (p.s[f.i + 1] - p.s[f.i]) / (p.s[f.i] - p.s[f.i - 1]));
+    --f.i;
+  } else if (f.zeta > 1 + kOverlap && f.j < p.n_z - 1) {
+    f.zeta = std::min(1.0, (f.zeta - 1) * (p.z[f.j + 1] - p.z[f.j]) / (p.z[f.j + 2] - p.z[f.j + 1]));
+    ++f.j;
+  } else if (f.zeta < -kOverlap && f.j > 0) {
+    f.zeta = std::max(0.0, 1 + f.zeta * (p.z[f.j + 1] - p.z[f.j]) / (p.z[f.j] - p.z[f.j - 1]));
+    --f.j;
+  } else {
+    return false;
+  }
+  return true;
+}
+
+// Orthogonal projection of a point onto a patch by Newton's method for the squared distance. Not found: the point lies
+// beside the flank, by more than `beyond` facets.
+inline FootPoint project(const Patch& p, const double* u, const Vec3& xs, double beyond) {
+  const auto lost = [&](double t) { return t < -kGivenUp - beyond || t > 1 + kGivenUp + beyond; };
+  FootPoint f = nearest_node(p, u, xs);
+  if (lost(f.zeta)) return f;
+  for (int it = 0; it < kMostSteps; ++it) {
     evaluate(p, u, f);
     const Vec3 dist = xs - f.x;
     const Vec2 r(dist.dot(f.x_eta), dist.dot(f.x_zeta));
@@ -167,31 +215,17 @@ inline Foot project(const Patch& p, const double* u, const Vec3& xs, double beyo
     h(0, 0) -= dist.dot(f.x_etaeta);
     h(0, 1) -= dist.dot(f.x_etazeta);
     h(1, 0) = h(0, 1);
-    if (h(0, 0) < 0.2 * metric(0, 0) || h.determinant() < 0.2 * metric.determinant()) h = metric;
+    if (h(0, 0) < kConvex * metric(0, 0) || h.determinant() < kConvex * metric.determinant()) h = metric;
     Vec2 step = h.inverse() * r;
     const double big = std::max(std::abs(step[0]), std::abs(step[1]));
-    if (big > 1.0) step /= big;
+    if (big > kLongestStep) step /= big;
     f.eta += step[0];
     f.zeta += step[1];
-    const bool small = big < kStep;
-    if (f.eta > 1 + kOverlap && f.i < p.n_s - 1) {
-      f.eta = std::min(1.0, (f.eta - 1) * (p.s[f.i + 1] - p.s[f.i]) / (p.s[f.i + 2] - p.s[f.i + 1]));
-      ++f.i;
-    } else if (f.eta < -kOverlap && f.i > 0) {
-      f.eta = std::max(0.0, 1 + f.eta * (p.s[f.i + 1] - p.s[f.i]) / (p.s[f.i] - p.s[f.i - 1]));
-      --f.i;
-    } else if (f.zeta > 1 + kOverlap && f.j < p.n_z - 1) {
-      f.zeta = std::min(1.0, (f.zeta - 1) * (p.z[f.j + 1] - p.z[f.j]) / (p.z[f.j + 2] - p.z[f.j + 1]));
-      ++f.j;
-    } else if (f.zeta < -kOverlap && f.j > 0) {
-      f.zeta = std::max(0.0, 1 + f.zeta * (p.z[f.j + 1] - p.z[f.j]) / (p.z[f.j] - p.z[f.j - 1]));
-      --f.j;
-    } else if (small) {
+    if (!change_facet(p, f) && big < kLastStep) {
       f.found = true;
       break;
     }
-    if (f.eta < -1 - beyond || f.eta > 2 + beyond || f.zeta < -1 - beyond || f.zeta > 2 + beyond)
-      return f;  // beyond the end of the grid
+    if (lost(f.eta) || lost(f.zeta)) return f;
   }
   const auto within = [&](double t, int facet, int count) {
     return t >= (facet == 0 ? -beyond : -kOverlap) && t <= 1 + (facet == count - 1 ? beyond : kOverlap);
@@ -207,8 +241,9 @@ inline Foot project(const Patch& p, const double* u, const Vec3& xs, double beyo
 // Adds w (stiffness dg dg^T - pressure d2g) to the blocked rows; nodes: 4 slave, then 4 master.
 // With tau_a = x_a . (dx_s - dx_m), P_a = n . dx_m,a, A = x_a . x_b, B = n . x_ab, H = A - g B:
 //   d2g = -tau A^-1 B H^-1 tau - tau H^-1 P - P H^-1 tau - g P H^-1 P.
-inline int add_contact_tangent(const Foot& f, const double* shape, const std::int32_t* conn, const std::uint8_t* flip,
-                               double weight, double stiffness, double pressure, const BlockRows& rows) {
+inline int add_contact_tangent(const FootPoint& f, const double* shape, const std::int32_t* conn,
+                               const std::uint8_t* flip, double weight, double stiffness, double pressure,
+                               const BlockRows& rows) {
   const double e = f.eta, q = f.zeta;
   const double m[4] = {(1 - e) * (1 - q), e * (1 - q), (1 - e) * q, e * q};
   const double me[4] = {-(1 - q), 1 - q, -q, q}, mz[4] = {-(1 - e), -e, 1 - e, e};

@@ -6,16 +6,20 @@
 
 namespace swgpar {
 
+// Largest cosine of the angle between the outward normals of two flanks that can touch. It is near -1 for flanks that
+// touch, whatever their load, and above 0 for a surface seen from behind or across a tooth.
+constexpr double kFacing = -0.3;
+
 struct FlankBatch {  // n_patch master flanks with the same grid
   int n_patch, n_s, n_z;
   const double* s;
   const double* z;
-  const double* point;        // (n_patch, n_s + 1, 2)
-  const double* tangent;      // (n_patch, n_s + 1, 2)
-  const double* orientation;  // (n_patch)
-  const double* turn;         // (n_patch, 2) cosine, sine
-  double body_cosine, body_sine;
-  const std::int32_t* conn;  // (n_patch, n_s + 1, n_z + 1)
+  const double* point;            // (n_patch, n_s + 1, 2)
+  const double* tangent;          // (n_patch, n_s + 1, 2)
+  const double* orientation;      // (n_patch)
+  const double* rotation;         // (n_patch, 2) cosine and sine of the angles of the teeth
+  double body_cosine, body_sine;  // of the rotation of the body as a whole
+  const std::int32_t* conn;       // (n_patch, n_s + 1, n_z + 1)
   const std::uint8_t* flip;
 
   Patch patch(int k) const {
@@ -27,8 +31,8 @@ struct FlankBatch {  // n_patch master flanks with the same grid
                  point + 2 * row,
                  tangent + 2 * row,
                  orientation[k],
-                 turn[2 * k],
-                 turn[2 * k + 1],
+                 rotation[2 * k],
+                 rotation[2 * k + 1],
                  body_cosine,
                  body_sine,
                  conn + row * (n_z + 1),
@@ -41,7 +45,7 @@ struct FaceBatch {  // slave faces and their quadrature points
   int n_q;
   const std::int32_t* conn;  // (n_face, 4)
   const std::uint8_t* flip;
-  const double* coords;       // (n_face, 4, 3) undeformed, turned into place
+  const double* coords;       // (n_face, 4, 3) undeformed, at the tooth's angle
   const double* normal;       // (n_face, 3) undeformed outward normal, of which the side matters
   const double* shape;        // (n_face, n_q, 4)
   const double* weight;       // (n_face, n_q) area
@@ -49,35 +53,40 @@ struct FaceBatch {  // slave faces and their quadrature points
   const std::int32_t* patch;  // (n_face) master patch
 };
 
+// Gaps (mm), pressures (MPa) and foot points (s, z; mm) at the quadrature points of all faces; adds the contact forces
+// to `residual`, the tangent to `rows` and the energy's derivative by the rotation of the master body to `moment`.
+//   p = multiplier - penalty gap;  virtual work = sum weight p dgap  (p > 0)
+// limit : MPa, bound of the pressure in the tangent's geometric terms. Returns the blocks that the pattern lacks.
 inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& faces, const double* u,
                                   const double* multiplier, double penalty, double opening, double reach, double beyond,
                                   double limit, const Friction& friction, double* residual, const BlockRows& rows,
-                                  double* gap, double* pressure, double* place, double* moment) {
+                                  double* gap, double* pressure, double* foot_point, double* moment) {
   std::int64_t missing = 0;
   for (std::int64_t k = 0; k < faces.n_face; ++k) {
     const Patch patch = patches.patch(faces.patch[k]);
     std::int32_t conn[8];
     std::uint8_t flip[8];
-    Vec3 before[4], corner[4];
+    Vec3 undeformed[4], corner[4];
     for (int a = 0; a < 4; ++a) {
       conn[a] = faces.conn[4 * k + a];
       flip[a] = faces.flip[4 * k + a];
       const double* c = faces.coords + 12 * k + 3 * a;
-      before[a] = Vec3(c[0], c[1], c[2]);
-      corner[a] = before[a] + nodal(u, conn[a], flip[a]);
+      undeformed[a] = Vec3(c[0], c[1], c[2]);
+      corner[a] = undeformed[a] + nodal(u, conn[a], flip[a]);
     }
     const Vec3 outward(faces.normal[3 * k], faces.normal[3 * k + 1], faces.normal[3 * k + 2]);
     Vec3 face_normal = (corner[2] - corner[0]).cross(corner[3] - corner[1]).normalized();
-    if ((before[2] - before[0]).cross(before[3] - before[1]).dot(outward) < 0.0) face_normal = -face_normal;
+    if ((undeformed[2] - undeformed[0]).cross(undeformed[3] - undeformed[1]).dot(outward) < 0.0)
+      face_normal = -face_normal;
     for (int q = 0; q < faces.n_q; ++q) {
       const std::int64_t kq = k * faces.n_q + q;
       const double* shape = faces.shape + 4 * kq;
       const Vec3 xs = shape[0] * corner[0] + shape[1] * corner[1] + shape[2] * corner[2] + shape[3] * corner[3];
-      const Foot f = project(patch, u, xs, beyond);
+      const FootPoint f = project(patch, u, xs, beyond);
       // a surface seen from behind, or across a tooth, is not the one this point can touch
-      if (!f.found || f.normal.dot(face_normal) > -0.3 || std::abs(f.gap) > reach) continue;
-      place[2 * kq] = patch.s[f.i] + f.eta * (patch.s[f.i + 1] - patch.s[f.i]);
-      place[2 * kq + 1] = patch.z[f.j] + f.zeta * (patch.z[f.j + 1] - patch.z[f.j]);
+      if (!f.found || f.normal.dot(face_normal) > kFacing || std::abs(f.gap) > reach) continue;
+      foot_point[2 * kq] = patch.s[f.i] + f.eta * (patch.s[f.i + 1] - patch.s[f.i]);
+      foot_point[2 * kq + 1] = patch.z[f.j] + f.zeta * (patch.z[f.j + 1] - patch.z[f.j]);
       gap[kq] = f.gap - faces.offset[kq] + opening;
       const double p = multiplier[kq] - penalty * gap[kq];
       const double bounding = friction.lagged == nullptr ? p : friction.lagged[kq];
@@ -101,22 +110,26 @@ inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& fa
         missing += add_contact_tangent(f, shape, conn, flip, w, penalty, std::min(p, limit), rows);
       if (friction.coefficient == 0.0 || bounding <= 0.0) continue;
       const Vec2 length(patch.s[f.i + 1] - patch.s[f.i], patch.z[f.j + 1] - patch.z[f.j]);
-      const Traction t = traction(f, length, Vec2(place[2 * kq], place[2 * kq + 1]), friction, kq, bounding, penalty);
+      const Traction t =
+          traction(f, length, Vec2(foot_point[2 * kq], foot_point[2 * kq + 1]), friction, kq, bounding, penalty);
       if (!t.acts) continue;
       const Motion motion(f, shape);
       if (residual != nullptr) {
         const Eigen::Matrix<double, 24, 1> force = w * motion.foot.transpose() * (motion.x.transpose() * t.value);
         for (int a = 0; a < 8; ++a) add_nodal(residual, conn[a], flip[a], force.segment<3>(3 * a));
-        moment[k] += w * motion.by_turn(f).dot(motion.x.transpose() * t.value);
+        moment[k] += w * motion.by_rotation(f).dot(motion.x.transpose() * t.value);
       }
       if (rows.values != nullptr)
-        missing += add_friction_tangent(f, t, motion, f.straight ? Vec3::Zero().eval() : patch.bent(f.i), conn, flip, w,
-                                        penalty, bounding, std::min(1.0, limit / bounding), friction, rows);
+        missing +=
+            add_friction_tangent(f, t, motion, f.straight ? Vec3::Zero().eval() : patch.third_derivative(f.i), conn,
+                                 flip, w, penalty, bounding, std::min(1.0, limit / bounding), friction, rows);
     }
   }
   return missing;
 }
 
+// Adds dense blocks (n, m, m, 3, 3) of the nodes conn (n, m) to the owned rows; returns the blocks that the pattern
+// lacks.
 inline std::int64_t add_blocks(std::int64_t n, int m, const std::int32_t* conn, const std::uint8_t* flip,
                                const double* blocks, const BlockRows& rows) {
   std::int64_t missing = 0;

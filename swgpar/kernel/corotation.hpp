@@ -16,17 +16,22 @@ inline Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
   return s;
 }
 
-// Rotation nearest to F (det F > 0) by the scaled Newton iteration for the polar factor.
+constexpr int kScaledSteps = 4;      // of Newton's iteration for the polar factor, the others converge by themselves
+constexpr int kMostPolarSteps = 50;  // some 6 are needed
+constexpr double kPolarTolerance = 1e-30;  // of the squared change: round-off of a matrix of entries near 1
+
+// Rotation nearest to F (det F > 0) by Newton's iteration for the polar factor, scaled by Frobenius norms (Higham
+// 1986).
 inline Eigen::Matrix3d polar_rotation(const Eigen::Matrix3d& f) {
   Eigen::Matrix3d r = f;
-  for (int it = 0; it < 50; ++it) {
+  for (int it = 0; it < kMostPolarSteps; ++it) {
     const Eigen::Matrix3d inverse = r.inverse();
-    const double change0 = r.squaredNorm(),
-                 scale = it < 4 ? std::sqrt(std::sqrt(inverse.squaredNorm() / change0)) : 1.0;
+    const double size = r.squaredNorm(),
+                 scale = it < kScaledSteps ? std::sqrt(std::sqrt(inverse.squaredNorm() / size)) : 1.0;
     const Eigen::Matrix3d next = 0.5 * (scale * r + inverse.transpose() / scale);
     const double change = (next - r).squaredNorm();
     r = next;
-    if (change < 1e-30) break;
+    if (change < kPolarTolerance) break;
   }
   return r;
 }
@@ -44,7 +49,7 @@ inline Eigen::Matrix3d plane_rotation(const Eigen::Matrix3d& f) {
 // N: 8 for hexahedra; 4 for plane elements, whose nodes have no displacement along z; Dynamic for condensed sectors,
 // which are plane too.
 template <int N>
-struct Corotated {
+struct CorotatedElement {
   static constexpr int D = N == Eigen::Dynamic ? Eigen::Dynamic : 3 * N;
   using Nodes = Eigen::Matrix<double, N, 3>;
   using Vector = Eigen::Matrix<double, D, 1>;
@@ -58,11 +63,11 @@ struct Corotated {
   Rows q;
   bool valid = true;
 
-  // small: X_a - mean(X), turned: the same after the sector's turn, u: displacements. The displacement in the
-  // element frame is R^T (turned + u - mean u) - small, formed from small numbers only.
-  Corotated(const Nodes& small, const Nodes& turned, const Nodes& u, const Nodes& g, const double* stiffness) {
+  // small: X_a - mean(X), rotated: the same at the sector's angle, u: displacements. The displacement in the
+  // element frame is R^T (rotated + u - mean u) - small, formed from small numbers only.
+  CorotatedElement(const Nodes& small, const Nodes& rotated, const Nodes& u, const Nodes& g, const double* stiffness) {
     const Eigen::RowVector3d mean = u.colwise().mean();
-    const Nodes x = turned + (u.rowwise() - mean);
+    const Nodes x = rotated + (u.rowwise() - mean);
     const int m = static_cast<int>(g.rows());
     Eigen::Matrix3d f = x.transpose() * g;
     if (N != 8) f(2, 2) = 1.0;

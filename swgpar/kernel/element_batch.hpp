@@ -15,7 +15,7 @@ struct ElementBatch {  // N nodes each: 8; 4 in the plane; those of a plane cond
   const double* gradient;      // (n_ref, N, 3)
   const double* coords;        // (n_ref, N, 3)
   const std::int32_t* ref_of;  // (n)
-  const double* turn;          // (n, 2) cosine and sine of the sector's turn
+  const double* rotation;      // (n, 2) cosine and sine of the sector's angle
   const std::int32_t* conn;    // (n, N), -1: fixed
   const std::uint8_t* flip;    // (n, N)
 };
@@ -29,17 +29,18 @@ inline std::int64_t count(const ElementBatch& e) {
 }
 
 template <int N>
-inline Corotated<N> state(const ElementBatch& e, std::int64_t k, const double* u, Eigen::Matrix<double, N, 3>& g) {
+inline CorotatedElement<N> state(const ElementBatch& e, std::int64_t k, const double* u,
+                                 Eigen::Matrix<double, N, 3>& g) {
   const std::int64_t ref = e.ref_of[k], m = count<N>(e);
   g = Eigen::Map<const RowNodes<N>>(e.gradient + 3 * m * ref, m, 3);
   Eigen::Matrix<double, N, 3> x = Eigen::Map<const RowNodes<N>>(e.coords + 3 * m * ref, m, 3);
   x.rowwise() -= x.colwise().mean().eval();
-  const double c = e.turn[2 * k], s = e.turn[2 * k + 1];
-  Eigen::Matrix<double, N, 3> turned = x, v(m, 3);
-  turned.col(0) = c * x.col(0) - s * x.col(1);
-  turned.col(1) = s * x.col(0) + c * x.col(1);
+  const double c = e.rotation[2 * k], s = e.rotation[2 * k + 1];
+  Eigen::Matrix<double, N, 3> rotated = x, v(m, 3);
+  rotated.col(0) = c * x.col(0) - s * x.col(1);
+  rotated.col(1) = s * x.col(0) + c * x.col(1);
   for (int a = 0; a < m; ++a) v.row(a) = nodal(u, e.conn[m * k + a], e.flip[m * k + a]).transpose();
-  return Corotated<N>(x, turned, v, g, e.stiffness + 9 * m * m * ref);
+  return CorotatedElement<N>(x, rotated, v, g, e.stiffness + 9 * m * m * ref);
 }
 
 // Adds forces and tangent blocks; returns the index of a collapsed element or -1.
@@ -49,7 +50,7 @@ inline std::int64_t assemble(const ElementBatch& e, const double* u, double* res
   const std::int64_t m = count<N>(e);
   Eigen::Matrix<double, N, 3> g(m, 3);
   for (std::int64_t k = 0; k < e.n; ++k) {
-    const Corotated<N> c = state<N>(e, k, u, g);
+    const CorotatedElement<N> c = state<N>(e, k, u, g);
     if (!c.valid) return k;
     *energy += 0.5 * c.d.dot(c.f0);
     const std::int32_t* conn = e.conn + m * k;
@@ -60,14 +61,14 @@ inline std::int64_t assemble(const ElementBatch& e, const double* u, double* res
     const auto t = c.tangent(g, e.stiffness + 9 * m * m * e.ref_of[k]);
     for (int a = 0; a < m; ++a) {
       for (int b = 0; b < m; ++b) {
-        const std::int64_t place = slot[m * m * k + m * a + b];
-        if (place < 0) continue;
+        const std::int64_t block_index = slot[m * m * k + m * a + b];
+        if (block_index < 0) continue;
         const Mat3 even =
             0.5 * (t.template block<3, 3>(3 * a, 3 * b) + t.template block<3, 3>(3 * b, 3 * a).transpose());
         Mat3 block = c.rotation * even * c.rotation.transpose();
         if (flip[a]) block.topRows<2>() *= -1.0;
         if (flip[b]) block.leftCols<2>() *= -1.0;
-        Eigen::Map<Mat3>(values + 9 * place) += block;
+        Eigen::Map<Mat3>(values + 9 * block_index) += block;
       }
     }
   }
@@ -79,7 +80,7 @@ template <int N>
 inline std::int64_t stress(const ElementBatch& e, const double* recovery, const double* u, double* out) {
   Eigen::Matrix<double, N, 3> g;
   for (std::int64_t k = 0; k < e.n; ++k) {
-    const Corotated<N> c = state<N>(e, k, u, g);
+    const CorotatedElement<N> c = state<N>(e, k, u, g);
     if (!c.valid) return k;
     using Recovery = Eigen::Matrix<double, 6 * N, 3 * N, Eigen::RowMajor>;
     const Eigen::Matrix<double, 6 * N, 1> local = Eigen::Map<const Recovery>(recovery + 18 * N * N * e.ref_of[k]) * c.d;

@@ -67,7 +67,7 @@ struct Quad4i {
     recovery.setZero();
     for (int a = 0; a < 4; ++a)
       for (int c = 0; c < 4; ++c) stiffness.block<2, 2>(3 * a, 3 * c) = k.block<2, 2>(2 * a, 2 * c);
-    const int place[3] = {0, 1, 3};  // xx, yy, xy among the six components
+    const int component[3] = {0, 1, 3};  // xx, yy, xy among the six components
     for (int q = 0; q < 4; ++q) {
       const Mat3x8 s = elastic * (b[q] + g[q] * alpha);
       for (int a = 0; a < 4; ++a) {
@@ -75,7 +75,7 @@ struct Quad4i {
         for (int c = 0; c < 2; ++c) weight *= 1 + std::sqrt(3.0) * kCorner[a][c] * kCorner[q][c];
         for (int r = 0; r < 3; ++r)
           for (int n = 0; n < 4; ++n)
-            for (int c = 0; c < 2; ++c) recovery(6 * a + place[r], 3 * n + c) += weight * s(r, 2 * n + c);
+            for (int c = 0; c < 2; ++c) recovery(6 * a + component[r], 3 * n + c) += weight * s(r, 2 * n + c);
       }
     }
   }

@@ -80,7 +80,7 @@ def test_tangent_is_the_derivative_of_the_residual(overrides: tuple[str, ...], m
     assert problem.penetration() > 0.0
     if design.contact.friction:
         active = problem.flanks.saved_segments()
-        slipping = 0 if active is None else np.count_nonzero(np.linalg.norm(active.friction.now, axis=2))
+        slipping = 0 if active is None else np.count_nonzero(np.linalg.norm(active.friction.current, axis=2))
         assert partition.comm.allreduce(slipping) > 0
     print(f"relative difference {difference.norm() / sides[0].norm():.1e}")
     # left out of the tangent: the second derivative of the coupling's rotation, and that flanks turn with a ring gear

@@ -43,7 +43,7 @@ class Forces:
     keys: list
     segments: Segments
     force: np.ndarray
-    place: np.ndarray
+    foot_point: np.ndarray
 
 
 def forces(runner: LoadStepper) -> tuple[Forces, float]:
@@ -54,9 +54,9 @@ def forces(runner: LoadStepper) -> tuple[Forces, float]:
         none = np.zeros((0, 4, 2))
         return Forces([], Segments(np.zeros(0, dtype=np.int64), *np.zeros((3, 0, 4))), none, none), 0.0
     place = flanks.foot_points(active.faces, u)
-    force = active.faces.weight[..., None] * active.friction.now
+    force = active.faces.weight[..., None] * active.friction.current
     force[~flanks.found.owned[active.faces.patch]] = 0.0
-    work = float(np.nansum(force * (place - active.friction.place)))
+    work = float(np.nansum(force * (place - active.friction.foot_point)))
     return Forces([p.key for p in flanks.pairs], active.segments, force, place), work
 
 
@@ -71,7 +71,7 @@ def onward(runner: LoadStepper, old: Forces) -> float:
         return 0.0
     part = Segments(np.arange(len(keep)), *(getattr(old.segments, n)[keep] for n in ("a", "b", "share")))
     place = flanks.foot_points(flanks.found.faces.cut(new[keep] * flanks.n_face + local[keep], part), u)
-    return float(np.nansum(old.force[keep] * (place - old.place[keep])))
+    return float(np.nansum(old.force[keep] * (place - old.foot_point[keep])))
 
 
 def test_input_work_is_output_work_and_dissipation() -> None:

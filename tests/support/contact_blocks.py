@@ -118,8 +118,8 @@ class Blocks:
             assert residual < 1e-7, (augmentation, residual)
             multiplier = pressure.copy()
         if law is not None:
-            self.before, self.traction = u.copy(), law.now
-            self.history = np.stack([friction.sampled(segments, law.now, k) for k in pick])
+            self.before, self.traction = u.copy(), law.current
+            self.history = np.stack([friction.sampled(segments, law.current, k) for k in pick])
         return faces, pressure, contact
 
     def _friction(self, faces: Faces, segments: Segments, zero: np.ndarray) -> friction.Friction:

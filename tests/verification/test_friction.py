@@ -81,11 +81,11 @@ def test_tangent_in_slip_and_stick(coefficient: float, gap_before: float) -> Non
 def test_points_that_had_no_foot_carry_no_friction() -> None:
     """Neither in the forces nor in the tangent, which kept an increment from converging when it did."""
     arc = Arc(0.3, 0.02)
-    arc.law.place[0, 4:] = np.nan
+    arc.law.foot_point[0, 4:] = np.nan
     arc.law.gap[0, 4:] = np.inf
     checked_tangent(arc)
-    assert not arc.law.now[0, 4:].any() and arc.law.now[0, :4].any()
-    arc.law.place[:] = np.nan
+    assert not arc.law.current[0, 4:].any() and arc.law.current[0, :4].any()
+    arc.law.foot_point[:] = np.nan
     _, tangent = checked_tangent(arc)
     assert np.abs(tangent - tangent.T).max() < 1e-9 * np.abs(tangent).max()
 
@@ -96,7 +96,7 @@ def test_given_pressures_in_the_law(coefficient: float) -> None:
     arc = Arc(coefficient, 0.02)
     r, _ = checked_tangent(arc)
     pressure = contact_flanks(arc.flanks, arc.faces, arc.u, *SETTINGS, None, None)[1]
-    traction = arc.law.now.copy()
+    traction = arc.law.current.copy()
     arc.law.lagged = pressure
     again, _ = checked_tangent(arc)
     assert np.abs(again - r).max() < 1e-12 * np.abs(r).max()
@@ -105,7 +105,7 @@ def test_given_pressures_in_the_law(coefficient: float) -> None:
     if coefficient == 0.3:
         slips = np.linalg.norm(traction, axis=2) > 0.99 * 0.3 * pressure
         assert slips.any()
-        np.testing.assert_allclose(arc.law.now[slips], 0.5 * traction[slips], rtol=0.02)
+        np.testing.assert_allclose(arc.law.current[slips], 0.5 * traction[slips], rtol=0.02)
     arc.u[:4, 1] += 0.1
     parted, _ = checked_tangent(arc)
     assert not contact_flanks(arc.flanks, arc.faces, arc.u, *SETTINGS, None, None)[1].any()
@@ -117,16 +117,16 @@ def test_rotation_changes_no_traction(coefficient: float) -> None:
     """Everything turned by 0.7 rad since the last converged state: the same tractions, forces turned alike."""
     arc = Arc(coefficient, -0.01)
     before = arc.force(arc.u)
-    traction = arc.law.now.copy()
+    traction = arc.law.current.copy()
     c, s = np.cos(0.7), np.sin(0.7)
     turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
     # the arc's exact curve does not turn with its nodes: its patch does
-    arc.flanks.turn[0] = c, s
+    arc.flanks.rotation[0] = c, s
     arc.faces.coords[:] = arc.faces.coords @ turn.T
     arc.faces.normal[:] = arc.faces.normal @ turn.T
     after = arc.force(arc.u @ turn.T)
     assert np.abs(traction).max() > 100.0
-    assert np.abs(arc.law.now - traction).max() < 1e-9 * np.abs(traction).max()
+    assert np.abs(arc.law.current - traction).max() < 1e-9 * np.abs(traction).max()
     assert np.abs(after - before @ turn.T).max() < 1e-9 * np.abs(before).max()
 
 

@@ -16,7 +16,7 @@ cdef extern from "element_batch.hpp" namespace "swgpar" nogil:
         const double* gradient
         const double* coords
         const int32_t* ref_of
-        const double* turn
+        const double* rotation
         const int32_t* conn
         const uint8_t* flip
     int64_t assemble8 "swgpar::assemble<8>"(const ElementBatch&, const double* u, double* residual,
@@ -82,30 +82,31 @@ def reference_elements(coords, double young, double poisson, double thickness=0.
 
 
 cdef ElementBatch batch(const double[:, :, ::1] stiffness, const double[:, :, ::1] gradient,
-                        const double[:, :, ::1] coords, const int32_t[::1] ref_of, const double[:, ::1] turn,
+                        const double[:, :, ::1] coords, const int32_t[::1] ref_of, const double[:, ::1] rotation,
                         const int32_t[:, ::1] conn, const uint8_t[:, ::1] flip) except *:
-    if not (turn.shape[0] == conn.shape[0] == flip.shape[0] == ref_of.shape[0] and turn.shape[1] == 2
+    if not (rotation.shape[0] == conn.shape[0] == flip.shape[0] == ref_of.shape[0] and rotation.shape[1] == 2
             and conn.shape[1] == flip.shape[1] == coords.shape[1]):
         raise ValueError("element arrays: shapes disagree")
     return ElementBatch(conn.shape[0], conn.shape[1], &stiffness[0, 0, 0], &gradient[0, 0, 0], &coords[0, 0, 0], &ref_of[0],
-                        &turn[0, 0], &conn[0, 0], &flip[0, 0])
+                        &rotation[0, 0], &conn[0, 0], &flip[0, 0])
 
 
-def assemble_elements(ref, const int32_t[::1] ref_of, const double[:, ::1] turn, const int32_t[:, ::1] conn,
+def assemble_elements(ref, const int32_t[::1] ref_of, const double[:, ::1] rotation, const int32_t[:, ::1] conn,
                       const uint8_t[:, ::1] flip, const double[:, ::1] u, residual, slot, values):
     """Add forces and tangent blocks of corotated elements; returns their strain energy (N mm).
 
-    ref_of : (n,) row of `ref`;  turn : (n, 2) cosine, sine of the sector's turn
+    ref_of : (n,) row of `ref`;  rotation : (n, 2) cosine and sine of the sector's angle
     conn : (n, m) local nodes, -1 fixed;  flip : (n, m), 1 for images under the half turn
     u : (n_local, 3) mm;  residual : (n_local, 3) N or None
     slot : (n, m * m) int64 block of each node pair, -1 to skip;  values : (n_blocks, 3, 3) N/mm, entry (k, l) of
     block p at values[p, l, k]; both None to skip the tangent
+    Raises ValueError for shapes that disagree, FloatingPointError for an element that has collapsed.
     """
     cdef int64_t bad
     cdef double energy = 0.0
     if conn.shape[0] == 0:
         return 0.0
-    cdef ElementBatch e = batch(ref.stiffness, ref.gradient, ref.coords, ref_of, turn, conn, flip)
+    cdef ElementBatch e = batch(ref.stiffness, ref.gradient, ref.coords, ref_of, rotation, conn, flip)
     cdef double[:, ::1] r
     cdef double[:, :, ::1] v
     cdef const int64_t[:, ::1] p
@@ -132,16 +133,20 @@ def assemble_elements(ref, const int32_t[::1] ref_of, const double[:, ::1] turn,
     return energy
 
 
-def recover_stress(ref, const int32_t[::1] ref_of, const double[:, ::1] turn, const int32_t[:, ::1] conn,
+def recover_stress(ref, const int32_t[::1] ref_of, const double[:, ::1] rotation, const int32_t[:, ::1] conn,
                    const uint8_t[:, ::1] flip, const double[:, ::1] u):
-    """Stress extrapolated to the nodes of each element; (n, m, 6) MPa, global axes, xx yy zz xy yz zx."""
+    """Stress extrapolated to the nodes of each element; (n, m, 6) MPa, global axes, xx yy zz xy yz zx.
+
+    Parameters as for `assemble_elements`. Raises ValueError for shapes that disagree, FloatingPointError for an element
+    that has collapsed.
+    """
     cdef int64_t bad
     if conn.shape[1] not in (4, 8):
         raise ValueError("recover_stress: elements have 4 or 8 nodes")
     out = np.empty((conn.shape[0], conn.shape[1], 6))
     if conn.shape[0] == 0:
         return out
-    cdef ElementBatch e = batch(ref.stiffness, ref.gradient, ref.coords, ref_of, turn, conn, flip)
+    cdef ElementBatch e = batch(ref.stiffness, ref.gradient, ref.coords, ref_of, rotation, conn, flip)
     cdef double[:, :, ::1] o = out, s = ref.recovery
     with nogil:
         if conn.shape[1] == 4:
