@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from swgpar.design.sections import Material
-from swgpar.meshing.ring import ring_sector
+from swgpar.meshing.ring_sector import ring_sector
 from swgpar.meshing.sector import SectorMesh
 
 INNER, OUTER, WIDTH = 58.2, 59.2, 10.0

@@ -22,7 +22,7 @@ from swgpar.fem.stress import body_fields, maxima
 from swgpar.geometry.cams import Cam
 from swgpar.kernel import reference_elements
 from swgpar.log import Phases
-from swgpar.meshing.ring import AROUND, ring_sector
+from swgpar.meshing.ring_sector import AROUND, ring_sector
 from swgpar.solve.discrete_problem import DiscreteProblem
 from swgpar.solve.newton import NewtonSolver
 from swgpar.solve.solve_state import NewtonSettings

@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.meshing.cross_section import CrossSection
 from swgpar.meshing.recipe import CupRecipe
 from swgpar.meshing.sector import Floats, Ints
 from swgpar.meshing.sweep import symmetric_steps
-from swgpar.meshing.tooth import CrossSection
 
 
 def meridian(design: DriveDesign, recipe: CupRecipe) -> tuple[Floats, Floats]:
@@ -19,6 +19,8 @@ def meridian(design: DriveDesign, recipe: CupRecipe) -> tuple[Floats, Floats]:
     -------
     inner, outer : (n_station, 2) float64, mm
         Points (r, z) of the inner and outer surface, from the back of the teeth to the bore.
+
+    The sizes of the cup are those of a checked design (`swgpar.design.fit_checks`).
     """
     cup, thickness = design.cup, design.cup_thickness
     back = 0.5 * design.drive.face_width
@@ -44,7 +46,7 @@ def attached_quads(section: CrossSection, root_too: bool) -> NDArray[np.bool_]:
 
 
 def depth_fractions(section: CrossSection, attached: NDArray[np.bool_], r_inner: float, thickness: float) -> Floats:
-    """Return the place (n_node,) of the attached nodes in the cup's wall: 0 inner, 1 outer surface.
+    """Return the fraction (n_node,) of the wall at the attached nodes: 0 at the inner, 1 at the outer surface.
 
     Where the layers below the root are attached, their top follows the root and the teeth; the fraction then
     counts layers instead of radius, and the cup's outer surface is level from its first station on.

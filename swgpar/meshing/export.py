@@ -24,9 +24,9 @@ def sector_numbers(mesh: SectorMesh) -> Ints:
     """Return the number (n_sectors, n_node) of every sector's nodes in the body; shared nodes have one."""
     own = np.ones(len(mesh.coords), dtype=bool) if not mesh.plane else mesh.lower_nodes == np.arange(len(mesh.coords))
     own[mesh.ccw_nodes] = False
-    place = np.cumsum(own) - 1
+    own_number = np.cumsum(own) - 1
     n_own = int(own.sum())
-    numbers = place + np.arange(mesh.n_sectors)[:, None] * n_own
+    numbers = own_number + np.arange(mesh.n_sectors)[:, None] * n_own
     numbers[:, mesh.ccw_nodes] = np.roll(numbers, -1, axis=0)[:, mesh.cw_nodes]
     if mesh.plane:
         numbers = numbers[:, mesh.lower_nodes]
@@ -67,9 +67,9 @@ def named_surfaces(meshes: dict[str, SectorMesh]) -> dict[str, Ints]:
         n = len(mesh.elements)
         for name, facets in quads.items():
             faces = element_faces(mesh, facets)
-            every = np.repeat(faces[None], mesh.n_sectors, axis=0)
-            every[..., 0] += first + n * np.arange(mesh.n_sectors, dtype=np.int32)[:, None]
-            surfaces[f"{mesh.body}_{name}"] = every.reshape(-1, 2)
+            copies = np.repeat(faces[None], mesh.n_sectors, axis=0)
+            copies[..., 0] += first + n * np.arange(mesh.n_sectors, dtype=np.int32)[:, None]
+            surfaces[f"{mesh.body}_{name}"] = copies.reshape(-1, 2)
         first += n * mesh.n_sectors
     return surfaces
 

@@ -33,8 +33,8 @@ def element_faces(mesh: SectorMesh, quads: Ints) -> Ints:
         quads = np.array([np.unique(quad) for quad in quads], dtype=np.int32).reshape(-1, 2)
     table = HEX_FACES if not mesh.plane else QUAD_FACES
     faces = np.sort(mesh.elements[:, table], axis=-1)
-    place = {tuple(nodes): (k, f) for k, row in enumerate(faces.tolist()) for f, nodes in enumerate(row)}
-    return np.array([place[tuple(quad)] for quad in np.sort(quads, axis=1).tolist()], dtype=np.int32).reshape(-1, 2)
+    face_of = {tuple(nodes): (k, f) for k, row in enumerate(faces.tolist()) for f, nodes in enumerate(row)}
+    return np.array([face_of[tuple(quad)] for quad in np.sort(quads, axis=1).tolist()], dtype=np.int32).reshape(-1, 2)
 
 
 def _lines(numbers: Ints) -> Iterator[str]:

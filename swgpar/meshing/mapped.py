@@ -34,7 +34,7 @@ class QuadMesh:
 class MappedBlocks:
     """Four-sided blocks whose sides are chains of given nodes; gmsh fills in the interior nodes.
 
-    Every given point becomes a node at exactly that place: a side is handed to gmsh as straight curves of one
+    Every given point becomes a node with exactly its coordinates: a side is passed to gmsh as straight curves of one
     element each. Points that coincide within `tolerance` are one node.
 
     Attributes
@@ -140,7 +140,7 @@ class MappedBlocks:
             block.append(np.full(len(cells), k))
         node = np.array([mesh.getNodes(0, k + 1)[0][0] for k in range(len(self.points))])
         node = np.searchsorted(tags, node)
-        coords[node] = self.points  # exact: the scaling to and fro costs the last digit
+        coords[node] = self.points  # exact: scaling and its inverse round the last digit
         quads = np.concatenate(quads)
         x, y = np.moveaxis(coords[quads], -1, 0)
         area = np.sum(x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1), axis=1)

@@ -7,8 +7,8 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import splu
 
 from swgpar.geometry.profiles.flank import ToothProfile
+from swgpar.meshing.cross_section import CrossSection
 from swgpar.meshing.sector import Floats
-from swgpar.meshing.tooth import CrossSection
 
 # dN/dxi of the bilinear quadrilateral at the 2x2 Gauss points: (point, node, direction)
 _CORNERS = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)], dtype=float)

@@ -38,7 +38,7 @@ def symmetric_steps(n: int, ratio: float) -> Floats:
 
 
 def axial_stations(width: float, n: int, ratio: float, inner_width: float) -> Floats:
-    """Return the places z (n + 1,), mm, of the nodes along the face width.
+    """Return the coordinates z (n + 1,), mm, of the nodes along the face width.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def axial_stations(width: float, n: int, ratio: float, inner_width: float) -> Fl
         # the nearest pair moves to the ends of the wave generator, the others are stretched with it; at least
         # one element stays on either side
         k = int(np.clip(np.argmin(np.abs(z[: (n + 1) // 2] + half)), 1, max(1, (n - 1) // 2)))
-        places = np.array((-0.5 * width, -half, half, 0.5 * width))
-        z = np.interp(z, (z[0], z[k], z[n - k], z[n]), places)
+        ends = np.array((-0.5 * width, -half, half, 0.5 * width))
+        z = np.interp(z, (z[0], z[k], z[n - k], z[n]), ends)
     z[[0, n]] = -0.5 * width, 0.5 * width
     return 0.5 * (z - z[::-1])

@@ -14,12 +14,12 @@ from swgpar.design.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutputError
 from swgpar.geometry.profiles.flank import Segment, ToothProfile
-from swgpar.meshing import MeshRecipe, SectorMesh, body, build_sector_meshes, load_recipe
+from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes, load_recipe, tooth_sector
+from swgpar.meshing.cross_section import cross_section
 from swgpar.meshing.cup import meridian
 from swgpar.meshing.export import mesh_report, whole_body, whole_drive, write_mesh
 from swgpar.meshing.quality import hex_quality, hex_volumes, quad_quality
 from swgpar.meshing.sweep import axial_stations
-from swgpar.meshing.tooth import cross_section
 
 CUP_RECIPES = ("coarse", "medium", "full")
 GEARS = ("flexible_spline", "ring_gear")
@@ -498,7 +498,7 @@ def test_quality_of_a_trapezium() -> None:
 
 def test_an_inverted_quadrilateral_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     worst = {"min_scaled_jacobian": -0.1, "min_jacobian": -0.25, "max_jacobian": 1.0, "max_aspect_ratio": 3.0}
-    monkeypatch.setattr(body, "quad_quality", lambda coords, quads: worst)
+    monkeypatch.setattr(tooth_sector, "quad_quality", lambda coords, quads: worst)
     with pytest.raises(InputError, match="-0.25 mm2"):
         build_sector_meshes(plane_design(*SMALL), load_recipe(RECIPE))
 

@@ -1,0 +1,202 @@
+r"""Cross-section of one tooth: mapped quadrilaterals that follow the flank.
+
+Half a tooth is cut into blocks (shown for an external tooth, centre line on the left; an internal one is the
+same with the radial direction reversed)::
+
+    M---T.            M  centre of the top land, T start of the flank (addendum circle)
+    |  cap K          K  end of the rounded tip edge, where the normal rises 60 degrees above the horizontal, or T
+    A---I   \         Q  on the root arc, where it rises 45 degrees
+    |    \ s \        R  end of the flank (dedendum circle), E  middle of the root
+    | core\ i \       B  below Q on the interface circle
+    |      \ d \
+    |       \ e  Q..      C  centre line on the interface circle
+    W--------J-'  ''R--E
+    |  under     | root|
+    C------------B-----E'   interface circle: the lower rim continues from here with straight radial lines
+    |  lower rim |     |
+    '------------'-----'    free circle (inner surface of the flexible spline, outer one of the ring gear)
+
+Three lines meet at I: the flank is smooth at K, so a block that had its corner there would be degenerate.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from swgpar.geometry.profiles.flank import ToothProfile
+from swgpar.meshing.recipe import ToothRecipe
+from swgpar.meshing.spacing import Floats, even, graded, line, polar, share, split_count
+
+TIP_NORMAL, ROOT_NORMAL = np.radians(60.0), np.radians(45.0)
+"""Inclination of the flank's normal, above the tangent of the pitch circle, at K and at Q."""
+
+
+Sides = tuple[Floats, Floats, Floats, Floats]
+"""Nodes (n, 2), mm, on the bottom, right, top and left side of a block."""
+
+
+def stations(profile: ToothProfile, first: float, last: float, n: int) -> Floats:
+    """Return n + 1 arc lengths from `first` to `last`, mm.
+
+    The ends of the segments are among them when there are elements enough; else the distances are equal.
+    """
+    margin = 1e-9 * profile.length
+    breaks = profile.breaks[(profile.breaks > first + margin) & (profile.breaks < last - margin)]
+    ends = np.concatenate(([first], breaks, [last]))
+    if n < len(ends) - 1:
+        return first + (last - first) * even(n)
+    counts = share(n, np.diff(ends))
+    parts = [a + (b - a) * even(k)[1:] for a, b, k in zip(ends[:-1], ends[1:], counts, strict=True)]
+    return np.concatenate(([first], *parts))
+
+
+def inclination(profile: ToothProfile, s: Floats) -> Floats:
+    """Return the angle (n,), rad, of the flank's normal above the tangential direction, towards the tip."""
+    x, y = profile.point(s).T
+    towards_tip = np.stack((x, y), axis=-1) / np.hypot(x, y)[:, None] * (1.0 if profile.external else -1.0)
+    return np.arcsin(np.clip(np.einsum("ij,ij->i", profile.normal(s), towards_tip), -1.0, 1.0))
+
+
+def snap(profile: ToothProfile, s: float, within: float) -> float:
+    """Return the end of a segment next to `s` when it is nearer than `within`, else `s`, mm."""
+    nearest = profile.breaks[np.argmin(np.abs(profile.breaks - s))]
+    return float(nearest) if abs(nearest - s) < within else s
+
+
+def block_ends(profile: ToothProfile) -> tuple[float, float]:
+    """Return the arc lengths of K and Q, mm; K is T on a tooth whose tip edge is not rounded."""
+    s = profile.length * even(4096)
+    angle = inclination(profile, s)
+    middle = int(np.argmin(angle))
+    tip = np.flatnonzero(angle[: middle + 1] > TIP_NORMAL)
+    root = np.flatnonzero(angle[middle:] < ROOT_NORMAL)
+    k = s[tip[-1]] if tip.size else 0.0
+    q = min(s[middle + root[-1]], profile.length) if root.size else s[middle]
+    return snap(profile, k, 0.1 * profile.length), snap(profile, q, 0.04 * profile.length)
+
+
+class HalfTooth:
+    """Nodes on the sides of the blocks of half a tooth (x >= 0).
+
+    Attributes
+    ----------
+    s : (n,) mm, arc lengths of the flank's nodes, from T to R
+    s_side : (n_side,) mm, those from K to Q
+    tip, root : (n, 2) mm, nodes from M to K and from Q to E
+    half_pitch : rad
+
+    Parameters
+    ----------
+    profile : ToothProfile
+    recipe : ToothRecipe
+    interface, free : float, mm
+        Radii of the interface circle and of the free surface of the rim.
+    """
+
+    def __init__(self, profile: ToothProfile, recipe: ToothRecipe, interface: float, free: float) -> None:
+        self.profile, self.recipe, self.interface, self.free = profile, recipe, interface, free
+        self.half_pitch = np.pi / profile.n_teeth
+        s_k, s_q = block_ends(profile)
+        s_tip, self.tip = self._tip(s_k)
+        s_root, self.root = self._root(s_q)
+        self.s_side = stations(profile, s_k, s_q, recipe.flank)
+        self.s = np.concatenate((s_tip[:-1], self.s_side, s_root[1:]))
+
+    def _tip(self, s_k: float) -> tuple[Floats, Floats]:
+        """Arc lengths (n,) of the flank's nodes from T to K, and nodes (m, 2) from M to K; mm."""
+        profile = self.profile
+        n_land, n_arc = split_count(self.recipe.tip, 0.5 * profile.top_land, s_k)
+        s_tip = stations(profile, 0.0, s_k, n_arc)
+        land = polar(profile.r_tip_circle, profile.polar_angle(0.0)[0] * even(n_land))
+        return s_tip, np.concatenate((land[:-1], profile.point(s_tip)))
+
+    def _root(self, s_q: float) -> tuple[Floats, Floats]:
+        """Arc lengths (n,) of the flank's nodes from Q to R, and nodes (m, 2) from Q to E; mm."""
+        profile = self.profile
+        n_land, n_arc = split_count(self.recipe.root, 0.5 * profile.root_land, profile.length - s_q)
+        s_root = stations(profile, s_q, profile.length, n_arc)
+        start = profile.polar_angle(profile.length)[0]
+        land = polar(profile.r_root_circle, start + (self.half_pitch - start) * even(n_land))
+        return s_root, np.concatenate((profile.point(s_root), land[1:]))
+
+    def blocks(self) -> list[Sides]:
+        """Return the sides of all blocks: cap, side, core, under, root, the lower rim under tooth and root."""
+        recipe, interface = self.recipe, self.interface
+        side = self.profile.point(self.s_side)
+        k, q = side[0], side[-1]
+        n_core, n_layer = recipe.tip, recipe.layers
+        fractions = graded(n_layer, recipe.layer_ratio)
+        theta_b = self._split_angle(q)
+        b = polar(interface, theta_b)
+        bottom = polar(interface, theta_b * even(n_core + n_layer))
+        j, w = self._shoulder(q, b, n_core / (n_core + n_layer))
+        i, a = self._apex(k, n_core, n_layer)
+        inner, centre = self._core_sides(side, i, a, j, w)
+        k_to_i, q_to_j = line(k, i, fractions), line(q, j, fractions)
+        w_to_q = np.concatenate((line(w, j, even(n_core))[:-1], q_to_j[::-1]))
+        down = even(recipe.under)
+        q_to_b, w_to_c = line(q, b, down), line(w, bottom[0], down)
+        root_angles, root_bottom = self._root_bottom(theta_b)
+        radii = interface + (self.free - interface) * even(recipe.rim)
+        rim = [polar(radii, angle)[::-1] for angle in (0.0, theta_b, self.half_pitch)]
+        cap_bottom = line(a, i, even(n_core))
+        cap_left = line(a, self.tip[0], fractions[::-1].max() - fractions[::-1])
+        return [
+            (cap_bottom, k_to_i[::-1], self.tip, cap_left),
+            (q_to_j[::-1], side[::-1], k_to_i[::-1], inner[::-1]),
+            (w_to_q[: n_core + 1], inner[::-1], cap_bottom, centre[::-1]),
+            (bottom, q_to_b[::-1], w_to_q, w_to_c[::-1]),
+            (root_bottom, line(root_bottom[-1], self.root[-1], down), self.root, q_to_b[::-1]),
+            (polar(self.free, theta_b * even(n_core + n_layer)), rim[1], bottom, rim[0]),
+            (polar(self.free, root_angles), rim[2], root_bottom, rim[1]),
+        ]
+
+    def _core_sides(self, side: Floats, i: Floats, a: Floats, j: Floats, w: Floats) -> tuple[Floats, Floats]:
+        """Nodes (n, 2) from I to J and on the centre line from A to W, for the nodes `side` (n, 2) from K to Q; mm."""
+        k, q = side[0], side[-1]
+        # the inner line lies between the flank's shape (good for the side) and a straight one (for the core)
+        t = ((self.s_side - self.s_side[0]) / (self.s_side[-1] - self.s_side[0]))[:, None]
+        parallel = side + (1.0 - t) * (i - k) + t * (j - q)
+        inner = 0.5 * parallel + 0.5 * (i + t * (j - i))
+        height = inner[:, 1] + ((1.0 - t) * (a - i) + t * (w - j))[:, 1]
+        return inner, np.stack((np.zeros_like(height), height), axis=-1)
+
+    def _root_bottom(self, theta_b: float) -> tuple[Floats, Floats]:
+        """Polar angles (n,) rad and nodes (n, 2) mm on the interface circle from B to E'."""
+        top = np.arctan2(*self.root.T)
+        top = (top - top[0]) / (top[-1] - top[0])
+        angles = theta_b + (self.half_pitch - theta_b) * (0.6 * even(self.recipe.root) + 0.4 * top)
+        return angles, polar(self.interface, angles)
+
+    def _split_angle(self, q: Floats) -> float:
+        """Return the polar angle of B, rad: between a line square to the root arc and even widths."""
+        recipe = self.recipe
+        n_base = recipe.tip + recipe.layers
+        uniform = self.half_pitch * n_base / (n_base + recipe.root)
+        theta_q = np.arctan2(*q)
+        depth = abs(np.hypot(*q) - self.interface)
+        lean = theta_q - depth * np.tan(np.radians(15.0)) / self.interface
+        return 0.5 * (lean + np.clip(uniform, 0.8 * lean, 1.1 * lean))
+
+    def _shoulder(self, q: Floats, b: Floats, fraction: float) -> tuple[Floats, Floats]:
+        """Return J and W, the inner corners of the row of elements that ends at Q."""
+        # halfway between the flank above Q and the line to B, so that the angles at Q are about equal
+        upwards = -self.profile.tangent(self.s_side[-1])[0]
+        to_b = (b - q) / np.hypot(*(b - q))
+        direction = upwards + to_b
+        direction /= np.hypot(*direction)
+        width = (1.0 - fraction) * q[0]
+        j = q + direction * width / abs(direction[0])
+        return j, np.array((0.0, j[1] + 0.5 * (j[1] - q[1]) * j[0] / width * fraction))
+
+    def _apex(self, k: Floats, n_core: int, n_layer: int) -> tuple[Floats, Floats]:
+        """Return I and A, the inner corners of the cap."""
+        inwards = -self.profile.normal(self.s_side[0])[0]
+        if self.s_side[0] == 0.0:
+            # a sharp edge: halfway between the flank and the top land
+            inwards = inwards - k / np.hypot(*k) * (1.0 if self.profile.external else -1.0)
+            inwards = inwards / np.hypot(*inwards)
+        reach = np.hypot(*(self.tip[0] - k)) + 0.5 * self.profile.top_land
+        depth = min(0.5 * n_layer * reach / n_core + 0.25 * reach, 0.5 * k[0] / abs(inwards[0]))
+        i = k + depth * inwards
+        return i, np.array((0.0, i[1] - 0.25 * inwards[1] / abs(inwards[1]) * abs(k[1] - i[1])))
