@@ -10,7 +10,8 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from swgpar.errors import InputError
-from swgpar.input.quantities import Section, sentence, show
+from swgpar.input.quantities import Section, show
+from swgpar.input.refusals import sentence
 
 SectionType = TypeVar("SectionType", bound=Section)
 
@@ -80,7 +81,10 @@ def split_override(override: str) -> tuple[str, str]:
 
 
 def with_value(table: dict[str, Any], key: str, value: Any) -> dict[str, Any]:
-    """Return a copy of `table` with the value of ``section.key`` replaced; sections on the way are made."""
+    """Return a copy of `table` with the value of ``section.key`` replaced; missing sections are added.
+
+    Raises InputError where a part of the key names a value instead of a section.
+    """
     table = _copy(table)
     target, names = table, key.split(".")
     for depth, name in enumerate(names[:-1], start=1):

@@ -1,0 +1,123 @@
+"""The sentence that refuses a bad value of an input file: its key, the value and what is allowed."""
+
+from __future__ import annotations
+
+import difflib
+import json
+from collections.abc import Iterable, Sequence
+from typing import Any, get_args, get_origin
+
+from pydantic import ValidationError
+from pydantic.fields import FieldInfo
+
+from swgpar.input.quantities import Section, allowed, show
+
+RANGE_FINDINGS = ("greater_than", "greater_than_equal", "less_than", "less_than_equal")
+"""Kinds of pydantic's findings for numbers beyond the limits of their field."""
+
+NOUNS = {list[str]: "a list of texts", dict[str, float]: "a table of numbers", dict[str, Any]: "a table"}
+"""Nouns for the values of fields that hold several."""
+
+
+def _section_classes(field: FieldInfo) -> list[type[Section]]:
+    """Return the section a field holds, or all those it has the choice of; none for a plain value."""
+    choices = get_args(field.annotation) or (field.annotation,)
+    return [choice for choice in choices if isinstance(choice, type) and issubclass(choice, Section)]
+
+
+def _locate(model: type[Section], path: Sequence[Any]) -> tuple[type[Section], FieldInfo | None, list[Any]]:
+    """Return the section that holds the last key of `path`, the field when it is a known key, and the keys.
+
+    Below a field with several sections pydantic adds the chosen type to the path. It is not a key, and left out.
+    """
+    path, keys = list(path), []
+    field = None
+    while path:
+        keys.append(path.pop(0))
+        field = model.model_fields.get(str(keys[-1]))
+        classes = _section_classes(field) if field else []
+        if len(classes) > 1 and path:
+            tag = path.pop(0)
+            classes = [c for c in classes if tag in get_args(c.model_fields["type"].annotation)]
+        if not (classes and path):
+            break
+        model = classes[0]
+    return model, field, keys
+
+
+def _unknown_key(model: type[Section], path: Sequence[Any], value: Any) -> str:
+    """Refuse an unknown key and suggest the one most likely meant."""
+    parent = ".".join(map(str, path[:-1]))
+    names = list(model.model_fields)
+    where = f"section [{parent}]" if parent else "design file"
+    given = f"{'.'.join(map(str, path))} = {show(value)}"
+    near = difflib.get_close_matches(str(path[-1]), names, n=1, cutoff=0.5)
+    if near:
+        return f"{given} is not a key of the {where}: did you mean {parent + '.' if parent else ''}{near[0]}?"
+    return f"{given} is not a key of the {where}: allowed {', '.join(names)}"
+
+
+def sentence(model: type[Section], error: ValidationError) -> str:
+    """Return the first finding of pydantic as one sentence with key, value and allowed range.
+
+    Unknown keys come first, as they are a likely cause of missing ones.
+    """
+    findings = error.errors(include_url=False)
+    findings.sort(key=lambda item: item["type"] != "extra_forbidden")
+    finding = findings[0]
+    kind, path, value = finding["type"], finding["loc"], finding.get("input")
+    if not path:
+        return "the design file has to be a table of sections"
+    owner, field, path = _locate(model, path)
+    if kind == "extra_forbidden" or field is None:
+        return _unknown_key(owner, path, value)
+    key = ".".join(map(str, path))
+    if _section_classes(field):
+        return _bad_section(field, kind, key, value)
+    if kind == "literal_error":
+        return f"{key} = {show(value)} is not available: allowed {_choices(field.annotation.__args__)}"
+    return _bad_value(field, kind, key, value)
+
+
+def _choices(names: Iterable[str]) -> str:
+    return " or ".join(json.dumps(name) for name in names)
+
+
+def _bad_section(field: FieldInfo, kind: str, key: str, value: Any) -> str:
+    """Refuse the value of a field that holds a section: an unknown type, none at all, or something else."""
+    sections = _section_classes(field)
+    if kind == "union_tag_invalid":
+        types = (name for section in sections for name in get_args(section.model_fields["type"].annotation))
+        return f"{key}.type = {show(value['type'])} is not available: allowed {_choices(types)}"
+    keys = ", ".join(sections[0].model_fields)
+    if kind == "missing":
+        return f"{key} is missing: the section [{key}] has the keys {keys}"
+    return f"{key} = {show(value)} is not a section: write [{key}] with the keys {keys}"
+
+
+def _expected(field: FieldInfo) -> tuple[str, str]:
+    """Noun for the values of a field, and the words that say which are allowed."""
+    kind = field.annotation
+    if kind is bool:
+        return "true or false", "allowed true or false"
+    if kind in (int, float, float | None):
+        return "a whole number" if kind is int else "a number", allowed(field)
+    if kind in NOUNS:
+        return NOUNS[kind], f"allowed {field.description}"
+    if get_origin(kind) is list:
+        return "a list of that many numbers", f"allowed {field.description}"
+    if kind is str:
+        return "a text", f"allowed {field.description}"
+    return "a text", f"allowed {_choices(getattr(kind, '__args__', ()))}"
+
+
+def _bad_value(field: FieldInfo, kind: str, key: str, value: Any) -> str:
+    """Refuse a plain value: missing, not finite, beyond its range, or of another type."""
+    noun, limits = _expected(field)
+    if kind == "missing":
+        return f"{key} is missing: give {noun}, {limits}"
+    if kind == "finite_number":
+        return f"{key} = {show(value)} is not a finite number: {limits}"
+    if kind in RANGE_FINDINGS:
+        return f"{key} = {show(value)} is out of range: {limits}"
+    return f"{key} = {show(value)} is not {noun}: {limits}"
