@@ -1,4 +1,4 @@
-"""Means and deviations of samples that come block by block."""
+"""Means and standard deviations of samples that are drawn block by block."""
 
 from __future__ import annotations
 
@@ -9,27 +9,27 @@ import numpy as np
 
 @dataclass(frozen=True)
 class SampleMoments:
-    """Samples of some blocks added up.
+    """Moments of some blocks of samples.
 
     Attributes
     ----------
-    count : of the samples
-    mean, squares : (rows, values), means, and sums of the squares about them
-    last : (count,), one value of every sample at the end
+    count : number of samples
+    mean : (rows, values), sample means;  squares : (rows, values), sums of the squared differences from them
+    final : (count,), one value of every sample at the last row
     """
 
     count: int
     mean: np.ndarray
     squares: np.ndarray
-    last: np.ndarray
+    final: np.ndarray
 
     def merged_with(self, other: SampleMoments) -> SampleMoments:
-        """Both together (Chan, Golub and LeVeque 1979)."""
+        """Moments of both sets of samples (Chan, Golub and LeVeque 1979)."""
         count = self.count + other.count
-        apart = other.mean - self.mean
-        mean = self.mean + apart * (other.count / count)
-        squares = self.squares + other.squares + apart**2 * (self.count * other.count / count)
-        return SampleMoments(count, mean, squares, np.concatenate([self.last, other.last]))
+        difference = other.mean - self.mean
+        mean = self.mean + difference * (other.count / count)
+        squares = self.squares + other.squares + difference**2 * (self.count * other.count / count)
+        return SampleMoments(count, mean, squares, np.concatenate([self.final, other.final]))
 
     @property
     def deviation(self) -> np.ndarray:

@@ -125,6 +125,10 @@ class System(ABC):
     def naming(self, known: Mapping[str, Quantity]) -> str:
         """The names that are allowed, in words."""
 
+    def current_name(self, name: str, known: Mapping[str, Quantity]) -> str | None:
+        """The present name of a quantity that is known by another one, if there is any."""
+        return None
+
     @abstractmethod
     def increments(self, design: Any) -> int:
         """Increments of the whole run."""
@@ -158,6 +162,8 @@ def named(name: str, known: Mapping[str, Quantity]) -> list[str]:
 
 def not_known(where: str, known: Mapping[str, Quantity], system: System, name: str) -> InputError:
     """The refusal of a name that is no quantity, with the one most likely meant. where : what stands before the name"""
+    if new_name := system.current_name(name, known):
+        return InputError(f"{where}{name} is not available: this quantity is named {new_name}")
     near = difflib.get_close_matches(name, known, n=1)
     hint = f"did you mean {near[0]}?" if near else f"allowed {system.naming(known)}"
     return InputError(f"{where}{name} is not a quantity of a run: {hint}")

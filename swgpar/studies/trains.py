@@ -14,7 +14,7 @@ from mpi4py import MPI
 
 from swgpar.errors import InputError
 from swgpar.gear_trains.common_sections import TrainDesign
-from swgpar.gear_trains.published import meaning_and_unit, numbered
+from swgpar.gear_trains.published import current_name, meaning_and_unit, numbered
 from swgpar.gear_trains.train import make_train, model_of, run_train
 from swgpar.input.quantities import show
 from swgpar.input.toml_file import apply_overrides
@@ -58,6 +58,9 @@ class GearTrains(System):
 
     def naming(self, known: Mapping[str, Quantity]) -> str:
         return ", ".join(dict.fromkeys(name.partition("[")[0] for name in known))
+
+    def current_name(self, name: str, known: Mapping[str, Quantity]) -> str | None:
+        return current_name(name, {key.partition("[")[0] for key in known})
 
     def increments(self, design: TrainDesign) -> int:
         return 1

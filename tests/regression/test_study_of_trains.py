@@ -15,7 +15,12 @@ from swgpar.gear_trains.train import load_train, run_train
 
 DESIGN = DRIVERS / "gear_pair.toml"
 SMALL = ("monte_carlo.samples=500", "time.end=0.0005", "time.rows=10")
-SHOWN = ("out_of_contact_2", "out_of_contact_3", "error_deviation_force_mesh_1", "error_mean_energy_y1_3")
+SHOWN = (
+    "out_of_contact_2",
+    "out_of_contact_3",
+    "error_deviation_force_mesh_deflection_1",
+    "error_mean_energy_gear_1_displacement_3",
+)
 CASES = [f"noise={noise}_half_backlash={half}" for noise in (50, 200) for half in (20, -1)]
 KEPT, REFUSED = [name for name in CASES if "=-1" not in name], [name for name in CASES if "=-1" in name]
 

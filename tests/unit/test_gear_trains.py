@@ -114,6 +114,22 @@ def test_published_beside_computed() -> None:
     assert [row["difference_percent"] for row in rows] == [pytest.approx(10.0), 0.0, None]
 
 
+@pytest.mark.parametrize(
+    ("file", "old", "new"),
+    [
+        (GEAR_PAIR, "error_mean_force_mesh_2", "error_mean_force_mesh_deflection_2"),
+        (GEAR_PAIR, "error_deviation_energy_z_1", "error_deviation_energy_relative_rotation_1"),
+        (PLANETARY, "mean_contact_v_128", "mean_ring_contact_radial_128"),
+        (PLANETARY, "cycles_node", "dominant_cycles_ring_node"),
+        (RING, "cycles_moving_point", "dominant_cycles_moving_point"),
+        (RING_MODES, "dimensionless", "dimensionless_frequencies"),
+    ],
+)
+def test_old_names_of_quantities_are_refused_with_the_present_ones(file: Path, old: str, new: str) -> None:
+    with pytest.raises(InputError, match=rf"published\.{old} is not available: this quantity is named {new}$"):
+        load_train(file, [f"published.{old}=1.0"])
+
+
 def test_streams_are_independent_of_the_order_of_their_use() -> None:
     assert block_sizes(7, 3) == [3, 3, 1]
     first = random_stream(5, 0, 1).standard_normal(4)

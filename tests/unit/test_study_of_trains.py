@@ -53,11 +53,11 @@ def test_cases_have_no_meshes(study_file: Write) -> None:
     [
         ("cascade", "first_crossing_static", "kN"),
         ("cascade", "static_B_120[8]", ""),
-        ("gear_pair", "error_deviation_force_mesh_1", "%"),
-        ("planetary", "deviation_contact_v", "m"),
+        ("gear_pair", "error_deviation_force_mesh_deflection_1", "%"),
+        ("planetary", "deviation_ring_contact_radial", "m"),
         ("ring_moving_load", "critical_speeds[5]", "rad/s"),
         ("ring_modes", "frequencies[1]", "Hz"),
-        ("ring_supported", "dimensionless[1]", ""),
+        ("ring_supported", "dimensionless_frequencies[1]", ""),
     ],
 )
 def test_quantities_are_those_of_the_train(study_file: Write, design: str, name: str, unit: str) -> None:
@@ -143,6 +143,11 @@ def test_a_wrong_study_file_is_refused_in_one_sentence(study_file: Write, rest: 
     assert_refused(study_file("cascade", rest, more=more), words)
 
 
+def test_an_old_name_of_a_quantity_is_refused_with_the_present_one(study_file: Write) -> None:
+    words = "study.quantities = far_flank_2 is not available: this quantity is named back_flank_2"
+    assert_refused(study_file("gear_pair", more="quantities = ['far_flank_2']"), words)
+
+
 def test_a_refused_train_is_a_case(study_file: Write) -> None:
     jobs = jobs_of(study_file("cascade", "[study.vary]\nload.peak = [200.0, 247.0]\n"))
     assert jobs[0].case.refusal == "load.forces = 207 is out of range: allowed above 0 to 200 kN (load.peak)"
@@ -162,7 +167,8 @@ def test_figures_and_report(study_file: Write, tmp_path: Path) -> None:
     page = make_report(load_study(path), results, compare(results), tmp_path).decode()
     assert page.count("data:image/png;base64,") == 4 and "Against load.output" in page
     assert (
-        "difference of the force-based deviation of mesh from Monte Carlo&#x27;s, case 1</td><td class=text>%" in page
+        "error of the force-based standard deviation of the mesh deflection y1 - y2 + z against Monte Carlo, case 1"
+        "</td><td class=text>%" in page
     )
 
 
@@ -173,10 +179,13 @@ def test_lists_of_numbers_have_short_names() -> None:
 def test_what_a_train_does_not_have_is_left_out(study_file: Write, tmp_path: Path) -> None:
     """Peaks of the ring that are not there are NaN in its summary: no values."""
     (job,) = jobs_of(study_file("ring_moving_load"))
-    summary = {"quantities": {"critical_speeds": [30.0, float("nan")], "cycles_moving_point": 6.0}, "wall_s": 2.0}
+    summary = {
+        "quantities": {"critical_speeds": [30.0, float("nan")], "dominant_cycles_moving_point": 6.0},
+        "wall_s": 2.0,
+    }
     (tmp_path / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
     found = job.case.system.read(job, tmp_path)
-    assert found.values == {"critical_speeds[1]": 30.0, "cycles_moving_point": 6.0} and found.wall_s == 2.0
+    assert found.values == {"critical_speeds[1]": 30.0, "dominant_cycles_moving_point": 6.0} and found.wall_s == 2.0
 
 
 def test_the_example_of_the_documentation(tmp_path: Path) -> None:

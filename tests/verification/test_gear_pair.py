@@ -245,13 +245,13 @@ def test_linearisation_without_impact(
     later = len(sums[0].mean) // 2
     np.testing.assert_allclose(mean, sums[0].mean[later:].mean(axis=0), rtol=0.02)
     np.testing.assert_allclose(deviation, sums[0].deviation[later:].mean(axis=0), rtol=0.02)
-    assert (sums[0].last > 20e-6).all()
+    assert (sums[0].final > 20e-6).all()
 
 
 def test_errors_grow_towards_impacts(moments: dict[tuple[int, str], Moments], sums: list[SampleMoments]) -> None:
     """Single-sided, then double-sided impact: the deviation of the mesh's way is missed by more and more."""
-    assert 0.1 < (sums[1].last < 20e-6).mean() < 0.5 and (sums[1].last > -20e-6).all()
-    assert (sums[2].last < 20e-6).mean() > 0.6 and (sums[2].last < -20e-6).any()
+    assert 0.1 < (sums[1].final < 20e-6).mean() < 0.5 and (sums[1].final > -20e-6).all()
+    assert (sums[2].final < 20e-6).mean() > 0.6 and (sums[2].final < -20e-6).any()
     for method in ("energy", "force"):
         off = []
         for case in range(3):
@@ -284,4 +284,4 @@ def test_blocks_add_up() -> None:
     both = of(values[:3]).merged_with(of(values[3:]))
     np.testing.assert_allclose(both.mean, values.mean(axis=0))
     np.testing.assert_allclose(both.deviation, values.std(axis=0, ddof=1))
-    assert (both.last == values[:, 0, 0]).all()
+    assert (both.final == values[:, 0, 0]).all()

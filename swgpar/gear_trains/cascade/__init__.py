@@ -6,6 +6,7 @@ Source: a master's thesis on the cascade gearbox, KTH Royal Institute of Technol
 
 from swgpar.gear_trains.cascade.design import CascadeDesign, check_fit
 from swgpar.gear_trains.cascade.figures import drawings
-from swgpar.gear_trains.cascade.run import compute, derived, quantities
+from swgpar.gear_trains.cascade.quantities import derived, quantities
+from swgpar.gear_trains.cascade.run import compute
 
 __all__ = ["CascadeDesign", "check_fit", "compute", "derived", "drawings", "quantities"]

@@ -6,6 +6,7 @@ Memorial University of Newfoundland, St. John's, 2021, chapter 4, cited by its e
 
 from swgpar.gear_trains.gear_pair.design import GearPairDesign, check_fit
 from swgpar.gear_trains.gear_pair.figures import drawings
-from swgpar.gear_trains.gear_pair.run import compute, derived, quantities
+from swgpar.gear_trains.gear_pair.quantities import derived, quantities
+from swgpar.gear_trains.gear_pair.run import compute
 
 __all__ = ["GearPairDesign", "check_fit", "compute", "derived", "drawings", "quantities"]

@@ -6,6 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from swgpar.gear_trains.drawing import axes
+from swgpar.gear_trains.gear_pair.quantities import VALUES
 from swgpar.gear_trains.linearisation import EQUIVALENT
 from swgpar.gear_trains.result import TrainResult
 from swgpar.results.figure_set import Drawings
@@ -14,7 +15,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 STYLES = {"monte_carlo": ("k-", "Monte Carlo"), "energy": ("C0--", "energy-based"), "force": ("C1:", "force-based")}
-VALUES = ("y1", "y2", "z", "mesh")
 
 
 def drawings(result: TrainResult) -> Drawings:
@@ -30,7 +30,7 @@ def drawings(result: TrainResult) -> Drawings:
 def _moments(result: TrainResult, case: int, torque: float, value: str) -> Figure:
     table = result.history
     rows = table["case"] == case
-    title = f"{'way of the mesh' if value == 'mesh' else value}, input torque {torque:g} N·m"
+    title = f"{VALUES[value]}, input torque {torque:g} N·m"
     figure, panels = axes(title, "time (s)", "mean (µm)", "standard deviation (µm)")
     for axis, kind in zip(panels, ("mean", "deviation"), strict=True):
         for method, (style, name) in STYLES.items():
@@ -42,13 +42,17 @@ def _moments(result: TrainResult, case: int, torque: float, value: str) -> Figur
 def _density(result: TrainResult, case: int, torque: float, half: float) -> Figure:
     table = result.tables[f"density_{case}"]
     figure, (axis,) = axes(
-        f"density of the mesh's way at the end, input torque {torque:g} N·m", "way of the mesh (µm)", "density (1/µm)"
+        f"density of the mesh deflection at the end, input torque {torque:g} N·m",
+        "mesh deflection (µm)",
+        "density (1/µm)",
     )
-    axis.step(table["mesh_way_um"], table["monte_carlo"], "k", where="mid", lw=1.0, label=STYLES["monte_carlo"][1])
+    axis.step(
+        table["mesh_deflection_um"], table["monte_carlo"], "k", where="mid", lw=1.0, label=STYLES["monte_carlo"][1]
+    )
     for method in EQUIVALENT:
         style, name = STYLES[method]
-        axis.plot(table["mesh_way_um"], table[method], style, label=name)
+        axis.plot(table["mesh_deflection_um"], table[method], style, label=name)
     axis.axvspan(-half, half, color="0.9", label="backlash")
-    axis.set_xlim(table["mesh_way_um"][0], table["mesh_way_um"][-1])
+    axis.set_xlim(table["mesh_deflection_um"][0], table["mesh_deflection_um"][-1])
     axis.legend(fontsize=8)
     return figure

@@ -26,7 +26,7 @@ def simulate(
     samples: int,
     random: np.random.Generator,
 ) -> SampleMoments:
-    """Move `samples` pairs on from rest at `start` (3,) by `count` steps of h s, noting every so many of them."""
+    """Simulate `samples` pairs from rest at `start` (3,) by `count` steps of h s; moments after every `every` steps."""
     n, half_backlash = system.size, float(system.half_backlash[0])
     left, right = system.newmark(system.stiffness, h)
     force_column = np.concatenate([-0.5 * h * DEFLECTION_ROW[0], np.zeros(n)])[:, None]

@@ -1,9 +1,10 @@
-"""All computations of a gear pair: what `swgpar run` and `swgpar check` do with one."""
+"""All results of a gear pair."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial, reduce
 from itertools import product
 from typing import Any
@@ -13,50 +14,36 @@ from mpi4py import MPI
 from scipy.stats import norm
 
 from swgpar.gear_trains.gear_pair.design import GearPairDesign
-from swgpar.gear_trains.gear_pair.model import (
-    COORDINATES,
-    DEFLECTION_ROW,
-    gear_pair_system,
-    mesh_force,
-    natural_modes,
-    static_equilibrium,
-)
+from swgpar.gear_trains.gear_pair.model import COORDINATES, DEFLECTION_ROW, gear_pair_system, static_equilibrium
 from swgpar.gear_trains.gear_pair.monte_carlo import BLOCK_SIZE, simulate
-from swgpar.gear_trains.linearisation import EQUIVALENT, Moments, linearise
-from swgpar.gear_trains.published import STATISTICS, Quantities
+from swgpar.gear_trains.gear_pair.quantities import VALUES
+from swgpar.gear_trains.linearisation import EQUIVALENT, Criterion, Moments, linearise
+from swgpar.gear_trains.published import STATISTICS
 from swgpar.gear_trains.result import Table, TrainResult
 from swgpar.gear_trains.sample_moments import SampleMoments
 from swgpar.gear_trains.sampling import block_sizes, random_stream, run_tasks
 from swgpar.log import logger
 
 METHODS = (*EQUIVALENT, "monte_carlo")
-VALUES = (*COORDINATES, "mesh")
-"""Coordinates, and the way of the mesh."""
 
 BINS = 120
+"""Of the histograms of the mesh deflection."""
+
+Statistics = dict[tuple[int, str], tuple[np.ndarray, np.ndarray]]
+"""Case and method -> means and standard deviations of VALUES over time, (rows, 4) m each."""
 
 
-def quantities(design: GearPairDesign) -> Quantities:
-    """What can be compared with published values."""
-    known = {}
-    for case in range(1, len(design.load.input) + 1):
-        known[f"out_of_contact_{case}"] = (f"share of samples of case {case} out of contact at the end", 1)
-        known[f"far_flank_{case}"] = (f"share of samples of case {case} on the far flank at the end", 1)
-        for kind, method, name in product(STATISTICS, EQUIVALENT, VALUES):
-            text = f"difference of the {method}-based {kind} of {name} from Monte Carlo's, case {case} (%)"
-            known[f"error_{kind}_{method}_{name}_{case}"] = (text, 1)
-    return known
+@dataclass(frozen=True)
+class Computed:
+    """moments : of both linearisations, by case and criterion;  samples : of the simulations, by case
 
+    linearised_s, simulated_s : seconds of each linearisation, and of all simulations
+    """
 
-def derived(design: GearPairDesign) -> dict[str, float]:
-    """What follows from the design file at once, for `swgpar check`."""
-    frequencies, ratios = natural_modes(design)
-    out = {f"natural frequency {k} (rad/s)": float(w) for k, w in enumerate(frequencies, start=1)}
-    out |= {f"damping ratio {k}": float(r) for k, r in enumerate(ratios, start=1)}
-    for case in range(len(design.load.input)):
-        out[f"mesh force of case {case + 1} (N)"] = mesh_force(design, case)
-    out["time step times the highest frequency"] = design.step * frequencies[-1]
-    return out
+    moments: dict[tuple[int, Criterion], Moments]
+    samples: list[SampleMoments]
+    linearised_s: list[float]
+    simulated_s: float
 
 
 def _timed(task: Callable[[], Any]) -> tuple[Any, float]:
@@ -66,26 +53,7 @@ def _timed(task: Callable[[], Any]) -> tuple[Any, float]:
 
 def compute(design: GearPairDesign, comm: MPI.Comm) -> TrainResult:
     """All results of a design, the same on all ranks; collective."""
-    cases, every = range(len(design.load.input)), design.every
-    sizes = block_sizes(design.monte_carlo.samples, BLOCK_SIZE)
-    grid = (design.step, design.steps, every)
-    tasks: list[Callable[[], Any]] = [
-        partial(linearise, gear_pair_system(design, case), static_equilibrium(design, case), *grid, criterion)
-        for case in cases
-        for criterion in EQUIVALENT
-    ]
-    simulated: list[Callable[[], Any]] = [
-        partial(
-            simulate,
-            gear_pair_system(design, case),
-            static_equilibrium(design, case),
-            *grid,
-            size,
-            random_stream(design.gear_train.seed, case, block),
-        )
-        for case in cases
-        for block, size in enumerate(sizes)
-    ]
+    cases = range(len(design.load.input))
     logger.info(
         "gear pair: %d cases, %d steps of %.3g s, %d simulations of each; %d ranks",
         len(cases),
@@ -94,43 +62,64 @@ def compute(design: GearPairDesign, comm: MPI.Comm) -> TrainResult:
         design.monte_carlo.samples,
         comm.size,
     )
-    done = run_tasks(comm, [partial(_timed, task) for task in (*tasks, *simulated)])
-    results, seconds = [result for result, _ in done], [s for _, s in done]
-    moments = {key: results[k] for k, key in enumerate((c, m) for c in cases for m in EQUIVALENT)}
-    parts = results[len(tasks) :]
-    sums = [reduce(SampleMoments.merged_with, parts[c * len(sizes) : (c + 1) * len(sizes)]) for c in cases]
-
+    computed = _compute_cases(design, comm)
     half_backlash = 1e-6 * design.mesh.half_backlash
     values: dict[str, float | list[float]] = {}
     for case in cases:
-        values[f"out_of_contact_{case + 1}"] = float((sums[case].last < half_backlash).mean())
-        values[f"far_flank_{case + 1}"] = float((sums[case].last < -half_backlash).mean())
-    statistics = {
-        (case, method): _statistics(moments[case, method])
+        final = computed.samples[case].final
+        values[f"out_of_contact_{case + 1}"] = float((final < half_backlash).mean())
+        values[f"back_flank_{case + 1}"] = float((final < -half_backlash).mean())
+    statistics: Statistics = {
+        (case, method): _statistics(computed.moments[case, method])
         if method in EQUIVALENT
-        else (sums[case].mean, sums[case].deviation)
+        else (computed.samples[case].mean, computed.samples[case].deviation)
         for case in cases
         for method in METHODS
     }
     values |= _errors(statistics, len(cases))
     summary = {
         "sampling_error_percent": 100.0 / np.sqrt(2.0 * design.monte_carlo.samples),
-        "task_s": {"linearised": seconds[: len(tasks)], "monte_carlo": sum(seconds[len(tasks) :])},
+        "task_s": {"linearised": computed.linearised_s, "monte_carlo": computed.simulated_s},
         "half_backlash_um": design.mesh.half_backlash,
     }
-    tables = {f"density_{case + 1}": _density(sums[case], case, moments) for case in cases}
+    tables = {f"density_{case + 1}": _density(computed, case) for case in cases}
     return TrainResult(_history(design, statistics), tables, values, summary)
 
 
+def _compute_cases(design: GearPairDesign, comm: MPI.Comm) -> Computed:
+    """Linearisations and simulations of all cases, shared out to the ranks; collective."""
+    cases, sizes = range(len(design.load.input)), block_sizes(design.monte_carlo.samples, BLOCK_SIZE)
+    grid = design.step, design.steps, design.every
+    pairs = [(gear_pair_system(design, case), static_equilibrium(design, case)) for case in cases]
+    linearisations = [
+        partial(linearise, *pairs[case], *grid, criterion) for case, criterion in product(cases, EQUIVALENT)
+    ]
+    simulations = [
+        partial(simulate, *pairs[case], *grid, size, random_stream(design.gear_train.seed, case, block))
+        for case in cases
+        for block, size in enumerate(sizes)
+    ]
+    tasks: list[Callable[[], Any]] = [partial(_timed, task) for task in (*linearisations, *simulations)]
+    done = run_tasks(comm, tasks)
+    results, seconds, first = [result for result, _ in done], [s for _, s in done], len(linearisations)
+    parts = results[first:]
+    return Computed(
+        dict(zip(product(cases, EQUIVALENT), results[:first], strict=True)),
+        [reduce(SampleMoments.merged_with, parts[c * len(sizes) : (c + 1) * len(sizes)]) for c in cases],
+        seconds[:first],
+        sum(seconds[first:]),
+    )
+
+
 def _statistics(moments: Moments) -> tuple[np.ndarray, np.ndarray]:
-    """Means and deviations (rows, 4) of coordinates and mesh, without the start."""
-    n, deflection_rows = len(COORDINATES), np.vstack([np.eye(len(COORDINATES)), DEFLECTION_ROW])
-    variances = np.einsum("ki,tij,kj->tk", deflection_rows, moments.covariance[1:, :n, :n], deflection_rows)
-    return moments.mean[1:] @ deflection_rows.T, np.sqrt(np.maximum(variances, 0.0))
+    """Means and standard deviations (rows, 4) of coordinates and mesh deflection, m, without the start."""
+    n, rows = len(COORDINATES), np.vstack([np.eye(len(COORDINATES)), DEFLECTION_ROW])
+    variances = np.einsum("ki,tij,kj->tk", rows, moments.covariance[1:, :n, :n], rows)
+    return moments.mean[1:] @ rows.T, np.sqrt(np.maximum(variances, 0.0))
 
 
-def _errors(statistics: dict[tuple[int, str], tuple[np.ndarray, np.ndarray]], cases: int) -> dict[str, float]:
-    """Mean and deviation over the second half of the time: percent by which they differ from Monte Carlo's."""
+def _errors(statistics: Statistics, cases: int) -> dict[str, float]:
+    """Errors in percent of linearised moments against Monte Carlo, averaged over the second half of the time."""
     out = {}
     for case, (k, kind) in product(range(cases), enumerate(STATISTICS)):
         settled = {m: statistics[case, m][k][len(statistics[case, m][k]) // 2 :].mean(axis=0) for m in METHODS}
@@ -140,8 +129,8 @@ def _errors(statistics: dict[tuple[int, str], tuple[np.ndarray, np.ndarray]], ca
     return out
 
 
-def _history(design: GearPairDesign, statistics: dict[tuple[int, str], tuple[np.ndarray, np.ndarray]]) -> Table:
-    """Means and deviations against time, case below case."""
+def _history(design: GearPairDesign, statistics: Statistics) -> Table:
+    """Means and standard deviations against time, in blocks by case."""
     rows, cases = design.time.rows, len(design.load.input)
     out: dict[str, np.ndarray] = {
         "case": np.repeat(np.arange(1, cases + 1), rows),
@@ -154,12 +143,12 @@ def _history(design: GearPairDesign, statistics: dict[tuple[int, str], tuple[np.
     return out
 
 
-def _density(sums: SampleMoments, case: int, moments: dict[tuple[int, str], Moments]) -> Table:
-    """Densities of the mesh's way at the end, per µm."""
-    counts, edges = np.histogram(1e6 * sums.last, bins=BINS, density=True)
+def _density(computed: Computed, case: int) -> Table:
+    """Probability densities of the mesh deflection at the end, per µm."""
+    counts, edges = np.histogram(1e6 * computed.samples[case].final, bins=BINS, density=True)
     middle = 0.5 * (edges[1:] + edges[:-1])
-    out = {"mesh_way_um": middle, "monte_carlo": counts}
+    out = {"mesh_deflection_um": middle, "monte_carlo": counts}
     for method in EQUIVALENT:
-        mean, deviation = _statistics(moments[case, method])
+        mean, deviation = _statistics(computed.moments[case, method])
         out[method] = norm.pdf(middle, 1e6 * mean[-1, -1], 1e6 * deviation[-1, -1])
     return out

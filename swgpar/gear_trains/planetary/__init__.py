@@ -6,6 +6,7 @@ Memorial University of Newfoundland, St. John's, 2021, chapter 3, cited by its e
 
 from swgpar.gear_trains.planetary.design import PlanetaryDesign, check_fit
 from swgpar.gear_trains.planetary.figures import drawings
-from swgpar.gear_trains.planetary.run import compute, derived, quantities
+from swgpar.gear_trains.planetary.quantities import derived, quantities
+from swgpar.gear_trains.planetary.run import compute
 
 __all__ = ["PlanetaryDesign", "check_fit", "compute", "derived", "drawings", "quantities"]

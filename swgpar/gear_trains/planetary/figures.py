@@ -6,33 +6,24 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from swgpar.gear_trains.drawing import axes
+from swgpar.gear_trains.planetary.monitored import MONITORED
 from swgpar.gear_trains.result import TrainResult
 from swgpar.results.figure_set import Drawings
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-TITLES = {
-    "sun_u": "turn of the sun",
-    "carrier_u": "turn of the carrier",
-    "planet_eta": "planet 1 along its circle",
-    "node_w": "node 3 of the ring along the motion",
-    "contact_v": "ring outward at planet 1",
-    "sun_mesh": "way of the mesh of sun and planet 1",
-    "ring_mesh": "way of the mesh of ring and planet 1",
-}
-
 
 def drawings(result: TrainResult) -> Drawings:
     """All figures of a run."""
-    found = {name: partial(_moments, result, name) for name in TITLES}
-    found |= {f"rims_{name}": partial(_rims, result, name) for name in TITLES}
+    found = {name: partial(_moments, result, name) for name in MONITORED}
+    found |= {f"rims_{name}": partial(_rims, result, name) for name in MONITORED}
     return found | {"mesh_forces": partial(_forces, result)}
 
 
 def _moments(result: TrainResult, name: str) -> Figure:
     table = result.history
-    figure, panels = axes(TITLES[name], "time (s)", "mean (µm)", "standard deviation (µm)")
+    figure, panels = axes(MONITORED[name], "time (s)", "mean (µm)", "standard deviation (µm)")
     for axis, kind in zip(panels, ("mean", "deviation"), strict=True):
         axis.plot(table["time_s"], table[f"monte_carlo_{kind}_{name}_um"], "k", lw=1.0, label="Monte Carlo")
         axis.plot(table["time_s"], table[f"linearised_{kind}_{name}_um"], "C0--", lw=1.2, label="linearised")
@@ -42,7 +33,7 @@ def _moments(result: TrainResult, name: str) -> Figure:
 
 def _rims(result: TrainResult, name: str) -> Figure:
     table = result.tables["rims"]
-    title = f"{TITLES[name]}, by the rim of the ring"
+    title = f"{MONITORED[name]}, by rim thickness"
     figure, panels = axes(title, "time (s)", "mean (µm)", "standard deviation (µm)")
     for rim in dict.fromkeys(table["rim_mm"].tolist()):
         rows = table["rim_mm"] == rim

@@ -1,4 +1,4 @@
-"""What is watched of a planetary gear train: coordinates of its parts, and the ways of two meshes."""
+"""Monitored quantities of a planetary gear train: coordinates of its parts, and the deflections of two meshes."""
 
 from __future__ import annotations
 
@@ -8,26 +8,26 @@ from swgpar.gear_trains.planetary.model import PlanetaryModel, carrier_index, pl
 from swgpar.gear_trains.planetary.time_stepping import TimeStepper
 
 MONITORED = {
-    "sun_u": "the turn of the sun at its radius",
-    "carrier_u": "the turn of the carrier at its radius",
-    "planet_eta": "the way of planet 1 along its circle",
-    "node_w": "ring node 3 along the motion",
-    "contact_v": "the ring outward at planet 1",
-    "sun_mesh": "the way of the sun's mesh of planet 1",
-    "ring_mesh": "the way of the ring's mesh of planet 1",
+    "sun_rotation": "rotation of the sun times its base radius",
+    "carrier_rotation": "rotation of the carrier times the radius of the planet centres",
+    "planet_tangential": "tangential displacement of planet 1 in the frame of the carrier",
+    "ring_node_tangential": "tangential displacement of node 3 of the ring",
+    "ring_contact_radial": "outward displacement of the ring at the mesh with planet 1",
+    "sun_mesh_deflection": "deflection of the mesh of sun and planet 1",
+    "ring_mesh_deflection": "deflection of the mesh of ring and planet 1",
 }
 """Name -> meaning; all in m."""
 
 MONITORED_NAMES = tuple(MONITORED)
 
-NODE = 2
-"""The ring's node 3, from 0."""
+RING_NODE = 2
+"""Node 3 of the ring, counted from 0."""
 
 
 def monitored_rows(train: PlanetaryModel, steps: TimeStepper, step: int) -> np.ndarray:
-    """(monitored, n): values per mode at the end of a step."""
+    """(monitored, n): monitored quantities per unit of each mode, at the end of a step."""
     design, first = train.design, ring_index(train.design)
-    fixed = [2, carrier_index(design) + 2, planet_index(0) + 1, first + 3 * NODE + 1]
+    fixed = [2, carrier_index(design) + 2, planet_index(0) + 1, first + 3 * RING_NODE + 1]
     contact = train.ring.interpolation(design.carrier.speed * step * steps.h)[0] @ train.shapes[first:]
     deflection_rows = steps.deflection_rows[step]
     return np.vstack([train.shapes[fixed], contact, deflection_rows[0], deflection_rows[design.planet.count]])

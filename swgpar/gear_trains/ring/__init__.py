@@ -6,6 +6,7 @@ Memorial University of Newfoundland, St. John's, 2021, chapters 5 and 6, cited b
 
 from swgpar.gear_trains.ring.design import RingDesign, check_fit
 from swgpar.gear_trains.ring.figures import drawings
-from swgpar.gear_trains.ring.run import compute, derived, quantities
+from swgpar.gear_trains.ring.quantities import derived, quantities
+from swgpar.gear_trains.ring.run import compute
 
 __all__ = ["RingDesign", "check_fit", "compute", "derived", "drawings", "quantities"]

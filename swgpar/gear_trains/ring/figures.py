@@ -9,12 +9,12 @@ import numpy as np
 
 from swgpar.gear_trains.drawing import axes
 from swgpar.gear_trains.result import TrainResult
+from swgpar.gear_trains.ring.quantities import POINTS
 from swgpar.results.figure_set import Drawings
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-POINTS = {"moving_point": "point of the first load", "middle_node": "node between two supports"}
 SCALE = 0.15
 """Largest displacement of a drawn mode over the radius."""
 
@@ -83,7 +83,7 @@ def _critical(result: TrainResult) -> Figure:
     for k, (point, label) in enumerate(POINTS.items()):
         mean, deviation, still = (table[f"{n}_{point}_m"] for n in ("mean", "deviation", "without_inertia"))
         upper.plot(table["speed_rad_s"], mean / mean[0], f"C{k}", lw=1.0, label=label)
-        upper.plot(table["speed_rad_s"], still / mean[0], "k:", lw=0.9, label=None if k else "without inertia")
+        upper.plot(table["speed_rad_s"], still / mean[0], "k:", lw=0.9, label=None if k else "quasi-static")
         lower.plot(table["speed_rad_s"], deviation / deviation[0], f"C{k}", lw=1.0)
     upper.legend(fontsize=8, ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1.0))  # the curves fill the panel
     return figure

@@ -1,81 +1,36 @@
-"""All computations of an elastic ring: what `swgpar run` and `swgpar check` do with one."""
+"""All results of an elastic ring."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial, reduce
-from itertools import product
 from typing import Any
 
 import numpy as np
 from mpi4py import MPI
 
 from swgpar.gear_trains.dominant_cycles import dominant_cycles
-from swgpar.gear_trains.published import STATISTICS, Quantities, number_label
+from swgpar.gear_trains.published import number_label
 from swgpar.gear_trains.result import Table, TrainResult
 from swgpar.gear_trains.ring.curved_beam import BeamSection, Ring, free_frequencies
 from swgpar.gear_trains.ring.design import RingDesign
 from swgpar.gear_trains.ring.moving_load import MovingLoads, Response
+from swgpar.gear_trains.ring.natural_frequencies import distinct_frequencies
+from swgpar.gear_trains.ring.quantities import POINTS
 from swgpar.gear_trains.sample_moments import SampleMoments
 from swgpar.gear_trains.sampling import block_sizes, random_stream, run_tasks
 from swgpar.log import logger
 
-POINTS = ("moving_point", "middle_node")
 ROWS = 400
 """Of the history of each speed."""
+
+PEAKS = 5
+"""Number of critical speeds that are listed."""
 
 SHAPES, AROUND = 6, 361
 """Modes that are drawn, and points around each."""
 
 BLOCK_SIZE = 50
-RIGID = 1e-3
-"""Modes below this share of the first free bending frequency are rigid motions."""
-
-
-def quantities(design: RingDesign) -> Quantities:
-    """What can be compared with published values."""
-    known = {
-        "frequencies": ("natural frequencies of bending in the plane, equal ones once (Hz)", design.ring.modes),
-        "dimensionless": ("the same times 2 pi sqrt(density A R⁴ / (E I))", design.ring.modes),
-    }
-    load = design.moving_load
-    if load is not None:
-        for point in POINTS:
-            name = point.replace("_", " ")
-            for speed, kind in product(load.speeds, STATISTICS):
-                known[f"{kind}_{point}_{number_label(speed)}"] = (
-                    f"largest {kind} of the {name} at {speed:g} rad/s (m)",
-                    1,
-                )
-            known[f"cycles_{point}"] = (f"dominant slow cycles of the {name} in a revolution at the first speed", 1)
-        known["critical_speeds"] = ("the five highest peaks of the mean of the middle node, by speed (rad/s)", 5)
-    return known
-
-
-def distinct_frequencies(design: RingDesign, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Lowest bending frequencies (count,) in Hz, equal ones once, and a mode of each (unknowns, count)."""
-    ring = Ring.of(design)
-    rate, shapes = ring.modes()
-    bent = (rate > RIGID * free_frequencies(ring.section, 2)[0]) & (ring.bending_share(shapes) > 0.5)
-    number = np.flatnonzero(bent)
-    kept = number[np.diff(rate[number], prepend=0.0) > 1e-6 * rate[number]][:count]
-    return rate[kept] / (2.0 * np.pi), shapes[:, kept]
-
-
-def derived(design: RingDesign) -> dict[str, float]:
-    """What follows from the design file at once, for `swgpar check`."""
-    section = BeamSection.of(design)
-    out = {
-        "radius of the centre line (mm)": 1e3 * section.radius,
-        "mass (kg)": 2.0 * np.pi * section.radius * section.density * section.area,
-        "bending stiffness (N·m²)": section.E * section.inertia,
-        "I / (A R²)": section.slenderness,
-    }
-    for n in range(2, 5):
-        out[f"free ring, {n} waves (Hz)"] = free_frequencies(section, n)[0] / (2.0 * np.pi)
-    for k, f in enumerate(distinct_frequencies(design, min(3, design.ring.modes))[0], start=1):
-        out[f"natural frequency {k} (Hz)"] = f
-    return {name: float(value) for name, value in out.items()}
 
 
 def compute(design: RingDesign, comm: MPI.Comm) -> TrainResult:
@@ -86,7 +41,7 @@ def compute(design: RingDesign, comm: MPI.Comm) -> TrainResult:
     unit = np.sqrt(section.density * section.area * section.radius**4 / (section.E * section.inertia))
     values: dict[str, float | list[float]] = {
         "frequencies": frequencies.tolist(),
-        "dimensionless": (2.0 * np.pi * frequencies * unit).tolist(),
+        "dimensionless_frequencies": (2.0 * np.pi * frequencies * unit).tolist(),
     }
     free = np.array([free_frequencies(section, n)[0] for n in range(2, 2 + len(frequencies))]) / (2.0 * np.pi)
     modes = {"mode": np.arange(1, len(frequencies) + 1), "frequency_Hz": frequencies, "free_ring_Hz": free}
@@ -95,7 +50,7 @@ def compute(design: RingDesign, comm: MPI.Comm) -> TrainResult:
         return TrainResult(modes, tables, values)
     responses, curve, simulated = _moving(design, comm)
     values |= _extremes(design.moving_load.speeds, responses) | {"critical_speeds": _peaks(curve)}
-    values |= {f"cycles_{point}": dominant_cycles(responses[0].mean[:, k]) for k, point in enumerate(POINTS)}
+    values |= {f"dominant_cycles_{point}": dominant_cycles(responses[0].mean[:, k]) for k, point in enumerate(POINTS)}
     tables |= {"critical_speeds": curve, "monte_carlo": simulated}
     return TrainResult(_history(design, responses), tables, values)
 
@@ -139,11 +94,11 @@ def _extremes(speeds: list[float], responses: list[Response]) -> dict[str, float
 
 
 def _peaks(curve: Table) -> list[float]:
-    """Speeds of the five highest local peaks, in the order of the speeds; NaN for those that are not there."""
-    speed, mean = curve["speed_rad_s"], curve[f"mean_{POINTS[1]}_m"]
+    """Speeds of the highest local peaks of the middle node, ascending; NaN where there are fewer than PEAKS."""
+    speed, mean = curve["speed_rad_s"], curve["mean_middle_node_m"]
     inner = 1 + np.flatnonzero((mean[1:-1] > mean[:-2]) & (mean[1:-1] >= mean[2:]))
-    highest = np.sort(speed[inner[np.argsort(mean[inner])[::-1][:5]]])
-    return [*highest.tolist(), *[float("nan")] * (5 - len(highest))]
+    highest = np.sort(speed[inner[np.argsort(mean[inner])[::-1][:PEAKS]]])
+    return [*highest.tolist(), *[float("nan")] * (PEAKS - len(highest))]
 
 
 def _shapes(design: RingDesign, shapes: np.ndarray) -> Table:
@@ -158,7 +113,7 @@ def _shapes(design: RingDesign, shapes: np.ndarray) -> Table:
 
 
 def _history(design: RingDesign, responses: list[Response]) -> Table:
-    """Means and deviations in the last revolution, speed below speed."""
+    """Means and standard deviations in the last revolution, in blocks by speed."""
     load = design.moving_load
     every = max(1, load.steps // ROWS)
     rows = slice(every - 1, None, every)

@@ -1,0 +1,42 @@
+"""Quantities of a gear pair: results that can be compared with published values, and derived values of the design."""
+
+from __future__ import annotations
+
+from itertools import product
+
+from swgpar.gear_trains.gear_pair.design import GearPairDesign
+from swgpar.gear_trains.gear_pair.model import mesh_force, natural_modes
+from swgpar.gear_trains.linearisation import EQUIVALENT
+from swgpar.gear_trains.published import STATISTICS, Quantities
+
+VALUES = {
+    "gear_1_displacement": "displacement y1 of gear 1",
+    "gear_2_displacement": "displacement y2 of gear 2",
+    "relative_rotation": "relative rotation z = r1 θ1 - r2 θ2",
+    "mesh_deflection": "mesh deflection y1 - y2 + z",
+}
+"""Coordinates and the mesh deflection, all along the line of action: name -> meaning; all in m."""
+
+
+def quantities(design: GearPairDesign) -> Quantities:
+    """Results that can be compared with published values."""
+    known = {}
+    for case in range(1, len(design.load.input) + 1):
+        known[f"out_of_contact_{case}"] = (f"share of samples of case {case} out of contact at the end", 1)
+        known[f"back_flank_{case}"] = (f"share of samples of case {case} in contact on the back flank at the end", 1)
+        for kind, method, (name, meaning) in product(STATISTICS, EQUIVALENT, VALUES.items()):
+            statistic = "mean" if kind == "mean" else "standard deviation"
+            text = f"error of the {method}-based {statistic} of the {meaning} against Monte Carlo, case {case} (%)"
+            known[f"error_{kind}_{method}_{name}_{case}"] = (text, 1)
+    return known
+
+
+def derived(design: GearPairDesign) -> dict[str, float]:
+    """Values derived from the design file, for `swgpar check`."""
+    frequencies, ratios = natural_modes(design)
+    out = {f"natural frequency {k} (rad/s)": float(w) for k, w in enumerate(frequencies, start=1)}
+    out |= {f"damping ratio {k}": float(r) for k, r in enumerate(ratios, start=1)}
+    for case in range(len(design.load.input)):
+        out[f"mesh force of case {case + 1} (N)"] = mesh_force(design, case)
+    out["time step times the highest frequency"] = design.step * frequencies[-1]
+    return out

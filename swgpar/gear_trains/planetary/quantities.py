@@ -1,0 +1,69 @@
+"""Quantities of a planetary train: results that can be compared with published values, derived values of the design."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+
+from swgpar.gear_trains.backlash import force
+from swgpar.gear_trains.planetary.design import PlanetaryDesign
+from swgpar.gear_trains.planetary.model import PlanetaryModel, elastic_ring, radii
+from swgpar.gear_trains.planetary.monitored import MONITORED
+from swgpar.gear_trains.planetary.time_stepping import TimeStepper
+from swgpar.gear_trains.planetary.wind_load import WindLoad
+from swgpar.gear_trains.published import STATISTICS, Quantities, number_label
+
+
+def quantities(design: PlanetaryDesign) -> Quantities:
+    """Results that can be compared with published values."""
+    known = {
+        "dominant_cycles_ring_contact": (
+            "largest slow harmonic, in cycles per carrier revolution, of the outward ring displacement at planet 1",
+            1,
+        ),
+        "dominant_cycles_ring_node": (
+            "largest slow harmonic, in cycles per carrier revolution, of the tangential displacement of a ring node",
+            1,
+        ),
+        "out_of_contact": ("share of steps and samples in which a mesh is not in contact on its loaded flank", 1),
+    }
+    for kind, (name, meaning) in product(STATISTICS, MONITORED.items()):
+        statistic = "mean" if kind == "mean" else "standard deviation"
+        known[f"{kind}_{name}"] = (f"largest {statistic} of the {meaning} (m)", 1)
+        known[f"error_{kind}_{name}"] = (
+            f"error of the linearised {statistic} of the {meaning} against Monte Carlo (%)",
+            1,
+        )
+    for rim, kind, (name, meaning) in product(design.ring.rims, STATISTICS, MONITORED.items()):
+        statistic = "mean" if kind == "mean" else "standard deviation"
+        text = f"largest {statistic} of the {meaning} with a rim of {rim:g} mm (m)"
+        known[f"{kind}_{name}_{number_label(rim)}"] = (text, 1)
+    return known
+
+
+def derived(design: PlanetaryDesign) -> dict[str, float]:
+    """Values derived from the design file, for `swgpar check`."""
+    step = design.end / design.time.steps
+    train, wind = PlanetaryModel(design), WindLoad.of(design, step)
+    start, flanks = TimeStepper(train, step, 1).static_equilibrium(wind.steady)
+    deflection_rows, k = train.modal_deflection_rows(np.zeros(1))[0], train.mesh.at(0.0)
+    forces = force(k, deflection_rows @ start.q[:, 0], train.half_backlash)
+    whole = np.diag(train.stiffness) + deflection_rows.T @ (k[:, None] * deflection_rows)
+    frequencies = np.sqrt(np.linalg.eigvalsh(whole).clip(0.0)) / (2.0 * np.pi)
+    sun, planets, centres = radii(design)
+    return {
+        "coordinates": train.size,
+        "base radius of the sun (mm)": 1e3 * sun,
+        "base radius of the planets (mm)": 1e3 * planets,
+        "radius of the planet centres (mm)": 1e3 * centres,
+        "radius of the centre line of the ring (mm)": 1e3 * elastic_ring(design).section.radius,
+        "carrier period (s)": 2.0 * np.pi / design.carrier.speed,
+        "mesh frequency (rad/s)": train.mesh.frequency,
+        "time step (s)": step,
+        "steady torque of the wind (N·m)": wind.steady,
+        "flank that carries the load (1 or -1)": float(flanks[0]),
+        "largest mesh force at rest (N)": float(np.abs(forces).max()),
+        "lowest natural frequency above 1 Hz, all meshes in contact (Hz)": float(frequencies[frequencies > 1.0][0]),
+        "highest natural frequency (Hz)": float(frequencies[-1]),
+    }
