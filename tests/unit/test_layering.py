@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import swgpar
-from swgpar.rooms import ROOMS
+from swgpar.rooms import PURPOSE, ROOMS
 
 ROOT = Path(swgpar.__file__).parent
 MODULES = sorted(path.relative_to(ROOT) for path in ROOT.rglob("*.py"))
@@ -83,3 +83,10 @@ def test_public_functions_are_annotated() -> None:
         if unannotated(function)
     ]
     assert not wrong
+
+
+def test_the_rooms_are_described_as_they_are() -> None:
+    lines = (Path(__file__).parents[2] / "CONTRIBUTING.md").read_text(encoding="utf-8").splitlines()
+    first = lines.index("| room | purpose |") + 2
+    assert lines[first : first + len(PURPOSE)] == [f"| `{room}` | {purpose} |" for room, purpose in PURPOSE.items()]
+    assert not lines[first + len(PURPOSE)].startswith("|")
