@@ -270,7 +270,7 @@ def test_an_augmentation_that_leads_to_no_solution_is_taken_back(monkeypatch: py
     poisoned = []
 
     def poison(contact: RigidContact | FlankContact) -> None:
-        contact.multiplier = np.full_like(contact.pressure, np.nan)
+        contact.multiplier = np.full_like(contact.multiplier, np.nan)
         poisoned.append(contact)
 
     for contact in (RigidContact, FlankContact):
