@@ -16,18 +16,20 @@ from swgpar.version import __version__
 
 if TYPE_CHECKING:
     from swgpar.analysis.drive_result import DriveResult
-    from swgpar.api import check, load_design, load_mesh, mesh, open_result, run
+    from swgpar.api import check, load_design, load_mesh, mesh, open_result, run, study
     from swgpar.design.drive_design import DriveDesign
     from swgpar.errors import ConvergenceError, InputError, OutputError, SwgparError
     from swgpar.gear_trains.result import TrainResult
     from swgpar.meshing.drive_mesh import DriveMesh
     from swgpar.meshing.recipe import MeshRecipe
+    from swgpar.studies.study import StudyResult
 
 _MODULES = {
     "load_design": "api",
     "load_mesh": "api",
     "run": "api",
     "open_result": "api",
+    "study": "api",
     "check": "api",
     "mesh": "api",
     "DriveDesign": "design.drive_design",
@@ -35,6 +37,7 @@ _MODULES = {
     "DriveMesh": "meshing.drive_mesh",
     "DriveResult": "analysis.drive_result",
     "TrainResult": "gear_trains.result",
+    "StudyResult": "studies.study",
     "SwgparError": "errors",
     "InputError": "errors",
     "OutputError": "errors",
@@ -51,6 +54,7 @@ __all__ = [
     "MeshRecipe",
     "OutputError",
     "SwgparError",
+    "StudyResult",
     "TrainResult",
     "__version__",
     "check",
@@ -59,6 +63,7 @@ __all__ = [
     "mesh",
     "open_result",
     "run",
+    "study",
 ]
 
 

@@ -23,6 +23,7 @@ from swgpar.meshing.drive_mesh import DriveMesh
 from swgpar.meshing.recipe import make_recipe
 from swgpar.results.atomic import on_all
 from swgpar.results.figure_set import save_figures
+from swgpar.studies import StudyResult, run_study
 from swgpar.systems import Result, System, system_of, system_of_table
 
 DesignLike = Design | str | Path | Mapping[str, Any]
@@ -176,6 +177,62 @@ def open_result(folder: str | Path) -> Result:
     """
     folder = Path(folder)
     return _system_of_folder(folder).open(folder)
+
+
+def study(
+    study: str | Path | Mapping[str, Any],
+    out: str | Path | None = None,
+    *,
+    restart: bool = False,
+    overwrite: bool = False,
+    progress: bool | None = None,
+    comm: MPI.Comm | None = None,
+) -> StudyResult:
+    """Compute many designs and compare them; collective.
+
+    Parameters
+    ----------
+    study : path or mapping
+        A study file (TOML), or its content ``{"study": {...}}`` with paths relative to the working directory.
+    out : path
+        Folder of the study: study.csv, published.csv, study.html, and the results of every case. Without it the study
+        is in memory and leaves no files.
+    restart : bool
+        Keep what is finished in `out`, continue what was interrupted, try again what failed.
+    overwrite : bool
+        Replace a study that `out` already holds.
+    progress : bool
+        Report every case on the terminal; without it, if there is one.
+    comm : communicator
+        MPI.COMM_WORLD unless given. Each rank works on cases of its own.
+
+    Returns
+    -------
+    StudyResult
+        A case that fails does not stop the others: see ``failed``.
+
+    Raises
+    ------
+    InputError
+        A study file that cannot be used.
+    OutputError
+        The folder cannot be written, or holds another study.
+
+    Examples
+    --------
+    >>> found = swgpar.study({"study": {
+    ...     "design": "drivers/plane_half_turn.toml", "meshes": ["plane_coarse"],
+    ...     "vary": {"load.torque": [5.0, 10.0, 20.0]}}})
+    >>> found.table["mean.fs_s1"]
+    """
+    return run_study(
+        study,
+        out,
+        restart=restart,
+        overwrite=overwrite,
+        terminal=log.console.is_terminal if progress is None else progress,
+        comm=MPI.COMM_WORLD if comm is None else comm,
+    )
 
 
 def check(design: DesignLike, overrides: Overrides = ()) -> dict[str, float]:

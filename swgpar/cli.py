@@ -143,25 +143,23 @@ def _run(arguments: argparse.Namespace) -> None:
 
 
 def _study(arguments: argparse.Namespace) -> None:
-    from pathlib import Path
-
     from mpi4py import MPI
 
+    from swgpar import api
     from swgpar.log import console
-    from swgpar.studies import run_study
-    from swgpar.studies.table import compare
     from swgpar.studies.terminal import print_results
 
-    out = Path(arguments.out)
-    results = run_study(arguments.study, out, restart=arguments.restart, overwrite=arguments.overwrite)
+    found = api.study(
+        arguments.study, arguments.out, restart=arguments.restart, overwrite=arguments.overwrite, progress=True
+    )
     if MPI.COMM_WORLD.rank == 0:
-        print_results(results, compare(results))
-        for path in sorted([*out.glob("*.csv"), *out.glob("*.html")]):
+        print_results(found.results, found.comparisons)
+        for path in sorted([*found.folder.glob("*.csv"), *found.folder.glob("*.html")]):
             console.print(f"written {path}")
     MPI.COMM_WORLD.Barrier()  # mpirun ends all ranks when one of them fails
-    failed = sum(outcome.status == "failed" for _, outcome in results)
-    if failed:
-        raise StudyError(f"{failed} of {len(results)} runs failed: the reasons are in {out / 'study.csv'}")
+    if found.failed:
+        reasons = found.folder / "study.csv"
+        raise StudyError(f"{len(found.failed)} of {len(found.results)} runs failed: the reasons are in {reasons}")
 
 
 def _mesh(arguments: argparse.Namespace) -> None:

@@ -1,5 +1,5 @@
-"""Studies: many drives, described by one file, compared in one report."""
+"""Studies: many designs, described by one file, compared in one report."""
 
-from swgpar.studies.study import run_study
+from swgpar.studies.study import StudyResult, run_study
 
-__all__ = ["run_study"]
+__all__ = ["StudyResult", "run_study"]

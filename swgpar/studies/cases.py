@@ -1,4 +1,4 @@
-"""From a study file to its cases: every one a checked design, or the reason why it is none."""
+"""From a study file to its cases: each is a checked design, or the reason why it is none."""
 
 from __future__ import annotations
 
@@ -9,14 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from swgpar.errors import InputError
-from swgpar.gear_trains.train import SECTION
 from swgpar.input.quantities import show
 from swgpar.input.toml_file import apply_overrides, read_toml, with_value
 from swgpar.meshing import MeshRecipe, load_recipe
-from swgpar.studies.drives import DRIVES
-from swgpar.studies.spec import Study
-from swgpar.studies.system import Case, Job, Quantity, System, named, not_known
-from swgpar.studies.trains import GEAR_TRAINS
+from swgpar.meshing.recipe import is_recipe_name
+from swgpar.studies.case import Case, Job, named, not_known
+from swgpar.studies.spec import CaseSection, Study
+from swgpar.systems import Quantity, System, system_of_table
 
 
 def expand(study: Study) -> list[Job]:
@@ -28,21 +27,21 @@ def expand(study: Study) -> list[Job]:
     try:
         jobs = _expand(study)
     except InputError as error:
-        raise InputError(f"{study.path}: {error}") from None
+        raise InputError(f"{study.name}: {error}") from None
     if all(job.case.design is None for job in jobs):
-        raise InputError(f"{study.path}: every case is refused: {jobs[0].case.refusal}")
+        raise InputError(f"{study.name}: every case is refused: {jobs[0].case.refusal}")
     return jobs
 
 
 def _expand(study: Study) -> list[Job]:
     section = study.section
-    table = read_toml(study.path.parent / section.design)
-    system: System = GEAR_TRAINS if SECTION in table else DRIVES
-    base = apply_overrides(system.base(table), section.set)
+    table = read_toml(study.folder / section.design)
+    system = system_of_table(table)
+    base = apply_overrides(system.without_output(table), section.set)
     recipes: dict[Path, MeshRecipe] = {}
     cases: list[Case] = []
     for entry in study.cases:
-        meshes = system.meshes(study, entry)
+        meshes = _meshes(study, entry, system)
         stems, wanted = [mesh.stem for mesh in meshes], Path(section.compared).stem
         compared = stems.index(wanted) if wanted in stems else len(stems) - 1
         recipes.update({mesh: load_recipe(mesh) for mesh in meshes if mesh not in recipes})
@@ -53,24 +52,50 @@ def _expand(study: Study) -> list[Job]:
                 table = apply_overrides({**base, **entry.section}, entry.set)
                 for key, value in varied.items():
                     table = with_value(table, key, value)
-                design = system.make(table, entry)
+                design = system.load(table)
+                system.check_published(design, entry.published)
                 known = system.quantities(design)
             except InputError as error:
-                refusal = str(error)
+                design, refusal = None, str(error)
             shown = _shown(section.quantities, known, system)
             cases.append(Case(name, varied, design, refusal, known, shown, meshes, compared, entry, system))
     _check_names(study, cases)
     return [
-        Job(case, mesh, recipes.get(mesh), max(len(case.meshes) - 1 - place, 0))
+        Job(case, mesh, recipes.get(mesh), max(len(case.meshes) - 1 - index, 0))
         for case in cases
-        for place, mesh in enumerate(case.meshes or (None,))
+        for index, mesh in enumerate(case.meshes or (None,))
     ]
+
+
+def _meshes(study: Study, case: CaseSection, system: System) -> tuple[Path, ...]:
+    """Recipes of a case, coarse to fine: names in the package, or paths relative to the study file."""
+    section = study.section
+    if "mesh" not in system.options:
+        for key, given in (
+            ("study.meshes", section.meshes),
+            ("study.compared", section.compared),
+            (f"study.case {show(case.name)}: meshes", case.meshes),
+        ):
+            if given:
+                raise InputError(f"{key} = {show(given)} has no meaning for {system.noun}: leave it out")
+        return ()
+    if not section.meshes:
+        given = " = [] is empty" if "meshes" in section.model_fields_set else " is missing"
+        raise InputError(f"study.meshes{given}: give a list of texts, one mesh recipe or more, coarse to fine")
+    if section.compared and section.compared not in section.meshes:
+        raise InputError(f"study.compared = {show(section.compared)} is none of study.meshes = {show(section.meshes)}")
+    wanted = case.meshes or section.meshes
+    meshes = tuple(Path(mesh) if is_recipe_name(mesh) else study.folder / mesh for mesh in wanted)
+    stems = [mesh.stem for mesh in meshes]
+    if len(set(stems)) < len(stems):
+        raise InputError(f"meshes = {show(stems)} have a name twice: allowed are recipes of different names")
+    return meshes
 
 
 def _shown(names: list[str], known: dict[str, Quantity], system: System) -> tuple[str, ...]:
     """The quantities that the study asks for, as far as the case has them."""
     if not names:
-        return system.shown(known)
+        return system.main_quantities(known)
     return tuple(dict.fromkeys(number for name in names for number in named(name, known)))
 
 
@@ -105,15 +130,15 @@ def combinations(vary: dict[str, list[Any]], mode: str) -> list[tuple[dict[str, 
 
 
 def labels(values: list[Any]) -> list[str]:
-    """A short text for every value, fit for the name of a folder; tables by type, or by their place in the list."""
+    """A short text for each value, fit for the name of a folder; tables by type, or by their number in the list."""
     texts = []
-    for place, value in enumerate(values, start=1):
-        text = value.get("type", str(place)) if isinstance(value, dict) else value
+    for number, value in enumerate(values, start=1):
+        text = value.get("type", str(number)) if isinstance(value, dict) else value
         text = ",".join(show(item) for item in text) if isinstance(text, list) else text
         texts.append(re.sub(r"[^A-Za-z0-9_.,+=-]", "-", text if isinstance(text, str) else show(text)))
     count = Counter(texts)
     of_tables = [isinstance(value, dict) for value in values]
     return [
-        f"{text}-{place}" if count[text] > 1 and table else text
-        for place, (text, table) in enumerate(zip(texts, of_tables), start=1)
+        f"{text}-{number}" if count[text] > 1 and table else text
+        for number, (text, table) in enumerate(zip(texts, of_tables), start=1)
     ]

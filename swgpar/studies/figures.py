@@ -7,12 +7,11 @@ import textwrap
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-from swgpar.design.load_states import Stage
-from swgpar.results import history
-from swgpar.results.history import UNITS
-from swgpar.studies.drives import MEANINGS
-from swgpar.studies.system import Case, Outcome, Quantity
+from swgpar.results.history import UNITS, loaded_increments
+from swgpar.studies.case import Case, Outcome
 from swgpar.studies.table import by_case, shown, shown_quantities
+from swgpar.systems import Quantity
+from swgpar.systems.drive import MEANINGS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,21 +43,17 @@ def over_angle(results: Sequence[Result]) -> Iterator[bytes]:
     lines = []
     for case, outcomes in by_case(results):
         finished = [outcome for outcome in outcomes if outcome.status == "finished"]
-        if finished and len(turning(finished[-1].rows)) > 1:
-            lines.append((case.name, turning(finished[-1].rows)))
+        columns = finished[-1].history if finished else {}
+        if columns and len(loaded_increments(columns)) > 1:
+            lines.append((case.name, columns))
     for part in _parts(lines):
         figure, axes = _axes(len(OVER_ANGLE))
-        for name, place in zip(OVER_ANGLE, axes):
-            for k, (label, rows) in enumerate(part):
-                place.plot(history.column(rows, "wg_angle_deg"), history.column(rows, name), label=label, **_style(k))
-            _name(place, MEANINGS[name], f"stress ({UNITS[name]})", "angle of the wave generator (degrees)")
+        for name, panel in zip(OVER_ANGLE, axes):
+            for k, (label, columns) in enumerate(part):
+                loaded = loaded_increments(columns)
+                panel.plot(columns["wg_angle_deg"][loaded], columns[name][loaded], label=label, **_style(k))
+            _name(panel, MEANINGS[name], f"stress ({UNITS[name]})", "angle of the wave generator (degrees)")
         yield _png(figure, axes)
-
-
-def turning(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The loaded drive: last increment of the load, and the rotation."""
-    loaded = [row for row in rows if int(row["step"]) == Stage.LOAD]
-    return loaded[-1:] + [row for row in rows if int(row["step"]) >= Stage.ROTATE]
 
 
 def over_key(results: Sequence[Result], key: str, *, in_step: bool) -> Iterator[bytes]:
@@ -81,12 +76,12 @@ def over_key(results: Sequence[Result], key: str, *, in_step: bool) -> Iterator[
     for panels in _parts(list(shown_quantities(results).items()), PANELS):
         for part in _parts(drawn):
             figure, axes = _axes(len(panels))
-            for (name, quantity), place in zip(panels, axes):
+            for (name, quantity), panel in zip(panels, axes):
                 for k, (label, points) in enumerate(part):
-                    there = [(x, o.values[name]) for x, o in points if name in o.values]
-                    place.plot([x for x, _ in there], [y for _, y in there], label=label, **_style(k))
-                _name(place, quantity.meaning, _label(name, quantity), key)
-                place.set_xscale(scale)
+                    known = [(x, o.values[name]) for x, o in points if name in o.values]
+                    panel.plot([x for x, _ in known], [y for _, y in known], label=label, **_style(k))
+                _name(panel, quantity.meaning, _label(name, quantity), key)
+                panel.set_xscale(scale)
             yield _png(figure, axes)
 
 

@@ -6,7 +6,6 @@ import gc
 import json
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,8 +17,7 @@ from swgpar.errors import InputError, SwgparError
 from swgpar.log import logger
 from swgpar.results.atomic import agreed, sentence, to_json, write_file, write_from_root
 from swgpar.results.figure_set import save_figures
-from swgpar.studies.system import Job, Outcome
-from swgpar.systems import system_of
+from swgpar.studies.case import Job, Outcome
 
 STATUS = "status.json"
 """In the folder of a job: status ("started", "failed", "finished"), identity of what is computed, reason."""
@@ -36,10 +34,10 @@ def read_status(folder: Path) -> dict[str, Any]:
 
 def run_job(
     job: Job,
-    folder: Path,
+    folder: Path | None,
     comm: MPI.Comm,
     *,
-    restart: bool,
+    restart: bool = False,
     overwrite: bool = False,
     on_increment: Callable[[], None] = lambda: None,
 ) -> Outcome:
@@ -47,29 +45,20 @@ def run_job(
 
     Only an error that swgpar does not know is raised when several ranks share the case: one rank may have met it
     alone, and the others then wait for it.
+
+    folder : of the job's results; None keeps nothing
     """
     record: dict[str, Any] = {"identity": ""}
     try:
         if job.case.design is None:
             raise InputError(job.case.refusal)
-        record = job.case.system.identity(job)
-        old = comm.bcast(read_status(folder) if comm.rank == 0 else None)
-        same = old.get("identity", record["identity"]) == record["identity"]
-        if restart and old.get("status") == "finished":
-            if not same:
-                return Outcome("failed", f"{folder} holds results of another design: rename the case, or --overwrite")
-            whole = comm.bcast((folder / "summary.json").exists() if comm.rank == 0 else None)
-            if whole and all(old.get(key) == value for key, value in record.items()):
-                return replace(_finished(job, folder, comm), kept=True)
-        if comm.rank == 0:
-            with suppress(OSError):  # whether the folder can be written is found out below, by all ranks
-                folder.mkdir(parents=True, exist_ok=True)
-        write_from_root(comm, folder / STATUS, to_json({"status": "started", **record}))
-        job.case.system.run(
-            job, folder, comm, restart=restart and same, overwrite=overwrite or not same, on_increment=on_increment
-        )
-        outcome = _finished(job, folder, comm)
-        _figures(job, folder, comm)
+        record = job.case.system.identity(job.case.design, job.recipe)
+        if folder is not None:
+            outcome, same = _earlier(job, folder, comm, record, restart)
+            if outcome is not None:
+                return outcome
+            restart, overwrite = restart and same, overwrite or not same
+        outcome = _compute(job, folder, comm, restart, overwrite, on_increment)
     except SwgparError as error:
         logger.error("%s", error)
         outcome = Outcome("failed", str(error))
@@ -77,14 +66,67 @@ def run_job(
         logger.exception("unexpected error")
         outcome = Outcome("failed", f"{type(error).__name__}: {sentence(error)}")
         if comm.size > 1:
-            with suppress(OSError):
-                write_file(folder / STATUS, to_json({"status": "failed", **record, "reason": outcome.reason}))
+            if folder is not None:
+                with suppress(OSError):
+                    write_file(folder / STATUS, to_json({"status": "failed", **record, "reason": outcome.reason}))
             raise
     log.close_file()
     _release(comm)
-    with suppress(SwgparError):  # the table has it
-        _record(folder, comm, {"status": outcome.status, **record, "reason": outcome.reason})
+    if folder is not None:
+        with suppress(SwgparError):  # the table has it
+            _record(folder, comm, {"status": outcome.status, **record, "reason": outcome.reason})
     return outcome
+
+
+def _earlier(
+    job: Job, folder: Path, comm: MPI.Comm, record: dict[str, Any], restart: bool
+) -> tuple[Outcome | None, bool]:
+    """Outcome of a job that an earlier call finished, else None; and whether the folder holds this design's results.
+
+    Marks the job as started unless there is an outcome; collective.
+    """
+    old = comm.bcast(read_status(folder) if comm.rank == 0 else None)
+    same = old.get("identity", record["identity"]) == record["identity"]
+    if restart and old.get("status") == "finished":
+        if not same:
+            reason = f"{folder} holds results of another design: rename the case, or --overwrite"
+            return Outcome("failed", reason), same
+        complete = comm.bcast((folder / "summary.json").exists() if comm.rank == 0 else None)
+        if complete and all(old.get(key) == value for key, value in record.items()):
+            return _kept(job, folder, comm), same
+    if comm.rank == 0:
+        with suppress(OSError):  # whether the folder can be written is found out below, by all ranks
+            folder.mkdir(parents=True, exist_ok=True)
+    write_from_root(comm, folder / STATUS, to_json({"status": "started", **record}))
+    return None, same
+
+
+def _compute(
+    job: Job,
+    folder: Path | None,
+    comm: MPI.Comm,
+    restart: bool,
+    overwrite: bool,
+    on_increment: Callable[[], None],
+) -> Outcome:
+    system = job.case.system
+    if "restart" not in system.options:  # an interrupted run begins anew, and may have left its first tables
+        restart, overwrite = False, overwrite or restart
+    result = system.run(
+        job.case.design,
+        job.recipe,
+        folder,
+        recipe_name=str(job.mesh) if job.mesh is not None else "",
+        accuracy=None,
+        restart=restart,
+        overwrite=overwrite,
+        comm=comm,
+        terminal=False,
+        on_increment=on_increment,
+    )
+    if folder is not None and job.case.design.output.figures:
+        save_figures(result.plot, folder, comm)
+    return Outcome.finished(system.measure(result))
 
 
 def _record(folder: Path, comm: MPI.Comm, status: dict[str, Any]) -> None:
@@ -96,18 +138,14 @@ def _record(folder: Path, comm: MPI.Comm, status: dict[str, Any]) -> None:
         write_from_root(comm, folder / STATUS, to_json(status))
 
 
-def _finished(job: Job, folder: Path, comm: MPI.Comm) -> Outcome:
+def _kept(job: Job, folder: Path, comm: MPI.Comm) -> Outcome:
     """Outcome from the files of a finished run; collective."""
     outcome = None
     with agreed(comm, folder / "summary.json", "read"):
         if comm.rank == 0:
-            outcome = job.case.system.read(job, folder)
+            system = job.case.system
+            outcome = Outcome.finished(system.measure(system.open(folder)), kept=True)
     return comm.bcast(outcome)
-
-
-def _figures(job: Job, folder: Path, comm: MPI.Comm) -> None:
-    if job.case.design.output.figures:
-        save_figures(system_of(job.case.design).open(folder).plot, folder, comm)
 
 
 def _release(comm: MPI.Comm) -> None:

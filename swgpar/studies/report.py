@@ -46,7 +46,7 @@ LOG_LINES = 12
 
 def make_report(study: Study, results: Sequence[Result], comparisons: Sequence[Comparison], out: Path) -> bytes:
     """The whole page; reads the logs of failed cases below `out`. Call it on one rank."""
-    title = study.section.title or study.path.stem
+    title = study.title
     parts = [f"<h1>{escape(title)}</h1>", _introduction(study, results)]
     if comparisons:
         parts += ["<h2>Published values</h2>", _comparisons(comparisons)]

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -54,22 +56,37 @@ class _StudyFile(Section):
 
 @dataclass(frozen=True)
 class Study:
-    """A study file that has been read.
+    """The checked content of a study file.
 
-    path : the file, whose folder the other paths are relative to;  text : its content, for the report
+    name : the file in messages;  folder : the other paths are relative to it;  text : the content, for the report
     section : [study];  cases : its [[study.case]], one without a name when there are none
     """
 
-    path: Path
+    name: str
+    folder: Path
     text: str
     section: StudySection
     cases: tuple[CaseSection, ...]
+
+    @property
+    def title(self) -> str:
+        """Title of the report; without one the name of the file."""
+        return self.section.title or Path(self.name).stem
 
 
 def load_study(path: str | Path) -> Study:
     """Read and check a study file; every problem is an `InputError` of one sentence that names the file."""
     path = Path(path)
     table = read_toml(path)
+    return _make_study(table, str(path), path.parent, path.read_text(encoding="utf-8-sig"))
+
+
+def make_study(table: Mapping[str, Any]) -> Study:
+    """Check the content of a study file; its paths are relative to the working directory."""
+    return _make_study(table, "study", Path(), json.dumps(table, indent=2, ensure_ascii=False))
+
+
+def _make_study(table: Mapping[str, Any], name: str, folder: Path, text: str) -> Study:
     try:
         for key, value in table.items():
             if key != "study" or not isinstance(value, dict):
@@ -86,8 +103,8 @@ def load_study(path: str | Path) -> Study:
         for case in cases:
             _check_case(case, section)
     except InputError as error:
-        raise InputError(f"{path}: {error}") from None
-    return Study(path, path.read_text(encoding="utf-8-sig"), section, cases or (CaseSection.model_construct(name=""),))
+        raise InputError(f"{name}: {error}") from None
+    return Study(name, folder, text, section, cases or (CaseSection.model_construct(name=""),))
 
 
 def _case(number: int, table: dict[str, Any]) -> CaseSection:
@@ -108,7 +125,7 @@ def _numbers(table: dict[str, Any]) -> dict[str, Any]:
         for name, value in values.items():
             if name in lengths:
                 numbers = value if isinstance(value, list) else [value] * lengths[name]
-                out[key] |= {f"{name}[{place}]": number for place, number in enumerate(numbers, start=1)}
+                out[key] |= {f"{name}[{index}]": number for index, number in enumerate(numbers, start=1)}
             else:
                 out[key][name] = value
     return out

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -15,13 +16,13 @@ from swgpar.errors import InputError, OutputError
 from swgpar.results.atomic import agreed, first_reason, write_from_root
 from swgpar.results.folder import prepare
 from swgpar.results.table import format_csv
+from swgpar.studies.case import Job, Outcome
 from swgpar.studies.cases import expand
 from swgpar.studies.job import STATUS, read_status, run_job
 from swgpar.studies.report import make_report
 from swgpar.studies.schedule import Counter, Reports
-from swgpar.studies.spec import Study, load_study
-from swgpar.studies.system import Job, Outcome
-from swgpar.studies.table import Result, compare, published_rows, study_rows
+from swgpar.studies.spec import Study, load_study, make_study
+from swgpar.studies.table import Comparison, Result, compare, published_rows, study_rows
 from swgpar.studies.terminal import StudyProgress
 
 Report = Callable[[tuple[int, Outcome | None]], None]
@@ -33,24 +34,79 @@ Run = Callable[[int, MPI.Comm, Report], None]
 TABLE, PUBLISHED, REPORT = "study.csv", "published.csv", "study.html"
 
 
-class _Book:
-    """What rank 0 knows: outcomes by job. The table on the disk follows every one of them."""
+@dataclass(frozen=True)
+class StudyResult:
+    """What a study gives; the same on every rank.
 
-    def __init__(self, jobs: Sequence[Job], out: Path) -> None:
+    Attributes
+    ----------
+    results : list of (Job, Outcome)
+        In the order of the study; the outcome of a case that failed says why.
+    folder : Path or None
+        The folder of the study; None when it was in memory.
+
+    Examples
+    --------
+    >>> found = swgpar.study("drivers/studies/torque.toml")
+    >>> pandas.DataFrame(found.table)[["load.torque", "mean.fs_s1"]]
+    """
+
+    results: list[Result]
+    folder: Path | None = None
+
+    @property
+    def rows(self) -> list[dict[str, Any]]:
+        """Rows of study.csv: case, mesh, varied keys, status, quantities, wall seconds, reason of a failure."""
+        return study_rows(self.results)
+
+    @property
+    def table(self) -> dict[str, list[Any]]:
+        """The same by columns; None where a case has no value."""
+        rows = self.rows
+        return {name: [row[name] for row in rows] for name in rows[0]}
+
+    @property
+    def comparisons(self) -> list[Comparison]:
+        """Published values beside the computed ones."""
+        return compare(self.results)
+
+    @property
+    def published(self) -> list[dict[str, Any]]:
+        """Rows of published.csv: published values beside the computed ones."""
+        return published_rows(self.comparisons)
+
+    @property
+    def failed(self) -> dict[str, str]:
+        """Reason of every case that failed, by its name and mesh."""
+        return {job.title: outcome.reason for job, outcome in self.results if outcome.status == "failed"}
+
+    @property
+    def report(self) -> Path | None:
+        """The file study.html; None when the study was in memory."""
+        return None if self.folder is None else self.folder / REPORT
+
+
+class _Book:
+    """What rank 0 knows: outcomes by job. The table on the disk follows each of them."""
+
+    def __init__(self, jobs: Sequence[Job], out: Path | None, terminal: bool) -> None:
         self.jobs, self.out = jobs, out
         self.outcomes: dict[int, Outcome] = {}
-        self.progress = StudyProgress(jobs)
+        self.progress = StudyProgress(jobs) if terminal else None
 
     def receive(self, message: tuple[int, Outcome | None]) -> None:
         """Job number with its outcome, or None after an increment."""
         number, outcome = message
         if outcome is None:
-            self.progress.increment(number)
+            if self.progress is not None:
+                self.progress.increment(number)
             return
         self.outcomes[number] = outcome
-        self.progress.outcome(number, outcome)
-        with suppress(OutputError):  # the others are at work: said at the end, when all write
-            write_from_root(MPI.COMM_SELF, self.out / TABLE, format_csv(study_rows(self.results())))
+        if self.progress is not None:
+            self.progress.outcome(number, outcome)
+        if self.out is not None:
+            with suppress(OutputError):  # the others are at work: said at the end, when all write
+                write_from_root(MPI.COMM_SELF, self.out / TABLE, format_csv(study_rows(self.results())))
 
     def results(self) -> list[Result]:
         """Jobs that have ended, in the order of the study."""
@@ -58,27 +114,54 @@ class _Book:
 
 
 def run_study(
-    path: str | Path,
-    out: str | Path,
+    source: str | Path | Mapping[str, Any],
+    out: str | Path | None = None,
     *,
     restart: bool = False,
     overwrite: bool = False,
+    terminal: bool = False,
     comm: MPI.Comm = MPI.COMM_WORLD,
-) -> list[Result]:
-    """Run all cases of a study file and write tables and report below `out`; collective.
+) -> StudyResult:
+    """Run all cases of a study; collective.
 
-    Returns the jobs and their outcomes, in the order of the study, on every rank. Raises InputError for a study file
-    that cannot be used and OutputError for a folder that cannot be written; a case that fails is an outcome.
+    Parameters
+    ----------
+    source : a study file (TOML), or its content
+    out : folder of the study, with tables, report and the results of every case; None keeps everything in memory
+    restart : keep what is finished in the folder, continue what was interrupted, try again what failed
+    overwrite : replace a study that the folder already holds
+    terminal : whether rank 0 reports on the terminal
+
+    Raises
+    ------
+    InputError
+        A study file that cannot be used.
+    OutputError
+        A folder that cannot be written. A case that fails is an outcome.
     """
-    out = Path(out)
-    study, jobs = _read(Path(path), comm)
+    folder = None if out is None else Path(out)
+    study, jobs = _read(source, comm)
     log.start(MPI.COMM_SELF if study.section.parallel == "cases" else comm, terminal=False)
-    _prepare(out, comm, restart, overwrite)
-    statuses = [read_status(job.folder(out)).get("status") for job in jobs] if comm.rank == 0 else None
+    statuses: list[str | None] | None = [None] * len(jobs)
+    if folder is not None:
+        _prepare(folder, comm, restart, overwrite)
+        if comm.rank == 0:
+            statuses = [read_status(job.folder(folder)).get("status") for job in jobs]
+    elif restart:
+        raise InputError("restart = true needs the folder of the study: a study in memory leaves nothing to continue")
     order = queue(jobs, comm.bcast(statuses))
-    book = _Book(jobs, out) if comm.rank == 0 else None
+    results = _run_all(study, jobs, order, partial(_run_one, jobs, folder, restart, overwrite), folder, terminal, comm)
+    if folder is not None:
+        _write(study, results, folder, comm)
+    return StudyResult(results, folder)
+
+
+def _run_all(
+    study: Study, jobs: list[Job], order: list[int], run: Run, out: Path | None, terminal: bool, comm: MPI.Comm
+) -> list[Result]:
+    """All jobs and their outcomes, on every rank."""
+    book = _Book(jobs, out, terminal) if comm.rank == 0 else None
     receive: Report = book.receive if book is not None else lambda _: None
-    run: Run = partial(_run_one, jobs, out, restart, overwrite)
     try:
         if study.section.parallel == "cases":
             _cases_at_once(order, comm, receive, run)
@@ -86,20 +169,18 @@ def run_study(
             for number in order:
                 run(number, comm, receive)
     finally:
-        if book is not None:
+        if book is not None and book.progress is not None:
             book.progress.stop()
-    results = comm.bcast(book.results() if book is not None else None)
-    _write(study, results, out, comm)
-    return results
+    return comm.bcast(book.results() if book is not None else None)
 
 
-def _read(path: Path, comm: MPI.Comm) -> tuple[Study, list[Job]]:
+def _read(source: str | Path | Mapping[str, Any], comm: MPI.Comm) -> tuple[Study, list[Job]]:
     """Rank 0 reads, so that all have the same study whatever happens to the file."""
     content: Any = None
     reason = None
     if comm.rank == 0:
         try:
-            study = load_study(path)
+            study = make_study(source) if isinstance(source, Mapping) else load_study(source)
             content = (study, expand(study))
         except InputError as error:
             reason = str(error)
@@ -110,8 +191,8 @@ def _read(path: Path, comm: MPI.Comm) -> tuple[Study, list[Job]]:
 
 
 def _prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> None:
-    there = comm.bcast((out / "cases").exists() if comm.rank == 0 else None)
-    if there and not restart and not overwrite:
+    present = comm.bcast((out / "cases").exists() if comm.rank == 0 else None)
+    if present and not restart and not overwrite:
         raise OutputError(
             f"{out} already holds a study: continue it with --restart, replace it with --overwrite, "
             "or choose another --out"
@@ -133,12 +214,17 @@ def queue(jobs: Sequence[Job], statuses: Sequence[str | None]) -> list[int]:
 
 
 def _run_one(
-    jobs: Sequence[Job], out: Path, restart: bool, overwrite: bool, number: int, comm: MPI.Comm, report: Report
+    jobs: Sequence[Job], out: Path | None, restart: bool, overwrite: bool, number: int, comm: MPI.Comm, report: Report
 ) -> None:
     """Run a job and report its increments, as None, and its outcome."""
     job = jobs[number]
     outcome = run_job(
-        job, job.folder(out), comm, restart=restart, overwrite=overwrite, on_increment=lambda: report((number, None))
+        job,
+        None if out is None else job.folder(out),
+        comm,
+        restart=restart,
+        overwrite=overwrite,
+        on_increment=lambda: report((number, None)),
     )
     report((number, outcome))
 
@@ -146,8 +232,8 @@ def _run_one(
 def _cases_at_once(order: Sequence[int], comm: MPI.Comm, receive: Report, run: Run) -> None:
     own = comm.Dup()
     counter, reports = Counter(own), Reports(own, receive)
-    while (place := counter.take()) < len(order):
-        run(order[place], MPI.COMM_SELF, reports.send)
+    while (index := counter.take()) < len(order):
+        run(order[index], MPI.COMM_SELF, reports.send)
     reports.end()
     counter.free()
     own.Free()

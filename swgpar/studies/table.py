@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from swgpar.analysis.error_estimate import Estimate, estimate
-from swgpar.studies.system import Case, Job, Outcome, Quantity
+from swgpar.studies.case import Case, Job, Outcome
+from swgpar.systems import Quantity
 
 Result = tuple[Job, Outcome]
 
@@ -56,8 +57,7 @@ def estimate_of(case: Case, outcomes: Sequence[Outcome], name: str) -> Estimate 
     if len(pair) < 2 or any(value is None for value, _ in pair):
         return None
     (coarse, n_coarse), (fine, n_fine) = pair
-    plane = getattr(case.design.drive, "model", "cup") == "plane"
-    return estimate(coarse, fine, n_coarse, n_fine, 2 if plane else 3)
+    return estimate(coarse, fine, n_coarse, n_fine, case.system.dimensions(case.design))
 
 
 def compare(results: Sequence[Result]) -> list[Comparison]:
@@ -92,7 +92,8 @@ def study_rows(results: Sequence[Result]) -> list[dict[str, Any]]:
     for job, outcome in results:
         details = {"mesh": job.mesh_name, "elements": outcome.elements, "newton_mean": outcome.newton_mean}
         row: dict[str, Any] = {"case": job.case.name}
-        row.update({name: details[name] for name in job.case.system.details})
+        if "mesh" in job.case.system.options:
+            row.update(details)
         row.update({key: shown(job.case.varied.get(key)) for key in keys})
         row["status"] = outcome.status
         row.update({name: outcome.values.get(name) for name in names})

@@ -1,4 +1,4 @@
-"""What a study says on the terminal: a line per case and mesh, a bar where there is a terminal, a table at the end."""
+"""Terminal output of a study: a line for each case and mesh, a bar if there is a terminal, tables at the end."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from rich import box
 from rich.table import Table
 
 from swgpar.log import console, progress_bar
-from swgpar.studies.system import Job, Outcome
+from swgpar.studies.case import Job, Outcome
 from swgpar.studies.table import Comparison, Result, shown_quantities
 
 COLUMNS = 5
@@ -44,8 +44,8 @@ class StudyProgress:
         job = self._jobs[number]
         self._done[number] = job.increments
         self._finished += 1
-        place = f"{self._finished:{len(str(len(self._jobs)))}d}/{len(self._jobs)}"
-        words = [f"{place}  {job.title:{self._width}s}"]
+        count = f"{self._finished:{len(str(len(self._jobs)))}d}/{len(self._jobs)}"
+        words = [f"{count}  {job.title:{self._width}s}"]
         if outcome.status == "finished":
             words.append(f"{outcome.wall_s:8.1f} s")
             if outcome.newton_mean is not None:

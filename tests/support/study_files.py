@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from swgpar.errors import InputError
+from swgpar.studies.case import Job
 from swgpar.studies.cases import expand
 from swgpar.studies.spec import load_study
-from swgpar.studies.system import Job
 
 
 def jobs_of(path: Path) -> list[Job]:

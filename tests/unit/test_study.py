@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from mpi4py import MPI
 
@@ -16,14 +17,14 @@ from support.study_files import assert_refused, jobs_of
 from swgpar.analysis.error_estimate import estimate
 from swgpar.errors import InputError
 from swgpar.results.table import format_csv
-from swgpar.studies.drives import values
+from swgpar.studies.case import Outcome
 from swgpar.studies.figures import over_angle, over_key
 from swgpar.studies.job import read_status, run_job
 from swgpar.studies.report import make_report
 from swgpar.studies.spec import load_study
 from swgpar.studies.study import queue
-from swgpar.studies.system import Outcome
 from swgpar.studies.table import compare, study_rows
+from swgpar.systems.drive import values
 
 MESHES = f'meshes = ["{RECIPE}"]'
 Write = Callable[..., Path]
@@ -183,7 +184,7 @@ def test_an_unforeseen_error_is_the_case_s_own(
     def broken(*_: object, **__: object) -> None:
         raise ZeroDivisionError("by nothing")
 
-    monkeypatch.setattr("swgpar.studies.drives.run_drive", broken)
+    monkeypatch.setattr("swgpar.systems.drive.run_drive", broken)
     (job,) = jobs_of(study_file())
     found = run_job(job, tmp_path / "a" / "b", MPI.COMM_SELF, restart=False)
     assert (found.status, found.reason) == ("failed", "ZeroDivisionError: by nothing")
@@ -203,10 +204,11 @@ def test_error_estimate_of_a_linear_sequence(dimensions: int) -> None:
 
 
 def outcome(fs_s1: float, elements: int) -> Outcome:
-    row = {"step": "1", "wg_angle_deg": 0.0, "fs_s1": 2.0 * fs_s1, "fs_s3": 1.0, "fs_vm": 1.0}
+    stresses = {"fs_s1": np.array([2.0, 3.0, 2.0, 2.0]) * fs_s1, "fs_s3": np.ones(4), "fs_vm": np.ones(4)}
+    columns = {"step": np.array([1, 1, 3, 4]), "wg_angle_deg": np.array([0.0, 0.0, 0.0, 2.0]), **stresses}
     means = dict.fromkeys(("fs_s1", "fs_s3", "fs_vm", "rg_s1", "rg_s3", "rg_vm", "wg_torque_Nmm"), fs_s1)
-    rows = [row, {**row, "fs_s1": 3.0 * fs_s1}, {**row, "step": "3"}, {**row, "step": "4", "wg_angle_deg": 2.0}]
-    return Outcome("finished", values=values(means, rows), elements=elements, newton_mean=5.0, wall_s=1.0, rows=rows)
+    found = values(means, columns)
+    return Outcome("finished", values=found, elements=elements, newton_mean=5.0, wall_s=1.0, history=columns)
 
 
 def test_published_values(study_file: Write) -> None:

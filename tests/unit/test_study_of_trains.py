@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import json
 import pickle
 from collections.abc import Callable
 from pathlib import Path
@@ -13,12 +12,13 @@ import pytest
 
 from support.paths import DRIVERS, ROOT
 from support.study_files import assert_refused, jobs_of
+from swgpar.gear_trains.result import TrainResult
 from swgpar.results.table import format_csv
+from swgpar.studies.case import Outcome
 from swgpar.studies.cases import labels
 from swgpar.studies.figures import over_angle, over_key
 from swgpar.studies.report import make_report
 from swgpar.studies.spec import load_study
-from swgpar.studies.system import Outcome
 from swgpar.studies.table import compare, published_rows, study_rows
 
 Write = Callable[..., Path]
@@ -176,15 +176,11 @@ def test_lists_of_numbers_have_short_names() -> None:
     assert labels([[1.5, 2], [3.0], "x", True]) == ["1.5,2", "3", "x", "true"]
 
 
-def test_what_a_train_does_not_have_is_left_out(study_file: Write, tmp_path: Path) -> None:
+def test_what_a_train_does_not_have_is_left_out(study_file: Write) -> None:
     """Peaks of the ring that are not there are NaN in its summary: no values."""
     (job,) = jobs_of(study_file("ring_moving_load"))
-    summary = {
-        "quantities": {"critical_speeds": [30.0, float("nan")], "dominant_cycles_moving_point": 6.0},
-        "wall_s": 2.0,
-    }
-    (tmp_path / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
-    found = job.case.system.read(job, tmp_path)
+    quantities = {"critical_speeds": [30.0, float("nan")], "dominant_cycles_moving_point": 6.0}
+    found = job.case.system.measure(TrainResult({}, {}, quantities, {"wall_s": 2.0}))
     assert found.values == {"critical_speeds[1]": 30.0, "dominant_cycles_moving_point": 6.0} and found.wall_s == 2.0
 
 
