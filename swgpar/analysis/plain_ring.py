@@ -93,13 +93,13 @@ class Cylinder:
 
 
 class RingBody:
-    """A ring's mesh, ownership and elements; its mean motion is held.
+    """A ring's mesh, ownership and elements; its mean motion is prescribed as zero.
 
     Parameters
     ----------
     design, counts : the ring and its mesh
     comm : communicator
-    halved : model half of it, which equals itself turned by 180 degrees
+    halved : model half of it, which equals itself rotated by 180 degrees
     incompatible : elements with incompatible modes
     """
 

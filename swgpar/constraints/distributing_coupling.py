@@ -72,8 +72,8 @@ class DistributingCoupling:
         mesh = body.layout.mesh
         nodes = mesh.node_sets[surface]
         weight = node_weights(mesh.coords, nodes, mesh.ccw_nodes)
-        keep = weight > 0
-        nodes, weight = nodes[keep], weight[keep]
+        weighted = weight > 0
+        nodes, weight = nodes[weighted], weight[weighted]
         sectors = np.arange(len(body.sectors))[body.owned]
         self.nodes = body.local[np.ix_(sectors, nodes)].ravel()
         self.reference = body.positions()[np.ix_(sectors, nodes)].reshape(-1, 3)
@@ -147,7 +147,7 @@ class DistributingCoupling:
 
 
 class Housing:
-    """Rigid ring in which the ring gear turns as the output: its outer nodes stay on their circle (section 5.8).
+    """Rigid ring in which the ring gear rotates as the output: its outer nodes stay on their circle (section 5.8).
 
     Stiff radial springs, as hard as contact; the nodes are free along the circle and the axis.
 

@@ -403,7 +403,7 @@ class FlankContact:
             store[local] = friction.sampled(active.segments, active.friction.current, face)
 
     def traction_rows(self, first: int, end: int) -> dict[str, np.ndarray]:
-        """The kept tractions of the sectors first .. end - 1, as rows for a file."""
+        """The accepted tractions of the sectors first .. end - 1, as rows for a file."""
         return friction.to_rows(self.tractions, first, end, self.n_face)
 
     # -- results of the last evaluation ----------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""Coulomb friction between flanks: what is kept of the last converged state, at fixed points of the material.
+"""Coulomb friction between flanks: the history of the last converged state, at fixed points of the material.
 
 Segments are cut anew in every increment, so that their quadrature points are not the same material points. The
 tangential traction therefore lives on a uniform grid of `SAMPLES` x `SAMPLES` points of every slave face, between
@@ -17,7 +17,7 @@ import numpy as np
 from swgpar.contact.segments import Segments
 
 SAMPLES = 8
-"""Points per direction of a face on which the traction is kept, at the middles of equal cells."""
+"""Points per direction of a face on which the traction is stored, at the middles of equal cells."""
 
 STIFFNESS = 1.0
 """Tangential stiffness over the normal penalty: a point that sticks has moved less than mu times its penetration."""

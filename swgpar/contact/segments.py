@@ -18,7 +18,7 @@ from swgpar.meshing.sector import FlankGrid, SectorMesh
 MIRROR = np.array([-1.0, 1.0])
 
 SAMPLES = 0.5 - 0.5 * np.cos(np.pi * (np.arange(5) + 0.5) / 5)
-"""Places per direction, in [0, 1], at which the exact surface is sampled; it is interpolated by polynomials."""
+"""Positions per direction, in [0, 1], at which the exact surface is sampled; it is interpolated by polynomials."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ def lagrange(t: np.ndarray) -> np.ndarray:
 
 
 def _cuts(low: np.ndarray, high: np.ndarray, lines: np.ndarray) -> np.ndarray:
-    """Ends of the segments of [0, 1], ascending, (n, m): where the way from low to high (n,) crosses a line.
+    """Ends of the segments of [0, 1], ascending, (n, m): where the line from low to high (n,) crosses one of `lines`.
 
     Halves are cut too, and the number of segments padded by empty ones: points move continuously with the cuts.
     """
@@ -86,15 +86,15 @@ def _cuts(low: np.ndarray, high: np.ndarray, lines: np.ndarray) -> np.ndarray:
     step = np.arange(count.max(initial=0))
     crossed = lines[np.minimum(first[:, None] + step, len(lines) - 1)]
     with np.errstate(invalid="ignore", divide="ignore"):
-        place = (crossed - low[:, None]) / (high - low)[:, None]
-    place = np.where(step < count[:, None], np.clip(place, 0.0, 1.0), 1.0)
+        position = (crossed - low[:, None]) / (high - low)[:, None]
+    position = np.where(step < count[:, None], np.clip(position, 0.0, 1.0), 1.0)
     ends = np.broadcast_to([0.0, 0.5, 1.0], (len(low), 3))
-    return np.sort(np.concatenate([ends, place], axis=1), axis=1)
+    return np.sort(np.concatenate([ends, position], axis=1), axis=1)
 
 
 @dataclass(frozen=True)
 class Segments:
-    """Segments of faces: parent (n,) face of each, (a, b) (n, n_q) places in it, share (n, n_q) of its area."""
+    """Segments of faces: parent (n,) face of each, (a, b) (n, n_q) positions in it, share (n, n_q) of its area."""
 
     parent: np.ndarray
     a: np.ndarray
@@ -102,29 +102,32 @@ class Segments:
     share: np.ndarray
 
 
-def _ends(place: np.ndarray, corners: tuple[list[int], list[int]], length: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Places (n,) of both ends of faces on the master, from `place` (n, 4) of their corners.
+def _ends(
+    foot_point: np.ndarray, corners: tuple[list[int], list[int]], length: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Positions (n,) of both ends of faces on the master, from one component (n, 4) of their corners' foot points.
 
     Feet beyond the end of the flank lie on its straight continuation: the face is cut where the flank ends, so that
     what touches changes continuously. length : (n,) of the faces along the master, with sign, which stands in for a
     foot that is much farther off still, or across the tooth.
     """
     low, high = (
-        np.where(np.isnan(a), b, np.where(np.isnan(b), a, 0.5 * (a + b))) for a, b in (place[:, c].T for c in corners)
+        np.where(np.isnan(a), b, np.where(np.isnan(b), a, 0.5 * (a + b)))
+        for a, b in (foot_point[:, c].T for c in corners)
     )
     return np.where(np.isnan(low), high - length, low), np.where(np.isnan(high), low + length, high)
 
 
-def cut_faces(place: np.ndarray, size: np.ndarray, s: np.ndarray, z: np.ndarray, order: int) -> Segments:
+def cut_faces(foot_point: np.ndarray, size: np.ndarray, s: np.ndarray, z: np.ndarray, order: int) -> Segments:
     """Cut faces along the lines s and z of the master's nodes.
 
-    place : (n_face, 4, 2) mm, foot points of the corners on the master, nan where there is none
-    size : (n_face, 2) mm of the faces along arc length, which runs the other way on the master, and z
+    foot_point : (n_face, 4, 2) mm, foot points of the corners on the master, nan where there is none
+    size : (n_face, 2) mm of the faces along arc length, which runs in the opposite sense on the master, and z
     s, z : lines, ascending;  order : Gauss points per direction of a segment
     """
     along = [
-        _cuts(*_ends(place[..., 0], ([0, 3], [1, 2]), -size[:, 0]), s),
-        _cuts(*_ends(place[..., 1], ([0, 1], [3, 2]), size[:, 1]), z),
+        _cuts(*_ends(foot_point[..., 0], ([0, 3], [1, 2]), -size[:, 0]), s),
+        _cuts(*_ends(foot_point[..., 1], ([0, 1], [3, 2]), size[:, 1]), z),
     ]
     width = [np.diff(ends, axis=1) for ends in along]
     parent, i, j = np.nonzero((width[0] > 1e-12)[:, :, None] & (width[1] > 1e-12)[:, None, :])
