@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 from petsc4py import PETSc
+from pytest_mpi import parallel_assert
 
 from swgpar.log import Phases
 from swgpar.solve.active_set_cycles import VisitedSets, fingerprint, is_exhausted
@@ -101,16 +102,31 @@ def test_indefinite_tangent_leads_down_all_the_same(start: float, end: float) ->
     assert valleys.x.array_r[0] == pytest.approx(end)
 
 
-def test_longest_way_of_a_node() -> None:
+@dataclass
+class Quadratic(Block):
+    """A node and three multipliers; the minimum of the potential is one Newton step away from zero."""
+
+    NEWTON = np.array([0.3, 0.0, 0.4, 7.0, 0.0, 0.0])
+
+    def residual(self, x: PETSc.Vec, force: PETSc.Vec) -> bool:
+        force.array[:] = x.array_r + self.NEWTON
+        return False
+
+    def apply(self, pc: None, right: PETSc.Vec, step: PETSc.Vec) -> None:
+        step.array[:] = right.array_r
+
+
+@pytest.mark.parametrize(("bound", "share"), [(0.25, 0.5), (0.5, 1.0), (np.inf, 1.0)])
+def test_displacement_of_a_node_is_bounded(bound: float, share: float) -> None:
     """In space, and without the multipliers, which have other units."""
-    block = Block(width=1e-2)
-    search = LineSearch(block, block.residual, block.x, Phases())
-    search.max_node_step = 0.25
-    step = block.x.duplicate()
-    step.array[:] = 0.3, 0.0, 0.4, 7.0, 0.0, 0.0
-    assert search._bound(step) == pytest.approx(0.5)
-    np.testing.assert_allclose(step.array_r, [0.15, 0.0, 0.2, 3.5, 0.0, 0.0])
-    assert search._bound(step) == 1.0
+    drive = Quadratic(width=1.0)
+    drive.x.set(0.0)
+    search = LineSearch(drive, drive.residual, drive.x, Phases())
+    search.max_node_step = bound
+    right, step = drive.x.duplicate(), drive.x.duplicate()
+    drive.residual(drive.x, right)
+    search.apply(None, right, step)
+    np.testing.assert_allclose(step.array_r, share * Quadratic.NEWTON, rtol=1e-14)
 
 
 def test_residuals_that_fall_get_more_iterations() -> None:
@@ -131,9 +147,9 @@ def test_sets_that_return() -> None:
 def test_fingerprint_is_that_of_all_ranks() -> None:
     points = np.arange(12) % 3 == 0
     first = fingerprint(WORLD, [points, points[:5]])
-    assert first == fingerprint(WORLD, [points.copy(), points[:5]])
-    assert len(set(WORLD.allgather(first))) == 1
-    assert first != fingerprint(WORLD, [points[:5], points])
+    parallel_assert(first == fingerprint(WORLD, [points.copy(), points[:5]]))
+    parallel_assert(len(set(WORLD.allgather(first))) == 1)
+    parallel_assert(first != fingerprint(WORLD, [points[:5], points]))
     changed = points.copy()
     changed[-1] ^= WORLD.rank == WORLD.size - 1  # on one rank only
-    assert first != fingerprint(WORLD, [changed, points[:5]])
+    parallel_assert(first != fingerprint(WORLD, [changed, points[:5]]))

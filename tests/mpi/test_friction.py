@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 from mpi4py import MPI
+from pytest_mpi import parallel_assert
 
 from support.paths import DESIGN, RECIPE
 from swgpar.analysis.drive_model import build_drive_model
@@ -108,7 +109,7 @@ def test_input_work_is_output_work_and_dissipation() -> None:
 
 def assert_same(a: dict[str, float], b: dict[str, float], rel: float) -> None:
     for name in ("wg_torque_Nmm", "tooth_torque_Nmm", "output_angle_deg", "max_penetration_mm", "pairs_in_contact"):
-        assert a[name] == pytest.approx(b[name], rel=rel), name
+        parallel_assert(a[name] == pytest.approx(b[name], rel=rel), f"{name}: {a[name]} and {b[name]}")
 
 
 @pytest.mark.parallel([2, 3])

@@ -8,6 +8,7 @@ from functools import lru_cache
 import numpy as np
 import pytest
 from mpi4py import MPI
+from pytest_mpi import parallel_assert
 
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
@@ -74,8 +75,8 @@ PHYSICAL = ("fs_s1", "fs_s3", "fs_vm", "rg_s1", "rg_s3", "rg_vm", "wg_torque_Nmm
 
 def assert_same(a: dict[str, float], b: dict[str, float], rel: float) -> None:
     for name in PHYSICAL:
-        assert a[name] == pytest.approx(b[name], rel=rel), name
-    assert a["pairs_in_contact"] == b["pairs_in_contact"]
+        parallel_assert(a[name] == pytest.approx(b[name], rel=rel), f"{name}: {a[name]} and {b[name]}")
+    parallel_assert(a["pairs_in_contact"] == b["pairs_in_contact"])
 
 
 @both_models
@@ -124,7 +125,7 @@ def test_any_number_of_ranks_gives_the_same(model: str) -> None:
     mine, whole = (
         nodal_pressure(r.problem, r.load_state, r.model.elements.bodies[FLEXIBLE_SPLINE]) for r in (several, one)
     )
-    assert np.abs(mine - whole[first:end]).max() < 1e-6 * whole.max()
+    parallel_assert(np.abs(mine - whole[first:end]).max() < 1e-6 * whole.max())
     assert parallel["output_angle_deg"] == pytest.approx(alone["output_angle_deg"], rel=1e-8)
 
 
@@ -209,11 +210,11 @@ def test_rotating_the_whole_spline_changes_no_stress(model: str) -> None:
 
     after, before = forces(v, state.angle + angle), forces(u, state.angle)
     largest = WORLD.allreduce(np.abs(before).max(), op=MPI.MAX)
-    assert np.abs(after - before @ turned.T).max() < 1e-8 * largest
+    parallel_assert(np.abs(after - before @ turned.T).max() < 1e-8 * largest)
     first, second = body_fields(spline, u), body_fields(spline, v)
     for name in ("s1", "s3", "vm"):
         largest = WORLD.allreduce(np.abs(first[name]).max(), op=MPI.MAX)
-        assert np.abs(first[name] - second[name]).max() < 1e-8 * largest, name
+        parallel_assert(np.abs(first[name] - second[name]).max() < 1e-8 * largest, name)
 
 
 @both_models
@@ -277,7 +278,7 @@ def test_an_augmentation_that_leads_to_no_solution_is_taken_back(monkeypatch: py
         monkeypatch.setattr(contact, "augment", poison)
     runner, taken = loaded(small("plane", *soft, "contact.max_augmentations=10"))
     assert poisoned and runner.solver.state.augmentations == 0
-    assert all(np.all(contact.multiplier == 0.0) for contact in runner.problem.contacts)
+    parallel_assert(all(np.all(contact.multiplier == 0.0) for contact in runner.problem.contacts))
     assert_same(taken, without, 1e-6)
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 from petsc4py import PETSc
+from pytest_mpi import parallel_assert
 
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
@@ -82,7 +83,7 @@ def test_mumps_out_of_memory(option: str, value: int, word: str, monkeypatch) ->
     border.setUp(pc)
     border.apply(pc, right, x)
     assert np.isfinite(x.norm()) == (option == "14")
-    assert len(said) == 1 and word in said[0]
+    parallel_assert(len(said) == 1 and word in said[0], str(said))
 
 
 def test_options_of_one_model_are_not_those_of_the_next() -> None:

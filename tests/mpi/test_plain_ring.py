@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from mpi4py import MPI
+from pytest_mpi import parallel_assert
 
 from swgpar.analysis.plain_ring import RingCounts, RingDesign, RingModel
 from swgpar.design.sections import Material
@@ -21,4 +22,4 @@ def test_ranks_do_not_matter(plane: bool) -> None:
         model.spread(0.5)
         readings.append([model.dial(angle, 0.1) for angle in (0.0, 0.25 * np.pi, 0.5 * np.pi)])
         model.destroy()
-    assert readings[0] == pytest.approx(readings[1], abs=1e-8)
+    parallel_assert(readings[0] == pytest.approx(readings[1], abs=1e-8), str(readings))

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from mpi4py import MPI
+from pytest_mpi import parallel_assert
 
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
@@ -48,7 +49,7 @@ def rotated(
 def assert_same(row: dict[str, float], other: dict[str, float], rel: float) -> None:
     for name in PHYSICAL:
         print(f"{name}: {row[name] / other[name] - 1.0:+.1e}")
-        assert row[name] == pytest.approx(other[name], rel=rel), name
+        parallel_assert(row[name] == pytest.approx(other[name], rel=rel), f"{name}: {row[name]} and {other[name]}")
 
 
 @pytest.fixture(scope="module")
@@ -161,9 +162,9 @@ def test_what_is_read_of_condensed_sectors_is_complete() -> None:
     model = runner.model
     u = model.problem.displacement()
     for k, body in enumerate(model.elements.bodies):
-        assert np.abs(body.displacement(u)).max(initial=0.0) > 0.0
+        parallel_assert(np.abs(body.displacement(u)).max(initial=0.0) > 0.0)
         field = read_field(model.partition, k, body.sectors, model.problem.x)
-        assert np.abs(field - body.displacement(u)).max(initial=0.0) < 1e-14
+        parallel_assert(np.abs(field - body.displacement(u)).max(initial=0.0) < 1e-14)
 
 
 @pytest.mark.parallel([1, 2])
@@ -224,6 +225,7 @@ def test_a_mesh_is_chosen_alike_on_any_number_of_ranks(monkeypatch: pytest.Monke
         found.append((chosen, level_of(chosen.model).stresses))
         chosen.model.destroy()
     (here, stress), (alone, other) = found
-    assert here.recipe == alone.recipe
-    assert here.error == pytest.approx(alone.error, rel=1e-5)
-    assert stress == pytest.approx(other, rel=1e-7) and here.stresses == pytest.approx(alone.stresses, rel=1e-5)
+    parallel_assert(here.recipe == alone.recipe)
+    parallel_assert(here.error == pytest.approx(alone.error, rel=1e-5), f"{here.error} and {alone.error}")
+    parallel_assert(stress == pytest.approx(other, rel=1e-7), f"{stress} and {other}")
+    parallel_assert(here.stresses == pytest.approx(alone.stresses, rel=1e-5), f"{here.stresses} and {alone.stresses}")

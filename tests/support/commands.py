@@ -37,16 +37,16 @@ def run_command(out: Path, *more: str, ranks: int = 1, overrides: Sequence[str] 
     return on_ranks(ranks) + swgpar("run", DESIGN, "--mesh", RECIPE, "--out", out, *more, "--set", *overrides)
 
 
-def execute(command: list[str], *, timeout: float = 900.0) -> subprocess.CompletedProcess[str]:
+def execute(command: list[str], *, timeout: float = 900.0, cwd: Path = DATA) -> subprocess.CompletedProcess[str]:
     """Run to the end, keeping both streams.
 
-    Every child starts in DATA: from the root of a checkout, python -m would pick up its source tree, not built there.
+    cwd : not the root of a checkout, from which python -m would take the source tree, whose kernels are not built
     """
-    return subprocess.run(command, capture_output=True, text=True, timeout=timeout, cwd=DATA, env=environment())
+    return subprocess.run(command, capture_output=True, text=True, timeout=timeout, cwd=cwd, env=environment())
 
 
-def succeed(command: list[str]) -> subprocess.CompletedProcess[str]:
-    done = execute(command)
+def succeed(command: list[str], *, cwd: Path = DATA) -> subprocess.CompletedProcess[str]:
+    done = execute(command, cwd=cwd)
     assert done.returncode == 0, done.stderr + done.stdout
     return done
 
