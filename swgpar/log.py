@@ -1,4 +1,4 @@
-"""Logging that knows about ranks: rank 0 speaks on the terminal and in run.log, the others are silent.
+"""Log of a run on several ranks: rank 0 writes to the terminal and to run.log, the other ranks write nothing.
 
 Progress is one line per increment, in the log file as on a terminal; a terminal shows a bar below it.
 `Phases` adds up wall seconds by phase name.
@@ -149,7 +149,7 @@ class IncrementProgress:
 
 
 def progress_bar() -> Progress:
-    """A bar below the log on the terminal that goes when it is stopped."""
+    """A bar below the log on the terminal that disappears when it is stopped."""
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),

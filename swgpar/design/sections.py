@@ -35,7 +35,7 @@ class Gear(Section):
 
     rim: float = quantity(unit="mm", text="rim thickness below the root circle", gt=0.0)
     c_P: float = quantity(1.0, text="angular tooth thickness reduction; 1 for involutes", gt=0.0, le=1.2)
-    c_l: float = quantity(0.5, text="place of the pitch point on the straight segment", ge=0.0, le=1.0)
+    c_l: float = quantity(0.5, text="share of the straight segment above the pitch point", ge=0.0, le=1.0)
 
 
 class ExternalGear(Gear):
@@ -102,7 +102,7 @@ class Steps(Section):
 
     rotation: float = quantity(45.0, unit="deg", text="rotation of the wave generator", ge=0.0, le=36000.0)
     increment: float = quantity(5.0, unit="deg", text="increment of that rotation", ge=0.01, le=45.0)
-    pins: bool = quantity(True, text="deflect the spline by pins before the cam is there; false: by the growing cam")
+    pins: bool = quantity(True, text="deflect the spline by pins before the cam acts; false: by the growing cam")
     deflect_increments: int = quantity(1, text="increments of the deflection (step 1)", ge=1, le=1000)
     engage_increments: int = quantity(1, text="increments of the engagement", ge=1, le=1000)
     load_increments: int = quantity(1, text="increments of the torque", ge=1, le=1000)

@@ -23,7 +23,7 @@ from swgpar.meshing.sector import SectorMesh
 class CondensedSector:
     """The elements of a sector as one.
 
-    outer : (m,) nodes that are kept;  inner : (k,) nodes that are not;  inner_coords : (k, 3) mm
+    outer : (m,) nodes that keep their unknowns;  inner : (k,) nodes that are eliminated;  inner_coords : (k, 3) mm
     reference : the sector as an element of m nodes, without recovery of stress
     modes : (3 k, 3 m) constraint modes: displacement of the inner nodes by that of the outer ones, in that frame
     """
@@ -35,37 +35,40 @@ class CondensedSector:
     modes: np.ndarray
 
     def inner_displacement(self, angle: np.ndarray, u: np.ndarray) -> np.ndarray:
-        """Displacement (n, k, 3) mm of the inner nodes of sectors turned by (n,) rad, from (n, m, 3) of the outer."""
+        """Displacement (n, k, 3) mm of the inner nodes of sectors from that of the outer ones.
+
+        angle : (n,) rad, of the sectors;  u : (n, m, 3) mm
+        """
         coords, gradient = self.reference.coords[0], self.reference.gradient[0]
         middle = coords.mean(axis=0)
         outer, inner = coords - middle, self.inner_coords - middle
-        turn = _about_z(angle)
+        rotation = _about_z(angle)
         mean = u.mean(axis=1, keepdims=True)
-        place = outer @ turn + u - mean
-        stretch = place.transpose(0, 2, 1) @ gradient
+        position = outer @ rotation + u - mean
+        stretch = position.transpose(0, 2, 1) @ gradient
         frame = _about_z(np.arctan2(stretch[:, 1, 0] - stretch[:, 0, 1], stretch[:, 0, 0] + stretch[:, 1, 1]))
-        deformed = (place @ frame.transpose(0, 2, 1) - outer).reshape(len(u), outer.size) @ self.modes.T
-        return (inner + deformed.reshape(len(u), *inner.shape)) @ frame - inner @ turn + mean
+        deformed = (position @ frame.transpose(0, 2, 1) - outer).reshape(len(u), outer.size) @ self.modes.T
+        return (inner + deformed.reshape(len(u), *inner.shape)) @ frame - inner @ rotation + mean
 
 
 def _about_z(angle: np.ndarray) -> np.ndarray:
-    """Matrices (n, 3, 3) that turn rows by angles (n,) rad from the right."""
+    """Matrices (n, 3, 3) that rotate row vectors by angles (n,) rad about z when multiplied from the right."""
     return Rotation.from_euler("z", angle[:, None]).as_matrix().transpose(0, 2, 1)
 
 
 def relative_end_rotation(mesh: SectorMesh, angle: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """Turn (n,) rad of the two cuts of sectors against each other, at displacements u (n, n_node, 3) mm.
+    """Rotation (n,) rad of the two ends of sectors relative to each other, at displacements u (n, n_node, 3) mm.
 
     angle : (n,) rad, of the sectors
     """
-    turns = []
+    rotations = []
     for nodes in (mesh.ccw_nodes, mesh.cw_nodes):
-        place = mesh.coords[nodes] @ _about_z(angle)
-        place -= place.mean(axis=1, keepdims=True)
-        now = place + u[:, nodes] - u[:, nodes].mean(axis=1, keepdims=True)
-        sine = (place[..., 0] * now[..., 1] - place[..., 1] * now[..., 0]).sum(axis=1)
-        turns.append(np.arctan2(sine, (place * now)[..., :2].sum(axis=(1, 2))))
-    return turns[0] - turns[1]
+        undeformed = mesh.coords[nodes] @ _about_z(angle)
+        undeformed -= undeformed.mean(axis=1, keepdims=True)
+        deformed = undeformed + u[:, nodes] - u[:, nodes].mean(axis=1, keepdims=True)
+        sine = (undeformed[..., 0] * deformed[..., 1] - undeformed[..., 1] * deformed[..., 0]).sum(axis=1)
+        rotations.append(np.arctan2(sine, (undeformed * deformed)[..., :2].sum(axis=(1, 2))))
+    return rotations[0] - rotations[1]
 
 
 def outer_nodes(mesh: SectorMesh) -> np.ndarray:

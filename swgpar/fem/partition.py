@@ -83,7 +83,7 @@ class Partition:
         Returns
         -------
         number : (m, k) int64, -1 where the node has no unknowns
-        flip : (m, k) uint8, 1 where the owner's vectors must be turned by 180 degrees
+        flip : (m, k) uint8, 1 where the owner's vectors must be rotated by 180 degrees
         """
         b, numbering = self.layouts[body], self.layouts[body].numbering
         index, nodes = np.asarray(index, dtype=np.int64), np.asarray(nodes, dtype=np.int64)

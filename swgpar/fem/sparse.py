@@ -37,9 +37,9 @@ def create_matrix(partition: Partition, rows: BlockRows) -> PETSc.Mat:
     mat.setType(PETSc.Mat.Type.SBAIJ if rows.symmetric else PETSc.Mat.Type.BAIJ)
     lo, hi = partition.row_start, partition.row_start + partition.n_own
     own = np.repeat(np.arange(rows.n_own), np.diff(rows.start))
-    here = (rows.column >= lo) & (rows.column < hi)
-    diagonal = np.bincount(own[here], minlength=rows.n_own).astype(PETSc.IntType)
-    off = np.bincount(own[~here], minlength=rows.n_own).astype(PETSc.IntType)
+    own_column = (rows.column >= lo) & (rows.column < hi)
+    diagonal = np.bincount(own[own_column], minlength=rows.n_own).astype(PETSc.IntType)
+    off = np.bincount(own[~own_column], minlength=rows.n_own).astype(PETSc.IntType)
     mat.setPreallocationNNZ((diagonal, off))
     mat.setOption(PETSc.Mat.Option.ROW_ORIENTED, False)
     if rows.symmetric:
@@ -57,11 +57,11 @@ def fill_matrix(mat: PETSc.Mat, rows: BlockRows) -> None:
     mat.assemble()
 
 
-def add_unit_diagonal(rows: BlockRows, partition: Partition, idle: np.ndarray, value: float) -> None:
-    """Put `value` on the diagonal of the multiplier blocks, which couple through the border only, and of idle nodes.
+def add_unit_diagonal(rows: BlockRows, partition: Partition, without_elements: np.ndarray, value: float) -> None:
+    """Put `value` on the diagonal of the multiplier blocks, which couple through the border only, and of free nodes.
 
-    idle : (n,) own nodes without elements
+    without_elements : (n,) own nodes without elements
     """
-    nodes = np.concatenate([idle + partition.row_start, partition.multiplier_nodes])
+    nodes = np.concatenate([without_elements + partition.row_start, partition.multiplier_nodes])
     nodes = nodes[(nodes >= partition.row_start) & (nodes < partition.row_start + rows.n_own)]
     rows.values[np.searchsorted(rows.keys, nodes * partition.n_global + nodes)] += value * np.eye(3)

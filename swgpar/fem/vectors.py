@@ -31,12 +31,12 @@ class Exchange:
 
 
 def read_field(partition: Partition, body: int, sectors: np.ndarray, vector: PETSc.Vec) -> np.ndarray:
-    """Nodal values (n_sectors, n_local_nodes, 3) of any sectors of a body, images turned; collective."""
+    """Nodal values (n_sectors, n_local_nodes, 3) of any sectors of a body, images rotated; collective."""
     number, flip = partition.node_numbers(body, sectors, np.arange(len(partition.layouts[body].mesh.coords)))
-    wanted, place = np.unique(number, return_inverse=True)
-    absent = int(len(wanted) > 0 and wanted[0] == -1)
-    values = Exchange(partition, wanted[absent:].astype(np.int32))(vector)
-    values = np.vstack([np.zeros((absent, 3)), values])[place.reshape(number.shape)]
+    needed, position = np.unique(number, return_inverse=True)
+    absent = int(len(needed) > 0 and needed[0] == -1)
+    values = Exchange(partition, needed[absent:].astype(np.int32))(vector)
+    values = np.vstack([np.zeros((absent, 3)), values])[position.reshape(number.shape)]
     return partition.layouts[body].with_inner_nodes(sectors, np.where(flip[..., None] == 1, HALF_TURN * values, values))
 
 

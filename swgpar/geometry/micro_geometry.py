@@ -50,12 +50,12 @@ class WaveGeneratorSurface:
     def evaluate(self, xyz: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Level h (n,) mm, gradient (n, 3), Hessian (n, 3, 3) 1/mm at points (n, 3) of the cam's frame."""
         x, y, z = np.asarray(xyz, dtype=float).T
-        distance, normal, bend = self.cam.evaluate(xyz[:, :2])
+        distance, normal, k = self.cam.evaluate(xyz[:, :2])
         gradient = np.zeros((len(x), 3))
         hessian = np.zeros((len(x), 3, 3))
         gradient[:, :2] = normal
         tangent = np.column_stack([-normal[:, 1], normal[:, 0]])
-        hessian[:, :2, :2] = bend[:, None, None] * tangent[:, :, None] * tangent[:, None, :]
+        hessian[:, :2, :2] = k[:, None, None] * tangent[:, :, None] * tangent[:, None, :]
         c, dc, ddc = crowning(self.crowning, z, self.width, self.shape)
         level = distance + c
         gradient[:, 2] += dc
@@ -68,17 +68,17 @@ class WaveGeneratorSurface:
             qxx = (-2.0 * (1.0 + q) - 4.0 * x * qx) / r2
             qyy = (2.0 * (1.0 - q) - 4.0 * y * qy) / r2
             qxy = (-2.0 * x * qy - 2.0 * y * qx) / r2
-            k = 2.0 * self.slope / self.width
-            level = level + k * z * q
-            gradient[:, 0] += k * z * qx
-            gradient[:, 1] += k * z * qy
-            gradient[:, 2] += k * q
-            hessian[:, 0, 0] += k * z * qxx
-            hessian[:, 1, 1] += k * z * qyy
-            hessian[:, 0, 1] += k * z * qxy
-            hessian[:, 1, 0] += k * z * qxy
-            hessian[:, 0, 2] += k * qx
-            hessian[:, 2, 0] += k * qx
-            hessian[:, 1, 2] += k * qy
-            hessian[:, 2, 1] += k * qy
+            rate = 2.0 * self.slope / self.width
+            level = level + rate * z * q
+            gradient[:, 0] += rate * z * qx
+            gradient[:, 1] += rate * z * qy
+            gradient[:, 2] += rate * q
+            hessian[:, 0, 0] += rate * z * qxx
+            hessian[:, 1, 1] += rate * z * qyy
+            hessian[:, 0, 1] += rate * z * qxy
+            hessian[:, 1, 0] += rate * z * qxy
+            hessian[:, 0, 2] += rate * qx
+            hessian[:, 2, 0] += rate * qx
+            hessian[:, 1, 2] += rate * qy
+            hessian[:, 2, 1] += rate * qy
         return level, gradient, hessian

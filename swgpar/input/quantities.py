@@ -41,7 +41,7 @@ def default_type(name: str) -> Callable[[Any], Any]:
 
 
 def show(value: Any) -> str:
-    """Return `value` the way a user would write it in TOML, on one line, shortened when long."""
+    """Return `value` as written in TOML, on one line, shortened when long."""
     if isinstance(value, bool):
         text = "true" if value else "false"
     elif isinstance(value, str):

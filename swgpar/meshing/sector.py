@@ -36,7 +36,7 @@ class FlankGrid:
 
 @dataclass(frozen=True)
 class SectorMesh:
-    """The tooth sector centred on +y; copy k of it is turned by ``phase + 2 pi k / n_sectors`` about z.
+    """The tooth sector centred on +y; copy k of it is rotated by ``phase + 2 pi k / n_sectors`` about z.
 
     Attributes
     ----------

@@ -52,11 +52,11 @@ class Parabolic(_Reduced, SideKeys):
 
 
 class AsymmetricParabolic(_Reduced):
-    """Section 5.7; right and left on the upper lobe, both turned by the rotational angle lambda."""
+    """Section 5.7; right and left on the upper lobe, both rotated by the rotational angle lambda."""
 
     type: Literal["asymmetric_parabolic"] = quantity("asymmetric_parabolic", text="kind of cam")
     rotational_angle: float = quantity(
-        0.0, unit="deg", text="turn of the parabolas about their apexes, counter-clockwise", gt=-10.0, lt=10.0
+        0.0, unit="deg", text="rotation of the parabolas about their apexes, counter-clockwise", gt=-10.0, lt=10.0
     )
     right: SideKeys
     left: SideKeys

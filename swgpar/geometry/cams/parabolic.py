@@ -8,7 +8,7 @@ tangent to that, with its centre on the minor axis and its end at (b, 0). With n
 The two components give r_l - r_c = c_y / sin alpha and tan(alpha / 2) = (b - r_c - c_x) / c_y: the source's nonlinear
 equation for the aperture alpha of the lateral arc has this closed solution.
 
-The lower lobe is the upper one turned by 180 degrees. "Right" is x > 0 on the upper lobe; the cam turns
+The lower lobe is the upper one rotated by 180 degrees. "Right" is x > 0 on the upper lobe; the cam turns
 counter-clockwise, so the left side of a lobe leads.
 """
 
@@ -73,7 +73,7 @@ def solve_quarter(parabola: Parabola, b: float, side: Side) -> Quarter:
 
 
 def parabolic(a: float, b: float, right: Side, left: Side, tilt: float = 0.0) -> PiecewiseCam:
-    """Parabolic cam with semi-axes a (along y) and b, mm; `tilt` (rad) turns the parabolas about their apexes."""
+    """Parabolic cam with semi-axes a (along y) and b, mm; `tilt` (rad) rotates the parabolas about their apexes."""
     r = solve_quarter(Parabola(a, right.a_p, tilt), b, right)
     # the left side is the mirror image of a right side with the opposite tilt
     m = solve_quarter(Parabola(a, left.a_p, -tilt), b, left)

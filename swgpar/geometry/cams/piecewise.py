@@ -120,7 +120,7 @@ class PiecewiseCam:
         sign = np.where(xy[:, 1] < 0.0, -1.0, 1.0)
         upper = xy * sign[:, None]
         along = upper @ self.tangents.T - np.einsum("ij,ij->i", self.joints, self.tangents)
-        # a joint on the other side of the major axis: its normal's far end says nothing here
+        # for a joint on the other side of the major axis the far end of its normal does not separate the pieces
         side = np.sign(self.joints[:, 0])
         passed = np.where(side * upper[:, :1] < 0.0, side > 0.0, along > 0.0)
         index = np.count_nonzero(passed, axis=1)
