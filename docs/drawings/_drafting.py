@@ -14,7 +14,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from swgpar.design.design_file import load_design, make_design
+from swgpar.design.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
 from swgpar.input.toml_file import read_toml
 
@@ -99,7 +99,7 @@ def plane_with(**sections: Mapping[str, object]) -> DriveDesign:
     table = read_toml(DRIVERS / "plane_half_turn.toml")
     for name, values in sections.items():
         table[name] = dict(values) if name == "wave_generator" else {**table[name], **values}
-    return make_design(table)
+    return DriveDesign.from_table(table)
 
 
 def run(drawings: Mapping[str, Callable[[], Figure]]) -> None:

@@ -13,7 +13,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
-from swgpar.design.design_file import make_design
+from swgpar.design.drive_design import DriveDesign
 
 DRIVERS = Path(__file__).parents[2] / "drivers"
 CAMS = {
@@ -31,7 +31,7 @@ CAMS = {
 with open(DRIVERS / "plane_half_turn.toml", "rb") as file:
     table = tomllib.load(file)
 designs = {
-    name: make_design(table | {"wave_generator": {"face_width": 10.0, **keys}})
+    name: DriveDesign.from_table(table | {"wave_generator": {"face_width": 10.0, **keys}})
     for name, keys in CAMS.items()
 }
 

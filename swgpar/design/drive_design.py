@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from swgpar.design.fit_checks import check_fit
 from swgpar.design.sections import (
     GEARS,
     Contact,
@@ -25,6 +26,7 @@ from swgpar.geometry.cams import Cam, FourRoller, WaveGenerator, make_cam
 from swgpar.geometry.micro_geometry import WaveGeneratorSurface
 from swgpar.geometry.profiles import RackInvolute, Teeth, ToothProfile, make_profile
 from swgpar.input.design import Design
+from swgpar.input.toml_file import validate
 
 
 class DriveDesign(Design):
@@ -46,9 +48,9 @@ class DriveDesign(Design):
     @classmethod
     def from_table(cls, table: dict[str, Any]) -> DriveDesign:
         """A checked design from the content of its file; every problem is an InputError of one sentence."""
-        from swgpar.design.design_file import make_design  # it imports this module
-
-        return make_design(table)
+        design = validate(cls, table)
+        check_fit(design)
+        return design
 
     @property
     def deflection(self) -> float:

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GEARS
 from swgpar.errors import InputError
 from swgpar.geometry.cams import FourRoller
+
+if TYPE_CHECKING:  # a design checks itself
+    from swgpar.design.drive_design import DriveDesign
 
 OMITTED_BENDING = 0.01
 """Largest share of the bending strain that condensed sectors may leave out."""

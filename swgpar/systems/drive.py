@@ -14,7 +14,6 @@ from swgpar.analysis.restart import identity
 from swgpar.analysis.run_drive import run_drive
 from swgpar.analysis.summary import MEANS
 from swgpar.design.derived_geometry import derived_geometry
-from swgpar.design.design_file import make_design
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import Stage, load_sequence
 from swgpar.errors import InputError
@@ -54,7 +53,7 @@ class Drives(System):
     options = frozenset({"mesh", "accuracy", "restart"})
 
     def load(self, table: dict[str, Any]) -> DriveDesign:
-        return make_design(table)
+        return DriveDesign.from_table(table)
 
     def check(self, design: DriveDesign) -> dict[str, float]:
         return derived_geometry(design)

@@ -13,7 +13,7 @@ from support.drive_groups import MESH, ONCE_FAILED, drift, groups, table_of
 from support.small_drive import PLANE
 from swgpar.analysis.drive_model import build_drive_model
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.design.design_file import make_design
+from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import load_sequence
 from swgpar.errors import InputError
 from swgpar.meshing import load_recipe
@@ -34,7 +34,7 @@ HARDEST = [
 
 def run(group: str, case: str) -> None:
     """Every increment converges, torques balance, and without friction the state repeats."""
-    design = make_design(table_of(ALL[group].design, ALL[group].cases()[case]))
+    design = DriveDesign.from_table(table_of(ALL[group].design, ALL[group].cases()[case]))
     runner = LoadStepper(build_drive_model(design, load_recipe(MESH), comm=WORLD))
     rows = []
     try:
@@ -84,7 +84,7 @@ def test_bulging_cam_is_refused() -> None:
     """A parabola too flat for its width drives the spline's teeth through the ring gear's root circle."""
     flat = {"type": "parabolic", "C": 1.0, "a_p": 0.008, "C_p": 0.5, "r_c": 10.0, "face_width": 10.0}
     with pytest.raises(InputError, match="bulges .* mm beyond .* allowed up to 0.2 mm"):
-        make_design(table_of(ALL["rim, plane reference"].design, {"wave_generator": flat}))
+        DriveDesign.from_table(table_of(ALL["rim, plane reference"].design, {"wave_generator": flat}))
 
 
 def test_more_ranks_than_cores(tmp_path) -> None:
