@@ -1,4 +1,4 @@
-"""Import graph of the package, for the developer guide."""
+"""Import graph of the package, its counts and the table of its rooms, for the developer guide."""
 
 from __future__ import annotations
 
@@ -6,15 +6,31 @@ import subprocess
 import sys
 from pathlib import Path
 
+from swgpar.rooms import PURPOSE
+
 ROOT = Path(__file__).resolve().parents[2]
+
+FIRST_LAYOUT = "40 rooms on 18 levels, 167 arrows"
+"""What the script prints for commit 769526c."""
+
+
+def cells(counts: str) -> str:
+    """The numbers of a sentence as cells of a table."""
+    return " | ".join(word for word in counts.replace(",", "").split() if word.isdigit())
 
 
 def main() -> None:
-    """Run scripts/import_graph.py for the folder of the command line, or else for docs/_generated."""
+    """Write everything into the folder of the command line, or else into docs/_generated."""
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs" / "_generated"
     folder.mkdir(parents=True, exist_ok=True)
-    script, image = ROOT / "scripts" / "import_graph.py", folder / "import_graph.png"
-    subprocess.run([sys.executable, str(script), str(ROOT / "swgpar"), str(image)], check=True)
+    command = [sys.executable, str(ROOT / "scripts" / "import_graph.py"), str(ROOT / "swgpar")]
+    command.append(str(folder / "import_graph.png"))
+    counts = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    rows = ["| layout | rooms | levels | arrows |", "|---|---|---|---|"]
+    rows += [f"| first (769526c) | {cells(FIRST_LAYOUT)} |", f"| present | {cells(counts)} |"]
+    (folder / "room_counts.md").write_text("\n".join(rows) + "\n", encoding="utf-8")
+    rows = ["| room | purpose |", "|---|---|", *(f"| `{room}` | {purpose} |" for room, purpose in PURPOSE.items())]
+    (folder / "rooms.md").write_text("\n".join(rows) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
