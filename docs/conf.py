@@ -45,7 +45,6 @@ exclude_patterns = [
     "auto_gallery/*.ipynb",
     # pages that wait for their place in a section
     "gear_trains.md",
-    "studies.md",
 ]
 suppress_warnings = ["toc.empty_glob", "config.cache"]
 
@@ -62,7 +61,7 @@ sphinx_gallery_conf = {
     "gallery_dirs": "auto_gallery",
     "filename_pattern": r"/plot_",
     "within_subsection_order": "FileNameSortKey",
-    "image_scrapers": ("matplotlib",),
+    "image_scrapers": ("matplotlib", "gallery_hooks.returned_figure"),
     "reset_modules": ("matplotlib", "gallery_hooks.name_the_file"),
     "parallel": 2,
     "remove_config_comments": True,

@@ -27,7 +27,7 @@ EXAMPLES = """examples:
 
 STUDY = """A study computes many designs and compares them: a grid or a sweep over any keys of the design file, on one
 mesh or more, beside published values where there are some. Gear trains have no meshes. The file is described in
-docs/studies.md."""
+docs/howto/studies.md."""
 
 STUDY_EXAMPLES = """examples:
   mpirun -n 4 swgpar study drivers/studies/torque.toml --out results/torque

@@ -7,13 +7,12 @@ major semi-axis. The second figure shows how far each cam lies outside or inside
 undeformed inner surface of the flexible spline.
 """
 
-import tomllib
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
 
-from swgpar.design.drive_design import DriveDesign
+import swgpar
 
 DRIVERS = Path(__file__).parents[2] / "drivers"
 CAMS = {
@@ -28,30 +27,26 @@ CAMS = {
     "four rollers": {"type": "four_roller", "beta": 25.0, "r_4": 15.0},
 }
 
-with open(DRIVERS / "plane_half_turn.toml", "rb") as file:
-    table = tomllib.load(file)
+reference = swgpar.load_design(DRIVERS / "plane_half_turn.toml")
 designs = {
-    name: DriveDesign.from_table(table | {"wave_generator": {"face_width": 10.0, **keys}})
+    name: reference.with_values({"wave_generator": {"face_width": 10.0, **keys}})
     for name, keys in CAMS.items()
 }
 
 # %%
-# The outlines. The dashed circle is the inner surface of the undeformed spline.
+# The outlines. The dashed circle is the inner surface of the undeformed spline. The distance of
+# the cams from it is drawn 5 times as large; the rollers are true to scale.
 
-figure, axes = plt.subplots(
-    1, len(designs), figsize=(12.0, 3.0), sharey=True, layout="constrained"
-)
+figure, axes = plt.subplots(1, len(designs), figsize=(12.0, 3.0), sharey=True, layout="constrained")
 angle = np.linspace(0.0, 2.0 * np.pi, 721)
 for panel, (name, design) in zip(axes, designs.items()):
     outline = design.cam().outline(3600)
+    if name != "four rollers":
+        radius = np.hypot(*outline.T)
+        outline *= (1.0 + 4.0 * (1.0 - design.inner_radius / radius))[:, None]
+    circle = design.inner_radius * np.stack([np.sin(angle), np.cos(angle)])
     panel.plot(*np.vstack([outline, outline[:1]]).T, color="tab:orange")
-    panel.plot(
-        design.inner_radius * np.sin(angle),
-        design.inner_radius * np.cos(angle),
-        "--",
-        color="0.6",
-        linewidth=0.8,
-    )
+    panel.plot(*circle, "--", color="0.6", linewidth=0.8)
     panel.set(title=name, aspect="equal", xlabel="x (mm)")
 axes[0].set_ylabel("y (mm)")
 
@@ -70,9 +65,7 @@ for name, design in designs.items():
         for low, high in zip(edges[:-1], edges[1:])
     ]
     panel.plot(
-        (edges[:-1] + edges[1:]) / 2.0,
-        np.subtract(outside, design.inner_radius),
-        label=name,
+        (edges[:-1] + edges[1:]) / 2.0, np.subtract(outside, design.inner_radius), label=name
     )
 panel.axhline(0.0, color="0.6", linewidth=0.8)
 panel.set(

@@ -169,7 +169,7 @@ def test_wrong_meshes_are_refused(study_file: Write, meshes: str, words: str) ->
 
 
 def test_the_example_of_the_documentation(tmp_path: Path) -> None:
-    text = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "howto" / "studies.md").read_text(encoding="utf-8")
     example = text.partition("```toml\n")[2].partition("```")[0]
     path = tmp_path / "study.toml"
     path.write_text(example.replace("../..", str(ROOT)).replace("../", f"{ROOT / 'drivers'}/"), encoding="utf-8")

@@ -185,7 +185,7 @@ def test_what_a_train_does_not_have_is_left_out(study_file: Write) -> None:
 
 
 def test_the_example_of_the_documentation(tmp_path: Path) -> None:
-    text = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "howto" / "studies.md").read_text(encoding="utf-8")
     example = text.partition("## Gear trains")[2].partition("```toml\n")[2].partition("```")[0]
     path = tmp_path / "study.toml"
     path.write_text(example.replace("../", f"{DRIVERS}/"), encoding="utf-8")

@@ -1,0 +1,50 @@
+"""
+Layouts: ring gear fixed, spline fixed
+======================================
+
+With the ring gear fixed, the flexible spline is the output and turns against the wave
+generator. With the spline fixed, the ring gear is the output and turns with it.
+"""
+
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+
+import swgpar
+
+DRIVERS = Path(__file__).parents[2] / "drivers"
+gear = {"tip": 2, "layers": 1, "flank": 6, "root": 3, "under": 1, "rim": 2}
+mesh = {"flexible_spline": gear, "ring_gear": gear}
+reference = swgpar.load_design(
+    DRIVERS / "plane_half_turn.toml",
+    {"steps.samples": 8, "steps.rotation": 6.0, "output.fields": False},
+)
+results = {
+    layout: swgpar.run(reference.with_values({"drive.layout": layout}), mesh=mesh)
+    for layout in ("ring_fixed", "spline_fixed")
+}
+
+# %%
+# The ratios differ by one, the stresses by less than a percent.
+
+for layout, result in results.items():
+    means, ratio = result.summary["means"], result.summary["ratio"]
+    print(f"{layout:14} ratio {ratio:6.1f}   s1 {means['fs_s1']:6.1f} MPa", end="   ")
+    print(f"input torque {means['wg_torque_Nmm']:6.2f} N·mm, expected {2000.0 / abs(ratio):6.2f}")
+
+# %%
+# The angle is drawn in periods of the motion: one pitch of the fixed gear.
+
+figure, axes = plt.subplots(1, 2, figsize=(9.0, 3.6), layout="constrained")
+for (layout, result), teeth in zip(results.items(), (122, 120)):
+    loaded = result.history["step"].astype(int) >= 3
+    periods = result.history["wg_angle_deg"][loaded] * teeth / 360.0
+    expected = 2000.0 / abs(result.summary["ratio"])
+    axes[0].plot(periods, result.history["fs_s1"][loaded], "o-", markersize=3, label=layout)
+    axes[1].plot(periods, result.history["wg_torque_Nmm"][loaded] / expected, "o-", markersize=3)
+axes[0].set(xlabel="periods", ylabel="largest s1 of the spline (MPa)")
+axes[1].set(xlabel="periods", ylabel="input torque / (torque / ratio)")
+axes[0].legend()
+for panel in axes:
+    panel.grid(alpha=0.3)
+plt.show()
