@@ -60,7 +60,7 @@ sphinx_gallery_conf = {
     "examples_dirs": "gallery",
     "gallery_dirs": "auto_gallery",
     "filename_pattern": r"/plot_",
-    "within_subsection_order": "FileNameSortKey",
+    "within_subsection_order": "gallery_hooks.PageOrder",
     "image_scrapers": ("matplotlib", "gallery_hooks.returned_figure"),
     "reset_modules": ("matplotlib", "gallery_hooks.name_the_file"),
     "parallel": 2,

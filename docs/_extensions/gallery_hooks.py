@@ -11,6 +11,32 @@ from sphinx_gallery.scrapers import figure_rst
 
 GALLERY = Path(__file__).parents[1] / "gallery"
 
+ORDER = (
+    "first_drive",
+    "profiles",
+    "cams",
+    "mesh",
+    "stress_wave",
+    "contact_pattern",
+    "transmission_error",
+    "torque_sweep",
+    "layouts",
+    "friction",
+    "ring_on_cam",
+)
+"""Scripts in the order of the page; the others follow by name."""
+
+
+class PageOrder:
+    """Sort key of the scripts."""
+
+    def __init__(self, folder: str) -> None:
+        """folder : that of the scripts"""
+
+    def __call__(self, name: str) -> tuple[int, str]:
+        stem = Path(name).stem.removeprefix("plot_")
+        return (ORDER.index(stem) if stem in ORDER else len(ORDER)), stem
+
 
 def name_the_file(configuration: dict[str, Any], name: str | None) -> None:
     """Give a script its `__file__`, which sphinx-gallery leaves out; scripts find the drivers by it."""

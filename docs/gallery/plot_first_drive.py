@@ -32,7 +32,7 @@ result = swgpar.run(design, mesh={"flexible_spline": gear, "ring_gear": gear})
 # The history has a column per quantity and a value per increment.
 
 for column in ("step", "wg_angle_deg", "fs_s1", "fs_vm", "wg_torque_Nmm", "pairs_in_contact"):
-    print(f"{column:20}", *(f"{float(value):9.3f}" for value in result.history[column][:8]))
+    print(f"{column:20}", *(f"{float(value):9.3f}" for value in result.history[column][:6]))
 
 # %%
 # The largest stresses over the angle of the wave generator.

@@ -27,7 +27,7 @@ results = [swgpar.run(design.with_values({"load.torque": t}), mesh=mesh) for t i
 # Stresses are means over the rotation of the largest value over the body. On an elliptical cam
 # the bending of the rim dominates: the stress of the spline hardly depends on the torque.
 
-figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.8), layout="constrained")
+figure, axes = plt.subplots(figsize=(7.0, 3.8), layout="constrained")
 labels = {
     "fs_s1": "flexible spline, s1",
     "fs_s3": "flexible spline, |s3|",
@@ -35,21 +35,22 @@ labels = {
     "rg_vm": "ring gear, von Mises",
 }
 for name, label in labels.items():
-    left.plot(TORQUES, [r.summary["means"][name] for r in results], "o-", label=label)
-left.set(xlabel="output torque (N·m)", ylabel="stress (MPa)", ylim=(0.0, None))
-left.legend(fontsize=8)
+    axes.plot(TORQUES, [r.summary["means"][name] for r in results], "o-", label=label)
+axes.set(xlabel="output torque (N·m)", ylabel="stress (MPa)", ylim=(0.0, None))
+axes.legend(fontsize=8)
 
 # %%
 # The mean input torque is that of the energy balance. More teeth share a higher torque.
 
+figure, axes = plt.subplots(figsize=(7.0, 3.8), layout="constrained")
 input_torque = [r.summary["means"]["wg_torque_Nmm"] for r in results]
-right.plot(TORQUES, input_torque, "o", label="computed")
-right.plot(TORQUES, 1000.0 * np.array(TORQUES) / abs(design.ratio), "--", label="torque / ratio")
-right.set(xlabel="output torque (N·m)", ylabel="input torque (N·mm)")
+axes.plot(TORQUES, input_torque, "o", label="computed")
+axes.plot(TORQUES, 1000.0 * np.array(TORQUES) / abs(design.ratio), "--", label="torque / ratio")
+axes.set(xlabel="output torque (N·m)", ylabel="mean input torque (N·mm)")
+axes.legend(loc="upper left")
+count = axes.twinx()
 pairs = [r.history["pairs_in_contact"][-4:].mean() for r in results]
-count = right.twinx()
 count.plot(TORQUES, pairs, "s:", color="tab:green")
 count.set_ylabel("pairs of flanks in contact", color="tab:green")
 count.set_ylim(0.0, 12.0)
-right.legend(fontsize=8, loc="lower right")
 plt.show()
