@@ -1,7 +1,7 @@
-"""The reference cup drive through the public interface: the same job as `swgpar run drivers/cup_45deg.toml`.
+"""The reference cup drive through the Python API: the same job as `swgpar run drivers/cup_45deg.toml`.
 
-Problem: a strain wave gear with 120 / 122 teeth and its cup; the elliptical wave generator turns by 45 degrees under an
-output torque of 20 N m (Tables 7.1 to 7.4). Equations: equilibrium of two elastic bodies with finite rotations,
+Problem: a strain wave gear with 120 / 122 teeth and its cup; the elliptical wave generator rotates by 45 degrees under
+an output torque of 20 N m (Tables 7.1 to 7.4). Equations: equilibrium of two elastic bodies with finite rotations,
 frictionless contact of cam on spline and of spline on ring gear, and a torque that is work-conjugate to the mean
 rotation of the cup's bore. Expected run time: about 3 minutes with the coarse recipe on 2 cores.
 
@@ -15,35 +15,34 @@ from pathlib import Path
 
 from mpi4py import MPI
 
-from swgpar.analysis.run_drive import run_drive
-from swgpar.design.design_file import load_design
-from swgpar.meshing import load_recipe
-
-HERE = Path(__file__).parent
+import swgpar
 
 
 def main() -> float:
     """Run and return the mean of the largest tensile stress in the flexible spline, MPa."""
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    options.add_argument("--design", default=HERE / "cup_45deg.toml")
-    options.add_argument("--mesh", default=HERE.parent / "mesh" / "coarse.toml")
+    options.add_argument("--design", default=Path(__file__).with_name("cup_45deg.toml"))
+    options.add_argument("--mesh", default="coarse")
     options.add_argument("--out", default="results/cup_rotation")
     options.add_argument("--restart", action="store_true", help="continue from the checkpoint in --out")
     options.add_argument("--overwrite", action="store_true", help="replace results that --out already holds")
     options.add_argument("--set", nargs="*", default=[], help="section.key=value")
     arguments = options.parse_args()
 
-    design = load_design(arguments.design, arguments.set)
-    recipe = load_recipe(arguments.mesh)
-    result = run_drive(design, recipe, arguments.out, restart=arguments.restart, overwrite=arguments.overwrite)
-
+    design = swgpar.load_design(arguments.design, arguments.set)
+    result = swgpar.run(
+        design,
+        arguments.mesh,
+        arguments.out,
+        restart=arguments.restart,
+        overwrite=arguments.overwrite,
+        progress=True,
+    )
     if MPI.COMM_WORLD.rank == 0:
-        for row in result.rows:
-            print(
-                f"step {row['step']:>3}  {row['wg_angle_deg']:7.2f} deg  s1 {row['fs_s1']:7.1f} MPa  "
-                f"input torque {row['wg_torque_Nmm']:8.2f} N mm"
-            )
-    return result.means.get("fs_s1", float("nan"))
+        columns = ("step", "wg_angle_deg", "fs_s1", "wg_torque_Nmm")
+        for step, angle, stress, torque in zip(*(result.history[name] for name in columns), strict=True):
+            print(f"step {step:>3}  {angle:7.2f} deg  s1 {stress:7.1f} MPa  input torque {torque:8.2f} N mm")
+    return result.summary["means"].get("fs_s1", float("nan"))
 
 
 if __name__ == "__main__":

@@ -17,17 +17,37 @@ OPTIONS = ("--set", "--mesh", "--accuracy", "--out", "--restart", "--overwrite",
 EXAMPLES = """examples:
   swgpar check drivers/cup_45deg.toml
   mpirun -n 2 swgpar run drivers/cup_45deg.toml --mesh coarse --out results/coarse
-  mpirun -n 2 swgpar run drivers/plane_half_turn.toml --mesh plane_coarse --accuracy 0.05 --out results/plane
-  mpirun -n 2 swgpar run drivers/cup_45deg.toml --mesh full --out results/full --set load.torque=10
+  swgpar report results/coarse
+  swgpar COMMAND --help      more examples
+
+The same in Python: import swgpar; swgpar.run("drivers/cup_45deg.toml", mesh="coarse").plot.stress()
+"""
+
+RUN = """Simulate a drive, or compute a gear train, and write the results to a folder. Unknown options are passed to
+PETSc."""
+
+RUN_EXAMPLES = """examples:
+  mpirun -n 2 swgpar run drivers/cup_45deg.toml --mesh coarse --out results/coarse
+  mpirun -n 2 swgpar run drivers/cup_45deg.toml --mesh full --out results/full --set load.torque=10 steps.rotation=20
   mpirun -n 2 swgpar run drivers/cup_45deg.toml --mesh full --out results/full --restart
-  swgpar mesh drivers/cup_45deg.toml --mesh coarse --out results/mesh --format vtu inp
-  swgpar report results/full
+  mpirun -n 2 swgpar run drivers/plane_half_turn.toml --mesh plane_coarse --accuracy 0.05 --out results/plane
+  swgpar run drivers/plane_half_turn.toml --mesh mesh/rim/inner_10.toml --out results/rim -snes_monitor
   mpirun -n 2 swgpar run drivers/cascade.toml --out results/cascade
 """
 
-STUDY = """A study computes many designs and compares them: a grid or a sweep over any keys of the design file, on one
-mesh or more, beside published values where there are some. Gear trains have no meshes. The file is described in
-docs/howto/studies.md."""
+MESH_EXAMPLES = """examples:
+  swgpar mesh drivers/cup_45deg.toml --mesh coarse --out results/mesh --format vtu inp
+  swgpar mesh drivers/cup_45deg.toml --mesh my_recipe.toml --out results/mesh --set drive.model=plane
+"""
+
+CHECK_EXAMPLES = """examples:
+  swgpar check drivers/cup_45deg.toml
+  swgpar check drivers/cup_45deg.toml --set drive.layout=spline_fixed
+"""
+
+STUDY = """Compute many designs and compare them: a grid or a sweep over any keys of the design file, on one mesh or
+more, beside published values if there are some. Gear trains have no meshes. The study file is described in
+docs/howto/studies.md. Unknown options are passed to PETSc."""
 
 STUDY_EXAMPLES = """examples:
   mpirun -n 4 swgpar study drivers/studies/torque.toml --out results/torque
@@ -36,13 +56,22 @@ STUDY_EXAMPLES = """examples:
 
 a study file:
   [study]
-  design = "../cup_45deg.toml"              # relative to the study file, like the meshes
+  design = "../cup_45deg.toml"              # relative to the study file, as are paths of meshes
   meshes = ["coarse"]
   [study.vary]
   "load.torque" = [5.0, 10.0, 20.0]
 
---restart keeps what is finished, continues what was interrupted and tries again what failed.
+--restart keeps finished cases, continues interrupted ones and tries failed ones again.
 """
+
+REPORT_EXAMPLES = """example:
+  swgpar report results/coarse
+"""
+
+MESH_HELP = "mesh recipe: coarse, medium, full, plane_coarse, plane, plane_fine, or the path of a file (TOML)"
+
+
+_Commands = "argparse._SubParsersAction[argparse.ArgumentParser]"
 
 
 class _Parser(argparse.ArgumentParser):
@@ -63,59 +92,71 @@ def parser() -> argparse.ArgumentParser:
     top.add_argument("--version", action="version", version=f"swgpar {__version__}")
     commands = top.add_subparsers(dest="command", required=True, metavar="run | study | mesh | check | report")
 
-    def design_command(name: str, text: str) -> argparse.ArgumentParser:
-        command = commands.add_parser(
-            name, help=text, description=text, epilog=EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter
-        )
-        command.add_argument("design", help="design file (TOML)")
-        command.add_argument(
-            "--set",
-            action="append",
-            default=[],
-            nargs="+",
-            metavar="section.key=value",
-            help="override a key of the design file",
-        )
-        return command
-
-    run = design_command("run", "simulate a drive; what is not known here is handed to PETSc")
-    run.add_argument("--mesh", help="mesh recipe (TOML); gear trains have none")
-    run.add_argument(
-        "--accuracy",
-        type=float,
-        metavar="A",
-        help="refine the mesh until the estimated error of the largest tensile stress under load is at most A (0.02: "
-        "2 %%; 0.001 to 0.2, without friction); takes one period in 4, 8 or 16 angles and solver.rtol = 1e-7 unless "
-        "the design says otherwise, and ends at 1,500,000 elements in the plane, 700,000 in space",
-    )
-    run.add_argument("--out", required=True, help="results folder")
-    run.add_argument("--restart", action="store_true", help="continue from the checkpoint in --out")
-    run.add_argument("--overwrite", action="store_true", help="replace results that --out already holds")
-    study = commands.add_parser(
-        "study",
-        help="compute and compare many designs; what is not known here is handed to PETSc",
-        description=STUDY,
-        epilog=STUDY_EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    study.add_argument("study", help="study file (TOML)")
-    study.add_argument("--out", required=True, help="folder of the study")
-    study.add_argument("--restart", action="store_true", help="continue the study in --out")
-    study.add_argument("--overwrite", action="store_true", help="replace a study that --out already holds")
-    mesh = design_command("mesh", "write the mesh of the whole drive")
-    mesh.add_argument("--mesh", required=True, help="mesh recipe (TOML)")
+    _add_run(commands)
+    _add_study(commands)
+    mesh = _add_command(commands, "mesh", "Write the mesh of the whole drive.", MESH_EXAMPLES)
+    _add_design(mesh)
+    mesh.add_argument("--mesh", required=True, help=MESH_HELP)
     mesh.add_argument("--out", required=True, help="folder for the mesh files")
     mesh.add_argument(
         "--format",
         nargs="+",
         default=["vtu", "msh", "inp"],
         choices=["vtu", "msh", "inp"],
-        help="vtu for ParaView, msh for Gmsh, inp for Abaqus and CalculiX (all)",
+        help="vtu for ParaView, msh for Gmsh, inp for Abaqus and CalculiX (default: all)",
     )
-    design_command("check", "validate a design and print its geometry")
-    report = commands.add_parser("report", help="draw the figures of a finished run again")
+    check = _add_command(commands, "check", "Check a design and print its derived geometry.", CHECK_EXAMPLES)
+    _add_design(check)
+    report = _add_command(commands, "report", "Draw the figures of a finished run again.", REPORT_EXAMPLES)
     report.add_argument("out", help="results folder")
     return top
+
+
+def _add_command(commands: _Commands, name: str, text: str, examples: str) -> argparse.ArgumentParser:
+    return commands.add_parser(
+        name,
+        help=text.partition(".")[0].lower(),
+        description=text,
+        epilog=examples,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+
+
+def _add_design(command: argparse.ArgumentParser) -> None:
+    command.add_argument("design", help="design file (TOML)")
+    command.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        nargs="+",
+        metavar="section.key=value",
+        help="set keys of the design file",
+    )
+
+
+def _add_run(commands: _Commands) -> None:
+    run = _add_command(commands, "run", RUN, RUN_EXAMPLES)
+    _add_design(run)
+    run.add_argument("--mesh", help=f"{MESH_HELP}; gear trains have none")
+    run.add_argument(
+        "--accuracy",
+        type=float,
+        metavar="A",
+        help="refine the mesh until the estimated error of the largest tensile stress under load is at most A (0.02: "
+        "2 %%; 0.001 to 0.2, without friction). Without other values in the design, one period is computed in 4, 8 or "
+        "16 angles with solver.rtol = 1e-7. The mesh has at most 1,500,000 elements in the plane, 700,000 in space",
+    )
+    run.add_argument("--out", required=True, help="results folder")
+    run.add_argument("--restart", action="store_true", help="continue from the checkpoint in --out")
+    run.add_argument("--overwrite", action="store_true", help="replace results that --out already holds")
+
+
+def _add_study(commands: _Commands) -> None:
+    study = _add_command(commands, "study", STUDY, STUDY_EXAMPLES)
+    study.add_argument("study", help="study file (TOML)")
+    study.add_argument("--out", required=True, help="folder of the study")
+    study.add_argument("--restart", action="store_true", help="continue the study in --out")
+    study.add_argument("--overwrite", action="store_true", help="replace a study that --out already holds")
 
 
 def _run(arguments: argparse.Namespace) -> None:
