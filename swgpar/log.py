@@ -18,7 +18,15 @@ from pathlib import Path
 from mpi4py import MPI
 from rich.console import Console
 from rich.logging import RichHandler
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TaskID,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 
 logger = logging.getLogger("swgpar")
 
@@ -109,6 +117,7 @@ class IncrementProgress:
 
     def __init__(self, comm: MPI.Comm, total: int, *, done: int = 0, terminal: bool = True) -> None:
         self._bar: Progress | None = None
+        self._task: TaskID | None = None
         self._total, self._count = total, done
         if comm.rank == 0 and console.is_terminal and terminal:
             self._bar = progress_bar()

@@ -8,13 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from swgpar.geometry.arrays import Floats, Ints
 from swgpar.geometry.profiles.flank import ToothProfile
 from swgpar.meshing.half_tooth import HalfTooth
 from swgpar.meshing.mapped import MappedBlocks, QuadMesh
 from swgpar.meshing.recipe import ToothRecipe
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
 
 UNDER, ROOT, RIM = 3, 4, 5
 """Numbers of the blocks below the core and below the root, and of the first block of the lower rim."""

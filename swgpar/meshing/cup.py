@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.geometry.arrays import Floats, Ints
 from swgpar.meshing.cross_section import CrossSection
 from swgpar.meshing.recipe import CupRecipe
-from swgpar.meshing.sector import Floats, Ints
 from swgpar.meshing.sweep import symmetric_steps
 
 

@@ -13,9 +13,10 @@ import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutputError
+from swgpar.geometry.arrays import Floats, Ints
 from swgpar.meshing.inp import element_faces, write_inp
 from swgpar.meshing.quality import hex_volumes
-from swgpar.meshing.sector import Floats, Ints, SectorMesh
+from swgpar.meshing.sector import SectorMesh
 
 FORMATS = ("vtu", "msh", "inp")
 

@@ -13,7 +13,8 @@ import meshio
 import numpy as np
 
 from swgpar.design.sections import Material
-from swgpar.meshing.sector import Ints, SectorMesh
+from swgpar.geometry.arrays import Ints
+from swgpar.meshing.sector import SectorMesh
 
 MATERIAL = "GEAR_MATERIAL"
 """Name of the one material in the file."""

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import pairwise
+from types import ModuleType
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
+from swgpar.geometry.arrays import Floats, Ints
 
 
 @dataclass(frozen=True)
@@ -100,7 +99,8 @@ class MappedBlocks:
                 gmsh.finalize()
         return result
 
-    def _describe(self, gmsh: object) -> None:
+    def _describe(self, gmsh: ModuleType) -> None:
+        """Define points, lines and blocks in gmsh."""
         geo = gmsh.model.geo
         for k, (x, y) in enumerate(self.points):
             geo.addPoint(x / self.scale, y / self.scale, 0.0, tag=k + 1)
@@ -123,7 +123,8 @@ class MappedBlocks:
             geo.mesh.setRecombine(2, surface)
         geo.synchronize()
 
-    def _collect(self, gmsh: object) -> tuple[QuadMesh, Ints]:
+    def _collect(self, gmsh: ModuleType) -> tuple[QuadMesh, Ints]:
+        """Mesh and node of each given point, from gmsh."""
         mesh = gmsh.model.mesh
         tags, xyz, _ = mesh.getNodes()
         order = np.argsort(tags)

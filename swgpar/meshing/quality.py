@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from swgpar.meshing.sector import Floats, Ints
+from swgpar.geometry.arrays import Floats, Ints
 
 CORNERS = np.array(
     [(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1), (-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1)],

@@ -6,9 +6,9 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import splu
 
+from swgpar.geometry.arrays import Floats
 from swgpar.geometry.profiles.flank import ToothProfile
 from swgpar.meshing.cross_section import CrossSection
-from swgpar.meshing.sector import Floats
 
 # dN/dxi of the bilinear quadrilateral at the 2x2 Gauss points: (point, node, direction)
 _CORNERS = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)], dtype=float)

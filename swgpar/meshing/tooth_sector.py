@@ -9,6 +9,7 @@ import numpy as np
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GEARS, GearName
 from swgpar.errors import InputError
+from swgpar.geometry.arrays import Floats, Ints
 from swgpar.geometry.micro_geometry import crowning
 from swgpar.geometry.profiles import ToothProfile
 from swgpar.meshing.cross_section import CrossSection, cross_section
@@ -16,7 +17,7 @@ from swgpar.meshing.cup import attached_quads, cup_nodes
 from swgpar.meshing.quality import hex_quality, quad_quality
 from swgpar.meshing.recipe import CupRecipe, MeshRecipe, ToothRecipe
 from swgpar.meshing.relief import relief_field
-from swgpar.meshing.sector import FlankGrid, Floats, Ints, SectorMesh
+from swgpar.meshing.sector import FlankGrid, SectorMesh
 from swgpar.meshing.sweep import axial_stations, sweep_line, sweep_quads
 
 THICK_CUP = 0.85

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 from scipy.spatial import cKDTree
 
-from swgpar.geometry.profiles.flank import Floats
+from swgpar.geometry.arrays import Floats
 
 PANELS, ORDER = 64, 6
 """Panels of the arc length's table and Gauss points in each: round-off for the smooth curves of a tooth."""

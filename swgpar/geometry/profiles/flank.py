@@ -11,8 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
 from swgpar.errors import InputError
-
-Floats = NDArray[np.float64]
+from swgpar.geometry.arrays import Floats
 
 
 class FlankSegment(Protocol):

@@ -21,8 +21,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 from swgpar.errors import InputError
+from swgpar.geometry.arrays import Floats
 from swgpar.geometry.profiles.curved_segment import CurvedSegment, CurvePoints
-from swgpar.geometry.profiles.flank import Floats, ToothProfile
+from swgpar.geometry.profiles.flank import ToothProfile
 from swgpar.geometry.profiles.teeth import Teeth
 
 Center = Callable[[Floats], tuple[Floats, Floats]]

@@ -1,0 +1,40 @@
+"""Objects are complete after their construction: no method adds an attribute."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+import swgpar
+
+CONSTRUCTORS = ("__init__", "__post_init__")
+
+
+def assigned(node: ast.AST) -> set[str]:
+    """Attributes of self that are assigned in a function."""
+    return {
+        item.attr
+        for item in ast.walk(node)
+        if isinstance(item, ast.Attribute)
+        and isinstance(item.ctx, ast.Store)
+        and isinstance(item.value, ast.Name)
+        and item.value.id == "self"
+    }
+
+
+def added(cls: ast.ClassDef) -> Iterator[str]:
+    """Attributes that methods of a class add to those of its fields and its constructor."""
+    functions = [item for item in cls.body if isinstance(item, ast.FunctionDef)]
+    known = {item.target.id for item in cls.body if isinstance(item, ast.AnnAssign)}
+    assignments = [item for item in cls.body if isinstance(item, ast.Assign)]
+    known |= {name.id for item in assignments for name in ast.walk(item) if isinstance(name, ast.Name)}
+    known = known.union(*(assigned(function) for function in functions if function.name in CONSTRUCTORS))
+    for function in functions:
+        yield from (f"{cls.name}.{function.name} adds {name}" for name in sorted(assigned(function) - known))
+
+
+def test_no_attribute_appears_outside_a_constructor() -> None:
+    trees = [ast.parse(path.read_text(encoding="utf-8")) for path in Path(swgpar.__file__).parent.rglob("*.py")]
+    classes = [node for tree in trees for node in ast.walk(tree) if isinstance(node, ast.ClassDef)]
+    assert not [found for cls in classes for found in added(cls)]
