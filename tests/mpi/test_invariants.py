@@ -10,46 +10,20 @@ import pytest
 from mpi4py import MPI
 from pytest_mpi import parallel_assert
 
-from support.paths import DESIGN, RECIPE
-from support.small_drive import PLANE
+from support.stepping import MODELS, WORLD, assert_agree, loaded, rotate, small
 from swgpar.analysis.contact_pressure import nodal_pressure
-from swgpar.analysis.drive_model import build_drive_model
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.contact.flanks import ActiveSegments, FlankContact
 from swgpar.contact.rigid_surface import RigidContact
-from swgpar.design.design_file import load_design
-from swgpar.design.drive_design import DriveDesign
-from swgpar.design.load_states import Stage, load_sequence
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.fem.stress import body_fields
-from swgpar.meshing import load_recipe
 from swgpar.solve import active_set_cycles as cycling
 from swgpar.solve.newton import NewtonSolver
 
-WORLD = MPI.COMM_WORLD
-MODELS = {"cup": (), "plane": PLANE}
 TORQUE = {"cup": 2000.0, "plane": 200.0}
 """N mm, at the output with the ring gear fixed."""
 
 both_models = pytest.mark.parametrize("model", MODELS)
-
-
-def loaded(design: DriveDesign, comm: MPI.Comm = WORLD) -> tuple[LoadStepper, dict[str, float]]:
-    """The small drive after step 3, and its history row."""
-    runner = LoadStepper(build_drive_model(design, load_recipe(RECIPE), comm=comm))
-    for item in load_sequence(design):
-        if item.stage > Stage.LOAD:
-            break
-        runner.advance(item)
-    return runner, row(runner)
-
-
-def row(runner: LoadStepper) -> dict[str, float]:
-    return {**runner.row(), **runner.model.stresses()[0]}
-
-
-def small(model: str, *overrides: str) -> DriveDesign:
-    return load_design(DESIGN, [*MODELS[model], *overrides])
 
 
 @lru_cache
@@ -63,20 +37,12 @@ def other_layout(model: str) -> tuple[LoadStepper, dict[str, float]]:
     return loaded(small(model, "drive.layout=spline_fixed", f"load.torque={TORQUE[model] * 21 / 20 / 1000:g}"))
 
 
-def turn(runner: LoadStepper, angle: float) -> dict[str, float]:
-    """Row after turning the wave generator to `angle` (rad)."""
-    runner.iterations = 0
-    runner.advance(replace(runner.load_state, stage=Stage.ROTATE, step=4, angle=angle))
-    return row(runner)
-
-
 PHYSICAL = ("fs_s1", "fs_s3", "fs_vm", "rg_s1", "rg_s3", "rg_vm", "wg_torque_Nmm", "tooth_torque_Nmm")
 
 
 def assert_same(a: dict[str, float], b: dict[str, float], rel: float) -> None:
-    for name in PHYSICAL:
-        parallel_assert(a[name] == pytest.approx(b[name], rel=rel), f"{name}: {a[name]} and {b[name]}")
-    parallel_assert(a["pairs_in_contact"] == b["pairs_in_contact"])
+    assert_agree(a, b, PHYSICAL, rel)
+    assert_agree(a, b, ["pairs_in_contact"], 0.0)
 
 
 @both_models
@@ -93,7 +59,7 @@ def test_torques_balance(model: str) -> None:
 @pytest.mark.parallel([1, 2])
 def test_torques_balance_in_the_other_layout(model: str) -> None:
     """The load acts on the ring gear: it equals the teeth's torque on the spline, whose support takes the rest."""
-    runner, r = other_layout(model)
+    stepper, r = other_layout(model)
     torque = 1.05 * TORQUE[model]
     assert r["output_torque_Nmm"] == pytest.approx(-torque)
     assert abs(r["tooth_torque_Nmm"] + torque) < 1e-6 * torque
@@ -150,13 +116,13 @@ def test_ranks_and_the_other_layout() -> None:
 def test_period_and_work(model: str, layout: str, samples: int) -> None:
     """After one pitch of the fixed gear the state repeats, the output turned by pitch / ratio; mean input T / ratio."""
     if layout == "ring_fixed":
-        runner, _ = loaded(small(model))
+        stepper, _ = loaded(small(model))
         pitch, ratio, torque = 2.0 * np.pi / 42, -20.0, TORQUE[model]
     else:
-        runner, _ = other_layout(model)
+        stepper, _ = other_layout(model)
         pitch, ratio, torque = 2.0 * np.pi / 40, 21.0, 1.05 * TORQUE[model]
-    first = turn(runner, 0.2 * pitch)  # away from the start, whose history is another one
-    rows = [turn(runner, (0.2 + k / samples) * pitch) for k in range(1, samples + 1)]
+    first = rotate(stepper, 0.2 * pitch)  # away from the start, whose history is another one
+    rows = [rotate(stepper, (0.2 + k / samples) * pitch) for k in range(1, samples + 1)]
     last = rows[-1]
     assert_same(last, first, 1e-6)
     turned = last["output_angle_deg"] - first["output_angle_deg"]
@@ -176,11 +142,11 @@ def test_period_and_work(model: str, layout: str, samples: int) -> None:
 @pytest.mark.parallel([1, 2])
 def test_any_turn_of_the_output(layout: str, teeth: int, ratio: float) -> None:
     """A quarter, nearly half, and more than half a turn of the output away, at the same place in the period."""
-    runner, _ = loaded(small("plane", f"drive.layout={layout}"))
+    stepper, _ = loaded(small("plane", f"drive.layout={layout}"))
     pitch = 2.0 * np.pi / teeth
-    first = turn(runner, 0.2 * pitch)
+    first = rotate(stepper, 0.2 * pitch)
     for count in (210, 415, 505):
-        last = turn(runner, (0.2 + count) * pitch)
+        last = rotate(stepper, (0.2 + count) * pitch)
         assert_same(last, first, 1e-6)
         assert last["torque_balance_Nmm"] < 1e-6 * TORQUE["plane"]
         turned = last["output_angle_deg"] - first["output_angle_deg"] - np.degrees(count * pitch) / ratio
@@ -191,8 +157,8 @@ def test_any_turn_of_the_output(layout: str, teeth: int, ratio: float) -> None:
 @pytest.mark.parallel([1, 2, 3])
 def test_rotating_the_whole_spline_changes_no_stress(model: str) -> None:
     """The loaded spline and its wave generator turned by 0.7 rad: the same stresses, the forces turned alike."""
-    runner, _ = base(model)
-    problem, state, angle = runner.problem, runner.load_state, 0.7
+    stepper, _ = base(model)
+    problem, state, angle = stepper.problem, stepper.load_state, 0.7
     c, s = np.cos(angle), np.sin(angle)
     turned = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
     spline = problem.elements.bodies[FLEXIBLE_SPLINE]
@@ -257,8 +223,8 @@ def test_enforcement_does_not_show(
     model: str, overrides: tuple[str, ...], augmented: bool, gears: tuple[str, ...]
 ) -> None:
     _, r = base(model)
-    runner, other = loaded(small(model, *overrides))
-    assert (runner.solver.state.augmentations > 0) == augmented
+    stepper, other = loaded(small(model, *overrides))
+    assert (stepper.solver.state.augmentations > 0) == augmented
     for name in (f"{gear}_{stress}" for gear in gears for stress in ("s1", "s3", "vm")):
         assert other[name] == pytest.approx(r[name], rel=5e-3), name
 
@@ -276,9 +242,9 @@ def test_an_augmentation_that_leads_to_no_solution_is_taken_back(monkeypatch: py
 
     for contact in (RigidContact, FlankContact):
         monkeypatch.setattr(contact, "augment", poison)
-    runner, taken = loaded(small("plane", *soft, "contact.max_augmentations=10"))
-    assert poisoned and runner.solver.state.augmentations == 0
-    parallel_assert(all(np.all(contact.multiplier == 0.0) for contact in runner.problem.contacts))
+    stepper, taken = loaded(small("plane", *soft, "contact.max_augmentations=10"))
+    assert poisoned and stepper.solver.state.augmentations == 0
+    parallel_assert(all(np.all(contact.multiplier == 0.0) for contact in stepper.problem.contacts))
     assert_same(taken, without, 1e-6)
 
 
@@ -320,8 +286,8 @@ def test_careful_line_search_reaches_the_same_state(model: str, monkeypatch: pyt
     """Every active set taken for one that returns, so that all steps are searched for carefully."""
     _, r = base(model)
     monkeypatch.setattr(cycling.VisitedSets, "returns", lambda *_: True)
-    runner, careful = loaded(small(model))
-    assert runner.solver.line_search.descending
+    stepper, careful = loaded(small(model))
+    assert stepper.solver.line_search.descending
     assert_same(careful, r, 1e-6)
 
 

@@ -12,9 +12,9 @@ from pytest_mpi import parallel_assert
 
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
+from support.stepping import load_stepper, row
 from swgpar.analysis import mesh_refinement as accuracy
 from swgpar.analysis.coarse_start import level_of, levels, start_loaded
-from swgpar.analysis.drive_model import build_drive_model
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.period import continued
 from swgpar.design.design_file import load_design
@@ -34,16 +34,16 @@ def rotated(
     """The small drive turned by two increments of 1.5 degrees, and its last history row."""
     design = load_design(DESIGN, ["steps.rotation=3", "steps.increment=1.5", *overrides])
     mesh = load_recipe(recipe)
-    runner = LoadStepper(build_drive_model(design, mesh, comm=comm))
+    stepper = load_stepper(design, comm, mesh)
     items = list(load_sequence(design))
     if design.steps.start_levels:
         recipes = levels(design, mesh)
         assert len(recipes) == design.steps.start_levels
-        start_loaded(runner, recipes, items)
+        start_loaded(stepper, recipes, items)
         items = from_loaded(items)[1:]
     for item in items:
-        runner.advance(item)
-    return runner, {**runner.row(), **runner.model.stresses()[0]}
+        stepper.advance(item)
+    return stepper, row(stepper)
 
 
 def assert_same(row: dict[str, float], other: dict[str, float], rel: float) -> None:
@@ -59,8 +59,8 @@ def plain() -> dict[str, float]:
 
 @pytest.mark.parallel([1, 2])
 def test_a_kept_factor_changes_nothing(plain: dict[str, float]) -> None:
-    runner, row = rotated("solver.far_teeth=modelled")
-    counts = runner.solver.system.reused.iterations
+    stepper, row = rotated("solver.far_teeth=modelled")
+    counts = stepper.solver.system.reused.iterations
     print(f"GMRES iterations {counts}")
     assert np.mean(np.array(counts) < MAX_ITERATIONS) > 0.8 and np.median(counts) < 20
     assert_same(row, plain, 1e-6)
@@ -85,8 +85,8 @@ def test_a_start_without_pins_changes_nothing(overrides: tuple[str, ...]) -> Non
 def test_search_over_candidate_teeth_only(plain: dict[str, float], monkeypatch) -> None:
     """Flanks as far as five modules apart instead of those that can meet."""
     monkeypatch.setattr("swgpar.analysis.drive_model.TIP_MARGIN", 5.0)
-    runner, row = rotated(*PLAIN)
-    wide = len(runner.problem.flanks.pairs)
+    stepper, row = rotated(*PLAIN)
+    wide = len(stepper.problem.flanks.pairs)
     monkeypatch.undo()
     near = len(rotated(*PLAIN)[0].problem.flanks.pairs)
     print(f"{near} of {wide} pairs of flanks")
@@ -97,8 +97,8 @@ def test_search_over_candidate_teeth_only(plain: dict[str, float], monkeypatch) 
 @pytest.mark.parametrize(("override", "rel"), [("contact.friction=0.2", 1e-4), ("drive.layout=spline_fixed", 1e-6)])
 def test_a_kept_factor_with_friction_and_in_the_other_layout(override: str, rel: float) -> None:
     """Friction's tractions live at segments that Newton's iterates fix, here other ones: 8e-6 of the ring's stress."""
-    runner, row = rotated(override)
-    assert np.median(runner.solver.system.reused.iterations) < 20
+    stepper, row = rotated(override)
+    assert np.median(stepper.solver.system.reused.iterations) < 20
     _, alone = rotated(*PLAIN, override)
     assert_same(row, alone, rel)
 
@@ -122,9 +122,9 @@ def test_far_teeth_change_little() -> None:
     """80 teeth, of which a third is out of reach; measured are changes of 1e-12 in stresses and 1e-8 in the torque."""
     many = ("drive.teeth_fs=80", "drive.teeth_rg=82", *PLANE, "solver.keep_factor=false")
     _, all_teeth = rotated("solver.far_teeth=modelled", *many)
-    runner, near_teeth = rotated(*many)
-    print(f"{runner.problem.inactive.active.sum()} of 41 ring-gear sectors")
-    assert runner.problem.inactive.active.sum() < 38
+    stepper, near_teeth = rotated(*many)
+    print(f"{stepper.problem.inactive.active.sum()} of 41 ring-gear sectors")
+    assert stepper.problem.inactive.active.sum() < 38
     assert_same(near_teeth, all_teeth, 1e-6)
 
 
@@ -137,19 +137,19 @@ CONDENSED = (*MANY, "solver.condensed_sectors=true")
 )
 def test_condensed_sectors_in_the_plane_leave_out_the_bend_of_a_sector(overrides: tuple[str, ...]) -> None:
     """E theta^2 / 8 of the bending stress; half as much again for the load's part and the nodal averages."""
-    runner, plain = rotated(*MANY, *overrides)
-    condensed_runner, condensed = rotated(*CONDENSED, *overrides)
-    design = runner.design
-    assert 0.5 * runner.model.partition.n_global > condensed_runner.model.partition.n_global
-    left_out = condensed_runner.model.omitted_bending_stress()
-    assert runner.model.omitted_bending_stress() == 0.0
+    stepper, plain = rotated(*MANY, *overrides)
+    condensed_stepper, condensed = rotated(*CONDENSED, *overrides)
+    design = stepper.design
+    assert 0.5 * stepper.model.partition.n_global > condensed_stepper.model.partition.n_global
+    left_out = condensed_stepper.model.omitted_bending_stress()
+    assert stepper.model.omitted_bending_stress() == 0.0
     bending = 0.75 * design.material.E * design.flexible_spline.rim * design.deflection / design.inner_radius**2
     assert left_out == pytest.approx(design.omitted_bending * bending, rel=0.2)
     share = 1.5 * design.omitted_bending
     assert 1e-3 < share < 0.015
     assert_same(condensed, plain, share)
     # everywhere, inside too
-    for fields, others in zip(condensed_runner.model.stresses()[1], runner.model.stresses()[1]):
+    for fields, others in zip(condensed_stepper.model.stresses()[1], stepper.model.stresses()[1]):
         assert np.abs(fields["displacement"] - others["displacement"]).max(initial=0.0) < 2e-3 * design.deflection
         for name in ("s1", "s3", "vm"):
             assert np.abs(fields[name] - others[name]).max(initial=0.0) < share * plain["fs_vm"], name
@@ -158,8 +158,8 @@ def test_condensed_sectors_in_the_plane_leave_out_the_bend_of_a_sector(overrides
 @pytest.mark.parallel([1, 2, 3])
 def test_what_is_read_of_condensed_sectors_is_complete() -> None:
     """Sectors of any rank, images too, with what is inside of them."""
-    runner, _ = rotated(*CONDENSED)
-    model = runner.model
+    stepper, _ = rotated(*CONDENSED)
+    model = stepper.model
     u = model.problem.displacement()
     for k, body in enumerate(model.elements.bodies):
         parallel_assert(np.abs(body.displacement(u)).max(initial=0.0) > 0.0)
@@ -182,9 +182,9 @@ def test_a_start_on_a_coarser_mesh_takes_over_what_is_inside() -> None:
     for condensed in (False, True):
         overrides = [*CONDENSED[:-1], "steps.start_levels=1", f"solver.condensed_sectors={str(condensed).lower()}"]
         design, mesh = load_design(DESIGN, overrides), load_recipe("plane_coarse")
-        runner = LoadStepper(build_drive_model(design, mesh, comm=MPI.COMM_WORLD))
-        start_loaded(runner, levels(design, mesh), list(load_sequence(design)))
-        iterations.append(runner.iterations)
+        stepper = load_stepper(design, recipe=mesh)
+        start_loaded(stepper, levels(design, mesh), list(load_sequence(design)))
+        iterations.append(stepper.iterations)
     print(iterations)
     assert iterations[1] <= iterations[0] + 1
 
@@ -198,17 +198,17 @@ def test_condensed_sectors_on_any_number_of_ranks() -> None:
 
 def test_the_continued_history_is_that_of_a_longer_rotation() -> None:
     design = load_design(DESIGN, [*PLANE, "steps.samples=4", "steps.rotation=11"])
-    runner = LoadStepper(build_drive_model(design, load_recipe(RECIPE), comm=MPI.COMM_WORLD))
+    stepper = load_stepper(design)
     rows = []
     for item in load_sequence(design):
-        runner.advance(item)
+        stepper.advance(item)
         if item.stage >= Stage.LOAD:
-            rows.append({**runner.row(), **runner.model.stresses()[0], "wall_s": 1.0})
+            rows.append({**stepper.row(), **stepper.model.stresses()[0], "wall_s": 1.0})
     again, following = continued(design, rows)[4:6]
     assert again["wg_angle_deg"] == pytest.approx(np.degrees(design.period_angle))
     assert {k: again[k] for k in STATE} == {k: rows[0][k] for k in STATE}
-    runner.advance(replace(runner.load_state, angle=1.25 * design.period_angle))
-    computed = {**runner.row(), **runner.model.stresses()[0]}
+    stepper.advance(replace(stepper.load_state, angle=1.25 * design.period_angle))
+    computed = row(stepper)
     assert following["wg_angle_deg"] == pytest.approx(np.degrees(1.25 * design.period_angle))
     assert_same(following, computed, 1e-6)
 

@@ -11,8 +11,7 @@ from mpi4py import MPI
 from support.commands import assert_same_history, run_command, succeed
 from support.drive_groups import MESH, ONCE_FAILED, drift, groups, table_of
 from support.small_drive import PLANE
-from swgpar.analysis.drive_model import build_drive_model
-from swgpar.analysis.load_stepping import LoadStepper
+from support.stepping import load_stepper, row
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import load_sequence
 from swgpar.errors import InputError
@@ -35,18 +34,18 @@ HARDEST = [
 def run(group: str, case: str) -> None:
     """Every increment converges, torques balance, and without friction the state repeats."""
     design = DriveDesign.from_table(table_of(ALL[group].design, ALL[group].cases()[case]))
-    runner = LoadStepper(build_drive_model(design, load_recipe(MESH), comm=WORLD))
+    stepper = load_stepper(design, recipe=load_recipe(MESH))
     rows = []
     try:
         for scene in load_sequence(design):
-            runner.advance(scene)
-            rows.append({**runner.row(), **runner.model.stresses()[0]})
+            stepper.advance(scene)
+            rows.append(row(stepper))
     finally:
-        runner.model.destroy()
+        stepper.model.destroy()
     torque = 1000.0 * design.load.torque
-    for row in rows[2:]:
-        assert abs(row["output_torque_Nmm"]) == pytest.approx(torque)
-        assert row["torque_balance_Nmm"] < 1e-5 * torque
+    for found in rows[2:]:
+        assert abs(found["output_torque_Nmm"]) == pytest.approx(torque)
+        assert found["torque_balance_Nmm"] < 1e-5 * torque
     if not design.contact.friction and not ALL[group].steps:
         assert drift(rows[3], rows[5]) < 1e-6
 
