@@ -43,8 +43,6 @@ exclude_patterns = [
     "gallery",
     "auto_gallery/*.py",
     "auto_gallery/*.ipynb",
-    # pages that wait for their place in a section
-    "gear_trains.md",
 ]
 suppress_warnings = ["toc.empty_glob", "config.cache"]
 

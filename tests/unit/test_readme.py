@@ -10,10 +10,6 @@ from pydantic.fields import FieldInfo
 
 from support.paths import ROOT
 from swgpar.design.drive_design import DriveDesign
-from swgpar.gear_trains.cascade import CascadeDesign
-from swgpar.gear_trains.gear_pair import GearPairDesign
-from swgpar.gear_trains.planetary import PlanetaryDesign
-from swgpar.gear_trains.ring import RingDesign
 from swgpar.input.quantities import Section, allowed
 
 
@@ -78,18 +74,6 @@ def expected(design: type[Section], alike: dict[str, str]) -> list[str]:
     ("file", "place", "design", "alike"),
     [
         ("README.md", 0, DriveDesign, {"ring_gear": "flexible_spline"}),
-        ("docs/gear_trains.md", 1, GearPairDesign, {"gear_2": "gear_1"}),
-        ("docs/gear_trains.md", 2, RingDesign, {}),
-        ("docs/gear_trains.md", 3, PlanetaryDesign, {}),
-        (
-            "docs/gear_trains.md",
-            0,
-            CascadeDesign,
-            {
-                **dict.fromkeys(("g1", "g2", "g3", "g4"), "pinion"),
-                **dict.fromkeys(("g1_g1", "g1_g2", "g3_g4"), "rack_pinion"),
-            },
-        ),
     ],
 )
 def test_the_table_lists_every_key(file: str, place: int, design: type[Section], alike: dict[str, str]) -> None:

@@ -178,7 +178,7 @@ def test_tooth_masses_against_a_solid_ring() -> None:
     """Tooth masses without the teeth's stiffness: 3 to 9 % too low; the smooth ring to the pitch circle: half as high.
 
     The printed frequencies of the solid ring are those of the printed radii times 1.98 to 1.99. Two meshes,
-    the coarse one within 0.6 % of the fine one. `pytest -s` prints the table of docs/gear_trains.md.
+    the coarse one within 0.6 % of the fine one. `pytest -s` prints the table of docs/verification/gear_trains.md.
     """
     design = load_train(MODES)
     coarse, solid = (toothed_ring(design, f"plane{level}")[:5] for level in ("_coarse", ""))
