@@ -215,11 +215,11 @@ def _rotated(
     points: np.ndarray, cells: np.ndarray, fields: dict[str, np.ndarray]
 ) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
     """A part of the drive after half a turn about z."""
-    turned = {
+    signed = {
         name: values * np.array(ROTATED[name], values.dtype) if name in ROTATED else values
         for name, values in fields.items()
     }
-    return points * np.array(ROTATED["displacement"]), cells, turned
+    return points * np.array(ROTATED["displacement"]), cells, signed
 
 
 def open_drive(folder: Path) -> DriveResult:

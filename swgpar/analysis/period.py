@@ -1,28 +1,25 @@
-"""One period of the motion stands for all: the history over the whole rotation from the angles sampled in it.
+"""History of the whole rotation from the angles that are sampled in one period.
 
-When the wave generator has turned by one pitch of the fixed gear, the drive is the same with its teeth renamed by
-one, and the output has turned by pitch / ratio. Without friction this is exact; with friction it holds once the slip
-has settled.
+After a rotation of the wave generator by one pitch of the fixed gear, the drive is in the same state with its teeth
+renumbered by one, and the output has rotated by pitch / ratio. Without friction this is exact. With friction it holds
+once the slip is periodic.
 """
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-
-Row = dict[str, Any]
+from swgpar.results.history import Row
 
 
 def of_period(design: DriveDesign, rows: list[Row]) -> list[Row]:
-    """The last `steps.samples` rows: those that are continued, without friction from the loaded state on."""
+    """The last `steps.samples` rows, which are repeated; without friction the first of them is the loaded state."""
     return rows[-design.steps.samples :]
 
 
 def sampling_error(design: DriveDesign, rows: list[Row], names: tuple[str, ...]) -> dict[str, float]:
-    """How far the means over the period are from those of every second sample; empty for odd numbers of samples."""
+    """Differences of the means over the period from those of half as many samples; empty for odd numbers of samples."""
     if design.steps.samples % 2:
         return {}
     period = of_period(design, rows)
@@ -32,15 +29,15 @@ def sampling_error(design: DriveDesign, rows: list[Row], names: tuple[str, ...])
 
 
 def continued(design: DriveDesign, rows: list[Row]) -> list[Row]:
-    """History (rows of all computed increments, a period or more) with the rows that follow up to `steps.rotation`.
+    """History up to `steps.rotation` from the rows of all computed increments, a period or more.
 
-    Rows that follow cost no time and no iterations.
+    The added rows have no wall time and no iterations.
     """
     out, period = list(rows), of_period(design, rows)
-    pitch, turns = np.degrees(design.period_angle), 1
+    pitch, periods = np.degrees(design.period_angle), 1
     while True:
         for row in period:
-            angle = row["wg_angle_deg"] + turns * pitch
+            angle = row["wg_angle_deg"] + periods * pitch
             if angle > design.steps.rotation * (1.0 + 1e-9):
                 return out
             out.append(
@@ -48,9 +45,9 @@ def continued(design: DriveDesign, rows: list[Row]) -> list[Row]:
                     **row,
                     "step": str(int(out[-1]["step"]) + 1),
                     "wg_angle_deg": angle,
-                    "output_angle_deg": row["output_angle_deg"] + turns * pitch / design.ratio,
+                    "output_angle_deg": row["output_angle_deg"] + periods * pitch / design.ratio,
                     "newton_iterations": 0,
                     "wall_s": 0.0,
                 }
             )
-        turns += 1
+        periods += 1

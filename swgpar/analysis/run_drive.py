@@ -180,7 +180,7 @@ class _Run:
 
 
 def _start_on_coarser(stepper: LoadStepper, recipe: MeshRecipe, items: list[LoadState]) -> Level | None:
-    """Reach the loaded state by way of coarser meshes; None where the design does without, or where that fails."""
+    """Reach the loaded state on coarser meshes first; None if the design asks for none, or if that fails."""
     recipes = levels(stepper.design, recipe)
     if not recipes:
         return None

@@ -60,11 +60,6 @@ MODELS = {
 }
 
 
-def is_gear_train(path: str | Path) -> bool:
-    """Whether a design file is that of a gear train; every problem is an `InputError` of one sentence."""
-    return SECTION in read_toml(path)
-
-
 def load_train(path: str | Path, overrides: Sequence[str] = ()) -> TrainDesign:
     """Read and check the design file of a gear train; every problem is an `InputError` of one sentence."""
     return make_train(apply_overrides(read_toml(path), overrides))

@@ -1,1 +1,1 @@
-"""Result files: history, fields, checkpoint, summary."""
+"""Results: history, fields, checkpoint and figures; in a results folder, or in memory."""

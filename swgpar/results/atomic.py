@@ -1,7 +1,7 @@
-"""Files that are whole or not there, and errors that all ranks agree on.
+"""Files that are written completely or not at all, and errors that are raised on all ranks.
 
-A file is written under a temporary name beside its target, flushed to the disk and renamed. A process
-that is killed at any moment leaves the previous file, never half of a new one.
+A file is written under a temporary name in the same folder, flushed to the disk and renamed. A process
+that is killed leaves the previous file, never a part of a new one.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def first_reason(comm: MPI.Comm, reason: str | None) -> str | None:
 
 
 def on_all(comm: MPI.Comm, read: Callable[[], T]) -> T:
-    """What `read` returns; raises InputError on all ranks when one cannot read it, so that none waits for another."""
+    """What `read` returns. If one rank cannot read it, InputError is raised on all ranks, so that none waits."""
     value, reason = None, None
     try:
         value = read()
@@ -54,7 +54,7 @@ def agreed(comm: MPI.Comm, path: Path, action: str = "write") -> Iterator[None]:
     """Run a block in which a rank may fail alone, and raise OutputError on all ranks if one did.
 
     The block must not contain collective calls after a statement that can fail on one rank only.
-    Collective itself: every rank enters and leaves it.
+    It is collective itself: every rank enters and leaves it.
     """
     reason = None
     try:
@@ -67,7 +67,7 @@ def agreed(comm: MPI.Comm, path: Path, action: str = "write") -> Iterator[None]:
 
 
 def reserve(path: Path, size: int) -> None:
-    """Make the file system set `size` bytes aside for a file, so that a full disk shows here and not later."""
+    """Reserve `size` bytes for a file on the disk: a full disk is found here, not later."""
     if size == 0:
         return
     handle = os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
@@ -93,7 +93,7 @@ def _sync(path: Path) -> None:
 
 
 def discard(path: Path) -> None:
-    """Remove a temporary file if it is there."""
+    """Remove a temporary file if it exists."""
     with suppress(OSError):
         path.unlink()
 
@@ -125,6 +125,6 @@ def to_json(data: dict[str, Any]) -> bytes:
             return value.tolist()
         if isinstance(value, Path):
             return str(value)
-        raise TypeError(f"{type(value).__name__} has no place in a JSON file")
+        raise TypeError(f"a {type(value).__name__} cannot be written as JSON")
 
     return (json.dumps(data, indent=2, default=plain) + "\n").encode()

@@ -21,7 +21,7 @@ _ATTRS = "attrs_json"
 def write_checkpoint(
     out: Path, comm: MPI.Comm, blocks: Mapping[str, tuple[np.ndarray, int, int]], attrs: Mapping[str, Any]
 ) -> None:
-    """Replace `out`/checkpoint.h5; the previous one is valid until the new one is complete. Collective.
+    """Replace `out`/checkpoint.h5. The previous one stays valid until the new one is complete. Collective.
 
     Parameters
     ----------

@@ -155,7 +155,7 @@ class FieldParts:
 
 
 def chosen_increment(source: FieldSource, increment: int) -> int:
-    """The number of the increment at a place in the list of those with fields, counted like Python's lists."""
+    """The increment with a given index in the list of those with fields; negative indices count from the end."""
     known = source.increments
     if not -len(known) <= increment < len(known):
         raise InputError(f"increment = {increment} has no fields: allowed {-len(known)} to {len(known) - 1}")

@@ -19,6 +19,7 @@ TABLES = "tables"
 """Folder of the tables that a gear train adds to its history."""
 
 LOG = "run.log"
+"""The log of the run."""
 
 RESULTS = (
     history.NAME,
@@ -33,7 +34,7 @@ RESULTS = (
     "figures/*.png",
     LOG,
 )
-"""What `overwrite` removes."""
+"""Files that `overwrite` removes."""
 
 
 def open_log(out: Path | None, comm: MPI.Comm) -> None:
@@ -47,8 +48,8 @@ def open_log(out: Path | None, comm: MPI.Comm) -> None:
 def prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> bool:
     """Make the folder and try to write in it; raises OutputError on all ranks.
 
-    Results of an earlier run are kept: continue them with `restart`, or say `overwrite`. Returns whether there is a
-    state to continue from: a run that ended before its first increment was saved starts again.
+    Results of an earlier run are refused unless `restart` continues them or `overwrite` replaces them. Returns whether
+    there is a checkpoint to continue from: a run that ended before its first checkpoint starts again.
     """
     with agreed(comm, out):
         if comm.rank == 0:
@@ -58,9 +59,9 @@ def prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> bool:
             probe.unlink()
             for left in out.glob(f"*{TEMPORARY}"):
                 discard(left)
-    there = comm.bcast((out / history.NAME).exists() if comm.rank == 0 else None)
+    present = comm.bcast((out / history.NAME).exists() if comm.rank == 0 else None)
     saved = comm.bcast((out / checkpoint.NAME).exists() if comm.rank == 0 else None)
-    if there and not restart and not overwrite:
+    if present and not restart and not overwrite:
         raise OutputError(
             f"{out} already holds results: continue them with --restart, replace them with --overwrite, "
             "or choose another --out"

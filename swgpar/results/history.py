@@ -84,7 +84,7 @@ def transmission_error(wg_angle: np.ndarray, output_angle: np.ndarray, ratio: fl
 
     Parameters
     ----------
-    wg_angle, output_angle : (n,) degrees; that of the output may be given within half a turn
+    wg_angle, output_angle : (n,) degrees; the output's angle may be given between -180 and 180
     ratio : speed of the wave generator over that of the output
     """
     error = output_angle - wg_angle / ratio
@@ -92,7 +92,7 @@ def transmission_error(wg_angle: np.ndarray, output_angle: np.ndarray, ratio: fl
 
 
 def loaded_increments(history: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Indices of the increments under load, the last of the loading and all of the rotation; all where there are none.
+    """Indices of the increments under load: the last of the loading, all of the rotation. All, if there are none.
 
     history : columns, as `columns` gives them
     """

@@ -1,4 +1,4 @@
-"""One HDF5 file written by all ranks at once: whole, or not there at all.
+"""One HDF5 file written by all ranks at once, completely or not at all.
 
 Rank 0 lays out the file (contiguous data sets, space set aside on the disk), all ranks then open it with
 HDF5's MPI driver and write their own rows, rank 0 renames it. HDF5 does not survive a full disk inside
@@ -25,11 +25,11 @@ if MPI.COMM_WORLD.size > 1:  # Debian's h5py picks its MPI build by looking at O
 import h5py  # noqa: E402
 
 LAYOUT_BYTES = 65536
-"""More than the headers of any of our files take."""
+"""Upper bound of the size of a file's headers."""
 
 
 class Block(NamedTuple):
-    """Rows of a data set held by this rank.
+    """Rows of a data set on this rank.
 
     array : (n, ...) the rows, same type and trailing shape on every rank
     first : row of the data set that array[0] is

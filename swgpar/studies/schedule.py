@@ -1,4 +1,4 @@
-"""Jobs handed out to ranks without a rank that serves the others, and reports on the way back."""
+"""Distribution of jobs over the ranks without a rank that only serves the others, and reports to rank 0."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ PAUSE = 0.05
 
 
 class Counter:
-    """The numbers 0, 1, 2, ... of which every rank takes the next one; they stand in the memory of rank 0.
+    """The numbers 0, 1, 2, ... of which each rank takes the next one; the counter is in the memory of rank 0.
 
     Creation and `free` are collective, `take` is not.
     """

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import swgpar
-from support.paths import DESIGN, DRIVERS, RECIPE
+from support.paths import DESIGN, DRIVERS, RECIPE, ROOT
 from support.small_drive import PLANE
 from swgpar.design.drive_design import DriveDesign
 from swgpar.input.toml_file import read_toml
@@ -75,6 +75,15 @@ def test_recipes_by_name_path_and_table() -> None:
     assert swgpar.load_mesh(RECIPE).flexible_spline.flank == 2
     with pytest.raises(swgpar.InputError, match='mesh = "corse" is not available: allowed coarse, medium, full'):
         swgpar.load_mesh("corse")
+
+
+def test_a_recipe_of_one_s_own(tmp_path: Path) -> None:
+    out = tmp_path / "recipe.toml"
+    command = [sys.executable, str(ROOT / "mesh" / "refined_root.py"), "--recipe", str(RECIPE), "--out", str(out)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert "ring_gear: " in done.stdout
+    old, new = (swgpar.load_mesh(path).flexible_spline for path in (RECIPE, out))
+    assert (new.root, new.rim, new.flank) == (2 * old.root, 2 * old.rim, old.flank)
 
 
 def test_a_run_in_memory_leaves_no_files(

@@ -12,8 +12,10 @@ from support.paths import DRIVERS, REFERENCE
 from swgpar.errors import ConvergenceError, InputError
 from swgpar.gear_trains.published import check_published, compare
 from swgpar.gear_trains.sampling import block_sizes, random_stream, run_tasks
-from swgpar.gear_trains.train import is_gear_train, load_train, model_of
+from swgpar.gear_trains.train import load_train, model_of
+from swgpar.input.toml_file import read_toml
 from swgpar.results.table import format_columns, read_columns
+from swgpar.systems import SYSTEMS, system_of_table
 
 CASCADE, GEAR_PAIR = DRIVERS / "cascade.toml", DRIVERS / "gear_pair.toml"
 RING, RING_MODES = DRIVERS / "ring_moving_load.toml", DRIVERS / "ring_modes.toml"
@@ -93,7 +95,8 @@ def test_one_sentence_with_key_and_reason(file: Path, override: str, reason: str
 
 
 def test_drives_are_no_gear_trains() -> None:
-    assert is_gear_train(CASCADE) and not is_gear_train(REFERENCE)
+    assert system_of_table(read_toml(CASCADE)) is SYSTEMS["gear_train"]
+    assert system_of_table(read_toml(REFERENCE)) is SYSTEMS["drive"]
     with pytest.raises(InputError, match="gear_train.model is missing"):
         load_train(REFERENCE)
 
