@@ -32,7 +32,10 @@ extensions = [
     "sphinx.ext.viewcode",
     "sphinx_design",
     "sphinx_gallery.gen_gallery",
+    "sphinx-mathjax-offline",  # equations without a network
 ]
+numfig = True  # equations and figures have the number of their page, so that other pages can refer to them
+numfig_secnum_depth = 1
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 exclude_patterns = [
     "_build",

@@ -168,7 +168,7 @@ def draw_pins(ax: Axes) -> None:
 
 def cams() -> Figure:
     """All types of wave generator, and the pins."""
-    figure, axes = canvas(13.5, 10.2, 2, 3)
+    figure, axes = canvas(9.0, 14.5, 3, 2)
     figures = (draw_elliptical, draw_simplified, draw_parabolic, draw_asymmetric, draw_rollers, draw_pins)
     for ax, draw in zip(axes.ravel(), figures):
         draw(ax)
@@ -221,7 +221,7 @@ def cam_radius() -> Figure:
 
 def stages() -> Figure:
     """What is active in the load stages, exaggerated."""
-    figure, axes = canvas(14.0, 4.6, 1, 4)
+    figure, axes = canvas(8.5, 9.2, 2, 2)
     circle = np.linspace(0, 2 * np.pi, 361)
     titles = ("1 deflect", "2 engage", "3 load", "4, 5, … rotate")
     notes = (
@@ -230,7 +230,7 @@ def stages() -> Figure:
         "torque on the output,\nfriction from here on",
         "wave generator turns\nin increments",
     )
-    for k, (ax, title, note) in enumerate(zip(axes, titles, notes)):
+    for k, (ax, title, note) in enumerate(zip(axes.ravel(), titles, notes)):
         turn = np.radians(25.0) if k == 3 else 0.0
         c, s = np.cos(turn), np.sin(turn)
         ellipse = np.column_stack([B * np.sin(circle), A * np.cos(circle)]) @ np.array([[c, s], [-s, c]])

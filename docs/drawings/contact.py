@@ -22,7 +22,7 @@ def segments() -> Figure:
     """One face of the slave flank, cut along the node lines of the master."""
     corners = np.array([[[SHIFT, 0.0], [0.0, 0.0], [0.0, 1.0], [SHIFT, 1.0]]])
     cut = cut_faces(corners, np.ones((1, 2)), LINES[0], LINES[1], 2)
-    figure, axes = plt.subplots(1, 2, figsize=(12.0, 5.4))
+    figure, axes = plt.subplots(1, 2, figsize=(9.5, 4.4))
     for ax in axes:
         ax.set_aspect("equal")
         ax.axis("off")
@@ -54,9 +54,9 @@ def segments() -> Figure:
     label(right, (0.6, -0.22), "a, along the profile", color=INK, ha="left")
     right.annotate("", xy=(-0.2, 0.45), xytext=(-0.2, 0.0), arrowprops={"arrowstyle": "-|>", "color": INK})
     label(right, (-0.2, 0.56), "b, along z", color=INK)
-    leader(right, (1.35, 1.18), "Gauss points, 2 × 2\nin every segment", (cut.a.max(), cut.b.max()))
+    leader(right, (1.2, 1.25), "Gauss points, 2 × 2\nin every segment", (cut.a.max(), cut.b.max()))
     text = "dashed: faces are cut in their middle too"
-    label(right, (0.5, 1.12), text, color=SPLINE)
+    label(right, (0.5, -0.45), text, color=SPLINE)
     right.set_title("segments with their quadrature points", fontsize=10)
     figure.tight_layout()
     return figure
@@ -69,7 +69,7 @@ def offset() -> Figure:
     mesh = build_sector_meshes(design, recipe)["flexible_spline"]
     grid = mesh.flanks[0]
     profile = design.profile("flexible_spline")
-    figure, (left, right) = plt.subplots(1, 2, figsize=(12.5, 5.6), gridspec_kw={"width_ratios": [1.0, 1.25]})
+    figure, (left, right) = plt.subplots(1, 2, figsize=(9.5, 4.6), gridspec_kw={"width_ratios": [1.0, 1.25]})
     left.set_aspect("equal")
     left.axis("off")
     curve = profile.point(np.linspace(0.0, profile.length, 400))
@@ -82,7 +82,7 @@ def offset() -> Figure:
     leader(left, (0.95, curve[0, 1] - 0.15), "exact flank", tuple(profile.point(0.18 * profile.length)[0]))
     at = 0.5 * (nodes[2] + nodes[3])
     leader(left, (1.15, curve[0, 1] - 0.55), "facets between nodes", tuple(at), color=INK)
-    left.set_title("flank of the coarse mesh: nodes lie on the exact curve", fontsize=10)
+    left.set_title("nodes lie on the exact curve", fontsize=10)
     faces = flank_faces(mesh, grid, 0.0, design.drive.face_width, "parabolic")
     t = np.linspace(0.0, 1.0, 60)
     for i, (s0, s1) in enumerate(zip(grid.s[:-1], grid.s[1:])):
@@ -97,14 +97,14 @@ def offset() -> Figure:
     right.axhline(0.0, color=INK, lw=1.2)
     right.set_xlabel("arc length s from the addendum circle, mm", fontsize=9)
     right.set_ylabel("height of the exact flank over the facet, µm", fontsize=9)
-    right.set_title("offset that every quadrature point carries (dots: samples, polynomial between)", fontsize=10)
+    right.set_title("offset (dots: samples, polynomial between)", fontsize=10)
     figure.tight_layout()
     return figure
 
 
 def law() -> Figure:
     """Pressure over the gap of the augmented Lagrangian, and the return mapping of friction."""
-    figure, (left, right) = plt.subplots(1, 2, figsize=(11.5, 4.2))
+    figure, (left, right) = plt.subplots(1, 2, figsize=(9.5, 3.9))
     gap = np.linspace(-1.6, 1.4, 301)
     for k, (multiplier, style) in enumerate(((0.0, "-"), (0.8, "--"))):
         left.plot(gap, np.maximum(0.0, multiplier - gap), color=(SPLINE, NOTE)[k], lw=2.0, ls=style)

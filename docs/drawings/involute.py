@@ -135,7 +135,7 @@ def shaper(ax: Axes, drive: DriveDesign) -> None:
 
 def involute() -> Figure:
     drive = design()
-    figure, axes = canvas(13.0, 7.0, 1, 2)
+    figure, axes = canvas(8.0, 12.0, 2, 1)
     rack(axes[0], drive)
     shaper(axes[1], drive)
     for ax, r_pitch in zip(axes, np.divide(TEETH, 2.0)):

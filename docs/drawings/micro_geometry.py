@@ -42,7 +42,7 @@ def slope() -> Figure:
     design = reference()
     half, s = 0.5 * design.wave_generator.face_width, 0.09
     z = np.linspace(-half, half, 201)
-    figure, axes = plt.subplots(1, 2, figsize=(12.5, 4.8))
+    figure, axes = plt.subplots(1, 2, figsize=(9.5, 4.2))
     for ax, minor, title in zip(axes, (False, True), ("major axis, θ = 0 and 180°", "minor axis, θ = 90 and 270°")):
         frame(ax, half, title)
         for sign, colour, name in ((1, CAM, "wg_slope = +0.09"), (-1, SPLINE, "wg_slope = −0.09")):
@@ -64,7 +64,7 @@ def crowned() -> Figure:
     design = reference()
     half = 0.5 * design.wave_generator.face_width
     z = np.linspace(-half, half, 201)
-    figure, axes = plt.subplots(1, 2, figsize=(12.5, 4.8))
+    figure, axes = plt.subplots(1, 2, figsize=(9.5, 4.2))
     frame(axes[0], half, "cam: crowning, and crowning with slope")
     axes[0].fill_between(z, -260, 1e3 * cam_height(with_micro(design, wg_crowning=0.1), z), color=CAM, alpha=0.45)
     both = 1e3 * cam_height(with_micro(design, wg_crowning=0.1, wg_slope=0.09), z)
@@ -76,7 +76,7 @@ def crowned() -> Figure:
     label(axes[0], (half + 0.1, 22.0), "wg_crowning", ha="right")
     axes[0].set_ylim(-260, 60)
     axes[0].legend(fontsize=8, loc="lower center")
-    frame(axes[1], half, "flank of the flexible spline: crowning from both flanks of a tooth")
+    frame(axes[1], half, "crowning of both flanks of a spline tooth")
     axes[1].set_ylabel("material removed from the flank, along its normal, µm", fontsize=8)
     for shape, colour, style in (("parabolic", SPLINE, "-"), ("circular", NOTE, "--")):
         removed = crowning(0.045, z, 2.0 * half, shape)[0]

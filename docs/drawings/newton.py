@@ -26,10 +26,10 @@ def arrow(ax: Axes, start: Box, end: Box, text: str = "", at: Box | None = None,
 
 def phases() -> Figure:
     """From the start of a solve to its result."""
-    figure, ax = plt.subplots(figsize=(11.0, 6.4))
+    figure, ax = plt.subplots(figsize=(10.0, 6.0))
     ax.axis("off")
     ax.set_xlim(-0.6, 11.2)
-    ax.set_ylim(-0.6, 6.6)
+    ax.set_ylim(0.3, 6.7)
     box(ax, (0.6, 5.6), "start:\ncontact search", RING)
     box(ax, (3.6, 5.6), "SOFTENED\nreduced penalties", SPLINE)
     box(ax, (3.6, 3.4), "FULL\nfull penalties,\nsegments cut anew", SPLINE)

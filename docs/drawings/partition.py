@@ -33,7 +33,7 @@ def draw_sector(ax: Axes, mesh: SectorMesh, colour: str, title: str) -> None:
         line = nodes[grid.nodes[:, 0]]
         ax.plot(*line.T, color="#8c4fb0", lw=2.2)
         middle = line[len(line) // 2]
-        label(ax, (middle[0] + 0.25 * grid.side, middle[1] + 0.12), name, color="#8c4fb0")
+        label(ax, (middle[0] + 0.36 * grid.side, middle[1] + 0.12), name, color="#8c4fb0")
     ax.autoscale_view()
     ax.set_title(title, fontsize=10)
     ax.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, 0.0), frameon=False)
@@ -43,7 +43,7 @@ def sectors() -> Figure:
     """One sector of both gears, plane model."""
     design = reference("plane_half_turn")
     meshes = build_sector_meshes(design, load_recipe("plane_coarse"))
-    figure, axes = canvas(11.0, 6.4, 1, 2)
+    figure, axes = canvas(9.0, 5.6, 1, 2)
     draw_sector(axes[0], meshes["flexible_spline"], SPLINE, "sector of the flexible spline (plane_coarse)")
     draw_sector(axes[1], meshes["ring_gear"], RING, "sector of the ring gear (plane_coarse)")
     figure.tight_layout()

@@ -55,6 +55,7 @@ def draw_profile(ax: Axes, profile: ToothProfile, r_pitch: float, spots: Spot) -
         line = arc((0.0, 0.0), radius, 90.0 + 0.35 * half, 90.0 - 1.25 * half)
         ax.plot(*line.T, color=INK, lw=0.6, dashes=(12, 3, 2, 3) if radius == r_pitch else (5, 2))
         label(ax, (line[-1][0] + 0.06, line[-1][1]), name, color=INK, ha="left")
+    names = [segment.name for segment in profile.segments]
     for segment in profile.segments:
         points = segment.point(np.linspace(0.0, segment.length, 60))
         ax.plot(*points.T, color=COLOURS[segment.name], lw=2.6, solid_capstyle="butt")
@@ -69,7 +70,7 @@ def draw_profile(ax: Axes, profile: ToothProfile, r_pitch: float, spots: Spot) -
             text = at + (0.62 if segment.name in ("dedendum", "addendum") else 0.5) * (middle - at)
             label(ax, tuple(text), f"$r_{short}$", color=COLOURS[segment.name], fontsize=9)
             name = f"O{short}"
-            if segment.name in ("addendum", "dedendum"):
+            if segment.name in ("addendum", "dedendum") and "tip" in names:
                 radius, colour = 0.3 / abs(segment.curvature), COLOURS[segment.name]
                 angles = np.degrees(np.arctan2(*(np.array([points[0], points[-1]]) - at).T[::-1]))
                 swept = (angles[1] - angles[0] + 180.0) % 360.0 - 180.0
@@ -113,13 +114,13 @@ def pitch_point(ax: Axes, profile: ToothProfile, r_pitch: float, pressure_angle:
     ax.annotate(
         "", xy=point, xytext=(0.0, r_pitch), arrowprops={"arrowstyle": "<|-|>", "color": NOTE, "lw": 0.8, "shrinkA": 0}
     )
-    label(ax, (0.45 * point[0], r_pitch + 0.07), r"$\alpha_P r_P$", fontsize=8)
+    label(ax, (0.68 * point[0], r_pitch + 0.05), r"$\alpha_P r_P$", fontsize=8)
 
 
 def pair(profile: dict[str, object], spots: tuple[Spot, Spot], title: str) -> Figure:
     """Both gears' flanks beside each other."""
     design = design_with(profile)
-    figure, axes = canvas(13.0, 7.4, 1, 2)
+    figure, axes = canvas(8.0, 11.0, 2, 1)
     angle = np.radians(design.drive.pressure_angle)
     for ax, gear, teeth, spot, name in zip(
         axes,
