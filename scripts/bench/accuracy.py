@@ -1,8 +1,8 @@
-"""Error against wall time and peak memory, over mesh levels and choices: problems with known answers, and drives.
+"""Error over wall time and peak memory, for mesh levels and choices: problems with known solutions, and drives.
 
 Families: `elements` (linear problems), `contact` (Hertz, ring on a cam), `drives` (over meshes), `choices` (of a drive
-on one mesh). Of each come accuracy_<family>.csv, .json and log-log plots in --tables. A case that is finished is kept
-in --out and not computed again. Rates that theory gives are asserted.
+on one mesh). Each family writes accuracy_<family>.csv, .json and log-log plots to --tables, and its table to --page.
+Finished cases stay in --out and are not computed again. Convergence rates that theory gives are asserted.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def show(row: Row) -> None:
 
 
 def write(rows: list[Row], tables: Path, family: str) -> None:
-    """The family's tables and plots."""
+    """Write the tables and plots of a family."""
     with (tables / f"accuracy_{family}.csv").open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
         writer.writeheader()

@@ -1,6 +1,6 @@
-"""One case of the accuracy benchmark in a process of its own, so that its peak memory is its own.
+"""One case of the accuracy benchmark. It runs in a process of its own, so that its peak memory is measured alone.
 
-The argument is the case as JSON, with its `kind` and what that asks for. Printed are, as JSON: unknowns, values and
+The argument is the case as JSON: its `kind` and the parameters of that kind. The output is JSON: unknowns, values and
 closed forms by quantity, wall seconds from the mesh to the numbers (the fastest of three runs when these are short),
 and the peak resident memory of all ranks.
 """

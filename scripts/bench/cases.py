@@ -1,4 +1,4 @@
-"""Cases of the accuracy benchmark, each computed in a process of its own and kept; their rows with error and rate."""
+"""Cases of the accuracy benchmark: each runs in a process of its own and is stored; rows with error and rate."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Cases:
         return range(min(count, self.finest or count))
 
     def solved(self, case: Case, ranks: int = 1) -> dict[str, Any]:
-        """Unknowns, values, closed forms, seconds and memory of a case (accuracy_case.py), computed unless kept."""
+        """Unknowns, values, closed forms, seconds and memory of a case (accuracy_case.py); stored ones are read."""
         words = [f"{k}={v}" for k, v in {**case, "ranks": ranks}.items()]
         path = self.out / (re.sub(r"[^\w.=-]+", "_", "__".join(words)) + ".json")
         if not path.exists():

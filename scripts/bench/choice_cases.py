@@ -1,6 +1,6 @@
 """Choices of a drive on one mesh: increments, contact quadrature, linear solver. Errors are differences.
 
-Without friction the state does not depend on the way to it: the increment changes nothing but the seconds.
+Without friction the state does not depend on the path to it: the increment changes the seconds only.
 """
 
 from __future__ import annotations

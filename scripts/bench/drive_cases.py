@@ -1,9 +1,9 @@
 """Drives over meshes: means over a period of the largest stresses of the spline.
 
-The plane drive, and the plane section of the cup drive, are refined in all directions beyond their finest recipe: the
-limit is extrapolated from the last three meshes with the order that they show. The cup drive itself is too large for
-that: its limit is extrapolated from its two finest recipes with the order of `analysis.error_estimate`, and says little
-for the finest one; what the recipes leave out in the section says more.
+The plane drive and the plane section of the cup drive are refined in all directions beyond their finest recipe. Their
+limit is extrapolated from the last three meshes with the order that these show. The cup drive is too large. Its
+limit is extrapolated from its two finest recipes with the order of `analysis.error_estimate`. It says little about the
+finest recipe; the errors of the same recipes in the plane section say more.
 """
 
 from __future__ import annotations

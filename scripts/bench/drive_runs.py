@@ -1,4 +1,4 @@
-"""Runs of `swgpar run` for the accuracy benchmark, kept by their folders."""
+"""Runs of `swgpar run` for the accuracy benchmark, stored by folder."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tables of a benchmark in the middle of a page that people write."""
+"""Tables of a benchmark inside a page that is written by hand."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 
 def markdown(rows: Iterable[Sequence[str]]) -> str:
-    """Rows of cells, the first of which is the head."""
+    """A table from rows of cells; the first row is the head."""
     first, *others = rows
     return "\n".join("| " + " | ".join(cells) + " |" for cells in [first, ["---"] * len(first), *others]) + "\n"
 

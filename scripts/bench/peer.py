@@ -1,9 +1,9 @@
 """The same mesh solved by this program and by CalculiX: displacement, stress, seconds and memory side by side.
 
-Both solve a whole plain ring on the same number of cores, one after the other. Displacements are those of the outer
-surface a right angle from the loads, and the largest difference at any node; stresses the largest first principal one
-at the nodes, where both programs average what they extrapolate from the Gauss points of the elements. Seconds are those
-of the whole command: reading or meshing, solving, stresses and writing them.
+Both programs solve a whole plain ring on the same number of cores, one after the other. Compared are the displacement
+of the outer surface a right angle from the loads, the largest difference of displacements at any node, and the largest
+first principal stress at the nodes. Both programs extrapolate stresses from the Gauss points and average them at the
+nodes. Seconds are those of the whole command: reading or meshing, solving, stresses, writing.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ def run_swgpar(
 
 
 def columns(program: str, cost: Cost, u: np.ndarray, s1: np.ndarray, coords: np.ndarray, iterations: int) -> Row:
-    """What is said of each program."""
+    """Columns of the table for each program."""
     values = (u[side(coords), 0], s1.max(), iterations, round(cost.seconds, 2), round(cost.cpu, 2), round(cost.memory))
     return {f"{program}_{column}": value for column, value in zip(COLUMNS, values)}
 

@@ -1,6 +1,6 @@
-"""Time with and without each reduction of the work, and what it changes: one run of `swgpar run` for every row.
+"""Time with and without each reduction, and the change of the results: one run of `swgpar run` for every row.
 
-All runs start from the plain one, in which every reduction is switched off; the last row has all that apply.
+The plain run has every reduction switched off. Each following row switches one on; the last row has all that apply.
 """
 
 from __future__ import annotations

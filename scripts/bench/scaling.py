@@ -1,8 +1,8 @@
 """Cost of one Newton iteration of the cup drive over mesh sizes, solvers and numbers of ranks.
 
-Every case is a process group of its own. It measures on the undeformed drive's first system: seconds of residual and
-tangent, of a product with the tangent, of the factor or the set-up of the multigrid, of one solve, iterations of GMRES
-to 1e-6, and peak memory.
+Every case is a process group of its own. It measures the first system of the undeformed drive: seconds of residual and
+tangent, of a product with the tangent, of the factorisation or the set-up of the multigrid and of one solve, iterations
+of GMRES to 1e-6, and peak memory.
 """
 
 from __future__ import annotations

@@ -1,12 +1,12 @@
 """Drives and elements under numerical stress: what converges, what is refused, and how far the invariants drift.
 
-Every group of `tests/support/drive_groups.py` is a study on a small mesh, a case at a time on every rank. A case ends
-in one of three ways: it converges, it is refused by one sentence before anything is computed, or it fails (does not
-converge).
+Every group of `tests/support/drive_groups.py` is a study on a small mesh. A rank computes one case at a time. A case
+converges, is refused by one sentence before anything is computed, or fails to converge.
+
 stability.csv has a row for every case: Newton iterations (largest number in one increment, and all), cut-backs, the
-torque that is left unbalanced over the output's torque, and how far the state has moved after one period (stresses and
-input torque, relative; without friction, which needs a period to settle). The drift of other systems of units and of
-more ranks is the difference from the first ones. stability.md has the table by group.
+unbalanced torque over the output's torque, and the drift: the relative change of stresses and input torque after one
+period (without friction, which needs a period to settle). For other systems of units and for more ranks the drift is
+the difference from the first ones. --page gets the table by group.
 """
 
 from __future__ import annotations
