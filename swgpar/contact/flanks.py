@@ -331,7 +331,7 @@ class FlankContact:
         if state.flank_clearance is None or active is None:
             return
         mine = self.found.owned[active.faces.patch]
-        law = None if active.friction is None else active.friction.picked(mine)
+        law = None if active.friction is None else active.friction.subset(mine)
         multiplier = np.ascontiguousarray(active.multiplier[mine])
         self._call_kernel(active.faces.subset(mine), u, multiplier, state.flank_clearance, residual, None, law)
 

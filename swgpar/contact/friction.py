@@ -45,16 +45,16 @@ class Friction:
     current: np.ndarray
     lagged: np.ndarray | None = None
 
-    def picked(self, rows: np.ndarray) -> Friction:
+    def subset(self, rows: np.ndarray) -> Friction:
         """The same of some of the faces."""
         arrays = (self.foot_point, self.gap, self.traction, self.current)
         lagged = None if self.lagged is None else np.ascontiguousarray(self.lagged[rows])
         return Friction(self.coefficient, self.stiffness, *(np.ascontiguousarray(a[rows]) for a in arrays), lagged)
 
 
-def begin(coefficient: float, place: np.ndarray, gap: np.ndarray, traction: np.ndarray) -> Friction:
+def begin(coefficient: float, foot_point: np.ndarray, gap: np.ndarray, traction: np.ndarray) -> Friction:
     """Friction at points whose last converged state is given; see `Friction`."""
-    return Friction(coefficient, 0.0, place, gap, traction, np.zeros_like(traction))
+    return Friction(coefficient, 0.0, foot_point, gap, traction, np.zeros_like(traction))
 
 
 def sampled(segments: Segments, values: np.ndarray, face: int) -> np.ndarray:
