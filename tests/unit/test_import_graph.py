@@ -1,0 +1,67 @@
+"""scripts/import_graph.py on small packages: rooms, arrows, levels, circles; and scripts/number_path.py's search."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from support.paths import ROOT
+from support.scripts import load_script
+
+graph = load_script(ROOT / "scripts" / "import_graph.py")
+path = load_script(ROOT / "scripts" / "number_path.py")
+
+SOURCES = {
+    "__init__.py": "from house.top import x\n",
+    "base.py": "import numpy\n",
+    "middle/__init__.py": "",
+    "middle/first.py": "from house import base\nfrom house.middle import second\n",
+    "middle/second.py": "from __future__ import annotations\nfrom ..base import y\n",
+    "top.py": "def x():\n    import house.middle.first\n    from house.base import z\n",
+}
+
+
+def package(folder: Path, sources: dict[str, str]) -> Path:
+    for name, text in sources.items():
+        file = folder / "house" / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text, encoding="utf-8")
+    return folder / "house"
+
+
+def test_rooms_arrows_and_levels(tmp_path: Path) -> None:
+    found = graph.import_graph(package(tmp_path, SOURCES))
+    assert found == {"base": set(), "middle": {"base"}, "top": {"middle", "base"}}
+    assert graph.levels(found) == {"base": 0, "middle": 1, "top": 2}
+    assert graph.counts(found) == "3 rooms on 3 levels, 3 arrows"
+
+
+def test_circles_are_named(tmp_path: Path) -> None:
+    sources = SOURCES | {"base.py": "from house import top\n"}
+    with pytest.raises(ValueError, match="base, middle, top"):
+        graph.levels(graph.import_graph(package(tmp_path, sources)))
+
+
+def test_picture(tmp_path: Path) -> None:
+    image = tmp_path / "graph.png"
+    graph.draw(graph.import_graph(package(tmp_path, SOURCES)), "house", image)
+    assert image.stat().st_size > 1000
+
+
+@pytest.mark.parametrize(
+    ("value", "held"),
+    [
+        (1.2345, True),
+        (-1234.5, True),
+        (1.2346, False),
+        (True, False),
+        ("load.torque=1.2345", True),
+        (["a", {"torque": 617.25}], True),
+        (np.array([0.0, 1234.5]), True),
+        (np.arange(3), False),
+    ],
+)
+def test_a_number_is_recognised(value: object, held: bool) -> None:
+    assert path.Watch("house", 1.2345, "1.2345").holds(value) == held
