@@ -75,11 +75,8 @@ def run_drive(
     log.start(comm, terminal=terminal)
     open_log(folder, comm)
     chosen = None
-    if accuracy is not None and not resumed:
-        chosen = choose(design, recipe, list(load_sequence(design)), accuracy, comm)
-        recipe = chosen.recipe
-    elif accuracy is not None:
-        recipe = on_all(comm, lambda: load_recipe(folder / RECIPE))
+    if accuracy is not None:
+        chosen, recipe = _choose_mesh(design, recipe, accuracy, folder if resumed else None, comm)
     model = build_drive_model(design, recipe, comm=comm) if chosen is None else chosen.model
     recorder = _recorder(model, folder, identity(design, recipe, accuracy))
     try:
@@ -98,6 +95,19 @@ def run_drive(
         raise
     model.destroy()
     return result
+
+
+def _choose_mesh(
+    design: DriveDesign, recipe: MeshRecipe, accuracy: float, earlier: Path | None, comm: MPI.Comm
+) -> tuple[Chosen | None, MeshRecipe]:
+    """The loaded model on a mesh for an accuracy, with its recipe; for a restart the recipe only.
+
+    earlier : folder of the run that is continued
+    """
+    if earlier is not None:
+        return None, on_all(comm, lambda: load_recipe(earlier / RECIPE))
+    chosen = choose(design, recipe, list(load_sequence(design)), accuracy, comm)
+    return chosen, chosen.recipe
 
 
 def _recorder(model: DriveModel, folder: Path | None, what: str) -> Recorder:
