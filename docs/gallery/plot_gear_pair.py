@@ -45,8 +45,8 @@ for case, (panel, torque) in enumerate(zip(panels, design.load.input), start=1):
         column = history[f"{method}_deviation_mesh_deflection_um"]
         time = 1e3 * history["time_s"][rows]
         panel.plot(time, column[rows], styles[method], label=name)
-    panel.set(title=f"input torque {torque:g} N·m", xlabel="time (ms)")
-panels[0].set_ylabel("standard deviation of the mesh deflection (µm)")
+    panel.set(title=f"input torque {torque:,.0f} N·m", xlabel="time (ms)")
+panels[0].set_ylabel("standard deviation of\nthe mesh deflection (µm)")
 panels[0].legend(fontsize=8)
 
 # %%

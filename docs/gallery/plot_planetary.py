@@ -48,5 +48,6 @@ panel.set(
     xlabel="time (s)",
     ylabel="mean outward displacement\nof the ring at planet 1 (µm)",
 )
-panel.legend(loc="upper right")
+panel.set_ylim(0.0, 13.0)
+panel.legend(ncols=3)
 plt.show()

@@ -1,9 +1,9 @@
-"""Masses, springs and dampers with meshes under a steady load and white noise, and how time goes on for them.
+"""Masses, springs and dampers with gear meshes under a steady load and white noise, and their time integration.
 
     M q'' + C q' + K q + sum_j w_j f_j(w_j . q) = F + B W(t)
 
-f_j is the force of mesh j (backlash.py), w_j its way per coordinate, W a vector of independent white noises of unit
-intensity. Time steps are those of the stochastic Newmark scheme (eq. 4.52; P. Bernard, G. Fleury, Stochastic Newmark
+f_j is the force of mesh j (backlash.py), w_j its deflection per coordinate, W a vector of independent white noises of
+unit intensity. Time steps are those of the stochastic Newmark scheme (eq. 4.52; P. Bernard, G. Fleury, Stochastic Newmark
 scheme, Probabilistic Engineering Mechanics 17 (2002) 45-61), the trapezoidal rule with the exact
 covariance of the noise's integrals over a step h:
 

@@ -16,7 +16,8 @@ from swgpar.gear_trains.dominant_cycles import dominant_cycles
 from swgpar.gear_trains.gear_mesh_system import GearMeshSystem
 from swgpar.gear_trains.ring.curved_beam import BeamSection, Ring, free_frequencies
 from swgpar.gear_trains.ring.design import RingDesign
-from swgpar.gear_trains.ring.moving_load import ModalStepper, MovingLoads, middle_node
+from swgpar.gear_trains.ring.modal_stepping import ModalStepper
+from swgpar.gear_trains.ring.moving_load import MovingLoads, middle_node
 from swgpar.gear_trains.ring.run import distinct_frequencies
 from swgpar.gear_trains.sampling import random_stream
 from swgpar.gear_trains.train import load_train

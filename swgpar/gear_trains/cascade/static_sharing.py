@@ -1,10 +1,11 @@
-"""Load sharing at rest: rigid gears with gaps, flexible units, the flywheel held.
+"""Load sharing at rest: rigid gears with gaps, flexible units, the flywheel fixed.
 
-The gears only turn, and every mesh can push but not pull. With the flywheel held, the energy of the flexible units has
-its minimum where each unit is twisted by the rack's way less all gaps between rack and flywheel on its own path: the
-path of an odd pinion runs over its G1, G2, G3 and G4, that of an even one over the G1 of its odd neighbour as well. A
-mesh that several paths share closes as soon as one of them carries load, and none can open it again. So the
-over-determined contact needs no search, and a pinion carries nothing until its own path is closed. (The source moves
+Every mesh can push but not pull. With the flywheel fixed, the energy of the flexible units has its minimum where each
+unit is twisted by the displacement of the rack less all gaps on its own path to the flywheel. The path of an odd pinion
+leads over its G1, G2, G3 and G4, that of an even one over the G1 of its odd neighbour as well. A mesh on several paths
+closes as soon as one of them carries load, and none can open it again. So the over-determined contact needs no search,
+and a pinion carries nothing until its own path is closed.
+(The source moves
 the gears in small steps instead and finds the contacts by rules.)
 """
 

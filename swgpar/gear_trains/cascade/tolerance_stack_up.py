@@ -46,9 +46,9 @@ def contributions(design: CascadeDesign, kind: str) -> dict[str, float]:
     module, limits = getattr(design, kind).module, {}
     first, second = GEARS[kind]
     angle = np.radians(design.tolerances.pressure_angle)
-    for place, gear in enumerate((first, second)):
+    for index, gear in enumerate((first, second)):
         section = getattr(design, gear)
-        name = f"{gear} {place + 1}" if first == second else gear
+        name = f"{gear} {index + 1}" if first == second else gear
         diameter = 1e3 * section.length / np.pi if gear == "rack" else section.teeth * module
         limits[f"pitch deviation {name}"] = pitch_deviation(module, diameter, section.pitch_grade)
         limits[f"runout {name}"] = runout(module, diameter, section.runout_grade) * np.tan(angle)

@@ -1,6 +1,6 @@
 """Equations of motion of a gear pair with bearings along the line of action (eqs 4.1 to 4.18).
 
-Coordinates q = (y1, y2, z), z = r1 θ1 - r2 θ2; the way of the mesh is d = y1 - y2 + z, so that its force enters with
+Coordinates q = (y1, y2, z), z = r1 θ1 - r2 θ2; the mesh deflection is d = y1 - y2 + z, so that its force enters with
 w = (1, -1, 1). (Print has +f in all three rows of eq. 4.16 and the right signs in eqs 4.1 to 4.7.) The two rotations
 become one by
 

@@ -1,27 +1,27 @@
 """Equations of motion of the planetary gear train, from its energy.
 
-Coordinates: sun (x, y, u), each planet (ξ, η, u), carrier (x, y, u), then the nodes of the ring (outward, along the
-motion, rotation). Sun, carrier and planets move in the frame that turns with the carrier, gyroscopic terms left out as
-in print; u is the turn times the base radius (sun, planet) or times the radius of the planets' centres (carrier). With
-the angle ψ of a planet and the pressure angle a, the ways of its meshes are
+Coordinates: sun (x, y, u), each planet (ξ, η, u), carrier (x, y, u), then the nodes of the ring (outward, tangential,
+rotation). Sun, carrier and planets move in the frame that rotates with the carrier; gyroscopic terms are left out, as
+in print. u is a rotation times the base radius (sun, planet) or times the radius of the planet centres (carrier). With
+the angle ψ of a planet and the pressure angle a, the deflections of its meshes are
 
     sun   d = -x sin(ψ + a) + y cos(ψ + a) + u_s + ξ sin a - η cos a + u_p                              (eq. 3.2)
-    ring  d = -ξ sin a - η cos a - u_p + v sin a + w cos a,    v outward, w along the motion of the ring
+    ring  d = -ξ sin a - η cos a - u_p + v sin a + w cos a,    v outward, w tangential displacement of the ring
 
-and its bearing's stretches are ξ - x_c cos ψ - y_c sin ψ and η + x_c sin ψ - y_c cos ψ - u_c. Deviations from print,
-which is no derivative of an energy at these places: eq. 3.16 exchanges sine and cosine of v and w against eqs 3.21 and
-3.82; eqs 3.9 to 3.11 and 3.79, 3.80 have an unsymmetric carrier row; eqs 3.25 and 3.26 hold the planet to the ground as
-well as to the carrier; eq. 3.28 has the wind's speed squared in its linear part. In print a has the other sign (eqs
-3.25, 3.26): forces that push the gears apart drive the planet forward there, and under the wind's torque, which they
-resist, flanks would pull. The other flanks, which only a load that turns round meets, keep this line of action, and the
-meshes' dampers act inside the gap too, both as in print.
+and those of its bearing ξ - x_c cos ψ - y_c sin ψ and η + x_c sin ψ - y_c cos ψ - u_c. Deviations from print, which is
+no derivative of an energy in these equations: eq. 3.16 exchanges sine and cosine of v and w against eqs 3.21 and 3.82;
+eqs 3.9 to 3.11 and 3.79, 3.80 have an unsymmetric carrier row; eqs 3.25 and 3.26 support the planet by the ground as
+well as by the carrier; eq. 3.28 has the wind's speed squared in its linear part. In print a has the other sign (eqs
+3.25, 3.26): forces that separate the gears would drive the planet forward, and under the wind's torque flanks would
+pull. The back flanks, which only a reversed load meets, have the same line of action, and the mesh dampers act inside
+the backlash too, both as in print.
 
 In the tooth cycle a planet at the angle ψ is z_r ψ ahead at the ring, and z_s ψ behind at the sun, whose teeth pass it
-the other way; as z_s + z_r is a multiple of the number of planets, both are one phase, z_s ψ. Sun and ring meshes of a
-planet are `mesh.phase` apart.
+in the opposite direction. As z_s + z_r is a multiple of the number of planets, both are one phase, z_s ψ. Sun and ring
+meshes of a planet are `mesh.phase` apart.
 
-The ring meshes move along the ring. All time dependence is in their six ways and in the mesh stiffnesses: the rest is
-constant, and its modes separate mass, stiffness and damping. `PlanetaryModel` holds everything in these modes.
+The ring meshes move along the ring. All time dependence is in their deflection rows and in the mesh stiffnesses. The
+rest is constant, and its modes separate mass, stiffness and damping. `PlanetaryModel` holds everything in these modes.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ class PlanetaryModel:
     ----------
     shapes : (n, n), columns are modes;  stiffness, damping : (n,) of unit modal masses
     mesh : MeshStiffness of the meshes, sun meshes first;  mesh_damping : (m,) N·s/m
-    half_backlash : half backlash, m;  torque_vector : (n,) modal forces of a unit torque on the carrier
+    half_backlash : m;  torque_vector : (n,) modal forces of a unit torque on the carrier
     """
 
     def __init__(self, design: PlanetaryDesign) -> None:
@@ -135,7 +135,7 @@ class PlanetaryModel:
         return 2.0 * np.pi * np.arange(self.design.planet.count) / self.design.planet.count
 
     def _fixed_deflection_rows(self) -> np.ndarray:
-        """Ways (m, n) of the meshes without the ring's part."""
+        """Deflections (m, n) of the meshes per coordinate, without the part of the ring."""
         count, a = self.design.planet.count, np.radians(self.design.mesh.pressure_angle)
         deflection_rows = np.zeros((2 * count, self.size))
         for k, psi in enumerate(self.angles):
@@ -145,7 +145,7 @@ class PlanetaryModel:
         return deflection_rows
 
     def deflection_rows(self, t: float) -> np.ndarray:
-        """Ways (m, n) of the meshes per coordinate at a time in s."""
+        """Deflections (m, n) of the meshes per coordinate at a time in s."""
         out, count = self._fixed_rows.copy(), self.design.planet.count
         a = np.radians(self.design.mesh.pressure_angle)
         for k, psi in enumerate(self.angles):
@@ -154,5 +154,5 @@ class PlanetaryModel:
         return out
 
     def modal_deflection_rows(self, times: np.ndarray) -> np.ndarray:
-        """Ways (times, m, n) per mode."""
+        """Deflections (times, m, n) of the meshes per mode."""
         return np.array([self.deflection_rows(t) for t in times]) @ self.shapes
