@@ -68,7 +68,7 @@ STEPS_OF_A_REVOLUTION = """
 ## Steps of the linearised planetary train
 
 One carrier revolution takes 27 s. The change is the one against half as many steps: the largest over all
-watched quantities and moments, over the largest value of the quantity.
+monitored quantities and times, over the largest value of the quantity.
 
 | steps | step (ms) | seconds, 1 rank | change of means | change of deviations |
 |---|---|---|---|---|
@@ -122,7 +122,7 @@ def timings(names: list[str], out: Path, ranks: int) -> list[dict[str, Any]]:
 def step_study(out: Path) -> list[dict[str, Any]]:
     """Linearised planetary revolution by different numbers of steps: change of means and deviations.
 
-    Change against half as many: the largest over all watched quantities and moments, over the largest value.
+    Change against half as many: the largest over all monitored quantities and times, over the largest value.
     """
     found, taken = [], []
     for count in STEPS:

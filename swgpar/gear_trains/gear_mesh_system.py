@@ -4,7 +4,8 @@
 
 f_j is the force of mesh j (backlash.py), w_j its deflection per coordinate, W a vector of independent white noises of
 unit intensity. Time steps are those of the stochastic Newmark scheme (eq. 4.52; P. Bernard, G. Fleury, Stochastic
-Newmark scheme, Probabilistic Engineering Mechanics 17 (2002) 45-61), the trapezoidal rule with the exact covariance of the noise's integrals over a step h:
+Newmark scheme, Probabilistic Engineering Mechanics 17 (2002) 45-61), the trapezoidal rule with the exact covariance of
+the noise's integrals over a step h:
 
     M (v1 - v0) + C (q1 - q0) + h/2 (p0 + p1) = h F + sqrt(h) B N1,    p = K q + sum_j w_j f_j,
     M (q1 - q0) - h/2 M (v0 + v1) = h sqrt(h/12) B N2,

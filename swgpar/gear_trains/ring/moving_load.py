@@ -91,9 +91,9 @@ class MovingLoads:
             spread = modes.spread(spread, self.noises(step % n))
             row = step - (load.revolutions - 1) * n - 1
             if row >= 0:
-                watched = np.stack([self.outward[step % n], self.middle])
-                mean[row] = watched @ q
-                deviation[row] = np.sqrt(np.maximum(np.einsum("pi,ij,pj->p", watched, spread[0, 0], watched), 0.0))
+                monitored = np.stack([self.outward[step % n], self.middle])
+                mean[row] = monitored @ q
+                deviation[row] = np.sqrt(np.maximum(np.einsum("pi,ij,pj->p", monitored, spread[0, 0], monitored), 0.0))
         return Response(2.0 * np.pi * np.arange(1, n + 1) / n, mean, deviation)
 
     def quasi_static(self, speed: float) -> np.ndarray:
