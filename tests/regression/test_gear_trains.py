@@ -9,19 +9,9 @@ import pytest
 
 from support.commands import execute, on_ranks, succeed, swgpar
 from support.paths import DRIVERS
+from support.small_trains import SMALL
 from swgpar.results.table import read_columns
 
-SMALL = {
-    "cascade": ("population.gearboxes=30", "population.hold=0.01", "load.period=0.05", "tolerances.samples=100"),
-    "gear_pair": ("monte_carlo.samples=5000", "time.end=0.0005", "time.rows=10"),
-    "planetary": ("monte_carlo.samples=300", "time.steps=20", "time.linearised_steps=20", "time.rows=10"),
-    "ring_moving_load": (
-        "ring.elements=12",
-        "moving_load.steps=36",
-        "moving_load.sweep_speeds=4",
-        "moving_load.samples=60",
-    ),
-}
 FILES = {
     "cascade": ("population", "static", "stack_up"),
     "gear_pair": ("density_1", "density_2", "density_3"),

@@ -474,7 +474,9 @@ def test_plane_sectors(recipe: Path, overrides: tuple[str, ...]) -> None:
         assert np.allclose(mesh.coords[lower, 2], -0.5 * case.drive.face_width)
         assert all(np.isin(nodes, lower).all() for nodes in mesh.node_sets.values())
         area = mesh.coords[mesh.elements][..., :2]
-        assert sum(polygon_area(quad) for quad in area) == pytest.approx(section_area(case, gear), rel=0.02)
+        assert sum(polygon_area(quad) for quad in area) == pytest.approx(
+            section_area(case, gear), rel=5e-3
+        )  # chords: 4e-3
         quality = mesh.quality
         assert quality == quad_quality(mesh.coords, mesh.elements)
         assert quality["min_jacobian"] > 0.0 and quality["min_scaled_jacobian"] > 0.5
@@ -550,5 +552,5 @@ def test_plane_exports_read_back(tmp_path: Path) -> None:
     assert sum(entry["elements"] for entry in report.values()) == len(drive.cells_dict["quad"])
     for gear, entry in report.items():
         area = both[gear].n_sectors * section_area(plane_design(*SMALL), gear)
-        assert entry["volume"] == pytest.approx(10.0 * area, rel=0.02)
+        assert entry["volume"] == pytest.approx(10.0 * area, rel=5e-3)
         assert entry["max_aspect_ratio"] == both[gear].quality["max_aspect_ratio"]

@@ -59,6 +59,6 @@ def test_plane_equals_solid() -> None:
     plane = press(PLANE, RingCounts(60, 1, 2), travels)
     solid = press(replace(PLANE, plane=False), RingCounts(60, 1, 2), travels)
     for name in ("moving", "minor"):
-        assert solid[name] == pytest.approx(plane[name], rel=0.01), name
+        assert solid[name] == pytest.approx(plane[name], rel=1e-3), name  # 5e-4 is reached
     # a dial that moves by a along the major axis leaves the ring by a cos 45 degrees
     assert plane["moving"] - plane["centre"] == pytest.approx(travels * np.sqrt(0.5), rel=0.02)
