@@ -25,8 +25,8 @@ OFF = {
 }
 ON = {
     "twofold symmetry": {"solver.twofold_symmetry": "true"},
-    "far teeth left out": {"solver.far_teeth": "left_out"},
-    "factor kept": {"solver.keep_factor": "true"},
+    "inactive sectors": {"solver.far_teeth": "left_out"},
+    "factorisation reused": {"solver.keep_factor": "true"},
     "start on a coarser mesh": {"steps.start_levels": "1"},
     "no pins": {"steps.pins": "false"},
     "one period": {"steps.samples": "{samples}"},
