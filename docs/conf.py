@@ -26,6 +26,7 @@ html_show_copyright = False
 
 extensions = [
     "myst_parser",
+    "property_texts",
     "sphinx.ext.autodoc",
     "sphinx.ext.mathjax",
     "sphinx.ext.napoleon",

@@ -12,10 +12,11 @@ import pytest
 from support.paths import ROOT
 
 DOCS = ROOT / "docs"
-PAGES = sorted(page for folder in ("theory", "developer", "verification") for page in (DOCS / folder).glob("*.md"))
+FOLDERS = ("tutorial", "howto", "theory", "reference", "developer", "verification")
+PAGES = [ROOT / "README.md", *sorted(page for folder in FOLDERS for page in (DOCS / folder).rglob("*.md"))]
 COLUMNS = 100
 
-by_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(DOCS)))
+by_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 
 
 def quoted(page: Path) -> list[str]:
@@ -38,7 +39,7 @@ def test_files_and_tests_exist(page: Path) -> None:
     for name in quoted(page):
         path, _, test = name.partition("::")
         if re.fullmatch(r"[\w./]+/[\w.]+\.(py|hpp|pyx|toml|md)", path):
-            places = [folder / path for folder in (ROOT, ROOT / "swgpar", DOCS)]
+            places = [folder / path for folder in (ROOT, ROOT / "swgpar", ROOT / "swgpar" / "gear_trains", DOCS)]
             assert any(place.exists() for place in places), name
         if test:
             assert f"def {test}(" in sources(), name
