@@ -21,16 +21,17 @@ html_title = "swgpar"
 html_theme = "furo"
 html_static_path = ["_static"]
 html_css_files = ["swgpar.css"]
+smartquotes = False
 html_show_sphinx = False
 html_show_copyright = False
 
 extensions = [
     "myst_parser",
-    "property_texts",
     "sphinx.ext.autodoc",
     "sphinx.ext.mathjax",
     "sphinx.ext.napoleon",
     "sphinx.ext.viewcode",
+    "property_texts",
     "sphinx_design",
     "sphinx_gallery.gen_gallery",
     "sphinx-mathjax-offline",  # equations without a network
