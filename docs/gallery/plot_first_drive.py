@@ -6,6 +6,8 @@ The plane model of the reference drive: 120 and 122 teeth, an elliptical cam, 2 
 output. It is the toothed section of the drive in plane stress and runs in seconds.
 """
 
+# ranks: 1 2
+
 from pathlib import Path
 
 import swgpar

@@ -7,6 +7,8 @@ of the drive. Thin-ring theory gives its stress on an elliptical cam and its sha
 supports.
 """
 
+# ranks: 1 2
+
 import matplotlib.pyplot as plt
 import numpy as np
 from mpi4py import MPI

@@ -7,6 +7,8 @@ per revolution of the cam. This script draws the stress on the inner surface ove
 from the major axis.
 """
 
+# ranks: 1 2
+
 from pathlib import Path
 
 import matplotlib.pyplot as plt

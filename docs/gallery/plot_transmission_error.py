@@ -6,6 +6,8 @@ Two periods of the motion, sampled at 16 angles each. The transmission error is 
 the output less the angle of the wave generator divided by the ratio.
 """
 
+# ranks: 1 2
+
 from pathlib import Path
 
 import matplotlib.pyplot as plt

@@ -1,16 +1,14 @@
-"""Reference pages say what the program reads and writes, and examples of the documents run."""
+"""Reference pages say what the program reads and writes; examples of the how-to pages are accepted."""
 
 from __future__ import annotations
 
 import re
-import sys
 import tomllib
 from pathlib import Path
 
 import pytest
 
 import swgpar
-from support.commands import on_ranks, succeed
 from support.paths import DRIVERS, ROOT
 from support.scripts import load_script
 from swgpar.input.quantities import Section
@@ -58,15 +56,6 @@ def test_summary_keys() -> None:
     design = swgpar.load_design(DRIVERS / "plane_half_turn.toml", {"steps.rotation": 0.0})
     result = swgpar.run(design, mesh={"flexible_spline": gear, "ring_gear": gear}, progress=False)
     assert set(first_cells(DOCS / "reference" / "summary.md")) == set(result.summary)
-
-
-@pytest.mark.parametrize("ranks", [1, 2])
-def test_the_python_example_of_the_readme(ranks: int, tmp_path: Path) -> None:
-    (example,) = examples(ROOT / "README.md", "python")
-    (tmp_path / "drivers").symlink_to(DRIVERS)
-    (tmp_path / "example.py").write_text(example, encoding="utf-8")
-    shown = succeed([*on_ranks(ranks), sys.executable, "example.py"], cwd=tmp_path).stdout
-    assert shown.count("N·m: s1") == 2 * ranks
 
 
 def test_the_own_drive_and_the_own_recipe_are_accepted() -> None:
