@@ -207,6 +207,8 @@ class NewtonSolver:
             self.problem.freeze_segments()
             self.problem.freeze_friction_bounds()
             state.breaker.active = state.breaker.started = self.problem.segments_frozen()
+            if state.breaker.active:
+                logger.info("   segments of the flanks are frozen until the contacts have settled")
 
     # -- solve -----------------------------------------------------------------------------------------
 
