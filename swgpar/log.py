@@ -1,7 +1,7 @@
 """Log of a run on several ranks: rank 0 writes to the terminal and to run.log, the other ranks write nothing.
 
 Progress is one line per increment, in the log file as on a terminal; a terminal shows a bar below it.
-`Phases` adds up wall seconds by phase name.
+`PhaseTimes` adds up wall seconds by phase name.
 """
 
 from __future__ import annotations
@@ -170,10 +170,10 @@ def progress_bar() -> Progress:
     )
 
 
-class Phases:
+class PhaseTimes:
     """Wall seconds added up by phase name.
 
-    Phases may be nested; each then counts its own full time, so that only phases of the same depth add up.
+    PhaseTimes may be nested; each then counts its own full time, so that only phases of the same depth add up.
     """
 
     def __init__(self) -> None:

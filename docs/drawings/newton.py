@@ -1,4 +1,4 @@
-"""Phases of a Newton solve."""
+"""PhaseTimes of a Newton solve."""
 
 from __future__ import annotations
 

@@ -56,19 +56,19 @@ def levels(design: DriveDesign, recipe: MeshRecipe) -> list[MeshRecipe]:
 
 
 @dataclass(frozen=True)
-class Level:
+class LoadedState:
     """The loaded state on one mesh. elements : of the whole drive;  stresses : largest ones, MPa"""
 
     elements: int
     stresses: dict[str, float]
 
 
-def level_of(model: DriveModel) -> Level:
+def loaded_state(model: DriveModel) -> LoadedState:
     """Elements and stresses of a model in its loaded state."""
-    return Level(model.n_elements(), model.stresses()[0])
+    return LoadedState(model.n_elements(), model.stresses()[0])
 
 
-def load(
+def solve_to_load(
     design: DriveDesign,
     recipe: MeshRecipe,
     load_states: list[LoadState],
@@ -100,7 +100,7 @@ def load(
     return stepper.model
 
 
-def start_loaded(stepper: LoadStepper, recipes: list[MeshRecipe], load_states: list[LoadState]) -> Level:
+def start_loaded(stepper: LoadStepper, recipes: list[MeshRecipe], load_states: list[LoadState]) -> LoadedState:
     """Bring `stepper` to the loaded state by way of coarser meshes, the coarsest of `recipes` first.
 
     load_states : all increments of the run. Raises ConvergenceError or InputError where a mesh does not allow it;
@@ -110,8 +110,8 @@ def start_loaded(stepper: LoadStepper, recipes: list[MeshRecipe], load_states: l
     loaded = from_loaded(load_states)[0]
     with target.phases("start"):
         for recipe in recipes:
-            coarse = load(target.design, recipe, load_states, target.comm, coarse)
-        level = level_of(coarse)
+            coarse = solve_to_load(target.design, recipe, load_states, target.comm, coarse)
+        level = loaded_state(coarse)
         take_over(coarse, stepper, loaded)
         stepper.advance(loaded)
     return level

@@ -21,7 +21,7 @@ from swgpar.fem.inactive_sectors import InactiveSectors
 from swgpar.fem.partition import Partition
 from swgpar.fem.stress import body_fields, maxima
 from swgpar.kernel import ReferenceElements, reference_elements
-from swgpar.log import Phases
+from swgpar.log import PhaseTimes
 from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes
 from swgpar.solve.discrete_problem import ContactSearch, DiscreteProblem
 from swgpar.solve.newton import NewtonSolver
@@ -52,7 +52,7 @@ def search_distance(design: DriveDesign) -> float:
     return max(NEAR * design.drive.module, TOUCH * design.drive.module + design.backlash)
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, kw_only=True)
 class DriveModel:
     """Everything that exists once per run; made by `build_drive_model`.
 
@@ -70,10 +70,10 @@ class DriveModel:
     elements: Elements
     problem: DiscreteProblem
     solver: NewtonSolver
-    phases: Phases
+    phases: PhaseTimes
 
     def destroy(self) -> None:
-        """Release the solver and its factor. Python cannot: PETSc holds references in a circle. Collective."""
+        """Release the solver and its factor; collective. PETSc's objects refer to each other, so Python does not."""
         self.solver.destroy()
 
     @property
@@ -133,7 +133,7 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
 
     Raises InputError where the recipe gives no mesh of this design.
     """
-    phases = Phases()
+    phases = PhaseTimes()
     with phases("mesh"):
         meshes = build_sector_meshes(design, recipe)
     with phases("elements"):
@@ -149,17 +149,24 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
         elements=elements,
         supports=supports,
         rigid_contacts=build_rigid_contacts(design, elements=elements),
-        flanks=(
-            build_flank_contact(design, partition=partition, elements=elements, supports=supports),
-            contact_search(design),
-        ),
+        flanks=build_flank_contact(design, partition=partition, elements=elements, supports=supports),
+        contact_search=contact_search(design),
         module=design.drive.module,
         inner_radius=design.inner_radius,
         inactive=InactiveSectors(layouts[RING_GEAR].count) if _leaves_out_sectors(design) else None,
         phases=phases,
     )
     solver = NewtonSolver(problem, newton_settings(design))
-    return DriveModel(design, comm, meshes, partition, elements, problem, solver, phases)
+    return DriveModel(
+        design=design,
+        comm=comm,
+        meshes=meshes,
+        partition=partition,
+        elements=elements,
+        problem=problem,
+        solver=solver,
+        phases=phases,
+    )
 
 
 def _reference(design: DriveDesign, mesh: SectorMesh) -> ReferenceElements:
@@ -173,7 +180,9 @@ def _layout(design: DriveDesign, mesh: SectorMesh, reference: ReferenceElements)
     fixed = mesh.node_sets["outer"] if clamped else np.zeros(0, dtype=np.int32)
     count = mesh.n_sectors // 2 if halved else mesh.n_sectors
     condensed = condense(mesh, reference) if design.solver.condensed_sectors else None
-    return BodyLayout(mesh, 0, count, True, halved, fixed, condensed)
+    return BodyLayout(
+        mesh=mesh, first_tooth=0, count=count, closed=True, images=halved, fixed=fixed, condensed=condensed
+    )
 
 
 def _leaves_out_sectors(design: DriveDesign) -> bool:
@@ -227,7 +236,7 @@ def build_flank_contact(
         order=design.contact.quadrature,
         crowning=Crowning(micro.fs_crowning, design.drive.face_width, micro.crowning_shape),
         penalty=design.penalty,
-        reach=max(FOOT_REACH * design.drive.module, search_distance(design)),
+        max_gap=max(FOOT_REACH * design.drive.module, search_distance(design)),
         pressure_limit=PRESSURE_LIMIT * design.material.E,
         friction_coefficient=design.contact.friction,
     )
@@ -239,12 +248,12 @@ def contact_search(design: DriveDesign) -> ContactSearch:
     return ContactSearch(
         tip_margin=TIP_MARGIN * module,
         distances=SearchRange(near=search_distance(design), touch=TOUCH * module),
-        reach=0.5 * design.drive.teeth_rg * module + design.deflection,
+        outer_radius=0.5 * design.drive.teeth_rg * module + design.deflection,
     )
 
 
 def newton_settings(design: DriveDesign) -> NewtonSettings:
-    """Settings of the solver; factors are reused in space with the direct solver."""
+    """Settings of the solver."""
     solver, contact = design.solver, design.contact
     return NewtonSettings(
         rtol=solver.rtol,
@@ -252,5 +261,5 @@ def newton_settings(design: DriveDesign) -> NewtonSettings:
         max_augmentations=contact.max_augmentations,
         penetration_tolerance=contact.penetration_tolerance * design.drive.module,
         linear=solver.linear,
-        reuse_factor=solver.keep_factor and solver.linear == "direct" and design.drive.model == "cup",
+        reuse_factor=solver.keep_factor,
     )

@@ -1,8 +1,9 @@
 """A mesh for an accuracy: refined until the estimated error of the largest tensile stress is below what is asked for.
 
-The drive is assembled and loaded on a mesh with few elements; every other one starts from the state before. What each
-group of counts adds to the error of the loaded state is estimated on the way, so that elements go where they help.
-Compressive stress is no measure: where edges carry, its largest value has no limit.
+The drive is assembled and loaded on a mesh with few elements. Every further mesh starts from the loaded state of the
+one before. The part of each group of counts in the error of the loaded state is estimated, and the group with the
+largest part for its elements is refined. Compressive stress is no measure: under edge contact its largest value has no
+limit.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.analysis.coarse_start import Level, level_of, load
+from swgpar.analysis.coarse_start import LoadedState, loaded_state, solve_to_load
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.error_estimate import ORDER
 from swgpar.design.drive_design import DriveDesign
@@ -31,12 +32,13 @@ LOWEST, HIGHEST = 1e-3, 0.2
 """Accuracies that may be asked for."""
 
 SAMPLES = ((0.02, 4), (0.005, 8), (0.0, 16))
-"""Angles in a period for accuracies from the first number on. Four instead of eight change the means of the plane half
-turn by 0.3 %, those of the cup drive by 0.5 %; what half of a run's own angles would give is in its summary."""
+"""Smallest accuracy and number of angles in a period. Four instead of eight change the means of the plane half
+turn by 0.3 %, those of the cup drive by 0.5 %; the summary of a run has the
+change by half of its own angles."""
 
 RTOL = 1e-7
-"""Newton's tolerance: its part in the error of the stresses is below the lowest accuracy by decades, and at 1e-5 the
-input torque of a fine plane mesh was 0.6 % off, for one iteration less."""
+"""Newton's tolerance. Its part in the error of the stresses is far below the lowest accuracy. At 1e-5 the input torque
+of a fine plane mesh has an error of 0.6 %, and a solve takes one iteration less."""
 
 BEND = 0.2
 """Share of an accuracy up to which condensed sectors, which leave out a part of the bending strain, are used: of the
@@ -60,11 +62,11 @@ GROUPS: dict[str, Counts] = {
 its error comes from the counts there (docs/verification/accuracy.md, plane drive)."""
 
 LARGEST = {2: 1_500_000, 3: 700_000}
-"""Elements of the whole drive, plane and solid, beyond which no finer mesh is taken: some 7 and 12 GB."""
+"""Elements of the whole drive, plane and solid, beyond which no finer mesh is taken; they need about 7 and 12 GB."""
 
 
 @dataclass(frozen=True)
-class Chosen:
+class ChosenMesh:
     """The model on the mesh chosen, in its loaded state. error : relative, estimated;  stresses : errors of all, MPa"""
 
     model: DriveModel
@@ -126,13 +128,13 @@ class Refinement:
         self.dimensions = 2 if design.drive.model == "plane" else 3
         self.groups = {name: counts for name, counts in GROUPS.items() if self.dimensions == 3 or name != "length"}
         self.base, self.doublings = recipe, (0,) * len(self.groups)
-        while not all(self.size(one_more(self.doublings, k)) for k in range(len(self.groups))):
+        while not all(self.size(doubled_once(self.doublings, k)) for k in range(len(self.groups))):
             if coarser(self.base) == self.base:
                 break
             self.base = coarser(self.base)
-        self.levels: dict[Doublings, Level] = {}
+        self.levels: dict[Doublings, LoadedState] = {}
         self.omitted_stress: dict[Doublings, float] = {}
-        self.model = load(design, coarser(self.base), load_states, comm)
+        self.model = solve_to_load(design, coarser(self.base), load_states, comm)
 
     def recipe(self, doublings: Doublings) -> MeshRecipe:
         """With every group doubled as many times as `doublings` says."""
@@ -150,27 +152,27 @@ class Refinement:
         elements = sum(len(mesh.hexes) * mesh.n_sectors for mesh in meshes)
         return elements if elements <= LARGEST[self.dimensions] else 0
 
-    def load(self, doublings: Doublings) -> Level:
+    def load(self, doublings: Doublings) -> LoadedState:
         """Bring the drive to its loaded state there, from that of the last mesh, or else from the start."""
         recipe, coarse = self.recipe(doublings), self.model
         try:
-            self.model = load(self.design, recipe, self.load_states, self.comm, coarse)
+            self.model = solve_to_load(self.design, recipe, self.load_states, self.comm, coarse)
         except (ConvergenceError, InputError) as error:
             logger.info("the state of another mesh does not lead to that of this one: %s", error)
-            self.model = load(self.design, recipe, self.load_states, self.comm)
-        self.doublings, self.levels[doublings] = doublings, level_of(self.model)
+            self.model = solve_to_load(self.design, recipe, self.load_states, self.comm)
+        self.doublings, self.levels[doublings] = doublings, loaded_state(self.model)
         self.omitted_stress[doublings] = self.model.omitted_bending_stress()
         return self.levels[doublings]
 
 
-def one_more(doublings: Doublings, group: int) -> Doublings:
+def doubled_once(doublings: Doublings, group: int) -> Doublings:
     """Doublings with another doubling of one group."""
     return tuple(count + (k == group) for k, count in enumerate(doublings))
 
 
-def choose(
+def choose_mesh(
     design: DriveDesign, recipe: MeshRecipe, load_states: list[LoadState], accuracy: float, comm: MPI.Comm
-) -> Chosen:
+) -> ChosenMesh:
     """Refine `recipe` until the estimated relative error of the largest tensile stress is at most `accuracy`.
 
     Every group of counts has an error, first from what doubling it alone changes; then the group is doubled that has
@@ -183,7 +185,8 @@ def choose(
     doublings, groups = refinement.doublings, range(len(refinement.groups))
     level, changes = refinement.load(doublings), []
     for k in groups:
-        trial = refinement.load(one_more(doublings, k)).stresses if refinement.size(one_more(doublings, k)) else None
+        one_more = doubled_once(doublings, k)
+        trial = refinement.load(one_more).stresses if refinement.size(one_more) else None
         # what the doubling before this one would have changed
         changes.append(
             {name: 2.0**ORDER * (trial[name] - value) if trial else np.inf for name, value in level.stresses.items()}
@@ -199,13 +202,13 @@ def choose(
         logger.info("%d elements: s1 %.1f MPa under load, estimated errors (%%): %s", level.elements, stress, parts)
         if error <= accuracy:
             break
-        sizes = [refinement.size(one_more(doublings, k)) for k in groups]
+        sizes = [refinement.size(doubled_once(doublings, k)) for k in groups]
         stays = omitted + sum(one[MEASURE] for one, size in zip(errors, sizes) if not size)
         if relative(stays, stress) > accuracy or not any(sizes):
             logger.info("no finer mesh that helps is taken up to %d elements", LARGEST[refinement.dimensions])
             break
         k = max((k for k in groups if sizes[k]), key=lambda k: errors[k][MEASURE] / sizes[k])
-        doublings, before = one_more(doublings, k), level.stresses
+        doublings, before = doubled_once(doublings, k), level.stresses
         level = refinement.levels[doublings] if doublings in refinement.levels else refinement.load(doublings)
         change = {name: value - before[name] for name, value in level.stresses.items()}
         errors[k] = {name: error_after(value, changes[k][name]) for name, value in change.items()}
@@ -214,4 +217,4 @@ def choose(
         refinement.load(doublings)
     total = {name: sum(one[name] for one in errors) for name in level.stresses}
     known = {name: value for name, value in total.items() if np.isfinite(value)}
-    return Chosen(refinement.model, refinement.recipe(doublings), error, known)
+    return ChosenMesh(refinement.model, refinement.recipe(doublings), error, known)

@@ -21,7 +21,7 @@ from swgpar.fem.partition import Partition
 from swgpar.fem.stress import body_fields, maxima
 from swgpar.geometry.cams import Cam
 from swgpar.kernel import reference_elements
-from swgpar.log import Phases
+from swgpar.log import PhaseTimes
 from swgpar.meshing.ring_sector import AROUND, ring_sector
 from swgpar.solve.discrete_problem import DiscreteProblem
 from swgpar.solve.newton import NewtonSolver
@@ -110,7 +110,8 @@ class RingBody:
         inner, width, material = design.inner_radius, design.width, design.material
         mesh = ring_sector(inner, design.outer_radius, width, counts.sectors, counts.radial, counts.axial, design.plane)
         count = counts.sectors // 2 if halved else counts.sectors
-        layout = BodyLayout(mesh, 0, count, True, halved, np.zeros(0, dtype=np.int32))
+        fixed = np.zeros(0, dtype=np.int32)
+        layout = BodyLayout(mesh=mesh, first_tooth=0, count=count, closed=True, images=halved, fixed=fixed)
         self.mesh, self.partition = mesh, Partition([layout], comm)
         reference = reference_elements(mesh.coords[mesh.elements], material.E, material.nu, width, incompatible)
         self.elements = Elements(self.partition, [reference])
@@ -126,10 +127,9 @@ class RingBody:
             elements=self.elements,
             supports=Supports(self.partition, couplings, scale=scale, share=share),
             rigid_contacts=[contact],
-            flanks=None,
             module=REFERENCE_LENGTH,
             inner_radius=design.inner_radius,
-            phases=Phases(),
+            phases=PhaseTimes(),
         )
         settings = NewtonSettings(
             rtol=solver.rtol,
@@ -137,7 +137,7 @@ class RingBody:
             max_augmentations=design.contact.max_augmentations,
             penetration_tolerance=design.contact.penetration_tolerance * REFERENCE_LENGTH,
             linear=solver.linear,
-            reuse_factor=solver.keep_factor and solver.linear == "direct" and not design.plane,
+            reuse_factor=solver.keep_factor,
         )
         return NewtonSolver(problem, settings)
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from swgpar.analysis.coarse_start import Level
+from swgpar.analysis.coarse_start import LoadedState
 from swgpar.analysis.contact_pressure import nodal_pressure
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.drive_result import DriveResult, open_drive
@@ -44,7 +44,7 @@ class Recorder(ABC):
     def __init__(self, model: DriveModel) -> None:
         self.model, self.comm = model, model.comm
         self.rows: list[Row] = []
-        self.coarser: Level | None = None
+        self.coarser: LoadedState | None = None
         self.accuracy: Accuracy | None = None
 
     def record(self, stepper: LoadStepper, seconds: float, elapsed: float) -> None:

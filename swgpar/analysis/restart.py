@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from swgpar.analysis.coarse_start import Level
+from swgpar.analysis.coarse_start import LoadedState
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.summary import Accuracy
 from swgpar.contact import friction
@@ -91,7 +91,7 @@ def resume(recorder: FolderRecorder, stepper: LoadStepper, items: list[LoadState
         )
     _restore_vector(recorder, state)
     recorder.rows, recorder.names = state["rows"], state["names"]
-    recorder.coarser = state["coarser"] and Level(**state["coarser"])
+    recorder.coarser = state["coarser"] and LoadedState(**state["coarser"])
     recorder.accuracy = state["accuracy"] and Accuracy(**state["accuracy"])
     stepper.resume_at(last)
     for name, value in state["phases_s"].items():

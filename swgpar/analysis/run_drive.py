@@ -10,11 +10,11 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar import log
-from swgpar.analysis.coarse_start import Level, levels, start_loaded
+from swgpar.analysis.coarse_start import LoadedState, levels, start_loaded
 from swgpar.analysis.drive_model import DriveModel, build_drive_model
 from swgpar.analysis.drive_result import DriveResult
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.analysis.mesh_refinement import Chosen, choose, with_accuracy
+from swgpar.analysis.mesh_refinement import ChosenMesh, choose_mesh, with_accuracy
 from swgpar.analysis.period import continued
 from swgpar.analysis.recorder import FolderRecorder, MemoryRecorder, Recorder
 from swgpar.analysis.restart import identity, resume
@@ -51,7 +51,7 @@ def run_drive(
     restart : continue from the checkpoint in the folder
     overwrite : replace results that the folder already holds
     recipe_name : name of the recipe in the summary
-    accuracy : estimated relative error of the largest tensile stress up to which `recipe` is refined (`choose`)
+    accuracy : estimated relative error of the largest tensile stress up to which `recipe` is refined (`choose_mesh`)
     terminal : whether rank 0 reports on the terminal
     on_increment : called after every increment
 
@@ -99,14 +99,14 @@ def run_drive(
 
 def _choose_mesh(
     design: DriveDesign, recipe: MeshRecipe, accuracy: float, earlier: Path | None, comm: MPI.Comm
-) -> tuple[Chosen | None, MeshRecipe]:
+) -> tuple[ChosenMesh | None, MeshRecipe]:
     """The loaded model on a mesh for an accuracy, with its recipe; for a restart the recipe only.
 
     earlier : folder of the run that is continued
     """
     if earlier is not None:
         return None, on_all(comm, lambda: load_recipe(earlier / RECIPE))
-    chosen = choose(design, recipe, list(load_sequence(design)), accuracy, comm)
+    chosen = choose_mesh(design, recipe, list(load_sequence(design)), accuracy, comm)
     return chosen, chosen.recipe
 
 
@@ -114,7 +114,7 @@ def _recorder(model: DriveModel, folder: Path | None, what: str) -> Recorder:
     return MemoryRecorder(model) if folder is None else FolderRecorder(model, folder, what)
 
 
-def _record_choice(recorder: Recorder, chosen: Chosen, accuracy: float, folder: Path | None) -> None:
+def _record_choice(recorder: Recorder, chosen: ChosenMesh, accuracy: float, folder: Path | None) -> None:
     """Keep the mesh that was chosen for an accuracy."""
     if folder is not None:
         write_from_root(recorder.comm, folder / RECIPE, to_toml(chosen.recipe).encode())
@@ -189,7 +189,7 @@ class _Run:
         return recorder.finish(rows, summary)
 
 
-def _start_on_coarser(stepper: LoadStepper, recipe: MeshRecipe, items: list[LoadState]) -> Level | None:
+def _start_on_coarser(stepper: LoadStepper, recipe: MeshRecipe, items: list[LoadState]) -> LoadedState | None:
     """Reach the loaded state on coarser meshes first; None if the design asks for none, or if that fails."""
     recipes = levels(stepper.design, recipe)
     if not recipes:

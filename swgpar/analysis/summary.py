@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from petsc4py import PETSc
 
-from swgpar.analysis.coarse_start import Level
+from swgpar.analysis.coarse_start import LoadedState
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.error_estimate import estimate
 from swgpar.analysis.period import of_period, sampling_error
@@ -42,7 +42,7 @@ class Accuracy:
     mesh_error: dict[str, float]
 
 
-def mesh_error(rows: Sequence[Row], elements: int, coarser: Level, dimensions: int) -> dict[str, float]:
+def mesh_error(rows: Sequence[Row], elements: int, coarser: LoadedState, dimensions: int) -> dict[str, float]:
     """Estimated errors (MPa) of the loaded state's largest stresses, from this mesh and the next coarser one."""
     found = {
         name: estimate(value, rows[0][name], coarser.elements, elements, dimensions)
@@ -73,7 +73,7 @@ def over_rotation(rows: Sequence[Row], ratio: float) -> dict[str, Any]:
 def summarise(
     model: DriveModel,
     rows: list[Row],
-    coarser: Level | None,
+    coarser: LoadedState | None,
     recipe_name: str,
     accuracy: Accuracy | None,
     seconds: float,

@@ -21,11 +21,11 @@ class FlankClearance:
     Parameters
     ----------
     flanks : contact of the flanks;  comm : communicator
-    module : mm;  reach : mm, radius that no tooth is farther out than
+    module : mm;  outer_radius : mm, radius that no tooth is farther out than
     """
 
-    def __init__(self, flanks: FlankContact, comm: MPI.Comm, *, module: float, reach: float) -> None:
-        self.flanks, self.comm, self.module, self.reach = flanks, comm, module, reach
+    def __init__(self, flanks: FlankContact, comm: MPI.Comm, *, module: float, outer_radius: float) -> None:
+        self.flanks, self.comm, self.module, self.outer_radius = flanks, comm, module, outer_radius
 
     def gap(self) -> float:
         """Smallest gap (mm) of the loaded flanks; inf where none is near."""
@@ -37,7 +37,7 @@ class FlankClearance:
         Flanks close no faster than their radius times the rotation: up to contact there is no overshoot.
         """
         gap = self.gap() / self.module
-        return self.module * (min(gap, LARGEST_STEP) + MEETING_DEPTH if gap > 0.0 else LARGEST_STEP) / self.reach
+        return self.module * (min(gap, LARGEST_STEP) + MEETING_DEPTH if gap > 0.0 else LARGEST_STEP) / self.outer_radius
 
     def closing_rotation(self) -> float:
         """Rotation (rad) that brings the flanks together.
@@ -45,4 +45,4 @@ class FlankClearance:
         0 where they are so close that a Newton step does the rest, or where none is near.
         """
         gap = self.gap()
-        return gap / self.reach if MEETING_DEPTH * self.module < gap < np.inf else 0.0
+        return gap / self.outer_radius if MEETING_DEPTH * self.module < gap < np.inf else 0.0

@@ -32,6 +32,8 @@ class FacePressure:
 class Contact(Protocol):
     """One contact. `reset` begins it anew at every contact search; all other methods may follow in any order.
 
+    All ranks call `evaluate` and `add_owned_forces` together: an implementation may communicate in them.
+
     multiplier : (n_face, n_q) MPa, of the augmented Lagrangian
     """
 

@@ -87,11 +87,13 @@ class FrictionStart:
 class ActiveSegments:
     """Segments of the faces near the master, with the results of the last evaluation.
 
+    found : pairs and faces of the search that they belong to
     faces, segments : quadrature points and their position in the parent faces
     friction : law and tractions at the points, None without friction
     multiplier, gap, pressure : (n_segment, n_q) MPa, mm, MPa
     """
 
+    found: FlankPairs
     faces: Faces
     segments: Segments
     friction: Friction | None
@@ -109,7 +111,7 @@ class FlankContact:
     ring_motion : rotation of the ring gear as a whole
     order : Gauss points per direction on a segment of a slave face
     crowning : of the flexible spline's flanks
-    penalty : MPa / mm;  reach : mm, largest |gap| that is looked at
+    penalty : MPa / mm;  max_gap : mm, largest |gap| at which a foot point is looked for
     pressure_limit : MPa, bound of the pressure in the tangent's geometric term
     friction_coefficient : 0 without friction
 
@@ -130,13 +132,13 @@ class FlankContact:
         order: int,
         crowning: Crowning,
         penalty: float,
-        reach: float,
+        max_gap: float,
         pressure_limit: float,
         friction_coefficient: float,
     ) -> None:
         self.partition, self.spline, self.ring, self.ring_motion = partition, spline, ring, ring_motion
         self.full_penalty = self.penalty = penalty
-        self.reach, self.pressure_limit = reach, pressure_limit
+        self.max_gap, self.pressure_limit = max_gap, pressure_limit
         self.order, self.friction_coefficient = order, friction_coefficient
         mesh = spline.layout.mesh
         self.slaves = {
@@ -147,7 +149,7 @@ class FlankContact:
         self.tractions: dict[PairKey, np.ndarray] = {}
         self.frozen = False
         self.found: FlankPairs | None = None
-        self._near = np.zeros(0, dtype=np.int64)
+        self._near_faces = np.zeros(0, dtype=np.int64)
         self._friction_start: FrictionStart | None = None
         self._active: ActiveSegments | None = None
         self._ring_rotation = 0.0
@@ -195,14 +197,14 @@ class FlankContact:
         Returns keys row * n_global + column (n,) of the tangent's blocks that may couple.
         """
         self.found = found = FlankPairs(self.partition, self.spline, self.ring, self.slaves, self.masters, pairs, local)
-        self._near = np.zeros(0, dtype=np.int64)
+        self._near_faces = np.zeros(0, dtype=np.int64)
         self._friction_start = None
         self.reset()
         self._ring_rotation = self.ring_motion.ring_rotation(u)
         if found.faces is None:
             return NO_KEYS
         gap, foot_point = self._gaps_at_centers(u)
-        self._near = np.flatnonzero(gap < distances.near)
+        self._near_faces = np.flatnonzero(gap < distances.near)
         if accepted is not None:
             self._friction_start = FrictionStart(accepted, self._stored_tractions())
         touching = np.flatnonzero(gap < distances.touch)
@@ -222,7 +224,9 @@ class FlankContact:
         """Sectors of the ring gear (n,) that the faces of the last search may meet."""
         if self.found is None or self.found.faces is None:
             return np.zeros(0, dtype=np.int64)
-        return np.array([self.pairs[k].ring for k in np.unique(self.found.faces.patch[self._near])], dtype=np.int64)
+        return np.array(
+            [self.pairs[k].ring for k in np.unique(self.found.faces.patch[self._near_faces])], dtype=np.int64
+        )
 
     def _gaps_at_centers(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Gap (n_face,) mm at the middle of every face and its foot point (n_face, 2) mm on the master."""
@@ -244,7 +248,7 @@ class FlankContact:
         if self.found is None or self.found.faces is None:
             return False
         gap, _ = self._gaps_at_centers(u)
-        return bool(np.delete(gap + state.flank_clearance < 0.0, self._near).any())
+        return bool(np.delete(gap + state.flank_clearance < 0.0, self._near_faces).any())
 
     # -- forces and tangent ----------------------------------------------------------------------------
 
@@ -272,7 +276,7 @@ class FlankContact:
         self, u: np.ndarray, clearance: float, residual: np.ndarray | None, rows: BlockRows | None
     ) -> tuple[float, np.ndarray]:
         """Moment (N mm) on the ring gear's rotation from owned pairs, and keys of missing blocks."""
-        if not len(self._near):
+        if not len(self._near_faces):
             return 0.0, NO_KEYS
         if not self.frozen:
             self._active = self._cut(u)
@@ -296,19 +300,21 @@ class FlankContact:
     def _cut(self, u: np.ndarray) -> ActiveSegments:
         """Cut the faces for displacement u; without multipliers, which would belong to other points."""
         all_faces, masters = self.found.faces, self.found.masters
-        corners = all_faces.corners(self._near)
+        corners = all_faces.corners(self._near_faces)
         zero = np.zeros(corners.weight.shape)
         foot_point = self._call_kernel(corners, u, zero, 0.0, beyond=CONTINUATION)[2]
-        segments = cut_faces(foot_point, all_faces.size[self._near], masters.s, masters.z, self.order)
-        faces = all_faces.cut(self._near, segments)
-        segments = replace(segments, parent=self._near[segments.parent])
+        segments = cut_faces(foot_point, all_faces.size[self._near_faces], masters.s, masters.z, self.order)
+        faces = all_faces.cut(self._near_faces, segments)
+        segments = replace(segments, parent=self._near_faces[segments.parent])
         multiplier = np.zeros_like(faces.weight)
         law, start = None, self._friction_start
         if start is not None:
             gap, _, foot_point, _ = self._call_kernel(faces, start.displacement, multiplier, 0.0)
             traction = friction.interpolated(start.tractions, segments)
             law = friction.begin(self.friction_coefficient, foot_point, gap, traction)
-        return ActiveSegments(faces, segments, law, multiplier, np.full_like(multiplier, np.inf), multiplier.copy())
+        return ActiveSegments(
+            self.found, faces, segments, law, multiplier, np.full_like(multiplier, np.inf), multiplier.copy()
+        )
 
     def _call_kernel(
         self,
@@ -322,7 +328,7 @@ class FlankContact:
         **more: Any,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
         """Gaps, pressures, foot points and the number of missing blocks; see `swgpar.kernel.contact_flanks`."""
-        settings = self.penalty, clearance, self.reach, self.pressure_limit, residual, rows, law, self._ring_rotation
+        settings = self.penalty, clearance, self.max_gap, self.pressure_limit, residual, rows, law, self._ring_rotation
         return contact_flanks(self.found.masters, faces, u, multiplier, *settings, **more)
 
     def add_owned_forces(self, u: np.ndarray, state: LoadState, residual: np.ndarray) -> None:
@@ -348,6 +354,8 @@ class FlankContact:
 
     @multiplier.setter
     def multiplier(self, values: np.ndarray) -> None:
+        if values.shape != self.multiplier.shape:
+            raise ValueError(f"multipliers of shape {values.shape} do not belong to the present segments")
         if self._active is not None:
             self._active.multiplier = values
 
@@ -370,7 +378,12 @@ class FlankContact:
         return self._active
 
     def restore_segments(self, saved: ActiveSegments | None) -> None:
-        """Freeze segments of the last search again; friction follows the pressure on them, without multipliers."""
+        """Freeze segments of the last search again; friction follows the pressure on them, without multipliers.
+
+        Raises ValueError for segments of an earlier search: their local nodes are others.
+        """
+        if saved is not None and saved.found is not self.found:
+            raise ValueError("the segments belong to an earlier contact search")
         self._active = saved
         if saved is not None:
             self._active = replace(saved, multiplier=np.zeros_like(saved.faces.weight))
@@ -401,6 +414,10 @@ class FlankContact:
             shape = (self.n_face, friction.SAMPLES, friction.SAMPLES, 2)
             store = self.tractions.setdefault(self.pairs[k].key, np.zeros(shape))
             store[local] = friction.sampled(active.segments, active.friction.current, face)
+
+    def resume(self, tractions: dict[PairKey, np.ndarray]) -> None:
+        """Take these tractions as those of the last accepted state."""
+        self.tractions = tractions
 
     def traction_rows(self, first: int, end: int) -> dict[str, np.ndarray]:
         """The accepted tractions of the sectors first .. end - 1, as rows for a file."""

@@ -2,7 +2,7 @@
 
 Segments are cut anew in every increment, so that their quadrature points are not the same material points. The
 tangential traction therefore lives on a uniform grid of `SAMPLES` x `SAMPLES` points of every slave face, between
-which it is interpolated. Where a point's foot was then needs no store: it is projected again at the converged
+which it is interpolated. The foot point of that state is not stored: the point is projected again at the converged
 displacement, exactly. Components are those of the master's undeformed coordinates, arc length and z, with the
 current base vectors (see kernel/friction.hpp).
 """

@@ -56,8 +56,8 @@ def facing_flanks(
     flank = x[:, body]
     local_x, local_y = c * flank[..., 0] + s * flank[..., 1], -s * flank[..., 0] + c * flank[..., 1]
     lean = np.arctan2(-local_x.mean(axis=1), local_y.mean(axis=1))
-    reach = np.hypot(x[:, tips, 0], x[:, tips, 1]).max(axis=1) if len(rows) else np.zeros(0)
-    table = np.concatenate(partition.comm.allgather(np.column_stack([angle + lean, reach]).reshape(-1, 2)))
+    tip_radius = np.hypot(x[:, tips, 0], x[:, tips, 1]).max(axis=1) if len(rows) else np.zeros(0)
+    table = np.concatenate(partition.comm.allgather(np.column_stack([angle + lean, tip_radius]).reshape(-1, 2)))
     pitch = 2.0 * np.pi / ring.mesh.n_sectors
     pairs = []
     for k in np.flatnonzero(table[:, 1] > ring.mesh.profile.r_tip_circle - margin):

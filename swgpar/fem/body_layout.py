@@ -49,7 +49,7 @@ class SectorNumbering:
     without_unknowns: np.ndarray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class BodyLayout:
     """The modelled sectors of one body.
 

@@ -15,14 +15,25 @@ def create_vector(partition: Partition) -> PETSc.Vec:
 
 
 class Exchange:
-    """Values of distributed vectors at the nodes with the given global numbers, (n,) int32."""
+    """Values of distributed vectors at the nodes with the given global numbers, (n,) int32.
+
+    `destroy` releases its PETSc objects; Python alone does so late.
+    """
 
     def __init__(self, partition: Partition, number: np.ndarray) -> None:
         self.target = PETSc.Vec().createSeq(3 * len(number), bsize=3)
         entries = (3 * number[:, None] + np.arange(3, dtype=PETSc.IntType)).ravel().astype(PETSc.IntType)
         source = PETSc.IS().createGeneral(entries, comm=PETSc.COMM_SELF)
         into = PETSc.IS().createStride(3 * len(number), 0, 1, comm=PETSc.COMM_SELF)
-        self.scatter = PETSc.Scatter().create(create_vector(partition), source, self.target, into)
+        template = create_vector(partition)
+        self.scatter = PETSc.Scatter().create(template, source, self.target, into)
+        for temporary in (template, source, into):
+            temporary.destroy()
+
+    def destroy(self) -> None:
+        """Release the PETSc objects; collective."""
+        self.scatter.destroy()
+        self.target.destroy()
 
     def __call__(self, vector: PETSc.Vec) -> np.ndarray:
         """Local nodal values (n_local, 3) of a global vector, ghosts included."""
@@ -35,7 +46,9 @@ def read_field(partition: Partition, body: int, sectors: np.ndarray, vector: PET
     number, flip = partition.node_numbers(body, sectors, np.arange(len(partition.layouts[body].mesh.coords)))
     needed, position = np.unique(number, return_inverse=True)
     absent = int(len(needed) > 0 and needed[0] == -1)
-    values = Exchange(partition, needed[absent:].astype(np.int32))(vector)
+    exchange = Exchange(partition, needed[absent:].astype(np.int32))
+    values = exchange(vector)
+    exchange.destroy()
     values = np.vstack([np.zeros((absent, 3)), values])[position.reshape(number.shape)]
     return partition.layouts[body].with_inner_nodes(sectors, np.where(flip[..., None] == 1, HALF_TURN * values, values))
 

@@ -68,14 +68,14 @@ option_defaults = OptionDefaults()
 class BorderedSystem:
     """Preconditioner (PETSc `PC` of type python) for [K, C^T; C, 0] with solutions of K' = K + B B^T.
 
-    `linear` says how they are got: "direct", by a factor (MUMPS); "iterative", by GMRES with smoothed aggregation
+    `linear` says how they are computed: "direct", by a factor (MUMPS); "iterative", by GMRES with smoothed aggregation
     (GAMG) on the rigid-body modes of the nodes at `positions` (n_own, 3) mm.
 
     K alone is singular while the drive floats; the grounded K' is not. With Z = K'^-1 [B, C^T] the small system
 
         (1 - B^T Z_B) s + B^T Z_C l = B^T z,     C Z_B s - C Z_C l = r_l - C z,     z = K'^-1 r_u
 
-    gives x = z + Z_B s - Z_C l exactly, whether K is symmetric or not: the grounding leaves no trace.
+    gives x = z + Z_B s - Z_C l exactly, whether K is symmetric or not. The grounding has no influence on x.
 
     The last border is the motion of the output. Where it is loaded and not prescribed, its Newton step is the one at
     which its l vanishes. That step is bounded: a drive without touching flanks floats, and its step is unlimited. All

@@ -26,7 +26,7 @@ from swgpar.fem.partition import Partition
 from swgpar.fem.sparse import BlockRows, add_unit_diagonal, create_matrix, fill_matrix
 from swgpar.fem.vectors import Exchange, create_vector, read_multipliers
 from swgpar.geometry.rotation import HALF_TURN
-from swgpar.log import Phases
+from swgpar.log import PhaseTimes
 
 FORCE_FLOOR = 1e-6
 """Contact force below which a residual is not judged by it, as a share of E times the module squared."""
@@ -39,12 +39,12 @@ class ContactSearch:
     tip_margin : mm, radial distance of a tooth's tip inside the ring gear's tip circle up to which its flanks are
     followed
     distances : of the faces
-    reach : mm, radius that no tooth is farther out than
+    outer_radius : mm, radius that no tooth is farther out than
     """
 
     tip_margin: float
     distances: SearchRange
-    reach: float
+    outer_radius: float
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class DiscreteProblem:
     partition, elements : ownership and elements, bound to their local nodes
     supports : couplings, housing, grounding and load
     rigid_contacts : contacts with rigid surfaces
-    flanks : contact of the tooth flanks and its search; None for a body without teeth
+    flanks, contact_search : contact of the tooth flanks and its search; None for a body without teeth
     module : mm, length that bounds and floors refer to;  inner_radius : mm, size of the body
     inactive : ring-gear sectors that are left out; None where all are modelled
     phases : wall seconds
@@ -86,20 +86,21 @@ class DiscreteProblem:
         elements: Elements,
         supports: Supports,
         rigid_contacts: Sequence[Contact],
-        flanks: tuple[FlankContact, ContactSearch] | None,
+        flanks: FlankContact | None = None,
+        contact_search: ContactSearch | None = None,
         module: float,
         inner_radius: float,
         inactive: InactiveSectors | None = None,
-        phases: Phases,
+        phases: PhaseTimes,
     ) -> None:
         self.partition, self.elements, self.supports, self.phases = partition, elements, supports, phases
         self.rigid_contacts = list(rigid_contacts)
-        self.flanks, self.contact_search = flanks if flanks is not None else (None, None)
+        self.flanks, self.contact_search = flanks, contact_search
         self.contacts: list[Contact] = [*rigid_contacts] if self.flanks is None else [*rigid_contacts, self.flanks]
         self.clearance = (
             None
             if self.flanks is None
-            else FlankClearance(self.flanks, partition.comm, module=module, reach=self.contact_search.reach)
+            else FlankClearance(self.flanks, partition.comm, module=module, outer_radius=contact_search.outer_radius)
         )
         self.module, self.inner_radius, self.inactive = module, inner_radius, inactive
         self.scale = supports.scale
@@ -113,7 +114,8 @@ class DiscreteProblem:
         self.round_off = 0.0
 
     def destroy(self) -> None:
-        """Release the tangent; collective."""
+        """Release the tangent and the exchange of ghost values; collective."""
+        self.exchange.destroy()
         if self.matrix is not None:
             self.matrix.destroy()
 
@@ -160,6 +162,7 @@ class DiscreteProblem:
             pairs = self._facing_pairs(state, self.contact_search.tip_margin) if self.flanks is not None else []
             further = self.flanks.node_numbers(pairs) if self.flanks is not None else np.zeros(0, dtype=np.int64)
             self.local = self.elements.local.extended(further)
+            self.exchange.destroy()
             self.exchange = Exchange(self.partition, self.local.number)
             pattern = np.zeros(0, dtype=np.int64)
             if self.flanks is not None:
@@ -351,7 +354,7 @@ class DiscreteProblem:
         """Take x and these tractions of the flanks as an accepted state."""
         self.x.copy(self.accepted)
         if self.flanks is not None:
-            self.flanks.tractions = tractions
+            self.flanks.resume(tractions)
 
     def output_rotation(self) -> float:
         """Rotation of the output (rad); collective."""

@@ -36,7 +36,7 @@ def price(operations: float, entries: float, analysed: bool) -> float:
 
     analysed : whether its pattern is known
 
-    It is a count and no time: a run makes the same decisions every time.
+    It comes from counts and not from measured seconds, so that a run makes the same decisions every time.
     """
     return operations / (INTENSITY * entries) * (1.0 if analysed else 1.0 + ANALYSIS)
 
@@ -65,7 +65,7 @@ class ReusedFactor:
         operator = PETSc.Mat().createPython([like.getSizes()] * 2, _Multiply(multiply), comm=like.comm)
         operator.setUp()
         self.ksp = PETSc.KSP().create(comm=like.comm)
-        self.ksp.setOptionsPrefix("kept_")
+        self.ksp.setOptionsPrefix("reuse_")
         self.ksp.setOperators(operator)
         self.ksp.setType(PETSc.KSP.Type.GMRES)
         self.ksp.setPCSide(PETSc.PC.Side.RIGHT)

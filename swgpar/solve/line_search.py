@@ -8,7 +8,7 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from swgpar.log import Phases
+from swgpar.log import PhaseTimes
 from swgpar.solve.bordered_system import BorderedSystem
 
 CONSTRAINT_SHARE = 0.1
@@ -48,7 +48,7 @@ class LineSearch:
         system: BorderedSystem,
         residual: Callable[[PETSc.Vec, PETSc.Vec], bool],
         x: PETSc.Vec,
-        phases: Phases,
+        phases: PhaseTimes,
     ) -> None:
         self.system, self.residual, self.x, self.phases = system, residual, x, phases
         self.trial, self.force = x.duplicate(), x.duplicate()

@@ -96,7 +96,7 @@ class NewtonSolver:
             positions,
             "stiffness_",
             symmetric=problem.symmetric,
-            reuse=settings.reuse_factor,
+            reuse=settings.reuse_factor and settings.linear == "direct" and problem.partition.dims == 3,
         )
         self.line_search = LineSearch(self.system, self._trial_residual, problem.x, problem.phases)
         self.snes = self._create_snes()
@@ -150,7 +150,7 @@ class NewtonSolver:
 
     def _tangent(self, snes: PETSc.SNES, x: PETSc.Vec, j: PETSc.Mat, p: PETSc.Mat) -> None:
         problem, state = self.problem, self.state
-        PETSc.garbage_cleanup(problem.partition.comm)  # PETSc keeps what Python lets go of, such as the last border
+        PETSc.garbage_cleanup(problem.partition.comm)  # frees PETSc objects without Python references: the last border
         u = problem.displacement(x)
         state.pattern_misses = problem.tangent(u, state.load_state)
         missing = int(len(state.pattern_misses) > 0)
@@ -232,6 +232,7 @@ class NewtonSolver:
                 self._after_frozen(state)
             else:
                 self._after_converged(state)
+        state.before_augmentation = state.breaker.solution = None
         return state.result
 
     def _begin(self, load_state: LoadState, establish_contact: bool) -> SolveState:

@@ -47,7 +47,8 @@ class NewtonSettings:
     rtol : residual over contact force at convergence
     max_iterations : before a solve fails, unless the residual still decreases
     max_augmentations : in one solve;  penetration_tolerance : mm
-    linear : "direct" (MUMPS) or "iterative" (GMRES with GAMG);  reuse_factor : for later tangents
+    linear : "direct" (MUMPS) or "iterative" (GMRES with GAMG)
+    reuse_factor : for later tangents, in space with the direct solver
     """
 
     rtol: float
@@ -115,7 +116,7 @@ class SolveState:
 
     @property
     def phase(self) -> Phase:
-        """Phase of the present run."""
+        """Phase of the present run, from its penalty, the cycle breaker and the augmentations so far."""
         if self.penalty_share != 1.0:
             return Phase.SOFTENED
         if self.breaker.active:

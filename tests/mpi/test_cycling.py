@@ -11,7 +11,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 from pytest_mpi import parallel_assert
 
-from swgpar.log import Phases
+from swgpar.log import PhaseTimes
 from swgpar.solve.active_set_cycles import VisitedSets, fingerprint, is_exhausted
 from swgpar.solve.line_search import LineSearch
 
@@ -53,7 +53,7 @@ class Block:
 
 def newton(block: Block, watch: bool, longest: float = 1e9) -> tuple[float, int, bool]:
     """Last residual, iterations, and whether active sets have returned."""
-    search, visited = LineSearch(block, block.residual, block.x, Phases()), VisitedSets()
+    search, visited = LineSearch(block, block.residual, block.x, PhaseTimes()), VisitedSets()
     search.max_node_step = longest
     force, step, returned, k = block.x.duplicate(), block.x.duplicate(), False, 0
     block.residual(block.x, force)
@@ -121,7 +121,7 @@ def test_displacement_of_a_node_is_bounded(bound: float, share: float) -> None:
     """In space, and without the multipliers, which have other units."""
     drive = Quadratic(width=1.0)
     drive.x.set(0.0)
-    search = LineSearch(drive, drive.residual, drive.x, Phases())
+    search = LineSearch(drive, drive.residual, drive.x, PhaseTimes())
     search.max_node_step = bound
     right, step = drive.x.duplicate(), drive.x.duplicate()
     drive.residual(drive.x, right)

@@ -14,7 +14,7 @@ from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from support.stepping import load_stepper, row
 from swgpar.analysis import mesh_refinement as accuracy
-from swgpar.analysis.coarse_start import level_of, levels, start_loaded
+from swgpar.analysis.coarse_start import levels, loaded_state, start_loaded
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.period import continued
 from swgpar.design.design_file import load_design
@@ -220,9 +220,9 @@ def test_a_mesh_is_chosen_alike_on_any_number_of_ranks(monkeypatch: pytest.Monke
     design = load_design(DESIGN, ["steps.rotation=3", "solver.rtol=1e-9"])
     found = []
     for comm in (MPI.COMM_WORLD, MPI.COMM_SELF):
-        chosen = accuracy.choose(design, load_recipe(RECIPE), list(load_sequence(design)), 0.05, comm)
+        chosen = accuracy.choose_mesh(design, load_recipe(RECIPE), list(load_sequence(design)), 0.05, comm)
         assert np.isfinite(chosen.error) and chosen.model.n_elements() <= 12_000
-        found.append((chosen, level_of(chosen.model).stresses))
+        found.append((chosen, loaded_state(chosen.model).stresses))
         chosen.model.destroy()
     (here, stress), (alone, other) = found
     parallel_assert(here.recipe == alone.recipe)

@@ -14,7 +14,7 @@ from mpi4py import MPI
 from support.commands import assert_same_history, execute, kill_after, on_ranks, run_command, succeed
 from support.paths import DESIGN, DRIVERS, RECIPE
 from support.small_drive import PLANE, SHORT
-from swgpar.analysis.coarse_start import level_of, load
+from swgpar.analysis.coarse_start import loaded_state, solve_to_load
 from swgpar.design.design_file import load_design
 from swgpar.design.load_states import load_sequence
 from swgpar.meshing import load_recipe
@@ -157,8 +157,10 @@ def test_an_accuracy_is_reached_by_refinement(tmp_path: Path) -> None:
     assert summary["mesh_error"]["fs_s1"] < asked / (1.0 - asked) * rows[0]["fs_s1"]
     # and so is the distance from a mesh with twice the elements in both directions, and a good half of the error
     design = load_design(DESIGN, [*PLANE, "steps.rotation=9", "solver.rtol=1e-7"])
-    finer = load(design, with_counts(recipe, lambda *count: 2 * count[-1]), list(load_sequence(design)), MPI.COMM_SELF)
-    reference = level_of(finer).stresses["fs_s1"]
+    finer = solve_to_load(
+        design, with_counts(recipe, lambda *count: 2 * count[-1]), list(load_sequence(design)), MPI.COMM_SELF
+    )
+    reference = loaded_state(finer).stresses["fs_s1"]
     finer.destroy()
     print(f"s1 {rows[0]['fs_s1']:.2f} MPa, {reference:.2f} on the reference mesh")
     assert abs(rows[0]["fs_s1"] / reference - 1.0) < 0.6 * asked

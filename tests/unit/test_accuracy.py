@@ -11,13 +11,13 @@ from mpi4py import MPI
 from support.paths import DESIGN, DRIVERS, REFERENCE
 from support.small_drive import PLANE
 from swgpar.analysis import mesh_refinement as module
-from swgpar.analysis.coarse_start import Level
+from swgpar.analysis.coarse_start import LoadedState
 from swgpar.analysis.mesh_refinement import (
     GROUPS,
     RTOL,
     Doublings,
     Refinement,
-    choose,
+    choose_mesh,
     error_after,
     with_accuracy,
 )
@@ -95,19 +95,19 @@ class Analytic:
     def stress(self, doublings: Doublings) -> float:
         return self.EVERY - sum(error / 2**count for error, count in zip(self.ERRORS, doublings))
 
-    def load(self, doublings: Doublings) -> Level:
+    def load(self, doublings: Doublings) -> LoadedState:
         assert self.size(doublings)
         self.doublings, self.levels[doublings] = (
             doublings,
-            Level(self.size(doublings), {"fs_s1": self.stress(doublings), "fs_s3": 0.0}),
+            LoadedState(self.size(doublings), {"fs_s1": self.stress(doublings), "fs_s3": 0.0}),
         )
         self.loads.append(doublings)
         return self.levels[doublings]
 
 
-def chosen(monkeypatch: pytest.MonkeyPatch, asked: float, stand_in: type[Analytic] = Analytic) -> module.Chosen:
+def chosen(monkeypatch: pytest.MonkeyPatch, asked: float, stand_in: type[Analytic] = Analytic) -> module.ChosenMesh:
     monkeypatch.setattr(module, "Refinement", stand_in)
-    return choose(None, None, [], asked, MPI.COMM_SELF)
+    return choose_mesh(None, None, [], asked, MPI.COMM_SELF)
 
 
 @pytest.mark.parametrize(("asked", "doublings"), [(0.2, (1, 0)), (0.05, (3, 0)), (0.02, (5, 0)), (0.01, (7, 1))])
