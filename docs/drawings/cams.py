@@ -168,8 +168,9 @@ def draw_pins(ax: Axes) -> None:
 
 def cams() -> Figure:
     """All types of wave generator, and the pins."""
-    figure, axes = canvas(9.0, 14.5, 3, 2)
     figures = (draw_elliptical, draw_simplified, draw_parabolic, draw_asymmetric, draw_rollers, draw_pins)
+    rows = (len(figures) + 1) // 2
+    figure, axes = canvas(9.0, 14.5 / 3.0 * rows, rows, 2)
     for ax, draw in zip(axes.ravel(), figures):
         draw(ax)
         ax.set_xlim(-12.5, 12.5)

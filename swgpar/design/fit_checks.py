@@ -140,5 +140,13 @@ def _check_outline(design: DriveDesign) -> None:
     if bulge > clearance:
         raise InputError(
             f"wave_generator ({design.wave_generator.type}) bulges {bulge:.3g} mm beyond its major semi-axis: "
-            f"allowed up to {clearance:.3g} mm, where the flexible spline's teeth meet the ring gear's root circle"
+            f"allowed up to {clearance:.3g} mm, where the flexible spline's teeth meet the ring gear's root circle; "
+            f"its shape follows from {_shape_keys(design)}"
         )
+
+
+def _shape_keys(design: DriveDesign) -> str:
+    """The keys that determine the curve of the cam; a smaller C, where there is one, makes it slimmer."""
+    others = ("type", "face_width", "pin_half_angle")
+    keys = sorted(set(type(design.wave_generator).model_fields).difference(others))
+    return ", ".join(f"wave_generator.{key}{' (smaller is slimmer)' if key == 'C' else ''}" for key in keys)

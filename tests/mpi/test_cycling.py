@@ -1,4 +1,4 @@
-"""Active sets that return: found, and left by the careful line search."""
+"""Active sets that return: found, and left by the descending line search."""
 
 from __future__ import annotations
 
@@ -43,8 +43,8 @@ class Block:
         return [np.array([self.sticks()]), np.sign(self.x.array_r[:1])]
 
     def residual(self, x: PETSc.Vec, force: PETSc.Vec) -> bool:
-        way = x.array_r[0]
-        force.array[0] = self.k * way + self.mu * np.clip(way / self.width, -1.0, 1.0) - self.f
+        slip = x.array_r[0]
+        force.array[0] = self.k * slip + self.mu * np.clip(slip / self.width, -1.0, 1.0) - self.f
         return False
 
     def apply(self, pc: None, right: PETSc.Vec, step: PETSc.Vec) -> None:
@@ -67,7 +67,7 @@ def newton(block: Block, watch: bool, longest: float = 1e9) -> tuple[float, int,
     return force.norm(), k, returned
 
 
-def test_block_that_sticks_within_reach_needs_no_care() -> None:
+def test_block_that_sticks_within_reach_needs_no_descending_search() -> None:
     residual, iterations, returned = newton(Block(width=1e-2), watch=False)
     assert residual < 1e-12 and iterations < 10 and not returned
 

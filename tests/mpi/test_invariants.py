@@ -251,7 +251,7 @@ def test_an_augmentation_that_leads_to_no_solution_is_taken_back(monkeypatch: py
 @both_models
 @pytest.mark.parallel([1, 2])
 def test_segments_are_kept_where_those_cut_anew_lead_nowhere(model: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The way out of a cycle is taken in every solve, and no residual can be evaluated with segments cut after it."""
+    """The cycle breaker begins in every solve, and no residual can be evaluated with segments cut anew after it."""
     _, r = base(model)
     release, again, evaluate = FlankContact.release_segments, FlankContact.restore_segments, FlankContact.evaluate
     solve, solving, kept = NewtonSolver.solve, [], []
@@ -282,13 +282,13 @@ def test_segments_are_kept_where_those_cut_anew_lead_nowhere(model: str, monkeyp
 
 @both_models
 @pytest.mark.parallel([1, 2])
-def test_careful_line_search_reaches_the_same_state(model: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Every active set taken for one that returns, so that all steps are searched for carefully."""
+def test_descending_line_search_reaches_the_same_state(model: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every active set taken for one that returns, so that all line searches are descending."""
     _, r = base(model)
     monkeypatch.setattr(cycling.VisitedSets, "returns", lambda *_: True)
-    stepper, careful = loaded(small(model))
+    stepper, descending = loaded(small(model))
     assert stepper.solver.line_search.descending
-    assert_same(careful, r, 1e-6)
+    assert_same(descending, r, 1e-6)
 
 
 @both_models

@@ -1,6 +1,8 @@
-"""The sequence of a run, and its intermediate scenes."""
+"""The sequence of a run, and its intermediate load states."""
 
 from __future__ import annotations
+
+import itertools
 
 import pytest
 
@@ -11,7 +13,7 @@ from swgpar.design.load_states import load_sequence, start_state
 
 @pytest.mark.parametrize("torque", ["0", "2"])
 def test_every_increment_can_be_cut(torque: str) -> None:
-    """Half of an increment is another scene than its end, and one that nears it."""
+    """Half of an increment is another load state than its end, and one that nears it."""
     design = load_design(DESIGN, [f"load.torque={torque}", "steps.rotation=4", "steps.increment=2"])
     module, travel = design.drive.module, design.deflection
     before = start_state(design)
@@ -27,7 +29,7 @@ def test_every_increment_can_be_cut(torque: str) -> None:
 
 def test_engagement_grows_from_a_clearance() -> None:
     design = load_design(DESIGN, [])
-    deflected, engaged = (scene for scene, _ in zip(load_sequence(design), range(2)))
+    deflected, engaged = itertools.islice(load_sequence(design), 2)
     half = deflected.interpolate(engaged, 0.5, design.drive.module, design.deflection)
     assert half.cam_clearance > 0.0 and half.flank_clearance > 0.0
     assert half.pin_inset == pytest.approx(0.125 * design.deflection)

@@ -1,6 +1,6 @@
 """Exact cam curves of wave generators (section 3.2).
 
-A new cam is a module here with a class that meets `Cam`, its keys in `keys.py` and an entry in `make_cam`.
+To add a cam, see docs/developer/add_a_cam.md.
 """
 
 from __future__ import annotations
@@ -12,19 +12,30 @@ from scipy.spatial import ConvexHull
 
 from swgpar.geometry.cams.elliptical import EllipticalCam
 from swgpar.geometry.cams.four_roller import four_roller
-from swgpar.geometry.cams.keys import Elliptical, FourRoller, Parabolic, Simplified, WaveGenerator
+from swgpar.geometry.cams.keys import (
+    AsymmetricParabolic,
+    Elliptical,
+    FourRoller,
+    Parabolic,
+    Simplified,
+    WaveGenerator,
+)
 from swgpar.geometry.cams.parabolic import Side, parabolic
 from swgpar.geometry.cams.simplified import simplified
 
 
 class Cam(Protocol):
-    """A closed curve, major axis along +y; all lengths in mm."""
+    """A closed curve with two lobes, major axis along +y; all lengths in mm. Half a turn leaves it as it is."""
 
     def evaluate(self, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Signed distance (n,), outward unit normal (n, 2) and k (n,), Hessian = k t t^T, at points (n, 2)."""
 
     def outline(self, n: int) -> np.ndarray:
-        """About n points of the surface (n, 2), mm."""
+        """About n points of the surface (n, 2), mm.
+
+        Checks take the largest of the points: they lie all around the curve, with steps of about the same size.
+        Figures join them: neighbours follow each other, in either direction. Separate parts follow one after the other.
+        """
 
 
 def make_cam(keys: WaveGenerator, a: float, b: float | None = None, name: str = "wave_generator") -> Cam:
@@ -37,7 +48,7 @@ def make_cam(keys: WaveGenerator, a: float, b: float | None = None, name: str = 
     b : mm, minor semi-axis (eq. 3.4); of no use with rollers
     name : of the section, for messages
 
-    Raises InputError where the keys give no closed curve.
+    Raises InputError where the keys give no closed curve, TypeError where they are those of no cam.
     """
     if isinstance(keys, FourRoller):
         return four_roller(a, float(np.radians(keys.beta)), keys.r_4, f"{name}.r_4")
@@ -48,9 +59,11 @@ def make_cam(keys: WaveGenerator, a: float, b: float | None = None, name: str = 
     if isinstance(keys, Parabolic):
         side = Side(keys.a_p, keys.C_p, keys.r_c, name)
         return parabolic(a, b, side, side)
-    right = Side(keys.right.a_p, keys.right.C_p, keys.right.r_c, f"{name}.right")
-    left = Side(keys.left.a_p, keys.left.C_p, keys.left.r_c, f"{name}.left")
-    return parabolic(a, b, right, left, float(np.radians(keys.rotational_angle)))
+    if isinstance(keys, AsymmetricParabolic):
+        right = Side(keys.right.a_p, keys.right.C_p, keys.right.r_c, f"{name}.right")
+        left = Side(keys.left.a_p, keys.left.C_p, keys.left.r_c, f"{name}.left")
+        return parabolic(a, b, right, left, float(np.radians(keys.rotational_angle)))
+    raise TypeError(f"no curve for {type(keys).__name__}")
 
 
 def taut_length(cam: Cam, n: int = 7200) -> float:
