@@ -1,4 +1,4 @@
-"""PhaseTimes of a Newton solve."""
+"""Phases of a Newton solve."""
 
 from __future__ import annotations
 
