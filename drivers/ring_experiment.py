@@ -185,7 +185,6 @@ def main() -> None:
     arguments = options.parse_args()
 
     comm = MPI.COMM_WORLD
-    log.start(comm)
     with agreed(comm, arguments.out):
         if comm.rank == 0:
             arguments.out.mkdir(parents=True, exist_ok=True)
@@ -204,4 +203,5 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    with log.session(MPI.COMM_WORLD):
+        main()

@@ -1,11 +1,12 @@
 """The Python interface: what the command line, drivers and notebooks call. The names are those of `import swgpar`.
 
-Under mpirun every rank calls the same functions with the same arguments; results are the same on all ranks.
+Under mpirun every rank calls the same functions with the same arguments; results are the same on all ranks. An error
+of swgpar is raised on all ranks. Any other error of one rank leaves the others waiting: `mpirun -n 2 python -m mpi4py
+script.py` ends all ranks then.
 """
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -14,17 +15,18 @@ from mpi4py import MPI
 
 from swgpar import log
 from swgpar.design.drive_design import DriveDesign
-from swgpar.errors import InputError, OutputError
+from swgpar.errors import InputError
 from swgpar.input.design import Design
 from swgpar.input.toml_file import Overrides, apply_overrides, read_toml
 from swgpar.meshing import MeshRecipe, build_sector_meshes
 from swgpar.meshing import load_recipe as _load_recipe
 from swgpar.meshing.drive_mesh import DriveMesh
 from swgpar.meshing.recipe import make_recipe
-from swgpar.results.atomic import on_all
+from swgpar.results.atomic import agreed, on_all
 from swgpar.results.figure_set import save_figures
+from swgpar.results.folder import read_summary
 from swgpar.studies import StudyResult, run_study
-from swgpar.systems import Result, System, system_of, system_of_table
+from swgpar.systems import Result, system_of, system_of_table
 
 DesignLike = Design | str | Path | Mapping[str, Any]
 """A design, the path of its file, or the content of one."""
@@ -33,13 +35,14 @@ MeshLike = MeshRecipe | str | Path | Mapping[str, Any]
 """A mesh recipe, its name in the package, the path of its file, or the content of one."""
 
 
-def load_design(design: str | Path | Mapping[str, Any], overrides: Overrides = ()) -> Design:
+def load_design(design: DesignLike, overrides: Overrides = ()) -> Design:
     """Read and check a design.
 
     Parameters
     ----------
-    design : path or mapping
-        A design file (TOML), or its content as a dict of sections: of a drive, or of a gear train.
+    design : path, mapping or design
+        A design file (TOML), or its content as a dict of sections: of a drive, or of a gear train. A design that is
+        loaded already is changed by the overrides only.
     overrides : mapping or sequence of str
         Values for keys, ``{"load.torque": 10.0}`` or ``["load.torque=10.0"]``, in the units of the design file.
 
@@ -59,17 +62,21 @@ def load_design(design: str | Path | Mapping[str, Any], overrides: Overrides = (
     >>> design.drive.teeth_fs
     120
     """
+    if isinstance(design, Design):
+        return design.with_values(overrides) if overrides else design
+    _require("design", design)
     table = dict(design) if isinstance(design, Mapping) else read_toml(design)
     return system_of_table(table).load(apply_overrides(table, overrides))
 
 
-def load_mesh(mesh: str | Path | Mapping[str, Any]) -> MeshRecipe:
+def load_mesh(mesh: MeshLike) -> MeshRecipe:
     """Read and check a mesh recipe: how many elements go where.
 
     Parameters
     ----------
-    mesh : str, path or mapping
+    mesh : str, path, mapping or recipe
         A name (coarse, medium, full; plane_coarse, plane, plane_fine), the path of a recipe (TOML), or its content.
+        A recipe that is loaded already is returned.
 
     Raises
     ------
@@ -81,6 +88,9 @@ def load_mesh(mesh: str | Path | Mapping[str, Any]) -> MeshRecipe:
     >>> swgpar.load_mesh("coarse").cup.cylinder
     10
     """
+    if isinstance(mesh, MeshRecipe):
+        return mesh
+    _require("mesh", mesh)
     return make_recipe(dict(mesh)) if isinstance(mesh, Mapping) else _load_recipe(mesh)
 
 
@@ -100,9 +110,9 @@ def run(
     Parameters
     ----------
     design : design, path or mapping
-        As `load_design` returns or takes it.
+        As `load_design` takes it.
     mesh : recipe, name, path or mapping
-        As `load_mesh` returns or takes it. Gear trains have none.
+        As `load_mesh` takes it. Gear trains have none.
     out : path
         Results folder. Without it the run is in memory and leaves no files.
     accuracy : float
@@ -113,7 +123,7 @@ def run(
     overwrite : bool
         Replace results that `out` already holds.
     progress : bool
-        Report every increment on the terminal; without it, if there is one.
+        Report every increment on the terminal. Default: only on a terminal.
     comm : communicator
         MPI.COMM_WORLD unless given.
 
@@ -139,32 +149,39 @@ def run(
     comm = MPI.COMM_WORLD if comm is None else comm
     checked, recipe = on_all(comm, lambda: _checked(design, mesh, accuracy, restart))
     system = system_of(checked)
-    try:
+    folder = None if out is None else Path(out)
+    terminal = log.console.is_terminal if progress is None else progress
+    with log.session(comm, terminal=terminal):
         result = system.run(
             checked,
             recipe,
-            None if out is None else Path(out),
+            folder,
             recipe_name=str(mesh) if isinstance(mesh, (str, Path)) else "",
             accuracy=accuracy,
             restart=restart,
             overwrite=overwrite,
             comm=comm,
-            terminal=log.console.is_terminal if progress is None else progress,
-            on_increment=_nothing,
+            terminal=terminal,
+            on_increment=lambda: None,
         )
-        if result.folder is not None and checked.output.figures:
-            save_figures(result.plot, result.folder, comm)
-    finally:
-        log.close_file()
+        if folder is not None and checked.output.figures:
+            save_figures(result.plot, folder)
     return result
 
 
-def open_result(folder: str | Path) -> Result:
-    """Read the result of a finished run from its folder.
+def open_result(folder: str | Path, comm: MPI.Comm | None = None) -> Result:
+    """Read the result of a finished run from its folder; collective.
+
+    Parameters
+    ----------
+    folder : path
+    comm : communicator
+        MPI.COMM_WORLD unless given; MPI.COMM_SELF where one rank reads alone.
 
     Returns
     -------
     DriveResult or TrainResult
+        The same on every rank.
 
     Raises
     ------
@@ -175,8 +192,11 @@ def open_result(folder: str | Path) -> Result:
     --------
     >>> swgpar.open_result("results/plane").summary["means"]["fs_s1"]
     """
+    comm = MPI.COMM_WORLD if comm is None else comm
     folder = Path(folder)
-    return _system_of_folder(folder).open(folder)
+    with agreed(comm, folder, "read"):
+        system = system_of_table(read_summary(folder)["design"])
+    return system.open(folder, comm)
 
 
 def study(
@@ -202,7 +222,7 @@ def study(
     overwrite : bool
         Replace a study that `out` already holds.
     progress : bool
-        Report every case on the terminal; without it, if there is one.
+        Report every case on the terminal. Default: only on a terminal.
     comm : communicator
         MPI.COMM_WORLD unless given. Each rank works on cases of its own.
 
@@ -253,14 +273,18 @@ def check(design: DesignLike, overrides: Overrides = ()) -> dict[str, float]:
     >>> swgpar.check("drivers/cup_45deg.toml")["ratio (wave generator / output)"]
     -60.0
     """
-    checked = _design(design, overrides)
+    checked = load_design(design, overrides)
     return system_of(checked).check(checked)
 
 
 def mesh(
-    design: DesignLike, mesh: MeshLike, out: str | Path | None = None, formats: Sequence[str] = ("vtu",)
+    design: DesignLike,
+    mesh: MeshLike,
+    out: str | Path | None = None,
+    formats: Sequence[str] = ("vtu",),
+    comm: MPI.Comm | None = None,
 ) -> DriveMesh:
-    """The mesh of a whole drive.
+    """The mesh of a whole drive; collective when it is written.
 
     Parameters
     ----------
@@ -270,6 +294,8 @@ def mesh(
         Folder into which rank 0 writes the mesh.
     formats : sequence of str
         Files to write: "vtu" (ParaView), "msh" (Gmsh), "inp" (Abaqus, CalculiX).
+    comm : communicator
+        MPI.COMM_WORLD unless given.
 
     Raises
     ------
@@ -282,45 +308,35 @@ def mesh(
     --------
     >>> swgpar.mesh("drivers/cup_45deg.toml", "coarse").quality["ring_gear"]["min_scaled_jacobian"]
     """
-    checked = _design(design)
-    if not isinstance(checked, DriveDesign):
-        raise InputError(f"{system_of(checked).noun} has no mesh: allowed are drives")
-    found = DriveMesh(checked, build_sector_meshes(checked, _recipe(mesh)))
-    if out is not None and MPI.COMM_WORLD.rank == 0:
-        found.write(out, formats)
+    if out is None:
+        return _drive_mesh(design, mesh)
+    comm = MPI.COMM_WORLD if comm is None else comm
+    found = on_all(comm, lambda: _drive_mesh(design, mesh))
+    on_all(comm, lambda: found.write(out, formats) if comm.rank == 0 else None)
     return found
 
 
-def _design(design: DesignLike, overrides: Overrides = ()) -> Design:
-    if not isinstance(design, Design):
-        return load_design(design, overrides)
-    return design.with_values(overrides) if overrides else design
+def _drive_mesh(design: DesignLike, mesh: MeshLike) -> DriveMesh:
+    checked = load_design(design)
+    if not isinstance(checked, DriveDesign):
+        raise InputError(f"{system_of(checked).noun} has no mesh: allowed are drives")
+    return DriveMesh(checked, build_sector_meshes(checked, load_mesh(mesh)))
 
 
-def _recipe(mesh: MeshLike | None) -> MeshRecipe | None:
-    return mesh if mesh is None or isinstance(mesh, MeshRecipe) else load_mesh(mesh)
+def _require(name: str, value: Any) -> None:
+    """Refuse what is neither a path nor the content of a file."""
+    if not isinstance(value, (str, Path, Mapping)):
+        raise InputError(f"{name} is of the type {type(value).__name__}: allowed are a path, a dict or a loaded {name}")
 
 
 def _checked(
     design: DesignLike, mesh: MeshLike | None, accuracy: float | None, restart: bool
 ) -> tuple[Design, MeshRecipe | None]:
     """Design and recipe of a run; refuses options that the design's system does not have."""
-    checked = _design(design)
+    checked = load_design(design)
     system = system_of(checked)
     given = {"mesh": mesh is not None, "accuracy": accuracy is not None, "restart": restart}
     for name in given:
         if given[name] and name not in system.options:
             raise InputError(f"{name} has no meaning for {system.noun}: leave it out")
-    return checked, _recipe(mesh)
-
-
-def _system_of_folder(folder: Path) -> System:
-    try:
-        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-        return system_of_table(summary["design"])
-    except (OSError, ValueError, KeyError, TypeError):
-        raise OutputError(f"{folder} has no summary.json of a finished run") from None
-
-
-def _nothing() -> None:
-    """After an increment."""
+    return checked, None if mesh is None else load_mesh(mesh)

@@ -6,7 +6,8 @@ import argparse
 import difflib
 import sys
 import traceback
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from pathlib import Path
 from typing import NoReturn
 
 from swgpar.errors import InputError, StudyError, SwgparError
@@ -193,40 +194,55 @@ def _study(arguments: argparse.Namespace) -> None:
     found = api.study(
         arguments.study, arguments.out, restart=arguments.restart, overwrite=arguments.overwrite, progress=True
     )
+    folder = Path(arguments.out)
     if MPI.COMM_WORLD.rank == 0:
         print_results(found.results, found.comparisons)
-        for path in sorted([*found.folder.glob("*.csv"), *found.folder.glob("*.html")]):
+        for path in sorted([*folder.glob("*.csv"), *folder.glob("*.html")]):
             console.print(f"written {path}")
     MPI.COMM_WORLD.Barrier()  # mpirun ends all ranks when one of them fails
     if found.failed:
-        reasons = found.folder / "study.csv"
+        reasons = folder / "study.csv"
         raise StudyError(f"{len(found.failed)} of {len(found.results)} runs failed: the reasons are in {reasons}")
 
 
 def _mesh(arguments: argparse.Namespace) -> None:
-    from swgpar import api
+    from mpi4py import MPI
 
-    design = api.load_design(arguments.design, arguments.overrides)
-    mesh = api.mesh(design, arguments.mesh, arguments.out, arguments.format)
+    from swgpar import api
+    from swgpar.results.atomic import on_all
+
+    design = on_all(MPI.COMM_WORLD, lambda: api.load_design(arguments.design, arguments.overrides))
+    mesh = api.mesh(design, arguments.mesh, arguments.out, arguments.format, MPI.COMM_WORLD)
+    lines = []
     for body, values in mesh.quality.items():
-        print(body)
-        for name, value in values.items():
-            print(f"  {name:30s} {value:.6g}")
+        lines += [body, *(f"  {name:30s} {value:.6g}" for name, value in values.items())]
+    _print(lines)
 
 
 def _check(arguments: argparse.Namespace) -> None:
-    from swgpar import api
+    from mpi4py import MPI
 
-    for name, value in api.check(arguments.design, arguments.overrides).items():
-        print(f"{name:40s} {value:.6g}")
+    from swgpar import api
+    from swgpar.results.atomic import on_all
+
+    values = on_all(MPI.COMM_WORLD, lambda: api.check(arguments.design, arguments.overrides))
+    _print(f"{name:40s} {value:.6g}" for name, value in values.items())
 
 
 def _report(arguments: argparse.Namespace) -> None:
     from swgpar import api
 
-    result = api.open_result(arguments.out)
-    for path in result.plot.save(result.folder):
-        print(f"figure {path}")
+    files = api.open_result(arguments.out).plot.save(arguments.out)
+    _print(f"figure {path}" for path in files)
+
+
+def _print(lines: Iterable[str]) -> None:
+    """Print lines, on rank 0 only."""
+    from mpi4py import MPI
+
+    if MPI.COMM_WORLD.rank == 0:
+        for line in lines:
+            print(line)
 
 
 def _check_rest(rest: Sequence[str], petsc: bool) -> None:

@@ -51,40 +51,60 @@ class _RunLog(logging.FileHandler):
         self.setLevel(logging.CRITICAL + 1)
 
 
-def start(comm: MPI.Comm, *, level: int = logging.INFO, terminal: bool = True) -> logging.Logger:
-    """Send the log of rank 0 to the terminal; a further call replaces the earlier choice.
+class _ToRoot(logging.Handler):
+    """Passes records on to the handlers of the root logger; without any, Python shows warnings on stderr."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        logging.getLogger().handle(record)
+
+
+@contextmanager
+def session(comm: MPI.Comm, *, terminal: bool = True, shown: bool = True) -> Iterator[None]:
+    """Log a run inside the `with` block: rank 0 logs, the other ranks are silent. The logger is restored at the end.
+
+    Handlers that a program has attached to the logger "swgpar" stay, and get the log of rank 0.
 
     Parameters
     ----------
     comm : communicator of the run
-    level : smallest level that is shown
-    terminal : False keeps the terminal free; the log then goes into files only
+    terminal : whether rank 0 shows everything on the terminal
+    shown : without `terminal`: whether messages go where those of other libraries go, as far as the levels that the
+        program has set allow: warnings to stderr, if it has set nothing
     """
-    for handler in [h for h in logger.handlers if not isinstance(h, _RunLog)]:
-        logger.removeHandler(handler)
-    logger.propagate = False
-    logger.setLevel(level)
-    if comm.rank != 0:
-        logger.addHandler(logging.NullHandler())
-        logger.setLevel(logging.CRITICAL + 1)
-    elif not terminal:
-        logger.addHandler(logging.NullHandler())
-    elif console.is_terminal:
-        logger.addHandler(
-            RichHandler(
-                console=console,
-                show_path=False,
-                show_level=False,
-                markup=False,
-                log_time_format="%H:%M:%S",
-                omit_repeated_times=False,
-            )
-        )
+    level, propagate, present = logger.level, logger.propagate, logger.handlers
+    handler: logging.Handler = logging.NullHandler()
+    if comm.rank == 0:
+        if terminal:
+            handler = _terminal_handler()
+        elif shown and propagate and (logging.getLogger().handlers or not present):
+            handler = _ToRoot(logger.getEffectiveLevel())
+        logger.setLevel(min(logging.INFO, logger.getEffectiveLevel()))
     else:
-        plain = logging.StreamHandler(sys.stdout)
-        plain.setFormatter(logging.Formatter("%(asctime)s  %(message)s", "%H:%M:%S"))
-        logger.addHandler(plain)
-    return logger
+        logger.setLevel(logging.CRITICAL + 1)
+    logger.propagate = False
+    logger.addHandler(handler)
+    try:
+        yield
+    finally:
+        close_file()
+        logger.removeHandler(handler)
+        logger.propagate = propagate
+        logger.setLevel(level)
+
+
+def _terminal_handler() -> logging.Handler:
+    if console.is_terminal:
+        return RichHandler(
+            console=console,
+            show_path=False,
+            show_level=False,
+            markup=False,
+            log_time_format="%H:%M:%S",
+            omit_repeated_times=False,
+        )
+    plain = logging.StreamHandler(sys.stdout)
+    plain.setFormatter(logging.Formatter("%(asctime)s  %(message)s", "%H:%M:%S"))
+    return plain
 
 
 def to_file(path: Path, comm: MPI.Comm) -> None:

@@ -9,9 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Rectangle
 
+from swgpar import load_design
 from swgpar.gear_trains.cascade.design import PINIONS
 from swgpar.gear_trains.ring.curved_beam import Ring
-from swgpar.gear_trains.train import load_train
 
 WIRE = {"color": INK, "lw": 1.0, "solid_capstyle": "butt"}
 
@@ -90,7 +90,7 @@ def body(ax: Axes, center: Point, radius: float, color: str) -> None:
 
 def gear_pair() -> Figure:
     """Gear pair of drivers/gear_pair.toml, radii to scale; the line of action is vertical."""
-    design = load_train(DRIVERS / "gear_pair.toml")
+    design = load_design(DRIVERS / "gear_pair.toml")
     total = design.gear_1.radius + design.gear_2.radius
     r1, r2, gap = 3.4 * design.gear_1.radius / total, 3.4 * design.gear_2.radius / total, 1.5
     first, second = (0.0, r1 + 0.5 * gap), (r1 + r2, -r2 - 0.5 * gap)
@@ -175,7 +175,7 @@ def cascade() -> Figure:
 
 def ring() -> Figure:
     """Elastic ring of drivers/ring_moving_load.toml: elements, supports, moving loads and displacements."""
-    design = load_train(DRIVERS / "ring_moving_load.toml")
+    design = load_design(DRIVERS / "ring_moving_load.toml")
     elements, supports, loads = design.ring.elements, design.supports.count, design.moving_load.loads
     assert Ring.of(design).size == 3 * elements
     figure, ax = canvas(8.0, 8.0)
@@ -227,7 +227,7 @@ def ring() -> Figure:
 
 def planetary() -> Figure:
     """Planetary train of drivers/planetary.toml, pitch circles to scale."""
-    design = load_train(DRIVERS / "planetary.toml")
+    design = load_design(DRIVERS / "planetary.toml")
     scale = 3.6 / design.ring.root_radius
     sun, planet = 0.5 * scale * design.sun.pitch_diameter, 0.5 * scale * design.planet.pitch_diameter
     rim, centres = scale * design.ring.rim, sun + planet

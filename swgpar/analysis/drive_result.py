@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from mpi4py import MPI
 
 from swgpar.analysis.figures import DriveFigures
 from swgpar.design.sections import GEARS, GearName
-from swgpar.errors import InputError, OutputError
+from swgpar.errors import InputError
 from swgpar.results import history
+from swgpar.results.atomic import agreed
 from swgpar.results.field_sources import BodyMesh, FieldFiles, FieldSource, chosen_increment
+from swgpar.results.fields import INDEX
+from swgpar.results.folder import read_summary
 from swgpar.results.history import Row
 
 if TYPE_CHECKING:
@@ -63,12 +66,17 @@ class DriveResult:
     """
 
     def __init__(
-        self, rows: Sequence[Row], summary: dict[str, Any], fields: FieldSource | None, folder: Path | None = None
+        self,
+        rows: Sequence[Row],
+        summary: dict[str, Any],
+        fields: FieldSource | None,
+        comm: MPI.Comm,
+        folder: Path | None = None,
     ) -> None:
         self.history: dict[str, np.ndarray] = history.columns(rows)
         self.summary = summary
         self.folder = folder
-        self._fields = fields
+        self._fields, self._comm = fields, comm
 
     def __repr__(self) -> str:
         where = f" in {self.folder}" if self.folder else ""
@@ -80,11 +88,6 @@ class DriveResult:
         return len(self._fields.increments) if self._fields is not None else 0
 
     @property
-    def field_rows(self) -> np.ndarray:
-        """Rows of the history that the increments with fields belong to; (increments,)."""
-        return np.array(self._fields.increments if self._fields is not None else [], dtype=np.int64) - 1
-
-    @property
     def is_plane(self) -> bool:
         """Whether the drive is a plane model."""
         return self.summary["design"]["drive"]["model"] == "plane"
@@ -92,7 +95,7 @@ class DriveResult:
     @property
     def plot(self) -> DriveFigures:
         """The figures: ``plot.stress()`` and so on return matplotlib figures, ``plot.names`` lists them."""
-        return DriveFigures(self)
+        return DriveFigures(self, self._comm, gathered=self._fields is not None and self._fields.gathered)
 
     def mesh(self, body: GearName = SPLINE) -> BodyMesh:
         """Undeformed mesh of the modelled part of a body.
@@ -222,11 +225,16 @@ def _rotated(
     return points * np.array(ROTATED["displacement"]), cells, signed
 
 
-def open_drive(folder: Path) -> DriveResult:
-    """Result of a finished run from its folder; every rank reads the files."""
-    for name in (history.NAME, "summary.json"):
-        if not (folder / name).exists():
-            raise OutputError(f"{folder} has no {name} of a finished run")
-    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    fields = FieldFiles(folder) if (folder / "fields.h5").exists() else None
-    return DriveResult(history.read_history(folder / history.NAME), summary, fields, folder)
+def open_drive(folder: Path, comm: MPI.Comm) -> DriveResult:
+    """Result of a finished run from its folder; collective, every rank reads the files."""
+    folder = folder.absolute()  # the fields are read later
+    with agreed(comm, folder, "read"):
+        summary, rows = read_summary(folder), history.read_history(folder / history.NAME)
+    return DriveResult(rows, summary, open_fields(folder, comm), comm, folder)
+
+
+def open_fields(folder: Path, comm: MPI.Comm) -> FieldFiles | None:
+    """Fields in a results folder, None without any; collective."""
+    present = comm.bcast((folder / INDEX).exists() if comm.rank == 0 else None)
+    with agreed(comm, folder / INDEX, "read"):
+        return FieldFiles(folder) if present else None

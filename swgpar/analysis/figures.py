@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
+from mpi4py import MPI
 
 from swgpar.design.sections import GEARS
 from swgpar.results.figure_set import Drawings, FigureSet
@@ -43,12 +44,13 @@ VON_MISES = "von Mises stress (MPa)"
 class DriveFigures(FigureSet):
     """Figures of a drive: each method draws one and returns a matplotlib figure.
 
-    `save` writes all of them; every rank calls a method whose figure shows fields.
+    `save` writes all of them. Every rank calls it, and the methods whose figures show fields.
     """
 
     exact_size = ("deformed_drive",)
 
-    def __init__(self, result: DriveResult) -> None:
+    def __init__(self, result: DriveResult, comm: MPI.Comm, *, gathered: bool) -> None:
+        super().__init__(comm, gathered=gathered)
         self._result = result
 
     @property
@@ -139,10 +141,10 @@ class DriveFigures(FigureSet):
         plane = self._result.is_plane
         factor = magnification if magnification is not None else 1.0 if plane else MAGNIFICATION
         limit = float(np.percentile(self._result.field("vm", increment), 99.9))
-        pyvista.OFF_SCREEN = True
+        grids = [self._result.grid(increment, body, whole=True) for body in GEARS]
+        pyvista.OFF_SCREEN = True  # from here on nothing is gathered: a rank may fail alone
         plotter = pyvista.Plotter(off_screen=True, window_size=(1400, 1100))
-        for body in GEARS:
-            grid = self._result.grid(increment, body, whole=True)
+        for grid in grids:
             grid.points = grid.points + factor * grid.point_data["displacement"]
             grid.point_data[VON_MISES] = grid.point_data["vm"]
             plotter.add_mesh(

@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from mpi4py import MPI
 
 from swgpar.analysis.coarse_start import LoadedState
 from swgpar.analysis.contact_pressure import nodal_pressure
 from swgpar.analysis.drive_model import DriveModel
-from swgpar.analysis.drive_result import DriveResult, open_drive
+from swgpar.analysis.drive_result import DriveResult, open_fields
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.restart import write_state
 from swgpar.analysis.summary import Accuracy
@@ -23,6 +24,7 @@ from swgpar.results import history
 from swgpar.results.atomic import to_json, write_from_root
 from swgpar.results.field_sources import BodyPart, FieldParts, FlankGrids
 from swgpar.results.fields import FieldWriter
+from swgpar.results.folder import SUMMARY
 from swgpar.results.history import Row
 
 NodalFields = dict[str, dict[str, np.ndarray]]
@@ -103,8 +105,7 @@ class MemoryRecorder(Recorder):
             self._parts.keep(len(self.rows), fields)
 
     def finish(self, rows: list[Row], summary: dict[str, Any]) -> DriveResult:
-        summary, rows = self.comm.bcast((json.loads(to_json(summary)), rows))
-        return DriveResult(rows, summary, self._parts)
+        return DriveResult(*_shared(rows, summary, self.comm), self._parts, self.comm)
 
 
 class FolderRecorder(Recorder):
@@ -162,8 +163,14 @@ class FolderRecorder(Recorder):
     def finish(self, rows: list[Row], summary: dict[str, Any]) -> DriveResult:
         if len(rows) > len(self.rows):
             write_from_root(self.comm, self.out / history.NAME, history.format_rows(rows))
-        write_from_root(self.comm, self.out / "summary.json", to_json(summary))
-        return open_drive(self.out)
+        write_from_root(self.comm, self.out / SUMMARY, to_json(summary))
+        folder = self.out.absolute()  # the fields are read later
+        return DriveResult(*_shared(rows, summary, self.comm), open_fields(folder, self.comm), self.comm, folder)
+
+
+def _shared(rows: list[Row], summary: dict[str, Any], comm: MPI.Comm) -> tuple[list[Row], dict[str, Any]]:
+    """History and summary of rank 0 on every rank, as files hold them; collective."""
+    return comm.bcast((rows, json.loads(to_json(summary))) if comm.rank == 0 else None)
 
 
 def _flank_grids(mesh: SectorMesh) -> FlankGrids:

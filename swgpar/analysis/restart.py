@@ -78,7 +78,7 @@ def resume(recorder: FolderRecorder, stepper: LoadStepper, items: list[LoadState
     _, state = checkpoint.read_checkpoint(path, model.comm)
     if state.get("identity") != recorder.identity:
         raise InputError(
-            f"--restart: {path} belongs to another design, recipe, --accuracy or solver setting; allowed are the "
+            f"restart: {path} belongs to another design, recipe, accuracy or solver setting; allowed are the "
             "same ones, only steps.rotation, the output, solver.linear, keep_factor and far_teeth may differ"
         )
     last = _last_state(path, state)
@@ -86,7 +86,7 @@ def resume(recorder: FolderRecorder, stepper: LoadStepper, items: list[LoadState
         items = from_loaded(items)
     if state["done"] > len(items) or items[state["done"] - 1] != last:
         raise InputError(
-            f"--restart: steps.rotation = {model.design.steps.rotation:g} does not continue {path}, which "
+            f"restart: steps.rotation = {model.design.steps.rotation:g} does not continue {path}, which "
             f"ends at {np.degrees(last.angle):g} degrees; allowed are values with this angle among their increments"
         )
     _restore_vector(recorder, state)
@@ -104,7 +104,7 @@ def _last_state(path: Path, state: dict[str, Any]) -> LoadState:
     try:
         return LoadState.from_dict(state["load_state"])
     except (KeyError, TypeError):
-        raise InputError(f"--restart: {path} was written by another version of swgpar: start again") from None
+        raise InputError(f"restart: {path} was written by another version of swgpar: start again") from None
 
 
 def _restore_vector(recorder: FolderRecorder, state: dict[str, Any]) -> None:

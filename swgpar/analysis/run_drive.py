@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 from mpi4py import MPI
 
-from swgpar import log
 from swgpar.analysis.coarse_start import LoadedState, levels, start_loaded
 from swgpar.analysis.drive_model import DriveModel, build_drive_model
 from swgpar.analysis.drive_result import DriveResult
@@ -52,7 +51,7 @@ def run_drive(
     overwrite : replace results that the folder already holds
     recipe_name : name of the recipe in the summary
     accuracy : estimated relative error of the largest tensile stress up to which `recipe` is refined (`choose_mesh`)
-    terminal : whether rank 0 reports on the terminal
+    terminal : whether rank 0 shows a progress bar on its terminal
     on_increment : called after every increment
 
     Raises
@@ -72,7 +71,6 @@ def run_drive(
     if folder is not None:
         require_parallel(comm)
         resumed = prepare(folder, comm, restart, overwrite)
-    log.start(comm, terminal=terminal)
     open_log(folder, comm)
     chosen = None
     if accuracy is not None:
@@ -89,7 +87,7 @@ def run_drive(
         run.go_through(items, terminal)
         result = run.finish(recipe_name)
     except SwgparError as error:
-        model.destroy()  # collective: not after an error that perhaps this rank alone has met
+        model.destroy()  # collective: all ranks have this error, but perhaps not one of another kind
         if isinstance(error, ConvergenceError) and recorder.rows and folder is not None:
             raise ConvergenceError(f"{error}; {len(recorder.rows)} increments are saved in {folder}") from None
         raise

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,11 +11,10 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.errors import OutputError
 from swgpar.results import history
 from swgpar.results.atomic import agreed, to_json, write_from_root
 from swgpar.results.figure_set import NamedFigures
-from swgpar.results.folder import TABLES
+from swgpar.results.folder import SUMMARY, TABLES, read_summary
 from swgpar.results.table import format_columns, format_csv, read_columns
 
 Table = Mapping[str, np.ndarray]
@@ -52,7 +50,7 @@ class TrainResult:
     summary: dict[str, Any] = field(default_factory=dict)
     compared: list[dict[str, Any]] = field(default_factory=list)
     folder: Path | None = None
-    plot: NamedFigures = field(default_factory=lambda: NamedFigures({}), repr=False)
+    plot: NamedFigures = field(default_factory=lambda: NamedFigures({}, MPI.COMM_SELF), repr=False)
 
 
 def write(result: TrainResult, out: Path, comm: MPI.Comm) -> None:
@@ -65,15 +63,12 @@ def write(result: TrainResult, out: Path, comm: MPI.Comm) -> None:
     if result.compared:
         write_from_root(comm, out / PUBLISHED, format_csv(result.compared))
     write_from_root(comm, out / history.NAME, format_columns(result.history))
-    write_from_root(comm, out / "summary.json", to_json(result.summary))
+    write_from_root(comm, out / SUMMARY, to_json(result.summary))
 
 
 def read(out: Path) -> TrainResult:
     """Result of a finished run from its folder, without figures; every rank reads the files."""
-    for name in (history.NAME, "summary.json"):
-        if not (out / name).exists():
-            raise OutputError(f"{out} has no {name} of a finished run")
-    summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
+    summary = read_summary(out)
     tables = {path.stem: read_columns(path) for path in sorted((out / TABLES).glob("*.csv"))}
     compared = _read_compared(out / PUBLISHED) if (out / PUBLISHED).exists() else []
     return TrainResult(read_columns(out / history.NAME), tables, summary["quantities"], summary, compared, out)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import platform
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
@@ -14,15 +14,15 @@ import numpy as np
 import scipy
 from mpi4py import MPI
 
-from swgpar import log
 from swgpar.errors import InputError
 from swgpar.gear_trains import cascade, gear_pair, planetary, ring
 from swgpar.gear_trains.common_sections import TrainDesign
 from swgpar.gear_trains.published import Quantities, check_published, compare
 from swgpar.gear_trains.result import TrainResult, read, write
 from swgpar.input.quantities import show
-from swgpar.input.toml_file import apply_overrides, read_toml, validate
+from swgpar.input.toml_file import validate
 from swgpar.log import logger
+from swgpar.results.atomic import agreed
 from swgpar.results.figure_set import Drawings, NamedFigures
 from swgpar.results.folder import open_log, prepare
 from swgpar.version import __version__
@@ -60,11 +60,6 @@ MODELS = {
 }
 
 
-def load_train(path: str | Path, overrides: Sequence[str] = ()) -> TrainDesign:
-    """Read and check the design file of a gear train; every problem is an `InputError` of one sentence."""
-    return make_train(apply_overrides(read_toml(path), overrides))
-
-
 def make_train(table: dict[str, Any]) -> TrainDesign:
     """A checked design from the content of its file; every problem is an `InputError` of one sentence."""
     section = table.get(SECTION)
@@ -92,7 +87,6 @@ def run_train(
     *,
     overwrite: bool = False,
     comm: MPI.Comm = MPI.COMM_WORLD,
-    terminal: bool = False,
 ) -> TrainResult:
     """Compute a gear train; collective.
 
@@ -100,7 +94,6 @@ def run_train(
     ----------
     out : results folder; None keeps everything in memory
     overwrite : replace results that the folder already holds
-    terminal : whether rank 0 reports on the terminal
 
     Raises
     ------
@@ -110,7 +103,6 @@ def run_train(
     folder, begin, model = None if out is None else Path(out), time.perf_counter(), model_of(design)
     if folder is not None:
         prepare(folder, comm, False, overwrite)
-    log.start(comm, terminal=terminal)
     open_log(folder, comm)
     computed = model.compute(design, comm)
     seconds = comm.bcast(time.perf_counter() - begin)
@@ -125,22 +117,24 @@ def run_train(
             "design": design.model_dump(),
         },
         compared=compare(design.published, computed.quantities, model.quantities(design)),
-        folder=folder,
+        folder=None if folder is None else folder.absolute(),
     )
     if folder is not None:
         write(result, folder, comm)
     logger.info("finished in %.1f s on %d ranks", seconds, comm.size)
-    return _with_figures(result)
+    return _with_figures(result, comm)
 
 
-def open_train(folder: Path) -> TrainResult:
-    """Result of a finished run from its folder; every rank reads the files."""
-    return _with_figures(read(folder))
+def open_train(folder: Path, comm: MPI.Comm) -> TrainResult:
+    """Result of a finished run from its folder; collective, every rank reads the files."""
+    with agreed(comm, folder, "read"):
+        result = read(folder.absolute())
+    return _with_figures(result, comm)
 
 
-def _with_figures(result: TrainResult) -> TrainResult:
+def _with_figures(result: TrainResult, comm: MPI.Comm) -> TrainResult:
     model = MODELS[result.summary["design"][SECTION]["model"]]
-    return replace(result, plot=NamedFigures(model.drawings(result)))
+    return replace(result, plot=NamedFigures(model.drawings(result), comm))
 
 
 def _versions() -> dict[str, str]:

@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.errors import InputError, OutputError
+from swgpar.errors import OutputError, SwgparError
 
 T = TypeVar("T")
 
@@ -36,34 +36,42 @@ def first_reason(comm: MPI.Comm, reason: str | None) -> str | None:
     return next((r for r in comm.allgather(reason) if r is not None), None)
 
 
-def on_all(comm: MPI.Comm, read: Callable[[], T]) -> T:
-    """What `read` returns. If one rank cannot read it, InputError is raised on all ranks, so that none waits."""
-    value, reason = None, None
+def raise_first(comm: MPI.Comm, error: SwgparError | None) -> None:
+    """Raise on all ranks the error of the first rank that has one; collective."""
+    found = next((e for e in comm.allgather(error) if e is not None), None)
+    if found is not None:
+        raise found from None
+
+
+def on_all(comm: MPI.Comm, task: Callable[[], T]) -> T:
+    """What `task` returns; collective. If it fails on one rank, the error is raised on all, so that none waits.
+
+    `task` must not contain collective calls after a statement that can fail on one rank only.
+    """
+    value, failure = None, None
     try:
-        value = read()
-    except InputError as error:
-        reason = str(error)
-    reason = first_reason(comm, reason)
-    if reason is not None:
-        raise InputError(reason)
+        value = task()
+    except SwgparError as error:
+        failure = error
+    raise_first(comm, failure)
     return value
 
 
 @contextmanager
 def agreed(comm: MPI.Comm, path: Path, action: str = "write") -> Iterator[None]:
-    """Run a block in which a rank may fail alone, and raise OutputError on all ranks if one did.
+    """Run a block in which a rank may fail alone, and raise the error, or OutputError, on all ranks if one did.
 
     The block must not contain collective calls after a statement that can fail on one rank only.
     It is collective itself: every rank enters and leaves it.
     """
-    reason = None
+    failure: SwgparError | None = None
     try:
         yield
+    except SwgparError as error:
+        failure = error
     except (OSError, RuntimeError, ValueError, KeyError) as error:
-        reason = sentence(error)
-    reason = first_reason(comm, reason)
-    if reason is not None:
-        raise OutputError(f"cannot {action} {path}: {reason}")
+        failure = OutputError(f"cannot {action} {path}: {sentence(error)}")
+    raise_first(comm, failure)
 
 
 def reserve(path: Path, size: int) -> None:

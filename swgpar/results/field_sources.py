@@ -12,7 +12,7 @@ from mpi4py import MPI
 
 from swgpar.errors import InputError, OutputError
 from swgpar.results.atomic import sentence
-from swgpar.results.fields import FOLDER, MESH, increment_name, stored
+from swgpar.results.fields import FOLDER, INDEX, MESH, increment_name, stored
 from swgpar.results.parallel_hdf5 import h5py
 
 
@@ -40,7 +40,14 @@ class FlankGrids(NamedTuple):
 
 
 class FieldSource(Protocol):
-    """Mesh and nodal fields of a run, whole and the same on every rank; every call is collective."""
+    """Mesh and nodal fields of a run, whole and the same on every rank; every call is collective.
+
+    Attributes
+    ----------
+    gathered : whether the ranks hold the fields together; else each can read them alone
+    """
+
+    gathered: bool
 
     @property
     def increments(self) -> Sequence[int]:
@@ -62,9 +69,11 @@ class FieldSource(Protocol):
 class FieldFiles:
     """Fields in the files of a results folder."""
 
+    gathered = False
+
     def __init__(self, folder: Path) -> None:
         self._folder = folder / FOLDER
-        with h5py.File(folder / "fields.h5", "r") as file:
+        with h5py.File(folder / INDEX, "r") as file:
             parts = [name for name in file if name != MESH]
         self.increments = sorted(int(name.rpartition("_")[2]) for name in parts)
 
@@ -112,6 +121,8 @@ class BodyPart:
 
 class FieldParts:
     """Fields in memory: every rank keeps those of the sectors it owns; they are gathered when they are read."""
+
+    gathered = True
 
     def __init__(self, comm: MPI.Comm, bodies: Mapping[str, BodyPart]) -> None:
         self._comm, self._bodies = comm, bodies

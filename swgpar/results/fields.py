@@ -18,6 +18,9 @@ from swgpar.results import parallel_hdf5
 from swgpar.results.atomic import TEMPORARY, agreed, discard, finish, write_from_root
 from swgpar.results.parallel_hdf5 import Block, h5py
 
+INDEX = "fields.h5"
+"""Links to the mesh and to the fields of all increments."""
+
 FOLDER = "fields"
 MESH = "mesh"
 
@@ -95,7 +98,7 @@ class FieldWriter:
 
     def write_index(self, increments: Sequence[tuple[int, float]], names: Mapping[str, Mapping[str, int]]) -> None:
         """Rewrite fields.h5 and fields.xdmf: increments (index, cam angle), body -> field -> components."""
-        path = self.out / "fields.h5"
+        path = self.out / INDEX
         with agreed(self.comm, path):
             if self.comm.rank == 0:
                 temporary = path.with_name(path.name + TEMPORARY)

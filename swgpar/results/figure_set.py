@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING
 
 from mpi4py import MPI
 
+from swgpar.errors import OutputError, SwgparError
 from swgpar.log import logger
+from swgpar.results.atomic import agreed, raise_first, sentence
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,7 +26,16 @@ Drawings = Mapping[str, "Callable[[], Figure]"]
 
 
 class FigureSet(ABC):
-    """The figures of one result."""
+    """The figures of one result.
+
+    Parameters
+    ----------
+    comm : communicator of the result
+    gathered : whether figures show fields that are gathered from all ranks, so that all have to draw
+    """
+
+    def __init__(self, comm: MPI.Comm, *, gathered: bool = False) -> None:
+        self._comm, self._gathered = comm, gathered
 
     @property
     @abstractmethod
@@ -37,16 +48,29 @@ class FigureSet(ABC):
         return tuple(self.drawings)
 
     def save(self, folder: str | Path) -> list[Path]:
-        """Write every figure as ``folder``/figures/NAME.png and return the files; call it on one rank."""
-        figures = Path(folder) / FOLDER
-        figures.mkdir(parents=True, exist_ok=True)
-        written = []
-        for name, draw in self.drawings.items():
-            path = figures / f"{name}.png"
-            figure = draw()
-            figure.savefig(path, dpi=figure.dpi if name in self.exact_size else DOTS_PER_INCH)
-            written.append(path)
-        return written
+        """Write every figure as ``folder``/figures/NAME.png and return the files; collective, rank 0 writes.
+
+        Raises
+        ------
+        OutputError
+            A figure cannot be drawn or written; on all ranks.
+        """
+        figures, root = Path(folder) / FOLDER, self._comm.rank == 0
+        with agreed(self._comm, figures):
+            if root:
+                figures.mkdir(parents=True, exist_ok=True)
+        paths = {name: figures / f"{name}.png" for name in self.drawings}
+        for name, path in paths.items():
+            failure: SwgparError | None = None
+            try:
+                if root or self._gathered:
+                    figure = self.drawings[name]()
+                if root:
+                    figure.savefig(path, dpi=figure.dpi if name in self.exact_size else DOTS_PER_INCH)
+            except Exception as error:  # whatever a drawing library raises
+                failure = OutputError(f"cannot draw {path}: {sentence(error)}")
+            raise_first(self._comm, failure)
+        return list(paths.values())
 
     exact_size: tuple[str, ...] = ()
     """Figures that show a picture and are written pixel by pixel."""
@@ -55,7 +79,8 @@ class FigureSet(ABC):
 class NamedFigures(FigureSet):
     """Figures whose names follow from the result: ``plot.NAME()`` draws one, ``plot.names`` lists them."""
 
-    def __init__(self, drawings: Drawings) -> None:
+    def __init__(self, drawings: Drawings, comm: MPI.Comm) -> None:
+        super().__init__(comm)
         self._drawings = drawings
 
     @property
@@ -71,12 +96,10 @@ class NamedFigures(FigureSet):
         return [*super().__dir__(), *self._drawings]
 
 
-def save_figures(figures: FigureSet, folder: Path, comm: MPI.Comm) -> None:
-    """Write the figures of a finished run, on rank 0; a figure that fails must not cost the run. Collective."""
-    if comm.rank == 0:
-        try:
-            for path in figures.save(folder):
-                logger.info("figure %s", path)
-        except Exception as error:
-            logger.warning("figures could not be drawn: %s", error)
-    comm.Barrier()
+def save_figures(figures: FigureSet, folder: Path) -> None:
+    """Write the figures of a finished run; a figure that fails must not cost the run. Collective."""
+    try:
+        for path in figures.save(folder):
+            logger.info("figure %s", path)
+    except SwgparError as error:
+        logger.warning("figures are missing: %s", error)

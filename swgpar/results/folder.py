@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
+from typing import Any
 
 from mpi4py import MPI
 
 from swgpar import log
 from swgpar.errors import OutputError
 from swgpar.results import checkpoint, history
-from swgpar.results.atomic import TEMPORARY, agreed, discard, write_file
-from swgpar.results.fields import FOLDER
+from swgpar.results.atomic import TEMPORARY, agreed, discard, sentence, write_file
+from swgpar.results.fields import FOLDER, INDEX
 
 RECIPE = "recipe.toml"
 """The mesh recipe that was chosen for an accuracy."""
@@ -18,18 +20,21 @@ RECIPE = "recipe.toml"
 TABLES = "tables"
 """Folder of the tables that a gear train adds to its history."""
 
+SUMMARY = "summary.json"
+"""Written last: a folder that has it is that of a finished run."""
+
 LOG = "run.log"
 """The log of the run."""
 
 RESULTS = (
     history.NAME,
     checkpoint.NAME,
-    "summary.json",
+    SUMMARY,
     "published.csv",
     RECIPE,
     f"{TABLES}/*.csv",
     "fields.xdmf",
-    "fields.h5",
+    INDEX,
     f"{FOLDER}/*.h5",
     "figures/*.png",
     LOG,
@@ -63,8 +68,8 @@ def prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> bool:
     saved = comm.bcast((out / checkpoint.NAME).exists() if comm.rank == 0 else None)
     if present and not restart and not overwrite:
         raise OutputError(
-            f"{out} already holds results: continue them with --restart, replace them with --overwrite, "
-            "or choose another --out"
+            f"{out} already holds results: continue them with restart = true (--restart), replace them with "
+            "overwrite = true (--overwrite), or choose another folder"
         )
     if overwrite and not restart:
         with agreed(comm, out):
@@ -73,3 +78,14 @@ def prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> bool:
                     for old in out.glob(pattern):
                         old.unlink()
     return restart and saved
+
+
+def read_summary(folder: Path) -> dict[str, Any]:
+    """Content of summary.json of a finished run; raises OutputError where there is none."""
+    for name in (SUMMARY, history.NAME):
+        if not (folder / name).exists():
+            raise OutputError(f"{folder} has no {name} of a finished run")
+    try:
+        return json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise OutputError(f"cannot read {folder / SUMMARY}: {sentence(error)}") from None

@@ -71,7 +71,7 @@ class Case:
     meshes: tuple[Path, ...]
     compared: int
     section: CaseSection
-    system: System
+    system: System[Any, Any]
 
 
 @dataclass(frozen=True)
@@ -108,7 +108,7 @@ def named(name: str, known: Mapping[str, Quantity]) -> list[str]:
     return [key for key in known if key == name or key.startswith(f"{name}[")]
 
 
-def not_known(where: str, known: Mapping[str, Quantity], system: System, name: str) -> InputError:
+def not_known(where: str, known: Mapping[str, Quantity], system: System[Any, Any], name: str) -> InputError:
     """The refusal of a name that is no quantity, with the one most likely meant. where : text in front of the name"""
     if new_name := system.current_name(name, known):
         return InputError(f"{where}{name} is not available: this quantity is named {new_name}")

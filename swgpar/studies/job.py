@@ -89,7 +89,7 @@ def _earlier(
     same = old.get("identity", record["identity"]) == record["identity"]
     if restart and old.get("status") == "finished":
         if not same:
-            reason = f"{folder} holds results of another design: rename the case, or --overwrite"
+            reason = f"{folder} holds results of another design: rename the case, or overwrite = true (--overwrite)"
             return Outcome("failed", reason), same
         complete = comm.bcast((folder / "summary.json").exists() if comm.rank == 0 else None)
         if complete and all(old.get(key) == value for key, value in record.items()):
@@ -125,7 +125,7 @@ def _compute(
         on_increment=on_increment,
     )
     if folder is not None and job.case.design.output.figures:
-        save_figures(result.plot, folder, comm)
+        save_figures(result.plot, folder)
     return Outcome.finished(system.measure(result))
 
 
@@ -144,7 +144,7 @@ def _kept(job: Job, folder: Path, comm: MPI.Comm) -> Outcome:
     with agreed(comm, folder / "summary.json", "read"):
         if comm.rank == 0:
             system = job.case.system
-            outcome = Outcome.finished(system.measure(system.open(folder)), kept=True)
+            outcome = Outcome.finished(system.measure(system.open(folder, MPI.COMM_SELF)), kept=True)
     return comm.bcast(outcome)
 
 

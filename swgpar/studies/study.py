@@ -141,7 +141,6 @@ def run_study(
     """
     folder = None if out is None else Path(out)
     study, jobs = _read(source, comm)
-    log.start(MPI.COMM_SELF if study.section.parallel == "cases" else comm, terminal=False)
     statuses: list[str | None] | None = [None] * len(jobs)
     if folder is not None:
         _prepare(folder, comm, restart, overwrite)
@@ -150,10 +149,12 @@ def run_study(
     elif restart:
         raise InputError("restart = true needs the folder of the study: a study in memory leaves nothing to continue")
     order = queue(jobs, comm.bcast(statuses))
-    results = _run_all(study, jobs, order, partial(_run_one, jobs, folder, restart, overwrite), folder, terminal, comm)
+    run = partial(_run_one, jobs, folder, restart, overwrite)
+    with log.session(MPI.COMM_SELF if study.section.parallel == "cases" else comm, shown=False):
+        results = _run_all(study, jobs, order, run, folder, terminal, comm)
     if folder is not None:
         _write(study, results, folder, comm)
-    return StudyResult(results, folder)
+    return StudyResult(results, None if folder is None else folder.absolute())
 
 
 def _run_all(
@@ -194,8 +195,8 @@ def _prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> None:
     present = comm.bcast((out / "cases").exists() if comm.rank == 0 else None)
     if present and not restart and not overwrite:
         raise OutputError(
-            f"{out} already holds a study: continue it with --restart, replace it with --overwrite, "
-            "or choose another --out"
+            f"{out} already holds a study: continue it with restart = true (--restart), replace it with "
+            "overwrite = true (--overwrite), or choose another folder"
         )
     with agreed(comm, out):
         if comm.rank == 0:

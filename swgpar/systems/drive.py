@@ -13,6 +13,7 @@ from swgpar.analysis.drive_result import DriveResult, open_drive
 from swgpar.analysis.restart import identity
 from swgpar.analysis.run_drive import run_drive
 from swgpar.analysis.summary import MEANS
+from swgpar.analysis.terminal import print_drive
 from swgpar.design.derived_geometry import derived_geometry
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import Stage, load_sequence
@@ -20,7 +21,6 @@ from swgpar.errors import InputError
 from swgpar.input.toml_file import apply_overrides
 from swgpar.meshing import MeshRecipe
 from swgpar.results.history import UNITS
-from swgpar.results.terminal import print_drive
 from swgpar.systems.protocol import Measured, Quantity, System
 
 MAIN = ("fs_s1", "fs_s3", "fs_vm", "rg_vm", "wg_torque_Nmm")
@@ -44,7 +44,7 @@ GROUPS = range(Stage.DEFLECT, Stage.ROTATE + 1)
 """Steps with quantities of their own; all increments of the rotation count as the last one."""
 
 
-class Drives(System):
+class Drives(System[DriveDesign, DriveResult]):
     """The drive's adapter: analysis, results and quantities under the names that all systems share."""
 
     noun = "a drive"
@@ -87,8 +87,8 @@ class Drives(System):
             on_increment=on_increment,
         )
 
-    def open(self, folder: Path) -> DriveResult:
-        return open_drive(folder)
+    def open(self, folder: Path, comm: MPI.Comm) -> DriveResult:
+        return open_drive(folder, comm)
 
     def print(self, result: DriveResult) -> None:
         print_drive(result.history, result.summary)

@@ -22,7 +22,7 @@ from swgpar.results.atomic import to_json
 from swgpar.systems.protocol import Measured, Quantity, System
 
 
-class GearTrains(System):
+class GearTrains(System[TrainDesign, TrainResult]):
     """The gear trains' adapter: their runs, results and quantities under the names that all systems share."""
 
     noun = "a gear train"
@@ -50,10 +50,10 @@ class GearTrains(System):
         terminal: bool,
         on_increment: Callable[[], None],
     ) -> TrainResult:
-        return run_train(design, out, overwrite=overwrite, comm=comm, terminal=terminal)
+        return run_train(design, out, overwrite=overwrite, comm=comm)
 
-    def open(self, folder: Path) -> TrainResult:
-        return open_train(folder)
+    def open(self, folder: Path, comm: MPI.Comm) -> TrainResult:
+        return open_train(folder, comm)
 
     def print(self, result: TrainResult) -> None:
         print_compared(result.compared)

@@ -6,11 +6,12 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 from mpi4py import MPI
 
+from swgpar.input.design import Design
 from swgpar.meshing import MeshRecipe
 from swgpar.results.figure_set import FigureSet
 
@@ -59,8 +60,12 @@ class Measured:
     history: Mapping[str, np.ndarray] = field(default_factory=dict)
 
 
-class System(ABC):
-    """A kind of systems: its design files, runs and results. Designs are those of its own `design_type`.
+D = TypeVar("D", bound=Design)
+R = TypeVar("R", bound=Result)
+
+
+class System(ABC, Generic[D, R]):
+    """A kind of systems: its design files, runs and results. D is the class of its designs, R that of its results.
 
     Attributes
     ----------
@@ -72,21 +77,21 @@ class System(ABC):
 
     noun: str
     section: str
-    design_type: type
+    design_type: type[D]
     options: frozenset[str]
 
     @abstractmethod
-    def load(self, table: dict[str, Any]) -> Any:
+    def load(self, table: dict[str, Any]) -> D:
         """A checked design from the content of its file; every problem is an InputError of one sentence."""
 
     @abstractmethod
-    def check(self, design: Any) -> dict[str, float]:
+    def check(self, design: D) -> dict[str, float]:
         """What follows from a design at once; the names have units."""
 
     @abstractmethod
     def run(
         self,
-        design: Any,
+        design: D,
         recipe: MeshRecipe | None,
         out: Path | None,
         *,
@@ -97,15 +102,15 @@ class System(ABC):
         comm: MPI.Comm,
         terminal: bool,
         on_increment: Callable[[], None],
-    ) -> Result:
+    ) -> R:
         """Run a design, in memory without a folder `out`; collective. Options are those of `options`."""
 
     @abstractmethod
-    def open(self, folder: Path) -> Result:
-        """Result of a finished run from its folder; every rank reads the files."""
+    def open(self, folder: Path, comm: MPI.Comm) -> R:
+        """Result of a finished run from its folder; collective, every rank reads the files."""
 
     @abstractmethod
-    def print(self, result: Result) -> None:
+    def print(self, result: R) -> None:
         """Show a result on the terminal; call it on one rank."""
 
     # what studies need
@@ -115,7 +120,7 @@ class System(ABC):
         """The content of a design file without what the many runs of a study should not write."""
 
     @abstractmethod
-    def quantities(self, design: Any) -> dict[str, Quantity]:
+    def quantities(self, design: D) -> dict[str, Quantity]:
         """What a run of the design gives, by name."""
 
     @abstractmethod
@@ -131,21 +136,21 @@ class System(ABC):
         return None
 
     @abstractmethod
-    def check_published(self, design: Any, names: Iterable[str]) -> None:
+    def check_published(self, design: D, names: Iterable[str]) -> None:
         """Refuse published quantities that a run of this design leaves out, with an InputError."""
 
     @abstractmethod
-    def increments(self, design: Any) -> int:
+    def increments(self, design: D) -> int:
         """Increments of the whole run."""
 
     @abstractmethod
-    def dimensions(self, design: Any) -> int:
+    def dimensions(self, design: D) -> int:
         """Dimensions of the mesh: 2 or 3; 0 without one."""
 
     @abstractmethod
-    def identity(self, design: Any, recipe: MeshRecipe | None) -> dict[str, Any]:
+    def identity(self, design: D, recipe: MeshRecipe | None) -> dict[str, Any]:
         """What is computed, for restarts: "identity", and further values that a finished run must have in common."""
 
     @abstractmethod
-    def measure(self, result: Result) -> Measured:
+    def measure(self, result: R) -> Measured:
         """The numbers that a study takes from a result."""

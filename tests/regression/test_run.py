@@ -167,7 +167,7 @@ def test_an_accuracy_is_reached_by_refinement(tmp_path: Path) -> None:
     assert set(summary["sampling_error"]) == set(summary["means"])
     restart = [word.replace("rotation=9", f"rotation={2.1 * pitch}") for word in command] + ["--restart"]
     other = execute([word.replace(str(asked), "0.15") for word in restart])
-    assert other.returncode == 2 and "belongs to another design, recipe, --accuracy" in other.stderr
+    assert other.returncode == 2 and "belongs to another design, recipe, accuracy" in other.stderr
     succeed(restart)
     longer = json.loads((out / "summary.json").read_text())
     assert longer["elements"] == summary["elements"] and longer["means"] == summary["means"]

@@ -11,7 +11,8 @@ from mpi4py import MPI
 
 from support.commands import execute, on_ranks, swgpar
 from support.paths import DRIVERS
-from swgpar.gear_trains.train import load_train, run_train
+from swgpar import load_design
+from swgpar.gear_trains.train import run_train
 
 DESIGN = DRIVERS / "gear_pair.toml"
 SMALL = ("monte_carlo.samples=500", "time.end=0.0005", "time.rows=10")
@@ -57,7 +58,7 @@ def test_the_table_has_what_a_run_gives(whole: Path, tmp_path: Path) -> None:
     assert [name for name, row in rows.items() if row["status"] == "failed"] == REFUSED
     assert "mesh.half_backlash = -1 is out of range: allowed 0 to inf" in rows[REFUSED[0]]["reason"]
     for name, noise in zip(KEPT, (50, 200), strict=True):
-        design = load_train(DESIGN, [*SMALL, f"load.noise={noise}.0", "mesh.half_backlash=20.0"])
+        design = load_design(DESIGN, [*SMALL, f"load.noise={noise}.0", "mesh.half_backlash=20.0"])
         run_train(design, tmp_path / name, comm=MPI.COMM_SELF)
         found = json.loads((tmp_path / name / "summary.json").read_text(encoding="utf-8"))["quantities"]
         assert {key: float(rows[name][key]) for key in SHOWN} == {key: found[key] for key in SHOWN}

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import inspect
+import logging
 import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+from mpi4py import MPI
 
 import swgpar
 from support.paths import DESIGN, DRIVERS, RECIPE, ROOT
 from support.small_drive import PLANE
+from swgpar import log
 from swgpar.design.drive_design import DriveDesign
 from swgpar.input.toml_file import read_toml
 
@@ -55,8 +58,14 @@ def test_designs_from_files_and_tables(design: DriveDesign) -> None:
     assert swgpar.load_design(table, {"load.torque": np.float64(3.0)}).load.torque == 3.0
     assert swgpar.load_design(DRIVERS / "cascade.toml").gear_train.model == "cascade"
     assert table == read_toml(DESIGN)
+    assert swgpar.load_design(design) is design and swgpar.load_design(design, {"load.torque": 3.0}).load.torque == 3.0
     with pytest.raises(swgpar.InputError, match="did you mean load.torque"):
         swgpar.load_design(DESIGN, {"load.torqe": 3.0})
+    for function in (swgpar.load_design, swgpar.run, swgpar.check):
+        with pytest.raises(
+            swgpar.InputError, match="design is of the type int: allowed are a path, a dict or a loaded"
+        ):
+            function(3)
 
 
 @pytest.mark.parametrize("file", sorted(DRIVERS.glob("*.toml")), ids=lambda file: file.stem)
@@ -72,7 +81,9 @@ def test_changed_designs_are_checked(file: Path) -> None:
 def test_recipes_by_name_path_and_table() -> None:
     plane = swgpar.load_mesh("plane_coarse")
     assert swgpar.load_mesh(plane.model_dump(exclude_none=True)) == plane
-    assert swgpar.load_mesh(RECIPE).flexible_spline.flank == 2
+    assert swgpar.load_mesh(RECIPE).flexible_spline.flank == 2 and swgpar.load_mesh(plane) is plane
+    with pytest.raises(swgpar.InputError, match="mesh is of the type float"):
+        swgpar.load_mesh(1.5)
     with pytest.raises(swgpar.InputError, match='mesh = "corse" is not available: allowed coarse, medium, full'):
         swgpar.load_mesh("corse")
 
@@ -175,6 +186,71 @@ def test_figures(result: swgpar.DriveResult) -> None:
     for draw in (plot.stress, plot.torque, plot.transmission_error, plot.contact_pattern, plot.deformed):
         assert draw().axes
     assert "contact_pattern" in plot.names
+
+
+def test_results_are_found_from_another_folder(
+    design: DriveDesign, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    result = swgpar.run(design.with_values({"output.figures": False}), RECIPE, "out")
+    opened = swgpar.open_result("out")
+    train = swgpar.run(DRIVERS / "ring_supported.toml", out="ring")
+    monkeypatch.chdir(DRIVERS)
+    np.testing.assert_array_equal(result.field("vm"), opened.field("vm"))
+    assert result.folder == opened.folder == tmp_path / "out" and train.folder == tmp_path / "ring"
+
+
+def test_a_figure_that_cannot_be_drawn(
+    result: swgpar.DriveResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(self: object) -> None:
+        raise TypeError("no colours")
+
+    monkeypatch.setattr("swgpar.analysis.figures.DriveFigures.stress", broken)
+    with pytest.raises(swgpar.OutputError, match="cannot draw .*stress.png: no colours"):
+        result.plot.save(tmp_path)
+
+
+class Messages(logging.Handler):
+    """Keeps what is logged."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.texts: list[str] = []
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self.texts.append(record.getMessage())
+
+
+@pytest.fixture
+def bare_root(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A program that has set up no logging: the handlers are those of pytest."""
+    monkeypatch.setattr(logging.getLogger(), "handlers", [])
+
+
+def test_a_run_leaves_the_logger_as_it_was() -> None:
+    logger, messages = logging.getLogger("swgpar"), Messages()
+    logger.addHandler(messages)
+    try:
+        before = logger.level, logger.propagate, list(logger.handlers)
+        swgpar.run(DRIVERS / "ring_supported.toml", progress=True)
+        assert (logger.level, logger.propagate, logger.handlers) == before
+        assert any("finished in" in text for text in messages.texts)
+    finally:
+        logger.removeHandler(messages)
+
+
+@pytest.mark.usefixtures("bare_root")
+def test_warnings_are_seen_without_a_terminal(capfd: pytest.CaptureFixture[str]) -> None:
+    logger = logging.getLogger("swgpar")
+    with log.session(MPI.COMM_SELF, terminal=False):
+        logger.info("quiet")
+        logger.warning("loud")
+    shown = capfd.readouterr()
+    assert shown.err == "loud\n" and shown.out == ""
+    with log.session(MPI.COMM_SELF, terminal=False, shown=False):
+        logger.warning("loud")
+    assert capfd.readouterr().err == ""
 
 
 def test_a_gear_train(tmp_path: Path) -> None:

@@ -9,10 +9,11 @@ import pytest
 from mpi4py import MPI
 
 from support.paths import DRIVERS, REFERENCE
+from swgpar import load_design
 from swgpar.errors import ConvergenceError, InputError
 from swgpar.gear_trains.published import check_published, compare
 from swgpar.gear_trains.sampling import block_sizes, random_stream, run_tasks
-from swgpar.gear_trains.train import load_train, model_of
+from swgpar.gear_trains.train import make_train, model_of
 from swgpar.input.toml_file import read_toml
 from swgpar.results.table import format_columns, read_columns
 from swgpar.systems import SYSTEMS, system_of_table
@@ -89,7 +90,7 @@ REFUSED = [
 @pytest.mark.parametrize(("file", "override", "reason"), REFUSED)
 def test_one_sentence_with_key_and_reason(file: Path, override: str, reason: str) -> None:
     with pytest.raises(InputError) as caught:
-        load_train(file, override.split() if override.count("=") > 1 else [override])
+        load_design(file, override.split() if override.count("=") > 1 else [override])
     message = str(caught.value)
     assert "\n" not in message and reason in message, message
 
@@ -98,12 +99,12 @@ def test_drives_are_no_gear_trains() -> None:
     assert system_of_table(read_toml(CASCADE)) is SYSTEMS["gear_train"]
     assert system_of_table(read_toml(REFERENCE)) is SYSTEMS["drive"]
     with pytest.raises(InputError, match="gear_train.model is missing"):
-        load_train(REFERENCE)
+        make_train(read_toml(REFERENCE))
 
 
 @pytest.mark.parametrize("file", [CASCADE, GEAR_PAIR, RING, RING_MODES, DRIVERS / "ring_supported.toml", PLANETARY])
 def test_derived_values_are_finite(file: Path) -> None:
-    design = load_train(file)
+    design = load_design(file)
     values = model_of(design).derived(design)
     assert values and np.isfinite(list(values.values())).all()
 
@@ -130,7 +131,7 @@ def test_published_beside_computed() -> None:
 )
 def test_old_names_of_quantities_are_refused_with_the_present_ones(file: Path, old: str, new: str) -> None:
     with pytest.raises(InputError, match=rf"published\.{old} is not available: this quantity is named {new}$"):
-        load_train(file, [f"published.{old}=1.0"])
+        load_design(file, [f"published.{old}=1.0"])
 
 
 def test_streams_are_independent_of_the_order_of_their_use() -> None:

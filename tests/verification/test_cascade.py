@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from support.paths import DRIVERS
+from swgpar import load_design
 from swgpar.gear_trains.cascade.design import CascadeDesign
 from swgpar.gear_trains.cascade.dynamics import Gearbox, natural_frequencies, no_errors
 from swgpar.gear_trains.cascade.flex_unit import FlexUnits
@@ -17,14 +18,13 @@ from swgpar.gear_trains.cascade.population import block_shares, random_errors, s
 from swgpar.gear_trains.cascade.run import RANKED_TOLERANCES
 from swgpar.gear_trains.cascade.static_sharing import MESH_COUNTS, first_crossing, path_gap_angles, static_sharing
 from swgpar.gear_trains.cascade.tolerance_stack_up import contributions, sample_stack_up
-from swgpar.gear_trains.train import load_train
 
 DRIVER = DRIVERS / "cascade.toml"
 
 
 @pytest.fixture(scope="module")
 def design() -> CascadeDesign:
-    return load_train(DRIVER)
+    return load_design(DRIVER)
 
 
 @pytest.fixture(scope="module")

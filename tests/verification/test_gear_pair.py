@@ -10,6 +10,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import eigh, expm, solve_continuous_lyapunov
 
 from support.paths import DRIVERS
+from swgpar import load_design
 from swgpar.gear_trains import backlash
 from swgpar.gear_trains.gear_pair.design import GearPairDesign
 from swgpar.gear_trains.gear_pair.model import (
@@ -24,7 +25,6 @@ from swgpar.gear_trains.linearisation import Moments, linearise
 from swgpar.gear_trains.mesh_stiffness import MeshStiffness
 from swgpar.gear_trains.sample_moments import SampleMoments
 from swgpar.gear_trains.sampling import random_stream
-from swgpar.gear_trains.train import load_train
 
 DRIVER = DRIVERS / "gear_pair.toml"
 STEP, STEPS, EVERY = 1e-5, 300, 30
@@ -34,7 +34,7 @@ STATES = [(m, s, b) for m in (-3.0, -0.4, 0.0, 1.0, 2.5) for s in (0.05, 0.7, 3.
 
 @pytest.fixture(scope="module")
 def design() -> GearPairDesign:
-    return load_train(DRIVER)
+    return load_design(DRIVER)
 
 
 @pytest.fixture(scope="module")

@@ -10,6 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from support.paths import DRIVERS
+from swgpar import load_design
 from swgpar.errors import ConvergenceError
 from swgpar.gear_trains.backlash import force
 from swgpar.gear_trains.dominant_cycles import dominant_cycles
@@ -22,14 +23,13 @@ from swgpar.gear_trains.planetary.monte_carlo import simulate
 from swgpar.gear_trains.planetary.time_stepping import ModalStates, TimeStepper
 from swgpar.gear_trains.planetary.wind_load import WindLoad
 from swgpar.gear_trains.sampling import random_stream
-from swgpar.gear_trains.train import load_train
 
 DRIVER = DRIVERS / "planetary.toml"
 
 
 @pytest.fixture(scope="module")
 def design() -> PlanetaryDesign:
-    return load_train(DRIVER)
+    return load_design(DRIVER)
 
 
 def changed(design: PlanetaryDesign, section: str, **values: object) -> PlanetaryDesign:

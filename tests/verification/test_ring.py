@@ -11,7 +11,7 @@ from scipy.sparse.linalg import eigsh
 
 from support.element_mesh import ElementMesh
 from support.paths import DRIVERS
-from swgpar.design.design_file import load_design
+from swgpar import load_design
 from swgpar.gear_trains.dominant_cycles import dominant_cycles
 from swgpar.gear_trains.gear_mesh_system import GearMeshSystem
 from swgpar.gear_trains.ring.curved_beam import BeamSection, Ring, free_frequencies
@@ -20,7 +20,6 @@ from swgpar.gear_trains.ring.modal_stepping import ModalStepper
 from swgpar.gear_trains.ring.moving_load import MovingLoads, middle_node
 from swgpar.gear_trains.ring.run import distinct_frequencies
 from swgpar.gear_trains.sampling import random_stream
-from swgpar.gear_trains.train import load_train
 from swgpar.meshing import build_sector_meshes, load_recipe
 
 MOVING, MODES = DRIVERS / "ring_moving_load.toml", DRIVERS / "ring_modes.toml"
@@ -29,7 +28,7 @@ SUPPORTED = DRIVERS / "ring_supported.toml"
 
 @pytest.fixture(scope="module")
 def bolted() -> RingDesign:
-    return load_train(MOVING)
+    return load_design(MOVING)
 
 
 def changed(design: RingDesign, section: str, **values: object) -> RingDesign:
@@ -98,7 +97,7 @@ def test_rigid_motions_cost_nothing(bolted: RingDesign) -> None:
 
 def test_supported_ring() -> None:
     """Table 5.2 within 1 %, on supports deduced from it; the mode of three waves is single, the others are pairs."""
-    design = load_train(SUPPORTED)
+    design = load_design(SUPPORTED)
     section, ring = BeamSection.of(design), Ring.of(design)
     unit = np.sqrt(section.density * section.area * section.radius**4 / (section.E * section.inertia))
     found, _ = distinct_frequencies(design, 3)
@@ -181,7 +180,7 @@ def test_tooth_masses_against_a_solid_ring() -> None:
     The printed frequencies of the solid ring are those of the printed radii times 1.98 to 1.99. Two meshes,
     the coarse one within 0.6 % of the fine one. `pytest -s` prints the table of docs/verification/gear_trains.md.
     """
-    design = load_train(MODES)
+    design = load_design(MODES)
     coarse, solid = (toothed_ring(design, f"plane{level}")[:5] for level in ("_coarse", ""))
     with_masses, _ = distinct_frequencies(design, 5)
     smooth, _ = distinct_frequencies(changed(design, "ring", inner_radius=176.0).model_copy(update={"teeth": None}), 5)
