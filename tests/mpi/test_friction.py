@@ -104,8 +104,11 @@ def test_any_number_of_ranks_gives_the_same() -> None:
 @pytest.mark.parametrize("model", MODELS)
 def test_vanishing_friction_is_none(model: str) -> None:
     """The full matrix and its LU give what the symmetric ones do; with friction the torque is another one."""
-    none, little = (rotate(loaded(mu, model=model), 0.3 * PITCH) for mu in (0.0, 1e-9))
-    assert_same(little, none, 1e-6)
+    states = [under_torque(small(model, f"contact.friction={mu}")) for mu in (0.0, 1e-9)]
+    assert_same(states[1][1], states[0][1], 1e-6)
+    if model == "plane":  # the rotation takes half a minute in space
+        none, little = (rotate(stepper, 0.3 * PITCH) for stepper, _ in states)
+        assert_same(little, none, 1e-6)
 
 
 def test_friction_takes_torque() -> None:

@@ -28,15 +28,14 @@ def run(name: str, out: Path, *, ranks: int = 1) -> list[str]:
 
 @pytest.mark.parametrize("name", SMALL)
 def test_results_are_the_same_on_any_number_of_ranks(name: str, tmp_path: Path) -> None:
-    one, two, three = (tmp_path / ranks for ranks in ("one", "two", "three"))
+    one, three = tmp_path / "one", tmp_path / "three"
     done = succeed(run(name, one))
-    for ranks, out in ((2, two), (3, three)):
-        succeed(run(name, out, ranks=ranks))
+    succeed(run(name, three, ranks=3))  # samples do not divide evenly
     assert "published against computed" in done.stdout and "Warning" not in done.stderr + done.stdout
     for file in ("history.csv", "published.csv", *(f"tables/{table}.csv" for table in FILES[name])):
-        assert (one / file).read_bytes() == (two / file).read_bytes() == (three / file).read_bytes(), file
-    summary = json.loads((two / "summary.json").read_text(encoding="utf-8"))
-    assert summary["ranks"] == 2 and summary["design"]["gear_train"]["model"] == name.removesuffix("_moving_load")
+        assert (one / file).read_bytes() == (three / file).read_bytes(), file
+    summary = json.loads((three / "summary.json").read_text(encoding="utf-8"))
+    assert summary["ranks"] == 3 and summary["design"]["gear_train"]["model"] == name.removesuffix("_moving_load")
     rows = read_columns(one / "published.csv")
     assert len(rows["quantity"]) >= 2
     figures = list((one / "figures").glob("*.png"))

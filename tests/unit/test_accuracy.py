@@ -83,7 +83,7 @@ class Analytic:
 
     def __init__(self, *_: object) -> None:
         self.groups, self.doublings, self.levels, self.dimensions = {"a": {}, "b": {}}, (0, 0), {}, 2
-        self.model, self.loads, self.left_out = self, [], defaultdict(lambda: self.LEFT_OUT)
+        self.model, self.loads, self.omitted_stress = self, [], defaultdict(lambda: self.LEFT_OUT)
 
     def recipe(self, doublings: Doublings) -> Doublings:
         return doublings
@@ -161,7 +161,7 @@ def test_a_change_that_is_small_by_chance_is_no_convergence(monkeypatch: pytest.
 
 def test_a_recipe_that_is_too_fine_is_coarsened(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every group can be doubled below the largest size."""
-    monkeypatch.setattr(module, "load", lambda design, recipe, items, comm, below=None: recipe)
+    monkeypatch.setattr(module, "solve_to_load", lambda design, recipe, *_: recipe)
     design = load_design(REFERENCE)
     full = load_recipe("full")
     way = Refinement(design, full, [], MPI.COMM_SELF)
