@@ -150,7 +150,7 @@ def run_study(
         raise InputError("restart = true needs the folder of the study: a study in memory leaves nothing to continue")
     order = queue(jobs, comm.bcast(statuses))
     run = partial(_run_one, jobs, folder, restart, overwrite)
-    with log.session(MPI.COMM_SELF if study.section.parallel == "cases" else comm, shown=False):
+    with log.session(MPI.COMM_SELF if study.section.parallel == "cases" else comm, terminal=False, shown=False):
         results = _run_all(study, jobs, order, run, folder, terminal, comm)
     if folder is not None:
         _write(study, results, folder, comm)
