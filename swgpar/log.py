@@ -193,7 +193,7 @@ def progress_bar() -> Progress:
 class PhaseTimes:
     """Wall seconds added up by phase name.
 
-    PhaseTimes may be nested; each then counts its own full time, so that only phases of the same depth add up.
+    Phases may be nested; each then counts its own full time, so that only phases of the same depth add up.
     """
 
     def __init__(self) -> None:
