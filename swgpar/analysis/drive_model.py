@@ -11,7 +11,8 @@ from mpi4py import MPI
 from swgpar.constraints.distributing_coupling import DistributingCoupling, Housing
 from swgpar.constraints.supports import Supports
 from swgpar.contact.contact import largest
-from swgpar.contact.flanks import Crowning, FlankContact, SearchRange
+from swgpar.contact.flank_state import Crowning, SearchRange
+from swgpar.contact.flanks import FlankContact
 from swgpar.contact.rigid_surface import RigidContact, cam_pose, pin_pose
 from swgpar.design.drive_design import DriveDesign
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR, BodyLayout

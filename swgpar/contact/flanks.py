@@ -12,8 +12,8 @@ result.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -21,9 +21,10 @@ from swgpar.contact import friction
 from swgpar.contact.contact import NO_KEYS, FacePressure
 from swgpar.contact.enforcement import penetration
 from swgpar.contact.flank_pairs import Faces, FlankPairs
+from swgpar.contact.flank_state import ActiveSegments, Crowning, FrictionStart, RingMotion, SearchRange
 from swgpar.contact.friction import Friction, PairKey
 from swgpar.contact.search import FlankPair
-from swgpar.contact.segments import Segments, cut_faces, flank_faces
+from swgpar.contact.segments import cut_faces, flank_faces
 from swgpar.design.load_states import LoadState
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.elements import BodyElements
@@ -38,68 +39,6 @@ their foot points on it, so that the cut at the flank's end changes continuously
 
 SLIP_SHARE = 0.99
 """Share of the friction bound from which a point counts as slipping: base vectors have unit length but for strain."""
-
-
-class RingMotion(Protocol):
-    """Rotation of the ring gear as a whole; both methods are collective."""
-
-    def ring_rotation(self, u: np.ndarray) -> float:
-        """Rotation (rad) of the ring gear at displacement u (n_local, 3) mm; zero when it is fixed."""
-
-    def add_ring_moment(self, u: np.ndarray, moment: float, residual: np.ndarray) -> None:
-        """Add to residual (n_local, 3) N this rank's part of a moment (N mm) that acts on that rotation."""
-
-
-@dataclass(frozen=True)
-class Crowning:
-    """Crowning of the flexible spline's flanks: mm at |z| = width / 2, mm, curve ("parabolic" or "circular")."""
-
-    amount: float
-    width: float
-    shape: str
-
-
-@dataclass(frozen=True)
-class SearchRange:
-    """Distances (mm) of a search.
-
-    near : faces whose middle is closer to the master are evaluated
-    touch : for faces closer than that the tangent's pattern has blocks
-    """
-
-    near: float
-    touch: float
-
-
-@dataclass(frozen=True)
-class FrictionStart:
-    """State from which friction counts the slip.
-
-    displacement : (n_local, 3) mm, converged
-    tractions : (n_pair * n_face, SAMPLES, SAMPLES, 2) MPa, on the samples of all faces
-    """
-
-    displacement: np.ndarray
-    tractions: np.ndarray
-
-
-@dataclass
-class ActiveSegments:
-    """Segments of the faces near the master, with the results of the last evaluation.
-
-    found : pairs and faces of the search that they belong to
-    faces, segments : quadrature points and their position in the parent faces
-    friction : law and tractions at the points, None without friction
-    multiplier, gap, pressure : (n_segment, n_q) MPa, mm, MPa
-    """
-
-    found: FlankPairs
-    faces: Faces
-    segments: Segments
-    friction: Friction | None
-    multiplier: np.ndarray
-    gap: np.ndarray
-    pressure: np.ndarray
 
 
 class FlankContact:

@@ -15,7 +15,8 @@ from petsc4py import PETSc
 from swgpar.constraints.supports import Supports
 from swgpar.contact.clearance import FlankClearance
 from swgpar.contact.contact import Contact, largest
-from swgpar.contact.flanks import ActiveSegments, FlankContact, SearchRange
+from swgpar.contact.flank_state import ActiveSegments, SearchRange
+from swgpar.contact.flanks import FlankContact
 from swgpar.contact.friction import PairKey
 from swgpar.contact.search import FlankPair, facing_flanks
 from swgpar.design.load_states import LoadState

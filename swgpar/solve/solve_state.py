@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from petsc4py import PETSc
 
-from swgpar.contact.flanks import ActiveSegments
+from swgpar.contact.flank_state import ActiveSegments
 from swgpar.design.load_states import LoadState
 from swgpar.solve.active_set_cycles import VisitedSets
 

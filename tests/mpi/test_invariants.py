@@ -13,7 +13,8 @@ from pytest_mpi import parallel_assert
 from support.stepping import MODELS, WORLD, assert_agree, loaded, rotate, small
 from swgpar.analysis.contact_pressure import nodal_pressure
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.contact.flanks import ActiveSegments, FlankContact
+from swgpar.contact.flank_state import ActiveSegments
+from swgpar.contact.flanks import FlankContact
 from swgpar.contact.rigid_surface import RigidContact
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.fem.stress import body_fields
