@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mpi4py import MPI
 
@@ -25,8 +25,10 @@ from swgpar.meshing.recipe import make_recipe
 from swgpar.results.atomic import agreed, on_all
 from swgpar.results.figure_set import save_figures
 from swgpar.results.folder import read_summary
-from swgpar.studies import StudyResult, run_study
 from swgpar.systems import Result, system_of, system_of_table
+
+if TYPE_CHECKING:
+    from swgpar.studies import StudyResult
 
 DesignLike = Design | str | Path | Mapping[str, Any]
 """A design, the path of its file, or the content of one."""
@@ -245,6 +247,8 @@ def study(
     ...     "vary": {"load.torque": [5.0, 10.0, 20.0]}}})
     >>> found.table["mean.fs_s1"]
     """
+    from swgpar.studies import run_study  # a run needs no studies
+
     return run_study(
         study,
         out,

@@ -48,8 +48,6 @@ class Drives(System[DriveDesign, DriveResult]):
     """The drive's adapter: analysis, results and quantities under the names that all systems share."""
 
     noun = "a drive"
-    section = "drive"
-    design_type = DriveDesign
     options = frozenset({"mesh", "accuracy", "restart"})
 
     def load(self, table: dict[str, Any]) -> DriveDesign:

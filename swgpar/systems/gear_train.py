@@ -15,7 +15,7 @@ from swgpar.gear_trains.common_sections import TrainDesign
 from swgpar.gear_trains.published import current_name, meaning_and_unit, numbered
 from swgpar.gear_trains.result import TrainResult
 from swgpar.gear_trains.terminal import print_compared
-from swgpar.gear_trains.train import SECTION, make_train, model_of, open_train, run_train
+from swgpar.gear_trains.train import make_train, model_of, open_train, run_train
 from swgpar.input.toml_file import apply_overrides
 from swgpar.meshing import MeshRecipe
 from swgpar.results.atomic import to_json
@@ -26,8 +26,6 @@ class GearTrains(System[TrainDesign, TrainResult]):
     """The gear trains' adapter: their runs, results and quantities under the names that all systems share."""
 
     noun = "a gear train"
-    section = SECTION
-    design_type = TrainDesign
     options = frozenset()
 
     def load(self, table: dict[str, Any]) -> TrainDesign:

@@ -70,14 +70,10 @@ class System(ABC, Generic[D, R]):
     Attributes
     ----------
     noun : what one is called in messages, with its article
-    section : the section of a design file by which the kind is recognised
-    design_type : class of its designs
     options : which of the options "mesh", "accuracy" and "restart" a run has
     """
 
     noun: str
-    section: str
-    design_type: type[D]
     options: frozenset[str]
 
     @abstractmethod

@@ -3,27 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from importlib import import_module
 from typing import Any
 
 from swgpar.errors import InputError
 from swgpar.input.design import Design
-from swgpar.systems.drive import DRIVE
-from swgpar.systems.gear_train import GEAR_TRAIN
 from swgpar.systems.protocol import System
 
-SYSTEMS: dict[str, System[Any, Any]] = {"gear_train": GEAR_TRAIN, "drive": DRIVE}
-"""By name, in the order in which design files are recognised; a file of none of them is read as the last one."""
+SYSTEMS = {
+    "gear_train": "swgpar.systems.gear_train.GEAR_TRAIN",
+    "drive": "swgpar.systems.drive.DRIVE",
+}
+"""Section by which a design file is recognised -> where its system is. A system is imported when it is needed: a run
+does not load what other systems compute with. A file with none of the sections is read as the last one."""
+
+
+def system_of_section(section: str) -> System[Any, Any]:
+    """The kind of systems with this section, a key of `SYSTEMS`."""
+    module, _, name = SYSTEMS[section].rpartition(".")
+    return getattr(import_module(module), name)
 
 
 def system_of_table(table: Mapping[str, Any]) -> System[Any, Any]:
     """The kind of a design from the content of its file, or from the key "design" of a summary."""
-    *_, last = SYSTEMS.values()
-    return next((system for system in SYSTEMS.values() if system.section in table), last)
+    *_, last = SYSTEMS
+    return system_of_section(next((section for section in SYSTEMS if section in table), last))
 
 
 def system_of(design: Design) -> System[Any, Any]:
     """The kind of a checked design."""
-    for system in SYSTEMS.values():
-        if isinstance(design, system.design_type):
-            return system
+    for section in SYSTEMS:
+        if section in type(design).model_fields:
+            return system_of_section(section)
     raise InputError(f"{type(design).__name__} is not a design: allowed what swgpar.load_design returns")

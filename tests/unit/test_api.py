@@ -44,6 +44,16 @@ def test_the_package_is_light() -> None:
     assert done.stdout.strip() == "[]"
 
 
+def test_a_drive_loads_no_other_system() -> None:
+    """A run needs neither gear trains nor studies."""
+    code = (
+        f"import swgpar, sys; swgpar.check({str(DESIGN)!r}); "
+        "print([m for m in sys.modules if m.startswith(('swgpar.gear_trains', 'swgpar.studies', 'matplotlib'))])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
 def test_public_names_exist_and_say_what_they_do() -> None:
     assert set(swgpar.__all__) <= set(dir(swgpar))
     for name in set(swgpar.__all__) - {"__version__"}:

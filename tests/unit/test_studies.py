@@ -11,7 +11,7 @@ from swgpar.meshing import build_sector_meshes
 from swgpar.studies.case import Job
 from swgpar.studies.cases import expand
 from swgpar.studies.spec import load_study
-from swgpar.systems import SYSTEMS
+from swgpar.systems import system_of_section
 
 FILES = sorted((DRIVERS / "studies").glob("*.toml"))
 REFUSED = {
@@ -43,7 +43,7 @@ def test_geometry(path: Path) -> None:
 def test_one_period(path: Path) -> None:
     """Means of the plane model are over one period in 8 increments; cases at 45 degrees end there in their period."""
     for case in {job.case.name: job.case for job in jobs_of(path)}.values():
-        if case.system is not SYSTEMS["drive"] or case.design is None or case.design.drive.model != "plane":
+        if case.system is not system_of_section("drive") or case.design is None or case.design.drive.model != "plane":
             continue
         drive, steps = case.design.drive, case.design.steps
         period = 360.0 / (drive.teeth_rg if drive.layout == "ring_fixed" else drive.teeth_fs)
