@@ -8,8 +8,9 @@ limit.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from mpi4py import MPI
@@ -114,6 +115,26 @@ def relative(error: float, stress: float) -> float:
     return error / (abs(stress) + error) if np.isfinite(error) else 1.0
 
 
+class RefinedLevels(Protocol):
+    """Loaded states on recipes with some groups of counts doubled: what `refine` works on.
+
+    groups : names of the groups;  largest : elements beyond which no mesh is taken
+    doublings : of the last state;  levels, omitted_stress : states, and stresses (MPa) left out, by their doublings
+    """
+
+    groups: Sequence[str]
+    largest: int
+    doublings: Doublings
+    levels: dict[Doublings, LoadedState]
+    omitted_stress: dict[Doublings, float]
+
+    def size(self, doublings: Doublings) -> int:
+        """Elements of the whole drive; 0 where there is no such mesh, or where it is too large."""
+
+    def load(self, doublings: Doublings) -> LoadedState:
+        """Bring the drive to its loaded state there."""
+
+
 class Refinement:
     """The loaded drive on recipes with some groups of counts doubled.
 
@@ -121,12 +142,20 @@ class Refinement:
     ----------
     design, load_states, comm : the drive, all increments of its run, communicator
     recipe : what is refined; coarsened where a group could not be doubled below the largest size
+    largest : elements of the whole drive beyond which no mesh is taken
     """
 
-    def __init__(self, design: DriveDesign, recipe: MeshRecipe, load_states: list[LoadState], comm: MPI.Comm) -> None:
-        self.design, self.load_states, self.comm = design, load_states, comm
-        self.dimensions = 2 if design.drive.model == "plane" else 3
-        self.groups = {name: counts for name, counts in GROUPS.items() if self.dimensions == 3 or name != "length"}
+    def __init__(
+        self,
+        design: DriveDesign,
+        recipe: MeshRecipe,
+        load_states: list[LoadState],
+        comm: MPI.Comm,
+        *,
+        largest: int,
+    ) -> None:
+        self.design, self.load_states, self.comm, self.largest = design, load_states, comm, largest
+        self.groups = [name for name in GROUPS if design.drive.model != "plane" or name != "length"]
         self.base, self.doublings = recipe, (0,) * len(self.groups)
         while not all(self.size(doubled_once(self.doublings, k)) for k in range(len(self.groups))):
             if coarser(self.base) == self.base:
@@ -134,13 +163,13 @@ class Refinement:
             self.base = coarser(self.base)
         self.levels: dict[Doublings, LoadedState] = {}
         self.omitted_stress: dict[Doublings, float] = {}
-        self.model = solve_to_load(design, coarser(self.base), load_states, comm)
+        self.model: DriveModel | None = None
 
     def recipe(self, doublings: Doublings) -> MeshRecipe:
         """With every group doubled as many times as `doublings` says."""
         recipe = self.base
-        for counts, times in zip(self.groups.values(), doublings):
-            recipe = doubled(recipe, counts, times)
+        for name, times in zip(self.groups, doublings):
+            recipe = doubled(recipe, GROUPS[name], times)
         return recipe
 
     def size(self, doublings: Doublings) -> int:
@@ -150,10 +179,12 @@ class Refinement:
         except InputError:
             return 0
         elements = sum(len(mesh.hexes) * mesh.n_sectors for mesh in meshes)
-        return elements if elements <= LARGEST[self.dimensions] else 0
+        return elements if elements <= self.largest else 0
 
     def load(self, doublings: Doublings) -> LoadedState:
         """Bring the drive to its loaded state there, from that of the last mesh, or else from the start."""
+        if self.model is None:
+            self.model = solve_to_load(self.design, coarser(self.base), self.load_states, self.comm)
         recipe, coarse = self.recipe(doublings), self.model
         try:
             self.model = solve_to_load(self.design, recipe, self.load_states, self.comm, coarse)
@@ -171,17 +202,37 @@ def doubled_once(doublings: Doublings, group: int) -> Doublings:
 
 
 def choose_mesh(
-    design: DriveDesign, recipe: MeshRecipe, load_states: list[LoadState], accuracy: float, comm: MPI.Comm
+    design: DriveDesign,
+    recipe: MeshRecipe,
+    load_states: list[LoadState],
+    accuracy: float,
+    comm: MPI.Comm,
+    *,
+    largest: int | None = None,
 ) -> ChosenMesh:
     """Refine `recipe` until the estimated relative error of the largest tensile stress is at most `accuracy`.
+
+    load_states : all increments of the run
+    largest : elements of the whole drive beyond which no mesh is taken; None for those of `LARGEST`
+
+    Ends below the largest size where the accuracy is out of reach, and says so. Raises ConvergenceError or InputError
+    like a run on one of the meshes.
+    """
+    if largest is None:
+        largest = LARGEST[2 if design.drive.model == "plane" else 3]
+    refinement = Refinement(design, recipe, load_states, comm, largest=largest)
+    doublings, error, stresses = refine(refinement, accuracy)
+    return ChosenMesh(refinement.model, refinement.recipe(doublings), error, stresses)
+
+
+def refine(refinement: RefinedLevels, accuracy: float) -> tuple[Doublings, float, dict[str, float]]:
+    """Double groups until the estimated relative error of the largest tensile stress is at most `accuracy`.
 
     Every group of counts has an error, first from what doubling it alone changes; then the group is doubled that has
     the largest error for the elements of the finer mesh.
 
-    load_states : all increments of the run. Ends below the largest size where the accuracy is out of reach, and says
-    so. Raises ConvergenceError or InputError like a run on one of the meshes.
+    Returns the doublings of the last state loaded, its relative error, and the errors (MPa) of all stresses.
     """
-    refinement = Refinement(design, recipe, load_states, comm)
     doublings, groups = refinement.doublings, range(len(refinement.groups))
     level, changes = refinement.load(doublings), []
     for k in groups:
@@ -205,7 +256,7 @@ def choose_mesh(
         sizes = [refinement.size(doubled_once(doublings, k)) for k in groups]
         stays = omitted + sum(one[MEASURE] for one, size in zip(errors, sizes) if not size)
         if relative(stays, stress) > accuracy or not any(sizes):
-            logger.info("no finer mesh that helps is taken up to %d elements", LARGEST[refinement.dimensions])
+            logger.info("no finer mesh that helps is taken up to %d elements", refinement.largest)
             break
         k = max((k for k in groups if sizes[k]), key=lambda k: errors[k][MEASURE] / sizes[k])
         doublings, before = doubled_once(doublings, k), level.stresses
@@ -216,5 +267,4 @@ def choose_mesh(
     if refinement.doublings != doublings:
         refinement.load(doublings)
     total = {name: sum(one[name] for one in errors) for name in level.stresses}
-    known = {name: value for name, value in total.items() if np.isfinite(value)}
-    return ChosenMesh(refinement.model, refinement.recipe(doublings), error, known)
+    return doublings, error, {name: value for name, value in total.items() if np.isfinite(value)}

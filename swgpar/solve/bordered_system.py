@@ -10,7 +10,7 @@ from petsc4py import PETSc
 from swgpar.fem.partition import Partition
 from swgpar.fem.vectors import create_vector, read_multipliers
 from swgpar.log import logger
-from swgpar.solve.factor_reuse import ReusedFactor, price
+from swgpar.solve.factor_reuse import ReusedFactor
 
 ORDERING = {2: 6, 3: 4}
 """Of the unknowns for MUMPS (its ICNTL(7)), by dimensions: PORD's nested dissection keeps the factor of a loaded solid
@@ -227,7 +227,7 @@ class BorderedSystem:
         if entries == 0:  # no factor yet, or one that failed
             return 0.0
         entries = entries if entries > 0 else -1e6 * entries
-        return price(factor.getMumpsRinfog(3), entries, self.matrix is self.factored)
+        return self.reused.price(factor.getMumpsRinfog(3), entries, self.matrix is self.factored)
 
     def factorise(self) -> None:
         """Factor, or set up, for the present matrix, and solve for the borders."""

@@ -53,12 +53,17 @@ class ReusedFactor:
     like : vector of the system
     multiply, solve : with the present system; with the factor
 
+    Attributes
+    ----------
+    price : gives the cost of a factorisation in solves, as the function `price` does
+
     `goal` is the residual's norm that ends Newton's iteration at the latest; `fresh` says that the factor is that of
     the present system, `discarded` that it is to be renewed before its next use; `iterations` are those of all solves.
     """
 
     def __init__(self, like: PETSc.Vec, multiply: Operation, solve: Operation) -> None:
         self.fresh, self.discarded = False, True
+        self.price: Callable[[float, float, bool], float] = price
         self.layout: tuple[int, ...] = ()
         self.iterations: list[int] = []
         self.goal, self.fewest, self.surplus, self.last = 0.0, MAX_ITERATIONS, 0, 0

@@ -81,12 +81,18 @@ class NewtonSolver:
     Parameters
     ----------
     problem : residual and tangent;  settings : tolerances and limits
+
+    Attributes
+    ----------
+    visited_sets : makes what finds active sets that return, for every run of Newton's iteration
+    state : of the present or last solve
     """
 
     def __init__(self, problem: DiscreteProblem, settings: NewtonSettings) -> None:
         self.problem, self.settings = problem, settings
         self.monitor: IterationMonitor | None = None
         self.state: SolveState | None = None
+        self.visited_sets: Callable[[], VisitedSets] = VisitedSets
         self.last_residual = ResidualInfo(0.0, False)
         self._trial_cache: tuple[np.ndarray, np.ndarray] | None = None
         positions = problem.positions()[: problem.partition.n_own]
@@ -247,7 +253,7 @@ class NewtonSolver:
     def _iterate(self, state: SolveState) -> Outcome:
         """One run of Newton's iteration in the present phase."""
         state.residuals, state.incomplete_pattern, self._trial_cache = [], False, None
-        state.visited, self.line_search.descending = VisitedSets(), state.breaker.active
+        state.visited, self.line_search.descending = self.visited_sets(), state.breaker.active
         self._set_penalty_share(state, state.softenings.pop(0) if state.softenings else 1.0)
         self.snes.setTolerances(max_it=max(1, state.max_iterations - state.iterations))
         self.snes.solve(None, self.problem.x)

@@ -8,17 +8,19 @@ from functools import lru_cache
 import numpy as np
 import pytest
 from mpi4py import MPI
+from petsc4py import PETSc
 from pytest_mpi import parallel_assert
 
 from support.stepping import MODELS, WORLD, assert_agree, loaded, rotate, small
 from swgpar.analysis.contact_pressure import nodal_pressure
 from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.contact.contact import NO_KEYS
 from swgpar.contact.flank_state import ActiveSegments
-from swgpar.contact.flanks import FlankContact
-from swgpar.contact.rigid_surface import RigidContact
+from swgpar.design.load_states import LoadState
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.fem.stress import body_fields
-from swgpar.solve import active_set_cycles as cycling
+from swgpar.solve.active_set_cycles import VisitedSets
+from swgpar.solve.discrete_problem import ResidualInfo
 from swgpar.solve.newton import NewtonSolver
 
 TORQUE = {"cup": 2000.0, "plane": 200.0}
@@ -230,64 +232,111 @@ def test_enforcement_does_not_show(
         assert other[name] == pytest.approx(r[name], rel=5e-3), name
 
 
+class Poisoned:
+    """A contact without forces. Once it is augmented no residual can be evaluated, until that is taken back."""
+
+    def __init__(self) -> None:
+        self.multiplier = np.zeros((1, 1))
+        self.augmentations = 0
+
+    def is_active(self, state: LoadState) -> bool:
+        return False
+
+    def reset(self) -> None:
+        self.multiplier = np.zeros((1, 1))
+
+    def evaluate(self, u: np.ndarray, state: LoadState, residual: np.ndarray | None, rows: object) -> np.ndarray:
+        if self.multiplier.any():
+            raise FloatingPointError
+        return NO_KEYS
+
+    def add_owned_forces(self, u: np.ndarray, state: LoadState, residual: np.ndarray) -> None:
+        pass
+
+    def scale_penalty(self, share: float) -> None:
+        pass
+
+    def augment(self) -> None:
+        self.multiplier = np.ones((1, 1))
+        self.augmentations += 1
+
+    def penetration(self) -> float:
+        return 0.0
+
+    def active_sets(self) -> list[np.ndarray]:
+        return []
+
+    def owned_pressure(self) -> None:
+        return None
+
+
 @pytest.mark.parallel([1, 2])
-def test_an_augmentation_that_leads_to_no_solution_is_taken_back(monkeypatch: pytest.MonkeyPatch) -> None:
-    """One that poisons the multipliers: the state is that without augmentation, and they are as they were."""
+def test_an_augmentation_that_leads_to_no_solution_is_taken_back() -> None:
+    """The state is that without augmentation, and the multipliers are as they were."""
     soft = (*stiffness(10, 10), "contact.penetration_tolerance=5e-5")
     _, without = loaded(small("plane", *soft, "contact.max_augmentations=0"))
-    poisoned = []
-
-    def poison(contact: RigidContact | FlankContact) -> None:
-        contact.multiplier = np.full_like(contact.multiplier, np.nan)
-        poisoned.append(contact)
-
-    for contact in (RigidContact, FlankContact):
-        monkeypatch.setattr(contact, "augment", poison)
-    stepper, taken = loaded(small("plane", *soft, "contact.max_augmentations=10"))
-    assert poisoned and stepper.solver.state.augmentations == 0
+    poisoned = Poisoned()
+    design = small("plane", *soft, "contact.max_augmentations=10")
+    stepper, taken = loaded(design, prepare=lambda stepper: stepper.problem.contacts.append(poisoned))
+    assert poisoned.augmentations and stepper.solver.state.augmentations == 0
     parallel_assert(all(np.all(contact.multiplier == 0.0) for contact in stepper.problem.contacts))
     assert_same(taken, without, 1e-6)
 
 
+class Returning(VisitedSets):
+    """Takes every active set for one that returns."""
+
+    def returns(self, found: int, residual: float) -> bool:
+        return True
+
+
+class Torn:
+    """A discrete problem whose residual cannot be evaluated with segments cut anew after the cycle breaker."""
+
+    def __init__(self, solver: NewtonSolver) -> None:
+        self.solver, self.problem = solver, solver.problem
+        self.torn, self.restored = False, 0
+
+    def __getattr__(self, name: str) -> object:
+        return getattr(self.problem, name)
+
+    def release_segments(self) -> None:
+        self.problem.release_segments()
+        self.torn = self.solver.state.breaker.solution is not None
+
+    def restore_segments(self, saved: ActiveSegments | None) -> None:
+        self.problem.restore_segments(saved)
+        self.torn, self.restored = False, self.restored + 1
+
+    def residual(self, x: PETSc.Vec, f: PETSc.Vec, state: LoadState) -> ResidualInfo:
+        found = self.problem.residual(x, f, state)
+        return replace(found, collapsed=found.collapsed or self.torn)
+
+
 @both_models
 @pytest.mark.parallel([1, 2])
-def test_segments_are_kept_where_those_cut_anew_lead_nowhere(model: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_segments_are_kept_where_those_cut_anew_lead_nowhere(model: str) -> None:
     """The cycle breaker begins in every solve, and no residual can be evaluated with segments cut anew after it."""
+
+    def tear(stepper: LoadStepper) -> None:
+        stepper.solver.visited_sets, stepper.solver.problem = Returning, Torn(stepper.solver)
+
     _, r = base(model)
-    release, again, evaluate = FlankContact.release_segments, FlankContact.restore_segments, FlankContact.evaluate
-    solve, solving, kept = NewtonSolver.solve, [], []
-
-    def torn(self: FlankContact) -> None:
-        release(self)
-        self.torn = bool(solving) and solving[-1].state.breaker.solution is not None
-
-    def whole(self: FlankContact, held: ActiveSegments | None) -> None:
-        again(self, held)
-        self.torn = False
-        kept.append(held)
-
-    def fail(self: FlankContact, *arguments: object) -> np.ndarray:
-        if getattr(self, "torn", False):
-            raise FloatingPointError
-        return evaluate(self, *arguments)
-
-    monkeypatch.setattr(cycling.VisitedSets, "returns", lambda *_: True)
-    monkeypatch.setattr(FlankContact, "release_segments", torn)
-    monkeypatch.setattr(FlankContact, "restore_segments", whole)
-    monkeypatch.setattr(FlankContact, "evaluate", fail)
-    monkeypatch.setattr(NewtonSolver, "solve", lambda self, *a, **k: (solving.append(self), solve(self, *a, **k))[1])
-    _, state = loaded(small(model))
-    assert kept
+    stepper, state = loaded(small(model), prepare=tear)
+    assert stepper.solver.problem.restored
     assert_same(state, r, 5e-3)  # the segments are those of the iteration in which the cycle was found
 
 
 @both_models
 @pytest.mark.parallel([1, 2])
-def test_descending_line_search_reaches_the_same_state(model: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_descending_line_search_reaches_the_same_state(model: str) -> None:
     """Every active set taken for one that returns, so that all line searches are descending."""
+
+    def descend(stepper: LoadStepper) -> None:
+        stepper.solver.visited_sets = Returning
+
     _, r = base(model)
-    monkeypatch.setattr(cycling.VisitedSets, "returns", lambda *_: True)
-    stepper, descending = loaded(small(model))
+    stepper, descending = loaded(small(model), prepare=descend)
     assert stepper.solver.line_search.descending
     assert_same(descending, r, 1e-6)
 

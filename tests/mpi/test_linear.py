@@ -8,6 +8,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 from pytest_mpi import parallel_assert
 
+from support.messages import Messages
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from support.stiffness import without_grounding
@@ -15,7 +16,6 @@ from swgpar.analysis.drive_model import DriveModel, build_drive_model
 from swgpar.design.design_file import load_design
 from swgpar.design.load_states import LoadState, Stage
 from swgpar.fem.vectors import create_vector
-from swgpar.log import logger
 from swgpar.meshing import load_recipe
 from swgpar.solve.bordered_system import ORDERING, BorderedSystem
 
@@ -68,7 +68,7 @@ def test_iterative_equals_direct(overrides: tuple[str, ...]) -> None:
 
 @pytest.mark.parametrize(("option", "value", "word"), [("14", -99, "more memory"), ("23", 1, "cannot factorise")])
 @pytest.mark.parallel([1, 2])
-def test_mumps_out_of_memory(option: str, value: int, word: str, monkeypatch) -> None:
+def test_mumps_out_of_memory(option: str, value: int, word: str) -> None:
     """An estimate that is too small is raised; what is forbidden gives a step that is not finite, and is named."""
     model, right = system(PLANE, "rotation")
     solver, problem, partition = model.solver, model.problem, model.partition
@@ -77,13 +77,11 @@ def test_mumps_out_of_memory(option: str, value: int, word: str, monkeypatch) ->
     solved, pc = solver.system, solver.snes.getKSP().getPC()
     border.set_system(problem.matrix, problem.supports.ground_vectors, solved.border, solved.rows)
     x = create_vector(partition)
-    said: list[str] = []
-    for level in ("info", "warning"):
-        monkeypatch.setattr(logger, level, lambda text, *values: said.append(text % values))
-    border.setUp(pc)
-    border.apply(pc, right, x)
+    with Messages() as said:
+        border.setUp(pc)
+        border.apply(pc, right, x)
     assert np.isfinite(x.norm()) == (option == "14")
-    parallel_assert(len(said) == 1 and word in said[0], str(said))
+    parallel_assert(len(said.texts) == 1 and word in said.texts[0], str(said.texts))
 
 
 def test_options_of_one_model_are_not_those_of_the_next() -> None:

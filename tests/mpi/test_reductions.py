@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,9 +14,9 @@ from pytest_mpi import parallel_assert
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from support.stepping import load_stepper, row
-from swgpar.analysis import mesh_refinement as accuracy
 from swgpar.analysis.coarse_start import levels, loaded_state, start_loaded
 from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.analysis.mesh_refinement import choose_mesh
 from swgpar.analysis.period import continued
 from swgpar.design.design_file import load_design
 from swgpar.design.load_states import Stage, from_loaded, load_sequence
@@ -29,12 +30,19 @@ PLAIN = ("solver.far_teeth=modelled", "solver.keep_factor=false")
 
 
 def rotated(
-    *overrides: str, recipe: str | Path = RECIPE, comm: MPI.Comm = MPI.COMM_WORLD
+    *overrides: str,
+    recipe: str | Path = RECIPE,
+    comm: MPI.Comm = MPI.COMM_WORLD,
+    prepare: Callable[[LoadStepper], None] = lambda stepper: None,
 ) -> tuple[LoadStepper, dict[str, float]]:
-    """The small drive turned by two increments of 1.5 degrees, and its last history row."""
+    """The small drive turned by two increments of 1.5 degrees, and its last history row.
+
+    prepare : called on the undeformed drive
+    """
     design = load_design(DESIGN, ["steps.rotation=3", "steps.increment=1.5", *overrides])
     mesh = load_recipe(recipe)
     stepper = load_stepper(design, comm, mesh)
+    prepare(stepper)
     items = list(load_sequence(design))
     if design.steps.start_levels:
         recipes = levels(design, mesh)
@@ -67,11 +75,11 @@ def test_a_kept_factor_changes_nothing(plain: dict[str, float]) -> None:
 
 
 @pytest.mark.parametrize("cost", [0.0, 1e9])
-def test_a_factor_renewed_after_every_solve_or_never_changes_nothing(
-    cost: float, plain: dict[str, float], monkeypatch
-) -> None:
-    monkeypatch.setattr("swgpar.solve.bordered_system.price", lambda operations, entries, analysed: cost)
-    _, row = rotated("solver.far_teeth=modelled")
+def test_a_factor_renewed_after_every_solve_or_never_changes_nothing(cost: float, plain: dict[str, float]) -> None:
+    def set_price(stepper: LoadStepper) -> None:
+        stepper.solver.system.reused.price = lambda operations, entries, analysed: cost
+
+    _, row = rotated("solver.far_teeth=modelled", prepare=set_price)
     assert_same(row, plain, 1e-6)
 
 
@@ -82,12 +90,15 @@ def test_a_start_without_pins_changes_nothing(overrides: tuple[str, ...]) -> Non
     assert_same(row, pinned, 1e-6)
 
 
-def test_search_over_candidate_teeth_only(plain: dict[str, float], monkeypatch) -> None:
+def test_search_over_candidate_teeth_only(plain: dict[str, float]) -> None:
     """Flanks as far as five modules apart instead of those that can meet."""
-    monkeypatch.setattr("swgpar.analysis.drive_model.TIP_MARGIN", 5.0)
-    stepper, row = rotated(*PLAIN)
+
+    def look_far(stepper: LoadStepper) -> None:
+        problem = stepper.problem
+        problem.contact_search = replace(problem.contact_search, tip_margin=5.0 * problem.module)
+
+    stepper, row = rotated(*PLAIN, prepare=look_far)
     wide = len(stepper.problem.flanks.pairs)
-    monkeypatch.undo()
     near = len(rotated(*PLAIN)[0].problem.flanks.pairs)
     print(f"{near} of {wide} pairs of flanks")
     assert near < wide
@@ -214,13 +225,13 @@ def test_the_continued_history_is_that_of_a_longer_rotation() -> None:
 
 
 @pytest.mark.parallel(2)
-def test_a_mesh_is_chosen_alike_on_any_number_of_ranks(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_mesh_is_chosen_alike_on_any_number_of_ranks() -> None:
     """The recipe, the loaded state on it and its estimated errors; every group is tried, in space as well."""
-    monkeypatch.setattr(accuracy, "LARGEST", {3: 12_000})
     design = load_design(DESIGN, ["steps.rotation=3", "solver.rtol=1e-9"])
     found = []
     for comm in (MPI.COMM_WORLD, MPI.COMM_SELF):
-        chosen = accuracy.choose_mesh(design, load_recipe(RECIPE), list(load_sequence(design)), 0.05, comm)
+        states = list(load_sequence(design))
+        chosen = choose_mesh(design, load_recipe(RECIPE), states, 0.05, comm, largest=12_000)
         assert np.isfinite(chosen.error) and chosen.model.n_elements() <= 12_000
         found.append((chosen, loaded_state(chosen.model).stresses))
         chosen.model.destroy()

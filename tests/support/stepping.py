@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 import pytest
@@ -40,9 +40,12 @@ def row(stepper: LoadStepper) -> Row:
     return {**stepper.row(), **stepper.model.stresses()[0]}
 
 
-def loaded(design: DriveDesign, comm: MPI.Comm = WORLD) -> tuple[LoadStepper, Row]:
-    """The drive under its torque, the wave generator not yet rotated."""
+def loaded(
+    design: DriveDesign, comm: MPI.Comm = WORLD, prepare: Callable[[LoadStepper], None] = lambda stepper: None
+) -> tuple[LoadStepper, Row]:
+    """The drive under its torque, the wave generator not yet rotated. prepare : called on the undeformed drive"""
     stepper = load_stepper(design, comm)
+    prepare(stepper)
     for state in load_sequence(design):
         if state.stage <= Stage.LOAD:
             stepper.advance(state)

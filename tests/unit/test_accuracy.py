@@ -10,15 +10,15 @@ from mpi4py import MPI
 
 from support.paths import DESIGN, DRIVERS, REFERENCE
 from support.small_drive import PLANE
-from swgpar.analysis import mesh_refinement as module
 from swgpar.analysis.coarse_start import LoadedState
 from swgpar.analysis.mesh_refinement import (
     GROUPS,
+    LARGEST,
     RTOL,
     Doublings,
     Refinement,
-    choose_mesh,
     error_after,
+    refine,
     with_accuracy,
 )
 from swgpar.design.design_file import load_design
@@ -81,16 +81,13 @@ class Analytic:
 
     ERRORS, EVERY, FINEST, LEFT_OUT = (60.0, -3.0), 300.0, 10**9, 0.0
 
-    def __init__(self, *_: object) -> None:
-        self.groups, self.doublings, self.levels, self.dimensions = {"a": {}, "b": {}}, (0, 0), {}, 2
-        self.model, self.loads, self.omitted_stress = self, [], defaultdict(lambda: self.LEFT_OUT)
-
-    def recipe(self, doublings: Doublings) -> Doublings:
-        return doublings
+    def __init__(self) -> None:
+        self.groups, self.doublings, self.levels, self.largest = ("a", "b"), (0, 0), {}, self.FINEST
+        self.loads, self.omitted_stress = [], defaultdict(lambda: self.LEFT_OUT)
 
     def size(self, doublings: Doublings) -> int:
         size = 1000 * 2 ** doublings[0] * 8 ** doublings[1]
-        return size if size <= self.FINEST else 0
+        return size if size <= self.largest else 0
 
     def stress(self, doublings: Doublings) -> float:
         return self.EVERY - sum(error / 2**count for error, count in zip(self.ERRORS, doublings))
@@ -105,67 +102,59 @@ class Analytic:
         return self.levels[doublings]
 
 
-def chosen(monkeypatch: pytest.MonkeyPatch, asked: float, stand_in: type[Analytic] = Analytic) -> module.ChosenMesh:
-    monkeypatch.setattr(module, "Refinement", stand_in)
-    return choose_mesh(None, None, [], asked, MPI.COMM_SELF)
-
-
 @pytest.mark.parametrize(("asked", "doublings"), [(0.2, (1, 0)), (0.05, (3, 0)), (0.02, (5, 0)), (0.01, (7, 1))])
-def test_the_group_is_refined_that_has_the_larger_error_for_its_elements(
-    monkeypatch: pytest.MonkeyPatch, asked: float, doublings: Doublings
-) -> None:
+def test_the_group_is_refined_that_has_the_larger_error_for_its_elements(asked: float, doublings: Doublings) -> None:
     """Errors of the first order are found exactly; those of both groups add up, whatever their signs."""
-    found = chosen(monkeypatch, asked)
-    assert found.recipe == found.model.doublings == doublings
-    assert len(found.model.loads) == len(set(found.model.loads)) + (doublings == (1, 0))  # back from the trial of b
+    levels = Analytic()
+    found, error, stresses = refine(levels, asked)
+    assert found == levels.doublings == doublings
+    assert len(levels.loads) == len(set(levels.loads)) + (doublings == (1, 0))  # back from the trial of b
     true = 60.0 / 2 ** doublings[0] + 3.0 / 2 ** doublings[1]
-    assert found.stresses == {"fs_s1": pytest.approx(true), "fs_s3": 0.0}
-    assert found.error == pytest.approx(true / (found.model.stress(doublings) + true)) and found.error <= asked
+    assert stresses == {"fs_s1": pytest.approx(true), "fs_s3": 0.0}
+    assert error == pytest.approx(true / (levels.stress(doublings) + true)) and error <= asked
 
 
-def test_what_condensed_sectors_leave_out_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_condensed_sectors_leave_out_counts() -> None:
     class Condensed(Analytic):
         LEFT_OUT = 4.0
 
-    assert chosen(monkeypatch, 0.05, Condensed).error == pytest.approx((7.5 + 3.0 + 4.0) / (295.5 + 14.5))
-    assert chosen(monkeypatch, 0.04).recipe == (3, 0) and chosen(monkeypatch, 0.04, Condensed).recipe == (4, 0)
-    found = chosen(monkeypatch, 0.01, Condensed)  # no mesh brings back what is left out
-    assert found.recipe == (0, 0) and found.error > 0.01
+    assert refine(Condensed(), 0.05)[1] == pytest.approx((7.5 + 3.0 + 4.0) / (295.5 + 14.5))
+    assert refine(Analytic(), 0.04)[0] == (3, 0) and refine(Condensed(), 0.04)[0] == (4, 0)
+    found, error, _ = refine(Condensed(), 0.01)  # no mesh brings back what is left out
+    assert found == (0, 0) and error > 0.01
 
 
-def test_refinement_ends_where_nothing_helps(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_refinement_ends_where_nothing_helps() -> None:
     class Blocked(Analytic):
         def size(self, doublings: Doublings) -> int:
             return super().size(doublings) if doublings[0] <= 2 else 0
 
-    found = chosen(monkeypatch, 0.01, Blocked)
-    assert found.recipe == (2, 0) and found.error > 0.01  # b could be doubled, and would not do
-    assert found.model.size((2, 1))
+    found, error, _ = refine(Blocked(), 0.01)
+    assert found == (2, 0) and error > 0.01  # b could be doubled, and would not do
+    assert Blocked().size((2, 1))
 
     class Single(Analytic):
         FINEST = 1000
 
-    found = chosen(monkeypatch, 0.2, Single)
-    assert found.recipe == (0, 0) and found.error == 1.0 and found.stresses == {}
+    assert refine(Single(), 0.2) == ((0, 0), 1.0, {})
 
 
-def test_a_change_that_is_small_by_chance_is_no_convergence(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_change_that_is_small_by_chance_is_no_convergence() -> None:
     class Chance(Analytic):
         def stress(self, doublings: Doublings) -> float:
             return 273.0 if doublings == (2, 0) else super().stress(doublings)  # as with (1, 0), by chance
 
-    found = chosen(monkeypatch, 0.05, Chance)
-    assert found.recipe == (4, 0) and found.stresses["fs_s1"] == pytest.approx(22.5 / 2.0 + 3.0)
+    found, _, stresses = refine(Chance(), 0.05)
+    assert found == (4, 0) and stresses["fs_s1"] == pytest.approx(22.5 / 2.0 + 3.0)
     assert error_after(5.0) == 5.0 and error_after(0.1, -8.0) == 4.0
 
 
-def test_a_recipe_that_is_too_fine_is_coarsened(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_recipe_that_is_too_fine_is_coarsened() -> None:
     """Every group can be doubled below the largest size."""
-    monkeypatch.setattr(module, "solve_to_load", lambda design, recipe, *_: recipe)
     design = load_design(REFERENCE)
     full = load_recipe("full")
-    way = Refinement(design, full, [], MPI.COMM_SELF)
-    assert way.base == coarser(full) and way.model == coarser(way.base)
-    assert 0 < way.size((0, 0, 0)) < min(way.size(doublings) for doublings in ((1, 0, 0), (0, 1, 0), (0, 0, 1)))
-    assert way.size((9, 0, 0)) == 0  # more than a count may be
-    assert Refinement(design, way.base, [], MPI.COMM_SELF).base == way.base
+    found = Refinement(design, full, [], MPI.COMM_SELF, largest=LARGEST[3])
+    assert found.base == coarser(full)
+    assert 0 < found.size((0, 0, 0)) < min(found.size(doublings) for doublings in ((1, 0, 0), (0, 1, 0), (0, 0, 1)))
+    assert found.size((9, 0, 0)) == 0  # more than a count may be
+    assert Refinement(design, found.base, [], MPI.COMM_SELF, largest=LARGEST[3]).base == found.base

@@ -13,6 +13,7 @@ import pytest
 from mpi4py import MPI
 
 import swgpar
+from support.messages import Messages
 from support.paths import DESIGN, DRIVERS, RECIPE, ROOT
 from support.small_drive import PLANE
 from swgpar import log
@@ -219,27 +220,13 @@ def test_a_figure_that_cannot_be_drawn(
         result.plot.save(tmp_path)
 
 
-class Messages(logging.Handler):
-    """Keeps what is logged."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.texts: list[str] = []
-
-    def emit(self, record: logging.LogRecord) -> None:
-        self.texts.append(record.getMessage())
-
-
 def test_a_run_leaves_the_logger_as_it_was() -> None:
-    logger, messages = logging.getLogger("swgpar"), Messages()
-    logger.addHandler(messages)
-    try:
+    logger = logging.getLogger("swgpar")
+    with Messages() as messages:
         before = logger.level, logger.propagate, list(logger.handlers)
         swgpar.run(DRIVERS / "ring_supported.toml", progress=True)
         assert (logger.level, logger.propagate, logger.handlers) == before
-        assert any("finished in" in text for text in messages.texts)
-    finally:
-        logger.removeHandler(messages)
+    assert any("finished in" in text for text in messages.texts)
 
 
 def test_warnings_are_seen_without_a_terminal(

@@ -14,6 +14,7 @@ from mpi4py import MPI
 
 from support.paths import DATA, DESIGN, RECIPE, ROOT
 from support.study_files import assert_refused, jobs_of
+from swgpar.analysis.drive_result import DriveResult
 from swgpar.analysis.error_estimate import estimate
 from swgpar.errors import InputError
 from swgpar.results.table import format_csv
@@ -24,7 +25,7 @@ from swgpar.studies.report import make_report
 from swgpar.studies.spec import load_study
 from swgpar.studies.study import queue
 from swgpar.studies.table import compare, study_rows
-from swgpar.systems.drive import values
+from swgpar.systems.drive import Drives, values
 
 MESHES = f'meshes = ["{RECIPE}"]'
 Write = Callable[..., Path]
@@ -178,14 +179,16 @@ def test_the_example_of_the_documentation(tmp_path: Path) -> None:
     assert (jobs[0].case.name, jobs[-1].case.name) == ("elliptical_torque=10", "simplified_torque=20")
 
 
-def test_an_unforeseen_error_is_the_case_s_own(
-    study_file: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def broken(*_: object, **__: object) -> None:
+class Broken(Drives):
+    """Drives whose runs end in an error that is no error of swgpar."""
+
+    def run(self, *_: object, **__: object) -> DriveResult:
         raise ZeroDivisionError("by nothing")
 
-    monkeypatch.setattr("swgpar.systems.drive.run_drive", broken)
+
+def test_an_unforeseen_error_is_the_case_s_own(study_file: Write, tmp_path: Path) -> None:
     (job,) = jobs_of(study_file())
+    job = replace(job, case=replace(job.case, system=Broken()))
     found = run_job(job, tmp_path / "a" / "b", MPI.COMM_SELF, restart=False)
     assert (found.status, found.reason) == ("failed", "ZeroDivisionError: by nothing")
     assert read_status(tmp_path / "a" / "b")["reason"] == found.reason
