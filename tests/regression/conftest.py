@@ -1,4 +1,4 @@
-"""The uninterrupted run that the tests of this folder compare with."""
+"""The uninterrupted runs, plane and of the cup, that the tests of this folder compare with."""
 
 from __future__ import annotations
 
@@ -7,6 +7,14 @@ from pathlib import Path
 import pytest
 
 from support.commands import run_command, succeed
+from support.small_drive import SHORT
+
+
+@pytest.fixture(scope="session")
+def cup(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("cup") / "run"
+    succeed([*run_command(out, overrides=SHORT), "output.fields=true", "output.figures=true"])
+    return out
 
 
 @pytest.fixture(scope="session")

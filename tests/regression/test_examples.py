@@ -77,7 +77,7 @@ def test_commands_of_the_readme(checkout: Path) -> None:
         succeed([sys.executable if word == "python" else word for word in words], cwd=checkout)
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", [1, pytest.param(2, marks=pytest.mark.mpirun)])
 @pytest.mark.parametrize("number", range(len(blocks("python"))))
 def test_python_of_the_readme(number: int, ranks: int, checkout: Path) -> None:
     (checkout / "example.py").write_text(on_the_small_mesh(blocks("python")[number]), encoding="utf-8")
@@ -104,5 +104,6 @@ def gallery_runs() -> list[tuple[Path, int]]:
 @pytest.mark.parametrize(
     ("script", "ranks"), gallery_runs(), ids=lambda value: getattr(value, "name", f"{value} ranks")
 )
+@pytest.mark.mpirun
 def test_script_of_the_gallery(script: Path, ranks: int, tmp_path: Path) -> None:
     succeed([*on_ranks(ranks), sys.executable, str(script)], cwd=tmp_path)

@@ -12,6 +12,7 @@ import pytest
 from mpi4py import MPI
 
 from support.commands import assert_same_history, execute, run_command, succeed
+from support.small_drive import PLANE
 from swgpar.results import checkpoint, history
 from swgpar.results.parallel_hdf5 import h5py
 
@@ -73,7 +74,7 @@ def assert_readable(out: Path, plain: Path, fields: bool) -> None:
                 assert file[f"increment_{k + 1:04d}/flexible_spline/vm"][:].max() == pytest.approx(row["fs_vm"])
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", [1, pytest.param(2, marks=pytest.mark.mpirun)])
 def test_small_disk(plain: Path, disk: Disk, ranks: int) -> None:
     out = disk.place / "run"
     needed = size(plain) - size(plain / "figures")
@@ -92,7 +93,7 @@ def test_something_else_fills_the_disk(plain: Path, disk: Disk) -> None:
     out = disk.place / "run"
     disk.grow(8 * 1024)
     # one increment, then a run that finds the room for its second checkpoint gone
-    succeed(run_command(out, overrides=("steps.rotation=2.0", "steps.increment=2.0")))
+    succeed(run_command(out, overrides=(*PLANE, "steps.rotation=2.0", "steps.increment=2.0")))
     (out / "summary.json").unlink()
     saved = (out / checkpoint.NAME).read_bytes()
     room = os.statvfs(disk.place)

@@ -1,4 +1,4 @@
-"""Whole runs of the plane model of the small drive through the command: result files, fields, figures, restart."""
+"""Whole runs of the plane model through the command: result files, fields, figures, the spline fixed."""
 
 from __future__ import annotations
 
@@ -11,28 +11,15 @@ import pyvista
 
 from support.commands import assert_same_history, run_command, succeed
 from support.paths import RECIPE
-from support.small_drive import PLANE, SHORT
+from support.small_drive import PLANE
 from swgpar.meshing import load_recipe
 from swgpar.results import history
 
-OVERRIDES = (*PLANE, *SHORT)
 
-
-def plane_command(out: Path, *more: str, ranks: int = 1, overrides: tuple[str, ...] = OVERRIDES) -> list[str]:
-    return run_command(out, *more, ranks=ranks, overrides=overrides)
-
-
-@pytest.fixture(scope="module")
-def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    out = tmp_path_factory.mktemp("plane") / "run"
-    succeed([*plane_command(out), "output.fields=true", "output.figures=true"])
-    return out
-
-
-def test_result_files(run: Path) -> None:
-    rows = history.read_history(run / "history.csv")
+def test_result_files(plain: Path) -> None:
+    rows = history.read_history(plain / "history.csv")
     assert [r["step"] for r in rows] == ["1", "2", "3", "4", "5"]
-    summary = json.loads((run / "summary.json").read_text(encoding="utf-8"))
+    summary = json.loads((plain / "summary.json").read_text(encoding="utf-8"))
     assert summary["balance_error_Nmm"] < 1e-6 * 200.0
     recipe = load_recipe(RECIPE).flexible_spline
     for body in summary["bodies"].values():
@@ -45,13 +32,13 @@ def test_result_files(run: Path) -> None:
     ring = summary["bodies"]["ring_gear"]
     assert ring["dofs"] == 2 * (ring["nodes"] - 21 * around)
     for name in ("stress", "torque_and_transmission_error", "contact_pattern", "deformed_drive"):
-        assert (run / "figures" / f"{name}.png").stat().st_size > 5000
+        assert (plain / "figures" / f"{name}.png").stat().st_size > 5000
 
 
-def test_fields_open_in_paraview(run: Path) -> None:
+def test_fields_open_in_paraview(plain: Path) -> None:
     """Plane stress: one principal stress is zero; both layers of nodes move alike, and not along the axis."""
-    rows = history.read_history(run / "history.csv")
-    reader = pyvista.XdmfReader(str(run / "fields.xdmf"))
+    rows = history.read_history(plain / "history.csv")
+    reader = pyvista.XdmfReader(str(plain / "fields.xdmf"))
     assert reader.number_time_points == len(rows)
     reader.set_active_time_point(len(rows) - 1)
     for block, prefix in zip(reader.read(), ("fs", "rg")):
@@ -70,19 +57,10 @@ def test_fields_open_in_paraview(run: Path) -> None:
             assert values[lower] == pytest.approx(values[upper], rel=1e-6, abs=1e-9), name
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-def test_restart_with_more_rotation(run: Path, tmp_path: Path, ranks: int) -> None:
-    out = tmp_path / "longer"
-    succeed(plane_command(out, overrides=(*PLANE, "steps.rotation=2.0", "steps.increment=2.0")))
-    succeed(plane_command(out, "--restart", ranks=ranks))
-    assert "restarted after increment" in (out / "run.log").read_text(encoding="utf-8")
-    assert_same_history(out, run, iterations=False)
-
-
 def test_restart_with_the_spline_fixed(tmp_path: Path) -> None:
     layout = (*PLANE, "drive.layout=spline_fixed", "steps.increment=2.0")
     whole, parts = tmp_path / "whole", tmp_path / "parts"
-    succeed(plane_command(whole, overrides=(*layout, "steps.rotation=4.0")))
-    succeed(plane_command(parts, overrides=(*layout, "steps.rotation=2.0")))
-    succeed(plane_command(parts, "--restart", overrides=(*layout, "steps.rotation=4.0")))
+    succeed(run_command(whole, overrides=(*layout, "steps.rotation=4.0")))
+    succeed(run_command(parts, overrides=(*layout, "steps.rotation=2.0")))
+    succeed(run_command(parts, "--restart", overrides=(*layout, "steps.rotation=4.0")))
     assert_same_history(parts, whole, iterations=False)

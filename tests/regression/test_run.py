@@ -24,22 +24,22 @@ from swgpar.results import history
 CUP_ROTATION = DRIVERS / "cup_rotation.py"
 
 
-def test_result_files(plain: Path) -> None:
-    rows = history.read_history(plain / "history.csv")
+def test_result_files(cup: Path) -> None:
+    rows = history.read_history(cup / "history.csv")
     assert [r["step"] for r in rows] == ["1", "2", "3", "4", "5"]
-    summary = json.loads((plain / "summary.json").read_text(encoding="utf-8"))
+    summary = json.loads((cup / "summary.json").read_text(encoding="utf-8"))
     assert summary["balance_error_Nmm"] < 1e-6 * 2000.0
     assert summary["means"]["fs_s1"] == pytest.approx(np.mean([r["fs_s1"] for r in rows[3:]]))
     for name in ("fields.h5", "fields.xdmf", "checkpoint.h5", "run.log"):
-        assert (plain / name).stat().st_size > 0
+        assert (cup / name).stat().st_size > 0
     for name in ("stress", "torque_and_transmission_error", "contact_pattern", "deformed_drive"):
-        assert (plain / "figures" / f"{name}.png").stat().st_size > 5000
+        assert (cup / "figures" / f"{name}.png").stat().st_size > 5000
 
 
-def test_fields_open_in_paraview(plain: Path) -> None:
+def test_fields_open_in_paraview(cup: Path) -> None:
     """VTK's XDMF reader is the one that ParaView offers."""
-    rows = history.read_history(plain / "history.csv")
-    reader = pyvista.XdmfReader(str(plain / "fields.xdmf"))
+    rows = history.read_history(cup / "history.csv")
+    reader = pyvista.XdmfReader(str(cup / "fields.xdmf"))
     assert reader.number_time_points == len(rows)
     reader.set_active_time_point(len(rows) - 1)
     for block, prefix in zip(reader.read(), ("fs", "rg")):
@@ -55,24 +55,30 @@ def test_results_are_not_overwritten_by_accident(plain: Path) -> None:
     assert done.returncode == 4 and "--restart" in done.stderr and "Traceback" not in done.stderr
 
 
-@pytest.mark.parametrize(("before", "after"), [(1, 1), (2, 1), (1, 2)])
-def test_kill_and_restart(plain: Path, tmp_path: Path, before: int, after: int) -> None:
+@pytest.mark.parametrize(("model", "before", "after"), [("plain", 1, 1), ("plain", 2, 1), ("cup", 1, 2)])
+@pytest.mark.mpirun
+def test_kill_and_restart(model: str, before: int, after: int, request: pytest.FixtureRequest, tmp_path: Path) -> None:
     """The same history; a restart begins with a new factor, where the whole run may have kept one, and one state."""
-    out = tmp_path / "killed"
-    kill_after(run_command(out, ranks=before), out, rows=3)
+    out, overrides = tmp_path / "killed", SHORT if model == "cup" else (*PLANE, *SHORT)
+    kill_after(run_command(out, ranks=before, overrides=overrides), out, rows=3)
     assert not (out / "summary.json").exists()
-    succeed(run_command(out, "--restart", ranks=after))
+    succeed(run_command(out, "--restart", ranks=after, overrides=overrides))
     assert "restarted after increment" in (out / "run.log").read_text(encoding="utf-8")
     assert json.loads((out / "summary.json").read_text(encoding="utf-8"))["ranks"] == after
-    assert_same_history(out, plain, iterations=False)
+    assert_same_history(out, request.getfixturevalue(model), iterations=False)
 
 
+@pytest.mark.mpirun
 def test_restart_with_friction(tmp_path: Path) -> None:
     """The tractions of the flanks go through the checkpoint, on to another number of ranks.
 
     Slip turns round at the start of the rotation: flanks stick in such small increments, and remember.
     """
-    whole, parts, more = tmp_path / "whole", tmp_path / "parts", ("steps.increment=0.01", "contact.friction=0.1")
+    whole, parts, more = (
+        tmp_path / "whole",
+        tmp_path / "parts",
+        (*PLANE, "steps.increment=0.01", "contact.friction=0.1"),
+    )
     succeed(run_command(whole, overrides=("steps.rotation=0.02", *more)))
     succeed(run_command(parts, ranks=2, overrides=("steps.rotation=0.01", *more)))
     succeed(run_command(parts, "--restart", overrides=("steps.rotation=0.02", *more)))
@@ -93,24 +99,25 @@ def test_restart_before_anything_was_saved(plain: Path, tmp_path: Path) -> None:
 
 def test_restart_with_more_rotation_and_fields(plain: Path, tmp_path: Path) -> None:
     out = tmp_path / "longer"
-    succeed(run_command(out, overrides=("steps.rotation=2.0", "steps.increment=2.0", "output.fields=false")))
+    succeed(run_command(out, overrides=(*PLANE, "steps.rotation=2.0", "steps.increment=2.0", "output.fields=false")))
     first = json.loads((out / "summary.json").read_text(encoding="utf-8"))
     succeed([*run_command(out, "--restart"), "output.fields=true"])
     assert_same_history(out, plain, iterations=False)
     assert json.loads((out / "summary.json").read_text(encoding="utf-8"))["wall_s"] > first["wall_s"]
     assert pyvista.XdmfReader(str(out / "fields.xdmf")).number_time_points == 1
-    refused = execute(run_command(out, "--restart", overrides=("steps.rotation=3.0", "steps.increment=2.0")))
+    refused = execute(run_command(out, "--restart", overrides=(*PLANE, "steps.rotation=3.0", "steps.increment=2.0")))
     assert refused.returncode == 2 and "steps.rotation = 3" in refused.stderr
 
 
-def test_script_of_the_reference_drive(plain: Path, tmp_path: Path) -> None:
+@pytest.mark.mpirun
+def test_script_of_the_reference_drive(cup: Path, tmp_path: Path) -> None:
     out = tmp_path / "script"
     arguments = ["--design", DESIGN, "--mesh", RECIPE, "--out", out, "--set", *SHORT]
     done = succeed([*on_ranks(2), sys.executable, str(CUP_ROTATION), *map(str, arguments)])
-    assert_same_history(out, plain, iterations=False)
+    assert_same_history(out, cup, iterations=False)
     assert "\x1b" not in done.stdout  # no progress bar in a file, though mpirun gives its ranks a terminal
     printed = [line.split() for line in done.stdout.splitlines() if line.startswith("step ")]
-    rows = history.read_history(plain / "history.csv")
+    rows = history.read_history(cup / "history.csv")
     assert [words[1] for words in printed] == [r["step"] for r in rows]
     assert [words[5] for words in printed] == [f"{r['fs_s1']:.1f}" for r in rows]
 
@@ -126,14 +133,15 @@ def test_start_on_a_coarser_mesh_and_one_period(tmp_path: Path) -> None:
     """History from step 3 on and over the whole rotation, an error of the mesh, figures; a restart goes on in it."""
     out = tmp_path / "run"
     overrides = ["steps.start_levels=1", "steps.samples=2", "output.fields=true", "output.figures=true"]
-    succeed([*run_command(out), *overrides, "steps.rotation=9"])
+    command = run_command(out, overrides=SHORT)
+    succeed([*command, *overrides, "steps.rotation=9"])
     rows = history.read_history(out / "history.csv")
     assert [row["step"] for row in rows] == ["3", "4", "5"]
     assert len(list((out / "figures").glob("*.png"))) == 4
     summary = json.loads((out / "summary.json").read_text())
     assert summary["increments"] == 2 and summary["phases_s"]["start"] > 0.0
     assert 0.0 < summary["mesh_error"]["fs_s1"] < rows[0]["fs_s1"]
-    succeed([*run_command(out), *overrides, "steps.rotation=20", "--restart"])
+    succeed([*command, *overrides, "steps.rotation=20", "--restart"])
     longer = history.read_history(out / "history.csv")
     assert longer[:3] == rows and [row["step"] for row in longer] == ["3", "4", "5", "6", "7"]
     assert longer[-1]["wg_angle_deg"] == pytest.approx(2.0 * 360.0 / 42.0)

@@ -11,13 +11,15 @@ import pytest
 
 from support.commands import execute, kill_after, on_ranks, succeed, swgpar
 from support.paths import DESIGN, RECIPE
+from support.small_drive import PLANE
 
-GOOD, FAILING = ("a_torque=1", "a_torque=2"), ("b_torque=1", "b_torque=2")
+GOOD, FAILING = ("a_torque=0.1", "a_torque=0.2"), ("b_torque=0.1", "b_torque=0.2")
+SET = [*PLANE, "steps.rotation=2.0", "steps.increment=2.0"]
 
 
-def study_file(folder: Path, more: str = "", torques: str = "[1.0, 2.0]", bad: bool = True) -> Path:
+def study_file(folder: Path, more: str = "", torques: str = "[0.1, 0.2]", bad: bool = True) -> Path:
     path = folder / "study.toml"
-    text = f'[study]\ndesign = "{DESIGN}"\nmeshes = ["{RECIPE}"]\nset = ["steps.rotation=2.0", "steps.increment=2.0"]\n'
+    text = f'[study]\ndesign = "{DESIGN}"\nmeshes = ["{RECIPE}"]\nset = {SET}\n'
     text += f"{more}\n[study.vary]\nload.torque = {torques}\n[[study.case]]\nname = 'a'\n"
     text += "published.mean.fs_s1 = 2058.0\ntolerance.mean.fs_s1 = 1.0\n"
     if bad:
@@ -74,6 +76,7 @@ def test_a_failing_case_does_not_stop_the_others(whole: Path) -> None:
     assert page.count("data:image/png;base64,") == 2 and "did not converge" in page
 
 
+@pytest.mark.mpirun
 def test_two_ranks_give_the_same(whole: Path, tmp_path: Path) -> None:
     done = execute(study_command(study_file(tmp_path), tmp_path / "out", ranks=2))
     assert done.returncode == 5
@@ -81,6 +84,7 @@ def test_two_ranks_give_the_same(whole: Path, tmp_path: Path) -> None:
     assert (tmp_path / "out/cases" / GOOD[0] / "tiny/run.log").read_text(encoding="utf-8").count("1 ranks") == 1
 
 
+@pytest.mark.mpirun
 def test_kill_and_restart(whole: Path, tmp_path: Path) -> None:
     path, out = study_file(tmp_path), tmp_path / "out"
     kill_after(study_command(path, out), out / "cases" / GOOD[1] / "tiny", rows=2)
@@ -94,8 +98,9 @@ def test_kill_and_restart(whole: Path, tmp_path: Path) -> None:
     assert_same_table(out, whole)
 
 
+@pytest.mark.mpirun
 def test_all_ranks_on_one_case(whole: Path, tmp_path: Path) -> None:
-    path, out = study_file(tmp_path, "parallel = 'ranks'", "[2.0]"), tmp_path / "out"
+    path, out = study_file(tmp_path, "parallel = 'ranks'", "[0.2]"), tmp_path / "out"
     done = execute(study_command(path, out, ranks=2))
     assert done.returncode == 5
     log = (out / "cases" / GOOD[1] / "tiny/run.log").read_text(encoding="utf-8")
@@ -111,7 +116,7 @@ def test_all_ranks_on_one_case(whole: Path, tmp_path: Path) -> None:
 
 
 def test_a_finished_case_is_not_replaced_by_another_design(whole: Path, tmp_path: Path) -> None:
-    path, out = study_file(tmp_path, torques="[2.0]", bad=False), tmp_path / "out"
+    path, out = study_file(tmp_path, torques="[0.2]", bad=False), tmp_path / "out"
     shutil.copytree(whole, out)
     path.write_text(path.read_text(encoding="utf-8").replace("steps.increment=2.0", "steps.increment=1.0"))
     before = (out / "cases" / GOOD[1] / "tiny/history.csv").read_bytes()
@@ -121,6 +126,7 @@ def test_a_finished_case_is_not_replaced_by_another_design(whole: Path, tmp_path
     assert status(out, GOOD[1])["status"] == "finished"
 
 
+@pytest.mark.mpirun
 def test_a_wrong_study_file_is_refused_on_all_ranks(tmp_path: Path) -> None:
     path = study_file(tmp_path, "titel = 'x'")
     done = execute(study_command(path, tmp_path / "out", ranks=2), timeout=120.0)

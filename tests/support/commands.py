@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from support.paths import DATA, DESIGN, RECIPE
-from support.small_drive import SHORT
+from support.small_drive import PLANE, SHORT
 from swgpar.results import history
 
 # a process that has initialised MPI passes these on, and mpirun then takes itself for a rank of that job
@@ -33,7 +33,8 @@ def swgpar(*arguments: object) -> list[str]:
     return [sys.executable, "-P", "-m", "swgpar.cli", *map(str, arguments)]
 
 
-def run_command(out: Path, *more: str, ranks: int = 1, overrides: Sequence[str] = SHORT) -> list[str]:
+def run_command(out: Path, *more: str, ranks: int = 1, overrides: Sequence[str] = (*PLANE, *SHORT)) -> list[str]:
+    """A run of the small drive, plane unless the overrides say otherwise."""
     return on_ranks(ranks) + swgpar("run", DESIGN, "--mesh", RECIPE, "--out", out, *more, "--set", *overrides)
 
 
