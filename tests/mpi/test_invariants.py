@@ -27,6 +27,7 @@ TORQUE = {"cup": 2000.0, "plane": 200.0}
 """N mm, at the output with the ring gear fixed."""
 
 both_models = pytest.mark.parametrize("model", MODELS)
+cup_on_two_ranks = pytest.mark.parametrize("model", [pytest.param("cup", marks=pytest.mark.parallel(2)), "plane"])
 
 
 @lru_cache
@@ -48,8 +49,7 @@ def assert_same(a: dict[str, float], b: dict[str, float], rel: float) -> None:
     assert_agree(a, b, ["pairs_in_contact"], 0.0)
 
 
-@both_models
-@pytest.mark.parallel([1, 2, 3])
+@cup_on_two_ranks
 def test_torques_balance(model: str) -> None:
     _, r = base(model)
     total = r["wg_torque_Nmm"] + r["tooth_torque_Nmm"] + r["output_torque_Nmm"]
@@ -58,8 +58,7 @@ def test_torques_balance(model: str) -> None:
     assert r["torque_balance_Nmm"] == pytest.approx(abs(total))
 
 
-@both_models
-@pytest.mark.parallel([1, 2])
+@cup_on_two_ranks
 def test_torques_balance_in_the_other_layout(model: str) -> None:
     """The load acts on the ring gear: it equals the teeth's torque on the spline, whose support takes the rest."""
     stepper, r = other_layout(model)
@@ -313,8 +312,7 @@ class Torn:
         return replace(found, collapsed=found.collapsed or self.torn)
 
 
-@both_models
-@pytest.mark.parallel([1, 2])
+@cup_on_two_ranks
 def test_segments_are_kept_where_those_cut_anew_lead_nowhere(model: str) -> None:
     """The cycle breaker begins in every solve, and no residual can be evaluated with segments cut anew after it."""
 
@@ -327,8 +325,7 @@ def test_segments_are_kept_where_those_cut_anew_lead_nowhere(model: str) -> None
     assert_same(state, r, 5e-3)  # the segments are those of the iteration in which the cycle was found
 
 
-@both_models
-@pytest.mark.parallel([1, 2])
+@cup_on_two_ranks
 def test_descending_line_search_reaches_the_same_state(model: str) -> None:
     """Every active set taken for one that returns, so that all line searches are descending."""
 
