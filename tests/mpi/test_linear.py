@@ -45,8 +45,10 @@ def system(overrides: tuple[str, ...], control: str) -> tuple[DriveModel, PETSc.
     return model, right
 
 
-@pytest.mark.parametrize("overrides", [(), PLANE])
-@pytest.mark.parallel([1, 2, 3])
+@pytest.mark.parametrize(
+    "overrides",
+    [pytest.param((), marks=pytest.mark.parallel(2)), PLANE, pytest.param(PLANE, marks=pytest.mark.parallel(3))],
+)
 def test_iterative_equals_direct(overrides: tuple[str, ...]) -> None:
     model, right = system(overrides, "rotation")
     solver, problem, partition = model.solver, model.problem, model.partition

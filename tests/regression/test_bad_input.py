@@ -9,8 +9,6 @@ import pytest
 from support.commands import execute, on_ranks, swgpar
 from support.paths import DATA, DESIGN, RECIPE
 
-pytestmark = pytest.mark.mpirun
-
 # mpirun passes on one exit code only and ends the others: this shell reports that of each rank and ends well itself
 EACH = ["sh", "-c", '"$@"; echo "exit code $?"', "sh"]
 

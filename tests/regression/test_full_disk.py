@@ -74,7 +74,7 @@ def assert_readable(out: Path, plain: Path, fields: bool) -> None:
                 assert file[f"increment_{k + 1:04d}/flexible_spline/vm"][:].max() == pytest.approx(row["fs_vm"])
 
 
-@pytest.mark.parametrize("ranks", [1, pytest.param(2, marks=pytest.mark.mpirun)])
+@pytest.mark.parametrize("ranks", [1, 2])
 def test_small_disk(plain: Path, disk: Disk, ranks: int) -> None:
     out = disk.place / "run"
     needed = size(plain) - size(plain / "figures")

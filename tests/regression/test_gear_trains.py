@@ -27,7 +27,6 @@ def run(name: str, out: Path, *, ranks: int = 1) -> list[str]:
 
 
 @pytest.mark.parametrize("name", SMALL)
-@pytest.mark.mpirun
 def test_results_are_the_same_on_any_number_of_ranks(name: str, tmp_path: Path) -> None:
     one, two = tmp_path / "one", tmp_path / "two"
     done = succeed(run(name, one))
@@ -62,7 +61,6 @@ def test_figures_are_drawn_again_and_results_kept(tmp_path: Path) -> None:
         (("--set", "gear_train.model=belt"), 'gear_train.model = "belt" is not available'),
     ],
 )
-@pytest.mark.mpirun
 def test_refused_on_all_ranks(arguments: tuple[str, ...], reason: str, tmp_path: Path) -> None:
     out = tmp_path / "run"
     done = execute(on_ranks(2) + swgpar("run", DRIVERS / "cascade.toml", "--out", out, *arguments), timeout=120.0)

@@ -76,7 +76,6 @@ def test_a_failing_case_does_not_stop_the_others(whole: Path) -> None:
     assert page.count("data:image/png;base64,") == 2 and "did not converge" in page
 
 
-@pytest.mark.mpirun
 def test_two_ranks_give_the_same(whole: Path, tmp_path: Path) -> None:
     done = execute(study_command(study_file(tmp_path), tmp_path / "out", ranks=2))
     assert done.returncode == 5
@@ -84,7 +83,6 @@ def test_two_ranks_give_the_same(whole: Path, tmp_path: Path) -> None:
     assert (tmp_path / "out/cases" / GOOD[0] / "tiny/run.log").read_text(encoding="utf-8").count("1 ranks") == 1
 
 
-@pytest.mark.mpirun
 def test_kill_and_restart(whole: Path, tmp_path: Path) -> None:
     path, out = study_file(tmp_path), tmp_path / "out"
     kill_after(study_command(path, out), out / "cases" / GOOD[1] / "tiny", rows=2)
@@ -98,7 +96,6 @@ def test_kill_and_restart(whole: Path, tmp_path: Path) -> None:
     assert_same_table(out, whole)
 
 
-@pytest.mark.mpirun
 def test_all_ranks_on_one_case(whole: Path, tmp_path: Path) -> None:
     path, out = study_file(tmp_path, "parallel = 'ranks'", "[0.2]"), tmp_path / "out"
     done = execute(study_command(path, out, ranks=2))
@@ -126,7 +123,6 @@ def test_a_finished_case_is_not_replaced_by_another_design(whole: Path, tmp_path
     assert status(out, GOOD[1])["status"] == "finished"
 
 
-@pytest.mark.mpirun
 def test_a_wrong_study_file_is_refused_on_all_ranks(tmp_path: Path) -> None:
     path = study_file(tmp_path, "titel = 'x'")
     done = execute(study_command(path, tmp_path / "out", ranks=2), timeout=120.0)

@@ -88,7 +88,6 @@ def test_bulging_cam_is_refused() -> None:
         DriveDesign.from_table(table_of(ALL["rim, plane reference"].design, {"wave_generator": flat}))
 
 
-@pytest.mark.mpirun
 def test_more_ranks_than_cores(tmp_path) -> None:
     """The same on one rank and on four, whatever the machine has."""
     for ranks in (1, 4):
