@@ -16,10 +16,9 @@ import numpy as np
 import swgpar
 
 DRIVERS = Path(__file__).parents[2] / "drivers"
-design = swgpar.load_design(
-    DRIVERS / "plane_half_turn.toml",
-    {"steps.samples": 16, "steps.rotation": 2.0 * 360.0 / 122.0},
-)
+design = swgpar.load_design(DRIVERS / "plane_half_turn.toml")
+pitch = 360.0 / design.drive.teeth_rg
+design = design.with_values({"steps.samples": 16, "steps.rotation": 2.0 * pitch})
 gear = {"tip": 2, "layers": 1, "flank": 6, "root": 3, "under": 1, "rim": 2}
 result = swgpar.run(design, mesh={"flexible_spline": gear, "ring_gear": gear})
 

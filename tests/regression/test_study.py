@@ -21,7 +21,7 @@ def study_file(folder: Path, more: str = "", torques: str = "[0.1, 0.2]", bad: b
     path = folder / "study.toml"
     text = f'[study]\ndesign = "{DESIGN}"\nmeshes = ["{RECIPE}"]\nset = {SET}\n'
     text += f"{more}\n[study.vary]\nload.torque = {torques}\n[[study.case]]\nname = 'a'\n"
-    text += "published.mean.fs_s1 = 250.0\ntolerance.mean.fs_s1 = 1.0\n"
+    text += "published.mean.fs_s1 = 1897.0\ntolerance.mean.fs_s1 = 2.0\n"
     if bad:
         text += "[[study.case]]\nname = 'b'\nset = ['solver.max_iterations=1', 'solver.max_cutbacks=0']\n"
     path.write_text(text, encoding="utf-8")
