@@ -249,6 +249,8 @@ def study(
     """
     from swgpar.studies import run_study  # a run needs no studies
 
+    _require("study", study)
+
     return run_study(
         study,
         out,

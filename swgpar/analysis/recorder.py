@@ -16,6 +16,7 @@ from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.drive_result import DriveResult, open_fields
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.restart import write_state
+from swgpar.analysis.root_stress import RootStress
 from swgpar.analysis.summary import Accuracy
 from swgpar.design.sections import GEARS
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
@@ -41,6 +42,7 @@ class Recorder(ABC):
     rows : history of the increments computed so far
     coarser : level that the run started from, if it started on a coarser mesh
     accuracy : what was asked for and reached, if an accuracy was asked for
+    root_stress : of the loaded state, once it is resolved
     """
 
     def __init__(self, model: DriveModel) -> None:
@@ -48,6 +50,7 @@ class Recorder(ABC):
         self.rows: list[Row] = []
         self.coarser: LoadedState | None = None
         self.accuracy: Accuracy | None = None
+        self.root_stress: RootStress | None = None
 
     def record(self, stepper: LoadStepper, seconds: float, elapsed: float) -> None:
         """Keep the state after an increment.

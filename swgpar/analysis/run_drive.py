@@ -17,9 +17,10 @@ from swgpar.analysis.mesh_refinement import ChosenMesh, choose_mesh, with_accura
 from swgpar.analysis.period import continued
 from swgpar.analysis.recorder import FolderRecorder, MemoryRecorder, Recorder
 from swgpar.analysis.restart import identity, resume
+from swgpar.analysis.root_stress import RootStress, resolve_root_stress
 from swgpar.analysis.summary import Accuracy, summarise
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.load_states import LoadState, from_loaded, load_sequence
+from swgpar.design.load_states import LoadState, Stage, from_loaded, load_sequence
 from swgpar.errors import ConvergenceError, InputError, SwgparError
 from swgpar.log import IncrementProgress, logger
 from swgpar.meshing import MeshRecipe, load_recipe, require_sections
@@ -82,8 +83,8 @@ def run_drive(
             _record_choice(recorder, chosen, accuracy, folder)
         if restart and not resumed:
             logger.info("no increment was saved: starting from the beginning")
-        run = _Run(model, recorder, on_increment, begin)
-        items = run.resume() if resumed else run.start(recipe)
+        run = _Run(model, recipe, recorder, on_increment, begin)
+        items = run.resume() if resumed else run.start()
         run.go_through(items, terminal)
         result = run.finish(recipe_name)
     except SwgparError as error:
@@ -122,11 +123,18 @@ def _record_choice(recorder: Recorder, chosen: ChosenMesh, accuracy: float, fold
 class _Run:
     """One run: start or restart, all increments, end.
 
-    begin : time.perf_counter() at its start
+    recipe : of the model's mesh;  begin : time.perf_counter() at the run's start
     """
 
-    def __init__(self, model: DriveModel, recorder: Recorder, on_increment: Callable[[], None], begin: float) -> None:
-        self.model, self.recorder, self.stepper = model, recorder, LoadStepper(model)
+    def __init__(
+        self,
+        model: DriveModel,
+        recipe: MeshRecipe,
+        recorder: Recorder,
+        on_increment: Callable[[], None],
+        begin: float,
+    ) -> None:
+        self.model, self.recipe, self.recorder, self.stepper = model, recipe, recorder, LoadStepper(model)
         self.on_increment, self.begin = on_increment, begin
         self.earlier_seconds = 0.0
         counts = model.counts()
@@ -151,18 +159,19 @@ class _Run:
         logger.info("restarted after increment %d", len(self.recorder.rows))
         return items
 
-    def start(self, recipe: MeshRecipe) -> list[LoadState]:
+    def start(self) -> list[LoadState]:
         """Reach the loaded state on coarser meshes if the design asks for it; returns all increments of the run."""
         items = list(load_sequence(self.model.design))
         if self.recorder.accuracy is not None:  # the model was loaded when its mesh was chosen
             self.stepper.resume_at(from_loaded(items)[0])
             return from_loaded(items)
-        self.recorder.coarser = _start_on_coarser(self.stepper, recipe, items)
+        self.recorder.coarser = _start_on_coarser(self.stepper, self.recipe, items)
         return from_loaded(items) if self.recorder.coarser else items
 
     def go_through(self, items: list[LoadState], terminal: bool) -> None:
         """Compute and record the increments that are left."""
         stepper, recorder = self.stepper, self.recorder
+        loaded = next((item for item in reversed(items) if item.stage == Stage.LOAD), None)
         with IncrementProgress(self.model.comm, len(items), done=len(recorder.rows), terminal=terminal) as progress:
             self.model.solver.monitor = lambda state, its, ratio: progress.newton(
                 state.stage.label, np.degrees(state.angle), its, ratio
@@ -172,16 +181,29 @@ class _Run:
                 if item != stepper.load_state:  # a start on coarser meshes ends with the first one
                     stepper.advance(item)
                 seconds = time.perf_counter() - start
+                if item == loaded and self.model.design.output.root_stress:
+                    recorder.root_stress = self._root_stress(item)
                 recorder.record(stepper, seconds, self.seconds)
                 angle = float(np.degrees(item.angle))
                 progress.increment(item.stage.label, angle, stepper.iterations, stepper.residual, seconds)
                 self.on_increment()
 
+    def _root_stress(self, state: LoadState) -> RootStress | None:
+        """Largest tensile stress at the teeth by windows; None where a window cannot be computed, which is said."""
+        try:
+            with self.model.phases("windows"):
+                return resolve_root_stress(self.model, state, self.recipe)
+        except (ConvergenceError, InputError) as error:
+            logger.warning("the stress at the teeth is not resolved: %s", error)
+            return None
+
     def finish(self, recipe_name: str) -> DriveResult:
         """Summarise the run."""
         recorder, design = self.recorder, self.model.design
         rows = recorder.rows
-        summary = summarise(self.model, rows, recorder.coarser, recipe_name, recorder.accuracy, self.seconds)
+        summary = summarise(
+            self.model, rows, recorder.coarser, recipe_name, recorder.accuracy, recorder.root_stress, self.seconds
+        )
         if design.steps.samples and summary["means"]:
             rows = continued(design, rows)
         return recorder.finish(rows, summary)

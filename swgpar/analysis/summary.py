@@ -15,6 +15,7 @@ from swgpar.analysis.coarse_start import LoadedState
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.error_estimate import estimate
 from swgpar.analysis.period import of_period, sampling_error
+from swgpar.analysis.root_stress import RootStress
 from swgpar.design.load_states import Stage
 from swgpar.results.history import Row, column, transmission_error
 from swgpar.version import __version__
@@ -76,6 +77,7 @@ def summarise(
     coarser: LoadedState | None,
     recipe_name: str,
     accuracy: Accuracy | None,
+    root_stress: RootStress | None,
     seconds: float,
 ) -> dict[str, Any]:
     """Content of summary.json; collective.
@@ -86,6 +88,7 @@ def summarise(
     coarser : level that the run started from
     recipe_name : the mesh recipe as the user named it
     accuracy : what was asked for and reached
+    root_stress : largest tensile stress at the teeth, by windows
     seconds : wall time of the run, restarts included
     """
     design = model.design
@@ -101,6 +104,7 @@ def summarise(
         **_program(model, seconds),
         **values,
         "accuracy": accuracy and {key: value for key, value in asdict(accuracy).items() if key != "mesh_error"},
+        "root_stress": root_stress and asdict(root_stress),
         "mesh_error": accuracy.mesh_error if accuracy else by_mesh,
         "condensed_MPa": model.omitted_bending_stress() if design.solver.condensed_sectors else None,
         "sampling_error": sampling_error(design, rows, MEANS) if sampled_period else None,

@@ -63,6 +63,12 @@ def _print_means(summary: Mapping[str, Any]) -> None:
 
 
 def _print_errors(summary: Mapping[str, Any]) -> None:
+    if root := summary.get("root_stress"):
+        console.print(
+            f"largest tension at the teeth under load, by windows: s1 {root['s1']:.1f} ± {root['error']:.1f} MPa, "
+            f"{root['region']} of tooth {root['tooth']} (radius {root['radius']:.2f}, z {root['z']:.2f} mm, "
+            f"{root['angle_deg']:.1f} degrees); {root['on_mesh']:.1f} MPa by nodal averages of the drive's mesh"
+        )
     asked = summary["accuracy"]
     if error := summary["mesh_error"]:
         others = "the meshes before it" if asked else "the coarser one of the start"

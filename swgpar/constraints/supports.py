@@ -9,7 +9,7 @@ from petsc4py import PETSc
 from swgpar.constraints.distributing_coupling import N_COUPLED, ROTATION, DistributingCoupling, Housing
 from swgpar.design.load_states import LoadState
 from swgpar.fem.partition import Partition
-from swgpar.fem.sparse import BlockRows
+from swgpar.fem.sparse import BlockRows, add_diagonal
 from swgpar.fem.vectors import create_vector
 
 GROUNDING = 0.1
@@ -22,7 +22,8 @@ class Supports:
     Parameters
     ----------
     partition : ownership
-    couplings : six multipliers each, in this order at the end of the vector;  housing : around the ring gear, or None
+    couplings : six multipliers each, in this order at the end of the vector; none where contacts hold the body
+    housing : around the ring gear, or None
     scale : unit of the multipliers and of the grounding: E times the module, N/mm
     share : modelled share of the drive, 1 or 0.5
 
@@ -98,9 +99,11 @@ class Supports:
         if self.housing is not None:
             self.housing.add_forces(u, residual)
         motion = [coupling.evaluate(u) for coupling in self.couplings]
+        rows = self.scale * multiplier  # unused ones are zero; used ones are overwritten below
+        if not motion:
+            return rows
         target = np.zeros((len(motion), N_COUPLED))
         target[-1, ROTATION] = state.output_rotation
-        rows = self.scale * multiplier  # unused ones are zero; used ones are overwritten below
         for i, k in self.prescribed(state):
             gradient = motion[i].gradient[k]
             residual[self.couplings[i].nodes] += self.scale * multiplier[N_COUPLED * i + k] * gradient
@@ -112,13 +115,9 @@ class Supports:
     def add_blocks(self, u: np.ndarray, rows: BlockRows) -> None:
         """Add the stiffness of grounding and housing to the tangent's diagonal."""
         for node, direction in self._grounded_nodes:
-            self._add_diagonal(rows, np.array([node]), np.outer(direction, direction))
+            add_diagonal(rows, self.partition, np.array([node]), np.outer(direction, direction))
         if self.housing is not None:
-            self._add_diagonal(rows, self.housing.nodes, self.housing.blocks(u))
-
-    def _add_diagonal(self, rows: BlockRows, nodes: np.ndarray, blocks: np.ndarray) -> None:
-        keys = (self.partition.row_start + nodes.astype(np.int64)) * (self.partition.n_global + 1)
-        rows.values[np.searchsorted(rows.keys, keys)] += blocks
+            add_diagonal(rows, self.partition, self.housing.nodes, self.housing.blocks(u))
 
     def border(self, u: np.ndarray, state: LoadState) -> tuple[list[PETSc.Vec], list[int]]:
         """Gradients of all prescribed quantities, with the rows of their multipliers; the output's rotation is last."""

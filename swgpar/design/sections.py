@@ -139,3 +139,6 @@ class Output(Section):
 
     fields: bool = quantity(True, text="write fields.h5 and fields.xdmf")
     figures: bool = quantity(True, text="draw the figures")
+    root_stress: bool = quantity(
+        True, text="resolve the largest tensile stress at the teeth under load by windows on finer meshes"
+    )

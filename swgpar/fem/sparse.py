@@ -57,6 +57,12 @@ def fill_matrix(mat: PETSc.Mat, rows: BlockRows) -> None:
     mat.assemble()
 
 
+def add_diagonal(rows: BlockRows, partition: Partition, nodes: np.ndarray, blocks: np.ndarray) -> None:
+    """Add blocks (n, 3, 3) or (3, 3), N/mm, to the diagonal at own nodes (n,), each of them once."""
+    keys = (partition.row_start + nodes.astype(np.int64)) * (partition.n_global + 1)
+    rows.values[np.searchsorted(rows.keys, keys)] += blocks
+
+
 def add_unit_diagonal(rows: BlockRows, partition: Partition, without_elements: np.ndarray, value: float) -> None:
     """Put `value` on the diagonal of the multiplier blocks, which couple through the border only, and of free nodes.
 
@@ -64,4 +70,4 @@ def add_unit_diagonal(rows: BlockRows, partition: Partition, without_elements: n
     """
     nodes = np.concatenate([without_elements + partition.row_start, partition.multiplier_nodes])
     nodes = nodes[(nodes >= partition.row_start) & (nodes < partition.row_start + rows.n_own)]
-    rows.values[np.searchsorted(rows.keys, nodes * partition.n_global + nodes)] += value * np.eye(3)
+    add_diagonal(rows, partition, nodes - partition.row_start, value * np.eye(3))

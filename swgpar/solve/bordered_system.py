@@ -237,7 +237,9 @@ class BorderedSystem:
             self.columns = [vector.duplicate() for vector in sides]
         self._solve_sides(sides)
         b, c, nb = self.grounding, self.border, len(self.grounding)
-        small = np.array([[left.dot(right) for right in self.columns] for left in b + c]).reshape(len(b + c), -1)
+        small = np.array([[left.dot(right) for right in self.columns] for left in b + c]).reshape(
+            len(b + c), len(sides)
+        )
         system = np.zeros_like(small)
         system[:nb, :nb] = np.eye(nb) - small[:nb, :nb]
         system[:nb, nb:] = small[:nb, nb:]
@@ -251,6 +253,8 @@ class BorderedSystem:
     def _solve_sides(self, sides: list[PETSc.Vec]) -> None:
         """Columns Z, the solutions for the borders."""
         self.failed = False
+        if not sides:
+            return
         if self.modes is None and self.ksp.getConvergedReason() >= 0:
             # all at once: a solve is bound by reading the factor
             dims, (n, rows) = self.partition.dims, self.matrix.getSizes()[0]

@@ -92,7 +92,8 @@ class Drives(System[DriveDesign, DriveResult]):
         print_drive(result.history, result.summary)
 
     def without_output(self, table: dict[str, Any]) -> dict[str, Any]:
-        return apply_overrides(table, ["output.fields=false", "output.figures=false"])  # fields fill the disk
+        # fields fill the disk, and no quantity of a study comes from windows
+        return apply_overrides(table, [f"output.{key}=false" for key in ("fields", "figures", "root_stress")])
 
     def quantities(self, design: DriveDesign) -> dict[str, Quantity]:
         """ "mean.fs_s1" over the rotation and so on, "step1.fs_s1" at the last increment of a step."""

@@ -75,6 +75,8 @@ def test_designs_from_files_and_tables(design: DriveDesign) -> None:
     for function in (swgpar.load_design, swgpar.run, swgpar.check):
         with pytest.raises(swgpar.InputError, match="design is of the type int: allowed are a path, a dict"):
             function(3)
+    with pytest.raises(swgpar.InputError, match="study is of the type int: allowed are a path"):
+        swgpar.study(3)
 
 
 @pytest.mark.parametrize("file", sorted(DRIVERS.glob("*.toml")), ids=lambda file: file.stem)
@@ -127,6 +129,21 @@ def test_history_and_summary(result: swgpar.DriveResult) -> None:
     assert summary["torque_ripple"] == pytest.approx((torque.max() - torque.min()) / torque.mean(), rel=1e-12)
     error = 3600.0 * (rotation["output_angle_deg"] - rotation["wg_angle_deg"] / summary["ratio"])
     assert summary["transmission_error_arcsec"] == pytest.approx(error.max() - error.min(), abs=1e-9)
+
+
+def test_the_stress_at_the_teeth_is_resolved_where_it_is_asked_for(
+    design: DriveDesign, result: swgpar.DriveResult, tmp_path: Path
+) -> None:
+    """Once, in the loaded state; a restart keeps it."""
+    assert result.summary["root_stress"] is None
+    asked = design.with_values({"output.root_stress": True, "output.fields": False, "steps.rotation": 2.0})
+    found = swgpar.run(asked, RECIPE, tmp_path / "run")
+    root = found.summary["root_stress"]
+    (loaded,) = np.flatnonzero(found.history["step"] == 3)
+    assert root["on_mesh"] == pytest.approx(found.history["fs_s1"][loaded], rel=1e-9)
+    assert root["levels"][-1] == root["s1"] > root["on_mesh"] and 0.0 < root["error"] < 0.05 * root["s1"]
+    longer = swgpar.run(asked.with_values({"steps.rotation": 4.0}), RECIPE, tmp_path / "run", restart=True)
+    assert longer.summary["root_stress"] == root and longer.summary["phases_s"]["windows"] > 0.0
 
 
 def test_fields(result: swgpar.DriveResult) -> None:

@@ -1,0 +1,215 @@
+"""A window of the flexible spline on a finer mesh, driven by a state of the drive.
+
+The displacements of a drive converge long before its stresses. A few tooth sectors are cut out, meshed finely, and
+solved once more: the cuts have the displacements of the drive, the flanks carry its contact forces, and
+the exact cam stays in contact with the inner surface. Stresses hold one pitch or more inside of the cuts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from swgpar.analysis.drive_model import DriveModel, build_rigid_contacts, newton_settings
+from swgpar.analysis.flank_loads import line_loads, nodal_forces
+from swgpar.constraints.boundary_conditions import DeadLoad, PrescribedDisplacement
+from swgpar.constraints.supports import Supports
+from swgpar.design.drive_design import DriveDesign
+from swgpar.design.load_states import LoadState
+from swgpar.errors import ConvergenceError
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE, BodyLayout
+from swgpar.fem.elements import Elements
+from swgpar.fem.partition import Partition
+from swgpar.fem.stress import principal
+from swgpar.fem.vectors import read_field, write_field
+from swgpar.geometry.rotation import rotated
+from swgpar.kernel import reference_elements
+from swgpar.log import PhaseTimes
+from swgpar.meshing import MeshRecipe
+from swgpar.meshing.interpolation import interpolation
+from swgpar.meshing.sector import SectorMesh
+from swgpar.meshing.tooth_sector import build_sector
+from swgpar.meshing.trim import trimmed
+from swgpar.solve.discrete_problem import DiscreteProblem
+from swgpar.solve.newton import NewtonSolver
+
+SECTORS, MARGIN = 5, 1
+"""Tooth sectors of a window, and those next to each cut whose stresses are not read."""
+
+CUP_LENGTH = 2.0
+"""Length of the cup's wall behind the teeth that belongs to a window, over sqrt(radius * thickness): a disturbance of
+the cut at its end decays by e within about 0.8 of that."""
+
+TOOTHED = 0.5 + 1e-9
+"""Share of the face width on either side of its middle to which the toothed part reaches."""
+
+STIFFNESS = 1e3
+"""Stiffness of the springs that hold the nodes of the cuts, over E times the module: forces of some N stretch them by
+nanometres."""
+
+RTOL = 1e-6
+"""Newton's tolerance: a change of stresses far below that of a finer window."""
+
+HALF_WIDTH = 0.05
+"""Half width of the flanks' contact over the module. Twice as much changes the largest stress in the root by 0.1 %."""
+
+
+@dataclass(frozen=True)
+class WindowStress:
+    """Largest tensile stress in a window.
+
+    value : MPa;  tooth : where;  position : (3,) mm, undeformed, with the tooth at +y
+    elements : of the window
+    """
+
+    value: float
+    tooth: int
+    position: np.ndarray
+    elements: int
+
+
+def window_mesh(design: DriveDesign, recipe: MeshRecipe) -> SectorMesh:
+    """The sector of a window: the toothed part and the beginning of the cup's wall, which ends in the set ``cut``."""
+    mesh = build_sector(design, recipe, "flexible_spline")
+    if mesh.plane:
+        return mesh
+    end = 0.5 * design.drive.face_width + CUP_LENGTH * np.sqrt(design.inner_radius * design.cup_thickness)
+    return trimmed(mesh, mesh.coords[mesh.hexes, 2].min(axis=1) < end)
+
+
+class LocalProblem:
+    """A window around a tooth.
+
+    Parameters
+    ----------
+    model, state : the drive in its equilibrium under that load state
+    tooth : in the middle of the window
+    recipe : of the window's mesh
+    """
+
+    def __init__(self, model: DriveModel, state: LoadState, tooth: int, recipe: MeshRecipe) -> None:
+        self.model, self.state, design = model, state, model.design
+        first = tooth - SECTORS // 2
+        mesh = window_mesh(design, recipe)
+        self.layout = BodyLayout(
+            mesh=mesh,
+            first_tooth=first,
+            count=SECTORS,
+            closed=False,
+            images=False,
+            fixed=np.zeros(0, dtype=np.int32),
+        )
+        self.partition = Partition([self.layout], model.comm)
+        material = design.material
+        reference = reference_elements(mesh.coords[mesh.elements], material.E, material.nu, design.drive.face_width)
+        self.elements = Elements(self.partition, [reference])
+        self.body = self.elements.bodies[FLEXIBLE_SPLINE]
+        teeth = first + np.arange(SECTORS)
+        self.loads = line_loads(model, state, teeth)
+        displacement = self._of_the_drive(teeth)
+        scale = design.material.E * design.drive.module
+        problem = DiscreteProblem(
+            partition=self.partition,
+            elements=self.elements,
+            supports=Supports(self.partition, [], scale=scale, share=1.0),
+            rigid_contacts=[
+                *build_rigid_contacts(design, elements=self.elements),
+                self._dead_load(),
+                self._cuts(displacement),
+            ],
+            module=design.drive.module,
+            inner_radius=design.inner_radius,
+            phases=PhaseTimes(),
+        )
+        self.solver = NewtonSolver(problem, replace(newton_settings(design), rtol=RTOL, reuse_factor=False))
+        self.problem = problem
+        own = range(*self.partition.owned_sectors(0))
+        write_field(self.partition, 0, np.array(own, dtype=np.int64), displacement[list(own)], problem.x)
+        if self.model.comm.rank == self.model.comm.size - 1:
+            self._write_end(displacement)
+
+    def _of_the_drive(self, teeth: np.ndarray) -> np.ndarray:
+        """Displacement (n_teeth, n_node, 3) mm of the drive at the nodes of the window; collective."""
+        model = self.model
+        coarse = model.partition.layouts[FLEXIBLE_SPLINE]
+        field = read_field(model.partition, FLEXIBLE_SPLINE, teeth - coarse.first_tooth, model.problem.x)
+        angle = self.layout.sector_angle(teeth)
+        local = rotated(field, -angle[:, None])
+        matrix = interpolation(coarse.mesh, self.layout.mesh)
+        return rotated(np.stack([matrix @ sector for sector in local]), angle[:, None])
+
+    def _numbers(self, sectors: np.ndarray, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Own local indices (n_sectors, n) of nodes, and whether this rank owns them."""
+        partition = self.partition
+        number, _ = partition.node_numbers(0, sectors, nodes)
+        own = (number >= partition.row_start) & (number < partition.row_start + partition.n_own)
+        return number - partition.row_start, own
+
+    def _write_end(self, displacement: np.ndarray) -> None:
+        """Set the nodes of the last cut, which belong to no owned sector's own nodes."""
+        nodes = self.layout.mesh.ccw_nodes.astype(np.int64)
+        index, own = self._numbers(np.array([SECTORS - 1]), nodes)
+        self.problem.x.array.reshape(-1, 3)[index[own]] = displacement[SECTORS - 1, nodes][own[0]]
+
+    def _cuts(self, displacement: np.ndarray) -> PrescribedDisplacement:
+        """The nodes of all cuts, held at the displacements of the drive."""
+        mesh, every = self.layout.mesh, np.arange(SECTORS)
+        held: dict[int, np.ndarray] = {}
+        parts = [(every[:1], mesh.cw_nodes), (every[-1:], mesh.ccw_nodes)]
+        if not mesh.plane:
+            parts.append((every, mesh.node_sets["cut"]))
+        for sectors, nodes in parts:
+            nodes = nodes.astype(np.int64)
+            index, own = self._numbers(sectors, nodes)
+            for k, sector in enumerate(sectors):
+                for i, node in zip(index[k, own[k]], nodes[own[k]]):
+                    held[int(i)] = displacement[sector, node]
+        nodes = np.array(sorted(held), dtype=np.int64)
+        values = np.array([held[int(i)] for i in nodes]).reshape(-1, 3)
+        stiffness = STIFFNESS * self.model.design.material.E * self.model.design.drive.module
+        return PrescribedDisplacement(self.partition, nodes, values, stiffness)
+
+    def _dead_load(self) -> DeadLoad:
+        """Contact forces of the flanks, on their nodes of the window."""
+        forces = np.zeros((self.partition.n_own, 3))
+        module = self.model.design.drive.module
+        grids = {grid.side: grid for grid in self.layout.mesh.flanks}
+        for (sector, side), load in self.loads.items():
+            grid = grids[side]
+            nodal = nodal_forces(load, grid, HALF_WIDTH * module).reshape(-1, 3)
+            index, own = self._numbers(np.array([sector]), grid.nodes.ravel().astype(np.int64))
+            np.add.at(forces, index[0, own[0]], nodal[own[0]])
+        nodes = np.flatnonzero(np.abs(forces).sum(axis=1))
+        return DeadLoad(nodes, forces[nodes])
+
+    def solve(self) -> None:
+        """Bring the window to equilibrium. Raises ConvergenceError."""
+        state = replace(self.state, control="rotation", flank_clearance=None)
+        result = self.solver.solve(state)
+        if not result.converged:
+            raise ConvergenceError(f"a window around tooth {self.layout.first_tooth + SECTORS // 2}: {result.reason}")
+
+    def stress(self) -> tuple[np.ndarray, np.ndarray]:
+        """Stress (n, n_node, 6) MPa at the nodes of owned sectors inside of the margin, and their indices (n,)."""
+        first, end = self.partition.owned_sectors(0)
+        sectors = np.arange(first, end)
+        inside = (sectors >= MARGIN) & (sectors < SECTORS - MARGIN)
+        return self.body.nodal_stress(self.problem.displacement())[inside], sectors[inside]
+
+    def largest(self) -> WindowStress:
+        """Largest s1 of the toothed part, one pitch or more inside of the cuts; collective."""
+        mesh, width = self.layout.mesh, self.model.design.drive.face_width
+        stress, sectors = self.stress()
+        toothed = np.flatnonzero(np.abs(mesh.coords[:, 2]) <= TOOTHED * width)
+        best = (-np.inf, 0, np.zeros(3))
+        if len(sectors):
+            s1 = principal(stress[:, toothed])[0]
+            k, i = np.unravel_index(s1.argmax(), s1.shape)
+            best = (float(s1[k, i]), self.layout.first_tooth + int(sectors[k]), mesh.coords[toothed[i]])
+        value, tooth, position = max(self.model.comm.allgather(best), key=lambda found: found[0])
+        return WindowStress(value, tooth, position, SECTORS * len(mesh.hexes))
+
+    def destroy(self) -> None:
+        """Release the solver; collective."""
+        self.solver.destroy()

@@ -1,0 +1,166 @@
+"""The largest tensile stress at the teeth of the loaded flexible spline, resolved by windows, with its error.
+
+The mesh of a drive is too coarse for the gradient in the tooth root. Windows (`local_problem`) on three meshes, each
+finer than the one before, give the stress, the order at which it converges, and from both the error that the last mesh
+leaves. The error of the drive's displacements on the cuts is not in it (docs/theory/windows.md).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from swgpar.analysis.drive_model import DriveModel
+from swgpar.analysis.local_problem import SECTORS, LocalProblem, WindowStress
+from swgpar.design.load_states import LoadState
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.stress import principal
+from swgpar.log import logger
+from swgpar.meshing import MeshRecipe
+
+PLANE_RATIO, PLANE_LEVELS = 2.0, ((4, 3, 4), (8, 6, 8), (16, 12, 16))
+"""Ratio of element sizes, and counts `root`, `under` and `rim` of the windows of the plane model."""
+
+CUP_RATIO, CUP_LEVELS = 1.5, ((4, 2, 3, 8, 12), (6, 3, 4, 12, 18), (9, 4, 6, 18, 27))
+"""The same of the cup drive, with the elements along the face width and along the whole cylinder of the cup."""
+
+FLANK, END_RATIO = 8, 3.0
+"""Least count along the flank; middle elements along the face width over those at both ends."""
+
+LOWEST_ORDER, HIGHEST_ORDER = 1.0, 2.0
+"""Bounds of the observed order. Nodal stresses of these elements converge at an order between them."""
+
+CLOSE = 0.85
+"""Share of the largest stress on the drive's own mesh from which a tooth outside of the first window is looked at."""
+
+END = 0.45
+"""Share of the face width from its middle beyond which a place belongs to the end of a tooth."""
+
+
+@dataclass(frozen=True)
+class RootStress:
+    """Largest tensile stress at the teeth.
+
+    s1 : MPa;  error : MPa, estimated, of the window's mesh
+    on_mesh : MPa, of the nodal averages on the drive's mesh
+    region : "tooth root", "tooth end" or "rim inside"
+    tooth : number, counter-clockwise from +y in the undeformed drive
+    radius, z : mm;  angle_deg : from +y, counter-clockwise
+    levels : s1 (MPa) on the windows, coarse to fine;  elements : of the finest window
+    """
+
+    s1: float
+    error: float
+    on_mesh: float
+    region: str
+    tooth: int
+    radius: float
+    z: float
+    angle_deg: float
+    levels: tuple[float, ...]
+    elements: int
+
+
+def window_recipes(model: DriveModel, recipe: MeshRecipe) -> list[MeshRecipe]:
+    """Recipes of the windows, coarse to fine; what they do not refine is that of the drive's `recipe`."""
+    found = []
+    for counts in PLANE_LEVELS if model.design.drive.model == "plane" else CUP_LEVELS:
+        content: dict[str, Any] = recipe.model_dump(exclude_none=True)
+        spline = content["flexible_spline"]
+        spline |= dict(zip(("root", "under", "rim"), counts)) | {"flank": max(FLANK, spline["flank"])}
+        if len(counts) > 3:
+            content["face_width"] = {"elements": counts[3], "end_ratio": END_RATIO}
+            content["cup"] |= {"cylinder": counts[4], "end_ratio": 1.0}
+        found.append(MeshRecipe.model_validate(content))
+    return found
+
+
+def resolve_root_stress(model: DriveModel, state: LoadState, recipe: MeshRecipe) -> RootStress:
+    """Resolve the largest tensile stress at the teeth in the model's equilibrium under `state`; collective.
+
+    recipe : of the model's mesh. Raises ConvergenceError or InputError where a window cannot be computed.
+    """
+    by_tooth = _largest_by_tooth(model)
+    recipes = window_recipes(model, recipe)
+    first = int(by_tooth.argmax())
+    found = _solve(model, state, first, recipes[0])
+    far = by_tooth.copy()
+    far[_near(first, len(by_tooth))] = -np.inf
+    other = int(far.argmax())
+    tooth = first
+    if far[other] > CLOSE * by_tooth[first]:
+        there = _solve(model, state, other, recipes[0])
+        if there.value > found.value:
+            tooth, found = other, there
+    levels = [found.value]
+    for finer in recipes[1:]:
+        found = _solve(model, state, tooth, finer)
+        levels.append(found.value)
+    logger.info("windows around tooth %d: s1 %s MPa", tooth, ", ".join(f"{value:.1f}" for value in levels))
+    ratio = PLANE_RATIO if model.design.drive.model == "plane" else CUP_RATIO
+    return _place(model, found, tuple(levels), error_of(levels, ratio), float(by_tooth[first]))
+
+
+def error_of(levels: list[float], ratio: float) -> float:
+    """Error of the last of three values on meshes whose element sizes have this ratio, by the observed order."""
+    before, last = levels[-2] - levels[-3], levels[-1] - levels[-2]
+    order = LOWEST_ORDER
+    if before * last > 0.0:
+        order = float(np.clip(np.log(before / last) / np.log(ratio), LOWEST_ORDER, HIGHEST_ORDER))
+    # a last change that is small by chance is no convergence
+    change = max(abs(last), abs(before) / ratio**HIGHEST_ORDER)
+    return change / (ratio**order - 1.0)
+
+
+def _near(tooth: int, count: int) -> np.ndarray:
+    """Modelled teeth (n,) whose stresses the window of a tooth resolves."""
+    inside = SECTORS // 2 - 1
+    return (tooth + np.arange(-inside, inside + 1)) % count
+
+
+def _largest_by_tooth(model: DriveModel) -> np.ndarray:
+    """Largest s1 (n_modelled,) MPa of the toothed part of every modelled sector; collective."""
+    body = model.elements.bodies[FLEXIBLE_SPLINE]
+    half = 0.5 * model.design.drive.face_width
+    toothed = np.abs(body.layout.mesh.coords[:, 2]) <= half * (1.0 + 1e-9)
+    stress = body.nodal_stress(model.problem.displacement())
+    mine = principal(stress[:, toothed])[0].max(axis=1) if len(stress) else np.zeros(0)
+    return np.concatenate(model.comm.allgather(mine))
+
+
+def _solve(model: DriveModel, state: LoadState, tooth: int, recipe: MeshRecipe) -> WindowStress:
+    first = model.partition.layouts[FLEXIBLE_SPLINE].first_tooth
+    window = LocalProblem(model, state, first + tooth, recipe)
+    try:
+        window.solve()
+        return window.largest()
+    finally:
+        window.destroy()
+
+
+def _place(
+    model: DriveModel, found: WindowStress, levels: tuple[float, ...], error: float, on_mesh: float
+) -> RootStress:
+    design, (x, y, z) = model.design, found.position
+    layout = model.partition.layouts[FLEXIBLE_SPLINE]
+    radius = float(np.hypot(x, y))
+    plane = design.drive.model == "plane"
+    if radius < design.inner_radius + 0.5 * design.flexible_spline.rim:
+        region = "rim inside"
+    else:
+        region = "tooth end" if abs(z) > END * design.drive.face_width and not plane else "tooth root"
+    angle = float(layout.sector_angle(np.array(found.tooth)) - np.arctan2(x, y))
+    return RootStress(
+        s1=found.value,
+        error=error,
+        on_mesh=on_mesh,
+        region=region,
+        tooth=found.tooth,
+        radius=radius,
+        z=0.0 if plane else float(z),
+        angle_deg=float(np.degrees(angle)),
+        levels=levels,
+        elements=found.elements,
+    )

@@ -1,0 +1,90 @@
+"""Windows: the drive's own stresses on the drive's mesh, the same on any number of ranks, an error that holds."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+from pytest_mpi import parallel_assert
+
+from support.paths import RECIPE
+from support.stepping import WORLD, loaded, small
+from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.analysis.local_problem import MARGIN, SECTORS, LocalProblem
+from swgpar.analysis.root_stress import error_of, resolve_root_stress
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.stress import principal
+from swgpar.meshing import MeshRecipe, load_recipe
+
+
+@lru_cache
+def drive(model: str) -> LoadStepper:
+    return loaded(small(model))[0]
+
+
+def solved(stepper: LoadStepper, tooth: int, recipe: MeshRecipe | None = None) -> LocalProblem:
+    window = LocalProblem(stepper.model, stepper.load_state, tooth, recipe or load_recipe(RECIPE))
+    window.solve()
+    return window
+
+
+def on_the_drive(stepper: LoadStepper, teeth: np.ndarray) -> float:
+    """Largest s1 (MPa) of the toothed part of some teeth by the drive's own nodal averages; collective."""
+    model = stepper.model
+    body, (first, _) = model.elements.bodies[FLEXIBLE_SPLINE], model.partition.owned_sectors(FLEXIBLE_SPLINE)
+    toothed = np.abs(body.layout.mesh.coords[:, 2]) <= 0.5 * model.design.drive.face_width + 1e-9
+    stress = body.nodal_stress(model.problem.displacement())[:, toothed]
+    mine = np.isin(first + np.arange(len(stress)), teeth % body.layout.count)
+    return WORLD.allreduce(principal(stress[mine])[0].max(initial=0.0), op=MPI.MAX)
+
+
+# the flanks' load is a parabola in the window, and faces with single points of contact in the drive
+@pytest.mark.parametrize(
+    ("model", "rel"),
+    [
+        ("plane", 1e-3),
+        ("cup", 5e-3),
+        pytest.param("plane", 1e-3, marks=pytest.mark.parallel(2), id="plane, 2 ranks"),
+        pytest.param("cup", 5e-3, marks=pytest.mark.parallel(2), id="cup, 2 ranks"),
+    ],
+)
+@pytest.mark.parametrize("tooth", [1, 18])
+def test_on_the_drive_s_mesh_a_window_has_the_drive_s_stress(model: str, rel: float, tooth: int) -> None:
+    """Around tooth 18 of 20 modelled ones the window reaches into the half that is an image."""
+    stepper = drive(model)
+    window = solved(stepper, tooth)
+    found = window.largest().value
+    window.destroy()
+    inside = tooth + np.arange(MARGIN, SECTORS - MARGIN) - SECTORS // 2
+    expected = on_the_drive(stepper, inside)
+    print(f"{model}, tooth {tooth}: {found:.2f} and {expected:.2f} MPa")
+    parallel_assert(found == pytest.approx(expected, rel=rel), f"{found} and {expected}")
+
+
+def test_the_estimated_error_holds() -> None:
+    """Against a window with elements of half the size, whose own error is a quarter to a half."""
+    stepper = drive("plane")
+    recipe = load_recipe(RECIPE)
+    found = resolve_root_stress(stepper.model, stepper.load_state, recipe)
+    spline = recipe.flexible_spline.model_copy(update={"root": 32, "under": 24, "rim": 32, "flank": 16})
+    window = solved(stepper, found.tooth, recipe.model_copy(update={"flexible_spline": spline}))
+    reference = window.largest().value
+    window.destroy()
+    true = abs(found.s1 - reference)
+    print(f"s1 {found.levels}, reference {reference:.2f}: error {found.error:.2f} for {true:.2f} MPa")
+    assert found.region in ("tooth root", "rim inside")
+    assert 0.5 * true < found.error < 0.02 * found.s1
+
+
+@pytest.mark.parametrize("order", [1.0, 1.5, 2.0])
+@pytest.mark.parametrize("ratio", [1.5, 2.0])
+def test_errors_of_a_known_order_are_found(order: float, ratio: float) -> None:
+    levels = [300.0 - 40.0 / ratio ** (order * k) for k in range(3)]
+    assert error_of(levels, ratio) == pytest.approx(300.0 - levels[-1])
+
+
+def test_a_change_that_is_small_by_chance_is_no_convergence() -> None:
+    assert error_of([300.0, 310.0, 310.0], 2.0) == pytest.approx(2.5)
+    assert error_of([300.0, 310.0, 309.0], 2.0) == pytest.approx(2.5)
