@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,9 +16,11 @@ from swgpar.analysis.contact_pressure import nodal_pressure
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.drive_result import DriveResult, open_fields
 from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.analysis.places import Place, find_places
 from swgpar.analysis.restart import write_state
 from swgpar.analysis.root_stress import RootStress
 from swgpar.analysis.summary import Accuracy
+from swgpar.design.load_states import LoadState
 from swgpar.design.sections import GEARS
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.meshing import SectorMesh
@@ -43,6 +46,7 @@ class Recorder(ABC):
     coarser : level that the run started from, if it started on a coarser mesh
     accuracy : what was asked for and reached, if an accuracy was asked for
     root_stress : of the loaded state, once it is resolved
+    places : of the largest stresses under load, by column of the history
     """
 
     def __init__(self, model: DriveModel) -> None:
@@ -51,6 +55,7 @@ class Recorder(ABC):
         self.coarser: LoadedState | None = None
         self.accuracy: Accuracy | None = None
         self.root_stress: RootStress | None = None
+        self.places: dict[str, Place] = {}
 
     def record(self, stepper: LoadStepper, seconds: float, elapsed: float) -> None:
         """Keep the state after an increment.
@@ -61,12 +66,22 @@ class Recorder(ABC):
         with model.phases("stress"):
             values, body_fields = model.stresses()
         self.rows.append(history.plain_row({**stepper.row(), **values, "wall_s": seconds}))
+        with model.phases("stress"):
+            self._keep_places(stepper.load_state, values, body_fields)
         with model.phases("output"):
             fields = dict(zip(GEARS, body_fields, strict=True))
             if model.design.output.fields:
                 spline = model.elements.bodies[FLEXIBLE_SPLINE]
                 fields[spline.layout.name]["pressure"] = nodal_pressure(model.problem, stepper.load_state, spline)
             self._keep(stepper, fields, elapsed)
+
+    def _keep_places(
+        self, state: LoadState, values: Mapping[str, float], fields: Sequence[Mapping[str, np.ndarray]]
+    ) -> None:
+        """Find the places of stresses that are the largest under load so far."""
+        if state.is_periodic:
+            larger = [name for name in values if name not in self.places or values[name] > self.places[name].value]
+            self.places |= find_places(self.model, state, fields, larger)
 
     @abstractmethod
     def begin(self) -> None:

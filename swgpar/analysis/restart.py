@@ -12,6 +12,7 @@ import numpy as np
 
 from swgpar.analysis.coarse_start import LoadedState
 from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.analysis.places import Place
 from swgpar.analysis.root_stress import RootStress
 from swgpar.analysis.summary import Accuracy
 from swgpar.contact import friction
@@ -66,6 +67,7 @@ def write_state(
         "coarser": recorder.coarser and asdict(recorder.coarser),
         "accuracy": recorder.accuracy and asdict(recorder.accuracy),
         "root_stress": recorder.root_stress and asdict(recorder.root_stress),
+        "places": {name: asdict(place) for name, place in recorder.places.items()},
     }
     checkpoint.write_checkpoint(recorder.out, model.comm, blocks, state)
 
@@ -95,6 +97,7 @@ def resume(recorder: FolderRecorder, stepper: LoadStepper, items: list[LoadState
     recorder.rows, recorder.names = state["rows"], state["names"]
     recorder.coarser = state["coarser"] and LoadedState(**state["coarser"])
     recorder.accuracy = state["accuracy"] and Accuracy(**state["accuracy"])
+    recorder.places = {name: Place(**place) for name, place in state.get("places", {}).items()}
     recorder.root_stress = state.get("root_stress") and RootStress(**state["root_stress"])
     stepper.resume_at(last)
     for name, value in state["phases_s"].items():

@@ -202,7 +202,14 @@ class _Run:
         recorder, design = self.recorder, self.model.design
         rows = recorder.rows
         summary = summarise(
-            self.model, rows, recorder.coarser, recipe_name, recorder.accuracy, recorder.root_stress, self.seconds
+            self.model,
+            rows,
+            recorder.coarser,
+            recipe_name,
+            recorder.accuracy,
+            recorder.root_stress,
+            recorder.places,
+            self.seconds,
         )
         if design.steps.samples and summary["means"]:
             rows = continued(design, rows)

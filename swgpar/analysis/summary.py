@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import platform
 import resource
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -15,6 +15,7 @@ from swgpar.analysis.coarse_start import LoadedState
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.error_estimate import estimate
 from swgpar.analysis.period import of_period, sampling_error
+from swgpar.analysis.places import Place
 from swgpar.analysis.root_stress import RootStress
 from swgpar.design.load_states import Stage
 from swgpar.results.history import Row, column, transmission_error
@@ -78,6 +79,7 @@ def summarise(
     recipe_name: str,
     accuracy: Accuracy | None,
     root_stress: RootStress | None,
+    places: Mapping[str, Place],
     seconds: float,
 ) -> dict[str, Any]:
     """Content of summary.json; collective.
@@ -89,6 +91,7 @@ def summarise(
     recipe_name : the mesh recipe as the user named it
     accuracy : what was asked for and reached
     root_stress : largest tensile stress at the teeth, by windows
+    places : of the largest stresses under load
     seconds : wall time of the run, restarts included
     """
     design = model.design
@@ -104,6 +107,7 @@ def summarise(
         **_program(model, seconds),
         **values,
         "accuracy": accuracy and {key: value for key, value in asdict(accuracy).items() if key != "mesh_error"},
+        "places": {name: asdict(place) for name, place in places.items()},
         "root_stress": root_stress and asdict(root_stress),
         "mesh_error": accuracy.mesh_error if accuracy else by_mesh,
         "condensed_MPa": model.omitted_bending_stress() if design.solver.condensed_sectors else None,

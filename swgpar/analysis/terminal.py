@@ -29,6 +29,8 @@ COLUMNS = {
 def print_drive(history: Mapping[str, np.ndarray], summary: Mapping[str, Any]) -> None:
     """Print history and summary of a run; call it on one rank."""
     _print_history(history)
+    if places := summary.get("places"):
+        _print_places(places)
     if summary["means"]:
         _print_means(summary)
     _print_errors(summary)
@@ -60,6 +62,24 @@ def _print_means(summary: Mapping[str, Any]) -> None:
             f"over the rotation: input torque varies by {100.0 * ripple:.1f} % of its mean, transmission error by "
             f"{summary['transmission_error_arcsec']:.1f} arc seconds"
         )
+
+
+def _print_places(places: Mapping[str, Mapping[str, Any]]) -> None:
+    """Where the largest stresses under load are, and which of them depend on the mesh."""
+    table = Table(
+        title="largest under load (MPa, nodal averages), and where (mm, degrees)",
+        box=box.SIMPLE_HEAD,
+        padding=(0, 1, 0, 0),
+    )
+    for heading in ("", "MPa", "region", "tooth", "radius", "z", "angle"):
+        table.add_column(heading, justify="left" if heading in ("", "region") else "right", no_wrap=True)
+    for name, place in places.items():
+        row = [name.replace("_", " "), f"{place['value']:.1f}", place["region"] + ("*" if place["warning"] else "")]
+        row += [str(place["tooth"]), f"{place['radius']:.2f}", f"{place['z']:.2f}", f"{place['angle_deg']:.1f}"]
+        table.add_row(*row)
+    console.print(table)
+    for warning in dict.fromkeys(place["warning"] for place in places.values() if place["warning"]):
+        console.print(f"* {warning}")
 
 
 def _print_errors(summary: Mapping[str, Any]) -> None:

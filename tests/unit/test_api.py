@@ -143,6 +143,7 @@ def test_the_stress_at_the_teeth_is_resolved_where_it_is_asked_for(
     assert root["on_mesh"] == pytest.approx(found.history["fs_s1"][loaded], rel=1e-9)
     assert root["levels"][-1] == root["s1"] > root["on_mesh"] and 0.0 < root["error"] < 0.05 * root["s1"]
     longer = swgpar.run(asked.with_values({"steps.rotation": 4.0}), RECIPE, tmp_path / "run", restart=True)
+    assert longer.summary["places"]["fs_s1"]["value"] >= found.summary["places"]["fs_s1"]["value"] > 0.0
     assert longer.summary["root_stress"] == root and longer.summary["phases_s"]["windows"] > 0.0
 
 

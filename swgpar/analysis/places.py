@@ -1,0 +1,145 @@
+"""Where the largest stresses are: body, region, tooth, radius, z, angle, and whether the number means anything."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from swgpar.analysis.contact_pressure import nodal_pressure
+from swgpar.analysis.drive_model import DriveModel
+from swgpar.design.drive_design import DriveDesign
+from swgpar.design.load_states import LoadState
+from swgpar.design.sections import GEARS
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.meshing.sector import SectorMesh
+
+END = 0.45
+"""Share of the face width from its middle beyond which a place belongs to the end of a tooth."""
+
+NEAR = 0.02
+"""Distance over the module within which a place lies on an edge."""
+
+TOUCHED = 0.02
+"""Share of the largest nodal pressure from which a flank's node counts as touched."""
+
+AVERAGE = "below the contact of teeth: an average over elements, larger on a finer mesh"
+NOTCH = "in the notch behind the teeth, a corner without fillet: no limit to converge to"
+EDGE = "at the edge of the wave generator: edge contact, no limit to converge to"
+
+
+@dataclass(frozen=True)
+class Place:
+    """Place of a largest stress.
+
+    value : MPa;  body : name
+    region : "tooth root", "tooth end", "flank under contact", "flank", "tip", "rim inside", "rim", "notch", "cup wall",
+    "fillet", "closed end", "bore" or "housing"
+    tooth : number, counter-clockwise from +y in the undeformed drive
+    radius, z : mm;  angle_deg : from +y, counter-clockwise
+    warning : why the value depends on the mesh; empty where it converges
+    """
+
+    value: float
+    body: str
+    region: str
+    tooth: int
+    radius: float
+    z: float
+    angle_deg: float
+    warning: str
+
+
+def find_places(
+    model: DriveModel, state: LoadState, fields: Sequence[Mapping[str, np.ndarray]], names: Sequence[str]
+) -> dict[str, Place]:
+    """Places of the largest s1, |s3| and von Mises stress of both bodies, by column of the history; collective.
+
+    fields : nodal fields of both bodies as `DriveModel.stresses` gives them;  names : columns to look for
+    """
+    pressure = nodal_pressure(model.problem, state, model.elements.bodies[FLEXIBLE_SPLINE])
+    top = max(model.comm.allgather(float(pressure.max(initial=0.0))))
+    found = {}
+    for name in names:
+        prefix, _, stress = name.partition("_")
+        k = ("fs", "rg").index(prefix)
+        body = model.elements.bodies[k]
+        values = -fields[k][stress] if stress == "s3" else fields[k][stress]
+        best: tuple[float, int, int, bool] = (-np.inf, 0, 0, False)
+        if values.size:
+            sector, node = np.unravel_index(values.argmax(), values.shape)
+            first, _ = model.partition.owned_sectors(k)
+            # pressures are known on the spline; a largest stress on a flank of the ring gear lies below the contact
+            touched = k != FLEXIBLE_SPLINE or pressure[sector, node] > TOUCHED * top > 0.0
+            best = (float(values[sector, node]), first + int(sector), int(node), bool(touched))
+        value, sector, node, touched = max(model.comm.allgather(best), key=lambda one: one[0])
+        x, y, z = point = body.layout.mesh.coords[node]
+        region = region_of(model.design, body.layout.mesh, node, touched)
+        tooth = body.layout.first_tooth + sector
+        angle = float(body.layout.sector_angle(np.array(tooth)) - np.arctan2(x, y))
+        found[name] = Place(
+            value=value,
+            body=GEARS[k],
+            region=region,
+            tooth=tooth,
+            radius=float(np.hypot(x, y)),
+            z=0.0 if body.layout.mesh.plane else float(z),
+            angle_deg=float(np.degrees(angle)),
+            warning=_warning(model.design, region, point),
+        )
+    return found
+
+
+def region_of(design: DriveDesign, mesh: SectorMesh, node: int, touched: bool) -> str:
+    """Region of a node of a tooth sector. touched : whether a contact presses on it"""
+    x, y, z = mesh.coords[node]
+    radius, half = float(np.hypot(x, y)), 0.5 * design.drive.face_width
+    if not mesh.plane and z > half * (1.0 + 1e-9):
+        return _region_of_the_cup(design, mesh, node, radius, float(z))
+    inner = mesh.body == "flexible_spline" and radius < design.inner_radius + 0.5 * design.flexible_spline.rim
+    if inner:
+        return "rim inside"
+    for grid in mesh.flanks:
+        rows, _ = np.nonzero(grid.nodes == node)
+        if len(rows):
+            return _region_of_the_flank(design, mesh, float(grid.s[rows[0]]), float(z), touched)
+    root = mesh.profile.r_root_circle
+    near = NEAR * design.drive.module
+    if mesh.body == "ring_gear":
+        outer = root + design.ring_gear.rim
+        return "housing" if radius > outer - near else "rim" if radius > root + near else "tooth root"
+    if not mesh.plane and abs(z - half) < near and radius < root + near:
+        return "notch"
+    if radius < root + near:
+        return "tooth end" if abs(z) > END * design.drive.face_width and not mesh.plane else "tooth root"
+    return "tip" if radius > mesh.profile.r_tip_circle - near else "tooth end"
+
+
+def _region_of_the_flank(design: DriveDesign, mesh: SectorMesh, s: float, z: float, touched: bool) -> str:
+    if abs(z) > END * design.drive.face_width and not mesh.plane and not touched:
+        return "tooth end"
+    if s >= mesh.profile.breaks[-2]:
+        return "tooth root"
+    return "flank under contact" if touched else "flank"
+
+
+def _region_of_the_cup(design: DriveDesign, mesh: SectorMesh, node: int, radius: float, z: float) -> str:
+    cup, end = design.cup, 0.5 * design.drive.face_width + design.cup.length
+    if node in mesh.node_sets["bore"]:
+        return "bore"
+    if z > end - cup.fillet_radius and radius > design.inner_radius + design.cup_thickness - cup.fillet_radius:
+        return "fillet"
+    return "closed end" if z > end - 2.0 * design.cup_thickness else "cup wall"
+
+
+def _warning(design: DriveDesign, region: str, point: np.ndarray) -> str:
+    if region == "flank under contact":
+        return AVERAGE
+    if region == "notch":
+        return NOTCH
+    edge = 0.5 * design.wave_generator.face_width
+    at_edge = region == "rim inside" and abs(abs(point[2]) - edge) < NEAR * design.drive.module
+    if design.drive.model == "cup" and at_edge:
+        return EDGE
+    return ""

@@ -1,0 +1,74 @@
+"""Regions of the nodes of tooth sectors, and the places that a run reports."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import swgpar
+from support.paths import DESIGN, RECIPE, REFERENCE
+from support.small_drive import PLANE
+from swgpar.analysis.places import AVERAGE, region_of
+from swgpar.analysis.summary import STRESSES
+from swgpar.design.design_file import load_design
+from swgpar.design.drive_design import DriveDesign
+from swgpar.meshing import SectorMesh, load_recipe
+from swgpar.meshing.tooth_sector import build_sector
+
+
+@pytest.fixture(scope="module")
+def cup() -> tuple[DriveDesign, SectorMesh]:
+    design = load_design(REFERENCE)
+    return design, build_sector(design, load_recipe("coarse"), "flexible_spline")
+
+
+def regions(cup: tuple[DriveDesign, SectorMesh], nodes: np.ndarray, touched: bool = False) -> set[str]:
+    return {region_of(*cup, int(node), touched) for node in nodes}
+
+
+def test_regions_of_the_cup(cup: tuple[DriveDesign, SectorMesh]) -> None:
+    design, mesh = cup
+    half, z = 0.5 * design.drive.face_width, mesh.coords[:, 2]
+    radius = np.hypot(*mesh.coords[:, :2].T)
+    assert regions(cup, mesh.node_sets["bore"]) == {"bore"}
+    assert regions(cup, np.unique(mesh.faces["inner"])) == {"rim inside"}
+    wall = np.flatnonzero((z > half + 1.0) & (z < half + 20.0))
+    assert regions(cup, wall) == {"cup wall"}
+    end = half + design.cup.length
+    assert regions(cup, np.flatnonzero(z > half)) == {"cup wall", "fillet", "closed end", "bore"}
+    assert regions(cup, np.flatnonzero((z == z.max()) & (radius > 40.0) & (radius < 50.0))) == {"closed end"}
+    assert z.max() == pytest.approx(end)
+
+
+def test_regions_of_a_tooth(cup: tuple[DriveDesign, SectorMesh]) -> None:
+    design, mesh = cup
+    grid = mesh.flanks[0]
+    middle = len(grid.z) // 2
+    flank = np.flatnonzero(grid.s < mesh.profile.breaks[-2] - 1e-9)
+    assert regions(cup, grid.nodes[flank, middle]) == {"flank"}
+    assert regions(cup, grid.nodes[flank, middle], touched=True) == {"flank under contact"}
+    assert regions(cup, grid.nodes[-1:, middle]) == {"tooth root"}
+    assert regions(cup, grid.nodes[:, 0]) == {"tooth end"}
+    on_back = np.abs(mesh.coords[:, 2] - grid.z[-1]) < 1e-9
+    at_root = np.abs(np.hypot(*mesh.coords[:, :2].T) - mesh.profile.r_root_circle) < 1e-9
+    assert "notch" in regions(cup, np.flatnonzero(on_back & at_root))
+
+
+def test_regions_of_the_ring_gear() -> None:
+    design = load_design(REFERENCE)
+    mesh = build_sector(design, load_recipe("coarse"), "ring_gear")
+    found = {region_of(design, mesh, int(node), False) for node in np.unique(mesh.faces["outer"])}
+    assert found == {"housing"}
+
+
+def test_a_run_says_where_its_largest_stresses_are() -> None:
+    design = load_design(DESIGN, [*PLANE, "steps.rotation=4", "steps.increment=2"])
+    result = swgpar.run(design, RECIPE)
+    places, loaded = result.summary["places"], result.history["step"] >= 3
+    assert set(places) == set(STRESSES)
+    for name, place in places.items():
+        assert place["value"] == pytest.approx(result.history[name][loaded].max(), rel=1e-12)
+        assert place["body"] == ("flexible_spline" if name.startswith("fs") else "ring_gear")
+        assert (place["warning"] == AVERAGE) == (place["region"] == "flank under contact")
+    assert places["fs_s1"]["region"] in ("tooth root", "rim inside")
+    assert design.inner_radius - 0.1 < places["fs_s1"]["radius"] < 0.5 * design.drive.teeth_rg
