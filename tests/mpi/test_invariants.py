@@ -73,13 +73,13 @@ def test_torques_balance_in_the_other_layout(model: str) -> None:
 def test_layouts_agree(model: str) -> None:
     """With the same torque at the teeth: the ring gear turns as a whole, freely along its circle, instead of standing.
 
-    Its rim may slide along the housing, which lets it yield a little. The spline agrees to 0.2 %; the ring's own
-    largest stress sits at the few contact points of this mesh and moves with them: 3 % in the cup.
+    Its rim may slide along the housing, which lets it yield a little. The spline agrees to 0.2 %, the torque to 0.3 %.
+    The ring's own largest stress sits at the few contact points of this mesh and moves with them: 3 % in the cup.
     """
     (_, a), (_, b) = base(model), other_layout(model)
     for name in PHYSICAL:
         print(f"{model} {name}: {b[name] / a[name] - 1:+.2e}")
-        assert b[name] == pytest.approx(a[name], rel=0.05 if name.startswith("rg") else 0.01), name
+        assert b[name] == pytest.approx(a[name], rel=0.035 if name.startswith("rg") else 0.005), name
     assert a["pairs_in_contact"] == b["pairs_in_contact"]
 
 

@@ -158,7 +158,8 @@ def test_condensed_sectors_in_the_plane_leave_out_the_bend_of_a_sector(overrides
     left_out = condensed_stepper.model.omitted_bending_stress()
     assert stepper.model.omitted_bending_stress() == 0.0
     bending = 0.75 * design.material.E * design.flexible_spline.rim * design.deflection / design.inner_radius**2
-    assert left_out == pytest.approx(design.omitted_bending * bending, rel=0.2)
+    # 6.6 % more than by the formula, which is that of a smooth ring: a sector bends more between its thick teeth
+    assert left_out == pytest.approx(1.066 * design.omitted_bending * bending, rel=0.01)
     share = 1.5 * design.omitted_bending
     assert 1e-3 < share < 0.015
     assert_same(condensed, plain, share)
