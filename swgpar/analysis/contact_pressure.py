@@ -27,6 +27,7 @@ def nodal_pressure(problem: DiscreteProblem, state: LoadState, body: BodyElement
     total.setValuesBlocked(problem.local.number, sums, addv=PETSc.InsertMode.ADD_VALUES)
     total.assemble()
     force, area, _ = problem.exchange(total).T
+    total.destroy()
     mean = np.divide(force, area, out=np.zeros(n), where=area > 0.0)
     local = body.local[body.owned]
     return np.where(local >= 0, mean[local], 0.0)

@@ -31,15 +31,10 @@ class LineLoad:
 
 
 def nodal_flank_forces(model: DriveModel, state: LoadState) -> PETSc.Vec:
-    """Nodal forces (N) of the ring gear on the flexible spline in the present state; collective."""
+    """Nodal contact forces (N) of the flanks by the last evaluation; collective. Each pair counts on one rank."""
     problem = model.problem
     local = np.zeros((len(problem.local), 3))
-    problem.flanks.evaluate(problem.displacement(), state, None, None)
     problem.flanks.add_owned_forces(problem.displacement(), state, local)
-    spline = model.elements.bodies[FLEXIBLE_SPLINE].local
-    mine = np.zeros(len(local), dtype=bool)
-    mine[spline[spline >= 0]] = True
-    # ghosts of teeth that only contact sees belong to the ring gear, but for teeth of other ranks
     total = create_vector(model.partition)
     total.setValuesBlocked(problem.local.number, -local, addv=PETSc.InsertMode.ADD_VALUES)
     total.assemble()

@@ -13,7 +13,10 @@ import numpy as np
 
 from swgpar.analysis.drive_model import DriveModel, build_rigid_contacts, newton_settings
 from swgpar.analysis.flank_loads import line_loads, nodal_forces
+from swgpar.analysis.places import region_of, warning_of
+from swgpar.analysis.torques import torques
 from swgpar.constraints.boundary_conditions import DeadLoad, PrescribedDisplacement
+from swgpar.constraints.distributing_coupling import node_weights
 from swgpar.constraints.supports import Supports
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import LoadState
@@ -60,12 +63,14 @@ class WindowStress:
     """Largest tensile stress in a window.
 
     value : MPa;  tooth : where;  position : (3,) mm, undeformed, with the tooth at +y
-    elements : of the window
+    region, warning : as of a `Place`;  elements : of the window
     """
 
     value: float
     tooth: int
     position: np.ndarray
+    region: str
+    warning: str
     elements: int
 
 
@@ -122,12 +127,12 @@ class LocalProblem:
             inner_radius=design.inner_radius,
             phases=PhaseTimes(),
         )
-        self.solver = NewtonSolver(problem, replace(newton_settings(design), rtol=RTOL, reuse_factor=False))
+        self.solver = NewtonSolver(
+            problem, replace(newton_settings(design), rtol=RTOL, linear="direct", reuse_factor=False)
+        )
         self.problem = problem
-        own = range(*self.partition.owned_sectors(0))
-        write_field(self.partition, 0, np.array(own, dtype=np.int64), displacement[list(own)], problem.x)
-        if self.model.comm.rank == self.model.comm.size - 1:
-            self._write_end(displacement)
+        own_first, own_end = self.partition.owned_sectors(0)
+        write_field(self.partition, 0, np.arange(own_first, own_end), displacement[own_first:own_end], problem.x)
 
     def _of_the_drive(self, teeth: np.ndarray) -> np.ndarray:
         """Displacement (n_teeth, n_node, 3) mm of the drive at the nodes of the window; collective."""
@@ -146,19 +151,13 @@ class LocalProblem:
         own = (number >= partition.row_start) & (number < partition.row_start + partition.n_own)
         return number - partition.row_start, own
 
-    def _write_end(self, displacement: np.ndarray) -> None:
-        """Set the nodes of the last cut, which belong to no owned sector's own nodes."""
-        nodes = self.layout.mesh.ccw_nodes.astype(np.int64)
-        index, own = self._numbers(np.array([SECTORS - 1]), nodes)
-        self.problem.x.array.reshape(-1, 3)[index[own]] = displacement[SECTORS - 1, nodes][own[0]]
-
     def _cuts(self, displacement: np.ndarray) -> PrescribedDisplacement:
         """The nodes of all cuts, held at the displacements of the drive."""
         mesh, every = self.layout.mesh, np.arange(SECTORS)
         held: dict[int, np.ndarray] = {}
         parts = [(every[:1], mesh.cw_nodes), (every[-1:], mesh.ccw_nodes)]
         if not mesh.plane:
-            parts.append((every, mesh.node_sets["cut"]))
+            parts += [(every, mesh.node_sets["cut"]), (every, mesh.node_sets["bore"])]
         for sectors, nodes in parts:
             nodes = nodes.astype(np.int64)
             index, own = self._numbers(sectors, nodes)
@@ -180,8 +179,26 @@ class LocalProblem:
             nodal = nodal_forces(load, grid, HALF_WIDTH * module).reshape(-1, 3)
             index, own = self._numbers(np.array([sector]), grid.nodes.ravel().astype(np.int64))
             np.add.at(forces, index[0, own[0]], nodal[own[0]])
+        if self.layout.mesh.plane:
+            self._add_torque(forces)
         nodes = np.flatnonzero(np.abs(forces).sum(axis=1))
         return DeadLoad(nodes, forces[nodes])
+
+    def _add_torque(self, forces: np.ndarray) -> None:
+        """Add the torque that acts on the inner surface in the plane, to forces (n_own, 3) N; collective."""
+        model, mesh = self.model, self.layout.mesh
+        found = torques(model.problem, self.state)
+        moment = -(found.wave_generator + found.teeth) / mesh.n_sectors
+        nodes = mesh.node_sets["bore"].astype(np.int64)
+        weight = node_weights(mesh.coords, nodes, mesh.ccw_nodes)
+        weighted = weight > 0.0
+        nodes, share = nodes[weighted], weight[weighted] / weight.sum()
+        x, y, _ = mesh.coords[nodes].T
+        force = (moment * share / (x**2 + y**2))[:, None] * np.column_stack([-y, x, 0.0 * x])
+        for sector in range(SECTORS):
+            angle = self.layout.sector_angle(np.array([self.layout.first_tooth + sector]))
+            index, own = self._numbers(np.array([sector]), nodes)
+            np.add.at(forces, index[0, own[0]], rotated(force[None], angle[:, None])[0][own[0]])
 
     def solve(self) -> None:
         """Bring the window to equilibrium. Raises ConvergenceError."""
@@ -202,13 +219,16 @@ class LocalProblem:
         mesh, width = self.layout.mesh, self.model.design.drive.face_width
         stress, sectors = self.stress()
         toothed = np.flatnonzero(np.abs(mesh.coords[:, 2]) <= TOOTHED * width)
-        best = (-np.inf, 0, np.zeros(3))
+        best = (-np.inf, 0, 0)
         if len(sectors):
             s1 = principal(stress[:, toothed])[0]
             k, i = np.unravel_index(s1.argmax(), s1.shape)
-            best = (float(s1[k, i]), self.layout.first_tooth + int(sectors[k]), mesh.coords[toothed[i]])
-        value, tooth, position = max(self.model.comm.allgather(best), key=lambda found: found[0])
-        return WindowStress(value, tooth, position, SECTORS * len(mesh.hexes))
+            best = (float(s1[k, i]), self.layout.first_tooth + int(sectors[k]), int(toothed[i]))
+        value, tooth, node = max(self.model.comm.allgather(best), key=lambda found: found[0])
+        design = self.model.design
+        region = region_of(design, mesh, node, False)
+        warning = warning_of(design, region, mesh.coords[node])
+        return WindowStress(value, tooth, mesh.coords[node], region, warning, SECTORS * len(mesh.hexes))
 
     def destroy(self) -> None:
         """Release the solver; collective."""

@@ -35,7 +35,7 @@ class Place:
 
     value : MPa;  body : name
     region : "tooth root", "tooth end", "flank under contact", "flank", "tip", "rim inside", "rim", "notch", "cup wall",
-    "fillet", "closed end", "bore" or "housing"
+    "fillet", "closed end", "bore", "housing" or "inside the tooth"
     tooth : number, counter-clockwise from +y in the undeformed drive
     radius, z : mm;  angle_deg : from +y, counter-clockwise
     warning : why the value depends on the mesh; empty where it converges
@@ -70,8 +70,8 @@ def find_places(
         if values.size:
             sector, node = np.unravel_index(values.argmax(), values.shape)
             first, _ = model.partition.owned_sectors(k)
-            # pressures are known on the spline; a largest stress on a flank of the ring gear lies below the contact
-            touched = k != FLEXIBLE_SPLINE or pressure[sector, node] > TOUCHED * top > 0.0
+            # pressures are known on the spline; compression on a flank of the ring gear lies below the contact
+            touched = pressure[sector, node] > TOUCHED * top > 0.0 if k == FLEXIBLE_SPLINE else stress != "s1"
             best = (float(values[sector, node]), first + int(sector), int(node), bool(touched))
         value, sector, node, touched = max(model.comm.allgather(best), key=lambda one: one[0])
         x, y, z = point = body.layout.mesh.coords[node]
@@ -82,11 +82,11 @@ def find_places(
             value=value,
             body=GEARS[k],
             region=region,
-            tooth=tooth,
+            tooth=tooth % body.layout.mesh.n_sectors,
             radius=float(np.hypot(x, y)),
             z=0.0 if body.layout.mesh.plane else float(z),
-            angle_deg=float(np.degrees(angle)),
-            warning=_warning(model.design, region, point),
+            angle_deg=float(np.degrees(angle)) % 360.0,
+            warning=warning_of(model.design, region, point),
         )
     return found
 
@@ -108,12 +108,16 @@ def region_of(design: DriveDesign, mesh: SectorMesh, node: int, touched: bool) -
     near = NEAR * design.drive.module
     if mesh.body == "ring_gear":
         outer = root + design.ring_gear.rim
+        if radius < root - near:
+            return "tip" if radius < mesh.profile.r_tip_circle + near else "inside the tooth"
         return "housing" if radius > outer - near else "rim" if radius > root + near else "tooth root"
     if not mesh.plane and abs(z - half) < near and radius < root + near:
         return "notch"
     if radius < root + near:
         return "tooth end" if abs(z) > END * design.drive.face_width and not mesh.plane else "tooth root"
-    return "tip" if radius > mesh.profile.r_tip_circle - near else "tooth end"
+    if radius > mesh.profile.r_tip_circle - near:
+        return "tip"
+    return "tooth end" if abs(z) > END * design.drive.face_width and not mesh.plane else "inside the tooth"
 
 
 def _region_of_the_flank(design: DriveDesign, mesh: SectorMesh, s: float, z: float, touched: bool) -> str:
@@ -133,7 +137,8 @@ def _region_of_the_cup(design: DriveDesign, mesh: SectorMesh, node: int, radius:
     return "closed end" if z > end - 2.0 * design.cup_thickness else "cup wall"
 
 
-def _warning(design: DriveDesign, region: str, point: np.ndarray) -> str:
+def warning_of(design: DriveDesign, region: str, point: np.ndarray) -> str:
+    """Why a stress at a point (3,) mm of a region has no limit, or depends on the mesh; empty where it converges."""
     if region == "flank under contact":
         return AVERAGE
     if region == "notch":

@@ -81,7 +81,8 @@ class Recorder(ABC):
         """Find the places of stresses that are the largest under load so far."""
         if state.is_periodic:
             larger = [name for name in values if name not in self.places or values[name] > self.places[name].value]
-            self.places |= find_places(self.model, state, fields, larger)
+            if larger:  # the same on all ranks
+                self.places |= find_places(self.model, state, fields, larger)
 
     @abstractmethod
     def begin(self) -> None:

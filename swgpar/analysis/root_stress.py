@@ -35,9 +35,6 @@ LOWEST_ORDER, HIGHEST_ORDER = 1.0, 2.0
 CLOSE = 0.85
 """Share of the largest stress on the drive's own mesh from which a tooth outside of the first window is looked at."""
 
-END = 0.45
-"""Share of the face width from its middle beyond which a place belongs to the end of a tooth."""
-
 
 @dataclass(frozen=True)
 class RootStress:
@@ -45,7 +42,7 @@ class RootStress:
 
     s1 : MPa;  error : MPa, estimated, of the window's mesh
     on_mesh : MPa, of the nodal averages on the drive's mesh
-    region : "tooth root", "tooth end" or "rim inside"
+    region : as of a `Place`;  warning : why there is no limit to converge to; empty where there is one
     tooth : number, counter-clockwise from +y in the undeformed drive
     radius, z : mm;  angle_deg : from +y, counter-clockwise
     levels : s1 (MPa) on the windows, coarse to fine;  elements : of the finest window
@@ -55,6 +52,7 @@ class RootStress:
     error: float
     on_mesh: float
     region: str
+    warning: str
     tooth: int
     radius: float
     z: float
@@ -143,24 +141,19 @@ def _solve(model: DriveModel, state: LoadState, tooth: int, recipe: MeshRecipe) 
 def _place(
     model: DriveModel, found: WindowStress, levels: tuple[float, ...], error: float, on_mesh: float
 ) -> RootStress:
-    design, (x, y, z) = model.design, found.position
+    x, y, z = found.position
     layout = model.partition.layouts[FLEXIBLE_SPLINE]
-    radius = float(np.hypot(x, y))
-    plane = design.drive.model == "plane"
-    if radius < design.inner_radius + 0.5 * design.flexible_spline.rim:
-        region = "rim inside"
-    else:
-        region = "tooth end" if abs(z) > END * design.drive.face_width and not plane else "tooth root"
     angle = float(layout.sector_angle(np.array(found.tooth)) - np.arctan2(x, y))
     return RootStress(
         s1=found.value,
         error=error,
         on_mesh=on_mesh,
-        region=region,
-        tooth=found.tooth,
-        radius=radius,
-        z=0.0 if plane else float(z),
-        angle_deg=float(np.degrees(angle)),
+        region=found.region,
+        warning=found.warning,
+        tooth=found.tooth % layout.mesh.n_sectors,
+        radius=float(np.hypot(x, y)),
+        z=0.0 if layout.mesh.plane else float(z),
+        angle_deg=float(np.degrees(angle)) % 360.0,
         levels=levels,
         elements=found.elements,
     )

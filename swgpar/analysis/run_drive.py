@@ -157,6 +157,8 @@ class _Run:
         """Bring back the state of the checkpoint; returns all increments that the run consists of."""
         items, self.earlier_seconds = resume(self.recorder, self.stepper, list(load_sequence(self.model.design)))
         logger.info("restarted after increment %d", len(self.recorder.rows))
+        if self.model.design.output.root_stress and not self.recorder.root_stress:
+            logger.info("the stress at the teeth is resolved only by the run that computes the loaded state")
         return items
 
     def start(self) -> list[LoadState]:

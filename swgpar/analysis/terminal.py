@@ -89,6 +89,8 @@ def _print_errors(summary: Mapping[str, Any]) -> None:
             f"{root['region']} of tooth {root['tooth']} (radius {root['radius']:.2f}, z {root['z']:.2f} mm, "
             f"{root['angle_deg']:.1f} degrees); {root['on_mesh']:.1f} MPa by nodal averages of the drive's mesh"
         )
+        if root["warning"]:
+            console.print(f"the largest tension at the teeth is {root['warning']}")
     asked = summary["accuracy"]
     if error := summary["mesh_error"]:
         others = "the meshes before it" if asked else "the coarser one of the start"

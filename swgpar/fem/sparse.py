@@ -41,6 +41,8 @@ def create_matrix(partition: Partition, rows: BlockRows) -> PETSc.Mat:
     diagonal = np.bincount(own[own_column], minlength=rows.n_own).astype(PETSc.IntType)
     off = np.bincount(own[~own_column], minlength=rows.n_own).astype(PETSc.IntType)
     mat.setPreallocationNNZ((diagonal, off))
+    # on every rank: one without rows would not have it, and the ranks would disagree in the assembly
+    mat.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, True)
     mat.setOption(PETSc.Mat.Option.ROW_ORIENTED, False)
     if rows.symmetric:
         mat.setOption(PETSc.Mat.Option.IGNORE_LOWER_TRIANGULAR, True)

@@ -40,6 +40,19 @@ def on_the_drive(stepper: LoadStepper, teeth: np.ndarray) -> float:
     return WORLD.allreduce(principal(stress[mine])[0].max(initial=0.0), op=MPI.MAX)
 
 
+@pytest.mark.parametrize("tooth", [5, 18])
+@pytest.mark.parallel([1, 2])
+def test_a_window_has_its_share_of_a_large_torque(tooth: int) -> None:
+    """In the plane the torque acts on the inner surface; here it is a hundred times that of the other tests."""
+    stepper, _ = loaded(small("plane", "load.torque=20"))
+    window = solved(stepper, tooth)
+    found = window.largest().value
+    window.destroy()
+    expected = on_the_drive(stepper, tooth + np.arange(MARGIN, SECTORS - MARGIN) - SECTORS // 2)
+    print(f"tooth {tooth}: {found:.2f} and {expected:.2f} MPa")
+    parallel_assert(found == pytest.approx(expected, rel=2e-3), f"{found} and {expected}")
+
+
 # the flanks' load is a parabola in the window, and faces with single points of contact in the drive
 @pytest.mark.parametrize(
     ("model", "rel"),
