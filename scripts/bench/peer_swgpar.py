@@ -15,61 +15,13 @@ from mpi4py import MPI
 from peer_problems import CAM, CAM_HALF_ANGLE, INNER, OUTER, PENALTY, PROBLEMS, STEEL, WIDTH, Problem, line
 
 from swgpar.analysis.plain_ring import RingBody, RingCounts, RingDesign, RingModel
-from swgpar.contact.contact import NO_KEYS
+from swgpar.constraints.boundary_conditions import DeadLoad
 from swgpar.design.load_states import LoadState, Stage
 from swgpar.design.sections import Contact
 from swgpar.fem.elements import BodyElements
-from swgpar.fem.sparse import BlockRows
 from swgpar.fem.stress import body_fields
 from swgpar.geometry.cams import EllipticalCam
 from swgpar.solve.line_search import LineSearch
-
-
-class DeadLoad:
-    """Forces on nodes in the role of a contact, so that convergence is judged by them; meets the protocol `Contact`.
-
-    nodes : (n,) local;  force : (n, 3) N
-    """
-
-    def __init__(self, nodes: np.ndarray, force: np.ndarray) -> None:
-        self.nodes, self.force = nodes, force
-        self.multiplier = np.zeros(0)
-
-    def is_active(self, state: LoadState) -> bool:
-        """The forces always act."""
-        return True
-
-    def evaluate(
-        self, u: np.ndarray, state: LoadState, residual: np.ndarray | None, rows: BlockRows | None
-    ) -> np.ndarray:
-        """Add the forces to residual (n_local, 3) N; they have no tangent."""
-        if residual is not None:
-            residual[self.nodes] -= self.force
-        return NO_KEYS
-
-    def add_owned_forces(self, u: np.ndarray, state: LoadState, residual: np.ndarray) -> None:
-        """Add the forces to residual (n_local, 3) N."""
-        self.evaluate(u, state, residual, None)
-
-    def reset(self) -> None:
-        """There are no multipliers."""
-
-    def scale_penalty(self, share: float) -> None:
-        """There is no penalty."""
-
-    def augment(self) -> None:
-        """There are no multipliers."""
-
-    def penetration(self) -> float:
-        """There is no penetration."""
-        return 0.0
-
-    def active_sets(self) -> list[np.ndarray]:
-        """There are no active sets."""
-        return []
-
-    def owned_pressure(self) -> None:
-        """There is no pressure."""
 
 
 def pinched(design: RingDesign, counts: RingCounts, force: float) -> tuple[BodyElements, np.ndarray, int]:

@@ -14,7 +14,7 @@ from swgpar.fem.vectors import create_vector, read_field
 from swgpar.meshing.sector import FlankGrid
 
 POINTS = 4
-"""Gauss points of an element along z, and of the parabola along the profile."""
+"""Gauss points along z on each piece between the stations of both meshes."""
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,7 @@ FLANK, END_RATIO = 8, 3.0
 """Least count along the flank; middle elements along the face width over those at both ends."""
 
 LOWEST_ORDER, HIGHEST_ORDER = 1.0, 2.0
-"""Bounds of the observed order. Nodal stresses of these elements converge at an order between them."""
+"""Bounds of the observed order: a higher one, which is seen in the plane, would rest on two differences only."""
 
 CLOSE = 0.85
 """Share of the largest stress on the drive's own mesh from which a tooth outside of the first window is looked at."""
