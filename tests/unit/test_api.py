@@ -45,13 +45,13 @@ def test_the_package_is_light() -> None:
     assert done.stdout.strip() == "[]"
 
 
-def test_a_drive_loads_no_other_system() -> None:
+def test_a_drive_loads_no_other_system(tmp_path: Path) -> None:
     """A run needs neither gear trains nor studies."""
     code = (
         f"import swgpar, sys; swgpar.check({str(DESIGN)!r}); "
         "print([m for m in sys.modules if m.startswith(('swgpar.gear_trains', 'swgpar.studies', 'matplotlib'))])"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=tmp_path)
     assert done.stdout.strip() == "[]"
 
 
