@@ -3,9 +3,9 @@
 Problem: a strain wave gear with 120 / 122 teeth and its cup; the elliptical wave generator rotates by 45 degrees under
 an output torque of 20 N m (Tables 7.1 to 7.4). Equations: equilibrium of two elastic bodies with finite rotations,
 frictionless contact of cam on spline and of spline on ring gear, and a torque that is work-conjugate to the mean
-rotation of the cup's bore. Expected run time: about 3 minutes with the coarse recipe on 2 cores.
+rotation of the cup's bore. Expected run time: about a minute on 2 cores.
 
-    mpirun -n 2 python drivers/cup_rotation.py --mesh coarse --out results/cup
+    mpirun -n 2 python drivers/cup_rotation.py --out results/cup
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ def main() -> float:
     """Run and return the mean of the largest tensile stress in the flexible spline, MPa."""
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("--design", default=Path(__file__).with_name("cup_45deg.toml"))
-    options.add_argument("--mesh", default="coarse")
+    options.add_argument("--mesh", help="name or path of a mesh recipe (default: coarse)")
     options.add_argument("--out", default="results/cup_rotation")
     options.add_argument("--restart", action="store_true", help="continue from the checkpoint in --out")
     options.add_argument("--overwrite", action="store_true", help="replace results that --out already holds")

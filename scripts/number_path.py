@@ -98,6 +98,7 @@ def main() -> None:
             chosen.design,
             "--mesh",
             chosen.mesh,
+            "--plain",
             "--out",
             str(Path(folder) / "out"),
             "--set",

@@ -102,6 +102,7 @@ def run(
     out: str | Path | None = None,
     *,
     accuracy: float | None = None,
+    plain: bool = False,
     restart: bool = False,
     overwrite: bool = False,
     progress: bool | None = None,
@@ -114,12 +115,17 @@ def run(
     design : design, path or mapping
         As `load_design` takes it.
     mesh : recipe, name, path or mapping
-        As `load_mesh` takes it. Gear trains have none.
+        As `load_mesh` takes it. Without one a drive takes the recipe coarse, a plane model plane_coarse; the stress
+        at the teeth comes from windows on finer meshes. Gear trains have none.
     out : path
         Results folder. Without it the run is in memory and leaves no files.
     accuracy : float
         Refine the mesh until the estimated relative error of the largest tensile stress under load is at most this
         (0.001 to 0.2); drives without friction only.
+    plain : bool
+        Compute all that the design asks for. Otherwise a drive without friction leaves out the pins, the angles
+        beyond one period, and the assembly on a fine mesh, where the design does not set the keys ``steps.pins``,
+        ``steps.samples`` and ``steps.start_levels``.
     restart : bool
         Continue from the checkpoint in `out`.
     overwrite : bool
@@ -145,11 +151,11 @@ def run(
 
     Examples
     --------
-    >>> result = swgpar.run("drivers/plane_half_turn.toml", mesh="plane_coarse")
-    >>> result.history["fs_s1"].max()
+    >>> result = swgpar.run("drivers/plane_half_turn.toml")
+    >>> result.summary["root_stress"]["s1"], result.history["fs_s1"].max()
     """
     comm = MPI.COMM_WORLD if comm is None else comm
-    checked, recipe = on_all(comm, lambda: _checked(design, mesh, accuracy, restart))
+    checked, recipe = on_all(comm, lambda: _checked(design, mesh, accuracy, plain, restart))
     system = system_of(checked)
     folder = None if out is None else Path(out)
     terminal = log.console.is_terminal if progress is None else progress
@@ -160,6 +166,7 @@ def run(
             folder,
             recipe_name=str(mesh) if isinstance(mesh, (str, Path)) else "",
             accuracy=accuracy,
+            plain=plain,
             restart=restart,
             overwrite=overwrite,
             comm=comm,
@@ -261,18 +268,18 @@ def study(
     )
 
 
-def check(design: DesignLike, overrides: Overrides = ()) -> dict[str, float]:
-    """Derived geometry of a design, without a run.
+def check(design: DesignLike, overrides: Overrides = (), mesh: MeshLike | None = None) -> dict[str, float]:
+    """Derived geometry of a design, without a run; with a mesh also what a run on it will need.
 
     Returns
     -------
     dict of float
-        Values by name; the names have units.
+        Values by name; the names have units. With a mesh: elements, unknowns, memory and time.
 
     Raises
     ------
     InputError
-        As `load_design`.
+        As `load_design` and `load_mesh`, or the mesh does not fit into the memory of this machine.
 
     Examples
     --------
@@ -280,7 +287,23 @@ def check(design: DesignLike, overrides: Overrides = ()) -> dict[str, float]:
     -60.0
     """
     checked = load_design(design, overrides)
-    return system_of(checked).check(checked)
+    found = system_of(checked).check(checked)
+    return found if mesh is None else {**found, **_needs(checked, load_mesh(mesh))}
+
+
+def _needs(design: Design, recipe: MeshRecipe) -> dict[str, float]:
+    from swgpar.analysis.forecast import forecast, require_memory
+
+    if not isinstance(design, DriveDesign):
+        raise InputError(f"{system_of(design).noun} has no mesh: allowed are drives")
+    needs = forecast(design, recipe)
+    require_memory(needs)
+    return {
+        "elements of the drive": needs.elements,
+        "unknowns modelled": needs.unknowns,
+        "memory of all ranks, about (GB)": needs.memory,
+        "time of a run on 2 cores, about (s)": needs.seconds,
+    }
 
 
 def mesh(
@@ -336,12 +359,12 @@ def _require(name: str, value: Any) -> None:
 
 
 def _checked(
-    design: DesignLike, mesh: MeshLike | None, accuracy: float | None, restart: bool
+    design: DesignLike, mesh: MeshLike | None, accuracy: float | None, plain: bool, restart: bool
 ) -> tuple[Design, MeshRecipe | None]:
     """Design and recipe of a run; refuses options that the design's system does not have."""
     checked = load_design(design)
     system = system_of(checked)
-    given = {"mesh": mesh is not None, "accuracy": accuracy is not None, "restart": restart}
+    given = {"mesh": mesh is not None, "accuracy": accuracy is not None, "plain": plain, "restart": restart}
     for name in given:
         if given[name] and name not in system.options:
             raise InputError(f"{name} has no meaning for {system.noun}: leave it out")

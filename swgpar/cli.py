@@ -13,7 +13,7 @@ from typing import NoReturn
 from swgpar.errors import InputError, StudyError, SwgparError
 from swgpar.version import __version__
 
-OPTIONS = ("--set", "--mesh", "--accuracy", "--out", "--restart", "--overwrite", "--format", "--help", "--version")
+OPTIONS = tuple("--set --mesh --accuracy --plain --out --restart --overwrite --format --help --version".split())
 
 EXAMPLES = """examples:
   swgpar check drivers/cup_45deg.toml
@@ -28,7 +28,8 @@ RUN = """Simulate a drive, or compute a gear train, and write the results to a f
 PETSc."""
 
 RUN_EXAMPLES = """examples:
-  mpirun -n 2 swgpar run drivers/cup_45deg.toml --mesh coarse --out results/coarse
+  mpirun -n 2 swgpar run drivers/cup_45deg.toml --out results/cup
+  mpirun -n 2 swgpar run drivers/cup_45deg.toml --plain --out results/plain
   mpirun -n 2 swgpar run drivers/cup_45deg.toml --mesh full --out results/full --set load.torque=10 steps.rotation=20
   mpirun -n 2 swgpar run drivers/cup_45deg.toml --mesh full --out results/full --restart
   mpirun -n 2 swgpar run drivers/plane_half_turn.toml --mesh plane_coarse --accuracy 0.05 --out results/plane
@@ -44,6 +45,7 @@ MESH_EXAMPLES = """examples:
 CHECK_EXAMPLES = """examples:
   swgpar check drivers/cup_45deg.toml
   swgpar check drivers/cup_45deg.toml --set drive.layout=spline_fixed
+  swgpar check drivers/cup_45deg.toml --mesh full
 """
 
 STUDY = """Compute many designs and compare them: a grid or a sweep over any keys of the design file, on one mesh or
@@ -106,8 +108,11 @@ def parser() -> argparse.ArgumentParser:
         choices=["vtu", "msh", "inp"],
         help="vtu for ParaView, msh for Gmsh, inp for Abaqus and CalculiX (default: all)",
     )
-    check = _add_command(commands, "check", "Check a design and print its derived geometry.", CHECK_EXAMPLES)
+    check = _add_command(
+        commands, "check", "Check a design and print its derived geometry, and what a run will need.", CHECK_EXAMPLES
+    )
     _add_design(check)
+    check.add_argument("--mesh", help=f"{MESH_HELP}: prints elements, unknowns, memory and time to expect")
     report = _add_command(commands, "report", "Draw the figures of a finished run again.", REPORT_EXAMPLES)
     report.add_argument("out", help="results folder")
     return top
@@ -138,7 +143,9 @@ def _add_design(command: argparse.ArgumentParser) -> None:
 def _add_run(commands: _Commands) -> None:
     run = _add_command(commands, "run", RUN, RUN_EXAMPLES)
     _add_design(run)
-    run.add_argument("--mesh", help=f"{MESH_HELP}; gear trains have none")
+    run.add_argument(
+        "--mesh", help=f"{MESH_HELP} (default: coarse, for a plane model plane_coarse); gear trains have none"
+    )
     run.add_argument(
         "--accuracy",
         type=float,
@@ -146,6 +153,12 @@ def _add_run(commands: _Commands) -> None:
         help="refine the mesh until the estimated error of the largest tensile stress under load is at most A (0.02: "
         "2 %%; 0.001 to 0.2, without friction). Without other values in the design, one period is computed in 4, 8 or "
         "16 angles with solver.rtol = 1e-7. The mesh has at most 1,500,000 elements in the plane, 700,000 in space",
+    )
+    run.add_argument(
+        "--plain",
+        action="store_true",
+        help="compute all that the design asks for: without this, a drive without friction leaves out pins, further "
+        "periods and the assembly on a fine mesh, where the design does not set their keys",
     )
     run.add_argument("--out", required=True, help="results folder")
     run.add_argument("--restart", action="store_true", help="continue from the checkpoint in --out")
@@ -174,6 +187,7 @@ def _run(arguments: argparse.Namespace) -> None:
         arguments.mesh,
         arguments.out,
         accuracy=arguments.accuracy,
+        plain=arguments.plain,
         restart=arguments.restart,
         overwrite=arguments.overwrite,
         progress=True,
@@ -225,7 +239,7 @@ def _check(arguments: argparse.Namespace) -> None:
     from swgpar import api
     from swgpar.results.atomic import on_all
 
-    values = on_all(MPI.COMM_WORLD, lambda: api.check(arguments.design, arguments.overrides))
+    values = on_all(MPI.COMM_WORLD, lambda: api.check(arguments.design, arguments.overrides, arguments.mesh))
     _print(f"{name:40s} {value:.6g}" for name, value in values.items())
 
 

@@ -100,7 +100,7 @@ def solve_to_load(
     return stepper.model
 
 
-def start_loaded(stepper: LoadStepper, recipes: list[MeshRecipe], load_states: list[LoadState]) -> LoadedState:
+def start_loaded(stepper: LoadStepper, recipes: list[MeshRecipe], load_states: list[LoadState]) -> None:
     """Bring `stepper` to the loaded state by way of coarser meshes, the coarsest of `recipes` first.
 
     load_states : all increments of the run. Raises ConvergenceError or InputError where a mesh does not allow it;
@@ -111,10 +111,8 @@ def start_loaded(stepper: LoadStepper, recipes: list[MeshRecipe], load_states: l
     with target.phases("start"):
         for recipe in recipes:
             coarse = solve_to_load(target.design, recipe, load_states, target.comm, coarse)
-        level = loaded_state(coarse)
         take_over(coarse, stepper, loaded)
         stepper.advance(loaded)
-    return level
 
 
 def take_over(coarse: DriveModel, stepper: LoadStepper, loaded: LoadState) -> None:

@@ -104,19 +104,7 @@ class DriveModel:
 
     def counts(self) -> dict[str, Any]:
         """Nodes, elements and unknowns per body, modelled and of the whole drive."""
-        out = {}
-        for layout in self.partition.layouts:
-            layers = 2 if layout.mesh.plane else 1
-            per_sector = (len(layout.mesh.coords) - len(layout.mesh.ccw_nodes)) // layers
-            out[layout.name] = {
-                "nodes": per_sector * layout.count,
-                "elements": len(layout.mesh.hexes) * layout.count,
-                "dofs": self.partition.dims * len(layout.numbering.owned_nodes) * layout.count,
-                "nodes_whole": per_sector * layout.mesh.n_sectors,
-                "elements_whole": len(layout.mesh.hexes) * layout.mesh.n_sectors,
-                "quality": layout.mesh.quality,
-            }
-        return out
+        return {layout.name: body_counts(layout) for layout in self.partition.layouts}
 
     def stresses(self) -> tuple[dict[str, float], list[dict[str, np.ndarray]]]:
         """Largest stresses (MPa) by column of the history, and the nodal fields of both bodies."""
@@ -129,6 +117,20 @@ class DriveModel:
         return values, fields
 
 
+def body_counts(layout: BodyLayout) -> dict[str, Any]:
+    """Nodes, elements and unknowns of a body, modelled and of the whole drive."""
+    plane = layout.mesh.plane
+    per_sector = (len(layout.mesh.coords) - len(layout.mesh.ccw_nodes)) // (2 if plane else 1)
+    return {
+        "nodes": per_sector * layout.count,
+        "elements": len(layout.mesh.hexes) * layout.count,
+        "dofs": (2 if plane else 3) * len(layout.numbering.owned_nodes) * layout.count,
+        "nodes_whole": per_sector * layout.mesh.n_sectors,
+        "elements_whole": len(layout.mesh.hexes) * layout.mesh.n_sectors,
+        "quality": layout.mesh.quality,
+    }
+
+
 def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm) -> DriveModel:
     """Mesh the drive and set up its discrete problem and solver; collective.
 
@@ -139,7 +141,7 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
         meshes = build_sector_meshes(design, recipe)
     with phases("elements"):
         references = {name: _reference(design, mesh) for name, mesh in meshes.items()}
-        layouts = [_layout(design, mesh, references[name]) for name, mesh in meshes.items()]
+        layouts = [build_layout(design, mesh, references[name]) for name, mesh in meshes.items()]
     partition = Partition(layouts, comm)
     with phases("elements"):
         symmetric = design.contact.friction == 0.0
@@ -175,12 +177,13 @@ def _reference(design: DriveDesign, mesh: SectorMesh) -> ReferenceElements:
     return reference_elements(mesh.coords[mesh.elements], material.E, material.nu, design.drive.face_width)
 
 
-def _layout(design: DriveDesign, mesh: SectorMesh, reference: ReferenceElements) -> BodyLayout:
+def build_layout(design: DriveDesign, mesh: SectorMesh, reference: ReferenceElements | None = None) -> BodyLayout:
+    """Modelled sectors of a body. reference : elements of one sector, needed where sectors are condensed"""
     halved = is_halved(design)
     clamped = mesh.body == "ring_gear" and design.drive.layout == "ring_fixed"
     fixed = mesh.node_sets["outer"] if clamped else np.zeros(0, dtype=np.int32)
     count = mesh.n_sectors // 2 if halved else mesh.n_sectors
-    condensed = condense(mesh, reference) if design.solver.condensed_sectors else None
+    condensed = condense(mesh, reference) if design.solver.condensed_sectors and reference is not None else None
     return BodyLayout(
         mesh=mesh, first_tooth=0, count=count, closed=True, images=halved, fixed=fixed, condensed=condensed
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -16,8 +16,9 @@ from swgpar.results import history
 from swgpar.results.atomic import agreed
 from swgpar.results.field_sources import BodyMesh, FieldFiles, FieldSource, chosen_increment
 from swgpar.results.fields import INDEX
-from swgpar.results.folder import read_summary
-from swgpar.results.history import Row
+from swgpar.results.folder import PAIRS, read_summary
+from swgpar.results.history import Curves, Row
+from swgpar.results.table import read_columns
 
 if TYPE_CHECKING:
     import pyvista
@@ -54,6 +55,8 @@ class DriveResult:
     summary : dict
         Content of summary.json, among it ``means`` and ``maxima`` over the rotation, ``torque_ripple`` (of the input
         torque, relative) and ``transmission_error_arcsec`` (peak to peak).
+    pairs : dict of (n,) arrays
+        Columns of pairs.csv, a value for every pair of flanks in contact at every computed increment under load.
     folder : Path or None
         The results folder; None when the run was in memory.
 
@@ -69,12 +72,14 @@ class DriveResult:
         self,
         rows: Sequence[Row],
         summary: dict[str, Any],
+        pairs: Mapping[str, np.ndarray],
         fields: FieldSource | None,
         comm: MPI.Comm,
         folder: Path | None = None,
     ) -> None:
         self.history: dict[str, np.ndarray] = history.columns(rows)
         self.summary = summary
+        self.pairs = dict(pairs)
         self.folder = folder
         self._fields, self._comm = fields, comm
 
@@ -91,6 +96,15 @@ class DriveResult:
     def is_plane(self) -> bool:
         """Whether the drive is a plane model."""
         return self.summary["design"]["drive"]["model"] == "plane"
+
+    def curves(self) -> Curves:
+        """Columns of the history under load, over one period where the rotation was sampled."""
+        design = self.summary["design"]
+        drive = design["drive"]
+        fixed = drive["teeth_rg"] if drive["layout"] == "ring_fixed" else drive["teeth_fs"]
+        return history.curves(
+            self.history, design["steps"]["samples"], self.summary["increments"], 360.0 / fixed, self.summary["ratio"]
+        )
 
     @property
     def plot(self) -> DriveFigures:
@@ -230,7 +244,8 @@ def open_drive(folder: Path, comm: MPI.Comm) -> DriveResult:
     folder = folder.absolute()  # the fields are read later
     with agreed(comm, folder, "read"):
         summary, rows = read_summary(folder), history.read_history(folder / history.NAME)
-    return DriveResult(rows, summary, open_fields(folder, comm), comm, folder)
+        pairs = read_columns(folder / PAIRS) if (folder / PAIRS).exists() else {}
+    return DriveResult(rows, summary, pairs, open_fields(folder, comm), comm, folder)
 
 
 def open_fields(folder: Path, comm: MPI.Comm) -> FieldFiles | None:

@@ -10,7 +10,6 @@ from mpi4py import MPI
 
 from swgpar.design.sections import GEARS
 from swgpar.results.figure_set import Drawings, FigureSet
-from swgpar.results.history import loaded_increments, transmission_error
 
 if TYPE_CHECKING:
     import pyvista
@@ -66,10 +65,9 @@ class DriveFigures(FigureSet):
     def stress(self) -> Figure:
         """Largest stresses of both bodies (MPa) against the angle of the wave generator, under load."""
         figure, (axes,) = _panels(1)
-        history, loaded = self._result.history, loaded_increments(self._result.history)
         for name, label in STRESSES.items():
-            axes.plot(history["wg_angle_deg"][loaded], history[name][loaded], "o-", ms=3, label=label)
-        axes.set(ylabel="stress (MPa)", title="largest stresses (nodal averages)")
+            self._draw(axes, name, label)
+        axes.set(ylabel="stress (MPa)", title="largest stresses (nodal averages)" + self._over_period())
         axes.set_ylim(bottom=0.0)
         axes.legend(fontsize=8)
         return figure
@@ -94,19 +92,24 @@ class DriveFigures(FigureSet):
         return figure
 
     def _draw_torque(self, axes: Axes) -> None:
-        history, loaded = self._result.history, loaded_increments(self._result.history)
-        axes.plot(history["wg_angle_deg"][loaded], history["wg_torque_Nmm"][loaded], "o-", ms=3, label="wave generator")
+        self._draw(axes, "wg_torque_Nmm", "wave generator")
         expected = self._result.summary["wg_torque_expected_Nmm"]
         axes.axhline(expected, color="0.4", ls="--", label="energy balance, T / ratio")
-        axes.set(ylabel="torque (N·mm)", title="input torque")
+        axes.set(ylabel="torque (N·mm)", title="input torque" + self._over_period())
         axes.legend(fontsize=8)
 
     def _draw_transmission_error(self, axes: Axes) -> None:
-        history, loaded = self._result.history, loaded_increments(self._result.history)
-        angle = history["wg_angle_deg"][loaded]
-        error = transmission_error(angle, history["output_angle_deg"][loaded], self._result.summary["ratio"])
-        axes.plot(angle, error, "o-", ms=3)
+        self._draw(axes, "transmission_error", None)
         axes.set(ylabel="arc seconds", title="transmission error: output angle less its kinematic value")
+
+    def _draw(self, axes: Axes, name: str, label: str | None) -> None:
+        """Draw a column under load: points where it was computed, and the curve through them."""
+        curves = self._result.curves()
+        (line,) = axes.plot(curves.fine_angle, curves.fine[name], label=label)
+        axes.plot(curves.angle, curves.values[name], "o", ms=3, color=line.get_color())
+
+    def _over_period(self) -> str:
+        return ", over one period" if self._result.summary["design"]["steps"]["samples"] else ""
 
     def contact_pattern(self, increment: int = -1) -> Figure:
         """Contact pressure (MPa) on the flanks in contact, over arc length and face width.

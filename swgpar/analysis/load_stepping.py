@@ -10,7 +10,7 @@ from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.predictor import KnownState, predict
 from swgpar.analysis.torques import torques
 from swgpar.design.load_states import LoadState, Stage, start_state
-from swgpar.errors import ConvergenceError
+from swgpar.errors import ConvergenceError, LoadedStateError
 from swgpar.log import logger
 from swgpar.solve.solve_state import SolveResult
 
@@ -80,7 +80,8 @@ class LoadStepper:
             saved.copy(x)
             cutbacks += 1
             if cutbacks > self.design.solver.max_cutbacks or origin == target:  # nothing to halve
-                raise ConvergenceError(self._failure(target, state, result, cutbacks - 1))
+                kind = ConvergenceError if target.stage == Stage.ROTATE else LoadedStateError
+                raise kind(self._failure(target, state, result, cutbacks - 1))
             share *= 0.5
             logger.info(
                 "   cut back to %.3g of the increment (%s, residual %.1e)", share, result.reason, result.residual

@@ -5,17 +5,18 @@ from __future__ import annotations
 import json
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.analysis.coarse_start import LoadedState
 from swgpar.analysis.contact_pressure import nodal_pressure
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.drive_result import DriveResult, open_fields
 from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.analysis.pair_contact import pair_contacts
 from swgpar.analysis.places import Place, find_places
 from swgpar.analysis.restart import write_state
 from swgpar.analysis.root_stress import RootStress
@@ -28,8 +29,9 @@ from swgpar.results import history
 from swgpar.results.atomic import to_json, write_from_root
 from swgpar.results.field_sources import BodyPart, FieldParts, FlankGrids
 from swgpar.results.fields import FieldWriter
-from swgpar.results.folder import SUMMARY
+from swgpar.results.folder import PAIRS, SUMMARY
 from swgpar.results.history import Row
+from swgpar.results.table import as_columns, format_csv
 
 NodalFields = dict[str, dict[str, np.ndarray]]
 """Body -> name of the field -> values (n_sectors, n_local[, n_components]) of the owned sectors."""
@@ -43,19 +45,21 @@ class Recorder(ABC):
     Attributes
     ----------
     rows : history of the increments computed so far
-    coarser : level that the run started from, if it started on a coarser mesh
+    started_coarser : whether the run started on coarser meshes
     accuracy : what was asked for and reached, if an accuracy was asked for
     root_stress : of the loaded state, once it is resolved
     places : of the largest stresses under load, by column of the history
+    pairs : rows of pairs.csv, the contacts of flanks under load
     """
 
     def __init__(self, model: DriveModel) -> None:
         self.model, self.comm = model, model.comm
         self.rows: list[Row] = []
-        self.coarser: LoadedState | None = None
+        self.started_coarser = False
         self.accuracy: Accuracy | None = None
         self.root_stress: RootStress | None = None
         self.places: dict[str, Place] = {}
+        self.pairs: list[Row] = []
 
     def record(self, stepper: LoadStepper, seconds: float, elapsed: float) -> None:
         """Keep the state after an increment.
@@ -68,6 +72,7 @@ class Recorder(ABC):
         self.rows.append(history.plain_row({**stepper.row(), **values, "wall_s": seconds}))
         with model.phases("stress"):
             self._keep_places(stepper.load_state, values, body_fields)
+            self._keep_pairs(stepper.load_state)
         with model.phases("output"):
             fields = dict(zip(GEARS, body_fields, strict=True))
             if model.design.output.fields:
@@ -83,6 +88,11 @@ class Recorder(ABC):
             larger = [name for name in values if name not in self.places or values[name] > self.places[name].value]
             if larger:  # the same on all ranks
                 self.places |= find_places(self.model, state, fields, larger)
+
+    def _keep_pairs(self, state: LoadState) -> None:
+        if state.is_periodic:
+            when = {"step": self.rows[-1]["step"], "wg_angle_deg": self.rows[-1]["wg_angle_deg"]}
+            self.pairs += [{**when, **asdict(contact)} for contact in pair_contacts(self.model, state)]
 
     @abstractmethod
     def begin(self) -> None:
@@ -124,7 +134,7 @@ class MemoryRecorder(Recorder):
             self._parts.keep(len(self.rows), fields)
 
     def finish(self, rows: list[Row], summary: dict[str, Any]) -> DriveResult:
-        return DriveResult(*_shared(rows, summary, self.comm), self._parts, self.comm)
+        return DriveResult(*_shared(rows, summary, self.pairs, self.comm), self._parts, self.comm)
 
 
 class FolderRecorder(Recorder):
@@ -178,18 +188,23 @@ class FolderRecorder(Recorder):
             written = [(i, row["wg_angle_deg"]) for i, row in enumerate(self.rows, start=1) if self._writer.has(i)]
             self._writer.write_index(self.comm.bcast(written), self.names)
         write_from_root(self.comm, self.out / history.NAME, history.format_rows(self.rows))
+        if self.pairs:
+            write_from_root(self.comm, self.out / PAIRS, format_csv(self.pairs))
 
     def finish(self, rows: list[Row], summary: dict[str, Any]) -> DriveResult:
         if len(rows) > len(self.rows):
             write_from_root(self.comm, self.out / history.NAME, history.format_rows(rows))
         write_from_root(self.comm, self.out / SUMMARY, to_json(summary))
         folder = self.out.absolute()  # the fields are read later
-        return DriveResult(*_shared(rows, summary, self.comm), open_fields(folder, self.comm), self.comm, folder)
+        shared = _shared(rows, summary, self.pairs, self.comm)
+        return DriveResult(*shared, open_fields(folder, self.comm), self.comm, folder)
 
 
-def _shared(rows: list[Row], summary: dict[str, Any], comm: MPI.Comm) -> tuple[list[Row], dict[str, Any]]:
-    """History and summary of rank 0 on every rank, as files hold them; collective."""
-    return comm.bcast((rows, json.loads(to_json(summary))) if comm.rank == 0 else None)
+def _shared(
+    rows: list[Row], summary: dict[str, Any], pairs: list[Row], comm: MPI.Comm
+) -> tuple[list[Row], dict[str, Any], dict[str, np.ndarray]]:
+    """History, summary and pairs of rank 0 on every rank, as files hold them; collective."""
+    return comm.bcast((rows, json.loads(to_json(summary)), as_columns(pairs)) if comm.rank == 0 else None)
 
 
 def _flank_grids(mesh: SectorMesh) -> FlankGrids:

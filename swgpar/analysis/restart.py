@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from swgpar.analysis.coarse_start import LoadedState
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.places import Place
 from swgpar.analysis.root_stress import RootStress
@@ -64,9 +63,10 @@ def write_state(
         "multipliers": problem.multipliers().tolist(),
         "wall_s": elapsed,
         "phases_s": model.phases.slowest(model.comm),
-        "coarser": recorder.coarser and asdict(recorder.coarser),
+        "started_coarser": recorder.started_coarser,
         "accuracy": recorder.accuracy and asdict(recorder.accuracy),
         "root_stress": recorder.root_stress and asdict(recorder.root_stress),
+        "pairs": recorder.pairs,
         "places": {name: asdict(place) for name, place in recorder.places.items()},
     }
     checkpoint.write_checkpoint(recorder.out, model.comm, blocks, state)
@@ -86,7 +86,7 @@ def resume(recorder: FolderRecorder, stepper: LoadStepper, items: list[LoadState
             "same ones, only steps.rotation, the output, solver.linear, keep_factor and far_teeth may differ"
         )
     last = _last_state(path, state)
-    if state["coarser"] or state["accuracy"]:
+    if state["started_coarser"] or state["accuracy"]:
         items = from_loaded(items)
     if state["done"] > len(items) or items[state["done"] - 1] != last:
         raise InputError(
@@ -95,9 +95,10 @@ def resume(recorder: FolderRecorder, stepper: LoadStepper, items: list[LoadState
         )
     _restore_vector(recorder, state)
     recorder.rows, recorder.names = state["rows"], state["names"]
-    recorder.coarser = state["coarser"] and LoadedState(**state["coarser"])
+    recorder.started_coarser = state["started_coarser"]
     recorder.accuracy = state["accuracy"] and Accuracy(**state["accuracy"])
     recorder.places = {name: Place(**place) for name, place in state.get("places", {}).items()}
+    recorder.pairs = state.get("pairs", [])
     recorder.root_stress = state.get("root_stress") and RootStress(**state["root_stress"])
     stepper.resume_at(last)
     for name, value in state["phases_s"].items():

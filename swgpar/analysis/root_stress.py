@@ -7,7 +7,7 @@ leaves. The error of the drive's displacements on the cuts is not in it (docs/th
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -25,6 +25,9 @@ PLANE_RATIO, PLANE_LEVELS = 2.0, ((4, 3, 4), (8, 6, 8), (16, 12, 16))
 
 CUP_RATIO, CUP_LEVELS = 1.5, ((4, 2, 3, 8, 12), (6, 3, 4, 12, 18), (9, 4, 6, 18, 27))
 """The same of the cup drive, with the elements along the face width and along the whole cylinder of the cup."""
+
+PLANE_LEVEL, CUP_LEVEL = 1, 0
+"""Index of the window with which the further angles of a period are computed."""
 
 FLANK, END_RATIO = 8, 3.0
 """Least count along the flank; middle elements along the face width over those at both ends."""
@@ -46,6 +49,7 @@ class RootStress:
     tooth : number, counter-clockwise from +y in the undeformed drive
     radius, z : mm;  angle_deg : from +y, counter-clockwise
     levels : s1 (MPa) on the windows, coarse to fine;  elements : of the finest window
+    period : angles of the wave generator (degrees) and s1 (MPa) there, of one sampled period
     """
 
     s1: float
@@ -59,6 +63,7 @@ class RootStress:
     angle_deg: float
     levels: tuple[float, ...]
     elements: int
+    period: tuple[tuple[float, float], ...] = ()
 
 
 def window_recipes(model: DriveModel, recipe: MeshRecipe) -> list[MeshRecipe]:
@@ -99,6 +104,20 @@ def resolve_root_stress(model: DriveModel, state: LoadState, recipe: MeshRecipe)
     logger.info("windows around tooth %d: s1 %s MPa", tooth, ", ".join(f"{value:.1f}" for value in levels))
     ratio = PLANE_RATIO if model.design.drive.model == "plane" else CUP_RATIO
     return _place(model, found, tuple(levels), error_of(levels, ratio), float(by_tooth[first]))
+
+
+def with_angle(known: RootStress, model: DriveModel, state: LoadState, recipe: MeshRecipe) -> RootStress:
+    """`known`, of the loaded state, with s1 at a further angle of the period; collective.
+
+    One window, not the finest, is computed there. Its error is taken to be that of the same window in the loaded
+    state. Raises like `resolve_root_stress`.
+    """
+    level = PLANE_LEVEL if model.design.drive.model == "plane" else CUP_LEVEL
+    tooth = int(_largest_by_tooth(model).argmax())
+    found = _solve(model, state, tooth, window_recipes(model, recipe)[level])
+    value = found.value * known.s1 / known.levels[level]
+    period = known.period or ((0.0, known.s1),)
+    return replace(known, period=(*period, (float(np.degrees(state.angle)), value)))
 
 
 def error_of(levels: list[float], ratio: float) -> float:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.analysis.coarse_start import LoadedState, levels, start_loaded
+from swgpar.analysis.coarse_start import levels, start_loaded
 from swgpar.analysis.drive_model import DriveModel, build_drive_model
 from swgpar.analysis.drive_result import DriveResult
 from swgpar.analysis.load_stepping import LoadStepper
@@ -17,11 +18,12 @@ from swgpar.analysis.mesh_refinement import ChosenMesh, choose_mesh, with_accura
 from swgpar.analysis.period import continued
 from swgpar.analysis.recorder import FolderRecorder, MemoryRecorder, Recorder
 from swgpar.analysis.restart import identity, resume
-from swgpar.analysis.root_stress import RootStress, resolve_root_stress
+from swgpar.analysis.root_stress import RootStress, resolve_root_stress, with_angle
+from swgpar.analysis.shortcuts import with_shortcuts
 from swgpar.analysis.summary import Accuracy, summarise
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import LoadState, Stage, from_loaded, load_sequence
-from swgpar.errors import ConvergenceError, InputError, SwgparError
+from swgpar.errors import ConvergenceError, InputError, LoadedStateError, SwgparError
 from swgpar.log import IncrementProgress, logger
 from swgpar.meshing import MeshRecipe, load_recipe, require_sections
 from swgpar.meshing.recipe import to_toml
@@ -35,6 +37,7 @@ def run_drive(
     recipe: MeshRecipe,
     out: str | Path | None = None,
     *,
+    plain: bool = False,
     restart: bool = False,
     overwrite: bool = False,
     comm: MPI.Comm = MPI.COMM_WORLD,
@@ -48,6 +51,7 @@ def run_drive(
     Parameters
     ----------
     out : results folder; None keeps everything in memory
+    plain : take the design as it is, without `with_shortcuts`
     restart : continue from the checkpoint in the folder
     overwrite : replace results that the folder already holds
     recipe_name : name of the recipe in the summary
@@ -61,18 +65,57 @@ def run_drive(
         On all ranks. After a ConvergenceError everything up to the last converged increment is in the folder and can
         be continued with `restart`.
     """
-    begin = time.perf_counter()
     folder = None if out is None else Path(out)
     if folder is None and restart:
         raise InputError("restart = true needs the results folder out: a run in memory leaves no checkpoint")
     require_sections(design, recipe)
     if accuracy is not None:
         design = with_accuracy(design, accuracy)
-    resumed = False
+    given, left_out = design, ()
+    if not plain:
+        shortcuts = with_shortcuts(design, recipe)
+        design, left_out = shortcuts.design, shortcuts.left_out
+    options = _Options(recipe_name, accuracy, terminal, on_increment, time.perf_counter())
+    try:
+        return _run(design, recipe, folder, comm, options, left_out, restart=restart, overwrite=overwrite)
+    except LoadedStateError as error:
+        if restart or design.steps.pins == given.steps.pins:
+            raise
+        logger.warning("%s; starting again with steps.pins = true", error)
+        design = design.with_values({"steps.pins": True, "steps.start_levels": 0})
+        return _run(design, recipe, folder, comm, options, (), restart=False, overwrite=True)
+
+
+@dataclass(frozen=True)
+class _Options:
+    """What a run is told beside its design and mesh: as `run_drive`; begin : time.perf_counter() at its start."""
+
+    recipe_name: str
+    accuracy: float | None
+    terminal: bool
+    on_increment: Callable[[], None]
+    begin: float
+
+
+def _run(
+    design: DriveDesign,
+    recipe: MeshRecipe,
+    folder: Path | None,
+    comm: MPI.Comm,
+    options: _Options,
+    left_out: Sequence[str],
+    *,
+    restart: bool,
+    overwrite: bool,
+) -> DriveResult:
+    """Run a design as it is; collective."""
+    accuracy, resumed = options.accuracy, False
     if folder is not None:
         require_parallel(comm)
         resumed = prepare(folder, comm, restart, overwrite)
     open_log(folder, comm)
+    if left_out:
+        logger.info("left out: %s; --plain computes all of it", ", ".join(left_out))
     chosen = None
     if accuracy is not None:
         chosen, recipe = _choose_mesh(design, recipe, accuracy, folder if resumed else None, comm)
@@ -83,14 +126,14 @@ def run_drive(
             _record_choice(recorder, chosen, accuracy, folder)
         if restart and not resumed:
             logger.info("no increment was saved: starting from the beginning")
-        run = _Run(model, recipe, recorder, on_increment, begin)
+        run = _Steps(model, recipe, recorder, options.on_increment, options.begin)
         items = run.resume() if resumed else run.start()
-        run.go_through(items, terminal)
-        result = run.finish(recipe_name)
+        run.go_through(items, options.terminal)
+        result = run.finish(options.recipe_name)
     except SwgparError as error:
         model.destroy()  # collective: all ranks have this error, but perhaps not one of another kind
         if isinstance(error, ConvergenceError) and recorder.rows and folder is not None:
-            raise ConvergenceError(f"{error}; {len(recorder.rows)} increments are saved in {folder}") from None
+            raise type(error)(f"{error}; {len(recorder.rows)} increments are saved in {folder}") from None
         raise
     model.destroy()
     return result
@@ -120,7 +163,7 @@ def _record_choice(recorder: Recorder, chosen: ChosenMesh, accuracy: float, fold
     recorder.accuracy = Accuracy(accuracy, chosen.error, chosen.error <= accuracy, chosen.stresses)
 
 
-class _Run:
+class _Steps:
     """One run: start or restart, all increments, end.
 
     recipe : of the model's mesh;  begin : time.perf_counter() at the run's start
@@ -167,8 +210,8 @@ class _Run:
         if self.recorder.accuracy is not None:  # the model was loaded when its mesh was chosen
             self.stepper.resume_at(from_loaded(items)[0])
             return from_loaded(items)
-        self.recorder.coarser = _start_on_coarser(self.stepper, self.recipe, items)
-        return from_loaded(items) if self.recorder.coarser else items
+        self.recorder.started_coarser = _start_on_coarser(self.stepper, self.recipe, items)
+        return from_loaded(items) if self.recorder.started_coarser else items
 
     def go_through(self, items: list[LoadState], terminal: bool) -> None:
         """Compute and record the increments that are left."""
@@ -183,21 +226,27 @@ class _Run:
                 if item != stepper.load_state:  # a start on coarser meshes ends with the first one
                     stepper.advance(item)
                 seconds = time.perf_counter() - start
-                if item == loaded and self.model.design.output.root_stress:
-                    recorder.root_stress = self._root_stress(item)
+                if self.model.design.output.root_stress:
+                    recorder.root_stress = self._root_stress(item, item == loaded)
                 recorder.record(stepper, seconds, self.seconds)
                 angle = float(np.degrees(item.angle))
                 progress.increment(item.stage.label, angle, stepper.iterations, stepper.residual, seconds)
                 self.on_increment()
 
-    def _root_stress(self, state: LoadState) -> RootStress | None:
+    def _root_stress(self, state: LoadState, loaded: bool) -> RootStress | None:
         """Largest tensile stress at the teeth by windows; None where a window cannot be computed, which is said."""
+        known = self.recorder.root_stress
+        design = self.model.design
+        sampled = known is not None and state.stage == Stage.ROTATE and design.steps.samples
         try:
             with self.model.phases("windows"):
-                return resolve_root_stress(self.model, state, self.recipe)
+                if loaded:
+                    return resolve_root_stress(self.model, state, self.recipe)
+                further = sampled and not design.contact.friction  # which computes two periods
+                return with_angle(known, self.model, state, self.recipe) if further else known
         except (ConvergenceError, InputError) as error:
             logger.warning("the stress at the teeth is not resolved: %s", error)
-            return None
+            return known
 
     def finish(self, recipe_name: str) -> DriveResult:
         """Summarise the run."""
@@ -206,11 +255,11 @@ class _Run:
         summary = summarise(
             self.model,
             rows,
-            recorder.coarser,
             recipe_name,
             recorder.accuracy,
             recorder.root_stress,
             recorder.places,
+            recorder.pairs,
             self.seconds,
         )
         if design.steps.samples and summary["means"]:
@@ -218,14 +267,15 @@ class _Run:
         return recorder.finish(rows, summary)
 
 
-def _start_on_coarser(stepper: LoadStepper, recipe: MeshRecipe, items: list[LoadState]) -> LoadedState | None:
-    """Reach the loaded state on coarser meshes first; None if the design asks for none, or if that fails."""
+def _start_on_coarser(stepper: LoadStepper, recipe: MeshRecipe, items: list[LoadState]) -> bool:
+    """Reach the loaded state on coarser meshes first; False if the design asks for none, or if that fails."""
     recipes = levels(stepper.design, recipe)
     if not recipes:
-        return None
+        return False
     try:
-        return start_loaded(stepper, recipes, items)
+        start_loaded(stepper, recipes, items)
+        return True
     except (ConvergenceError, InputError) as error:
         logger.info("no start on coarser meshes: %s", error)
         stepper.reset()
-        return None
+        return False

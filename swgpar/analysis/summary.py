@@ -11,9 +11,7 @@ from typing import Any
 import numpy as np
 from petsc4py import PETSc
 
-from swgpar.analysis.coarse_start import LoadedState
 from swgpar.analysis.drive_model import DriveModel
-from swgpar.analysis.error_estimate import estimate
 from swgpar.analysis.period import of_period, sampling_error
 from swgpar.analysis.places import Place
 from swgpar.analysis.root_stress import RootStress
@@ -44,13 +42,11 @@ class Accuracy:
     mesh_error: dict[str, float]
 
 
-def mesh_error(rows: Sequence[Row], elements: int, coarser: LoadedState, dimensions: int) -> dict[str, float]:
-    """Estimated errors (MPa) of the loaded state's largest stresses, from this mesh and the next coarser one."""
-    found = {
-        name: estimate(value, rows[0][name], coarser.elements, elements, dimensions)
-        for name, value in coarser.stresses.items()
-    }
-    return {name: value.error for name, value in found.items() if value is not None}
+def mesh_error(root_stress: RootStress | None) -> dict[str, float] | None:
+    """Error (MPa) of the largest nodal s1 by the drive's mesh: how far windows are from it, and their own error."""
+    if root_stress is None:
+        return None
+    return {"fs_s1": abs(root_stress.on_mesh - root_stress.s1) + root_stress.error}
 
 
 def over_rotation(rows: Sequence[Row], ratio: float) -> dict[str, Any]:
@@ -75,11 +71,11 @@ def over_rotation(rows: Sequence[Row], ratio: float) -> dict[str, Any]:
 def summarise(
     model: DriveModel,
     rows: list[Row],
-    coarser: LoadedState | None,
     recipe_name: str,
     accuracy: Accuracy | None,
     root_stress: RootStress | None,
     places: Mapping[str, Place],
+    pairs: Sequence[Row],
     seconds: float,
 ) -> dict[str, Any]:
     """Content of summary.json; collective.
@@ -87,18 +83,17 @@ def summarise(
     Parameters
     ----------
     rows : history of the increments that were computed
-    coarser : level that the run started from
     recipe_name : the mesh recipe as the user named it
     accuracy : what was asked for and reached
     root_stress : largest tensile stress at the teeth, by windows
     places : of the largest stresses under load
+    pairs : contacts of the flanks under load
     seconds : wall time of the run, restarts included
     """
     design = model.design
     rotation = [row for row in rows if int(row["step"]) >= Stage.ROTATE]
     sampled = of_period(design, rows) if design.steps.samples else rotation
     values = over_rotation(sampled, design.ratio)
-    by_mesh = mesh_error(rows, model.n_elements(), coarser, model.partition.dims) if coarser else None
     sampled_period = design.steps.samples and values["means"]
     return {
         "recipe": recipe_name,
@@ -109,7 +104,8 @@ def summarise(
         "accuracy": accuracy and {key: value for key, value in asdict(accuracy).items() if key != "mesh_error"},
         "places": {name: asdict(place) for name, place in places.items()},
         "root_stress": root_stress and asdict(root_stress),
-        "mesh_error": accuracy.mesh_error if accuracy else by_mesh,
+        "contact": max(pairs, key=lambda pair: pair["pressure_MPa"], default=None),
+        "mesh_error": accuracy.mesh_error if accuracy else mesh_error(root_stress),
         "condensed_MPa": model.omitted_bending_stress() if design.solver.condensed_sectors else None,
         "sampling_error": sampling_error(design, rows, MEANS) if sampled_period else None,
         "newton_iterations_mean": float(np.mean([r["newton_iterations"] for r in rotation])) if rotation else None,

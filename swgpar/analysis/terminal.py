@@ -28,7 +28,10 @@ COLUMNS = {
 
 def print_drive(history: Mapping[str, np.ndarray], summary: Mapping[str, Any]) -> None:
     """Print history and summary of a run; call it on one rank."""
-    _print_history(history)
+    _print_history({name: values[: summary["increments"]] for name, values in history.items()})
+    if further := len(history["step"]) - summary["increments"]:
+        end = history["wg_angle_deg"][-1]
+        console.print(f"history.csv repeats this period: {further} further rows up to {end:.4g} degrees")
     if places := summary.get("places"):
         _print_places(places)
     if summary["means"]:
@@ -82,6 +85,17 @@ def _print_places(places: Mapping[str, Mapping[str, Any]]) -> None:
         console.print(f"* {warning}")
 
 
+def _print_contact(contact: Mapping[str, Any]) -> None:
+    console.print(
+        f"largest contact pressure of the flanks, by line contact: {contact['pressure_MPa']:.0f} MPa at "
+        f"{contact['line_load_Nmm']:.1f} N/mm (tooth {contact['tooth']}, {contact['flank']} flank, radius "
+        f"{contact['radius_mm']:.2f}, z {contact['z_mm']:.2f} mm; half width {contact['half_width_mm']:.4f} mm, "
+        f"largest shear {contact['shear_MPa']:.0f} MPa)"
+    )
+    if contact["edge"]:
+        console.print("that contact lies on an edge: its pressure is no property of the drive")
+
+
 def _print_errors(summary: Mapping[str, Any]) -> None:
     if root := summary.get("root_stress"):
         console.print(
@@ -91,13 +105,26 @@ def _print_errors(summary: Mapping[str, Any]) -> None:
         )
         if root["warning"]:
             console.print(f"the largest tension at the teeth is {root['warning']}")
+        if root["period"]:
+            values = [value for _, value in root["period"]]
+            console.print(
+                f"the same over one period: mean {np.mean(values):.1f}, largest {max(values):.1f} MPa "
+                f"({len(values)} angles, each with one window)"
+            )
+    if contact := summary.get("contact"):
+        _print_contact(contact)
     asked = summary["accuracy"]
     if error := summary["mesh_error"]:
-        others = "the meshes before it" if asked else "the coarser one of the start"
-        console.print(
-            f"estimated error by the mesh, under load: s1 {error['fs_s1']:.1f}, |s3| {error['fs_s3']:.1f}, "
-            f"von Mises {error['fs_vm']:.1f} MPa (from this mesh and {others})"
-        )
+        if asked:
+            console.print(
+                f"estimated error by the mesh, under load: s1 {error['fs_s1']:.1f}, |s3| {error['fs_s3']:.1f}, "
+                f"von Mises {error['fs_vm']:.1f} MPa (from this mesh and the meshes before it)"
+            )
+        else:
+            console.print(
+                f"the mean of s1 is that of nodal averages: up to {error['fs_s1']:.0f} MPa of it are the mesh's error "
+                "(by windows, under load); |s3| and von Mises have no estimate"
+            )
     if asked:
         console.print(
             f"accuracy of the largest tensile stress: {asked['asked']:g} asked for, {asked['estimated']:.2g} "

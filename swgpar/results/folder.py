@@ -20,6 +20,9 @@ RECIPE = "recipe.toml"
 TABLES = "tables"
 """Folder of the tables that a gear train adds to its history."""
 
+PAIRS = "pairs.csv"
+"""Contacts of the flanks under load."""
+
 SUMMARY = "summary.json"
 """Written last: a folder that has it is that of a finished run."""
 
@@ -30,6 +33,7 @@ RESULTS = (
     history.NAME,
     checkpoint.NAME,
     SUMMARY,
+    PAIRS,
     "published.csv",
     RECIPE,
     f"{TABLES}/*.csv",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -40,6 +41,9 @@ UNITS = {
 s3 as a positive number; torques act on the flexible spline, that of the output on the output."""
 
 COLUMNS = tuple(UNITS)
+FINE = 201
+"""Points of a curve over a period."""
+
 _TEXT = {"step"}
 _WHOLE = {"pairs_in_contact", "newton_iterations"}
 
@@ -101,3 +105,43 @@ def loaded_increments(history: Mapping[str, np.ndarray]) -> np.ndarray:
     last_of_loading = np.flatnonzero(step == Stage.LOAD)[-1:]
     found = np.concatenate([last_of_loading, rotation])
     return found if len(found) else np.arange(len(step))
+
+
+@dataclass(frozen=True)
+class Curves:
+    """The history under load, ready to be drawn.
+
+    angle, values : (n,) degrees of the wave generator, and columns by name, where they were computed
+    fine_angle, fine : (m,) and columns by name between them; the same where the rotation was not sampled
+    """
+
+    angle: np.ndarray
+    values: Mapping[str, np.ndarray]
+    fine_angle: np.ndarray
+    fine: Mapping[str, np.ndarray]
+
+
+def curves(history: Mapping[str, np.ndarray], samples: int, increments: int, period: float, ratio: float) -> Curves:
+    """Columns of the increments under load; one period of it, joined by periodic splines, where it was sampled.
+
+    Parameters
+    ----------
+    samples : angles in a period, 0 where every increment was computed;  increments : that were computed
+    period : degrees;  ratio : speed of the wave generator over that of the output
+    """
+    shown = {name: history[name] for name in COLUMNS} | {
+        "transmission_error": transmission_error(history["wg_angle_deg"], history["output_angle_deg"], ratio)
+    }
+    if not samples or increments < samples:
+        loaded = loaded_increments(history)
+        values = {name: column[loaded] for name, column in shown.items()}
+        return Curves(values["wg_angle_deg"], values, values["wg_angle_deg"], values)
+    from scipy.interpolate import CubicSpline  # a run needs no splines
+
+    values = {name: column[increments - samples : increments] for name, column in shown.items()}
+    angle = values["wg_angle_deg"]
+    knots = np.append(angle, angle[0] + period)
+    fine_angle = np.linspace(knots[0], knots[-1], FINE)
+    closed = {name: np.append(column, column[0]) for name, column in values.items()}
+    fine = {name: CubicSpline(knots, column, bc_type="periodic")(fine_angle) for name, column in closed.items()}
+    return Curves(angle, values, fine_angle, fine)

@@ -27,6 +27,11 @@ def format_columns(columns: Mapping[str, Sequence[Any] | np.ndarray]) -> bytes:
     return format_csv([dict(zip(columns, row)) for row in zip(*lists, strict=True)])
 
 
+def as_columns(rows: Sequence[Mapping[str, Any]]) -> dict[str, np.ndarray]:
+    """The columns of a table given by its rows, each (n,); none without rows."""
+    return {name: np.array([row[name] for row in rows]) for name in (rows[0] if rows else {})}
+
+
 def read_columns(path: Path) -> dict[str, np.ndarray]:
     """Columns of a table: float64 where every value is a number, else text."""
     with open(path, newline="", encoding="utf-8") as file:

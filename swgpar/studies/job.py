@@ -118,6 +118,7 @@ def _compute(
         folder,
         recipe_name=str(job.mesh) if job.mesh is not None else "",
         accuracy=None,
+        plain=True,
         restart=restart,
         overwrite=overwrite,
         comm=comm,

@@ -12,6 +12,7 @@ from mpi4py import MPI
 from swgpar.analysis.drive_result import DriveResult, open_drive
 from swgpar.analysis.restart import identity
 from swgpar.analysis.run_drive import run_drive
+from swgpar.analysis.shortcuts import MESHES
 from swgpar.analysis.summary import MEANS
 from swgpar.analysis.terminal import print_drive
 from swgpar.design.derived_geometry import derived_geometry
@@ -19,7 +20,7 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import Stage, load_sequence
 from swgpar.errors import InputError
 from swgpar.input.toml_file import apply_overrides
-from swgpar.meshing import MeshRecipe
+from swgpar.meshing import MeshRecipe, load_recipe
 from swgpar.results.history import UNITS
 from swgpar.systems.protocol import Measured, Quantity, System
 
@@ -48,7 +49,7 @@ class Drives(System[DriveDesign, DriveResult]):
     """The drive's adapter: analysis, results and quantities under the names that all systems share."""
 
     noun = "a drive"
-    options = frozenset({"mesh", "accuracy", "restart"})
+    options = frozenset({"mesh", "accuracy", "restart", "plain"})
 
     def load(self, table: dict[str, Any]) -> DriveDesign:
         return DriveDesign.from_table(table)
@@ -64,6 +65,7 @@ class Drives(System[DriveDesign, DriveResult]):
         *,
         recipe_name: str,
         accuracy: float | None,
+        plain: bool,
         restart: bool,
         overwrite: bool,
         comm: MPI.Comm,
@@ -71,13 +73,15 @@ class Drives(System[DriveDesign, DriveResult]):
         on_increment: Callable[[], None],
     ) -> DriveResult:
         if recipe is None:
-            raise InputError("mesh is missing: a drive needs the name or the path of a mesh recipe")
+            recipe_name = MESHES[design.drive.model]
+            recipe = load_recipe(recipe_name)
         return run_drive(
             design,
             recipe,
             out,
             recipe_name=recipe_name,
             accuracy=accuracy,
+            plain=plain,
             restart=restart,
             overwrite=overwrite,
             comm=comm,

@@ -42,6 +42,7 @@ class GearTrains(System[TrainDesign, TrainResult]):
         *,
         recipe_name: str,
         accuracy: float | None,
+        plain: bool,
         restart: bool,
         overwrite: bool,
         comm: MPI.Comm,

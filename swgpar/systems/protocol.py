@@ -70,7 +70,7 @@ class System(ABC, Generic[D, R]):
     Attributes
     ----------
     noun : what one is called in messages, with its article
-    options : which of the options "mesh", "accuracy" and "restart" a run has
+    options : which of the options "mesh", "accuracy", "plain" and "restart" a run has
     """
 
     noun: str
@@ -93,6 +93,7 @@ class System(ABC, Generic[D, R]):
         *,
         recipe_name: str,
         accuracy: float | None,
+        plain: bool,
         restart: bool,
         overwrite: bool,
         comm: MPI.Comm,

@@ -54,9 +54,8 @@ def checkout(tmp_path: Path) -> Path:
     for path in DRIVERS.glob("*.toml"):
         if path.stem.startswith(("cup_", "plane_")):
             plane = PLANE if path.stem.startswith("plane_") else ()
-            table = apply_overrides(
-                read_toml(DESIGN), ["steps.rotation=9", "steps.increment=9", "output.fields=true", *plane]
-            )
+            short = ["steps.rotation=9", "steps.increment=9", "output.fields=true", "output.root_stress=true"]
+            table = apply_overrides(read_toml(DESIGN), [*short, *plane])
         else:
             table = apply_overrides(read_toml(path), SMALL.get(path.stem, ()))
         lines = [f"{key} = {toml_value(value)}" for key, value in table.items()]

@@ -13,7 +13,7 @@ from mpi4py import MPI
 
 from support.commands import assert_same_history, execute, kill_after, on_ranks, run_command, succeed
 from support.paths import DESIGN, DRIVERS, RECIPE
-from support.small_drive import PLANE, SHORT
+from support.small_drive import NO_SHORTCUTS, PLANE, SHORT
 from swgpar.analysis.coarse_start import loaded_state, solve_to_load
 from swgpar.design.design_file import load_design
 from swgpar.design.load_states import load_sequence
@@ -109,7 +109,7 @@ def test_restart_with_more_rotation_and_fields(plain: Path, tmp_path: Path) -> N
 
 def test_script_of_the_reference_drive(cup: Path, tmp_path: Path) -> None:
     out = tmp_path / "script"
-    arguments = ["--design", DESIGN, "--mesh", RECIPE, "--out", out, "--set", *SHORT]
+    arguments = ["--design", DESIGN, "--mesh", RECIPE, "--out", out, "--set", *SHORT, *NO_SHORTCUTS]
     done = succeed([*on_ranks(2), sys.executable, str(CUP_ROTATION), *map(str, arguments)])
     assert_same_history(out, cup, iterations=False)
     assert "\x1b" not in done.stdout  # no progress bar in a file, though mpirun gives its ranks a terminal
@@ -137,7 +137,6 @@ def test_start_on_a_coarser_mesh_and_one_period(tmp_path: Path) -> None:
     assert len(list((out / "figures").glob("*.png"))) == 4
     summary = json.loads((out / "summary.json").read_text())
     assert summary["increments"] == 2 and summary["phases_s"]["start"] > 0.0
-    assert 0.0 < summary["mesh_error"]["fs_s1"] < rows[0]["fs_s1"]
     succeed([*command, *overrides, "steps.rotation=20", "--restart"])
     longer = history.read_history(out / "history.csv")
     assert longer[:3] == rows and [row["step"] for row in longer] == ["3", "4", "5", "6", "7"]

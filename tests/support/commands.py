@@ -34,8 +34,9 @@ def swgpar(*arguments: object) -> list[str]:
 
 
 def run_command(out: Path, *more: str, ranks: int = 1, overrides: Sequence[str] = (*PLANE, *SHORT)) -> list[str]:
-    """A run of the small drive, plane unless the overrides say otherwise."""
-    return on_ranks(ranks) + swgpar("run", DESIGN, "--mesh", RECIPE, "--out", out, *more, "--set", *overrides)
+    """A run of the small drive without shortcuts, a plane one unless the overrides say otherwise."""
+    arguments = ("run", DESIGN, "--mesh", RECIPE, "--plain", "--out", out, *more, "--set", *overrides)
+    return on_ranks(ranks) + swgpar(*arguments)
 
 
 def execute(command: list[str], *, timeout: float = 900.0, cwd: Path = DATA) -> subprocess.CompletedProcess[str]:

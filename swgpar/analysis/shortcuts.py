@@ -1,0 +1,75 @@
+"""What a run leaves out by itself where the scene allows it, and the mesh that it takes when none is named.
+
+Without friction the loaded state does not depend on the path to it, and the state repeats after one period. So a run
+needs neither pins nor the angles of further periods, and it may start on coarser meshes. Keys that the design file
+sets are kept.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from swgpar.design.drive_design import DriveDesign
+from swgpar.meshing import MeshRecipe
+from swgpar.meshing.recipe_counts import coarser
+
+MESHES = {"plane": "plane_coarse", "cup": "coarse"}
+"""Mesh recipes of the package for a run that names none. Displacements are converged there to 1 to 2 %; the stress at
+the teeth comes from windows (docs/verification/windows.md)."""
+
+SAMPLES = 8
+"""Angles in a period: half of them change the means by 0.3 to 0.5 %, and the orders 1 to 4 of the period are seen."""
+
+FEWEST = 4
+"""Elements along the flank, and along the face width, below which a coarser mesh does not find its contacts."""
+
+
+@dataclass(frozen=True)
+class Shortcuts:
+    """A design with shortcuts.
+
+    design : the design with their keys
+    left_out : what they leave out, in words
+    """
+
+    design: DriveDesign
+    left_out: tuple[str, ...]
+
+
+def with_shortcuts(design: DriveDesign, recipe: MeshRecipe) -> Shortcuts:
+    """The design with the keys of [steps] that save time and do not change the result, where it does not set them."""
+    steps, changes, left_out = design.steps, {}, []
+
+    def leave_out(key: str, value: int | bool, words: str) -> None:
+        if key not in steps.model_fields_set and value != getattr(steps, key):
+            changes[key] = value
+            left_out.append(words)
+
+    if not design.contact.friction:
+        period = float(np.degrees(design.period_angle))
+        if steps.rotation >= 0.999999 * period:
+            words = f"{steps.rotation - period:.4g} of {steps.rotation:.4g} degrees ({SAMPLES} angles of one period)"
+            leave_out("samples", SAMPLES, words)
+        leave_out("pins", False, "pins")
+        count = _useful_levels(recipe)
+        leave_out("start_levels", count, f"the assembly on this mesh ({count} coarser)")
+    if not changes:
+        return Shortcuts(design, ())
+    content: dict[str, Any] = {**steps.model_dump(exclude_unset=True), **changes}
+    return Shortcuts(design.model_copy(update={"steps": type(steps).model_validate(content)}), tuple(left_out))
+
+
+def _useful_levels(recipe: MeshRecipe) -> int:
+    """Number of coarser meshes that resolve the contacts."""
+    count, simpler = 0, coarser(recipe)
+    while simpler != recipe and _finds_contacts(simpler):
+        recipe, simpler, count = simpler, coarser(simpler), count + 1
+    return count
+
+
+def _finds_contacts(recipe: MeshRecipe) -> bool:
+    width = recipe.face_width.elements if recipe.face_width else FEWEST
+    return min(recipe.flexible_spline.flank, recipe.ring_gear.flank, width) >= FEWEST

@@ -1,0 +1,66 @@
+"""What a run leaves out by itself, and what keeps it from doing so."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import swgpar
+from support.messages import Messages
+from support.paths import DESIGN, DRIVERS, RECIPE, REFERENCE
+from support.small_drive import NO_SHORTCUTS, PLANE
+from swgpar.analysis.shortcuts import SAMPLES, with_shortcuts
+from swgpar.design.design_file import load_design
+from swgpar.meshing import load_recipe
+
+PERIOD = 360.0 / 42.0
+"""Of the small drive, degrees."""
+
+
+def test_a_design_without_the_keys_takes_all() -> None:
+    found = with_shortcuts(load_design(REFERENCE), load_recipe("full"))
+    steps = found.design.steps
+    assert (steps.samples, steps.pins, steps.start_levels) == (SAMPLES, False, 2)
+    assert steps.rotation == 45.0 and len(found.left_out) == 3
+    assert "42.05 of 45 degrees" in found.left_out[0]
+
+
+@pytest.mark.parametrize(
+    ("recipe", "levels"), [("coarse", 0), ("medium", 1), ("full", 2), ("plane_coarse", 1), ("plane", 2)]
+)
+def test_a_start_uses_meshes_that_find_the_contacts(recipe: str, levels: int) -> None:
+    name = "plane_half_turn.toml" if recipe.startswith("plane") else "cup_45deg.toml"
+    found = with_shortcuts(load_design(DRIVERS / name), load_recipe(recipe))
+    assert found.design.steps.start_levels == levels
+
+
+def test_keys_of_the_design_are_kept() -> None:
+    design = load_design(REFERENCE, NO_SHORTCUTS)
+    found = with_shortcuts(design, load_recipe("full"))
+    assert found.design == design and found.left_out == ()
+    found = with_shortcuts(load_design(REFERENCE, ["steps.samples=3"]), load_recipe("full"))
+    assert found.design.steps.samples == 3 and found.design.steps.pins is False
+
+
+def test_friction_and_short_rotations() -> None:
+    assert with_shortcuts(load_design(REFERENCE, ["contact.friction=0.1"]), load_recipe("full")).left_out == ()
+    short = with_shortcuts(load_design(REFERENCE, ["steps.rotation=2.9"]), load_recipe("coarse"))
+    assert short.design.steps.samples == 0 and short.left_out == ("pins",)
+
+
+def test_a_run_with_shortcuts_ends_in_the_same_states() -> None:
+    """The angles of one period are among those of the plain run; the line says what is left out."""
+    design = load_design(DESIGN, [*PLANE, f"steps.rotation={1.5 * PERIOD}", f"steps.increment={PERIOD / SAMPLES}"])
+    plain = swgpar.run(design, RECIPE, plain=True).history
+    with Messages() as messages:
+        fast = swgpar.run(design, RECIPE)
+    assert any("left out: " in text and "pins" in text for text in messages.texts)
+    assert len(fast.history["step"]) == 3 + 12 and fast.summary["increments"] == 2 + SAMPLES
+    for name in ("fs_s1", "wg_torque_Nmm", "output_angle_deg"):
+        assert np.allclose(fast.history[name][2:], plain[name][2:], rtol=1e-6)
+    curves = fast.curves()
+    assert np.allclose(curves.values["fs_s1"], plain["fs_s1"][2 : 2 + SAMPLES], rtol=1e-6)
+    assert curves.fine["fs_s1"][0] == pytest.approx(curves.fine["fs_s1"][-1])
+    # the curve passes through the points
+    at_points = np.interp(curves.angle, curves.fine_angle, curves.fine["fs_s1"])
+    assert np.allclose(at_points, curves.values["fs_s1"], rtol=2e-3)
