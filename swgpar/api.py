@@ -123,9 +123,9 @@ def run(
         Refine the mesh until the estimated relative error of the largest tensile stress under load is at most this
         (0.001 to 0.2); drives without friction only.
     plain : bool
-        Compute all that the design asks for. Otherwise a drive without friction leaves out the pins, the angles
-        beyond one period, and the assembly on a fine mesh, where the design does not set the keys ``steps.pins``,
-        ``steps.samples`` and ``steps.start_levels``.
+        Compute all that the design asks for. Otherwise a drive without friction leaves out the assembly
+        step by step and on a fine mesh, and the angles beyond one period, where the design does not set the keys
+        ``steps.bent_start``, ``steps.start_levels`` and ``steps.samples``.
     restart : bool
         Continue from the checkpoint in `out`.
     overwrite : bool

@@ -157,8 +157,8 @@ def _add_run(commands: _Commands) -> None:
     run.add_argument(
         "--plain",
         action="store_true",
-        help="compute all that the design asks for: without this, a drive without friction leaves out pins, further "
-        "periods and the assembly on a fine mesh, where the design does not set their keys",
+        help="compute all that the design asks for: without this, a drive without friction leaves out the "
+        "assembly step by step and further periods, where the design does not set their keys",
     )
     run.add_argument("--out", required=True, help="results folder")
     run.add_argument("--restart", action="store_true", help="continue from the checkpoint in --out")

@@ -27,10 +27,6 @@ class ConvergenceError(SwgparError):
     exit_code = 3
 
 
-class LoadedStateError(ConvergenceError):
-    """An increment before the loaded state that did not converge."""
-
-
 class StudyError(SwgparError):
     """A study that went through all its cases and could not finish some of them."""
 

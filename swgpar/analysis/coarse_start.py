@@ -13,11 +13,12 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
+from swgpar.analysis.bent_start import bend
 from swgpar.analysis.drive_model import DriveModel, build_drive_model
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import LoadState, Stage, from_loaded
-from swgpar.errors import SwgparError
+from swgpar.errors import ConvergenceError, SwgparError
 from swgpar.fem.vectors import read_field, write_field
 from swgpar.geometry.rotation import rotated
 from swgpar.log import logger
@@ -82,14 +83,13 @@ def solve_to_load(
     stepper = None
     try:
         stepper = LoadStepper(build_drive_model(design, recipe, comm=comm))
-        remaining = [state for state in load_states if state.stage <= Stage.LOAD]
         if coarse is not None:
-            remaining, source, coarse = remaining[-1:], coarse, None
-            take_over(source, stepper, remaining[-1])
-        iterations = []
-        for state in remaining:
-            stepper.advance(state)
-            iterations.append(stepper.iterations)
+            loaded, source, coarse = from_loaded(load_states)[0], coarse, None
+            take_over(source, stepper, loaded)
+            stepper.advance(loaded)
+            iterations = [stepper.iterations]
+        else:
+            iterations = _reach_load(stepper, load_states)
     except SwgparError:
         for model in (coarse, stepper and stepper.model):
             if model is not None:
@@ -100,8 +100,35 @@ def solve_to_load(
     return stepper.model
 
 
+def starts_bent(design: DriveDesign) -> bool:
+    """Whether a run begins with the bent shape; not with friction, as `levels`."""
+    return design.steps.bent_start and not design.contact.friction
+
+
+def _reach_load(stepper: LoadStepper, load_states: list[LoadState]) -> list[int]:
+    """From the bent shape if the design asks for it and that works, else step by step; returns Newton iterations."""
+    if starts_bent(stepper.design):
+        try:
+            _jump(stepper, load_states)
+            return [stepper.iterations]
+        except ConvergenceError as error:
+            logger.info("no start from the bent shape: %s", error)
+            stepper.reset()
+    iterations = []
+    for state in load_states:
+        if state.stage <= Stage.LOAD:
+            stepper.advance(state)
+            iterations.append(stepper.iterations)
+    return iterations
+
+
+def _jump(stepper: LoadStepper, load_states: list[LoadState]) -> None:
+    bend(stepper.model)
+    stepper.jump(from_loaded(load_states)[0])
+
+
 def start_loaded(stepper: LoadStepper, recipes: list[MeshRecipe], load_states: list[LoadState]) -> None:
-    """Bring `stepper` to the loaded state by way of coarser meshes, the coarsest of `recipes` first.
+    """Bring `stepper` to the loaded state by way of coarser meshes, the coarsest of `recipes` first, or bent at once.
 
     load_states : all increments of the run. Raises ConvergenceError or InputError where a mesh does not allow it;
     `stepper` is then to be reset.
@@ -109,6 +136,9 @@ def start_loaded(stepper: LoadStepper, recipes: list[MeshRecipe], load_states: l
     target, coarse = stepper.model, None
     loaded = from_loaded(load_states)[0]
     with target.phases("start"):
+        if not recipes:
+            _jump(stepper, load_states)
+            return
         for recipe in recipes:
             coarse = solve_to_load(target.design, recipe, load_states, target.comm, coarse)
         take_over(coarse, stepper, loaded)

@@ -10,12 +10,15 @@ from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.predictor import KnownState, predict
 from swgpar.analysis.torques import torques
 from swgpar.design.load_states import LoadState, Stage, start_state
-from swgpar.errors import ConvergenceError, LoadedStateError
+from swgpar.errors import ConvergenceError
 from swgpar.log import logger
 from swgpar.solve.solve_state import SolveResult
 
 MAX_KNOWN_STATES = 40
 """States of the rotation that are kept to predict the next ones from."""
+
+MAX_JUMP_ITERATIONS = 60
+"""Newton iterations of a solve for the loaded state at once; step by step it takes some 35 in all."""
 
 MAX_CLOSING_ROTATIONS = 10
 """Rotations in which a backlash is closed: each leaves about an eighth of it, by the pressure angle."""
@@ -80,12 +83,22 @@ class LoadStepper:
             saved.copy(x)
             cutbacks += 1
             if cutbacks > self.design.solver.max_cutbacks or origin == target:  # nothing to halve
-                kind = ConvergenceError if target.stage == Stage.ROTATE else LoadedStateError
-                raise kind(self._failure(target, state, result, cutbacks - 1))
+                raise ConvergenceError(self._failure(target, state, result, cutbacks - 1))
             share *= 0.5
             logger.info(
                 "   cut back to %.3g of the increment (%s, residual %.1e)", share, result.reason, result.residual
             )
+
+    def jump(self, target: LoadState) -> None:
+        """Solve for `target` from the present x in one increment, whatever it is; raises ConvergenceError."""
+        self.load_state = replace(target, stage=Stage.ENGAGE, control="rotation", torque=0.0)
+        if target.control == "torque":
+            self._close_backlash(target)
+        result = self.solver.solve(target, max_iterations=MAX_JUMP_ITERATIONS)
+        if not result.converged:
+            raise ConvergenceError(self._failure(target, target, result, 0))
+        self.iterations = result.iterations
+        self._take(target, result)
 
     def _take(self, state: LoadState, result: SolveResult) -> None:
         self.load_state, self.residual = state, result.residual

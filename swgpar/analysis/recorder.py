@@ -45,7 +45,7 @@ class Recorder(ABC):
     Attributes
     ----------
     rows : history of the increments computed so far
-    started_coarser : whether the run started on coarser meshes
+    starts_loaded : whether the history begins with the loaded state, on coarser meshes or from the bent shape
     accuracy : what was asked for and reached, if an accuracy was asked for
     root_stress : of the loaded state, once it is resolved
     places : of the largest stresses under load, by column of the history
@@ -55,7 +55,7 @@ class Recorder(ABC):
     def __init__(self, model: DriveModel) -> None:
         self.model, self.comm = model, model.comm
         self.rows: list[Row] = []
-        self.started_coarser = False
+        self.starts_loaded = False
         self.accuracy: Accuracy | None = None
         self.root_stress: RootStress | None = None
         self.places: dict[str, Place] = {}

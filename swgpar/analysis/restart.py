@@ -63,7 +63,7 @@ def write_state(
         "multipliers": problem.multipliers().tolist(),
         "wall_s": elapsed,
         "phases_s": model.phases.slowest(model.comm),
-        "started_coarser": recorder.started_coarser,
+        "starts_loaded": recorder.starts_loaded,
         "accuracy": recorder.accuracy and asdict(recorder.accuracy),
         "root_stress": recorder.root_stress and asdict(recorder.root_stress),
         "pairs": recorder.pairs,
@@ -86,7 +86,7 @@ def resume(recorder: FolderRecorder, stepper: LoadStepper, items: list[LoadState
             "same ones, only steps.rotation, the output, solver.linear, keep_factor and far_teeth may differ"
         )
     last = _last_state(path, state)
-    if state["started_coarser"] or state["accuracy"]:
+    if state["starts_loaded"] or state["accuracy"]:
         items = from_loaded(items)
     if state["done"] > len(items) or items[state["done"] - 1] != last:
         raise InputError(
@@ -95,7 +95,7 @@ def resume(recorder: FolderRecorder, stepper: LoadStepper, items: list[LoadState
         )
     _restore_vector(recorder, state)
     recorder.rows, recorder.names = state["rows"], state["names"]
-    recorder.started_coarser = state["started_coarser"]
+    recorder.starts_loaded = state["starts_loaded"]
     recorder.accuracy = state["accuracy"] and Accuracy(**state["accuracy"])
     recorder.places = {name: Place(**place) for name, place in state.get("places", {}).items()}
     recorder.pairs = state.get("pairs", [])

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.analysis.coarse_start import levels, start_loaded
+from swgpar.analysis.coarse_start import levels, start_loaded, starts_bent
 from swgpar.analysis.drive_model import DriveModel, build_drive_model
 from swgpar.analysis.drive_result import DriveResult
 from swgpar.analysis.load_stepping import LoadStepper
@@ -23,7 +22,7 @@ from swgpar.analysis.shortcuts import with_shortcuts
 from swgpar.analysis.summary import Accuracy, summarise
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import LoadState, Stage, from_loaded, load_sequence
-from swgpar.errors import ConvergenceError, InputError, LoadedStateError, SwgparError
+from swgpar.errors import ConvergenceError, InputError, SwgparError
 from swgpar.log import IncrementProgress, logger
 from swgpar.meshing import MeshRecipe, load_recipe, require_sections
 from swgpar.meshing.recipe import to_toml
@@ -65,51 +64,18 @@ def run_drive(
         On all ranks. After a ConvergenceError everything up to the last converged increment is in the folder and can
         be continued with `restart`.
     """
+    begin = time.perf_counter()
     folder = None if out is None else Path(out)
     if folder is None and restart:
         raise InputError("restart = true needs the results folder out: a run in memory leaves no checkpoint")
     require_sections(design, recipe)
     if accuracy is not None:
         design = with_accuracy(design, accuracy)
-    given, left_out = design, ()
+    left_out: tuple[str, ...] = ()
     if not plain:
         shortcuts = with_shortcuts(design, recipe)
         design, left_out = shortcuts.design, shortcuts.left_out
-    options = _Options(recipe_name, accuracy, terminal, on_increment, time.perf_counter())
-    try:
-        return _run(design, recipe, folder, comm, options, left_out, restart=restart, overwrite=overwrite)
-    except LoadedStateError as error:
-        if restart or design.steps.pins == given.steps.pins:
-            raise
-        logger.warning("%s; starting again with steps.pins = true", error)
-        design = design.with_values({"steps.pins": True, "steps.start_levels": 0})
-        return _run(design, recipe, folder, comm, options, (), restart=False, overwrite=True)
-
-
-@dataclass(frozen=True)
-class _Options:
-    """What a run is told beside its design and mesh: as `run_drive`; begin : time.perf_counter() at its start."""
-
-    recipe_name: str
-    accuracy: float | None
-    terminal: bool
-    on_increment: Callable[[], None]
-    begin: float
-
-
-def _run(
-    design: DriveDesign,
-    recipe: MeshRecipe,
-    folder: Path | None,
-    comm: MPI.Comm,
-    options: _Options,
-    left_out: Sequence[str],
-    *,
-    restart: bool,
-    overwrite: bool,
-) -> DriveResult:
-    """Run a design as it is; collective."""
-    accuracy, resumed = options.accuracy, False
+    resumed = False
     if folder is not None:
         require_parallel(comm)
         resumed = prepare(folder, comm, restart, overwrite)
@@ -126,14 +92,14 @@ def _run(
             _record_choice(recorder, chosen, accuracy, folder)
         if restart and not resumed:
             logger.info("no increment was saved: starting from the beginning")
-        run = _Steps(model, recipe, recorder, options.on_increment, options.begin)
+        run = _Run(model, recipe, recorder, on_increment, begin)
         items = run.resume() if resumed else run.start()
-        run.go_through(items, options.terminal)
-        result = run.finish(options.recipe_name)
+        run.go_through(items, terminal)
+        result = run.finish(recipe_name)
     except SwgparError as error:
         model.destroy()  # collective: all ranks have this error, but perhaps not one of another kind
         if isinstance(error, ConvergenceError) and recorder.rows and folder is not None:
-            raise type(error)(f"{error}; {len(recorder.rows)} increments are saved in {folder}") from None
+            raise ConvergenceError(f"{error}; {len(recorder.rows)} increments are saved in {folder}") from None
         raise
     model.destroy()
     return result
@@ -163,7 +129,7 @@ def _record_choice(recorder: Recorder, chosen: ChosenMesh, accuracy: float, fold
     recorder.accuracy = Accuracy(accuracy, chosen.error, chosen.error <= accuracy, chosen.stresses)
 
 
-class _Steps:
+class _Run:
     """One run: start or restart, all increments, end.
 
     recipe : of the model's mesh;  begin : time.perf_counter() at the run's start
@@ -205,13 +171,13 @@ class _Steps:
         return items
 
     def start(self) -> list[LoadState]:
-        """Reach the loaded state on coarser meshes if the design asks for it; returns all increments of the run."""
+        """Reach the loaded state at once if the design asks for it; returns all increments of the run."""
         items = list(load_sequence(self.model.design))
         if self.recorder.accuracy is not None:  # the model was loaded when its mesh was chosen
             self.stepper.resume_at(from_loaded(items)[0])
             return from_loaded(items)
-        self.recorder.started_coarser = _start_on_coarser(self.stepper, self.recipe, items)
-        return from_loaded(items) if self.recorder.started_coarser else items
+        self.recorder.starts_loaded = _start_loaded(self.stepper, self.recipe, items)
+        return from_loaded(items) if self.recorder.starts_loaded else items
 
     def go_through(self, items: list[LoadState], terminal: bool) -> None:
         """Compute and record the increments that are left."""
@@ -267,15 +233,15 @@ class _Steps:
         return recorder.finish(rows, summary)
 
 
-def _start_on_coarser(stepper: LoadStepper, recipe: MeshRecipe, items: list[LoadState]) -> bool:
-    """Reach the loaded state on coarser meshes first; False if the design asks for none, or if that fails."""
+def _start_loaded(stepper: LoadStepper, recipe: MeshRecipe, items: list[LoadState]) -> bool:
+    """Reach the loaded state on coarser meshes or from the bent shape; False if none is asked for, or if that fails."""
     recipes = levels(stepper.design, recipe)
-    if not recipes:
+    if not recipes and not starts_bent(stepper.design):
         return False
     try:
         start_loaded(stepper, recipes, items)
         return True
     except (ConvergenceError, InputError) as error:
-        logger.info("no start on coarser meshes: %s", error)
+        logger.info("no such start, but step by step: %s", error)
         stepper.reset()
         return False

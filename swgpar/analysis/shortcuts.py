@@ -1,8 +1,8 @@
 """What a run leaves out by itself where the scene allows it, and the mesh that it takes when none is named.
 
 Without friction the loaded state does not depend on the path to it, and the state repeats after one period. So a run
-needs neither pins nor the angles of further periods, and it may start on coarser meshes. Keys that the design file
-sets are kept.
+needs neither the steps of the assembly nor the angles of further periods, and it may start on coarser meshes. Keys that
+the design file sets are kept.
 """
 
 from __future__ import annotations
@@ -25,6 +25,9 @@ SAMPLES = 8
 
 FEWEST = 4
 """Elements along the flank, and along the face width, below which a coarser mesh does not find its contacts."""
+
+WORTH = {"plane": 12, "cup": 16}
+"""Elements along the flank from which a start on coarser meshes saves time."""
 
 
 @dataclass(frozen=True)
@@ -53,8 +56,9 @@ def with_shortcuts(design: DriveDesign, recipe: MeshRecipe) -> Shortcuts:
         if steps.rotation >= 0.999999 * period:
             words = f"{steps.rotation - period:.4g} of {steps.rotation:.4g} degrees ({SAMPLES} angles of one period)"
             leave_out("samples", SAMPLES, words)
-        leave_out("pins", False, "pins")
-        count = _useful_levels(recipe)
+        leave_out("bent_start", True, "deflection and engagement step by step")
+        worth = recipe.flexible_spline.flank >= WORTH[design.drive.model]
+        count = _useful_levels(recipe) if worth else 0
         leave_out("start_levels", count, f"the assembly on this mesh ({count} coarser)")
     if not changes:
         return Shortcuts(design, ())

@@ -112,6 +112,9 @@ class Steps(Section):
         ge=0,
         le=1000,
     )
+    bent_start: bool = quantity(
+        False, text="begin with the loaded state, from the shape of the bent flexible spline, instead of steps 1 and 2"
+    )
     start_levels: int = quantity(
         0, text="coarser meshes on which the drive is assembled and loaded (steps 1 to 3); 0: off", ge=0, le=4
     )

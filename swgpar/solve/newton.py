@@ -17,7 +17,7 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from swgpar.design.load_states import LoadState
+from swgpar.design.load_states import LoadState, Stage
 from swgpar.fem.vectors import create_vector
 from swgpar.log import logger
 from swgpar.solve.active_set_cycles import (
@@ -161,6 +161,8 @@ class NewtonSolver:
         state.pattern_misses = problem.tangent(u, state.load_state)
         missing = int(len(state.pattern_misses) > 0)
         state.incomplete_pattern = bool(problem.partition.comm.allreduce(missing, op=MPI.MAX))
+        if state.load_state.stage < Stage.ROTATE:  # contacts change too much for an old factor
+            self.system.discard_factor()
         p.stateIncrease()
         bound = problem.output_step_bound(state.load_state)
         border, rows = problem.supports.border(u, state.load_state)
@@ -218,12 +220,17 @@ class NewtonSolver:
 
     # -- solve -----------------------------------------------------------------------------------------
 
-    def solve(self, load_state: LoadState, *, establish_contact: bool = False) -> SolveResult:
+    def solve(
+        self, load_state: LoadState, *, establish_contact: bool = False, max_iterations: int | None = None
+    ) -> SolveResult:
         """Solve for equilibrium from the present x; x is the solution, or not valid when the result says not converged.
 
         establish_contact : contacts are switched on: approach through softened penalties
+        max_iterations : of all phases together; None for a multiple of that of the settings
         """
         self.state = state = self._begin(load_state, establish_contact)
+        if max_iterations is not None:
+            state.max_iterations = max_iterations
         while state.result is None:
             outcome = self._iterate(state)
             if outcome is Outcome.FAILED:

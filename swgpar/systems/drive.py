@@ -116,9 +116,11 @@ class Drives(System[DriveDesign, DriveResult]):
 
     def check_published(self, design: DriveDesign, names: Iterable[str]) -> None:
         for name in names:
-            if design.steps.start_levels and name.startswith(("step1.", "step2.")):
+            steps = design.steps
+            if (steps.start_levels or steps.bent_start) and name.startswith(("step1.", "step2.")):
                 raise InputError(
-                    f"steps.start_levels = {design.steps.start_levels} leaves out {name}: allowed 0 with it"
+                    f"steps.start_levels = {steps.start_levels} or steps.bent_start leaves out {name}: allowed 0 and "
+                    "false with it"
                 )
 
     def increments(self, design: DriveDesign) -> int:

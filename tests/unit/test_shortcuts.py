@@ -20,13 +20,13 @@ PERIOD = 360.0 / 42.0
 def test_a_design_without_the_keys_takes_all() -> None:
     found = with_shortcuts(load_design(REFERENCE), load_recipe("full"))
     steps = found.design.steps
-    assert (steps.samples, steps.pins, steps.start_levels) == (SAMPLES, False, 2)
+    assert (steps.samples, steps.bent_start, steps.start_levels) == (SAMPLES, True, 2)
     assert steps.rotation == 45.0 and len(found.left_out) == 3
     assert "42.05 of 45 degrees" in found.left_out[0]
 
 
 @pytest.mark.parametrize(
-    ("recipe", "levels"), [("coarse", 0), ("medium", 1), ("full", 2), ("plane_coarse", 1), ("plane", 2)]
+    ("recipe", "levels"), [("coarse", 0), ("medium", 0), ("full", 2), ("plane_coarse", 0), ("plane", 2)]
 )
 def test_a_start_uses_meshes_that_find_the_contacts(recipe: str, levels: int) -> None:
     name = "plane_half_turn.toml" if recipe.startswith("plane") else "cup_45deg.toml"
@@ -39,13 +39,13 @@ def test_keys_of_the_design_are_kept() -> None:
     found = with_shortcuts(design, load_recipe("full"))
     assert found.design == design and found.left_out == ()
     found = with_shortcuts(load_design(REFERENCE, ["steps.samples=3"]), load_recipe("full"))
-    assert found.design.steps.samples == 3 and found.design.steps.pins is False
+    assert found.design.steps.samples == 3 and found.design.steps.bent_start
 
 
 def test_friction_and_short_rotations() -> None:
     assert with_shortcuts(load_design(REFERENCE, ["contact.friction=0.1"]), load_recipe("full")).left_out == ()
     short = with_shortcuts(load_design(REFERENCE, ["steps.rotation=2.9"]), load_recipe("coarse"))
-    assert short.design.steps.samples == 0 and short.left_out == ("pins",)
+    assert short.design.steps.samples == 0 and short.left_out == ("deflection and engagement step by step",)
 
 
 def test_a_run_with_shortcuts_ends_in_the_same_states() -> None:
@@ -54,10 +54,10 @@ def test_a_run_with_shortcuts_ends_in_the_same_states() -> None:
     plain = swgpar.run(design, RECIPE, plain=True).history
     with Messages() as messages:
         fast = swgpar.run(design, RECIPE)
-    assert any("left out: " in text and "pins" in text for text in messages.texts)
-    assert len(fast.history["step"]) == 3 + 12 and fast.summary["increments"] == 2 + SAMPLES
+    assert any("left out: " in text and "step by step" in text for text in messages.texts)
+    assert len(fast.history["step"]) == 1 + 12 and fast.summary["increments"] == SAMPLES
     for name in ("fs_s1", "wg_torque_Nmm", "output_angle_deg"):
-        assert np.allclose(fast.history[name][2:], plain[name][2:], rtol=1e-6)
+        assert np.allclose(fast.history[name], plain[name][2:], rtol=1e-6)
     curves = fast.curves()
     assert np.allclose(curves.values["fs_s1"], plain["fs_s1"][2 : 2 + SAMPLES], rtol=1e-6)
     assert curves.fine["fs_s1"][0] == pytest.approx(curves.fine["fs_s1"][-1])

@@ -1,0 +1,139 @@
+"""Start from the shape of the bent flexible spline, with all contacts at once.
+
+A thin ring bends without stretching. Its shape on the cam is the one with the least bending energy that does not enter
+the cam. A cup adds Love's inextensional modes, which grow linearly from the closed end and move the wall axially. Laid
+on the cam, that shape is so close to the loaded state that one solve takes the place of deflection, engagement and
+torque.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from swgpar.analysis.drive_model import DriveModel
+from swgpar.design.drive_design import DriveDesign
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.vectors import write_field
+from swgpar.geometry.rotation import rotated
+
+HARMONICS, POINTS = 16, 1440
+"""Even harmonics of the shape, and points around half of the ring that stay outside of the cam."""
+
+PENALTY = 1e3
+"""Stiffness of the cam at a point, beside the energy 9 a_1² / 2 of the first harmonic."""
+
+ROUNDS, MAX_CHANGES = 4, 50
+"""Rounds in which the points find their places on the cam as they move around; changes of the points that touch."""
+
+NEAR = 0.003
+"""Gap below which the inner surface is laid on the cam, over half of the deflection: wider gaps stay open."""
+
+PENETRATION = 1e-5
+"""Depth over the module to which it is laid into the cam, so that the contact acts at once."""
+
+
+def bent_ring(design: DriveDesign) -> np.ndarray:
+    """Complex amplitudes c_n (HARMONICS + 1,) mm of the radial displacement Re(c_n exp(2 i n theta)) at mid-width.
+
+    The energy of a harmonic is that of the change of curvature, (4 n² - 1)² a_n². The ring shrinks by what its waves
+    need.
+    """
+    radius = design.inner_radius + 0.5 * design.flexible_spline.rim
+    theta, order = np.linspace(0.0, np.pi, POINTS, endpoint=False), 2.0 * np.arange(1, HARMONICS + 1)
+    outline = design.cam().outline(7200)
+    polar = np.arctan2(-outline[:, 0], outline[:, 1])
+    around = np.argsort(polar)
+    polar, distance = polar[around], np.hypot(*outline[around].T)
+    cosines, sines = np.cos(np.outer(theta, order)), np.sin(np.outer(theta, order))
+    waves, energy = np.hstack([cosines, -sines]), np.tile((order**2 - 1.0) ** 2, 2)
+    found, shrink = np.zeros(2 * HARMONICS), 0.0
+    for _ in range(ROUNDS):
+        place = theta - np.hstack([sines, cosines]) @ (found / np.tile(order, 2)) / radius
+        needed = np.interp(place, polar, distance, period=2.0 * np.pi) - design.inner_radius - shrink
+        touches = np.zeros(POINTS, dtype=bool)
+        for _ in range(MAX_CHANGES):
+            inside = waves @ found < needed
+            if np.array_equal(inside, touches):
+                break
+            touches = inside
+            pressed = PENALTY * waves[touches]
+            found = np.linalg.solve(np.diag(energy) + pressed.T @ waves[touches], pressed.T @ needed[touches])
+        shrink = -float((np.sqrt(energy) * found**2).sum()) / (4.0 * radius)
+    return np.append(shrink, found[:HARMONICS] + 1j * found[HARMONICS:])
+
+
+class BentSpline:
+    """The bent flexible spline as a field of displacements."""
+
+    def __init__(self, design: DriveDesign) -> None:
+        self.design = design
+        self.amplitudes = bent_ring(design)
+        self.order = 2.0 * np.arange(len(self.amplitudes))
+        self.radius = design.inner_radius + 0.5 * design.flexible_spline.rim
+        self.half = 0.5 * design.wave_generator.face_width
+        self.end = 0.5 * design.drive.face_width + (design.cup.length if design.cup else 0.0)
+        self.surface = design.cam_surface()
+
+    def displacement(self, points: np.ndarray) -> np.ndarray:
+        """Displacement (n, 3) mm of points (n, 3) mm of the undeformed spline."""
+        x, y, z = points.T
+        radius, theta = np.hypot(x, y), np.arctan2(-x, y)
+        within = np.clip(z, -self.half, self.half)
+        share, on_cam = self._share(z), self._share(within)
+        gap, *_ = self.surface.evaluate(self._section(theta, np.full_like(theta, self.design.inner_radius), within))
+        near = NEAR * 0.5 * self.design.deflection
+        lift = np.where(gap < near, -gap - PENETRATION * self.design.drive.module, 0.0)
+        moved = self._section(theta, radius, z) - points
+        moved[:, :2] += (lift * share / on_cam)[:, None] * np.column_stack([-np.sin(theta), np.cos(theta)])
+        if self.design.drive.model == "cup":
+            moved[:, 2] = self._axial(theta, radius)
+        return moved
+
+    def _share(self, z: np.ndarray) -> np.ndarray:
+        """Deflection at z (n,) mm over that at mid-width."""
+        if self.design.drive.model == "plane":
+            return np.ones_like(z)
+        return np.clip((self.end - z) / self.end, 0.0, None)
+
+    def _section(self, theta: np.ndarray, radius: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """Positions (n, 3) mm of points of the bent sections, whose normals stay normal to the middle line."""
+        outward, around, slope = self._waves(theta)
+        share, height = self._share(z), radius - self.radius
+        lean = share * (around - slope) / self.radius
+        # in the radial and the circumferential direction, the latter counter-clockwise
+        along = self.radius + share * outward + height * np.cos(lean)
+        across = share * around + height * np.sin(lean)
+        sine, cosine = np.sin(theta), np.cos(theta)
+        return np.column_stack([-sine * along - cosine * across, cosine * along - sine * across, z])
+
+    def _waves(self, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Radial and circumferential displacement (n,) mm at mid-width, and the derivative of the first by theta."""
+        outward, around, slope = (np.zeros_like(theta) for _ in range(3))
+        for amplitude, order in zip(self.amplitudes, self.order):
+            wave = amplitude * np.exp(1j * order * theta)
+            outward += wave.real
+            if order:
+                around -= wave.imag / order
+                slope -= wave.imag * order
+        return outward, around, slope
+
+    def _axial(self, theta: np.ndarray, radius: np.ndarray) -> np.ndarray:
+        """Axial displacement (n,) mm by Love's modes and the lean of the wall; it falls towards the bore."""
+        outward, _, _ = self._waves(theta)
+        wall = (radius - self.radius) * outward
+        for amplitude, order in zip(self.amplitudes[1:], self.order[1:]):
+            wall += self.radius / order**2 * (amplitude * np.exp(1j * order * theta)).real
+        inside = radius < self.design.inner_radius - 0.5 * self.design.flexible_spline.rim
+        return np.where(inside, wall * (radius / self.radius) ** 2, wall) / self.end
+
+
+def bend(model: DriveModel) -> None:
+    """Set the model's x to the bent spline on the unturned cam; collective."""
+    layout = model.partition.layouts[FLEXIBLE_SPLINE]
+    first, end = model.partition.owned_sectors(FLEXIBLE_SPLINE)
+    sectors = np.arange(first, end)
+    angle = layout.sector_angle(layout.first_tooth + sectors)
+    points = rotated(np.broadcast_to(layout.mesh.coords, (len(sectors), *layout.mesh.coords.shape)), angle[:, None])
+    values = BentSpline(model.design).displacement(points.reshape(-1, 3)).reshape(points.shape)
+    model.problem.x.set(0.0)
+    write_field(model.partition, FLEXIBLE_SPLINE, sectors, values, model.problem.x)
