@@ -22,7 +22,7 @@ def main() -> float:
     """Run and return the mean of the largest tensile stress in the flexible spline, MPa."""
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("--design", default=Path(__file__).with_name("cup_45deg.toml"))
-    options.add_argument("--mesh", help="name or path of a mesh recipe (default: coarse)")
+    options.add_argument("--mesh", help="name or path of a mesh recipe (default: forces)")
     options.add_argument("--out", default="results/cup_rotation")
     options.add_argument("--restart", action="store_true", help="continue from the checkpoint in --out")
     options.add_argument("--overwrite", action="store_true", help="replace results that --out already holds")

@@ -77,8 +77,8 @@ def load_mesh(mesh: MeshLike) -> MeshRecipe:
     Parameters
     ----------
     mesh : str, path, mapping or recipe
-        A name (coarse, medium, full; plane_coarse, plane, plane_fine), the path of a recipe (TOML), or its content.
-        A recipe that is loaded already is returned.
+        A name (coarse, forces, medium, full; plane_coarse, plane, plane_fine), the path of a recipe (TOML), or its
+        content. A recipe that is loaded already is returned.
 
     Raises
     ------
@@ -115,7 +115,7 @@ def run(
     design : design, path or mapping
         As `load_design` takes it.
     mesh : recipe, name, path or mapping
-        As `load_mesh` takes it. Without one a drive takes the recipe coarse, a plane model plane_coarse; the stress
+        As `load_mesh` takes it. Without one a drive takes the recipe forces, a plane model plane_coarse; the stress
         at the teeth comes from windows on finer meshes. Gear trains have none.
     out : path
         Results folder. Without it the run is in memory and leaves no files.

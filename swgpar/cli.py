@@ -71,7 +71,7 @@ REPORT_EXAMPLES = """example:
   swgpar report results/coarse
 """
 
-MESH_HELP = "mesh recipe: coarse, medium, full, plane_coarse, plane, plane_fine, or the path of a file (TOML)"
+MESH_HELP = "mesh recipe: coarse, forces, medium, full, plane_coarse, plane, plane_fine, or the path of a file (TOML)"
 
 
 _Commands = "argparse._SubParsersAction[argparse.ArgumentParser]"
@@ -144,7 +144,7 @@ def _add_run(commands: _Commands) -> None:
     run = _add_command(commands, "run", RUN, RUN_EXAMPLES)
     _add_design(run)
     run.add_argument(
-        "--mesh", help=f"{MESH_HELP} (default: coarse, for a plane model plane_coarse); gear trains have none"
+        "--mesh", help=f"{MESH_HELP} (default: forces, for a plane model plane_coarse); gear trains have none"
     )
     run.add_argument(
         "--accuracy",

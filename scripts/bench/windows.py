@@ -16,7 +16,7 @@ from program import run
 
 PLANE, CUP = "drivers/plane_half_turn.toml", "drivers/cup_45deg.toml"
 
-PLANE_MESHES, CUP_MESHES = ("plane_coarse", "plane", "plane_fine"), ("coarse", "medium")
+PLANE_MESHES, CUP_MESHES = ("plane_coarse", "plane", "plane_fine"), ("coarse", "forces", "medium")
 
 DRIVES: dict[str, tuple[str, tuple[str, ...], tuple[str, ...]]] = {
     "plane, elliptical cam": (PLANE, PLANE_MESHES, ()),
@@ -24,7 +24,7 @@ DRIVES: dict[str, tuple[str, tuple[str, ...], tuple[str, ...]]] = {
     "plane, spline fixed": (PLANE, PLANE_MESHES, ("drive.layout=spline_fixed",)),
     "plane, 10 N·m": (PLANE, PLANE_MESHES, ("load.torque=10",)),
     "plane, rim 0.6 mm": (PLANE, PLANE_MESHES, ("flexible_spline.rim=0.6",)),
-    "cup": (CUP, CUP_MESHES, ("steps.pins=false",)),
+    "cup": (CUP, CUP_MESHES, ("steps.bent_start=true",)),
 }
 """Design, meshes from coarse to fine, and overrides, by name."""
 

@@ -9,7 +9,7 @@ from swgpar.errors import InputError
 from swgpar.input.quantities import Section, quantity, show
 from swgpar.input.toml_file import read_toml, validate
 
-RECIPES = ("coarse", "medium", "full", "plane_coarse", "plane", "plane_fine")
+RECIPES = ("coarse", "forces", "medium", "full", "plane_coarse", "plane", "plane_fine")
 """Names of the recipes that belong to the package, coarse to fine: of the cup drive, of the plane model."""
 
 

@@ -44,7 +44,7 @@ def rotated(
     stepper = load_stepper(design, comm, mesh)
     prepare(stepper)
     items = list(load_sequence(design))
-    if design.steps.start_levels:
+    if design.steps.start_levels or design.steps.bent_start:
         recipes = levels(design, mesh)
         assert len(recipes) == design.steps.start_levels
         start_loaded(stepper, recipes, items)
@@ -121,6 +121,20 @@ def test_a_kept_factor_with_friction_and_in_the_other_layout(override: str, rel:
 def test_a_start_on_a_coarser_mesh_changes_nothing(plain: dict[str, float]) -> None:
     _, row = rotated(*PLAIN, "steps.start_levels=1")
     assert_same(row, plain, 1e-6)
+
+
+def test_a_start_from_the_bent_shape_changes_nothing(plain: dict[str, float]) -> None:
+    _, row = rotated(*PLAIN, "steps.bent_start=true")
+    assert_same(row, plain, 1e-6)
+
+
+@pytest.mark.parametrize("overrides", [(), ("drive.layout=spline_fixed",), ("load.torque=0",)])
+def test_a_start_from_the_bent_shape_changes_nothing_in_the_plane(overrides: tuple[str, ...]) -> None:
+    _, step_by_step = rotated(*PLAIN, *PLANE, *overrides)
+    _, row = rotated(*PLAIN, *PLANE, *overrides, "steps.bent_start=true")
+    for name in PHYSICAL:  # without a torque the input torque vanishes
+        same = row[name] == pytest.approx(step_by_step[name], rel=1e-6, abs=1e-6)
+        parallel_assert(same, f"{name}: {row[name]} and {step_by_step[name]}")
 
 
 @pytest.mark.parametrize("count", [1, pytest.param(2, marks=pytest.mark.parallel(2))])

@@ -21,7 +21,7 @@ from swgpar.meshing.export import mesh_report, whole_body, whole_drive, write_me
 from swgpar.meshing.quality import hex_quality, hex_volumes, quad_quality
 from swgpar.meshing.sweep import axial_stations
 
-CUP_RECIPES = ("coarse", "medium", "full")
+CUP_RECIPES = ("coarse", "forces", "medium", "full")
 GEARS = ("flexible_spline", "ring_gear")
 SMALL = (
     "drive.teeth_fs=40",

@@ -1,0 +1,67 @@
+"""The shape of the bent flexible spline: its length, its place on the cam, and that of an exact ring on an ellipse."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from support.drive_groups import PLANE, cams, table_of
+from support.paths import REFERENCE
+from swgpar.analysis.bent_start import BentSpline, bent_ring
+from swgpar.design.design_file import load_design
+from swgpar.design.drive_design import DriveDesign
+
+CAMS = {name: case for name, case in cams().items() if "wave_generator" in case}
+THETA = np.linspace(0.0, 2.0 * np.pi, 3601)
+
+
+def ring(radius: float) -> np.ndarray:
+    """Points (n, 3) of a circle."""
+    return radius * np.column_stack([-np.sin(THETA), np.cos(THETA), 0.0 * THETA])
+
+
+def moved(spline: BentSpline, points: np.ndarray) -> np.ndarray:
+    return points + spline.displacement(points)
+
+
+def test_the_first_harmonic_on_an_elliptical_cam_is_half_of_the_deflection() -> None:
+    design = load_design(PLANE)
+    shape = bent_ring(design)
+    assert shape[1] == pytest.approx(0.5 * design.deflection, rel=1e-3)
+    assert np.abs(shape[2:]).max() < 0.005 * abs(shape[1])
+    # a ring that bends without stretching shrinks by 3 a² / (4 r)
+    radius = design.inner_radius + 0.5 * design.flexible_spline.rim
+    assert shape[0].real == pytest.approx(-0.75 * abs(shape[1]) ** 2 / radius, rel=0.02)
+
+
+@pytest.mark.parametrize("name", list(CAMS))
+def test_it_lies_outside_of_every_cam_and_touches_it(name: str) -> None:
+    design = DriveDesign.from_table(table_of(PLANE, CAMS[name]))
+    spline = BentSpline(design)
+    gap, *_ = spline.surface.evaluate(moved(spline, ring(design.inner_radius)))
+    assert gap.min() > -5e-5 * design.drive.module
+    assert gap.min() < 5e-3 * design.deflection
+
+
+@pytest.mark.parametrize("name", list(CAMS))
+def test_the_middle_line_keeps_its_length(name: str) -> None:
+    design = DriveDesign.from_table(table_of(PLANE, CAMS[name]))
+    spline = BentSpline(design)
+    line = moved(spline, ring(spline.radius))
+    length = np.linalg.norm(np.diff(line, axis=0), axis=1).sum()
+    assert length == pytest.approx(2.0 * np.pi * spline.radius, rel=3e-4)
+
+
+def test_the_cup_is_at_rest_at_its_closed_end_and_its_wall_does_not_shear() -> None:
+    design = load_design(REFERENCE)
+    spline = BentSpline(design)
+    bore = ring(design.cup.inner_radius) + [0.0, 0.0, spline.end]
+    assert np.abs(spline.displacement(bore)[:, :2]).max() < 1e-9
+    # shear of the wall's middle surface: du_z / (R d theta) + dv / dz
+    step, points = 1e-4, ring(spline.radius) + [0.0, 0.0, 20.0]
+    u = spline.displacement(points)
+    further = spline.displacement(points + [0.0, 0.0, step])
+    tangent = np.column_stack([-np.cos(THETA), -np.sin(THETA)])
+    around = np.einsum("ij,ij->i", (further - u)[:, :2], tangent) / step
+    axial = np.gradient(u[:, 2], THETA) / spline.radius
+    assert np.abs(around + axial)[2:-2].max() < 0.02 * np.abs(around).max()
