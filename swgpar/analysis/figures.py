@@ -58,6 +58,8 @@ class DriveFigures(FigureSet):
             "stress": self.stress,
             "torque_and_transmission_error": self.torque_and_transmission_error,
         }
+        if self._result.pairs:
+            found["pairs"] = self.pairs
         if self._result.increments:
             found |= {"deformed_drive": self.deformed, "contact_pattern": self.contact_pattern}
         return found
@@ -67,6 +69,10 @@ class DriveFigures(FigureSet):
         figure, (axes,) = _panels(1)
         for name, label in STRESSES.items():
             self._draw(axes, name, label)
+        root = self._result.summary.get("root_stress")
+        if root and root["period"]:
+            angle, value = np.array(root["period"]).T
+            axes.plot(angle, value, "k^--", ms=4, lw=0.8, label="flexible spline, s1 at the teeth by windows")
         axes.set(ylabel="stress (MPa)", title="largest stresses (nodal averages)" + self._over_period())
         axes.set_ylim(bottom=0.0)
         axes.legend(fontsize=8)
@@ -101,6 +107,29 @@ class DriveFigures(FigureSet):
     def _draw_transmission_error(self, axes: Axes) -> None:
         self._draw(axes, "transmission_error", None)
         axes.set(ylabel="arc seconds", title="transmission error: output angle less its kinematic value")
+
+    def pairs(self) -> Figure:
+        """Force (N) and largest contact pressure (MPa) of the pairs, over the tooth's angle from the major axis.
+
+        All computed increments under load are drawn: a tooth goes through these positions one after the other. Pairs
+        whose contact lies on an edge have hollow marks: their pressure is no property of the drive.
+        """
+        pairs, teeth = self._result.pairs, self._result.summary["design"]["drive"]["teeth_fs"]
+        position = pairs["tooth"] * 360.0 / teeth - pairs["wg_angle_deg"]
+        position = (position + 90.0) % 180.0 - 90.0
+        figure, panels = _panels(2)
+        for axes, name in zip(panels, ("force_N", "pressure_MPa"), strict=True):
+            for side, colour in (("clockwise", "tab:orange"), ("counter-clockwise", "tab:blue")):
+                for edge, fill in ((0, colour), (1, "none")):
+                    chosen = (pairs["flank"] == side) & (pairs["edge"] == edge)
+                    label = f"{side} flank" + (", on an edge" if edge else "")
+                    if chosen.any():
+                        axes.plot(position[chosen], pairs[name][chosen], "o", ms=4, mec=colour, mfc=fill, label=label)
+            axes.set_ylim(bottom=0.0)
+        panels[0].set(ylabel="normal force (N)", title="pairs of flanks in contact, at all computed angles")
+        panels[1].set(ylabel="largest pressure (MPa)", xlabel="tooth, from the major axis (degrees)")
+        panels[0].legend(fontsize=8)
+        return figure
 
     def _draw(self, axes: Axes, name: str, label: str | None) -> None:
         """Draw a column under load: points where it was computed, and the curve through them."""

@@ -208,7 +208,7 @@ def test_a_folder_gives_what_memory_gives(result: swgpar.DriveResult, on_disk: s
 
 def test_figures(result: swgpar.DriveResult) -> None:
     plot = result.plot
-    for draw in (plot.stress, plot.torque, plot.transmission_error, plot.contact_pattern, plot.deformed):
+    for draw in (plot.stress, plot.torque, plot.transmission_error, plot.pairs, plot.contact_pattern, plot.deformed):
         assert draw().axes
     assert "contact_pattern" in plot.names
 
