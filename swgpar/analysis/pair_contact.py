@@ -117,14 +117,13 @@ def _contact(model: DriveModel, pair: FlankPair, load: LineLoad, u: np.ndarray, 
         facing.to_profile(tooth.from_profile(found.middle + found.half_width * np.array([-1.0, 1.0])))
     )
     at_end = not plane and station in (0, len(size) - 1)
-    carries = np.interp(np.linspace(load.z[0], load.z[-1], 401), load.z, size) > SMALLEST * size.max()
     middle = tooth.profile.point(np.clip(found.middle, 0.0, tooth.profile.length))[0]
     return PairContact(
         tooth=(spline.first_tooth + pair.sector) % spline.mesh.n_sectors,
         flank="clockwise" if pair.side > 0 else "counter-clockwise",
         ring_tooth=pair.ring_tooth % ring.mesh.n_sectors,
         force_N=float(trapezoid(along, load.z)),
-        width_mm=float(carries.mean() * (load.z[-1] - load.z[0])),
+        width_mm=_length_above(load.z, size, SMALLEST * float(size.max())),
         line_load_Nmm=float(size[station]),
         z_mm=0.0 if plane else float(load.z[station]),
         radius_mm=float(np.hypot(*middle)),
@@ -133,6 +132,13 @@ def _contact(model: DriveModel, pair: FlankPair, load: LineLoad, u: np.ndarray, 
         shear_MPa=found.largest_shear(),
         edge=int(tip or foot.min() < reach or at_end),
     )
+
+
+def _length_above(z: np.ndarray, values: np.ndarray, level: float) -> float:
+    """Length (mm) on which values (n,), linear between z (n,) mm, are above a level."""
+    low, high = np.minimum(values[:-1], values[1:]), np.maximum(values[:-1], values[1:])
+    share = np.where(high > low, (high - level) / np.where(high > low, high - low, 1.0), high > level)
+    return float((np.clip(share, 0.0, 1.0) * np.diff(z)).sum())
 
 
 class _Tooth:

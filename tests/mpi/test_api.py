@@ -12,10 +12,10 @@ from mpi4py import MPI
 
 import swgpar
 from support.paths import DESIGN, DRIVERS, RECIPE
-from support.small_drive import PLANE
+from support.small_drive import NO_SHORTCUTS, PLANE
 from swgpar.analysis.figures import DriveFigures
 
-SMALL = [*PLANE, "steps.rotation=2.0", "steps.increment=2.0", "output.fields=true"]
+SMALL = [*PLANE, *NO_SHORTCUTS, "steps.rotation=2.0", "steps.increment=2.0", "output.fields=true"]
 
 
 def numbers(result: swgpar.DriveResult) -> list[np.ndarray]:

@@ -66,8 +66,3 @@ def test_refused_on_all_ranks(arguments: tuple[str, ...], reason: str, tmp_path:
     done = execute(on_ranks(2) + swgpar("run", DRIVERS / "cascade.toml", "--out", out, *arguments), timeout=120.0)
     assert done.returncode == 2 and reason in done.stderr and len(done.stderr.splitlines()) == 1
     assert not out.exists()
-
-
-def test_a_drive_needs_its_mesh(tmp_path: Path) -> None:
-    done = execute(swgpar("run", DRIVERS / "cup_45deg.toml", "--out", tmp_path / "run"), timeout=120.0)
-    assert done.returncode == 2 and "mesh is missing" in done.stderr

@@ -95,7 +95,9 @@ def test_recipes_by_name_path_and_table() -> None:
     assert swgpar.load_mesh(RECIPE).flexible_spline.flank == 2 and swgpar.load_mesh(plane) is plane
     with pytest.raises(swgpar.InputError, match="mesh is of the type float"):
         swgpar.load_mesh(1.5)
-    with pytest.raises(swgpar.InputError, match='mesh = "corse" is not available: allowed coarse, medium, full'):
+    with pytest.raises(
+        swgpar.InputError, match='mesh = "corse" is not available: allowed coarse, forces, medium, full'
+    ):
         swgpar.load_mesh("corse")
 
 
