@@ -18,21 +18,22 @@ from swgpar.meshing import MeshRecipe, build_sector_meshes
 
 @dataclass(frozen=True)
 class Growth:
-    """Needs of a run with 100,000 unknowns on two ranks, and the exponents with which they grow.
+    """Needs of a run with default shortcuts and windows on two ranks: base + growing * (unknowns / 100,000)^exponent.
 
-    memory : GB of all ranks;  base : GB of them that do not grow;  seconds : of a default run
+    memory, memory_base : GB of all ranks;  seconds, seconds_base : wall time
     """
 
     memory: float
-    base: float
+    memory_base: float
     memory_exponent: float
     seconds: float
-    time_exponent: float
+    seconds_base: float
+    seconds_exponent: float
 
 
 GROWTH = {
-    "plane": Growth(memory=0.5, base=0.3, memory_exponent=1.05, seconds=40.0, time_exponent=1.1),
-    "cup": Growth(memory=0.5, base=0.3, memory_exponent=1.2, seconds=25.0, time_exponent=1.3),
+    "plane": Growth(0.18, 0.34, 1.0, 30.0, 2.0, 1.1),
+    "cup": Growth(0.62, 0.9, 1.06, 19.7, 25.0, 1.23),
 }
 
 
@@ -54,8 +55,8 @@ def forecast(design: DriveDesign, recipe: MeshRecipe) -> Forecast:
     return Forecast(
         elements=sum(count["elements_whole"] for count in counts),
         unknowns=unknowns,
-        memory=growth.base + growth.memory * size**growth.memory_exponent,
-        seconds=growth.seconds * size**growth.time_exponent,
+        memory=growth.memory_base + growth.memory * size**growth.memory_exponent,
+        seconds=growth.seconds_base + growth.seconds * size**growth.seconds_exponent,
     )
 
 
