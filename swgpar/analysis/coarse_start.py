@@ -1,4 +1,4 @@
-"""Start on coarser meshes: deflection, engagement and torque there, then interpolation onto the finer mesh.
+"""Start with the loaded state: from the bent shape, or on coarser meshes with interpolation onto the finer one.
 
 Most Newton iterations of a start find out which points touch. On a mesh with half of the elements in every direction
 they cost an eighth or less. Its loaded state is so close that a few iterations remain on the finer mesh. Without

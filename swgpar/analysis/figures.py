@@ -116,6 +116,9 @@ class DriveFigures(FigureSet):
         """
         pairs, teeth = self._result.pairs, self._result.summary["design"]["drive"]["teeth_fs"]
         position = pairs["tooth"] * 360.0 / teeth - pairs["wg_angle_deg"]
+        if self._result.summary["design"]["drive"]["layout"] == "ring_fixed":  # the teeth turn with the output
+            history = self._result.history
+            position = position + np.interp(pairs["step"], history["step"], history["output_angle_deg"])
         position = (position + 90.0) % 180.0 - 90.0
         figure, panels = _panels(2)
         for axes, name in zip(panels, ("force_N", "pressure_MPa"), strict=True):

@@ -6,7 +6,6 @@ Memory and time grow with the unknowns as the factor of the tangent does. The co
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -48,7 +47,10 @@ class Forecast:
 
 
 def forecast(design: DriveDesign, recipe: MeshRecipe) -> Forecast:
-    """Needs of a run with the default shortcuts. Raises InputError where the recipe gives no mesh."""
+    """Needs of a run with the default shortcuts, without condensed sectors.
+
+    Raises InputError where the recipe gives no mesh.
+    """
     counts = [body_counts(build_layout(design, mesh)) for mesh in build_sector_meshes(design, recipe).values()]
     unknowns = sum(count["dofs"] for count in counts)
     growth, size = GROWTH[design.drive.model], unknowns / 1e5
@@ -71,10 +73,10 @@ def require_memory(needs: Forecast) -> None:
 
 
 def free_memory() -> float:
-    """Memory (GB) that is free on this machine."""
+    """Memory (GB) that is free on this machine; infinite where it is not known."""
     try:
         lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
         found = next(line for line in lines if line.startswith("MemAvailable:"))
         return float(found.split()[1]) * 1024.0 / 1e9
-    except (OSError, StopIteration):  # no Linux: without what caches could give back
-        return os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 1e9
+    except (OSError, StopIteration):  # no Linux
+        return float("inf")

@@ -91,7 +91,6 @@ class LoadStepper:
 
     def jump(self, target: LoadState) -> None:
         """Solve for `target` from the present x in one increment, whatever it is; raises ConvergenceError."""
-        self.load_state = replace(target, stage=Stage.ENGAGE, control="rotation", torque=0.0)
         if target.control == "torque":
             self._close_backlash(target)
         result = self.solver.solve(target, max_iterations=MAX_JUMP_ITERATIONS)

@@ -72,15 +72,16 @@ def pair_contacts(model: DriveModel, state: LoadState) -> list[PairContact]:
     x = model.problem.x
     moved = read_field(model.partition, FLEXIBLE_SPLINE, np.array([p.sector for p in pairs], dtype=np.int64), x)
     facing = read_field(model.partition, RING_GEAR, np.array([p.ring for p in pairs], dtype=np.int64), x)
-    found = []
+    found, failed = [], []
     for pair, u, ring_u in zip(pairs, moved, facing):
         try:
             contact = _contact(model, pair, loads[pair.sector - first, pair.side], u, ring_u)
+            found.append(tuple(asdict(contact).values()))
         except (ArithmeticError, np.linalg.LinAlgError) as error:
-            logger.info("tooth %d: %s", pair.sector, error)
-            continue
-        found.append(contact)
-    rows = [row for part in model.comm.allgather([tuple(asdict(one).values()) for one in found]) for row in part]
+            failed.append(f"tooth {pair.sector}: {error}")
+    rows = [row for part in model.comm.allgather(found) for row in part]
+    for reason in (reason for part in model.comm.allgather(failed) for reason in part):
+        logger.warning("the contact of a pair is left out of pairs.csv: %s", reason)
     return sorted((PairContact(*row) for row in rows), key=lambda one: (one.tooth, one.flank))
 
 
@@ -111,8 +112,6 @@ def _contact(model: DriveModel, pair: FlankPair, load: LineLoad, u: np.ndarray, 
     along = load.load @ direction
     modulus = effective_modulus(design.material.E, design.material.nu, plane_stress=plane)
     found = line_contact(gap, start, WIDTH * module, float(size[station]), modulus)
-    reach = END * module
-    tip = found.middle - found.half_width < reach
     _, foot = facing.profile.distance(
         facing.to_profile(tooth.from_profile(found.middle + found.half_width * np.array([-1.0, 1.0])))
     )
@@ -130,7 +129,7 @@ def _contact(model: DriveModel, pair: FlankPair, load: LineLoad, u: np.ndarray, 
         pressure_MPa=found.peak,
         half_width_mm=found.half_width,
         shear_MPa=found.largest_shear(),
-        edge=int(tip or foot.min() < reach or at_end),
+        edge=int(found.at_end or foot.min() < END * module or at_end),
     )
 
 

@@ -91,7 +91,7 @@ class Recorder(ABC):
 
     def _keep_pairs(self, state: LoadState) -> None:
         if state.is_periodic:
-            when = {"step": self.rows[-1]["step"], "wg_angle_deg": self.rows[-1]["wg_angle_deg"]}
+            when = {"step": int(self.rows[-1]["step"]), "wg_angle_deg": self.rows[-1]["wg_angle_deg"]}
             self.pairs += [{**when, **asdict(contact)} for contact in pair_contacts(self.model, state)]
 
     @abstractmethod

@@ -32,8 +32,11 @@ SOLVER_CHOICES = {"linear", "keep_factor", "far_teeth"}
 
 
 def identity(design: DriveDesign, recipe: MeshRecipe, accuracy: float | None) -> str:
-    """Identity of what is computed: everything but the output, the rotation and how systems are solved."""
-    content = design.model_dump(exclude={"output": True, "steps": {"rotation"}, "solver": SOLVER_CHOICES})
+    """Identity of what is computed: everything but the output, the rotation and how systems are solved.
+
+    The angles of the rotation are compared one by one.
+    """
+    content = design.model_dump(exclude={"output": True, "steps": {"rotation", "samples"}, "solver": SOLVER_CHOICES})
     content = {"design": content, "recipe": recipe.model_dump(), "accuracy": accuracy}
     return hashlib.sha256(to_json(content)).hexdigest()
 
@@ -83,12 +86,17 @@ def resume(recorder: FolderRecorder, stepper: LoadStepper, items: list[LoadState
     if state.get("identity") != recorder.identity:
         raise InputError(
             f"restart: {path} belongs to another design, recipe, accuracy or solver setting; allowed are the "
-            "same ones, only steps.rotation, the output, solver.linear, keep_factor and far_teeth may differ"
+            "same ones (--plain as before), only steps.rotation, the output, solver.linear, keep_factor and far_teeth "
+            "may differ"
         )
     last = _last_state(path, state)
     if state["starts_loaded"] or state["accuracy"]:
         items = from_loaded(items)
-    if state["done"] > len(items) or items[state["done"] - 1] != last:
+    computed = [float(np.radians(row["wg_angle_deg"])) for row in state["rows"]]
+    same = (
+        np.allclose(computed, [item.angle for item in items[: len(computed)]]) if len(computed) <= len(items) else False
+    )
+    if state["done"] > len(items) or items[state["done"] - 1] != last or not same:
         raise InputError(
             f"restart: steps.rotation = {model.design.steps.rotation:g} does not continue {path}, which "
             f"ends at {np.degrees(last.angle):g} degrees; allowed are values with this angle among their increments"

@@ -73,7 +73,7 @@ def run_drive(
         design = with_accuracy(design, accuracy)
     left_out: tuple[str, ...] = ()
     if not plain:
-        shortcuts = with_shortcuts(design, recipe)
+        shortcuts = with_shortcuts(design, recipe, levels=accuracy is None)
         design, left_out = shortcuts.design, shortcuts.left_out
     resumed = False
     if folder is not None:
@@ -189,7 +189,7 @@ class _Run:
             )
             for item in items[len(recorder.rows) :]:
                 start = time.perf_counter()
-                if item != stepper.load_state:  # a start on coarser meshes ends with the first one
+                if item != stepper.load_state:  # a start at once ends with the first one
                     stepper.advance(item)
                 seconds = time.perf_counter() - start
                 if self.model.design.output.root_stress:
@@ -200,7 +200,7 @@ class _Run:
                 self.on_increment()
 
     def _root_stress(self, state: LoadState, loaded: bool) -> RootStress | None:
-        """Largest tensile stress at the teeth by windows; None where a window cannot be computed, which is said."""
+        """Largest tensile stress at the teeth by windows; the one known before where a window cannot be computed."""
         known = self.recorder.root_stress
         design = self.model.design
         sampled = known is not None and state.stage == Stage.ROTATE and design.steps.samples
@@ -211,7 +211,8 @@ class _Run:
                 further = sampled and not design.contact.friction  # which computes two periods
                 return with_angle(known, self.model, state, self.recipe) if further else known
         except (ConvergenceError, InputError) as error:
-            logger.warning("the stress at the teeth is not resolved: %s", error)
+            angle = np.degrees(state.angle)
+            logger.warning("the stress at the teeth is not resolved at %.4g degrees: %s", angle, error)
             return known
 
     def finish(self, recipe_name: str) -> DriveResult:

@@ -26,6 +26,9 @@ SAMPLES = 8
 FEWEST = 4
 """Elements along the flank, and along the face width, below which a coarser mesh does not find its contacts."""
 
+MOST = 4
+"""Coarser meshes at most: the largest value of `steps.start_levels`."""
+
 WORTH = {"plane": 12, "cup": 16}
 """Elements along the flank from which a start on coarser meshes saves time."""
 
@@ -42,8 +45,11 @@ class Shortcuts:
     left_out: tuple[str, ...]
 
 
-def with_shortcuts(design: DriveDesign, recipe: MeshRecipe) -> Shortcuts:
-    """The design with the keys of [steps] that save time and do not change the result, where it does not set them."""
+def with_shortcuts(design: DriveDesign, recipe: MeshRecipe, *, levels: bool = True) -> Shortcuts:
+    """The design with the keys of [steps] that save time and do not change the result, where it does not set them.
+
+    levels : whether the run may start on coarser meshes;  with `--accuracy` it has meshes of its own
+    """
     steps, changes, left_out = design.steps, {}, []
 
     def leave_out(key: str, value: int | bool, words: str) -> None:
@@ -53,11 +59,12 @@ def with_shortcuts(design: DriveDesign, recipe: MeshRecipe) -> Shortcuts:
 
     if not design.contact.friction:
         period = float(np.degrees(design.period_angle))
-        if steps.rotation >= 0.999999 * period:
+        if steps.rotation >= 0.999999 * period and steps.rotation > (SAMPLES - 1) * steps.increment:
             words = f"{steps.rotation - period:.4g} of {steps.rotation:.4g} degrees ({SAMPLES} angles of one period)"
             leave_out("samples", SAMPLES, words)
-        leave_out("bent_start", True, "deflection and engagement step by step")
-        worth = recipe.flexible_spline.flank >= WORTH[design.drive.model]
+        if steps.load_increments == 1:
+            leave_out("bent_start", True, "deflection and engagement step by step")
+        worth = levels and recipe.flexible_spline.flank >= WORTH[design.drive.model]
         count = _useful_levels(recipe) if worth else 0
         leave_out("start_levels", count, f"the assembly on this mesh ({count} coarser)")
     if not changes:
@@ -69,7 +76,7 @@ def with_shortcuts(design: DriveDesign, recipe: MeshRecipe) -> Shortcuts:
 def _useful_levels(recipe: MeshRecipe) -> int:
     """Number of coarser meshes that resolve the contacts."""
     count, simpler = 0, coarser(recipe)
-    while simpler != recipe and _finds_contacts(simpler):
+    while count < MOST and simpler != recipe and _finds_contacts(simpler):
         recipe, simpler, count = simpler, coarser(simpler), count + 1
     return count
 

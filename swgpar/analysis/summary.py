@@ -104,7 +104,7 @@ def summarise(
         "accuracy": accuracy and {key: value for key, value in asdict(accuracy).items() if key != "mesh_error"},
         "places": {name: asdict(place) for name, place in places.items()},
         "root_stress": root_stress and asdict(root_stress),
-        "contact": max(pairs, key=lambda pair: pair["pressure_MPa"], default=None),
+        "contact": max(pairs, key=lambda pair: (not pair["edge"], pair["pressure_MPa"]), default=None),
         "mesh_error": accuracy.mesh_error if accuracy else mesh_error(root_stress),
         "condensed_MPa": model.omitted_bending_stress() if design.solver.condensed_sectors else None,
         "sampling_error": sampling_error(design, rows, MEANS) if sampled_period else None,

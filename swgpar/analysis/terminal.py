@@ -105,11 +105,11 @@ def _print_errors(summary: Mapping[str, Any]) -> None:
         )
         if root["warning"]:
             console.print(f"the largest tension at the teeth is {root['warning']}")
-        if root["period"]:
+        if root["period"] and len(root["period"]) == summary["design"]["steps"]["samples"]:
             values = [value for _, value in root["period"]]
             console.print(
                 f"the same over one period: mean {np.mean(values):.1f}, largest {max(values):.1f} MPa "
-                f"({len(values)} angles, each with one window)"
+                f"({len(values)} angles, with one window at each further one)"
             )
     if contact := summary.get("contact"):
         _print_contact(contact)
@@ -120,7 +120,7 @@ def _print_errors(summary: Mapping[str, Any]) -> None:
                 f"estimated error by the mesh, under load: s1 {error['fs_s1']:.1f}, |s3| {error['fs_s3']:.1f}, "
                 f"von Mises {error['fs_vm']:.1f} MPa (from this mesh and the meshes before it)"
             )
-        else:
+        elif summary["means"]:
             console.print(
                 f"the mean of s1 is that of nodal averages: up to {error['fs_s1']:.0f} MPa of it are the mesh's error "
                 "(by windows, under load); |s3| and von Mises have no estimate"

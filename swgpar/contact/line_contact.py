@@ -27,13 +27,14 @@ class LineContact:
     """Contact along a line.
 
     x : (n,) mm, middle of the strips;  pressure : (n,) MPa, constant on each
-    middle, half_width : mm, of the contact
+    middle, half_width : mm, of the contact;  at_end : whether it reaches the end of a body
     """
 
     x: np.ndarray
     pressure: np.ndarray
     middle: float
     half_width: float
+    at_end: bool
 
     @property
     def peak(self) -> float:
@@ -83,6 +84,8 @@ def line_contact(
         x, size = 0.5 * (edges[:-1] + edges[1:]), edges[1] - edges[0]
         pressure = _pressure(gap(x), size, load, modulus)
         acts = np.flatnonzero(pressure > 0.0)
+        if not len(acts):
+            break
         first, last = acts[0], acts[-1]
         free = ~np.isfinite(gap(np.array([low - size, high + size])))
         if (first == 0 and not free[0]) or (last == STRIPS - 1 and not free[1]):
@@ -92,7 +95,10 @@ def line_contact(
             low, high = max(low, middle - half), min(high, middle + half)
         else:
             left, right = _end(x, pressure, first, 1), _end(x, pressure, last, -1)
-            return LineContact(x, pressure, 0.5 * (left + right), 0.5 * (right - left))
+            beside = gap(np.array([x[first] - size, x[last] + size]))
+            return LineContact(
+                x, pressure, 0.5 * (left + right), 0.5 * (right - left), bool(not np.isfinite(beside).all())
+            )
     raise ArithmeticError(f"no contact was found for a line load of {load:g} N/mm")
 
 
@@ -130,4 +136,6 @@ def _pressure(gap: np.ndarray, size: float, load: float, modulus: float) -> np.n
         if not pulls.any() and not penetrates.any():
             break
         closed = (closed & ~pulls) if pulls.any() else closed | penetrates
+    else:
+        raise ArithmeticError("the strips in contact do not settle")
     return np.maximum(pressure, 0.0)

@@ -113,7 +113,7 @@ class Steps(Section):
         le=1000,
     )
     bent_start: bool = quantity(
-        False, text="begin with the loaded state, from the shape of the bent flexible spline, instead of steps 1 and 2"
+        False, text="begin with the loaded state, from the shape of the bent flexible spline, instead of steps 1 to 3"
     )
     start_levels: int = quantity(
         0, text="coarser meshes on which the drive is assembled and loaded (steps 1 to 3); 0: off", ge=0, le=4
@@ -134,7 +134,9 @@ class Solver(Section):
         "left_out", text="ring-gear sectors out of reach of the flexible spline, with the ring gear fixed"
     )
     condensed_sectors: bool = quantity(False, text="plane model: eliminate the inside of tooth sectors")
-    keep_factor: bool = quantity(True, text="cup drive: use factors for later tangents while GMRES converges with them")
+    keep_factor: bool = quantity(
+        True, text="cup drive in rotation: use factors for later tangents while GMRES converges with them"
+    )
 
 
 class Output(Section):

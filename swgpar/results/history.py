@@ -41,6 +41,9 @@ UNITS = {
 s3 as a positive number; torques act on the flexible spline, that of the output on the output."""
 
 COLUMNS = tuple(UNITS)
+PERIODIC = ("fs_s1", "fs_s3", "fs_vm", "rg_s1", "rg_s3", "rg_vm", "wg_torque_Nmm", "transmission_error")
+"""Columns that are the same after one period and smooth between, the transmission error among them."""
+
 FINE = 201
 """Points of a curve over a period."""
 
@@ -112,7 +115,7 @@ class Curves:
     """The history under load, ready to be drawn.
 
     angle, values : (n,) degrees of the wave generator, and columns by name, where they were computed
-    fine_angle, fine : (m,) and columns by name between them; the same where the rotation was not sampled
+    fine_angle, fine : (m,) and the columns `PERIODIC` between them; the points where the rotation was not sampled
     """
 
     angle: np.ndarray
@@ -142,6 +145,6 @@ def curves(history: Mapping[str, np.ndarray], samples: int, increments: int, per
     angle = values["wg_angle_deg"]
     knots = np.append(angle, angle[0] + period)
     fine_angle = np.linspace(knots[0], knots[-1], FINE)
-    closed = {name: np.append(column, column[0]) for name, column in values.items()}
+    closed = {name: np.append(column, column[0]) for name, column in values.items() if name in PERIODIC}
     fine = {name: CubicSpline(knots, column, bc_type="periodic")(fine_angle) for name, column in closed.items()}
     return Curves(angle, values, fine_angle, fine)

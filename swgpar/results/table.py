@@ -28,8 +28,9 @@ def format_columns(columns: Mapping[str, Sequence[Any] | np.ndarray]) -> bytes:
 
 
 def as_columns(rows: Sequence[Mapping[str, Any]]) -> dict[str, np.ndarray]:
-    """The columns of a table given by its rows, each (n,); none without rows."""
-    return {name: np.array([row[name] for row in rows]) for name in (rows[0] if rows else {})}
+    """The columns of a table given by its rows, as `read_columns` reads them from its file; none without rows."""
+    found = {name: np.array([row[name] for row in rows]) for name in (rows[0] if rows else {})}
+    return {name: values.astype(float) if values.dtype.kind in "if" else values for name, values in found.items()}
 
 
 def read_columns(path: Path) -> dict[str, np.ndarray]:

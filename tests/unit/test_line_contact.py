@@ -39,6 +39,7 @@ def test_hertz(radius: float, load: float, start: float) -> None:
     assert found.middle == pytest.approx(0.0, abs=0.01 * half_width)
     # Johnson, Contact Mechanics, section 4.2: 0.30 p0 at a depth of 0.78 half widths
     assert found.largest_shear() == pytest.approx(0.300 * peak, rel=4e-3)
+    assert not found.at_end
     size = found.x[1] - found.x[0]
     assert found.pressure.sum() * size == pytest.approx(load, rel=1e-9)
 
@@ -61,4 +62,4 @@ def test_a_body_that_ends_has_its_largest_pressure_there() -> None:
     found = line_contact(gap, 0.0, 0.05, 40.0, E)
     assert found.middle - found.half_width == pytest.approx(-0.2 * half_width, abs=0.1 * half_width)
     assert found.pressure.argmax() == np.flatnonzero(found.pressure > 0.0)[0]
-    assert found.peak > 1.5 * peak
+    assert found.peak > 1.5 * peak and found.at_end

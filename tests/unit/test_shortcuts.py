@@ -12,6 +12,7 @@ from support.small_drive import NO_SHORTCUTS, PLANE
 from swgpar.analysis.shortcuts import SAMPLES, with_shortcuts
 from swgpar.design.design_file import load_design
 from swgpar.meshing import load_recipe
+from swgpar.meshing.recipe_counts import with_counts
 
 PERIOD = 360.0 / 42.0
 """Of the small drive, degrees."""
@@ -32,6 +33,20 @@ def test_a_start_uses_meshes_that_find_the_contacts(recipe: str, levels: int) ->
     name = "plane_half_turn.toml" if recipe.startswith("plane") else "cup_45deg.toml"
     found = with_shortcuts(load_design(DRIVERS / name), load_recipe(recipe))
     assert found.design.steps.start_levels == levels
+
+
+def test_very_fine_recipes_start_on_four_meshes_at_most() -> None:
+    fine = with_counts(load_recipe("plane"), lambda section, name, value: 200 if name == "flank" else value)
+    assert with_shortcuts(load_design(DRIVERS / "plane_half_turn.toml"), fine).design.steps.start_levels == 4
+    without = with_shortcuts(load_design(DRIVERS / "plane_half_turn.toml"), fine, levels=False)
+    assert without.design.steps.start_levels == 0
+
+
+def test_few_increments_are_computed_as_they_are() -> None:
+    few = with_shortcuts(load_design(REFERENCE, ["steps.rotation=10"]), load_recipe("coarse"))
+    assert few.design.steps.samples == 0
+    partial = with_shortcuts(load_design(REFERENCE, ["steps.load_increments=5"]), load_recipe("coarse"))
+    assert not partial.design.steps.bent_start
 
 
 def test_keys_of_the_design_are_kept() -> None:
