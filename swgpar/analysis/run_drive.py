@@ -203,13 +203,13 @@ class _Run:
         """Largest tensile stress at the teeth by windows; the one known before where a window cannot be computed."""
         known = self.recorder.root_stress
         design = self.model.design
-        sampled = known is not None and state.stage == Stage.ROTATE and design.steps.samples
+        # with friction two periods are computed, of which the first one settles
+        further = known is not None and state.stage == Stage.ROTATE and not design.contact.friction
         try:
             with self.model.phases("windows"):
                 if loaded:
                     return resolve_root_stress(self.model, state, self.recipe)
-                further = sampled and not design.contact.friction  # which computes two periods
-                return with_angle(known, self.model, state, self.recipe) if further else known
+                return with_angle(known, self.model, state, self.recipe) if further and design.steps.samples else known
         except (ConvergenceError, InputError) as error:
             angle = np.degrees(state.angle)
             logger.warning("the stress at the teeth is not resolved at %.4g degrees: %s", angle, error)
