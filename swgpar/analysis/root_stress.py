@@ -14,19 +14,31 @@ import numpy as np
 
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.local_problem import SECTORS, LocalProblem, WindowStress
+from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import LoadState
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.fem.stress import principal
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
+from swgpar.meshing.recipe import make_recipe
 
-PLANE_RATIO, PLANE_LEVELS = 2.0, ((4, 3, 4), (8, 6, 8), (16, 12, 16))
-"""Ratio of element sizes, and counts `root`, `under` and `rim` of the windows of the plane model."""
+RATIO = {"plane": 2.0, "cup": 1.5}
+"""Ratio of element sizes of successive windows."""
 
-CUP_RATIO, CUP_LEVELS = 1.5, ((4, 2, 3, 8, 12), (6, 3, 4, 12, 18), (9, 4, 6, 18, 27))
-"""The same of the cup drive, with the elements along the face width and along the whole cylinder of the cup."""
+COUNTS: dict[str, dict[str, dict[str, int]]] = {
+    "plane": {"flexible_spline": {"root": 4, "under": 3, "rim": 4, "layers": 1, "tip": 2, "flank": 8}},
+    "cup": {
+        "flexible_spline": {"root": 4, "under": 2, "rim": 2, "layers": 1},
+        "face_width": {"elements": 6},
+        "cup": {"cylinder": 6},  # along the whole cylinder
+    },
+}
+"""Counts of the first window; the others are those of the drive's recipe."""
 
-PLANE_LEVEL, CUP_LEVEL = 1, 0
+LEVELS = {"plane": 4, "cup": 3}
+"""Windows in the loaded state."""
+
+PERIOD_LEVEL = {"plane": 1, "cup": 0}
 """Index of the window with which the further angles of a period are computed."""
 
 FLANK, END_RATIO = 8, 3.0
@@ -66,44 +78,49 @@ class RootStress:
     period: tuple[tuple[float, float], ...] = ()
 
 
-def window_recipes(model: DriveModel, recipe: MeshRecipe) -> list[MeshRecipe]:
-    """Recipes of the windows, coarse to fine; what they do not refine is that of the drive's `recipe`."""
-    found = []
-    for counts in PLANE_LEVELS if model.design.drive.model == "plane" else CUP_LEVELS:
-        content: dict[str, Any] = recipe.model_dump(exclude_none=True)
-        spline = content["flexible_spline"]
-        spline |= dict(zip(("root", "under", "rim"), counts)) | {"flank": max(FLANK, spline["flank"])}
-        if len(counts) > 3:
-            content["face_width"] = {"elements": counts[3], "end_ratio": END_RATIO}
-            content["cup"] |= {"cylinder": counts[4], "end_ratio": 1.0}
-        found.append(MeshRecipe.model_validate(content))
-    return found
+def window_recipe(design: DriveDesign, recipe: MeshRecipe, level: int) -> MeshRecipe:
+    """Recipe of the window `level`, from 0 on; what windows do not refine is that of the drive's `recipe`.
+
+    Raises InputError where a count is out of range.
+    """
+    finer = RATIO[design.drive.model] ** level
+    content: dict[str, Any] = recipe.model_dump(exclude_none=True)
+    content["flexible_spline"]["flank"] = max(FLANK, recipe.flexible_spline.flank)
+    for section, counts in COUNTS[design.drive.model].items():
+        content[section] |= {name: int(count * finer) for name, count in counts.items()}
+    if design.drive.model == "cup":
+        content["face_width"]["end_ratio"], content["cup"]["end_ratio"] = END_RATIO, 1.0
+    return make_recipe(content)
 
 
-def resolve_root_stress(model: DriveModel, state: LoadState, recipe: MeshRecipe) -> RootStress:
+def resolve_root_stress(
+    model: DriveModel, state: LoadState, recipe: MeshRecipe, levels: int | None = None
+) -> RootStress:
     """Resolve the largest tensile stress at the teeth in the model's equilibrium under `state`; collective.
 
-    recipe : of the model's mesh. Raises ConvergenceError or InputError where a window cannot be computed.
+    recipe : of the model's mesh;  levels : windows, each finer than the one before; None for those of `LEVELS`
+
+    Raises ConvergenceError or InputError where a window cannot be computed.
     """
-    by_tooth = _largest_by_tooth(model)
-    recipes = window_recipes(model, recipe)
+    design, by_tooth = model.design, _largest_by_tooth(model)
+    coarsest = window_recipe(design, recipe, 0)
     first = int(by_tooth.argmax())
-    found = _solve(model, state, first, recipes[0])
+    found = _solve(model, state, first, coarsest)
     far = by_tooth.copy()
     far[_near(first, len(by_tooth))] = -np.inf
     other = int(far.argmax())
     tooth = first
     if far[other] > CLOSE * by_tooth[first]:
-        there = _solve(model, state, other, recipes[0])
+        there = _solve(model, state, other, coarsest)
         if there.value > found.value:
             tooth, found = other, there
-    levels = [found.value]
-    for finer in recipes[1:]:
-        found = _solve(model, state, tooth, finer)
-        levels.append(found.value)
-    logger.info("windows around tooth %d: s1 %s MPa", tooth, ", ".join(f"{value:.1f}" for value in levels))
-    ratio = PLANE_RATIO if model.design.drive.model == "plane" else CUP_RATIO
-    return _place(model, found, tuple(levels), error_of(levels, ratio), float(by_tooth[first]))
+    values = [found.value]
+    for level in range(1, levels or LEVELS[design.drive.model]):
+        found = _solve(model, state, tooth, window_recipe(design, recipe, level))
+        values.append(found.value)
+    logger.info("windows around tooth %d: s1 %s MPa", tooth, ", ".join(f"{value:.1f}" for value in values))
+    error = error_of(values, RATIO[design.drive.model])
+    return _place(model, found, tuple(values), error, float(by_tooth[first]))
 
 
 def with_angle(known: RootStress, model: DriveModel, state: LoadState, recipe: MeshRecipe) -> RootStress:
@@ -112,9 +129,9 @@ def with_angle(known: RootStress, model: DriveModel, state: LoadState, recipe: M
     One window, not the finest, is computed there. Its error is taken to be that of the same window in the loaded
     state. Raises like `resolve_root_stress`.
     """
-    level = PLANE_LEVEL if model.design.drive.model == "plane" else CUP_LEVEL
+    level = PERIOD_LEVEL[model.design.drive.model]
     tooth = int(_largest_by_tooth(model).argmax())
-    found = _solve(model, state, tooth, window_recipes(model, recipe)[level])
+    found = _solve(model, state, tooth, window_recipe(model.design, recipe, level))
     value = found.value * known.s1 / known.levels[level]
     period = known.period or ((0.0, known.s1),)
     return replace(known, period=(*period, (float(np.degrees(state.angle)), value)))

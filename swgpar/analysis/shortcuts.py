@@ -1,8 +1,8 @@
 """What a run leaves out by itself where the scene allows it, and the mesh that it takes when none is named.
 
 Without friction the loaded state does not depend on the path to it, and the state repeats after one period. So a run
-needs neither the steps of the assembly nor the angles of further periods, and it may start on coarser meshes. Keys that
-the design file sets are kept.
+needs neither the steps of the assembly nor the angles of further periods, and it may start on coarser meshes. Digits
+that no mesh gives are not computed. Keys that the design file sets are kept.
 """
 
 from __future__ import annotations
@@ -22,6 +22,9 @@ meshes drive (docs/verification/windows.md)."""
 
 SAMPLES = 8
 """Angles in a period: half of them change the means by 0.3 to 0.5 %, and the orders 1 to 4 of the period are seen."""
+
+RTOL = 1e-6
+"""Newton's tolerance. The stresses and the input torque of the reference drives keep all digits that are printed."""
 
 FEWEST = 4
 """Elements along the flank, and along the face width, below which a coarser mesh does not find its contacts."""
@@ -46,11 +49,11 @@ class Shortcuts:
 
 
 def with_shortcuts(design: DriveDesign, recipe: MeshRecipe, *, levels: bool = True) -> Shortcuts:
-    """The design with the keys of [steps] that save time and do not change the result, where it does not set them.
+    """The design with the keys of [steps] and [solver] that save time and do not change the result, where it sets none.
 
     levels : whether the run may start on coarser meshes;  with `--accuracy` it has meshes of its own
     """
-    steps, changes, left_out = design.steps, {}, []
+    steps, solver, changes, left_out = design.steps, design.solver, {}, []
 
     def leave_out(key: str, value: int | bool, words: str) -> None:
         if key not in steps.model_fields_set and value != getattr(steps, key):
@@ -67,10 +70,14 @@ def with_shortcuts(design: DriveDesign, recipe: MeshRecipe, *, levels: bool = Tr
         worth = levels and recipe.flexible_spline.flank >= WORTH[design.drive.model]
         count = _useful_levels(recipe) if worth else 0
         leave_out("start_levels", count, f"the assembly on this mesh ({count} coarser)")
-    if not changes:
+        if "rtol" not in solver.model_fields_set:
+            solver = solver.model_copy(update={"rtol": RTOL})
+            left_out.append(f"residuals below {RTOL:g} of the contact force")
+    if not left_out:
         return Shortcuts(design, ())
     content: dict[str, Any] = {**steps.model_dump(exclude_unset=True), **changes}
-    return Shortcuts(design.model_copy(update={"steps": type(steps).model_validate(content)}), tuple(left_out))
+    update = {"steps": type(steps).model_validate(content), "solver": solver}
+    return Shortcuts(design.model_copy(update=update), tuple(left_out))
 
 
 def _useful_levels(recipe: MeshRecipe) -> int:

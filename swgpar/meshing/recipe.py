@@ -21,7 +21,7 @@ class ToothRecipe(Section):
         ge=2,
         le=40,
     )
-    layers: int = quantity(1, text="layers of elements directly below the flank", ge=1, le=20)
+    layers: int = quantity(1, text="layers of elements directly below the flank", ge=1, le=40)
     layer_ratio: float = quantity(
         1.0,
         text="thickness of each of these layers over that of the next one nearer the flank",
@@ -29,9 +29,9 @@ class ToothRecipe(Section):
         le=3.0,
     )
     flank: int = quantity(text="elements along the flank, from the tip edge to the split in the root arc", ge=1, le=400)
-    root: int = quantity(text="elements from the split in the root arc to the middle of the root", ge=2, le=80)
-    under: int = quantity(text="layers of elements between the root and the lower rim", ge=1, le=40)
-    rim: int = quantity(text="layers of elements in the lower rim (flexible spline: through the cup)", ge=1, le=40)
+    root: int = quantity(text="elements from the split in the root arc to the middle of the root", ge=2, le=200)
+    under: int = quantity(text="layers of elements between the root and the lower rim", ge=1, le=100)
+    rim: int = quantity(text="layers of elements in the lower rim (flexible spline: through the cup)", ge=1, le=100)
 
 
 class FaceWidthRecipe(Section):

@@ -113,6 +113,7 @@ class DiscreteProblem:
         self.slots: list[np.ndarray] = []
         self.matrix: PETSc.Mat | None = None
         self.round_off = 0.0
+        self._searched = self.x.array_r.copy()
 
     def destroy(self) -> None:
         """Release the tangent and the exchange of ghost values; collective."""
@@ -160,6 +161,7 @@ class DiscreteProblem:
     def search(self, state: LoadState) -> None:
         """Find the flanks and faces that can meet at the present x; make room for them in the tangent; collective."""
         with self.phases("search"):
+            self._searched = self.x.array_r.copy()
             pairs = self._facing_pairs(state, self.contact_search.tip_margin) if self.flanks is not None else []
             further = self.flanks.node_numbers(pairs) if self.flanks is not None else np.zeros(0, dtype=np.int64)
             self.local = self.elements.local.extended(further)
@@ -176,6 +178,13 @@ class DiscreteProblem:
         for contact in self.rigid_contacts:
             contact.reset()
         self.set_pattern(pattern)
+
+    def moved_since_search(self) -> float:
+        """Largest displacement (mm) of a node since the last search, by component; collective."""
+        moved = np.abs(self.x.array_r - self._searched)[: 3 * self.partition.n_own]
+        if self.partition.comm.rank == self.partition.comm.size - 1:
+            moved = moved[: -self.partition.n_multipliers]
+        return largest(self.partition.comm, float(moved.max(initial=0.0)))
 
     def _facing_pairs(self, state: LoadState, margin: float) -> list[FlankPair]:
         """Pairs of flanks that can meet at x, of this rank; none while the flanks are switched off."""

@@ -55,6 +55,9 @@ takes some iterations more."""
 MAX_FURTHER_SEARCHES = 3
 """Further contact searches of a solve, in states where flanks touch that the last search left out."""
 
+SEARCH_DISTANCE = 0.25
+"""Displacement (modules) of a node since the last contact search after which a Newton iteration searches again."""
+
 MAX_NODE_STEP = 0.2
 """Largest displacement (modules) of a node in a Newton step while flanks may touch: the tangent ignores clearances."""
 
@@ -185,7 +188,7 @@ class NewtonSolver:
             self.problem.freeze_segments()
         if ratio <= (SOFT_TOLERANCE if softened else margin * rtol) or self._is_round_off(its, norm, margin):
             return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
-        if state.incomplete_pattern and its > 0:
+        if its > 0 and (state.incomplete_pattern or self._search_is_outdated(state)):
             return PETSc.SNES.ConvergedReason.CONVERGED_ITS
         if is_exhausted(state.residuals, self.settings.max_iterations):
             return PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT
@@ -193,6 +196,13 @@ class NewtonSolver:
             logger.info("   contacts do not settle in Newton iteration %d: descending line search", its)
             self._break_cycle()
         return None
+
+    def _search_is_outdated(self, state: SolveState) -> bool:
+        """Whether the nodes have moved so far since the last contact search that other flanks may meet; collective."""
+        if state.breaker.solution is not None or not np.isfinite(self.line_search.max_node_step):
+            return False
+        state.outdated_search = self.problem.moved_since_search() > SEARCH_DISTANCE * self.problem.module
+        return state.outdated_search
 
     def _is_round_off(self, its: int, norm: float, margin: float) -> bool:
         """Whether a residual is round-off: that of positions with 16 digits, or one near it that does not decrease."""
@@ -235,8 +245,8 @@ class NewtonSolver:
             outcome = self._iterate(state)
             if outcome is Outcome.FAILED:
                 self._after_failure(state)
-            elif outcome is Outcome.INCOMPLETE_PATTERN:
-                self.problem.extend_pattern(state.pattern_misses)
+            elif outcome is Outcome.INTERRUPTED:
+                self._prepare_contacts(state)
                 state.softenings.insert(0, state.penalty_share)
             elif state.phase is Phase.SOFTENED:
                 state.breaker = CycleBreaker()
@@ -259,7 +269,8 @@ class NewtonSolver:
 
     def _iterate(self, state: SolveState) -> Outcome:
         """One run of Newton's iteration in the present phase."""
-        state.residuals, state.incomplete_pattern, self._trial_cache = [], False, None
+        state.residuals, state.incomplete_pattern, state.outdated_search = [], False, False
+        self._trial_cache = None
         state.visited, self.line_search.descending = self.visited_sets(), state.breaker.active
         self._set_penalty_share(state, state.softenings.pop(0) if state.softenings else 1.0)
         self.snes.setTolerances(max_it=max(1, state.max_iterations - state.iterations))
@@ -270,7 +281,15 @@ class NewtonSolver:
             return Outcome.FAILED
         if reason != PETSc.SNES.ConvergedReason.CONVERGED_ITS:
             return Outcome.CONVERGED
-        return Outcome.INCOMPLETE_PATTERN if state.iterations < state.max_iterations else Outcome.FAILED
+        return Outcome.INTERRUPTED if state.iterations < state.max_iterations else Outcome.FAILED
+
+    def _prepare_contacts(self, state: SolveState) -> None:
+        """Search anew, or extend the pattern, as the run that was interrupted needs it."""
+        if state.outdated_search:
+            state.breaker = CycleBreaker()  # a search releases the segments
+            self.problem.search(state.load_state)
+        else:
+            self.problem.extend_pattern(state.pattern_misses)
 
     def _set_penalty_share(self, state: SolveState, share: float) -> None:
         """Use this share of the contact penalties; below 1 the phase is SOFTENED."""

@@ -26,7 +26,7 @@ class Outcome(enum.Enum):
     """How one run of Newton's iteration ended."""
 
     CONVERGED = enum.auto()
-    INCOMPLETE_PATTERN = enum.auto()
+    INTERRUPTED = enum.auto()
     FAILED = enum.auto()
 
 
@@ -96,6 +96,7 @@ class SolveState:
     residuals : over the contact force, of the present run
     pattern_misses : keys of contact blocks on this rank that the tangent's pattern lacks
     incomplete_pattern : whether any rank misses blocks
+    outdated_search : whether the nodes have moved far since the last contact search
     visited : active sets of the present run
     """
 
@@ -109,6 +110,7 @@ class SolveState:
     residuals: list[float] = field(default_factory=list)
     pattern_misses: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     incomplete_pattern: bool = False
+    outdated_search: bool = False
     visited: VisitedSets = field(default_factory=VisitedSets)
     breaker: CycleBreaker = field(default_factory=CycleBreaker)
     before_augmentation: AcceptableState | None = None

@@ -9,7 +9,7 @@ import swgpar
 from support.messages import Messages
 from support.paths import DESIGN, DRIVERS, RECIPE, REFERENCE
 from support.small_drive import NO_SHORTCUTS, PLANE
-from swgpar.analysis.shortcuts import SAMPLES, with_shortcuts
+from swgpar.analysis.shortcuts import RTOL, SAMPLES, with_shortcuts
 from swgpar.design.design_file import load_design
 from swgpar.meshing import load_recipe
 from swgpar.meshing.recipe_counts import with_counts
@@ -22,7 +22,7 @@ def test_a_design_without_the_keys_takes_all() -> None:
     found = with_shortcuts(load_design(REFERENCE), load_recipe("full"))
     steps = found.design.steps
     assert (steps.samples, steps.bent_start, steps.start_levels) == (SAMPLES, True, 2)
-    assert steps.rotation == 45.0 and len(found.left_out) == 3
+    assert steps.rotation == 45.0 and found.design.solver.rtol == RTOL and len(found.left_out) == 4
     assert "42.05 of 45 degrees" in found.left_out[0]
 
 
@@ -60,12 +60,13 @@ def test_keys_of_the_design_are_kept() -> None:
 def test_friction_and_short_rotations() -> None:
     assert with_shortcuts(load_design(REFERENCE, ["contact.friction=0.1"]), load_recipe("full")).left_out == ()
     short = with_shortcuts(load_design(REFERENCE, ["steps.rotation=2.9"]), load_recipe("coarse"))
-    assert short.design.steps.samples == 0 and short.left_out == ("deflection and engagement step by step",)
+    assert short.design.steps.samples == 0 and short.left_out[0] == "deflection and engagement step by step"
 
 
 def test_a_run_with_shortcuts_ends_in_the_same_states() -> None:
     """The angles of one period are among those of the plain run; the line says what is left out."""
-    design = load_design(DESIGN, [*PLANE, f"steps.rotation={1.5 * PERIOD}", f"steps.increment={PERIOD / SAMPLES}"])
+    steps = [f"steps.rotation={1.5 * PERIOD}", f"steps.increment={PERIOD / SAMPLES}", "solver.rtol=1e-9"]
+    design = load_design(DESIGN, [*PLANE, *steps])
     plain = swgpar.run(design, RECIPE, plain=True).history
     with Messages() as messages:
         fast = swgpar.run(design, RECIPE)
@@ -79,3 +80,11 @@ def test_a_run_with_shortcuts_ends_in_the_same_states() -> None:
     # the curve passes through the points
     at_points = np.interp(curves.angle, curves.fine_angle, curves.fine["fs_s1"])
     assert np.allclose(at_points, curves.values["fs_s1"], rtol=2e-3)
+
+
+def test_the_tolerance_keeps_the_digits_that_are_printed() -> None:
+    steps = [f"steps.rotation={1.5 * PERIOD}", f"steps.increment={PERIOD / SAMPLES}"]
+    tight = swgpar.run(load_design(DESIGN, [*PLANE, *steps, "solver.rtol=1e-11"]), RECIPE).history
+    fast = swgpar.run(load_design(DESIGN, [*PLANE, *steps]), RECIPE).history
+    for name in ("fs_s1", "fs_vm", "wg_torque_Nmm"):
+        assert np.allclose(fast[name], tight[name], rtol=2e-5)

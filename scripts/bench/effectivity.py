@@ -1,0 +1,129 @@
+"""Estimated over true error of the largest tension at the teeth, of many drives.
+
+The true error is the distance from windows that are finer by two levels, driven by a mesh of the drive that is finer
+by two levels as well.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+from page import markdown, put
+
+from support.commands import environment, on_ranks
+from support.drive_groups import CUP, PLANE, Case, cams, toml_value
+
+OUT = Path("results/bench/effectivity.jsonl")
+
+FINER = {"plane": 4.0, "cup": 1.5}
+"""Elements of the reference's drive mesh in every direction, over those of the usual one."""
+
+FURTHER = {"plane": 1, "cup": 1}
+"""Further windows of the reference."""
+
+COLUMNS = ("drive", "s1", "error", "reference", "ratio", "windows", "drive_mesh")
+
+
+def scaled(module: float, teeth: int, torque: float = 2.0, **more: Any) -> Case:
+    """The plane reference drive with another module and number of teeth, everything in proportion. torque : N·m there"""
+    size = teeth / 120
+    arcs = {"type": "quadruple_arc", "r_tip": 0.3, "r_addendum": 1.0, "straight_l": 0.2, "r_dedendum": 2.0}
+    profile = {**{key: v if key == "type" else v * module for key, v in arcs.items()}, "r_root": 0.3 * module}
+    case = {
+        "drive.module": module,
+        "drive.teeth_fs": teeth,
+        "drive.teeth_rg": teeth + 2,
+        "drive.face_width": 10.0 * module,
+        "wave_generator.face_width": 10.0 * module,
+        "flexible_spline.rim": round(size * module, 4),
+        "ring_gear.rim": 2.0 * module,
+        "flexible_spline.profile": profile,
+        "ring_gear.profile": profile,
+        "load.torque": round(torque * module**3 * size, 6),
+    }
+    return {**case, **more}
+
+
+def profile(**values: Any) -> Case:
+    """A profile for both gears."""
+    return {"flexible_spline.profile": values, "ring_gear.profile": dict(values)}
+
+
+def drives() -> dict[str, tuple[str, Case]]:
+    """Model and values of the design file by name."""
+    arcs = {"type": "quadruple_arc", "r_tip": 0.5, "r_addendum": 1.0, "straight_l": 0.0, "r_dedendum": 20.0, "r_root": 0.6}
+    double = {"flexible_spline.c_l": 0.0, "ring_gear.c_l": 0.0}
+    involute = {"type": "involute", "pressure_angle": 20.0, "cutter_radius": 0.2}
+    plane: dict[str, Case] = {
+        "elliptical cam": {},
+        "10 N·m": {"load.torque": 10.0},
+        "20 N·m": {"load.torque": 20.0},
+        "no torque": {"load.torque": 0.0},
+        "spline fixed": {"drive.layout": "spline_fixed"},
+        "rim 0.6 mm": {"flexible_spline.rim": 0.6},
+        "rim 1.4 mm": {"flexible_spline.rim": 1.4},
+        "improved quadruple arc": profile(**arcs),
+        "double arc": {**profile(type="double_arc", r_addendum=1.0, r_dedendum=0.5), **double},
+        "improved double arc": {**profile(type="double_arc", r_addendum=1.0, r_dedendum=0.6), **double},
+        "involute": {"flexible_spline.profile": involute, "ring_gear.profile": {**involute, "cutter_teeth": 80}},
+        "60 teeth": scaled(1.0, 60),
+        "80 teeth, module 0.5": scaled(0.5, 80),
+        "100 teeth, module 0.2": scaled(0.2, 100, 5.0),
+        "160 teeth": scaled(1.0, 160, 4.0),
+        "200 teeth, module 0.3": scaled(0.3, 200, 4.0),
+        "100 teeth, module 1.5": scaled(1.5, 100),
+        "200 teeth, thick rim": scaled(1.0, 200, 4.0, **{"flexible_spline.rim": 2.2}),
+    }
+    wanted = ("simplified,C=0.8", "simplified,C=0.95", "elliptical,C=0.9", "parabolic", "four_roller")
+    plane |= {name: case for name, case in cams().items() if name in (*wanted, "turned_parabolas=0.5")}
+    cup: dict[str, Case] = {
+        "cup": {},
+        "cup, 10 N·m": {"load.torque": 10.0},
+        "cup, parabolic cam": {"wave_generator": {**cams()["parabolic"]["wave_generator"]}},
+    }
+    return {name: ("plane", case) for name, case in plane.items()} | {name: ("cup", case) for name, case in cup.items()}
+
+
+def case_of(model: str, values: Case, reference: bool) -> dict[str, Any]:
+    """A case of `effectivity_case.py`."""
+    return {
+        "design": str(PLANE if model == "plane" else CUP),
+        "overrides": {key: value for key, value in values.items()},
+        "mesh": "plane_coarse" if model == "plane" else "forces",
+        "times": FINER[model] if reference else 1.0,
+        "further": FURTHER[model],
+    }
+
+
+def solve(case: dict[str, Any], ranks: int) -> dict[str, Any]:
+    """Run one case."""
+    command = [*on_ranks(ranks), sys.executable, str(Path(__file__).with_name("effectivity_case.py")), json.dumps(case)]
+    done = subprocess.run(command, capture_output=True, text=True, env=environment())
+    if done.returncode:
+        return {"failed": (done.stderr or done.stdout).strip().splitlines()[-1]}
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+def main() -> None:
+    options = argparse.ArgumentParser(description=__doc__)
+    options.add_argument("--only", nargs="+", choices=list(drives()), default=list(drives()), metavar="DRIVE")
+    options.add_argument("--ranks", type=int, default=2)
+    arguments = options.parse_args()
+    OUT.parent.mkdir(parents=True, exist_ok=True)
+    for name in arguments.only:
+        model, values = drives()[name]
+        usual, reference = (solve(case_of(model, values, finer), arguments.ranks) for finer in (False, True))
+        line = json.dumps({"drive": name, "usual": usual, "reference": reference})
+        with OUT.open("a", encoding="utf-8") as file:
+            file.write(line + "\n")
+        print(line, flush=True)
+
+
+if __name__ == "__main__":
+    main()
