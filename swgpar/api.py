@@ -120,8 +120,8 @@ def run(
     out : path
         Results folder. Without it the run is in memory and leaves no files.
     accuracy : float
-        Refine the mesh until the estimated relative error of the largest tensile stress under load is at most this
-        (0.001 to 0.2); drives without friction only.
+        Refine the mesh and the windows until the estimated relative error of the largest tensile stress at the teeth
+        under load is at most this (0.001 to 0.2); drives only.
     plain : bool
         Compute all that the design asks for. Otherwise a drive without friction leaves out the assembly
         step by step and on a fine mesh, and the angles beyond one period, where the design does not set the keys

@@ -32,7 +32,7 @@ RUN_EXAMPLES = """examples:
   mpirun -n 2 swgpar run drivers/cup_45deg.toml --plain --out results/plain
   mpirun -n 2 swgpar run drivers/cup_45deg.toml --mesh full --out results/full --set load.torque=10 steps.rotation=20
   mpirun -n 2 swgpar run drivers/cup_45deg.toml --mesh full --out results/full --restart
-  mpirun -n 2 swgpar run drivers/plane_half_turn.toml --mesh plane_coarse --accuracy 0.05 --out results/plane
+  mpirun -n 2 swgpar run drivers/cup_45deg.toml --accuracy 0.02 --out results/accurate
   swgpar run drivers/plane_half_turn.toml --mesh mesh/rim/inner_10.toml --out results/rim -snes_monitor
   mpirun -n 2 swgpar run drivers/cascade.toml --out results/cascade
 """
@@ -150,9 +150,10 @@ def _add_run(commands: _Commands) -> None:
         "--accuracy",
         type=float,
         metavar="A",
-        help="refine the mesh until the estimated error of the largest tensile stress under load is at most A (0.02: "
-        "2 %%; 0.001 to 0.2, without friction). Without other values in the design, one period is computed in 4, 8 or "
-        "16 angles with solver.rtol = 1e-7. The mesh has at most 1,500,000 elements in the plane, 700,000 in space",
+        help="refine the mesh and the windows until the estimated error of the largest tensile stress at the teeth "
+        "under load is at most A (0.02: 2 %%; 0.001 to 0.2). Without other values in the design, one period is "
+        "computed in 4, 8 or 16 angles with solver.rtol = 1e-7. The mesh has at most 1,500,000 elements in the plane, "
+        "700,000 in space",
     )
     run.add_argument(
         "--plain",

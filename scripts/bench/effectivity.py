@@ -1,7 +1,8 @@
-"""Estimated over true error of the largest tension at the teeth, of many drives.
+"""Estimated over true error of the largest tension at the teeth, of many drives in their loaded state.
 
-The true error is the distance from windows that are finer by two levels, driven by a mesh of the drive that is finer
-by two levels as well.
+The true error is the distance from a reference: a mesh of the drive with four times the elements in every direction
+(cup drive: 1.5 times), and one window more, with smaller elements than the last usual one. Finished drives are stored
+and not computed again.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import argparse
 import csv
 import json
+import math
 import subprocess
 import sys
 from pathlib import Path
@@ -17,21 +19,23 @@ from typing import Any
 from page import markdown, put
 
 from support.commands import environment, on_ranks
-from support.drive_groups import CUP, PLANE, Case, cams, toml_value
+from support.drive_groups import CUP, PLANE, Case, cams
 
 OUT = Path("results/bench/effectivity.jsonl")
 
-FINER = {"plane": 4.0, "cup": 1.5}
+TIMES = {"plane": 4.0, "cup": 1.5}
 """Elements of the reference's drive mesh in every direction, over those of the usual one."""
 
-FURTHER = {"plane": 1, "cup": 1}
-"""Further windows of the reference."""
+MESHES = {"plane": "plane_coarse", "cup": "forces"}
 
-COLUMNS = ("drive", "s1", "error", "reference", "ratio", "windows", "drive_mesh")
+HEAD = ["drive", "s1", "by windows", "by the drive's mesh", "estimate", "true error", "ratio", "true error, %"]
+
+COLUMNS = ("drive", "s1", "error", "drive_error", "estimate", "reference", "true", "ratio", "edge", "pressure")
+COLUMNS += ("reference_pressure", "wall_s", "reference_wall_s")
 
 
 def scaled(module: float, teeth: int, torque: float = 2.0, **more: Any) -> Case:
-    """The plane reference drive with another module and number of teeth, everything in proportion. torque : N·m there"""
+    """The plane reference drive with another module and number of teeth, in proportion. torque : N·m of that one"""
     size = teeth / 120
     arcs = {"type": "quadruple_arc", "r_tip": 0.3, "r_addendum": 1.0, "straight_l": 0.2, "r_dedendum": 2.0}
     profile = {**{key: v if key == "type" else v * module for key, v in arcs.items()}, "r_root": 0.3 * module}
@@ -57,7 +61,14 @@ def profile(**values: Any) -> Case:
 
 def drives() -> dict[str, tuple[str, Case]]:
     """Model and values of the design file by name."""
-    arcs = {"type": "quadruple_arc", "r_tip": 0.5, "r_addendum": 1.0, "straight_l": 0.0, "r_dedendum": 20.0, "r_root": 0.6}
+    arcs = {
+        "type": "quadruple_arc",
+        "r_tip": 0.5,
+        "r_addendum": 1.0,
+        "straight_l": 0.0,
+        "r_dedendum": 20.0,
+        "r_root": 0.6,
+    }
     double = {"flexible_spline.c_l": 0.0, "ring_gear.c_l": 0.0}
     involute = {"type": "involute", "pressure_angle": 20.0, "cutter_radius": 0.2}
     plane: dict[str, Case] = {
@@ -94,20 +105,50 @@ def case_of(model: str, values: Case, reference: bool) -> dict[str, Any]:
     """A case of `effectivity_case.py`."""
     return {
         "design": str(PLANE if model == "plane" else CUP),
-        "overrides": {key: value for key, value in values.items()},
-        "mesh": "plane_coarse" if model == "plane" else "forces",
-        "times": FINER[model] if reference else 1.0,
-        "further": FURTHER[model],
+        "overrides": values,
+        "mesh": MESHES[model],
+        "times": TIMES[model] if reference else 1.0,
+        "further": 1 if reference else None,
     }
 
 
 def solve(case: dict[str, Any], ranks: int) -> dict[str, Any]:
-    """Run one case."""
+    """Run one case; ends the benchmark where it fails."""
     command = [*on_ranks(ranks), sys.executable, str(Path(__file__).with_name("effectivity_case.py")), json.dumps(case)]
     done = subprocess.run(command, capture_output=True, text=True, env=environment())
     if done.returncode:
-        return {"failed": (done.stderr or done.stdout).strip().splitlines()[-1]}
+        raise SystemExit(f"{case}: {done.stderr or done.stdout}")
     return json.loads(done.stdout.splitlines()[-1])
+
+
+def stored() -> dict[str, dict[str, Any]]:
+    """Finished drives by name."""
+    lines = OUT.read_text(encoding="utf-8").splitlines() if OUT.exists() else []
+    return {found["drive"]: found for found in map(json.loads, lines)}
+
+
+def row(found: dict[str, Any]) -> dict[str, Any]:
+    """Estimate and true error of one drive."""
+    usual, reference = found["usual"], found["reference"]
+    estimate, true = math.hypot(usual["error"], usual["drive_error"]), abs(usual["s1"] - reference["s1"])
+    values = {key: usual[key] for key in ("s1", "error", "drive_error", "edge", "pressure", "wall_s")}
+    values |= {"reference": reference["s1"], "reference_pressure": reference["pressure"]}
+    values |= {"estimate": estimate, "true": true, "ratio": estimate / true, "reference_wall_s": reference["wall_s"]}
+    return {"drive": found["drive"], **values}
+
+
+def table(rows: list[dict[str, Any]]) -> str:
+    """The page's table, and how many ratios are within the promise."""
+    cells = [HEAD]
+    for one in rows:
+        numbers = (one["s1"], one["error"], one["drive_error"], one["estimate"], one["true"], one["ratio"])
+        name = one["drive"] + (" *" if one["edge"] else "")
+        cells.append([name, *(f"{value:.2f}" for value in numbers), f"{100 * one['true'] / one['s1']:.2f}"])
+    within = sum(0.5 <= one["ratio"] <= 3.0 for one in rows)
+    below = sum(one["ratio"] < 0.5 for one in rows)
+    high = sum(one["ratio"] > 3.0 for one in rows)
+    words = f"{within} of {len(rows)} ratios are between 0.5 and 3; {below} are below, {high} above.\n"
+    return markdown(cells) + "\n" + words
 
 
 def main() -> None:
@@ -117,12 +158,24 @@ def main() -> None:
     arguments = options.parse_args()
     OUT.parent.mkdir(parents=True, exist_ok=True)
     for name in arguments.only:
+        if name in stored():
+            continue
         model, values = drives()[name]
         usual, reference = (solve(case_of(model, values, finer), arguments.ranks) for finer in (False, True))
         line = json.dumps({"drive": name, "usual": usual, "reference": reference})
         with OUT.open("a", encoding="utf-8") as file:
             file.write(line + "\n")
-        print(line, flush=True)
+        print(json.dumps(row(json.loads(line))), flush=True)
+    done = stored()
+    rows = [row(done[name]) for name in drives() if name in done]
+    if len(rows) < len(drives()):
+        return
+    folder = Path("docs/verification")
+    with (folder / "data" / "effectivity.csv").open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n", extrasaction="ignore")
+        writer.writeheader()
+        writer.writerows(rows)
+    put(folder / "effectivity.md", "effectivity", table(rows))
 
 
 if __name__ == "__main__":

@@ -1,8 +1,9 @@
-"""One drive of the effectivity benchmark, in its loaded state on one mesh, in a process of its own.
+"""One drive of the effectivity benchmark in its loaded state, in a process of its own.
 
-The argument is the case as JSON: `design` and `overrides`, `mesh`, `times` (how many times the mesh is finer), `further`
-(windows beyond the usual ones). The output is JSON: largest tension at the teeth, its error, the stress on every window,
-forces of the pairs, elements and seconds.
+The argument is the case as JSON: `design` and `overrides`, `mesh`, `times` (elements in every direction over those of
+the mesh), `further` (windows beyond the usual ones; None for a usual run, whose errors are estimated). The output is
+JSON: largest tension at the teeth, its errors by the windows and by the mesh of the drive, the stress on every window,
+pressure of the flanks, elements and seconds.
 """
 
 from __future__ import annotations
@@ -16,33 +17,37 @@ from mpi4py import MPI
 
 import swgpar
 from swgpar.analysis.coarse_start import solve_to_load
-from swgpar.analysis.root_stress import LEVELS, RATIO, error_of, resolve_root_stress
+from swgpar.analysis.mesh_refinement import Refinement, resized
+from swgpar.analysis.pair_contact import pair_contacts
+from swgpar.analysis.root_stress import LEVELS, resolve_root_stress
 from swgpar.analysis.shortcuts import with_shortcuts
 from swgpar.design.load_states import from_loaded, load_sequence
-from swgpar.meshing import MeshRecipe
-from swgpar.meshing.recipe_counts import with_counts
 
-
-def finer(recipe: MeshRecipe, times: float) -> MeshRecipe:
-    """The recipe with so many times the elements in every direction."""
-    return with_counts(recipe, lambda section, name, count: round(times * count))
+LARGEST = 10_000_000
 
 
 def solve(case: dict[str, Any]) -> dict[str, Any]:
     """The case's numbers; collective."""
     begin = time.perf_counter()
-    recipe = finer(swgpar.load_mesh(case["mesh"]), case["times"])
-    design = with_shortcuts(swgpar.load_design(case["design"], case["overrides"]), recipe).design
-    usual = LEVELS[design.drive.model]
+    recipe = resized(swgpar.load_mesh(case["mesh"]), case["times"])
+    design = with_shortcuts(swgpar.load_design(case["design"], case["overrides"]), recipe, levels=False).design
     states = list(load_sequence(design))
-    model = solve_to_load(design, recipe, states, MPI.COMM_WORLD)
-    found = resolve_root_stress(model, from_loaded(states)[0], recipe, usual + case["further"])
+    loaded = from_loaded(states)[0]
+    if case["further"] is None:
+        usual = Refinement(design, recipe, states, MPI.COMM_WORLD, LARGEST)
+        model, found = usual.model, usual.found
+    else:
+        model = solve_to_load(design, recipe, states, MPI.COMM_WORLD)
+        found = resolve_root_stress(model, loaded, LEVELS[design.drive.model] + case["further"])
+    pairs = pair_contacts(model, loaded)
     result = {
-        "s1": found.levels[usual - 1],
-        "error": error_of(list(found.levels[:usual]), RATIO[design.drive.model]),
+        "s1": found.s1,
+        "error": found.error,
+        "drive_error": found.drive_error,
         "levels": found.levels,
         "region": found.region,
-        "warning": found.warning,
+        "pressure": max((pair.pressure_MPa for pair in pairs if not pair.edge), default=0.0),
+        "edge": any(pair.edge for pair in pairs),
         "elements": model.n_elements(),
         "wall_s": time.perf_counter() - begin,
     }

@@ -7,6 +7,7 @@ friction the loaded state does not depend on the path to it, so that the result 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -127,11 +128,17 @@ def _jump(stepper: LoadStepper, load_states: list[LoadState]) -> None:
     stepper.jump(from_loaded(load_states)[0])
 
 
-def start_loaded(stepper: LoadStepper, recipes: list[MeshRecipe], load_states: list[LoadState]) -> None:
+def start_loaded(
+    stepper: LoadStepper,
+    recipes: list[MeshRecipe],
+    load_states: list[LoadState],
+    on_coarse: Callable[[DriveModel], None] = lambda model: None,
+) -> None:
     """Bring `stepper` to the loaded state by way of coarser meshes, the coarsest of `recipes` first, or bent at once.
 
-    load_states : all increments of the run. Raises ConvergenceError or InputError where a mesh does not allow it;
-    `stepper` is then to be reset.
+    load_states : all increments of the run;  on_coarse : called with the model on the last of the coarser meshes
+
+    Raises ConvergenceError or InputError where a mesh does not allow it; `stepper` is then to be reset.
     """
     target, coarse = stepper.model, None
     loaded = from_loaded(load_states)[0]
@@ -141,6 +148,11 @@ def start_loaded(stepper: LoadStepper, recipes: list[MeshRecipe], load_states: l
             return
         for recipe in recipes:
             coarse = solve_to_load(target.design, recipe, load_states, target.comm, coarse)
+        try:
+            on_coarse(coarse)
+        except SwgparError:
+            coarse.destroy()
+            raise
         take_over(coarse, stepper, loaded)
         stepper.advance(loaded)
 

@@ -7,6 +7,7 @@ leaves. The error of the drive's displacements on the cuts is not in it (docs/th
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -14,7 +15,6 @@ import numpy as np
 
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.local_problem import SECTORS, LocalProblem, WindowStress
-from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import LoadState
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.fem.stress import principal
@@ -33,16 +33,23 @@ COUNTS: dict[str, dict[str, dict[str, int]]] = {
         "cup": {"cylinder": 6},  # along the whole cylinder
     },
 }
-"""Counts of the first window; the others are those of the drive's recipe."""
+"""Counts of the first window that the following ones refine."""
+
+FIXED: dict[str, dict[str, dict[str, float]]] = {
+    "plane": {},
+    "cup": {
+        "flexible_spline": {"tip": 2, "flank": 8},
+        "face_width": {"end_ratio": 3.0},
+        "cup": {"fillet": 1, "closed_end": 1},
+    },
+}
+"""Counts and gradings of all windows: the flanks are far from the root, fillet and closed end outside of the window."""
 
 LEVELS = {"plane": 4, "cup": 3}
 """Windows in the loaded state."""
 
-PERIOD_LEVEL = {"plane": 1, "cup": 0}
+PERIOD_LEVEL = {"plane": 1, "cup": 1}
 """Index of the window with which the further angles of a period are computed."""
-
-FLANK, END_RATIO = 8, 3.0
-"""Least count along the flank; middle elements along the face width over those at both ends."""
 
 LOWEST_ORDER, HIGHEST_ORDER = 1.0, 2.0
 """Bounds of the observed order: a higher one, which is seen in the plane, would rest on two differences only."""
@@ -61,6 +68,7 @@ class RootStress:
     tooth : number, counter-clockwise from +y in the undeformed drive
     radius, z : mm;  angle_deg : from +y, counter-clockwise
     levels : s1 (MPa) on the windows, coarse to fine;  elements : of the finest window
+    drive_error : MPa, estimated, of the drive's mesh; None where it is not known
     period : angles of the wave generator (degrees) and s1 (MPa) there, of one sampled period
     """
 
@@ -75,35 +83,37 @@ class RootStress:
     angle_deg: float
     levels: tuple[float, ...]
     elements: int
+    drive_error: float | None = None
     period: tuple[tuple[float, float], ...] = ()
 
+    @property
+    def total_error(self) -> float:
+        """Error (MPa) of the window's and, where it is known, of the drive's mesh; they are independent."""
+        return math.hypot(self.error, self.drive_error or 0.0)
 
-def window_recipe(design: DriveDesign, recipe: MeshRecipe, level: int) -> MeshRecipe:
-    """Recipe of the window `level`, from 0 on; what windows do not refine is that of the drive's `recipe`.
+
+def window_recipe(model: str, level: int) -> MeshRecipe:
+    """Recipe of the window `level`, from 0 on, of the "plane" or "cup" model.
 
     Raises InputError where a count is out of range.
     """
-    finer = RATIO[design.drive.model] ** level
-    content: dict[str, Any] = recipe.model_dump(exclude_none=True)
-    content["flexible_spline"]["flank"] = max(FLANK, recipe.flexible_spline.flank)
-    for section, counts in COUNTS[design.drive.model].items():
-        content[section] |= {name: int(count * finer) for name, count in counts.items()}
-    if design.drive.model == "cup":
-        content["face_width"]["end_ratio"], content["cup"]["end_ratio"] = END_RATIO, 1.0
+    content: dict[str, Any] = {section: dict(values) for section, values in FIXED[model].items()}
+    for section, counts in COUNTS[model].items():
+        refined = {name: int(count * RATIO[model] ** level) for name, count in counts.items()}
+        content[section] = content.get(section, {}) | refined
+    content["ring_gear"] = content["flexible_spline"]  # not meshed
     return make_recipe(content)
 
 
-def resolve_root_stress(
-    model: DriveModel, state: LoadState, recipe: MeshRecipe, levels: int | None = None
-) -> RootStress:
+def resolve_root_stress(model: DriveModel, state: LoadState, levels: int | None = None) -> RootStress:
     """Resolve the largest tensile stress at the teeth in the model's equilibrium under `state`; collective.
 
-    recipe : of the model's mesh;  levels : windows, each finer than the one before; None for those of `LEVELS`
+    levels : windows, each finer than the one before; None for those of `LEVELS`
 
     Raises ConvergenceError or InputError where a window cannot be computed.
     """
-    design, by_tooth = model.design, _largest_by_tooth(model)
-    coarsest = window_recipe(design, recipe, 0)
+    kind, by_tooth = model.design.drive.model, _largest_by_tooth(model)
+    coarsest = window_recipe(kind, 0)
     first = int(by_tooth.argmax())
     found = _solve(model, state, first, coarsest)
     far = by_tooth.copy()
@@ -115,30 +125,36 @@ def resolve_root_stress(
         if there.value > found.value:
             tooth, found = other, there
     values = [found.value]
-    for level in range(1, levels or LEVELS[design.drive.model]):
-        found = _solve(model, state, tooth, window_recipe(design, recipe, level))
+    for level in range(1, levels or LEVELS[kind]):
+        found = _solve(model, state, tooth, window_recipe(kind, level))
         values.append(found.value)
     logger.info("windows around tooth %d: s1 %s MPa", tooth, ", ".join(f"{value:.1f}" for value in values))
-    error = error_of(values, RATIO[design.drive.model])
+    error = error_of(values, RATIO[kind])
     return _place(model, found, tuple(values), error, float(by_tooth[first]))
 
 
-def with_angle(known: RootStress, model: DriveModel, state: LoadState, recipe: MeshRecipe) -> RootStress:
+def with_angle(known: RootStress, model: DriveModel, state: LoadState) -> RootStress:
     """`known`, of the loaded state, with s1 at a further angle of the period; collective.
 
     One window, not the finest, is computed there. Its error is taken to be that of the same window in the loaded
     state. Raises like `resolve_root_stress`.
     """
-    level = PERIOD_LEVEL[model.design.drive.model]
+    kind = model.design.drive.model
+    level = PERIOD_LEVEL[kind]
     tooth = int(_largest_by_tooth(model).argmax())
-    found = _solve(model, state, tooth, window_recipe(model.design, recipe, level))
+    found = _solve(model, state, tooth, window_recipe(kind, level))
     value = found.value * known.s1 / known.levels[level]
     period = known.period or ((0.0, known.s1),)
     return replace(known, period=(*period, (float(np.degrees(state.angle)), value)))
 
 
 def error_of(levels: list[float], ratio: float) -> float:
-    """Error of the last of three values on meshes whose element sizes have this ratio, by the observed order."""
+    """Error of the last value on meshes whose element sizes have this ratio, by the order observed on the last three.
+
+    Infinite where there are fewer.
+    """
+    if len(levels) < 3:
+        return np.inf
     before, last = levels[-2] - levels[-3], levels[-1] - levels[-2]
     order = LOWEST_ORDER
     if before * last > 0.0:

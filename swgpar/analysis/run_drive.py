@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,16 @@ from swgpar.analysis.coarse_start import levels, start_loaded, starts_bent
 from swgpar.analysis.drive_model import DriveModel, build_drive_model
 from swgpar.analysis.drive_result import DriveResult
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.analysis.mesh_refinement import ChosenMesh, choose_mesh, with_accuracy
+from swgpar.analysis.mesh_refinement import (
+    COMPARED_LEVELS,
+    RATIO,
+    ChosenMesh,
+    choose_mesh,
+    drive_error,
+    resized,
+    size_ratio,
+    with_accuracy,
+)
 from swgpar.analysis.period import continued
 from swgpar.analysis.recorder import FolderRecorder, MemoryRecorder, Recorder
 from swgpar.analysis.restart import identity, resume
@@ -123,10 +133,11 @@ def _recorder(model: DriveModel, folder: Path | None, what: str) -> Recorder:
 
 
 def _record_choice(recorder: Recorder, chosen: ChosenMesh, accuracy: float, folder: Path | None) -> None:
-    """Keep the mesh that was chosen for an accuracy."""
+    """Keep the mesh that was chosen for an accuracy, and the stress that its windows gave."""
     if folder is not None:
         write_from_root(recorder.comm, folder / RECIPE, to_toml(chosen.recipe).encode())
-    recorder.accuracy = Accuracy(accuracy, chosen.error, chosen.error <= accuracy, chosen.stresses)
+    recorder.accuracy = Accuracy(accuracy, chosen.error, chosen.error <= accuracy)
+    recorder.root_stress = chosen.root_stress
 
 
 class _Run:
@@ -146,6 +157,7 @@ class _Run:
         self.model, self.recipe, self.recorder, self.stepper = model, recipe, recorder, LoadStepper(model)
         self.on_increment, self.begin = on_increment, begin
         self.earlier_seconds = 0.0
+        self.coarse: tuple[int, tuple[float, ...]] | None = None
         counts = model.counts()
         logger.info(
             "%d elements, %d nodes in the whole drive; %d unknowns modelled%s; %d ranks",
@@ -176,8 +188,14 @@ class _Run:
         if self.recorder.accuracy is not None:  # the model was loaded when its mesh was chosen
             self.stepper.resume_at(from_loaded(items)[0])
             return from_loaded(items)
-        self.recorder.starts_loaded = _start_loaded(self.stepper, self.recipe, items)
+        self.recorder.starts_loaded = _start_loaded(self.stepper, self.recipe, items, self._keep_coarse)
         return from_loaded(items) if self.recorder.starts_loaded else items
+
+    def _keep_coarse(self, model: DriveModel) -> None:
+        """Resolve the stress at the teeth on a coarser mesh of the drive, to see what the mesh changes."""
+        if model.design.output.root_stress:
+            loaded = from_loaded(list(load_sequence(model.design)))[0]
+            self.coarse = model.n_elements(), resolve_root_stress(model, loaded, COMPARED_LEVELS).levels
 
     def go_through(self, items: list[LoadState], terminal: bool) -> None:
         """Compute and record the increments that are left."""
@@ -208,12 +226,20 @@ class _Run:
         try:
             with self.model.phases("windows"):
                 if loaded:
-                    return resolve_root_stress(self.model, state, self.recipe)
-                return with_angle(known, self.model, state, self.recipe) if further and design.steps.samples else known
+                    return known or self._resolve_loaded(state)
+                return with_angle(known, self.model, state) if further and design.steps.samples else known
         except (ConvergenceError, InputError) as error:
             angle = np.degrees(state.angle)
             logger.warning("the stress at the teeth is not resolved at %.4g degrees: %s", angle, error)
             return known
+
+    def _resolve_loaded(self, state: LoadState) -> RootStress:
+        found = resolve_root_stress(self.model, state)
+        if self.coarse is None:
+            return found
+        elements, levels = self.coarse
+        ratio = size_ratio(self.model, elements)
+        return replace(found, drive_error=drive_error(levels, found.levels, ratio))
 
     def finish(self, recipe_name: str) -> DriveResult:
         """Summarise the run."""
@@ -234,15 +260,21 @@ class _Run:
         return recorder.finish(rows, summary)
 
 
-def _start_loaded(stepper: LoadStepper, recipe: MeshRecipe, items: list[LoadState]) -> bool:
+def _start_loaded(
+    stepper: LoadStepper, recipe: MeshRecipe, items: list[LoadState], on_coarse: Callable[[DriveModel], None]
+) -> bool:
     """Reach the loaded state on coarser meshes or from the bent shape; False if none is asked for, or if that fails."""
-    recipes = levels(stepper.design, recipe)
-    if not recipes and not starts_bent(stepper.design):
-        return False
-    try:
-        start_loaded(stepper, recipes, items)
-        return True
-    except (ConvergenceError, InputError) as error:
-        logger.info("no such start, but step by step: %s", error)
-        stepper.reset()
-        return False
+    ways = [levels(stepper.design, recipe)] if stepper.design.steps.start_levels else []
+    if starts_bent(stepper.design):
+        compared = resized(recipe, 1.0 / RATIO)
+        ways += [[compared]] if stepper.design.output.root_stress and not ways and compared != recipe else []
+        ways += [[]]
+    for recipes in ways:
+        try:
+            start_loaded(stepper, recipes, items, on_coarse)
+            return True
+        except (ConvergenceError, InputError) as error:
+            what = "on coarser meshes" if recipes else "from the bent shape"
+            logger.info("no start %s: %s", what, error)
+            stepper.reset()
+    return False

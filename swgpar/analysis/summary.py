@@ -30,23 +30,21 @@ MEANS = (*STRESSES, INPUT_TORQUE)
 
 @dataclass(frozen=True)
 class Accuracy:
-    """Relative accuracy of the largest tensile stress under load.
+    """Relative accuracy of the largest tensile stress at the teeth under load.
 
-    asked : what was asked for;  estimated : by mesh refinement;  reached : whether the estimate is small enough
-    mesh_error : estimated errors of all largest stresses, MPa
+    asked : what was asked for;  estimated : by refinement;  reached : whether the estimate is small enough
     """
 
     asked: float
     estimated: float
     reached: bool
-    mesh_error: dict[str, float]
 
 
 def mesh_error(root_stress: RootStress | None) -> dict[str, float] | None:
     """Error (MPa) of the largest nodal s1 by the drive's mesh: how far windows are from it, and their own error."""
     if root_stress is None:
         return None
-    return {"fs_s1": abs(root_stress.on_mesh - root_stress.s1) + root_stress.error}
+    return {"fs_s1": abs(root_stress.on_mesh - root_stress.s1) + root_stress.total_error}
 
 
 def over_rotation(rows: Sequence[Row], ratio: float) -> dict[str, Any]:
@@ -101,11 +99,11 @@ def summarise(
         "increments": len(rows),
         **_program(model, seconds),
         **values,
-        "accuracy": accuracy and {key: value for key, value in asdict(accuracy).items() if key != "mesh_error"},
+        "accuracy": accuracy and asdict(accuracy),
         "places": {name: asdict(place) for name, place in places.items()},
         "root_stress": root_stress and asdict(root_stress),
         "contact": max(pairs, key=lambda pair: (not pair["edge"], pair["pressure_MPa"]), default=None),
-        "mesh_error": accuracy.mesh_error if accuracy else mesh_error(root_stress),
+        "mesh_error": mesh_error(root_stress),
         "condensed_MPa": model.omitted_bending_stress() if design.solver.condensed_sectors else None,
         "sampling_error": sampling_error(design, rows, MEANS) if sampled_period else None,
         "newton_iterations_mean": float(np.mean([r["newton_iterations"] for r in rotation])) if rotation else None,

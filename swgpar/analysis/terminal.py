@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -85,6 +86,11 @@ def _print_places(places: Mapping[str, Mapping[str, Any]]) -> None:
         console.print(f"* {warning}")
 
 
+def _total_error(root: Mapping[str, Any]) -> float:
+    """Error (MPa) by the windows and, where it is known, by the mesh of the drive."""
+    return math.hypot(root["error"], root["drive_error"] or 0.0)
+
+
 def _print_contact(contact: Mapping[str, Any]) -> None:
     console.print(
         f"largest contact pressure of the flanks, by line contact: {contact['pressure_MPa']:.0f} MPa at "
@@ -99,7 +105,7 @@ def _print_contact(contact: Mapping[str, Any]) -> None:
 def _print_errors(summary: Mapping[str, Any]) -> None:
     if root := summary.get("root_stress"):
         console.print(
-            f"largest tension at the teeth under load, by windows: s1 {root['s1']:.1f} ± {root['error']:.1f} MPa, "
+            f"largest tension at the teeth under load, by windows: s1 {root['s1']:.1f} ± {_total_error(root):.1f} MPa, "
             f"{root['region']} of tooth {root['tooth']} (radius {root['radius']:.2f}, z {root['z']:.2f} mm, "
             f"{root['angle_deg']:.1f} degrees); {root['on_mesh']:.1f} MPa by nodal averages of the drive's mesh"
         )
@@ -115,20 +121,15 @@ def _print_errors(summary: Mapping[str, Any]) -> None:
         _print_contact(contact)
     asked = summary["accuracy"]
     if error := summary["mesh_error"]:
-        if asked:
-            console.print(
-                f"estimated error by the mesh, under load: s1 {error['fs_s1']:.1f}, |s3| {error['fs_s3']:.1f}, "
-                f"von Mises {error['fs_vm']:.1f} MPa (from this mesh and the meshes before it)"
-            )
-        elif summary["means"]:
+        if summary["means"]:
             console.print(
                 f"the mean of s1 is that of nodal averages: up to {error['fs_s1']:.0f} MPa of it are the mesh's error "
                 "(by windows, under load); |s3| and von Mises have no estimate"
             )
     if asked:
         console.print(
-            f"accuracy of the largest tensile stress: {asked['asked']:g} asked for, {asked['estimated']:.2g} "
-            f"estimated{'' if asked['reached'] else ', NOT reached: no finer mesh that helps is taken'}"
+            f"accuracy of that stress: {asked['asked']:g} asked for, {asked['estimated']:.2g} "
+            f"estimated{'' if asked['reached'] else ', NOT reached: no finer mesh is taken'}"
         )
     if left_out := summary["condensed_MPa"]:
         console.print(f"condensed sectors leave out {left_out:.2g} MPa of bending stress")

@@ -286,7 +286,8 @@ class NewtonSolver:
     def _prepare_contacts(self, state: SolveState) -> None:
         """Search anew, or extend the pattern, as the run that was interrupted needs it."""
         if state.outdated_search:
-            state.breaker = CycleBreaker()  # a search releases the segments
+            # a search releases the segments and forgets the multipliers
+            state.breaker, state.before_augmentation = CycleBreaker(), None
             self.problem.search(state.load_state)
         else:
             self.problem.extend_pattern(state.pattern_misses)

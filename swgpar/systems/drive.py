@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -43,6 +44,16 @@ COLUMNS = tuple(name for name in UNITS if name not in ("step", "wall_s"))
 
 GROUPS = range(Stage.DEFLECT, Stage.ROTATE + 1)
 """Steps with quantities of their own; all increments of the rotation count as the last one."""
+
+
+RESOLVED = {
+    "root.s1": Quantity("largest tension at the teeth under load, by windows", "MPa"),
+    "root.s1_error": Quantity("its error by the windows and by the mesh of the drive", "MPa"),
+    "root.mean_s1": Quantity("the same over one period, mean", "MPa"),
+    "contact.pressure": Quantity("largest pressure of the flanks under load, off edges, by line contact", "MPa"),
+    "contact.on_edge": Quantity("whether a contact under load lies on an edge: 1 or 0", ""),
+}
+"""Quantities of runs with `output.root_stress`, which a study has to set."""
 
 
 class Drives(System[DriveDesign, DriveResult]):
@@ -106,13 +117,16 @@ class Drives(System[DriveDesign, DriveResult]):
             return Quantity(f"{MEANINGS.get(column, column)}, {when}", UNITS[column])
 
         known = {f"mean.{name}": quantity(name, "mean over the rotation") for name in MEANS}
+        if design.output.root_stress:
+            known |= RESOLVED
         return known | {f"step{k}.{name}": quantity(name, f"end of step {k}") for k in GROUPS for name in COLUMNS}
 
     def main_quantities(self, known: Mapping[str, Quantity]) -> tuple[str, ...]:
         return tuple(f"mean.{name}" for name in MAIN)
 
     def describe_names(self, known: Mapping[str, Quantity]) -> str:
-        return f"mean. with {', '.join(MEANS)}, or step1. to step{GROUPS[-1]}. with a column of history.csv"
+        names = f"mean. with {', '.join(MEANS)}, or step1. to step{GROUPS[-1]}. with a column of history.csv"
+        return f"{names}; with output.root_stress = true {', '.join(RESOLVED)}"
 
     def check_published(self, design: DriveDesign, names: Iterable[str]) -> None:
         for name in names:
@@ -135,12 +149,30 @@ class Drives(System[DriveDesign, DriveResult]):
     def measure(self, result: DriveResult) -> Measured:
         summary = result.summary
         return Measured(
-            values=values(summary["means"], result.history),
+            values=values(summary["means"], result.history) | resolved(summary, result.pairs),
             wall_s=summary["wall_s"],
             elements=summary["elements"],
             newton_mean=summary["newton_iterations_mean"],
             history=result.history,
         )
+
+
+def resolved(summary: Mapping[str, Any], pairs: Mapping[str, np.ndarray]) -> dict[str, float]:
+    """The quantities of `RESOLVED`, without those that the run does not have."""
+    root = summary["root_stress"]
+    if not root:
+        return {}
+    found = {
+        "root.s1": root["s1"],
+        "root.s1_error": math.hypot(root["error"], root["drive_error"] or 0.0),
+        "contact.on_edge": float(np.any(pairs["edge"])) if len(pairs) else 0.0,
+    }
+    if len(root["period"]) > 1:
+        found["root.mean_s1"] = float(np.mean([s1 for _, s1 in root["period"]]))
+    contact = summary["contact"]
+    if contact and not contact["edge"]:
+        found["contact.pressure"] = contact["pressure_MPa"]
+    return found
 
 
 def values(means: Mapping[str, float], history: Mapping[str, np.ndarray]) -> dict[str, float]:

@@ -1,44 +1,53 @@
-"""What an accuracy asked for changes in design and recipe."""
+"""What an accuracy asked for changes in design and recipe, and when refinement ends."""
 
 from __future__ import annotations
 
-from collections import defaultdict
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from mpi4py import MPI
 
-from support.paths import DESIGN, DRIVERS, REFERENCE
+from support.messages import Messages
+from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
-from swgpar.analysis.coarse_start import LoadedState
+from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.analysis.mesh_refinement import (
-    GROUPS,
-    LARGEST,
-    RTOL,
-    Doublings,
-    Refinement,
-    error_after,
-    refine,
+    ORDER,
+    RATIO,
+    ChosenMesh,
+    choose_mesh,
+    drive_error,
+    resized,
     with_accuracy,
 )
+from swgpar.analysis.root_stress import LEVELS, resolve_root_stress
 from swgpar.design.design_file import load_design
+from swgpar.design.load_states import from_loaded, load_sequence
 from swgpar.errors import InputError
 from swgpar.meshing import load_recipe
 from swgpar.meshing.recipe import to_toml
-from swgpar.meshing.recipe_counts import coarser, doubled
+
+LOADED = ["steps.rotation=0", "steps.bent_start=true"]
 
 
-def test_groups_hold_every_count_once_and_no_grading() -> None:
+def chosen(accuracy: float, *overrides: str, times: float = 1.0, largest: int | None = None) -> ChosenMesh:
+    """The small plane drive on the mesh for an accuracy. times : elements in every direction of the first mesh"""
+    design = with_accuracy(load_design(DESIGN, [*PLANE, *LOADED, *overrides]), accuracy)
+    states = list(load_sequence(design))
+    return choose_mesh(design, resized(load_recipe(RECIPE), times), states, accuracy, MPI.COMM_SELF, largest=largest)
+
+
+def test_a_resized_recipe_scales_every_count_and_no_grading() -> None:
     recipe = load_recipe("full")
-    finer = recipe
-    for counts in GROUPS.values():
-        finer = doubled(finer, counts)
+    finer = resized(recipe, 2.0)
     for title, section in recipe.model_dump(exclude_none=True).items():
         for name, value in section.items():
             expected = 2 * value if isinstance(value, int) else value
             assert getattr(getattr(finer, title), name) == expected, (title, name)
-    notch = doubled(recipe, GROUPS["root and rim"], 3)
-    assert notch.flexible_spline.root == 8 * recipe.flexible_spline.root and notch.ring_gear == recipe.ring_gear
+    assert resized(load_recipe("plane_coarse"), 0.1).flexible_spline.tip == 2
+    with pytest.raises(InputError, match="is out of range: allowed"):
+        resized(recipe, 100.0)
 
 
 def test_a_chosen_recipe_can_be_read_again(tmp_path: Path) -> None:
@@ -50,7 +59,7 @@ def test_a_chosen_recipe_can_be_read_again(tmp_path: Path) -> None:
 
 def test_what_the_design_says_itself_is_kept() -> None:
     design = with_accuracy(load_design(DESIGN, [*PLANE, "steps.rotation=9"]), 0.01)
-    assert design.steps.samples == 8 and design.solver.rtol == RTOL
+    assert design.steps.samples == 8 and design.solver.rtol == 1e-7
     own = [*PLANE, "steps.rotation=9", "steps.samples=3", "solver.rtol=1e-8"]
     design = with_accuracy(load_design(DESIGN, own), 0.01)
     assert design.steps.samples == 3 and design.solver.rtol == 1e-8
@@ -58,103 +67,45 @@ def test_what_the_design_says_itself_is_kept() -> None:
     assert with_accuracy(load_design(DESIGN, [*PLANE, "steps.rotation=4"]), 0.01).steps.samples == 0
 
 
-def test_sectors_are_condensed_where_that_leaves_out_little() -> None:
-    plane = DRIVERS / "plane_half_turn.toml"
-    assert with_accuracy(load_design(plane), 0.02).solver.condensed_sectors
-    assert not with_accuracy(load_design(plane), 0.005).solver.condensed_sectors
-    assert not with_accuracy(load_design(plane, ["solver.condensed_sectors=false"]), 0.02).solver.condensed_sectors
-    assert not with_accuracy(load_design(DESIGN, PLANE), 0.2).solver.condensed_sectors
-    assert not with_accuracy(load_design(plane.with_name("cup_45deg.toml")), 0.1).solver.condensed_sectors
-
-
 def test_accuracies_that_cannot_be_had() -> None:
-    design = load_design(DESIGN, PLANE)
     for accuracy in (0.0, 0.5, float("nan")):
         with pytest.raises(InputError, match="out of range: allowed 0.001 to 0.2"):
-            with_accuracy(design, accuracy)
-    with pytest.raises(InputError, match="--accuracy needs contact.friction = 0, not 0.1"):
-        with_accuracy(load_design(DESIGN, [*PLANE, "contact.friction=0.1"]), 0.01)
+            with_accuracy(load_design(DESIGN, PLANE), accuracy)
 
 
-class Analytic:
-    """Stands in for `Refinement`: s1 = 300 MPa less errors of the first order; b takes more elements than a."""
-
-    ERRORS, EVERY, FINEST, LEFT_OUT = (60.0, -3.0), 300.0, 10**9, 0.0
-
-    def __init__(self) -> None:
-        self.groups, self.doublings, self.levels, self.largest = ("a", "b"), (0, 0), {}, self.FINEST
-        self.loads, self.omitted_stress = [], defaultdict(lambda: self.LEFT_OUT)
-
-    def size(self, doublings: Doublings) -> int:
-        size = 1000 * 2 ** doublings[0] * 8 ** doublings[1]
-        return size if size <= self.largest else 0
-
-    def stress(self, doublings: Doublings) -> float:
-        return self.EVERY - sum(error / 2**count for error, count in zip(self.ERRORS, doublings))
-
-    def load(self, doublings: Doublings) -> LoadedState:
-        assert self.size(doublings)
-        self.doublings, self.levels[doublings] = (
-            doublings,
-            LoadedState(self.size(doublings), {"fs_s1": self.stress(doublings), "fs_s3": 0.0}),
-        )
-        self.loads.append(doublings)
-        return self.levels[doublings]
+def test_the_error_of_the_drive_s_mesh_follows_from_two_meshes() -> None:
+    """Errors of the displacements' order are found; the windows' own, which both share, cancel."""
+    coarse = [260.0 + 9.0, 290.0 + 9.0]
+    fine = [260.0 + 9.0 / RATIO**ORDER, 290.0 + 9.0 / RATIO**ORDER, 300.0]
+    expected = 9.0 / RATIO**ORDER * fine[-1] / fine[1]
+    assert drive_error(coarse, fine, RATIO) == pytest.approx(expected)
+    # a change that is small by chance
+    assert drive_error([270.0, 290.0], [270.0, 290.0, 300.0], RATIO, before=9.0) == pytest.approx(9.0 / RATIO**ORDER)
 
 
-@pytest.mark.parametrize(("asked", "doublings"), [(0.2, (1, 0)), (0.05, (3, 0)), (0.02, (5, 0)), (0.01, (7, 1))])
-def test_the_group_is_refined_that_has_the_larger_error_for_its_elements(asked: float, doublings: Doublings) -> None:
-    """Errors of the first order are found exactly; those of both groups add up, whatever their signs."""
-    levels = Analytic()
-    found, error, stresses = refine(levels, asked)
-    assert found == levels.doublings == doublings
-    assert len(levels.loads) == len(set(levels.loads)) + (doublings == (1, 0))  # back from the trial of b
-    true = 60.0 / 2 ** doublings[0] + 3.0 / 2 ** doublings[1]
-    assert stresses == {"fs_s1": pytest.approx(true), "fs_s3": 0.0}
-    assert error == pytest.approx(true / (levels.stress(doublings) + true)) and error <= asked
+def test_the_error_holds() -> None:
+    """Against a mesh of the drive with twice the elements in every direction and a further window."""
+    found = chosen(0.2, times=2.0)
+    error, s1, design = found.root_stress.total_error, found.root_stress.s1, found.model.design
+    found.model.destroy()
+    states = list(load_sequence(design))
+    finer = solve_to_load(design, resized(found.recipe, 2.0), states, MPI.COMM_SELF)
+    reference = resolve_root_stress(finer, from_loaded(states)[0], LEVELS["plane"] + 1).s1
+    finer.destroy()
+    print(f"s1 {s1:.2f} for {reference:.2f} MPa: error {error:.2f} for {abs(s1 - reference):.2f} MPa")
+    assert 0.5 * abs(s1 - reference) < error < 0.01 * s1
 
 
-def test_what_condensed_sectors_leave_out_counts() -> None:
-    class Condensed(Analytic):
-        LEFT_OUT = 4.0
-
-    assert refine(Condensed(), 0.05)[1] == pytest.approx((7.5 + 3.0 + 4.0) / (295.5 + 14.5))
-    assert refine(Analytic(), 0.04)[0] == (3, 0) and refine(Condensed(), 0.04)[0] == (4, 0)
-    found, error, _ = refine(Condensed(), 0.01)  # no mesh brings back what is left out
-    assert found == (0, 0) and error > 0.01
-
-
-def test_refinement_ends_where_nothing_helps() -> None:
-    class Blocked(Analytic):
-        def size(self, doublings: Doublings) -> int:
-            return super().size(doublings) if doublings[0] <= 2 else 0
-
-    found, error, _ = refine(Blocked(), 0.01)
-    assert found == (2, 0) and error > 0.01  # b could be doubled, and would not do
-    assert Blocked().size((2, 1))
-
-    class Single(Analytic):
-        FINEST = 1000
-
-    assert refine(Single(), 0.2) == ((0, 0), 1.0, {})
+def test_the_best_mesh_is_returned_where_the_accuracy_is_out_of_reach() -> None:
+    with Messages() as messages:
+        found = chosen(0.001, largest=3_000)
+    elements = found.model.n_elements()
+    found.model.destroy()
+    assert found.error > 0.001 and elements <= 3_000
+    assert any("no finer mesh is taken: the drive has at most 3000 elements" in text for text in messages.texts)
 
 
-def test_a_change_that_is_small_by_chance_is_no_convergence() -> None:
-    class Chance(Analytic):
-        def stress(self, doublings: Doublings) -> float:
-            return 273.0 if doublings == (2, 0) else super().stress(doublings)  # as with (1, 0), by chance
-
-    found, _, stresses = refine(Chance(), 0.05)
-    assert found == (4, 0) and stresses["fs_s1"] == pytest.approx(22.5 / 2.0 + 3.0)
-    assert error_after(5.0) == 5.0 and error_after(0.1, -8.0) == 4.0
-
-
-def test_a_recipe_that_is_too_fine_is_coarsened() -> None:
-    """Every group can be doubled below the largest size."""
-    design = load_design(REFERENCE)
-    full = load_recipe("full")
-    found = Refinement(design, full, [], MPI.COMM_SELF, largest=LARGEST[3])
-    assert found.base == coarser(full)
-    assert 0 < found.size((0, 0, 0)) < min(found.size(doublings) for doublings in ((1, 0, 0), (0, 1, 0), (0, 0, 1)))
-    assert found.size((9, 0, 0)) == 0  # more than a count may be
-    assert Refinement(design, found.base, [], MPI.COMM_SELF, largest=LARGEST[3]).base == found.base
+def test_with_friction_every_mesh_is_loaded_step_by_step() -> None:
+    found = chosen(0.2, "contact.friction=0.1")
+    assert found.error <= 0.2 and replace(found.root_stress, drive_error=None).total_error == found.root_stress.error
+    found.model.destroy()
