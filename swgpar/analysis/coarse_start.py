@@ -132,11 +132,12 @@ def start_loaded(
     stepper: LoadStepper,
     recipes: list[MeshRecipe],
     load_states: list[LoadState],
-    on_coarse: Callable[[DriveModel], None] = lambda model: None,
+    on_coarse: Callable[[DriveModel, MeshRecipe], None] = lambda model, recipe: None,
 ) -> None:
     """Bring `stepper` to the loaded state by way of coarser meshes, the coarsest of `recipes` first, or bent at once.
 
-    load_states : all increments of the run;  on_coarse : called with the model on the last of the coarser meshes
+    load_states : all increments of the run
+    on_coarse : called with the model on the last of the coarser meshes, and its recipe
 
     Raises ConvergenceError or InputError where a mesh does not allow it; `stepper` is then to be reset.
     """
@@ -149,7 +150,7 @@ def start_loaded(
         for recipe in recipes:
             coarse = solve_to_load(target.design, recipe, load_states, target.comm, coarse)
         try:
-            on_coarse(coarse)
+            on_coarse(coarse, recipes[-1])
         except SwgparError:
             coarse.destroy()
             raise

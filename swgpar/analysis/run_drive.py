@@ -157,7 +157,7 @@ class _Run:
         self.model, self.recipe, self.recorder, self.stepper = model, recipe, recorder, LoadStepper(model)
         self.on_increment, self.begin = on_increment, begin
         self.earlier_seconds = 0.0
-        self.coarse: tuple[int, tuple[float, ...]] | None = None
+        self.coarse: tuple[MeshRecipe, tuple[float, ...]] | None = None
         counts = model.counts()
         logger.info(
             "%d elements, %d nodes in the whole drive; %d unknowns modelled%s; %d ranks",
@@ -191,11 +191,11 @@ class _Run:
         self.recorder.starts_loaded = _start_loaded(self.stepper, self.recipe, items, self._keep_coarse)
         return from_loaded(items) if self.recorder.starts_loaded else items
 
-    def _keep_coarse(self, model: DriveModel) -> None:
+    def _keep_coarse(self, model: DriveModel, recipe: MeshRecipe) -> None:
         """Resolve the stress at the teeth on a coarser mesh of the drive, to see what the mesh changes."""
         if model.design.output.root_stress:
             loaded = from_loaded(list(load_sequence(model.design)))[0]
-            self.coarse = model.n_elements(), resolve_root_stress(model, loaded, COMPARED_LEVELS).levels
+            self.coarse = recipe, resolve_root_stress(model, loaded, COMPARED_LEVELS).levels
 
     def go_through(self, items: list[LoadState], terminal: bool) -> None:
         """Compute and record the increments that are left."""
@@ -237,9 +237,8 @@ class _Run:
         found = resolve_root_stress(self.model, state)
         if self.coarse is None:
             return found
-        elements, levels = self.coarse
-        ratio = size_ratio(self.model, elements)
-        return replace(found, drive_error=drive_error(levels, found.levels, ratio))
+        coarse, levels = self.coarse
+        return replace(found, drive_error=drive_error(levels, found.levels, size_ratio(coarse, self.recipe)))
 
     def finish(self, recipe_name: str) -> DriveResult:
         """Summarise the run."""
@@ -261,7 +260,10 @@ class _Run:
 
 
 def _start_loaded(
-    stepper: LoadStepper, recipe: MeshRecipe, items: list[LoadState], on_coarse: Callable[[DriveModel], None]
+    stepper: LoadStepper,
+    recipe: MeshRecipe,
+    items: list[LoadState],
+    on_coarse: Callable[[DriveModel, MeshRecipe], None],
 ) -> bool:
     """Reach the loaded state on coarser meshes or from the bent shape; False if none is asked for, or if that fails."""
     ways = [levels(stepper.design, recipe)] if stepper.design.steps.start_levels else []

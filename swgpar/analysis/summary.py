@@ -101,7 +101,7 @@ def summarise(
         **values,
         "accuracy": accuracy and asdict(accuracy),
         "places": {name: asdict(place) for name, place in places.items()},
-        "root_stress": root_stress and asdict(root_stress),
+        "root_stress": root_stress and {**asdict(root_stress), "total_error": root_stress.total_error},
         "contact": max(pairs, key=lambda pair: (not pair["edge"], pair["pressure_MPa"]), default=None),
         "mesh_error": mesh_error(root_stress),
         "condensed_MPa": model.omitted_bending_stress() if design.solver.condensed_sectors else None,

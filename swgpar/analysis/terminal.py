@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -86,11 +85,6 @@ def _print_places(places: Mapping[str, Mapping[str, Any]]) -> None:
         console.print(f"* {warning}")
 
 
-def _total_error(root: Mapping[str, Any]) -> float:
-    """Error (MPa) by the windows and, where it is known, by the mesh of the drive."""
-    return math.hypot(root["error"], root["drive_error"] or 0.0)
-
-
 def _print_contact(contact: Mapping[str, Any]) -> None:
     console.print(
         f"largest contact pressure of the flanks, by line contact: {contact['pressure_MPa']:.0f} MPa at "
@@ -105,8 +99,8 @@ def _print_contact(contact: Mapping[str, Any]) -> None:
 def _print_errors(summary: Mapping[str, Any]) -> None:
     if root := summary.get("root_stress"):
         console.print(
-            f"largest tension at the teeth under load, by windows: s1 {root['s1']:.1f} ± {_total_error(root):.1f} MPa, "
-            f"{root['region']} of tooth {root['tooth']} (radius {root['radius']:.2f}, z {root['z']:.2f} mm, "
+            f"largest tension at the teeth under load, by windows: s1 {root['s1']:.1f} ± {root['total_error']:.1f} "
+            f"MPa, {root['region']} of tooth {root['tooth']} (radius {root['radius']:.2f}, z {root['z']:.2f} mm, "
             f"{root['angle_deg']:.1f} degrees); {root['on_mesh']:.1f} MPa by nodal averages of the drive's mesh"
         )
         if root["warning"]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -164,7 +163,7 @@ def resolved(summary: Mapping[str, Any], pairs: Mapping[str, np.ndarray]) -> dic
         return {}
     found = {
         "root.s1": root["s1"],
-        "root.s1_error": math.hypot(root["error"], root["drive_error"] or 0.0),
+        "root.s1_error": root["total_error"],
         "contact.on_edge": float(np.any(pairs["edge"])) if len(pairs) else 0.0,
     }
     if len(root["period"]) > 1:

@@ -13,6 +13,7 @@ from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.analysis.mesh_refinement import (
+    LEAST,
     ORDER,
     RATIO,
     ChosenMesh,
@@ -79,7 +80,8 @@ def test_the_error_of_the_drive_s_mesh_follows_from_two_meshes() -> None:
     fine = [260.0 + 9.0 / RATIO**ORDER, 290.0 + 9.0 / RATIO**ORDER, 300.0]
     expected = 9.0 / RATIO**ORDER * fine[-1] / fine[1]
     assert drive_error(coarse, fine, RATIO) == pytest.approx(expected)
-    # a change that is small by chance
+    # changes that are small by chance
+    assert drive_error([270.0, 290.0], [270.0, 290.0, 300.0], RATIO) == pytest.approx(LEAST * 300.0)
     assert drive_error([270.0, 290.0], [270.0, 290.0, 300.0], RATIO, before=9.0) == pytest.approx(9.0 / RATIO**ORDER)
 
 
@@ -92,8 +94,9 @@ def test_the_error_holds() -> None:
     finer = solve_to_load(design, resized(found.recipe, 2.0), states, MPI.COMM_SELF)
     reference = resolve_root_stress(finer, from_loaded(states)[0], LEVELS["plane"] + 1).s1
     finer.destroy()
-    print(f"s1 {s1:.2f} for {reference:.2f} MPa: error {error:.2f} for {abs(s1 - reference):.2f} MPa")
-    assert 0.5 * abs(s1 - reference) < error < 0.01 * s1
+    true = abs(s1 - reference)
+    print(f"s1 {s1:.2f} for {reference:.2f} MPa: error {error:.2f} for {true:.2f} MPa")
+    assert 0.5 * true < error < 3.0 * true
 
 
 def test_the_best_mesh_is_returned_where_the_accuracy_is_out_of_reach() -> None:
