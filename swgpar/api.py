@@ -125,7 +125,7 @@ def run(
     plain : bool
         Compute all that the design asks for. Otherwise a drive without friction leaves out the assembly
         step by step and on a fine mesh, and the angles beyond one period, where the design does not set the keys
-        ``steps.bent_start``, ``steps.start_levels`` and ``steps.samples``.
+        ``steps.bent_start``, ``steps.start_levels``, ``steps.samples`` and ``solver.rtol``.
     restart : bool
         Continue from the checkpoint in `out`.
     overwrite : bool

@@ -8,7 +8,6 @@ friction the loaded state does not depend on the path to it, so that the result 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 from mpi4py import MPI
@@ -55,19 +54,6 @@ def levels(design: DriveDesign, recipe: MeshRecipe) -> list[MeshRecipe]:
             break
         found.insert(0, simpler)
     return found
-
-
-@dataclass(frozen=True)
-class LoadedState:
-    """The loaded state on one mesh. elements : of the whole drive;  stresses : largest ones, MPa"""
-
-    elements: int
-    stresses: dict[str, float]
-
-
-def loaded_state(model: DriveModel) -> LoadedState:
-    """Elements and stresses of a model in its loaded state."""
-    return LoadedState(model.n_elements(), model.stresses()[0])
 
 
 def solve_to_load(

@@ -16,10 +16,11 @@ from mpi4py import MPI
 
 from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.analysis.drive_model import DriveModel
-from swgpar.analysis.root_stress import LEVELS, RootStress, resolve_root_stress
+from swgpar.analysis.root_stress import LEVELS, MOST_LEVELS, RootStress, resolve_root_stress
+from swgpar.analysis.shortcuts import finds_contacts
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import LoadState, from_loaded
-from swgpar.errors import ConvergenceError, InputError
+from swgpar.errors import ConvergenceError, InputError, SwgparError
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe, build_sector_meshes
 from swgpar.meshing.recipe_counts import SMALLEST, with_counts
@@ -50,9 +51,6 @@ is 0 to 0.8 % (docs/verification/effectivity.md)."""
 SMALLEST_RATIO = 1.05
 """Ratio of element sizes that an error is judged by at least: the smallest recipes can hardly be coarsened."""
 
-MOST_LEVELS = {"plane": 5, "cup": 4}
-"""Windows at most; the last one has some 200,000 and 60,000 elements."""
-
 LARGEST = {"plane": 1_500_000, "cup": 700_000}
 """Elements of the whole drive beyond which no finer mesh is taken; they need about 7 and 12 GB."""
 
@@ -75,7 +73,7 @@ def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
     if not LOWEST <= accuracy <= HIGHEST:
         raise InputError(f"--accuracy {accuracy:g} is out of range: allowed {LOWEST:g} to {HIGHEST:g}")
     changes: dict[str, Any] = {}
-    whole_period = design.steps.rotation >= np.degrees(design.period_angle)
+    whole_period = design.steps.rotation >= 0.999999 * design.periods * np.degrees(design.period_angle)
     if "samples" not in design.steps.model_fields_set and whole_period:
         samples = next(count for least, count in SAMPLES if accuracy >= least)
         changes["steps"] = design.steps.model_copy(update={"samples": samples})
@@ -115,7 +113,7 @@ class Refinement:
     Parameters
     ----------
     design, load_states, comm : the drive, all increments of its run, communicator
-    recipe : the first mesh
+    recipe : the first mesh, compared with a coarser one, or where that would not find the contacts with a finer one
     largest : elements of the whole drive beyond which no mesh is taken
     """
 
@@ -124,15 +122,17 @@ class Refinement:
     ) -> None:
         self.design, self.load_states, self.comm, self.largest = design, load_states, comm, largest
         self.kind = design.drive.model
-        self.recipe, self.levels = recipe, LEVELS[self.kind]
+        self.levels = LEVELS[self.kind]
         coarse = resized(recipe, 1.0 / RATIO)
-        self.ratio = size_ratio(coarse, recipe)
+        if not finds_contacts(coarse):
+            coarse, recipe = recipe, resized(recipe, RATIO)
+        self.recipe, self.ratio = recipe, size_ratio(coarse, recipe)
         self.model = solve_to_load(design, coarse, load_states, comm)
         try:
             self.coarse = resolve_root_stress(self.model, self.loaded, COMPARED_LEVELS).levels
             self._load(recipe)
             self.found = self._resolve()
-        except (ConvergenceError, InputError):
+        except SwgparError:
             self.model.destroy()
             raise
 
@@ -171,8 +171,12 @@ class Refinement:
         """Resolve the stress with a finer window; False where there is none."""
         if self.levels == MOST_LEVELS[self.kind]:
             return False
+        try:
+            found = resolve_root_stress(self.model, self.loaded, self.levels + 1)
+        except (ConvergenceError, InputError) as error:
+            logger.warning("no finer window: %s", error)
+            return False
         self.levels += 1
-        found = resolve_root_stress(self.model, self.loaded, self.levels)
         self.found = replace(found, drive_error=self.found.drive_error)
         return True
 
@@ -185,15 +189,18 @@ class Refinement:
             return False
         if sum(len(mesh.hexes) * mesh.n_sectors for mesh in meshes) > self.largest:
             return False
-        before, self.coarse, self.ratio = self.found.drive_error, self.found.levels, size_ratio(self.recipe, finer)
+        earlier = self.coarse, self.ratio, self.found
+        self.coarse, self.ratio = self.found.levels, size_ratio(self.recipe, finer)
         try:
             self._load(finer)
+            self.found = self._resolve(self.found.drive_error)
         except (ConvergenceError, InputError) as error:
             logger.warning("no finer mesh of the drive: %s", error)
+            self.coarse, self.ratio, self.found = earlier
+            self.model.destroy()
             self.model = solve_to_load(self.design, self.recipe, self.load_states, self.comm)
             return False
         self.recipe = finer
-        self.found = self._resolve(before)
         return True
 
 
@@ -215,13 +222,16 @@ def choose_mesh(
     a run on one of the first two meshes.
     """
     drive = Refinement(design, recipe, load_states, comm, LARGEST[design.drive.model] if largest is None else largest)
+    refine = {"windows": drive.refine_windows, "mesh": drive.refine_drive}
     while relative_error(drive.found) > accuracy:
-        steps = [drive.refine_windows, drive.refine_drive]
-        if drive.found.drive_error > drive.found.error:
-            steps.reverse()
-        if not any(step() for step in steps):
+        errors = {"windows": drive.found.error, "mesh": drive.found.drive_error}
+        too_large = any(errors[part] > accuracy * drive.found.s1 for part in errors.keys() - refine.keys())
+        if too_large or not refine:
             logger.info("no finer mesh is taken: the drive has at most %d elements", drive.largest)
             break
+        part = max(refine, key=lambda part: errors[part])
+        if not refine[part]():
+            del refine[part]
     return ChosenMesh(drive.model, drive.recipe, drive.found, relative_error(drive.found))
 
 

@@ -31,6 +31,10 @@ SOLVER_CHOICES = {"linear", "keep_factor", "far_teeth"}
 """Keys of [solver] that a restart may change: they are about how systems are solved."""
 
 
+FORMAT = 2
+"""Of the checkpoint's content."""
+
+
 def identity(design: DriveDesign, recipe: MeshRecipe, accuracy: float | None) -> str:
     """Identity of what is computed: everything but the output, the rotation and how systems are solved.
 
@@ -58,6 +62,7 @@ def write_state(
         for name, values in problem.flanks.traction_rows(first, end).items():
             blocks[name] = values, first, model.partition.layouts[FLEXIBLE_SPLINE].count
     state = {
+        "format": FORMAT,
         "identity": recorder.identity,
         "done": len(recorder.rows),
         "rows": recorder.rows,
@@ -89,6 +94,8 @@ def resume(recorder: FolderRecorder, stepper: LoadStepper, items: list[LoadState
             "same ones (--plain as before), only steps.rotation, the output, solver.linear, keep_factor and far_teeth "
             "may differ"
         )
+    if state.get("format") != FORMAT:
+        raise _of_another_version(path)
     last = _last_state(path, state)
     if state["starts_loaded"] or state["accuracy"]:
         items = from_loaded(items)
@@ -119,7 +126,11 @@ def _last_state(path: Path, state: dict[str, Any]) -> LoadState:
     try:
         return LoadState.from_dict(state["load_state"])
     except (KeyError, TypeError):
-        raise InputError(f"restart: {path} was written by another version of swgpar: start again") from None
+        raise _of_another_version(path) from None
+
+
+def _of_another_version(path: Path) -> InputError:
+    return InputError(f"restart: {path} was written by another version of swgpar: start again")
 
 
 def _restore_vector(recorder: FolderRecorder, state: dict[str, Any]) -> None:

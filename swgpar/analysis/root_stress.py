@@ -1,8 +1,8 @@
 """The largest tensile stress at the teeth of the loaded flexible spline, resolved by windows, with its error.
 
-The mesh of a drive is too coarse for the gradient in the tooth root. Windows (`local_problem`) on three meshes, each
-finer than the one before, give the stress, the order at which it converges, and from both the error that the last mesh
-leaves. The error of the drive's displacements on the cuts is not in it (docs/theory/windows.md).
+The mesh of a drive is too coarse for the gradient in the tooth root. Windows (`local_problem`), each on a finer mesh
+than the one before, give the stress, the order at which it converges, and from both the error that the last mesh
+leaves. The error of the drive's displacements and forces is another part (docs/theory/windows.md).
 """
 
 from __future__ import annotations
@@ -25,25 +25,37 @@ from swgpar.meshing.recipe import make_recipe
 RATIO = {"plane": 2.0, "cup": 1.5}
 """Ratio of element sizes of successive windows."""
 
-COUNTS: dict[str, dict[str, dict[str, int]]] = {
-    "plane": {"flexible_spline": {"root": 4, "under": 3, "rim": 4, "layers": 1, "tip": 2, "flank": 8}},
+COUNTS: dict[str, dict[str, dict[str, tuple[int, ...]]]] = {
+    "plane": {
+        "flexible_spline": {
+            "root": (4, 8, 16, 32, 64),
+            "under": (3, 6, 12, 24, 48),
+            "rim": (4, 8, 16, 32, 64),
+            "layers": (1, 2, 4, 8, 16),
+            "tip": (2, 4, 8, 16, 32),
+            "flank": (8, 16, 32, 64, 128),
+        }
+    },
     "cup": {
-        "flexible_spline": {"root": 4, "under": 2, "rim": 2, "layers": 1},
-        "face_width": {"elements": 6},
-        "cup": {"cylinder": 6},  # along the whole cylinder
+        "flexible_spline": {
+            "root": (4, 6, 9, 13),
+            "under": (2, 3, 4, 6),
+            "rim": (2, 3, 4, 6),
+            "layers": (1, 1, 2, 3),
+            "tip": (2, 2, 2, 2),  # the flanks are far from the root
+            "flank": (8, 8, 8, 8),
+        },
+        "face_width": {"elements": (6, 8, 12, 18)},  # even: a crowned cam touches along the middle
+        "cup": {"cylinder": (6, 9, 13, 20), "fillet": (1, 1, 1, 1), "closed_end": (1, 1, 1, 1)},
     },
 }
-"""Counts of the first window that the following ones refine."""
+"""Counts of the windows, coarse to fine. That of the cylinder is along all of it; fillet and closed end are outside."""
 
-FIXED: dict[str, dict[str, dict[str, float]]] = {
-    "plane": {},
-    "cup": {
-        "flexible_spline": {"tip": 2, "flank": 8},
-        "face_width": {"end_ratio": 3.0},
-        "cup": {"fillet": 1, "closed_end": 1},
-    },
-}
-"""Counts and gradings of all windows: the flanks are far from the root, fillet and closed end outside of the window."""
+MOST_LEVELS = {"plane": 5, "cup": 4}
+"""Windows that there are; the last one has some 200,000 and 60,000 elements."""
+
+END_RATIO = 3.0
+"""Middle elements along the face width over those at both ends."""
 
 LEVELS = {"plane": 4, "cup": 3}
 """Windows in the loaded state."""
@@ -93,14 +105,12 @@ class RootStress:
 
 
 def window_recipe(model: str, level: int) -> MeshRecipe:
-    """Recipe of the window `level`, from 0 on, of the "plane" or "cup" model.
-
-    Raises InputError where a count is out of range.
-    """
-    content: dict[str, Any] = {section: dict(values) for section, values in FIXED[model].items()}
-    for section, counts in COUNTS[model].items():
-        refined = {name: int(count * RATIO[model] ** level) for name, count in counts.items()}
-        content[section] = content.get(section, {}) | refined
+    """Recipe of the window `level`, from 0 on, of the "plane" or "cup" model."""
+    content: dict[str, Any] = {
+        section: {name: values[level] for name, values in counts.items()} for section, counts in COUNTS[model].items()
+    }
+    if "face_width" in content:
+        content["face_width"]["end_ratio"] = END_RATIO
     content["ring_gear"] = content["flexible_spline"]  # not meshed
     return make_recipe(content)
 

@@ -28,7 +28,7 @@ from swgpar.analysis.period import continued
 from swgpar.analysis.recorder import FolderRecorder, MemoryRecorder, Recorder
 from swgpar.analysis.restart import identity, resume
 from swgpar.analysis.root_stress import RootStress, resolve_root_stress, with_angle
-from swgpar.analysis.shortcuts import with_shortcuts
+from swgpar.analysis.shortcuts import finds_contacts, with_shortcuts
 from swgpar.analysis.summary import Accuracy, summarise
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import LoadState, Stage, from_loaded, load_sequence
@@ -195,7 +195,10 @@ class _Run:
         """Resolve the stress at the teeth on a coarser mesh of the drive, to see what the mesh changes."""
         if model.design.output.root_stress:
             loaded = from_loaded(list(load_sequence(model.design)))[0]
-            self.coarse = recipe, resolve_root_stress(model, loaded, COMPARED_LEVELS).levels
+            try:
+                self.coarse = recipe, resolve_root_stress(model, loaded, COMPARED_LEVELS).levels
+            except (ConvergenceError, InputError) as error:
+                logger.info("the error by the mesh of the drive is not known: %s", error)
 
     def go_through(self, items: list[LoadState], terminal: bool) -> None:
         """Compute and record the increments that are left."""
@@ -266,11 +269,13 @@ def _start_loaded(
     on_coarse: Callable[[DriveModel, MeshRecipe], None],
 ) -> bool:
     """Reach the loaded state on coarser meshes or from the bent shape; False if none is asked for, or if that fails."""
-    ways = [levels(stepper.design, recipe)] if stepper.design.steps.start_levels else []
+    coarser_ones = levels(stepper.design, recipe)
+    ways = [coarser_ones] if coarser_ones else []
     if starts_bent(stepper.design):
         compared = resized(recipe, 1.0 / RATIO)
-        ways += [[compared]] if stepper.design.output.root_stress and not ways and compared != recipe else []
-        ways += [[]]
+        if stepper.design.output.root_stress and not ways and finds_contacts(compared):
+            ways.append([compared])
+        ways.append([])
     for recipes in ways:
         try:
             start_loaded(stepper, recipes, items, on_coarse)

@@ -49,7 +49,9 @@ class Shortcuts:
 
 
 def with_shortcuts(design: DriveDesign, recipe: MeshRecipe, *, levels: bool = True) -> Shortcuts:
-    """The design with the keys of [steps] and [solver] that save time and do not change the result, where it sets none.
+    """The design with the keys of [steps] and [solver] that save time and do not change the result.
+
+    Keys that the design sets are kept.
 
     levels : whether the run may start on coarser meshes;  with `--accuracy` it has meshes of its own
     """
@@ -83,11 +85,12 @@ def with_shortcuts(design: DriveDesign, recipe: MeshRecipe, *, levels: bool = Tr
 def _useful_levels(recipe: MeshRecipe) -> int:
     """Number of coarser meshes that resolve the contacts."""
     count, simpler = 0, coarser(recipe)
-    while count < MOST and simpler != recipe and _finds_contacts(simpler):
+    while count < MOST and simpler != recipe and finds_contacts(simpler):
         recipe, simpler, count = simpler, coarser(simpler), count + 1
     return count
 
 
-def _finds_contacts(recipe: MeshRecipe) -> bool:
+def finds_contacts(recipe: MeshRecipe) -> bool:
+    """Whether a recipe has elements enough to find the contacts of the flanks."""
     width = recipe.face_width.elements if recipe.face_width else FEWEST
     return min(recipe.flexible_spline.flank, recipe.ring_gear.flank, width) >= FEWEST

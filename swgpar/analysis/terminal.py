@@ -93,7 +93,10 @@ def _print_contact(contact: Mapping[str, Any]) -> None:
         f"largest shear {contact['shear_MPa']:.0f} MPa)"
     )
     if contact["edge"]:
-        console.print("that contact lies on an edge: its pressure is no property of the drive")
+        console.print(
+            "that contact lies on an edge: its pressure is no property of the drive, and the stress at the teeth "
+            "may be off by more than its error"
+        )
 
 
 def _print_errors(summary: Mapping[str, Any]) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 
 from swgpar.input.toml_file import validate
 from swgpar.meshing.recipe import MeshRecipe
@@ -32,11 +32,3 @@ def with_counts(recipe: MeshRecipe, count: Callable[[str, str, int], int]) -> Me
 def coarser(recipe: MeshRecipe) -> MeshRecipe:
     """The recipe with half of every count, rounded up."""
     return with_counts(recipe, lambda _, name, value: max(SMALLEST.get(name, 1), -(-value // 2)))
-
-
-def doubled(recipe: MeshRecipe, counts: Mapping[str, Sequence[str]], times: int = 1) -> MeshRecipe:
-    """The recipe with the named counts doubled `times` times. An odd count along the face width stays odd, one higher.
-
-    counts : names of the counts by section. Raises InputError where a count is out of range.
-    """
-    return with_counts(recipe, lambda title, name, value: value << times if name in counts.get(title, ()) else value)

@@ -55,6 +55,9 @@ takes some iterations more."""
 MAX_FURTHER_SEARCHES = 3
 """Further contact searches of a solve, in states where flanks touch that the last search left out."""
 
+MAX_REPEATED_SEARCHES = 12
+"""Contact searches of a solve because nodes have moved: each begins the iteration anew, with its patience."""
+
 SEARCH_DISTANCE = 0.25
 """Displacement (modules) of a node since the last contact search after which a Newton iteration searches again."""
 
@@ -199,7 +202,9 @@ class NewtonSolver:
 
     def _search_is_outdated(self, state: SolveState) -> bool:
         """Whether the nodes have moved so far since the last contact search that other flanks may meet; collective."""
-        if state.breaker.solution is not None or not np.isfinite(self.line_search.max_node_step):
+        if state.breaker.solution is not None or state.repeated_searches == MAX_REPEATED_SEARCHES:
+            return False
+        if not np.isfinite(self.line_search.max_node_step):
             return False
         state.outdated_search = self.problem.moved_since_search() > SEARCH_DISTANCE * self.problem.module
         return state.outdated_search
@@ -286,6 +291,7 @@ class NewtonSolver:
     def _prepare_contacts(self, state: SolveState) -> None:
         """Search anew, or extend the pattern, as the run that was interrupted needs it."""
         if state.outdated_search:
+            state.repeated_searches += 1
             # a search releases the segments and forgets the multipliers
             state.breaker, state.before_augmentation = CycleBreaker(), None
             self.problem.search(state.load_state)

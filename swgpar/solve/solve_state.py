@@ -92,7 +92,7 @@ class SolveState:
     softenings : shares of the penalty of the runs that follow before the full penalty
     penalty_share : of the present run
     max_iterations : of the whole solve
-    iterations, searches, augmentations : so far
+    iterations, searches, repeated_searches, augmentations : so far
     residuals : over the contact force, of the present run
     pattern_misses : keys of contact blocks on this rank that the tangent's pattern lacks
     incomplete_pattern : whether any rank misses blocks
@@ -106,6 +106,7 @@ class SolveState:
     penalty_share: float = 1.0
     iterations: int = 0
     searches: int = 0
+    repeated_searches: int = 0
     augmentations: int = 0
     residuals: list[float] = field(default_factory=list)
     pattern_misses: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))

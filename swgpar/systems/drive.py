@@ -106,7 +106,7 @@ class Drives(System[DriveDesign, DriveResult]):
         print_drive(result.history, result.summary)
 
     def without_output(self, table: dict[str, Any]) -> dict[str, Any]:
-        # fields fill the disk, and no quantity of a study comes from windows
+        # fields fill the disk, and windows take time that few studies need
         return apply_overrides(table, [f"output.{key}=false" for key in ("fields", "figures", "root_stress")])
 
     def quantities(self, design: DriveDesign) -> dict[str, Quantity]:
@@ -143,7 +143,8 @@ class Drives(System[DriveDesign, DriveResult]):
         return 2 if design.drive.model == "plane" else 3
 
     def identity(self, design: DriveDesign, recipe: MeshRecipe | None) -> dict[str, Any]:
-        return {"identity": identity(design, recipe, None), "rotation": design.steps.rotation}
+        found: dict[str, Any] = {"identity": identity(design, recipe, None), "rotation": design.steps.rotation}
+        return found | ({"root_stress": True} if design.output.root_stress else {})
 
     def measure(self, result: DriveResult) -> Measured:
         summary = result.summary
@@ -158,19 +159,15 @@ class Drives(System[DriveDesign, DriveResult]):
 
 def resolved(summary: Mapping[str, Any], pairs: Mapping[str, np.ndarray]) -> dict[str, float]:
     """The quantities of `RESOLVED`, without those that the run does not have."""
-    root = summary["root_stress"]
-    if not root:
-        return {}
-    found = {
-        "root.s1": root["s1"],
-        "root.s1_error": root["total_error"],
-        "contact.on_edge": float(np.any(pairs["edge"])) if len(pairs) else 0.0,
-    }
-    if len(root["period"]) > 1:
-        found["root.mean_s1"] = float(np.mean([s1 for _, s1 in root["period"]]))
-    contact = summary["contact"]
-    if contact and not contact["edge"]:
-        found["contact.pressure"] = contact["pressure_MPa"]
+    root, contact, found = summary["root_stress"], summary["contact"], {}
+    if root:
+        found |= {"root.s1": root["s1"], "root.s1_error": root["total_error"]}
+        if len(root["period"]) > 1:
+            found["root.mean_s1"] = float(np.mean([s1 for _, s1 in root["period"]]))
+    if contact:
+        found["contact.on_edge"] = float(np.any(pairs["edge"]))
+        if not contact["edge"]:
+            found["contact.pressure"] = contact["pressure_MPa"]
     return found
 
 

@@ -14,7 +14,7 @@ from pytest_mpi import parallel_assert
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from support.stepping import load_stepper, row
-from swgpar.analysis.coarse_start import levels, loaded_state, start_loaded
+from swgpar.analysis.coarse_start import levels, start_loaded
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.mesh_refinement import choose_mesh
 from swgpar.analysis.period import continued
@@ -251,7 +251,7 @@ def test_a_mesh_is_chosen_alike_on_any_number_of_ranks() -> None:
         states = list(load_sequence(design))
         chosen = choose_mesh(design, load_recipe(RECIPE), states, 0.05, comm, largest=12_000)
         assert np.isfinite(chosen.error) and chosen.model.n_elements() <= 12_000
-        found.append((chosen, loaded_state(chosen.model).stresses))
+        found.append((chosen, chosen.model.stresses()[0]))
         chosen.model.destroy()
     (here, stress), (alone, other) = found
     parallel_assert(here.recipe == alone.recipe)

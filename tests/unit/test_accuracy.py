@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -101,14 +100,19 @@ def test_the_error_holds() -> None:
 
 def test_the_best_mesh_is_returned_where_the_accuracy_is_out_of_reach() -> None:
     with Messages() as messages:
-        found = chosen(0.001, largest=3_000)
+        found = chosen(0.001, largest=10_000)
     elements = found.model.n_elements()
     found.model.destroy()
-    assert found.error > 0.001 and elements <= 3_000
-    assert any("no finer mesh is taken: the drive has at most 3000 elements" in text for text in messages.texts)
+    assert found.error > 0.001 and elements <= 10_000
+    assert any("no finer mesh is taken: the drive has at most 10000 elements" in text for text in messages.texts)
 
 
 def test_with_friction_every_mesh_is_loaded_step_by_step() -> None:
+    """The state is the one that a run has on this mesh, which depends on the path to it."""
     found = chosen(0.2, "contact.friction=0.1")
-    assert found.error <= 0.2 and replace(found.root_stress, drive_error=None).total_error == found.root_stress.error
-    found.model.destroy()
+    design = found.model.design
+    alone = solve_to_load(design, found.recipe, list(load_sequence(design)), MPI.COMM_SELF)
+    assert found.error <= 0.2
+    assert found.model.stresses()[0] == pytest.approx(alone.stresses()[0], rel=1e-9)
+    for model in (found.model, alone):
+        model.destroy()

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import swgpar
 from support.drive_groups import PLANE, cams, table_of
-from support.paths import REFERENCE
+from support.paths import RECIPE, REFERENCE
 from swgpar.analysis.bent_start import BentSpline, bent_ring
 from swgpar.design.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
@@ -65,3 +66,20 @@ def test_the_cup_is_at_rest_at_its_closed_end_and_its_wall_does_not_shear() -> N
     around = np.einsum("ij,ij->i", (further - u)[:, :2], tangent) / step
     axial = np.gradient(u[:, 2], THETA) / spline.radius
     assert np.abs(around + axial)[2:-2].max() < 0.02 * np.abs(around).max()
+
+
+def test_a_thin_rim_takes_its_torque_in_one_increment() -> None:
+    """Its teeth travel so far that the contacts have to be searched again on the way."""
+    thin = {
+        "drive.teeth_fs": 100,
+        "drive.teeth_rg": 102,
+        "flexible_spline.rim": 0.35,
+        "wave_generator": {"type": "simplified", "C": 0.9, "face_width": 10.0},
+        "load.torque": 6.7,
+        "steps.rotation": 0.0,
+        "output.root_stress": False,
+    }
+    at_once = swgpar.run(swgpar.load_design(PLANE, thin), RECIPE)
+    assert len(at_once.history["step"]) == 1 and at_once.history["newton_iterations"][0] < 50
+    stepwise = swgpar.run(swgpar.load_design(PLANE, {**thin, "steps.load_increments": 5}), RECIPE)
+    assert at_once.history["fs_s1"][-1] == pytest.approx(stepwise.history["fs_s1"][-1], rel=1e-6)
