@@ -45,7 +45,7 @@ COUNTS: dict[str, dict[str, dict[str, tuple[int, ...]]]] = {
             "tip": (2, 2, 2, 2),  # the flanks are far from the root
             "flank": (8, 8, 8, 8),
         },
-        "face_width": {"elements": (6, 8, 12, 18)},  # even: a crowned cam touches along the middle
+        "face_width": {"elements": (8, 12, 18, 26)},  # even: a crowned cam touches along the middle
         "cup": {"cylinder": (6, 9, 13, 20), "fillet": (1, 1, 1, 1), "closed_end": (1, 1, 1, 1)},
     },
 }
