@@ -147,7 +147,7 @@ def table(rows: list[dict[str, Any]]) -> str:
     within = sum(0.5 <= one["ratio"] <= 3.0 for one in rows)
     below = sum(one["ratio"] < 0.5 for one in rows)
     high = sum(one["ratio"] > 3.0 for one in rows)
-    words = f"{within} of {len(rows)} ratios are between 0.5 and 3; {below} are below, {high} above.\n"
+    words = f"Ratios between 0.5 and 3: {within} of {len(rows)}. Below: {below}. Above: {high}.\n"
     return markdown(cells) + "\n" + words
 
 

@@ -28,7 +28,7 @@ DRIVES: dict[str, tuple[str, tuple[str, ...], tuple[str, ...]]] = {
 }
 """Design, meshes from coarse to fine, and overrides, by name."""
 
-COLUMNS = ("drive", "mesh", "elements", "on_mesh", "s1", "error", "region", "radius", "z", "windows_s", "wall_s")
+COLUMNS = ("drive", "mesh", "elements", "on_mesh", "s1", "error", "region", "radius", "z")
 
 
 def measure(name: str, mesh: str, ranks: int) -> dict[str, Any]:
@@ -37,22 +37,19 @@ def measure(name: str, mesh: str, ranks: int) -> dict[str, Any]:
     every = ["steps.rotation=0", "output.fields=false", "output.root_stress=true", *overrides]
     summary = run(Path("results/bench/windows") / f"{name} {mesh}", design, every, ranks, mesh)
     root = summary["root_stress"]
-    row = {"drive": name, "mesh": mesh, "elements": summary["elements"], "wall_s": summary["wall_s"]}
+    row = {"drive": name, "mesh": mesh, "elements": summary["elements"]}
     row |= {key: root[key] for key in ("on_mesh", "s1", "error", "region", "radius", "z")}
-    return row | {"windows_s": summary["phases_s"]["windows"], "levels": root["levels"]}
+    return row | {"levels": root["levels"]}
 
 
 def table(rows: list[dict[str, Any]]) -> str:
     """The page's table."""
-    head = ["drive", "mesh", "s1 on the mesh", "windows, coarse to fine", "error", "place", "windows, s", "run, s"]
+    head = ["drive", "mesh", "s1 on the mesh", "windows, coarse to fine", "error", "place"]
     found = [head]
     for row in rows:
         levels = ", ".join(f"{value:.1f}" for value in row["levels"])
         place = f"{row['region']}, r {row['radius']:.2f}, z {row['z']:.1f}"
-        found.append(
-            [row["drive"], row["mesh"], f"{row['on_mesh']:.1f}", levels, f"{row['error']:.1f}", place]
-            + [f"{row['windows_s']:.1f}", f"{row['wall_s']:.0f}"]
-        )
+        found.append([row["drive"], row["mesh"], f"{row['on_mesh']:.1f}", levels, f"{row['error']:.1f}", place])
     return markdown(found)
 
 

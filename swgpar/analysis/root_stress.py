@@ -138,7 +138,8 @@ def resolve_root_stress(model: DriveModel, state: LoadState, levels: int | None 
     for level in range(1, levels or LEVELS[kind]):
         found = _solve(model, state, tooth, window_recipe(kind, level))
         values.append(found.value)
-    logger.info("windows around tooth %d: s1 %s MPa", tooth, ", ".join(f"{value:.1f}" for value in values))
+    stresses = ", ".join(f"{value:.1f}" for value in values)
+    logger.info("windows around tooth %d, drive of %d elements: s1 %s MPa", tooth, model.n_elements(), stresses)
     error = error_of(values, RATIO[kind])
     return _place(model, found, tuple(values), error, float(by_tooth[first]))
 
