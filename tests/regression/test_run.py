@@ -142,7 +142,7 @@ def test_start_on_a_coarser_mesh_and_one_period(tmp_path: Path) -> None:
 def test_an_accuracy_is_reached_by_refinement(tmp_path: Path) -> None:
     """The estimate of the mesh that the run ends with is below what was asked for; a restart keeps that mesh."""
     out = tmp_path / "run"
-    asked, pitch = 0.0012, 360.0 / 42.0
+    asked, pitch = 0.02, 360.0 / 42.0
     more = ("--mesh", str(RECIPE), "--accuracy", str(asked))
     command = run_command(out, *more, overrides=[*PLANE, "steps.rotation=9"])
     succeed(command)
