@@ -249,8 +249,9 @@ def test_a_mesh_is_chosen_alike_on_any_number_of_ranks() -> None:
     found = []
     for comm in (MPI.COMM_WORLD, MPI.COMM_SELF):
         states = list(load_sequence(design))
-        chosen = choose_mesh(design, load_recipe(RECIPE), states, 0.05, comm, largest=12_000)
-        assert np.isfinite(chosen.error) and chosen.model.n_elements() <= 12_000
+        chosen = choose_mesh(design, load_recipe(RECIPE), states, 0.2, comm)
+        # a coarser mesh than this one would not find the contacts: it is compared with a finer one
+        assert chosen.error <= 0.2 and chosen.recipe.flexible_spline.flank == 3
         found.append((chosen, chosen.model.stresses()[0]))
         chosen.model.destroy()
     (here, stress), (alone, other) = found
