@@ -8,7 +8,6 @@ and not computed again.
 from __future__ import annotations
 
 import argparse
-import csv
 import json
 import math
 import subprocess
@@ -16,7 +15,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from page import markdown, put
+from page import markdown, write_results
 
 from support.commands import environment, on_ranks
 from support.drive_groups import CUP, PLANE, Case, cams
@@ -170,12 +169,7 @@ def main() -> None:
     rows = [row(done[name]) for name in drives() if name in done]
     if len(rows) < len(drives()):
         return
-    folder = Path("docs/verification")
-    with (folder / "data" / "effectivity.csv").open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n", extrasaction="ignore")
-        writer.writeheader()
-        writer.writerows(rows)
-    put(folder / "effectivity.md", "effectivity", table(rows))
+    write_results("effectivity", COLUMNS, rows, table(rows))
 
 
 if __name__ == "__main__":

@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import csv
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 
 def markdown(rows: Iterable[Sequence[str]]) -> str:
     """A table from rows of cells; the first row is the head."""
     first, *others = rows
     return "\n".join("| " + " | ".join(cells) + " |" for cells in [first, ["---"] * len(first), *others]) + "\n"
+
+
+def write_results(name: str, columns: Sequence[str], rows: Sequence[Mapping[str, Any]], text: str) -> None:
+    """Write these columns of the rows to data/NAME.csv, and `text` into NAME.md, both of docs/verification."""
+    folder = Path("docs/verification")
+    with (folder / "data" / f"{name}.csv").open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, columns, lineterminator="\n", extrasaction="ignore")
+        writer.writeheader()
+        writer.writerows(rows)
+    put(folder / f"{name}.md", name, text)
 
 
 def put(page: Path, name: str, text: str) -> None:

@@ -6,12 +6,11 @@ Every run is loaded and ends there. Windows on one mesh after the other show wha
 from __future__ import annotations
 
 import argparse
-import csv
 import json
 from pathlib import Path
 from typing import Any
 
-from page import markdown, put
+from page import markdown, write_results
 from program import run
 
 PLANE, CUP = "drivers/plane_half_turn.toml", "drivers/cup_45deg.toml"
@@ -65,12 +64,7 @@ def main() -> None:
             print(json.dumps(rows[-1]), flush=True)
     if len(arguments.only) < len(DRIVES):
         return
-    folder = Path("docs/verification")
-    with (folder / "data" / "windows.csv").open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n", extrasaction="ignore")
-        writer.writeheader()
-        writer.writerows(rows)
-    put(folder / "windows.md", "windows", table(rows))
+    write_results("windows", COLUMNS, rows, table(rows))
 
 
 if __name__ == "__main__":

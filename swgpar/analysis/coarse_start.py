@@ -123,7 +123,7 @@ def start_loaded(
     """Bring `stepper` to the loaded state by way of coarser meshes, the coarsest of `recipes` first, or bent at once.
 
     load_states : all increments of the run
-    on_coarse : called with the model on the last of the coarser meshes, and its recipe
+    on_coarse : called with the model on the last of the coarser meshes, and its recipe; it raises nothing
 
     Raises ConvergenceError or InputError where a mesh does not allow it; `stepper` is then to be reset.
     """
@@ -135,11 +135,7 @@ def start_loaded(
             return
         for recipe in recipes:
             coarse = solve_to_load(target.design, recipe, load_states, target.comm, coarse)
-        try:
-            on_coarse(coarse, recipes[-1])
-        except SwgparError:
-            coarse.destroy()
-            raise
+        on_coarse(coarse, recipes[-1])
         take_over(coarse, stepper, loaded)
         stepper.advance(loaded)
 

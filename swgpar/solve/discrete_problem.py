@@ -181,7 +181,7 @@ class DiscreteProblem:
 
     def moved_since_search(self) -> float:
         """Largest displacement (mm) of a node since the last search, by component; collective."""
-        moved = np.abs(self.x.array_r - self._searched)[: 3 * self.partition.n_own]
+        moved = np.abs(self.x.array_r - self._searched)
         if self.partition.comm.rank == self.partition.comm.size - 1:
             moved = moved[: -self.partition.n_multipliers]
         return largest(self.partition.comm, float(moved.max(initial=0.0)))
