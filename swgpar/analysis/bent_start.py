@@ -71,7 +71,9 @@ class BentSpline:
         self.order = 2.0 * np.arange(len(self.amplitudes))
         self.radius = design.inner_radius + 0.5 * design.flexible_spline.rim
         self.half = 0.5 * design.wave_generator.face_width
-        self.end = 0.5 * design.drive.face_width + (design.cup.length if design.cup else 0.0)
+        self.end = 0.5 * design.drive.face_width
+        if design.cup:  # the middle of the closed end
+            self.end += design.cup.length - 0.5 * design.cup_thickness
         self.surface = design.cam_surface()
 
     def displacement(self, points: np.ndarray) -> np.ndarray:
@@ -87,6 +89,8 @@ class BentSpline:
         moved[:, :2] += (lift * share / on_cam)[:, None] * np.column_stack([-np.sin(theta), np.cos(theta)])
         if self.design.drive.model == "cup":
             moved[:, 2] = self._axial(theta, radius)
+            inside = radius < self.design.inner_radius - 0.5 * self.design.flexible_spline.rim
+            moved[inside] = self._closed_end(theta[inside], radius[inside], z[inside])
         return moved
 
     def _share(self, z: np.ndarray) -> np.ndarray:
@@ -118,13 +122,44 @@ class BentSpline:
         return outward, around, slope
 
     def _axial(self, theta: np.ndarray, radius: np.ndarray) -> np.ndarray:
-        """Axial displacement (n,) mm by Love's modes and the lean of the wall; it falls towards the bore."""
+        """Axial displacement (n,) mm of the wall by Love's modes and its lean."""
         outward, _, _ = self._waves(theta)
-        wall = (radius - self.radius) * outward
+        moved = (radius - self.radius) * outward
         for amplitude, order in zip(self.amplitudes[1:], self.order[1:]):
-            wall += self.radius / order**2 * (amplitude * np.exp(1j * order * theta)).real
-        inside = radius < self.design.inner_radius - 0.5 * self.design.flexible_spline.rim
-        return np.where(inside, wall * (radius / self.radius) ** 2, wall) / self.end
+            moved += self.radius / order**2 * (amplitude * np.exp(1j * order * theta)).real
+        return moved / self.end
+
+    def _closed_end(self, theta: np.ndarray, radius: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """Displacement (n, 3) mm of the closed end, a plate that bends along with the wall at its outer edge."""
+        deflection, slope, around = (np.zeros_like(radius) for _ in range(3))
+        for amplitude, order in zip(self.amplitudes[1:], self.order[1:]):
+            wave = amplitude * np.exp(1j * order * theta) / self.end
+            power, terms = self._plate(order)
+            shape = self.radius * (radius / self.radius)[:, None] ** power @ terms
+            deflection += shape * wave.real
+            slope += (radius / self.radius)[:, None] ** (power - 1.0) @ (power * terms) * wave.real
+            around -= order * shape / radius * wave.imag
+        height, sine, cosine = self.end - z, np.sin(theta), np.cos(theta)
+        outward, across = height * slope, height * around
+        return np.column_stack([-sine * outward - cosine * across, cosine * outward - sine * across, deflection])
+
+    def _plate(self, order: float) -> tuple[np.ndarray, np.ndarray]:
+        """Powers (4,) of the radius and their factors (4,) in the deflection of a plate, for waves of this order.
+
+        They solve the biharmonic equation. The inner edge is free, the outer one has the wall's deflection and lean.
+        """
+        edge, nu = self.design.cup.inner_radius / self.radius, self.design.material.nu
+        power = np.array([order, -order, order + 2.0, 2.0 - order])
+
+        def derivative(at: float, times: int) -> np.ndarray:
+            return np.prod([power - k for k in range(times)], axis=0) * at ** (power - times)
+
+        value, slope, bend, third = (derivative(edge, times) for times in range(4))
+        moment = bend + nu * (slope / edge - order**2 * value / edge**2)
+        laplacian_slope = third + bend / edge - slope / edge**2 - order**2 * (slope / edge**2 - 2.0 * value / edge**3)
+        shear = laplacian_slope - (1.0 - nu) * order**2 / edge * (slope / edge - value / edge**2)
+        conditions = [derivative(1.0, 0), derivative(1.0, 1), moment, shear]
+        return power, np.linalg.solve(conditions, [1.0 / order**2, 1.0, 0.0, 0.0])
 
 
 def bend(model: DriveModel) -> None:

@@ -64,7 +64,7 @@ SEARCH_DISTANCE = 0.25
 MAX_NODE_STEP = 0.2
 """Largest displacement (modules) of a node in a Newton step while flanks may touch: the tangent ignores clearances."""
 
-REUSED_FACTOR_MARGIN = 0.01
+REUSED_FACTOR_MARGIN = 1.0
 """Factor on tolerance and round-off floor with a reused factor, whose steps do not square the error."""
 
 ROUND_OFF_SHARE = 0.05
