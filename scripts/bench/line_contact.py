@@ -1,7 +1,8 @@
-"""Pressure of the flanks by line contact, beside elements that resolve the contact, in the plane reference drive.
+"""Pressure of the flanks by contact of half planes and half spaces, on meshes that do and do not resolve it.
 
-The resolving mesh has 200 elements along every flank, about a fifth of the half width of the contact long, in layers
-that get thinner towards it. The cam and the flanks have twenty times the usual penalty there.
+In the plane reference drive the resolving mesh has 200 elements along every flank, about a fifth of the half width of
+the contact long, in layers that get thinner towards it. The cam and the flanks have twenty times the usual penalty
+there.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from program import run
 import swgpar
 from swgpar.meshing.recipe import make_recipe, to_toml
 
-DESIGN, OUT = "drivers/plane_half_turn.toml", Path("results/bench/line_contact")
+DESIGN, CUP, OUT = "drivers/plane_half_turn.toml", "drivers/cup_45deg.toml", Path("results/bench/line_contact")
 
 TORQUES = (0.5, 2.0, 8.0)
 """N·m."""
@@ -25,6 +26,19 @@ FINE = {"flank": 200, "layers": 8, "layer_ratio": 1.6}
 """Counts of both gears that resolve the contact; the others are those of the recipe plane."""
 
 MESHES = ("plane_coarse", "resolved")
+
+WIDTHS = (6, 10, 16, 24)
+"""Elements over the face width of the cup drive."""
+
+CUP_HEAD = [
+    "elements over the width",
+    "tooth",
+    "force N",
+    "line load N/mm",
+    "length mm",
+    "half width mm",
+    "pressure MPa",
+]
 
 HEAD = ["torque N·m", "tooth", "mesh", "line load N/mm", "half width mm", "by line contact", "on the mesh"]
 
@@ -67,6 +81,22 @@ def rows(torque: float, mesh: str, ranks: int) -> list[list[str]]:
     return found
 
 
+def cup_rows(width: int, ranks: int) -> list[list[str]]:
+    """The loaded pairs of the reference cup drive on a mesh with so many elements over the face width."""
+    content = swgpar.load_mesh("forces").model_dump(exclude_none=True)
+    content["face_width"]["elements"] = width
+    path, folder = OUT / f"width_{width}.toml", OUT / f"width_{width}"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(to_toml(make_recipe(content)), encoding="utf-8")
+    run(folder, CUP, ["steps.rotation=0", "steps.bent_start=true", "solver.rtol=1e-6"], ranks, path)
+    pairs = swgpar.open_result(folder).pairs
+    names = {"force_N": ".1f", "line_load_Nmm": ".1f", "width_mm": ".2f", "half_width_mm": ".4f", "pressure_MPa": ".0f"}
+    return [
+        [f"{width}", f"{tooth:.0f}", *(f"{pairs[name][k]:{form}}" for name, form in names.items())]
+        for k, tooth in enumerate(pairs["tooth"])
+    ]
+
+
 def main() -> None:
     """Measure, and put the table into the page."""
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -74,10 +104,14 @@ def main() -> None:
     options.add_argument("--page", type=Path, help="page that gets the table")
     arguments = options.parse_args()
     found = [row for torque in TORQUES for mesh in MESHES for row in rows(torque, mesh, arguments.ranks)]
-    text = markdown([HEAD, *found])
-    print(text)
-    if arguments.page:
-        put(arguments.page, "line_contact", text)
+    tables = {
+        "line_contact": markdown([HEAD, *found]),
+        "patch_contact": markdown([CUP_HEAD, *(row for width in WIDTHS for row in cup_rows(width, arguments.ranks))]),
+    }
+    for name, text in tables.items():
+        print(text)
+        if arguments.page:
+            put(arguments.page, name, text)
 
 
 if __name__ == "__main__":

@@ -226,19 +226,24 @@ def build_rigid_contacts(design: DriveDesign, *, elements: Elements) -> list[Rig
     ]
 
 
+def flank_crowning(design: DriveDesign) -> Crowning:
+    """Crowning of the flexible spline's flanks."""
+    micro = design.micro_geometry
+    return Crowning(micro.fs_crowning, design.drive.face_width, micro.crowning_shape)
+
+
 def build_flank_contact(
     design: DriveDesign, *, partition: Partition, elements: Elements, supports: Supports
 ) -> FlankContact:
     """Contact of the flexible spline's flanks on the ring gear's."""
     spline, ring = elements.bodies
-    micro = design.micro_geometry
     return FlankContact(
         partition,
         spline,
         ring,
         supports,
         order=design.contact.quadrature,
-        crowning=Crowning(micro.fs_crowning, design.drive.face_width, micro.crowning_shape),
+        crowning=flank_crowning(design),
         penalty=design.penalty,
         max_gap=max(FOOT_REACH * design.drive.module, search_distance(design)),
         pressure_limit=PRESSURE_LIMIT * design.material.E,

@@ -16,7 +16,7 @@ from swgpar.results import history
 from swgpar.results.atomic import agreed
 from swgpar.results.field_sources import BodyMesh, FieldFiles, FieldSource, chosen_increment
 from swgpar.results.fields import INDEX
-from swgpar.results.folder import PAIRS, read_summary
+from swgpar.results.folder import CONTACT_LINES, PAIRS, read_summary
 from swgpar.results.history import Curves, Row
 from swgpar.results.table import read_columns
 
@@ -57,6 +57,8 @@ class DriveResult:
         torque, relative) and ``transmission_error_arcsec`` (peak to peak).
     pairs : dict of (n,) arrays
         Columns of pairs.csv, a value for every pair of flanks in contact at every computed increment under load.
+    contact_lines : dict of (n,) arrays
+        Columns of contact_lines.csv, a value for every station along the face width of these contacts.
     folder : Path or None
         The results folder; None when the run was in memory.
 
@@ -73,13 +75,14 @@ class DriveResult:
         rows: Sequence[Row],
         summary: dict[str, Any],
         pairs: Mapping[str, np.ndarray],
+        contact_lines: Mapping[str, np.ndarray],
         fields: FieldSource | None,
         comm: MPI.Comm,
         folder: Path | None = None,
     ) -> None:
         self.history: dict[str, np.ndarray] = history.columns(rows)
         self.summary = summary
-        self.pairs = dict(pairs)
+        self.pairs, self.contact_lines = dict(pairs), dict(contact_lines)
         self.folder = folder
         self._fields, self._comm = fields, comm
 
@@ -244,8 +247,8 @@ def open_drive(folder: Path, comm: MPI.Comm) -> DriveResult:
     folder = folder.absolute()  # the fields are read later
     with agreed(comm, folder, "read"):
         summary, rows = read_summary(folder), history.read_history(folder / history.NAME)
-        pairs = read_columns(folder / PAIRS) if (folder / PAIRS).exists() else {}
-    return DriveResult(rows, summary, pairs, open_fields(folder, comm), comm, folder)
+        contacts = [read_columns(folder / name) if (folder / name).exists() else {} for name in (PAIRS, CONTACT_LINES)]
+    return DriveResult(rows, summary, *contacts, open_fields(folder, comm), comm, folder)
 
 
 def open_fields(folder: Path, comm: MPI.Comm) -> FieldFiles | None:

@@ -9,6 +9,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.design.sections import GEARS
+from swgpar.errors import InputError
 from swgpar.results.figure_set import Drawings, FigureSet
 
 if TYPE_CHECKING:
@@ -16,16 +17,13 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from swgpar.analysis.drive_result import DriveResult, FlankPressure
+    from swgpar.analysis.drive_result import DriveResult
 
 MAGNIFICATION = 5.0
 """Of displacements in the picture of the deformed cup drive; that of the plane model is true to scale."""
 
-SMALLEST_PEAK = 0.02
-"""Flanks with a lower peak pressure, as a share of the highest, are left out of the contact pattern."""
-
-MOST_FLANKS = 12
-"""In the contact pattern."""
+MOST_FLANKS = 24
+"""In the contact pattern, those with the largest forces."""
 
 ANGLE = "angle of the wave generator (degrees)"
 
@@ -59,9 +57,9 @@ class DriveFigures(FigureSet):
             "torque_and_transmission_error": self.torque_and_transmission_error,
         }
         if self._result.pairs:
-            found["pairs"] = self.pairs
+            found |= {"pairs": self.pairs, "contact_pattern": self.contact_pattern}
         if self._result.increments:
-            found |= {"deformed_drive": self.deformed, "contact_pattern": self.contact_pattern}
+            found["deformed_drive"] = self.deformed
         return found
 
     def stress(self) -> Figure:
@@ -143,24 +141,29 @@ class DriveFigures(FigureSet):
     def _over_period(self) -> str:
         return ", over one period" if self._result.summary["design"]["steps"]["samples"] else ""
 
-    def contact_pattern(self, increment: int = -1) -> Figure:
-        """Contact pressure (MPa) on the flanks in contact, over arc length and face width.
+    def contact_pattern(self, step: int | None = None) -> Figure:
+        """Pressure (MPa) on all loaded flanks, over arc length and face width.
 
-        In the plane model over arc length. increment : among those with fields, as in `DriveResult.field`
+        In the plane model over arc length. step : of the history; None for that with the largest pressure
         """
         from matplotlib.figure import Figure
 
-        contact = self._result.flank_pressure(increment)
-        peak = contact.pressure.max(axis=(2, 3))
-        touching = list(zip(*np.nonzero(peak > SMALLEST_PEAK * max(peak.max(), 1e-300)), strict=True))
-        flanks = sorted(sorted(touching, key=lambda flank: -peak[flank])[:MOST_FLANKS])
+        pairs, lines = self._result.pairs, self._result.contact_lines
+        if step is None:
+            off_edge = np.where(pairs["edge"] == 0, pairs["pressure_MPa"], 0.0)
+            step = int(pairs["step"][(off_edge if off_edge.any() else pairs["pressure_MPa"]).argmax()])
+        chosen = np.flatnonzero(pairs["step"] == step)
+        if not len(chosen):
+            raise InputError(f"step = {step} has no flanks in contact: allowed are steps of result.pairs")
+        chosen = np.sort(chosen[np.argsort(-pairs["force_N"][chosen])][:MOST_FLANKS])
+        flanks = [_Flank(pairs, lines, int(k)) for k in chosen]
         figure = Figure(figsize=(10.0, 6.0), layout="constrained")
-        if not flanks:
-            figure.text(0.5, 0.5, "no flank is in contact", ha="center")
-        elif self._result.is_plane:
-            _draw_pressure_lines(figure, contact, flanks)
+        angle = pairs["wg_angle_deg"][chosen[0]]
+        figure.suptitle(f"contact of the flanks, wave generator at {angle:.3g} degrees", fontsize=10)
+        if self._result.is_plane:
+            _draw_pressure_lines(figure, flanks)
         else:
-            _draw_pressure_maps(figure, contact, flanks)
+            _draw_pressure_maps(figure, flanks)
         return figure
 
     def deformed(self, increment: int = -1, magnification: float | None = None) -> Figure:
@@ -215,34 +218,59 @@ def _panels(count: int) -> tuple[Figure, list[Axes]]:
     return figure, panels
 
 
-def _flank_name(tooth: int, side: int) -> str:
-    return f"tooth {tooth}, {'clockwise' if side == 0 else 'counter-clockwise'} flank"
+class _Flank:
+    """A flank in contact: half ellipses of pressure at the stations along its face width.
+
+    pairs, lines : columns of the tables;  k : row of the pair
+
+    Attributes
+    ----------
+    name : the flank and what it carries;  z, s, half_width, peak : (n,) of the stations, mm and MPa
+    """
+
+    def __init__(self, pairs: dict[str, np.ndarray], lines: dict[str, np.ndarray], k: int) -> None:
+        edge = ", on an edge" if pairs["edge"][k] else ""
+        load = f"{pairs['force_N'][k]:.3g} N, {pairs['pressure_MPa'][k]:.4g} MPa{edge}"
+        self.name = f"tooth {pairs['tooth'][k]:.0f}, {pairs['flank'][k]}\n{load}"
+        here = np.all([lines[name] == pairs[name][k] for name in ("step", "tooth", "flank", "ring_tooth")], axis=0)
+        self.z, self.s = lines["z_mm"][here], lines["s_mm"][here]
+        self.half_width, self.peak = lines["half_width_mm"][here], lines["pressure_MPa"][here]
+
+    def at(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Middle and half width (n,) mm and largest pressure (n,) MPa at z (n,) mm, linear between stations."""
+        peak = np.interp(z, self.z, self.peak, left=0.0, right=0.0)
+        return np.interp(z, self.z, self.s), np.interp(z, self.z, self.half_width), peak
 
 
-def _draw_pressure_lines(figure: Figure, contact: FlankPressure, flanks: list[tuple[int, int]]) -> None:
+def _half_ellipse(s: np.ndarray, middle: np.ndarray, half_width: np.ndarray, peak: np.ndarray) -> np.ndarray:
+    return peak * np.sqrt(np.clip(1.0 - ((s - middle) / half_width) ** 2, 0.0, None))
+
+
+def _draw_pressure_lines(figure: Figure, flanks: list[_Flank]) -> None:
     axes = figure.add_subplot()
     for flank in flanks:
-        axes.plot(contact.s, contact.pressure[flank][:, 0], "o-", ms=3, label=_flank_name(*flank))
-    axes.set(xlabel="arc length from the tip (mm)", ylabel="contact pressure, nodal mean (MPa)", ylim=(0.0, None))
+        s = flank.s[0] + flank.half_width[0] * np.linspace(-1.1, 1.1, 101)
+        axes.plot(s, _half_ellipse(s, flank.s[0], flank.half_width[0], flank.peak[0]), label=flank.name)
+    axes.set(xlabel="arc length from the tip (mm)", ylabel="contact pressure (MPa)", ylim=(0.0, None))
     axes.grid(alpha=0.3)
     axes.legend(fontsize=8)
 
 
-def _draw_pressure_maps(figure: Figure, contact: FlankPressure, flanks: list[tuple[int, int]]) -> None:
-    columns = min(4, len(flanks))
+def _draw_pressure_maps(figure: Figure, flanks: list[_Flank]) -> None:
+    columns = min(6 if len(flanks) > 12 else 4, len(flanks))
+    width = max(np.abs(flank.z).max() for flank in flanks)
+    low = min((flank.s - flank.half_width).min() for flank in flanks)
+    high = max((flank.s + flank.half_width).max() for flank in flanks)
+    margin = 0.1 * (high - low)
+    z = np.linspace(-1.05 * width, 1.05 * width, 240)
+    s = np.linspace(max(0.0, low - margin), high + margin, 320)[:, None]
+    top = max(flank.peak.max() for flank in flanks)
     for number, flank in enumerate(flanks, start=1):
         axes = figure.add_subplot(-(-len(flanks) // columns), columns, number)
-        image = axes.pcolormesh(
-            contact.z,
-            contact.s,
-            contact.pressure[flank],
-            shading="gouraud",
-            vmin=0.0,
-            vmax=float(contact.pressure.max()),
-            cmap="magma",
-        )
+        pressure = _half_ellipse(s, *flank.at(z))
+        image = axes.pcolormesh(z, s[:, 0], pressure, shading="nearest", vmin=0.0, vmax=top, cmap="magma")
         axes.invert_yaxis()
-        axes.set_title(_flank_name(*flank), fontsize=8)
+        axes.set_title(flank.name, fontsize=8)
         axes.set_xlabel("z (mm)", fontsize=8)
         axes.set_ylabel("from the tip (mm)", fontsize=8)
     figure.colorbar(image, ax=figure.axes, label="contact pressure (MPa)")

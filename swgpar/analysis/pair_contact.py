@@ -1,29 +1,29 @@
 """Contact of every touching pair of flanks: force, line load, and the local pressure that no mesh of a drive resolves.
 
-The mesh gives the forces and the places of the teeth. At the station along the face width with the largest line load,
-the exact profiles are moved with their teeth, and the gap between them goes into the line contact of two half planes
-(`contact.line_contact`), which is Hertz's where the profiles are arcs.
+The mesh gives the force of a pair, its place along the face width, and the motion of both teeth. The exact flanks are
+moved with their teeth. In the plane model the gap between them goes into the line contact of two half planes
+(`contact.line_contact`), in the cup model into the contact of two half spaces over a patch (`contact.patch_contact`).
 """
 
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 from scipy.integrate import trapezoid
 
-from swgpar.analysis.drive_model import DriveModel
+from swgpar.analysis.drive_model import DriveModel, flank_crowning
 from swgpar.analysis.flank_loads import LineLoad, line_loads
-from swgpar.contact.line_contact import effective_modulus, line_contact
+from swgpar.analysis.moved_teeth import MovedTooth
+from swgpar.contact.line_contact import LineContact, effective_modulus, line_contact
+from swgpar.contact.patch_contact import PatchContact, patch_contact
 from swgpar.contact.search import FlankPair
-from swgpar.contact.segments import MIRROR
 from swgpar.design.load_states import LoadState
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR, BodyLayout
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.vectors import read_field
-from swgpar.geometry.profiles import ToothProfile
-from swgpar.geometry.rotation import HALF_TURN, rotated
+from swgpar.geometry.rotation import HALF_TURN
 from swgpar.log import logger
-from swgpar.meshing.sector import FlankGrid
 
 SMALLEST = 0.02
 """Line load, over the largest one, below which a pair is left out."""
@@ -31,8 +31,27 @@ SMALLEST = 0.02
 WIDTH = 0.05
 """Width over the module within which the contact is looked for at first."""
 
+COARSE, FINE = 401, 21
+"""Points along a profile, and between three of them, among which that of the least gap is looked for."""
+
 END = 1e-6
 """Distance over the module from the end of a profile within which a contact lies on an edge."""
+
+
+@dataclass(frozen=True)
+class ContactStation:
+    """Contact of two flanks at a station along the face width.
+
+    z_mm : the station;  line_load_Nmm : N/mm
+    s_mm : middle of the contact, arc length from the tip of the flexible spline's tooth;  half_width_mm : of it
+    pressure_MPa : largest pressure
+    """
+
+    z_mm: float
+    line_load_Nmm: float
+    s_mm: float
+    half_width_mm: float
+    pressure_MPa: float
 
 
 @dataclass(frozen=True)
@@ -45,6 +64,7 @@ class PairContact:
     pressure_MPa, half_width_mm, shear_MPa : largest pressure, half width of the contact and largest shear below it
     edge : 1 where the contact ends at the tip of a profile, or the load at an end of the face width; the pressure is
     then no property of the drive
+    stations : along the face width, those that carry a load
     """
 
     tooth: int
@@ -59,6 +79,16 @@ class PairContact:
     half_width_mm: float
     shear_MPa: float
     edge: int
+    stations: tuple[ContactStation, ...]
+
+    def row(self) -> dict[str, Any]:
+        """The row of pairs.csv."""
+        return {name: value for name, value in asdict(self).items() if name != "stations"}
+
+    def station_rows(self) -> list[dict[str, Any]]:
+        """The rows of contact_lines.csv."""
+        pair = {"tooth": self.tooth, "flank": self.flank, "ring_tooth": self.ring_tooth}
+        return [{**pair, **asdict(station)} for station in self.stations]
 
 
 def pair_contacts(model: DriveModel, state: LoadState) -> list[PairContact]:
@@ -75,14 +105,13 @@ def pair_contacts(model: DriveModel, state: LoadState) -> list[PairContact]:
     found, failed = [], []
     for pair, u, ring_u in zip(pairs, moved, facing):
         try:
-            contact = _contact(model, pair, loads[pair.sector - first, pair.side], u, ring_u)
-            found.append(tuple(asdict(contact).values()))
+            found.append(_contact(model, pair, loads[pair.sector - first, pair.side], u, ring_u))
         except (ArithmeticError, np.linalg.LinAlgError) as error:
             failed.append(f"tooth {pair.sector}: {error}")
-    rows = [row for part in model.comm.allgather(found) for row in part]
+    contacts = [contact for part in model.comm.allgather(found) for contact in part]
     for reason in (reason for part in model.comm.allgather(failed) for reason in part):
         logger.warning("the contact of a pair is left out of pairs.csv: %s", reason)
-    return sorted((PairContact(*row) for row in rows), key=lambda one: (one.tooth, one.flank))
+    return sorted(contacts, key=lambda one: (one.tooth, one.flank))
 
 
 def _peak(load: LineLoad) -> float:
@@ -91,89 +120,90 @@ def _peak(load: LineLoad) -> float:
 
 def _contact(model: DriveModel, pair: FlankPair, load: LineLoad, u: np.ndarray, ring_u: np.ndarray) -> PairContact:
     """Contact of one pair. u, ring_u : displacements (n_node, 3) mm of both sectors"""
-    design = model.design
     spline, ring = model.partition.layouts
-    module, plane = design.drive.module, spline.mesh.plane
-    size = np.linalg.norm(load.load, axis=1)
-    station = int(size.argmax())
     if pair.ring_flip:
         ring_u = HALF_TURN * ring_u
-    tooth = _Tooth(spline, spline.first_tooth + pair.sector, pair.side, u, station)
-    facing = _Tooth(ring, pair.ring_tooth, -pair.side, ring_u, station)
-
-    def gap(s: np.ndarray) -> np.ndarray:
-        inside = (s >= 0.0) & (s <= tooth.profile.length)
-        distance, _ = facing.profile.distance(facing.to_profile(tooth.from_profile(np.where(inside, s, 0.0))))
-        return np.where(inside, distance, np.inf)
-
-    s = np.linspace(0.0, tooth.profile.length, 2001)
-    start = float(s[gap(s).argmin()])
+    tooth = MovedTooth(spline, spline.first_tooth + pair.sector, pair.side, u, flank_crowning(model.design))
+    facing = MovedTooth(ring, pair.ring_tooth, -pair.side, ring_u)
     direction = load.load.sum(axis=0) / np.linalg.norm(load.load.sum(axis=0))
     along = load.load @ direction
-    modulus = effective_modulus(design.material.E, design.material.nu, plane_stress=plane)
-    found = line_contact(gap, start, WIDTH * module, float(size[station]), modulus)
-    _, foot = facing.profile.distance(
-        facing.to_profile(tooth.from_profile(found.middle + found.half_width * np.array([-1.0, 1.0])))
-    )
-    at_end = not plane and station in (0, len(size) - 1)
-    middle = tooth.profile.point(np.clip(found.middle, 0.0, tooth.profile.length))[0]
+    force = float(trapezoid(along, load.z))
+    gap = _Gap(tooth, facing)
+    if spline.mesh.plane:
+        found = _line(model, gap, load)
+        shape, width, on_edge = found, float(np.ptp(load.z)), found.at_end
+        size = float(along[0])
+        stations = (ContactStation(0.0, size, found.middle, found.half_width, found.peak),)
+    else:
+        patch = _patch(model, gap, load, along, force)
+        shape, on_edge = patch.strongest, patch.at_end or patch.reaches
+        columns = (patch.z, patch.line_load, patch.middle, patch.half_width, patch.pressure)
+        stations = tuple(ContactStation(*map(float, values)) for values in zip(*columns, strict=True))
+        width = len(patch.z) * float(patch.z[1] - patch.z[0])
+    top = max(stations, key=lambda station: station.pressure_MPa)
+    ends = top.s_mm + top.half_width_mm * np.array([[-1.0], [1.0]])
+    on_tip = gap.foot(ends, np.array([top.z_mm])).min() < END * model.design.drive.module
+    middle = tooth.profile.point(np.clip(top.s_mm, 0.0, tooth.profile.length))[0]
     return PairContact(
         tooth=(spline.first_tooth + pair.sector) % spline.mesh.n_sectors,
         flank="clockwise" if pair.side > 0 else "counter-clockwise",
         ring_tooth=pair.ring_tooth % ring.mesh.n_sectors,
-        force_N=float(trapezoid(along, load.z)),
-        width_mm=_length_above(load.z, size, SMALLEST * float(size.max())),
-        line_load_Nmm=float(size[station]),
-        z_mm=0.0 if plane else float(load.z[station]),
+        force_N=force,
+        width_mm=width,
+        line_load_Nmm=top.line_load_Nmm,
+        z_mm=top.z_mm,
         radius_mm=float(np.hypot(*middle)),
-        pressure_MPa=found.peak,
-        half_width_mm=found.half_width,
-        shear_MPa=found.largest_shear(),
-        edge=int(found.at_end or foot.min() < END * module or at_end),
+        pressure_MPa=top.pressure_MPa,
+        half_width_mm=top.half_width_mm,
+        shear_MPa=shape.largest_shear(),
+        edge=int(on_edge or on_tip),
+        stations=stations,
     )
 
 
-def _length_above(z: np.ndarray, values: np.ndarray, level: float) -> float:
-    """Length (mm) on which values (n,), linear between z (n,) mm, are above a level."""
-    low, high = np.minimum(values[:-1], values[1:]), np.maximum(values[:-1], values[1:])
-    share = np.where(high > low, (high - level) / np.where(high > low, high - low, 1.0), high > level)
-    return float((np.clip(share, 0.0, 1.0) * np.diff(z)).sum())
+class _Gap:
+    """Gap between two moved teeth over the arc length on the first one and the face width."""
+
+    def __init__(self, tooth: MovedTooth, facing: MovedTooth) -> None:
+        self.tooth, self.facing = tooth, facing
+
+    def _distance(self, s: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return self.facing.sections(z).distance(self.tooth.sections(z).from_profile(s))
+
+    def __call__(self, s: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """Gap (m, n) mm at s (m, n) and z (n,) mm, infinite beyond the ends of the profile."""
+        inside = (s >= 0.0) & (s <= self.tooth.profile.length)
+        return np.where(inside, self._distance(np.where(inside, s, 0.0), z)[0], np.inf)
+
+    def foot(self, s: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """Arc length (m, n) mm on the facing flank at s (m, n) and z (n,) mm."""
+        return self._distance(s, z)[1]
+
+    def least_at(self, z: np.ndarray) -> np.ndarray:
+        """Arc length (n,) mm of the least gap at z (n,) mm."""
+        length = self.tooth.profile.length
+        s = np.tile(np.linspace(0.0, length, COARSE)[:, None], len(z))
+        s = s[self(s, z).argmin(axis=0), np.arange(len(z))]
+        fine = s + np.linspace(-1.0, 1.0, FINE)[:, None] * length / (COARSE - 1)
+        return fine[self(fine, z).argmin(axis=0), np.arange(len(z))]
 
 
-class _Tooth:
-    """A tooth that has moved rigidly, in the section of one station along the face width.
-
-    Parameters
-    ----------
-    layout, tooth, side : body, number and flank;  u : (n_node, 3) mm, displacement of its sector in the drive's frame
-    station : number of the section, among those of the flank's grid
-    """
-
-    def __init__(self, layout: BodyLayout, tooth: int, side: int, u: np.ndarray, station: int) -> None:
-        self.profile: ToothProfile = layout.mesh.profile
-        self.mirror = MIRROR if side < 0 else np.ones(2)
-        angle = float(layout.sector_angle(np.array(tooth)))
-        nodes = np.concatenate([_active(grid, self.profile, station) for grid in layout.mesh.flanks])
-        before = layout.mesh.coords[nodes, :2]
-        after = before + rotated(u[nodes, :2], -angle)
-        # the rotation that fits best is that of the polar decomposition
-        middle, moved = before.mean(axis=0), after.mean(axis=0)
-        a, b = (before - middle).T @ (after - moved)
-        turn = float(np.arctan2(a[1] - b[0], a[0] + b[1]))
-        self._middle, self._moved, self._turn, self._angle = middle, moved, turn, angle
-
-    def from_profile(self, s: np.ndarray) -> np.ndarray:
-        """Points (n, 2) of the drive's frame, of the flank at arc lengths s (n,) mm."""
-        point = self.profile.point(s) * self.mirror
-        return rotated(self._moved + rotated(point - self._middle, self._turn), self._angle)
-
-    def to_profile(self, points: np.ndarray) -> np.ndarray:
-        """Points (n, 2) of the drive's frame in the frame of the undeformed flank."""
-        local = rotated(points, -self._angle)
-        return (self._middle + rotated(local - self._moved, -self._turn)) * self.mirror
+def _modulus(model: DriveModel) -> float:
+    design = model.design
+    return effective_modulus(design.material.E, design.material.nu, plane_stress=design.drive.model == "plane")
 
 
-def _active(grid: FlankGrid, profile: ToothProfile, station: int) -> np.ndarray:
-    """Nodes (n,) of the active part of a flank, above its root, at a station."""
-    above = grid.s <= profile.breaks[-2] * (1.0 + 1e-9)
-    return grid.nodes[above if above.sum() > 2 else slice(None), station]
+def _line(model: DriveModel, gap: _Gap, load: LineLoad) -> LineContact:
+    middle = np.zeros(1)
+    width, size = WIDTH * model.design.drive.module, float(np.linalg.norm(load.load[0]))
+    return line_contact(
+        lambda s: gap(s[:, None], middle)[:, 0], float(gap.least_at(middle)[0]), width, size, _modulus(model)
+    )
+
+
+def _patch(model: DriveModel, gap: _Gap, load: LineLoad, along: np.ndarray, force: float) -> PatchContact:
+    """Contact of a pair in the cup model. along : (n,) N/mm, line load of the mesh"""
+    ends = float(load.z[0]), float(load.z[-1])
+    place = float(trapezoid(along * load.z, load.z)) / force
+    width = WIDTH * model.design.drive.module
+    return patch_contact(gap, gap.least_at, ends, width, force=force, place=place, modulus=_modulus(model))

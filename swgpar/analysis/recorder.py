@@ -5,12 +5,10 @@ from __future__ import annotations
 import json
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from mpi4py import MPI
 
 from swgpar.analysis.contact_pressure import nodal_pressure
 from swgpar.analysis.drive_model import DriveModel
@@ -29,7 +27,7 @@ from swgpar.results import history
 from swgpar.results.atomic import to_json, write_from_root
 from swgpar.results.field_sources import BodyPart, FieldParts, FlankGrids
 from swgpar.results.fields import FieldWriter
-from swgpar.results.folder import PAIRS, SUMMARY
+from swgpar.results.folder import CONTACT_LINES, PAIRS, SUMMARY
 from swgpar.results.history import Row
 from swgpar.results.table import as_columns, format_csv
 
@@ -49,7 +47,7 @@ class Recorder(ABC):
     accuracy : what was asked for and reached, if an accuracy was asked for
     root_stress : of the loaded state, once it is resolved
     places : of the largest stresses under load, by column of the history
-    pairs : rows of pairs.csv, the contacts of flanks under load
+    pairs, contact_lines : rows of pairs.csv and contact_lines.csv, the contacts of flanks under load
     """
 
     def __init__(self, model: DriveModel) -> None:
@@ -60,6 +58,7 @@ class Recorder(ABC):
         self.root_stress: RootStress | None = None
         self.places: dict[str, Place] = {}
         self.pairs: list[Row] = []
+        self.contact_lines: list[Row] = []
 
     def record(self, stepper: LoadStepper, seconds: float, elapsed: float) -> None:
         """Keep the state after an increment.
@@ -92,7 +91,16 @@ class Recorder(ABC):
     def _keep_pairs(self, state: LoadState) -> None:
         if state.is_periodic:
             when = {"step": int(self.rows[-1]["step"]), "wg_angle_deg": self.rows[-1]["wg_angle_deg"]}
-            self.pairs += [{**when, **asdict(contact)} for contact in pair_contacts(self.model, state)]
+            contacts = pair_contacts(self.model, state)
+            self.pairs += [{**when, **contact.row()} for contact in contacts]
+            self.contact_lines += [{**when, **row} for contact in contacts for row in contact.station_rows()]
+
+    def _shared(
+        self, rows: list[Row], summary: dict[str, Any]
+    ) -> tuple[list[Row], dict[str, Any], dict[str, np.ndarray], dict[str, np.ndarray]]:
+        """History, summary and contacts of rank 0 on every rank, as files hold them; collective."""
+        contacts = as_columns(self.pairs), as_columns(self.contact_lines)
+        return self.comm.bcast((rows, json.loads(to_json(summary)), *contacts) if self.comm.rank == 0 else None)
 
     @abstractmethod
     def begin(self) -> None:
@@ -134,7 +142,7 @@ class MemoryRecorder(Recorder):
             self._parts.keep(len(self.rows), fields)
 
     def finish(self, rows: list[Row], summary: dict[str, Any]) -> DriveResult:
-        return DriveResult(*_shared(rows, summary, self.pairs, self.comm), self._parts, self.comm)
+        return DriveResult(*self._shared(rows, summary), self._parts, self.comm)
 
 
 class FolderRecorder(Recorder):
@@ -190,21 +198,14 @@ class FolderRecorder(Recorder):
         write_from_root(self.comm, self.out / history.NAME, history.format_rows(self.rows))
         if self.pairs:
             write_from_root(self.comm, self.out / PAIRS, format_csv(self.pairs))
+            write_from_root(self.comm, self.out / CONTACT_LINES, format_csv(self.contact_lines))
 
     def finish(self, rows: list[Row], summary: dict[str, Any]) -> DriveResult:
         if len(rows) > len(self.rows):
             write_from_root(self.comm, self.out / history.NAME, history.format_rows(rows))
         write_from_root(self.comm, self.out / SUMMARY, to_json(summary))
         folder = self.out.absolute()  # the fields are read later
-        shared = _shared(rows, summary, self.pairs, self.comm)
-        return DriveResult(*shared, open_fields(folder, self.comm), self.comm, folder)
-
-
-def _shared(
-    rows: list[Row], summary: dict[str, Any], pairs: list[Row], comm: MPI.Comm
-) -> tuple[list[Row], dict[str, Any], dict[str, np.ndarray]]:
-    """History, summary and pairs of rank 0 on every rank, as files hold them; collective."""
-    return comm.bcast((rows, json.loads(to_json(summary)), as_columns(pairs)) if comm.rank == 0 else None)
+        return DriveResult(*self._shared(rows, summary), open_fields(folder, self.comm), self.comm, folder)
 
 
 def _flank_grids(mesh: SectorMesh) -> FlankGrids:

@@ -75,6 +75,7 @@ def write_state(
         "accuracy": recorder.accuracy and asdict(recorder.accuracy),
         "root_stress": recorder.root_stress and asdict(recorder.root_stress),
         "pairs": recorder.pairs,
+        "contact_lines": recorder.contact_lines,
         "places": {name: asdict(place) for name, place in recorder.places.items()},
     }
     checkpoint.write_checkpoint(recorder.out, model.comm, blocks, state)
@@ -113,7 +114,7 @@ def resume(recorder: FolderRecorder, stepper: LoadStepper, items: list[LoadState
     recorder.starts_loaded = state["starts_loaded"]
     recorder.accuracy = state["accuracy"] and Accuracy(**state["accuracy"])
     recorder.places = {name: Place(**place) for name, place in state.get("places", {}).items()}
-    recorder.pairs = state.get("pairs", [])
+    recorder.pairs, recorder.contact_lines = state.get("pairs", []), state.get("contact_lines", [])
     recorder.root_stress = state.get("root_stress") and RootStress(**state["root_stress"])
     stepper.resume_at(last)
     for name, value in state["phases_s"].items():

@@ -87,7 +87,7 @@ def _print_places(places: Mapping[str, Mapping[str, Any]]) -> None:
 
 def _print_contact(contact: Mapping[str, Any]) -> None:
     console.print(
-        f"largest contact pressure of the flanks, by line contact: {contact['pressure_MPa']:.0f} MPa at "
+        f"largest contact pressure of the flanks: {contact['pressure_MPa']:.0f} MPa at "
         f"{contact['line_load_Nmm']:.1f} N/mm (tooth {contact['tooth']}, {contact['flank']} flank, radius "
         f"{contact['radius_mm']:.2f}, z {contact['z_mm']:.2f} mm; half width {contact['half_width_mm']:.4f} mm, "
         f"largest shear {contact['shear_MPa']:.0f} MPa)"

@@ -94,7 +94,7 @@ def line_contact(
             middle, half = 0.5 * (edges[first] + edges[last + 1]), max(1.2 * 0.5 * (last - first + 1), 1.5) * size
             low, high = max(low, middle - half), min(high, middle + half)
         else:
-            left, right = _end(x, pressure, first, 1), _end(x, pressure, last, -1)
+            left, right = contact_end(x, pressure, first, 1), contact_end(x, pressure, last, -1)
             beside = gap(np.array([x[first] - size, x[last] + size]))
             return LineContact(
                 x, pressure, 0.5 * (left + right), 0.5 * (right - left), bool(not np.isfinite(beside).all())
@@ -102,7 +102,7 @@ def line_contact(
     raise ArithmeticError(f"no contact was found for a line load of {load:g} N/mm")
 
 
-def _end(x: np.ndarray, pressure: np.ndarray, k: int, inward: int) -> float:
+def contact_end(x: np.ndarray, pressure: np.ndarray, k: int, inward: int) -> float:
     """End (mm) of the contact beside its outermost strip k, or the end of that strip: p² falls linearly to it."""
     half = 0.5 * (x[1] - x[0])
     outer, inner = pressure[k] ** 2, pressure[k + inward] ** 2

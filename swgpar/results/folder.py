@@ -23,6 +23,9 @@ TABLES = "tables"
 PAIRS = "pairs.csv"
 """Contacts of the flanks under load."""
 
+CONTACT_LINES = "contact_lines.csv"
+"""The same along the face width."""
+
 SUMMARY = "summary.json"
 """Written last: a folder that has it is that of a finished run."""
 
@@ -34,6 +37,7 @@ RESULTS = (
     checkpoint.NAME,
     SUMMARY,
     PAIRS,
+    CONTACT_LINES,
     "published.csv",
     RECIPE,
     f"{TABLES}/*.csv",

@@ -64,9 +64,6 @@ SEARCH_DISTANCE = 0.25
 MAX_NODE_STEP = 0.2
 """Largest displacement (modules) of a node in a Newton step while flanks may touch: the tangent ignores clearances."""
 
-REUSED_FACTOR_MARGIN = 1.0
-"""Factor on tolerance and round-off floor with a reused factor, whose steps do not square the error."""
-
 ROUND_OFF_SHARE = 0.05
 """Share of the round-off below which a residual counts as zero; runs reach 0.01 to 0.06 of it."""
 
@@ -185,11 +182,11 @@ class NewtonSolver:
         if self.last_residual.collapsed or not np.isfinite(norm):
             return PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN
         softened, rtol = state.phase is Phase.SOFTENED, self.settings.rtol
-        margin = REUSED_FACTOR_MARGIN if self.system.uses_old_factor else 1.0
-        self.system.set_goal(reference * (SOFT_TOLERANCE if softened else REUSED_FACTOR_MARGIN * rtol))
+        tolerance = SOFT_TOLERANCE if softened else rtol
+        self.system.set_goal(reference * tolerance)
         if ratio < rtol**FREEZING_POWER and not softened:
             self.problem.freeze_segments()
-        if ratio <= (SOFT_TOLERANCE if softened else margin * rtol) or self._is_round_off(its, norm, margin):
+        if ratio <= tolerance or self._is_round_off(its, norm):
             return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
         if its > 0 and (state.incomplete_pattern or self._search_is_outdated(state)):
             return PETSc.SNES.ConvergedReason.CONVERGED_ITS
@@ -209,11 +206,11 @@ class NewtonSolver:
         state.outdated_search = self.problem.moved_since_search() > SEARCH_DISTANCE * self.problem.module
         return state.outdated_search
 
-    def _is_round_off(self, its: int, norm: float, margin: float) -> bool:
+    def _is_round_off(self, its: int, norm: float) -> bool:
         """Whether a residual is round-off: that of positions with 16 digits, or one near it that does not decrease."""
         residuals = self.state.residuals
         stalled = its > 1 and residuals[-1] > STALL * residuals[-2]
-        return norm <= (1.0 if stalled else margin * ROUND_OFF_SHARE) * self.problem.round_off
+        return norm <= (1.0 if stalled else ROUND_OFF_SHARE) * self.problem.round_off
 
     def _is_cycling(self, ratio: float) -> bool:
         """Whether an active set returns, or the residual does not decrease."""

@@ -49,7 +49,7 @@ RESOLVED = {
     "root.s1": Quantity("largest tension at the teeth under load, by windows", "MPa"),
     "root.s1_error": Quantity("its error by the windows and by the mesh of the drive", "MPa"),
     "root.mean_s1": Quantity("the same over one period, mean", "MPa"),
-    "contact.pressure": Quantity("largest pressure of the flanks under load, off edges, by line contact", "MPa"),
+    "contact.pressure": Quantity("largest pressure of the flanks under load, off edges", "MPa"),
     "contact.on_edge": Quantity("whether a contact under load lies on an edge: 1 or 0", ""),
 }
 """Quantities of runs with `output.root_stress`, which a study has to set."""
