@@ -22,7 +22,7 @@ from swgpar.contact.search import FlankPair
 from swgpar.design.load_states import LoadState
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.vectors import read_field
-from swgpar.geometry.rotation import HALF_TURN
+from swgpar.geometry.rotation import HALF_TURN, rotated
 from swgpar.log import logger
 
 SMALLEST = 0.02
@@ -36,6 +36,10 @@ COARSE, FINE = 401, 21
 
 END = 1e-6
 """Distance over the module from the end of a profile within which a contact lies on an edge."""
+
+
+Neighbours = tuple[MovedTooth, MovedTooth, MovedTooth]
+"""A tooth between its neighbours, clockwise first."""
 
 
 @dataclass(frozen=True)
@@ -62,6 +66,7 @@ class PairContact:
     force_N : normal force;  width_mm : length along the face width that carries it
     line_load_Nmm : largest line load, N/mm, at `z_mm`;  radius_mm : of the contact, on the undeformed flexible spline
     pressure_MPa, half_width_mm, shear_MPa : largest pressure, half width of the contact and largest shear below it
+    sliding_mm_s : sliding of the flexible spline's flank on the other in the section, at the speed of the input
     edge : 1 where the contact ends at the tip of a profile, or the load at an end of the face width; the pressure is
     then no property of the drive
     stations : along the face width, those that carry a load
@@ -78,6 +83,7 @@ class PairContact:
     pressure_MPa: float
     half_width_mm: float
     shear_MPa: float
+    sliding_mm_s: float
     edge: int
     stations: tuple[ContactStation, ...]
 
@@ -99,13 +105,11 @@ def pair_contacts(model: DriveModel, state: LoadState) -> list[PairContact]:
     pairs = [pair for pair in model.problem.flanks.pairs if (pair.sector - first, pair.side) in loads]
     top = max(model.comm.allgather(max((_peak(load) for load in loads.values()), default=0.0)))
     pairs = [pair for pair in pairs if _peak(loads[pair.sector - first, pair.side]) > SMALLEST * top]
-    x = model.problem.x
-    moved = read_field(model.partition, FLEXIBLE_SPLINE, np.array([p.sector for p in pairs], dtype=np.int64), x)
-    facing = read_field(model.partition, RING_GEAR, np.array([p.ring for p in pairs], dtype=np.int64), x)
+    moved, facing = moved_teeth(model, pairs)
     found, failed = [], []
-    for pair, u, ring_u in zip(pairs, moved, facing):
+    for pair, teeth, ring_teeth in zip(pairs, moved, facing):
         try:
-            found.append(_contact(model, pair, loads[pair.sector - first, pair.side], u, ring_u))
+            found.append(_contact(model, pair, loads[pair.sector - first, pair.side], teeth, ring_teeth))
         except (ArithmeticError, np.linalg.LinAlgError) as error:
             failed.append(f"tooth {pair.sector}: {error}")
     contacts = [contact for part in model.comm.allgather(found) for contact in part]
@@ -118,13 +122,35 @@ def _peak(load: LineLoad) -> float:
     return float(np.linalg.norm(load.load, axis=1).max())
 
 
-def _contact(model: DriveModel, pair: FlankPair, load: LineLoad, u: np.ndarray, ring_u: np.ndarray) -> PairContact:
-    """Contact of one pair. u, ring_u : displacements (n_node, 3) mm of both sectors"""
+def moved_teeth(model: DriveModel, pairs: list[FlankPair]) -> tuple[list[Neighbours], list[Neighbours]]:
+    """The teeth of every pair, of the flexible spline and of the ring gear, between their neighbours; collective."""
     spline, ring = model.partition.layouts
-    if pair.ring_flip:
-        ring_u = HALF_TURN * ring_u
-    tooth = MovedTooth(spline, spline.first_tooth + pair.sector, pair.side, u, flank_crowning(model.design))
-    facing = MovedTooth(ring, pair.ring_tooth, -pair.side, ring_u)
+    around, x = np.arange(-1, 2), model.problem.x
+
+    def fields(body: int, sectors: list[int]) -> np.ndarray:
+        every = (np.array(sectors, dtype=np.int64)[:, None] + around).ravel()
+        return read_field(model.partition, body, every, x).reshape(
+            len(sectors), 3, len(model.partition.layouts[body].mesh.coords), 3
+        )
+
+    u, ring_u = fields(FLEXIBLE_SPLINE, [p.sector for p in pairs]), fields(RING_GEAR, [p.ring for p in pairs])
+    crowned = flank_crowning(model.design)
+    moved, facing = [], []
+    for k, pair in enumerate(pairs):
+        tooth = spline.first_tooth + pair.sector + around
+        moved.append(tuple(MovedTooth(spline, n, pair.side, u[k, i], crowned) for i, n in enumerate(tooth)))
+        turned = HALF_TURN * ring_u[k] if pair.ring_flip else ring_u[k]
+        tooth = pair.ring_tooth + around
+        facing.append(tuple(MovedTooth(ring, n, -pair.side, turned[i]) for i, n in enumerate(tooth)))
+    return moved, facing
+
+
+def _contact(
+    model: DriveModel, pair: FlankPair, load: LineLoad, teeth: Neighbours, ring_teeth: Neighbours
+) -> PairContact:
+    """Contact of one pair."""
+    spline, ring = model.partition.layouts
+    tooth, facing = teeth[1], ring_teeth[1]
     direction = load.load.sum(axis=0) / np.linalg.norm(load.load.sum(axis=0))
     along = load.load @ direction
     force = float(trapezoid(along, load.z))
@@ -156,9 +182,31 @@ def _contact(model: DriveModel, pair: FlankPair, load: LineLoad, u: np.ndarray, 
         pressure_MPa=top.pressure_MPa,
         half_width_mm=top.half_width_mm,
         shear_MPa=shape.largest_shear(),
+        sliding_mm_s=_sliding(model, gap, teeth, ring_teeth, top) * model.design.load.input_speed * np.pi / 30.0,
         edge=int(on_edge or on_tip),
         stations=stations,
     )
+
+
+def _sliding(model: DriveModel, gap: _Gap, teeth: Neighbours, ring_teeth: Neighbours, at: ContactStation) -> float:
+    """Sliding (mm per rad of the wave generator) of both flanks at a station, towards the root of the spline's tooth.
+
+    After one pitch of the fixed gear a tooth is where its neighbour was, turned by that pitch. So the neighbours give
+    the velocity of a tooth.
+    """
+    pitch = model.design.period_angle
+    z, s = np.array([at.z_mm]), np.array([[at.s_mm]])
+
+    def velocity(trio: Neighbours, arc_length: np.ndarray) -> np.ndarray:
+        before, after = (
+            rotated(trio[k].sections(z).from_profile(arc_length)[0, 0], turn) for k, turn in ((2, -pitch), (0, pitch))
+        )
+        return (after - before) / (2.0 * pitch)
+
+    step = 1e-3 * gap.tooth.profile.length * np.array([[-1.0], [1.0]])
+    low, high = gap.tooth.sections(z).from_profile(s + step)[:, 0]
+    tangent = (high - low) / np.linalg.norm(high - low)
+    return float((velocity(teeth, s) - velocity(ring_teeth, gap.foot(s, z))) @ tangent)
 
 
 class _Gap:

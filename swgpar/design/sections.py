@@ -81,6 +81,9 @@ class Load(Section):
     """Section [load]."""
 
     torque: float = quantity(0.0, unit="N·m", text="output torque, against the output's motion", ge=0.0)
+    input_speed: float = quantity(
+        2000.0, unit="1/min", text="speed of the wave generator, for sliding speeds", gt=0.0, le=1e6
+    )
 
 
 class Contact(Section):

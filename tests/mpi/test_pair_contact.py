@@ -10,9 +10,11 @@ import pytest
 from mpi4py import MPI
 from pytest_mpi import parallel_assert
 
-from support.stepping import WORLD, Row, loaded, small
-from swgpar.analysis.pair_contact import PairContact, pair_contacts
+from support.stepping import WORLD, Row, loaded, rotate, small
+from swgpar.analysis.pair_contact import PairContact, moved_teeth, pair_contacts
 from swgpar.contact.line_contact import effective_modulus
+
+CLOCKWISE = "clockwise"
 
 
 @lru_cache
@@ -55,3 +57,29 @@ def test_an_arc_on_a_straight_flank_has_the_pressure_of_hertz() -> None:
     assert one.pressure_MPa == pytest.approx(np.sqrt(load * modulus / (np.pi * 1.0)), rel=2e-3)
     assert one.half_width_mm == pytest.approx(np.sqrt(4.0 * load * 1.0 / (np.pi * modulus)), rel=0.01)
     assert not one.edge
+
+
+@pytest.mark.parametrize("layout", ["ring_fixed", "spline_fixed"])
+@pytest.mark.parallel(1)
+def test_sliding_is_the_motion_between_two_angles(layout: str) -> None:
+    """Positions of both flanks at the contact, half a degree before and after the loaded state, at 1 rad/s."""
+    design = small("plane", f"drive.layout={layout}", f"load.input_speed={30.0 / np.pi}")
+    stepper, _ = loaded(design)
+    (one,) = pair_contacts(stepper.model, stepper.load_state)
+    half = np.radians(0.5)
+    s, flat = np.array([[one.stations[0].s_mm]]), np.zeros(1)
+    places = []
+    for angle in (-half, half):
+        rotate(stepper, angle)
+        pairs = [
+            p for p in stepper.problem.flanks.pairs if (p.sector, p.side > 0) == (one.tooth, one.flank == CLOCKWISE)
+        ]
+        ((_, tooth, _),), ((_, facing, _),) = moved_teeth(stepper.model, pairs)
+        places.append((tooth.sections(flat), facing.sections(flat)))
+    (tooth, facing), (tooth_after, facing_after) = places
+    foot = 0.5 * sum(ring.distance(flank.from_profile(s))[1] for flank, ring in places)
+    low, high = tooth.from_profile(s + np.array([[-1e-3], [1e-3]]))[:, 0]
+    moved = tooth_after.from_profile(s) - tooth.from_profile(s)
+    ring_moved = facing_after.from_profile(foot) - facing.from_profile(foot)
+    sliding = (moved - ring_moved)[0, 0] @ (high - low) / np.linalg.norm(high - low)
+    assert one.sliding_mm_s == pytest.approx(sliding / (2.0 * half), rel=0.05)
