@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from swgpar.analysis.contact_pressure import nodal_pressure
 from swgpar.analysis.drive_model import DriveModel
@@ -23,6 +24,9 @@ NEAR = 0.02
 
 TOUCHED = 0.02
 """Share of the largest nodal pressure from which a flank's node counts as touched."""
+
+APART, APART_DISTANCE = "_apart", 0.25
+"""Ending of the names of stresses apart from the contact of flanks; distance (modules) from a touched node."""
 
 AVERAGE = "below the contact of teeth: an average over elements, larger on a finer mesh"
 NOTCH = "in the notch behind the teeth, a corner without fillet: no limit to converge to"
@@ -51,44 +55,67 @@ class Place:
     warning: str
 
 
-def find_places(
-    model: DriveModel, state: LoadState, fields: Sequence[Mapping[str, np.ndarray]], names: Sequence[str]
-) -> dict[str, Place]:
+def find_places(model: DriveModel, state: LoadState, fields: Sequence[Mapping[str, np.ndarray]]) -> dict[str, Place]:
     """Places of the largest s1, |s3| and von Mises stress of both bodies, by column of the history; collective.
 
-    fields : nodal fields of both bodies as `DriveModel.stresses` gives them;  names : columns to look for
+    |s3| and von Mises are looked for apart from the contact of flanks as well, with names that end with `APART`.
+
+    fields : nodal fields of both bodies as `DriveModel.stresses` gives them
     """
     pressure = nodal_pressure(model.problem, state, model.elements.bodies[FLEXIBLE_SPLINE])
     top = max(model.comm.allgather(float(pressure.max(initial=0.0))))
+    # pressures are known on the spline; any flank of the ring gear may be touched
+    pressed = pressure > TOUCHED * top if top > 0.0 else np.zeros(pressure.shape, dtype=bool)
     found = {}
-    for name in names:
-        prefix, _, stress = name.partition("_")
-        k = ("fs", "rg").index(prefix)
+    for k, prefix in enumerate(("fs", "rg")):
         body = model.elements.bodies[k]
-        values = -fields[k][stress] if stress == "s3" else fields[k][stress]
-        best: tuple[float, int, int, bool] = (-np.inf, 0, 0, False)
-        if values.size:
-            sector, node = np.unravel_index(values.argmax(), values.shape)
-            first, _ = model.partition.owned_sectors(k)
-            # pressures are known on the spline; compression on a flank of the ring gear lies below the contact
-            touched = pressure[sector, node] > TOUCHED * top > 0.0 if k == FLEXIBLE_SPLINE else stress != "s1"
-            best = (float(values[sector, node]), first + int(sector), int(node), bool(touched))
-        value, sector, node, touched = max(model.comm.allgather(best), key=lambda one: one[0])
-        x, y, z = point = body.layout.mesh.coords[node]
-        region = region_of(model.design, body.layout.mesh, node, touched)
-        tooth = body.layout.first_tooth + sector
-        angle = float(body.layout.sector_angle(np.array(tooth)) - np.arctan2(x, y))
-        found[name] = Place(
-            value=value,
-            body=GEARS[k],
-            region=region,
-            tooth=tooth % body.layout.mesh.n_sectors,
-            radius=float(np.hypot(x, y)),
-            z=0.0 if body.layout.mesh.plane else float(z),
-            angle_deg=float(np.degrees(angle)) % 360.0,
-            warning=warning_of(model.design, region, point),
-        )
+        ring = k != FLEXIBLE_SPLINE
+        touched = np.ones(fields[k]["s3"].shape, dtype=bool) if ring else pressed
+        apart = ~_near_contact(body.layout.mesh, touched, APART_DISTANCE * model.design.drive.module)
+        for stress in ("s1", "s3", "vm"):
+            values = -fields[k][stress] if stress == "s3" else fields[k][stress]
+            below = touched & (stress != "s1") if ring else touched
+            found[f"{prefix}_{stress}"] = _largest(model, k, values, below)
+            if stress != "s1":
+                found[f"{prefix}_{stress}{APART}"] = _largest(model, k, np.where(apart, values, -np.inf), below & apart)
     return found
+
+
+def _near_contact(mesh: SectorMesh, touched: np.ndarray, distance: float) -> np.ndarray:
+    """Nodes (n_sectors, n_node) within a distance (mm) of touched ones on the working parts of the flanks."""
+    working = np.zeros(len(mesh.coords), dtype=bool)
+    for grid in mesh.flanks:
+        working[grid.nodes[grid.s < mesh.profile.breaks[-2]]] = True
+    tree, near = cKDTree(mesh.coords), np.zeros(touched.shape, dtype=bool)
+    for sector in np.flatnonzero((touched & working).any(axis=1)):
+        nodes = np.flatnonzero(touched[sector] & working)
+        near[sector, np.unique(np.concatenate(tree.query_ball_point(mesh.coords[nodes], distance)).astype(int))] = True
+    return near
+
+
+def _largest(model: DriveModel, k: int, values: np.ndarray, touched: np.ndarray) -> Place:
+    """Place of the largest of values (n_sectors, n_node) MPa of body k; collective. touched : nodes under contact"""
+    body = model.elements.bodies[k]
+    best: tuple[float, int, int, bool] = (-np.inf, 0, 0, False)
+    if values.size:
+        sector, node = np.unravel_index(values.argmax(), values.shape)
+        first, _ = model.partition.owned_sectors(k)
+        best = (float(values[sector, node]), first + int(sector), int(node), bool(touched[sector, node]))
+    value, sector, node, pressed = max(model.comm.allgather(best), key=lambda one: one[0])
+    x, y, z = point = body.layout.mesh.coords[node]
+    region = region_of(model.design, body.layout.mesh, node, pressed)
+    tooth = body.layout.first_tooth + sector
+    angle = float(body.layout.sector_angle(np.array(tooth)) - np.arctan2(x, y))
+    return Place(
+        value=value,
+        body=GEARS[k],
+        region=region,
+        tooth=tooth % body.layout.mesh.n_sectors,
+        radius=float(np.hypot(x, y)),
+        z=0.0 if body.layout.mesh.plane else float(z),
+        angle_deg=float(np.degrees(angle)) % 360.0,
+        warning=warning_of(model.design, region, point),
+    )
 
 
 def region_of(design: DriveDesign, mesh: SectorMesh, node: int, touched: bool) -> str:

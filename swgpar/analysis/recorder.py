@@ -70,7 +70,7 @@ class Recorder(ABC):
             values, body_fields = model.stresses()
         self.rows.append(history.plain_row({**stepper.row(), **values, "wall_s": seconds}))
         with model.phases("stress"):
-            self._keep_places(stepper.load_state, values, body_fields)
+            self._keep_places(stepper.load_state, body_fields)
             self._keep_pairs(stepper.load_state)
         with model.phases("output"):
             fields = dict(zip(GEARS, body_fields, strict=True))
@@ -79,14 +79,12 @@ class Recorder(ABC):
                 fields[spline.layout.name]["pressure"] = nodal_pressure(model.problem, stepper.load_state, spline)
             self._keep(stepper, fields, elapsed)
 
-    def _keep_places(
-        self, state: LoadState, values: Mapping[str, float], fields: Sequence[Mapping[str, np.ndarray]]
-    ) -> None:
+    def _keep_places(self, state: LoadState, fields: Sequence[Mapping[str, np.ndarray]]) -> None:
         """Find the places of stresses that are the largest under load so far."""
         if state.is_periodic:
-            larger = [name for name in values if name not in self.places or values[name] > self.places[name].value]
-            if larger:  # the same on all ranks
-                self.places |= find_places(self.model, state, fields, larger)
+            for name, place in find_places(self.model, state, fields).items():
+                if name not in self.places or place.value > self.places[name].value:
+                    self.places[name] = place
 
     def _keep_pairs(self, state: LoadState) -> None:
         if state.is_periodic:

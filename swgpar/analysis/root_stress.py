@@ -103,6 +103,24 @@ class RootStress:
         """Error (MPa) of the window's and, where it is known, of the drive's mesh; they are independent."""
         return math.hypot(self.error, self.drive_error or 0.0)
 
+    def over_period(self) -> dict[str, float | None]:
+        """Mean and maximum of s1 (MPa) over the sampled period, and errors of the mean; empty where it is not sampled.
+
+        `mean_error` is that by the meshes, in proportion to that of the loaded state; `sampling_error` is the change
+        of the mean by half as many angles, None for an odd number of them.
+        """
+        if len(self.period) < 2:
+            return {}
+        values = np.array([value for _, value in self.period])
+        half = abs(float(values.mean() - values[::2].mean())) if len(values) % 2 == 0 else None
+        mean = float(values.mean())
+        return {
+            "mean": mean,
+            "mean_error": self.total_error * mean / self.s1,
+            "sampling_error": half,
+            "maximum": float(values.max()),
+        }
+
 
 def window_recipe(model: str, level: int) -> MeshRecipe:
     """Recipe of the window `level`, from 0 on, of the "plane" or "cup" model."""

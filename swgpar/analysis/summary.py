@@ -101,7 +101,7 @@ def summarise(
         **values,
         "accuracy": accuracy and asdict(accuracy),
         "places": {name: asdict(place) for name, place in places.items()},
-        "root_stress": root_stress and {**asdict(root_stress), "total_error": root_stress.total_error},
+        "root_stress": root_stress and _resolved(root_stress),
         "contact": max(pairs, key=lambda pair: (not pair["edge"], pair["pressure_MPa"]), default=None),
         "mesh_error": mesh_error(root_stress),
         "condensed_MPa": model.omitted_bending_stress() if design.solver.condensed_sectors else None,
@@ -112,6 +112,10 @@ def summarise(
         "ratio": design.ratio,
         "design": design.model_dump(),
     }
+
+
+def _resolved(found: RootStress) -> dict[str, Any]:
+    return {**asdict(found), "total_error": found.total_error, "over_period": found.over_period()}
 
 
 def _sizes(model: DriveModel) -> dict[str, Any]:

@@ -99,6 +99,15 @@ def _print_contact(contact: Mapping[str, Any]) -> None:
         )
 
 
+def _print_over_period(over: Mapping[str, Any], count: int) -> None:
+    half = over["sampling_error"]
+    console.print(
+        f"the same over one period: mean {over['mean']:.1f} ± {over['mean_error']:.1f} MPa by the meshes, largest "
+        f"{over['maximum']:.1f}, of {count} angles with one window at each further one"
+        + ("" if half is None else f" (half as many change the mean by {half:.1f})")
+    )
+
+
 def _print_errors(summary: Mapping[str, Any]) -> None:
     if root := summary.get("root_stress"):
         console.print(
@@ -109,11 +118,7 @@ def _print_errors(summary: Mapping[str, Any]) -> None:
         if root["warning"]:
             console.print(f"the largest tension at the teeth is {root['warning']}")
         if root["period"] and len(root["period"]) == summary["design"]["steps"]["samples"]:
-            values = [value for _, value in root["period"]]
-            console.print(
-                f"the same over one period: mean {np.mean(values):.1f}, largest {max(values):.1f} MPa "
-                f"({len(values)} angles, with one window at each further one)"
-            )
+            _print_over_period(root["over_period"], len(root["period"]))
     if contact := summary.get("contact"):
         _print_contact(contact)
     asked = summary["accuracy"]

@@ -162,8 +162,8 @@ def resolved(summary: Mapping[str, Any], pairs: Mapping[str, np.ndarray]) -> dic
     root, contact, found = summary["root_stress"], summary["contact"], {}
     if root:
         found |= {"root.s1": root["s1"], "root.s1_error": root["total_error"]}
-        if len(root["period"]) > 1:
-            found["root.mean_s1"] = float(np.mean([s1 for _, s1 in root["period"]]))
+        if root["over_period"]:
+            found["root.mean_s1"] = root["over_period"]["mean"]
     if contact:
         found["contact.on_edge"] = float(np.any(pairs["edge"]))
         if not contact["edge"]:
