@@ -13,7 +13,7 @@ import numpy as np
 
 from swgpar.analysis.drive_model import DriveModel, build_rigid_contacts, newton_settings
 from swgpar.analysis.flank_loads import line_loads, nodal_forces
-from swgpar.analysis.places import region_of, warning_of
+from swgpar.analysis.places import END, region_of, warning_of
 from swgpar.analysis.torques import torques
 from swgpar.constraints.boundary_conditions import DeadLoad, PrescribedDisplacement
 from swgpar.constraints.distributing_coupling import node_weights
@@ -81,6 +81,11 @@ def window_mesh(design: DriveDesign, recipe: MeshRecipe) -> SectorMesh:
         return mesh
     end = 0.5 * design.drive.face_width + CUP_LENGTH * np.sqrt(design.inner_radius * design.cup_thickness)
     return trimmed(mesh, mesh.coords[mesh.hexes, 2].min(axis=1) < end)
+
+
+def toothed_nodes(mesh: SectorMesh, face_width: float, ends: bool) -> np.ndarray:
+    """Nodes (n,) of the toothed part, with or without the ends of the teeth. face_width : mm"""
+    return np.flatnonzero(np.abs(mesh.coords[:, 2]) <= (TOOTHED if ends or mesh.plane else END) * face_width)
 
 
 class LocalProblem:
@@ -214,11 +219,14 @@ class LocalProblem:
         inside = (sectors >= MARGIN) & (sectors < SECTORS - MARGIN)
         return self.body.nodal_stress(self.problem.displacement())[inside], sectors[inside]
 
-    def largest(self) -> WindowStress:
-        """Largest s1 of the toothed part, one pitch or more inside of the cuts; collective."""
-        mesh, width = self.layout.mesh, self.model.design.drive.face_width
+    def largest(self, ends: bool = True) -> WindowStress:
+        """Largest s1 of the toothed part, one pitch or more inside of the cuts; collective.
+
+        ends : whether those of the teeth count
+        """
+        mesh = self.layout.mesh
         stress, sectors = self.stress()
-        toothed = np.flatnonzero(np.abs(mesh.coords[:, 2]) <= TOOTHED * width)
+        toothed = toothed_nodes(mesh, self.model.design.drive.face_width, ends)
         best = (-np.inf, 0, 0)
         if len(sectors):
             s1 = principal(stress[:, toothed])[0]

@@ -16,6 +16,9 @@ from swgpar.design.sections import GEARS
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.meshing.sector import SectorMesh
 
+TOOTH_END = "tooth end"
+"""Region of the ends of the teeth."""
+
 END = 0.45
 """Share of the face width from its middle beyond which a place belongs to the end of a tooth."""
 
@@ -141,15 +144,15 @@ def region_of(design: DriveDesign, mesh: SectorMesh, node: int, touched: bool) -
     if not mesh.plane and abs(z - half) < near and radius < root + near:
         return "notch"
     if radius < root + near:
-        return "tooth end" if abs(z) > END * design.drive.face_width and not mesh.plane else "tooth root"
+        return TOOTH_END if abs(z) > END * design.drive.face_width and not mesh.plane else "tooth root"
     if radius > mesh.profile.r_tip_circle - near:
         return "tip"
-    return "tooth end" if abs(z) > END * design.drive.face_width and not mesh.plane else "inside the tooth"
+    return TOOTH_END if abs(z) > END * design.drive.face_width and not mesh.plane else "inside the tooth"
 
 
 def _region_of_the_flank(design: DriveDesign, mesh: SectorMesh, s: float, z: float, touched: bool) -> str:
     if abs(z) > END * design.drive.face_width and not mesh.plane and not touched:
-        return "tooth end"
+        return TOOTH_END
     if s >= mesh.profile.breaks[-2]:
         return "tooth root"
     return "flank under contact" if touched else "flank"
