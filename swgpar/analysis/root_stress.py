@@ -146,25 +146,37 @@ def resolve_root_stress(model: DriveModel, state: LoadState, levels: int | None 
     Raises ConvergenceError or InputError where a window cannot be computed.
     """
     kind, by_tooth = model.design.drive.model, _largest_by_tooth(model)
-    first = int(by_tooth.argmax())
-    far = by_tooth.copy()
-    far[_near(first, len(by_tooth))] = -np.inf
-    other = int(far.argmax())
-    teeth = [first, other] if far[other] > CLOSE * by_tooth[first] else [first]
+    teeth = candidates(by_tooth, _largest_by_tooth(model, ends=False))
     values: dict[int, list[float]] = {tooth: [] for tooth in teeth}
     for level in range(levels or LEVELS[kind]):
         found = {tooth: _solve(model, state, tooth, window_recipe(kind, level)) for tooth in teeth}
         for tooth, stress in found.items():
             values[tooth].append(stress.value)
         best = max(teeth, key=lambda tooth: found[tooth].value)
-        teeth = [tooth for tooth in teeth if _may_be_largest(found[tooth], found[best])]
+        teeth = [tooth for tooth in teeth if may_be_largest(found[tooth], found[best])]
     stresses = ", ".join(f"{value:.1f}" for value in values[best])
     logger.info("windows around tooth %d, drive of %d elements: s1 %s MPa", best, model.n_elements(), stresses)
     error = error_of(values[best], RATIO[kind])
-    return _place(model, found[best], tuple(values[best]), error, float(by_tooth[first]))
+    return _place(model, found[best], tuple(values[best]), error, float(by_tooth.max()))
 
 
-def _may_be_largest(one: WindowStress, best: WindowStress) -> bool:
+def candidates(by_tooth: np.ndarray, without_ends: np.ndarray) -> list[int]:
+    """Teeth whose stresses are looked at: the largest one apart from the ends of the teeth, and those close to it.
+
+    by_tooth, without_ends : (n_modelled,) largest nodal s1, MPa, of all of a tooth and of what lies between its ends
+    """
+    first = int(without_ends.argmax())
+    teeth = [first]
+    for stresses in (without_ends, by_tooth):
+        far = stresses.copy()
+        far[_near(first, len(far))] = -np.inf
+        other = int(far.argmax())
+        if far[other] > CLOSE * without_ends[first] and other not in teeth:
+            teeth.append(other)
+    return teeth
+
+
+def may_be_largest(one: WindowStress, best: WindowStress) -> bool:
     """Whether a stress may overtake the largest one on a finer window; those of one region converge alike."""
     return one.value > (SAME_REGION if one.region == best.region else STILL_CLOSE) * best.value
 

@@ -1,0 +1,42 @@
+"""Teeth whose stresses are looked at by windows, and which of them are followed on finer ones."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from swgpar.analysis.local_problem import WindowStress
+from swgpar.analysis.root_stress import candidates, may_be_largest
+
+
+def teeth(**values: float) -> np.ndarray:
+    """Largest stresses of 20 teeth, 10 MPa but for those of the numbers given as t0, t1, …"""
+    found = np.full(20, 10.0)
+    for name, value in values.items():
+        found[int(name[1:])] = value
+    return found
+
+
+@pytest.mark.parametrize(
+    ("ends", "between", "expected"),
+    [
+        ({}, {"t0": 100.0}, [0]),
+        # the window of tooth 0 resolves its neighbours as well, on the other side of the closed chain too
+        ({}, {"t0": 100.0, "t1": 99.0, "t19": 98.0}, [0]),
+        ({}, {"t0": 100.0, "t5": 90.0, "t8": 80.0}, [0, 5]),
+        ({"t7": 110.0}, {"t0": 100.0, "t5": 90.0}, [0, 5, 7]),
+        ({"t7": 80.0}, {"t0": 100.0}, [0]),
+        ({"t5": 95.0}, {"t0": 100.0, "t5": 90.0}, [0, 5]),
+    ],
+)
+def test_candidates(ends: dict[str, float], between: dict[str, float], expected: list[int]) -> None:
+    assert candidates(teeth(**{**between, **ends}), teeth(**between)) == expected
+
+
+@pytest.mark.parametrize(
+    ("region", "value", "followed"),
+    [("tooth root", 99.6, True), ("tooth root", 99.0, False), ("tooth end", 91.0, True), ("tooth end", 89.0, False)],
+)
+def test_stresses_of_one_region_converge_alike(region: str, value: float, followed: bool) -> None:
+    best = WindowStress(100.0, 0, np.zeros(3), "tooth root", "", 1)
+    assert may_be_largest(WindowStress(value, 5, np.zeros(3), region, "", 1), best) == followed
