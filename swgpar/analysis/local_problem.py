@@ -83,9 +83,10 @@ def window_mesh(design: DriveDesign, recipe: MeshRecipe) -> SectorMesh:
     return trimmed(mesh, mesh.coords[mesh.hexes, 2].min(axis=1) < end)
 
 
-def toothed_nodes(mesh: SectorMesh, face_width: float, ends: bool) -> np.ndarray:
-    """Nodes (n,) of the toothed part, with or without the ends of the teeth. face_width : mm"""
-    return np.flatnonzero(np.abs(mesh.coords[:, 2]) <= (TOOTHED if ends or mesh.plane else END) * face_width)
+def tooth_nodes(mesh: SectorMesh, face_width: float, ends: bool) -> np.ndarray:
+    """Nodes (n,) of the toothed part at the ends of the face width (mm), or between them. The plane has no ends."""
+    z = np.zeros(len(mesh.coords)) if mesh.plane else np.abs(mesh.coords[:, 2])
+    return np.flatnonzero((z > END * face_width) & (z <= TOOTHED * face_width) if ends else z <= END * face_width)
 
 
 class LocalProblem:
@@ -219,14 +220,11 @@ class LocalProblem:
         inside = (sectors >= MARGIN) & (sectors < SECTORS - MARGIN)
         return self.body.nodal_stress(self.problem.displacement())[inside], sectors[inside]
 
-    def largest(self, ends: bool = True) -> WindowStress:
-        """Largest s1 of the toothed part, one pitch or more inside of the cuts; collective.
-
-        ends : whether those of the teeth count
-        """
+    def largest(self, ends: bool = False) -> WindowStress:
+        """Largest s1 of the teeth at their ends or between them, one pitch or more inside of the cuts; collective."""
         mesh = self.layout.mesh
         stress, sectors = self.stress()
-        toothed = toothed_nodes(mesh, self.model.design.drive.face_width, ends)
+        toothed = tooth_nodes(mesh, self.model.design.drive.face_width, ends)
         best = (-np.inf, 0, 0)
         if len(sectors):
             s1 = principal(stress[:, toothed])[0]

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from swgpar.analysis.drive_model import DriveModel
-from swgpar.analysis.local_problem import SECTORS, LocalProblem, WindowStress, toothed_nodes
+from swgpar.analysis.local_problem import SECTORS, LocalProblem, WindowStress, tooth_nodes
 from swgpar.analysis.places import TOOTH_END
 from swgpar.design.load_states import LoadState
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
@@ -145,33 +145,35 @@ def resolve_root_stress(model: DriveModel, state: LoadState, levels: int | None 
 
     Raises ConvergenceError or InputError where a window cannot be computed.
     """
-    kind, by_tooth = model.design.drive.model, _largest_by_tooth(model)
-    teeth = candidates(by_tooth, _largest_by_tooth(model, ends=False))
-    values: dict[int, list[float]] = {tooth: [] for tooth in teeth}
+    kind = model.design.drive.model
+    parts = (False,) if kind == "plane" else (False, True)  # between the ends of the teeth, and at them
+    on_mesh = [_largest_by_tooth(model, ends) for ends in parts]
+    places = [(tooth, ends) for tooth in candidates(*on_mesh) for ends in parts]
+    values: dict[tuple[int, bool], list[float]] = {place: [] for place in places}
     for level in range(levels or LEVELS[kind]):
-        found = {tooth: _solve(model, state, tooth, window_recipe(kind, level)) for tooth in teeth}
-        for tooth, stress in found.items():
-            values[tooth].append(stress.value)
-        best = max(teeth, key=lambda tooth: found[tooth].value)
-        teeth = [tooth for tooth in teeth if may_be_largest(found[tooth], found[best])]
+        found = _solve(model, state, places, window_recipe(kind, level))
+        for place, stress in found.items():
+            values[place].append(stress.value)
+        best = max(places, key=lambda place: found[place].value)
+        places = [place for place in places if may_be_largest(found[place], found[best])]
     stresses = ", ".join(f"{value:.1f}" for value in values[best])
-    logger.info("windows around tooth %d, drive of %d elements: s1 %s MPa", best, model.n_elements(), stresses)
+    logger.info("windows around tooth %d, drive of %d elements: s1 %s MPa", best[0], model.n_elements(), stresses)
     error = error_of(values[best], RATIO[kind])
-    return _place(model, found[best], tuple(values[best]), error, float(by_tooth.max()))
+    return _place(model, found[best], tuple(values[best]), error, float(np.max(on_mesh)))
 
 
-def candidates(by_tooth: np.ndarray, without_ends: np.ndarray) -> list[int]:
-    """Teeth whose stresses are looked at: the largest one apart from the ends of the teeth, and those close to it.
+def candidates(between: np.ndarray, at_ends: np.ndarray | None = None) -> list[int]:
+    """Teeth whose stresses are looked at: the one with the largest between its ends, and others that are close to it.
 
-    by_tooth, without_ends : (n_modelled,) largest nodal s1, MPa, of all of a tooth and of what lies between its ends
+    between, at_ends : (n_modelled,) largest nodal s1, MPa, of the teeth between their ends and, in the cup, at them
     """
-    first = int(without_ends.argmax())
+    first = int(between.argmax())
     teeth = [first]
-    for stresses in (without_ends, by_tooth):
+    for stresses in (between,) if at_ends is None else (between, at_ends):
         far = stresses.copy()
         far[_near(first, len(far))] = -np.inf
         other = int(far.argmax())
-        if far[other] > CLOSE * without_ends[first] and other not in teeth:
+        if far[other] > CLOSE * between[first] and other not in teeth:
             teeth.append(other)
     return teeth
 
@@ -191,7 +193,7 @@ def with_angle(known: RootStress, model: DriveModel, state: LoadState) -> RootSt
     level = PERIOD_LEVEL[kind]
     ends = known.region == TOOTH_END
     tooth = int(_largest_by_tooth(model, ends).argmax())
-    found = _solve(model, state, tooth, window_recipe(kind, level), ends)
+    found = _solve(model, state, [(tooth, ends)], window_recipe(kind, level))[tooth, ends]
     value = found.value * known.s1 / known.levels[level]
     period = known.period or ((0.0, known.s1),)
     return replace(known, period=(*period, (float(np.degrees(state.angle)), value)))
@@ -219,26 +221,28 @@ def _near(tooth: int, count: int) -> np.ndarray:
     return (tooth + np.arange(-inside, inside + 1)) % count
 
 
-def _largest_by_tooth(model: DriveModel, ends: bool = True) -> np.ndarray:
-    """Largest s1 (n_modelled,) MPa of the toothed part of every modelled sector; collective.
-
-    ends : whether those of the teeth count
-    """
+def _largest_by_tooth(model: DriveModel, ends: bool) -> np.ndarray:
+    """Largest s1 (n_modelled,) MPa of the teeth of all modelled sectors, at their ends or between them; collective."""
     body = model.elements.bodies[FLEXIBLE_SPLINE]
-    toothed = toothed_nodes(body.layout.mesh, model.design.drive.face_width, ends)
+    nodes = tooth_nodes(body.layout.mesh, model.design.drive.face_width, ends)
     stress = body.nodal_stress(model.problem.displacement())
-    mine = principal(stress[:, toothed])[0].max(axis=1) if len(stress) else np.zeros(0)
+    mine = principal(stress[:, nodes])[0].max(axis=1) if len(stress) else np.zeros(0)
     return np.concatenate(model.comm.allgather(mine))
 
 
-def _solve(model: DriveModel, state: LoadState, tooth: int, recipe: MeshRecipe, ends: bool = True) -> WindowStress:
-    first = model.partition.layouts[FLEXIBLE_SPLINE].first_tooth
-    window = LocalProblem(model, state, first + tooth, recipe)
-    try:
-        window.solve()
-        return window.largest(ends)
-    finally:
-        window.destroy()
+def _solve(
+    model: DriveModel, state: LoadState, places: list[tuple[int, bool]], recipe: MeshRecipe
+) -> dict[tuple[int, bool], WindowStress]:
+    """Largest stresses at the ends of teeth or between them, by tooth and whether at the ends: a window per tooth."""
+    first, found = model.partition.layouts[FLEXIBLE_SPLINE].first_tooth, {}
+    for tooth in dict.fromkeys(tooth for tooth, _ in places):
+        window = LocalProblem(model, state, first + tooth, recipe)
+        try:
+            window.solve()
+            found |= {place: window.largest(place[1]) for place in places if place[0] == tooth}
+        finally:
+            window.destroy()
+    return found
 
 
 def _place(

@@ -68,7 +68,7 @@ def test_on_the_drive_s_mesh_a_window_has_the_drive_s_stress(model: str, rel: fl
     """Around tooth 18 of 20 modelled ones the window reaches into the half that is an image."""
     stepper = drive(model)
     window = solved(stepper, tooth)
-    found = window.largest().value
+    found = max(window.largest(ends).value for ends in ((False,) if model == "plane" else (False, True)))
     window.destroy()
     inside = tooth + np.arange(MARGIN, SECTORS - MARGIN) - SECTORS // 2
     expected = on_the_drive(stepper, inside)

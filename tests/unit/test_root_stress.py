@@ -27,10 +27,12 @@ def teeth(**values: float) -> np.ndarray:
         ({"t7": 110.0}, {"t0": 100.0, "t5": 90.0}, [0, 5, 7]),
         ({"t7": 80.0}, {"t0": 100.0}, [0]),
         ({"t5": 95.0}, {"t0": 100.0, "t5": 90.0}, [0, 5]),
+        # the window of tooth 0 has the ends of its teeth
+        ({"t1": 120.0, "t7": 84.0}, {"t0": 100.0}, [0]),
     ],
 )
 def test_candidates(ends: dict[str, float], between: dict[str, float], expected: list[int]) -> None:
-    assert candidates(teeth(**{**between, **ends}), teeth(**between)) == expected
+    assert candidates(teeth(**between), teeth(**ends)) == expected
 
 
 @pytest.mark.parametrize(
