@@ -70,9 +70,10 @@ LOWEST_ORDER, HIGHEST_ORDER = 1.0, 2.0
 CLOSE = 0.85
 """Share of the largest stress on the drive's own mesh from which a tooth outside of the first window is looked at."""
 
-SAME_REGION, STILL_CLOSE = 0.995, 0.9
-"""Shares of the larger of both from which the other is followed on finer windows: in the same region, in another one.
-At the ends of the teeth coarse windows give up to 12 % too much."""
+SAME_REGION, OTHER_REGION = 0.995, (0.9, 1.0)
+"""Shares of the largest stress from which another is followed on finer windows: in the same region; in another one
+after the first window, and after later ones. At the ends of the teeth the second window gives the most, up to 12 % too
+much."""
 
 
 @dataclass(frozen=True)
@@ -155,7 +156,7 @@ def resolve_root_stress(model: DriveModel, state: LoadState, levels: int | None 
         for place, stress in found.items():
             values[place].append(stress.value)
         best = max(places, key=lambda place: found[place].value)
-        places = [place for place in places if may_be_largest(found[place], found[best])]
+        places = [place for place in places if may_be_largest(found[place], found[best], level)]
     stresses = ", ".join(f"{value:.1f}" for value in values[best])
     logger.info("windows around tooth %d, drive of %d elements: s1 %s MPa", best[0], model.n_elements(), stresses)
     error = error_of(values[best], RATIO[kind])
@@ -178,9 +179,10 @@ def candidates(between: np.ndarray, at_ends: np.ndarray | None = None) -> list[i
     return teeth
 
 
-def may_be_largest(one: WindowStress, best: WindowStress) -> bool:
-    """Whether a stress may overtake the largest one on a finer window; those of one region converge alike."""
-    return one.value > (SAME_REGION if one.region == best.region else STILL_CLOSE) * best.value
+def may_be_largest(one: WindowStress, best: WindowStress, level: int) -> bool:
+    """Whether a stress may overtake the largest one on windows finer than `level`; one region converges alike."""
+    share = SAME_REGION if one.region == best.region else OTHER_REGION[min(level, 1)]
+    return one is best or one.value > share * best.value
 
 
 def with_angle(known: RootStress, model: DriveModel, state: LoadState) -> RootStress:

@@ -36,9 +36,17 @@ def test_candidates(ends: dict[str, float], between: dict[str, float], expected:
 
 
 @pytest.mark.parametrize(
-    ("region", "value", "followed"),
-    [("tooth root", 99.6, True), ("tooth root", 99.0, False), ("tooth end", 91.0, True), ("tooth end", 89.0, False)],
+    ("region", "value", "level", "followed"),
+    [
+        ("tooth root", 99.6, 0, True),
+        ("tooth root", 99.0, 1, False),
+        ("tooth end", 91.0, 0, True),
+        ("tooth end", 89.0, 0, False),
+        ("tooth end", 99.0, 1, False),
+        ("tooth end", 100.1, 1, True),
+    ],
 )
-def test_stresses_of_one_region_converge_alike(region: str, value: float, followed: bool) -> None:
+def test_stresses_of_one_region_converge_alike(region: str, value: float, level: int, followed: bool) -> None:
     best = WindowStress(100.0, 0, np.zeros(3), "tooth root", "", 1)
-    assert may_be_largest(WindowStress(value, 5, np.zeros(3), region, "", 1), best) == followed
+    assert may_be_largest(WindowStress(value, 5, np.zeros(3), region, "", 1), best, level) == followed
+    assert may_be_largest(best, best, level)
