@@ -257,7 +257,10 @@ def _draw_pressure_lines(figure: Figure, flanks: list[_Flank]) -> None:
 
 
 def _draw_pressure_maps(figure: Figure, flanks: list[_Flank]) -> None:
-    columns = min(6 if len(flanks) > 12 else 4, len(flanks))
+    columns = min(5 if len(flanks) > 8 else 4, len(flanks))
+    rows = -(-len(flanks) // columns)
+    figure.set_size_inches(12.0, max(5.0, 2.2 * rows + 1.0))
+    panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).ravel()
     width = max(np.abs(flank.z).max() for flank in flanks)
     low = min((flank.s - flank.half_width).min() for flank in flanks)
     high = max((flank.s + flank.half_width).max() for flank in flanks)
@@ -265,15 +268,17 @@ def _draw_pressure_maps(figure: Figure, flanks: list[_Flank]) -> None:
     z = np.linspace(-1.05 * width, 1.05 * width, 240)
     s = np.linspace(max(0.0, low - margin), high + margin, 320)[:, None]
     top = max(flank.peak.max() for flank in flanks)
-    for number, flank in enumerate(flanks, start=1):
-        axes = figure.add_subplot(-(-len(flanks) // columns), columns, number)
+    for axes, flank in zip(panels, flanks):
         pressure = _half_ellipse(s, *flank.at(z))
         image = axes.pcolormesh(z, s[:, 0], pressure, shading="nearest", vmin=0.0, vmax=top, cmap="magma")
-        axes.invert_yaxis()
-        axes.set_title(flank.name, fontsize=8)
-        axes.set_xlabel("z (mm)", fontsize=8)
-        axes.set_ylabel("from the tip (mm)", fontsize=8)
-    figure.colorbar(image, ax=figure.axes, label="contact pressure (MPa)")
+        axes.set_title(flank.name, fontsize=8 if rows == 1 else 7)
+        axes.tick_params(labelsize=8)
+    panels[0].invert_yaxis()
+    for axes in panels[len(flanks) :]:
+        axes.set_axis_off()
+    figure.supxlabel("z (mm), open end of the cup at negative z", fontsize=9)
+    figure.supylabel("arc length from the tip (mm)", fontsize=9)
+    figure.colorbar(image, ax=list(panels), label="contact pressure (MPa)")
 
 
 def _set_camera(plotter: pyvista.Plotter, plane: bool) -> None:
