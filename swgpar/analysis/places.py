@@ -69,12 +69,14 @@ def find_places(model: DriveModel, state: LoadState, fields: Sequence[Mapping[st
     top = max(model.comm.allgather(float(pressure.max(initial=0.0))))
     # pressures are known on the spline; any flank of the ring gear may be touched
     pressed = pressure > TOUCHED * top if top > 0.0 else np.zeros(pressure.shape, dtype=bool)
-    found = {}
+    found, distance = {}, APART_DISTANCE * model.design.drive.module
     for k, prefix in enumerate(("fs", "rg")):
         body = model.elements.bodies[k]
         ring = k != FLEXIBLE_SPLINE
         touched = np.ones(fields[k]["s3"].shape, dtype=bool) if ring else pressed
-        apart = ~_near_contact(body.layout.mesh, touched, APART_DISTANCE * model.design.drive.module)
+        # every sector of the ring gear is alike: one stands for all
+        near = _near_contact(body.layout.mesh, touched[:1] if ring else touched, distance)
+        apart = np.broadcast_to(~near, touched.shape)
         for stress in ("s1", "s3", "vm"):
             values = -fields[k][stress] if stress == "s3" else fields[k][stress]
             below = touched & (stress != "s1") if ring else touched

@@ -178,7 +178,7 @@ class _Grid:
         columns = np.flatnonzero(pressure.any(axis=0))
         sides = np.array([self._sides(pressure[:, k]) for k in columns])
         left, right = sides.T
-        at_end = any(self._beside_is_missing(pressure[:, k], k) for k in columns)
+        at_end = self._body_ends_beside(pressure)
         reaches = (columns[0] == 0 and self.z[0] - self.dz < ends[0]) or (
             columns[-1] == CELLS_ALONG - 1 and self.z[-1] + self.dz > ends[1]
         )
@@ -207,8 +207,12 @@ class _Grid:
             return self.t[acts[0]] - 0.5 * self.dt, self.t[acts[0]] + 0.5 * self.dt
         return contact_end(self.t, pressure, acts[0], 1), contact_end(self.t, pressure, acts[-1], -1)
 
-    def _beside_is_missing(self, pressure: np.ndarray, column: int) -> bool:
-        """Whether the body ends beside the contact of a column."""
-        acts = np.flatnonzero(pressure)
-        gap = np.concatenate([self.beyond()[:1, column], self.gap[:, column], self.beyond()[1:, column]])
-        return bool(~np.isfinite(gap[[acts[0], acts[-1] + 2]]).all())
+    def _body_ends_beside(self, pressure: np.ndarray) -> bool:
+        """Whether the body ends beside the contact by the pressure (n_t, n_z) MPa in any column."""
+        below, above = self.beyond()
+        missing = ~np.isfinite(np.vstack([below, self.gap, above]))
+        for column in np.flatnonzero(pressure.any(axis=0)):
+            acts = np.flatnonzero(pressure[:, column])
+            if missing[[acts[0], acts[-1] + 2], column].any():
+                return True
+        return False
