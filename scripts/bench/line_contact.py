@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from page import markdown, put
@@ -50,10 +51,15 @@ def recipe(mesh: str) -> str:
     content = swgpar.load_mesh("plane").model_dump(exclude_none=True)
     for gear in ("flexible_spline", "ring_gear"):
         content[gear] |= FINE
-    path = OUT / "resolved.toml"
+    return str(written("resolved", content))
+
+
+def written(name: str, content: dict[str, Any]) -> Path:
+    """File of a recipe with this content."""
+    path = OUT / f"{name}.toml"
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(to_toml(make_recipe(content)), encoding="utf-8")
-    return str(path)
+    return path
 
 
 def rows(torque: float, mesh: str, ranks: int) -> list[list[str]]:
@@ -85,9 +91,7 @@ def cup_rows(width: int, ranks: int) -> list[list[str]]:
     """The loaded pairs of the reference cup drive on a mesh with so many elements over the face width."""
     content = swgpar.load_mesh("forces").model_dump(exclude_none=True)
     content["face_width"]["elements"] = width
-    path, folder = OUT / f"width_{width}.toml", OUT / f"width_{width}"
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(to_toml(make_recipe(content)), encoding="utf-8")
+    folder, path = OUT / f"width_{width}", written(f"width_{width}", content)
     run(folder, CUP, ["steps.rotation=0", "steps.bent_start=true", "solver.rtol=1e-6"], ranks, path)
     pairs = swgpar.open_result(folder).pairs
     names = {"force_N": ".1f", "line_load_Nmm": ".1f", "width_mm": ".2f", "half_width_mm": ".4f", "pressure_MPa": ".0f"}
