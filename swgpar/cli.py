@@ -152,7 +152,7 @@ def _add_run(commands: _Commands) -> None:
         metavar="A",
         help="refine the mesh and the windows until the estimated error of the largest tensile stress at the teeth "
         "under load is at most A (0.02: 2 %%; 0.001 to 0.2). Without other values in the design, one period is "
-        "computed in 4, 8 or 16 angles with solver.rtol = 1e-7. The mesh has at most 1,500,000 elements in the plane, "
+        "computed in 4, 8 or 16 angles. The mesh has at most 1,500,000 elements in the plane, "
         "700,000 in space",
     )
     run.add_argument(

@@ -1,7 +1,7 @@
 """What a run will need: elements, unknowns, memory and time, from one tooth sector of each gear.
 
-Memory and time grow with the unknowns as the factor of the tangent does. The constants are those of runs on two cores
-(docs/verification/forecast.md); other machines need more or less time.
+Memory and time of a gear's thin bodies grow linearly with the unknowns. The constants are those of runs on two cores
+with 27,000 to 920,000 unknowns (docs/verification/forecast.md); other machines need more or less time.
 """
 
 from __future__ import annotations
@@ -17,22 +17,20 @@ from swgpar.meshing import MeshRecipe, build_sector_meshes
 
 @dataclass(frozen=True)
 class Growth:
-    """Needs of a run with default shortcuts and windows on two ranks: base + growing * (unknowns / 100,000)^exponent.
+    """Needs of a run with default shortcuts and windows on two ranks: base + growing * unknowns / 100,000.
 
     memory, memory_base : GB of all ranks;  seconds, seconds_base : wall time
     """
 
     memory: float
     memory_base: float
-    memory_exponent: float
     seconds: float
     seconds_base: float
-    seconds_exponent: float
 
 
 GROWTH = {
-    "plane": Growth(0.18, 0.34, 1.0, 30.0, 2.0, 1.1),
-    "cup": Growth(0.62, 0.9, 1.06, 19.7, 25.0, 1.23),
+    "plane": Growth(0.18, 0.61, 12.0, 4.3),
+    "cup": Growth(0.54, 1.1, 23.0, 5.0),
 }
 
 
@@ -57,8 +55,8 @@ def forecast(design: DriveDesign, recipe: MeshRecipe) -> Forecast:
     return Forecast(
         elements=sum(count["elements_whole"] for count in counts),
         unknowns=unknowns,
-        memory=growth.memory_base + growth.memory * size**growth.memory_exponent,
-        seconds=growth.seconds_base + growth.seconds * size**growth.seconds_exponent,
+        memory=growth.memory_base + growth.memory * size,
+        seconds=growth.seconds_base + growth.seconds * size,
     )
 
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from mpi4py import MPI
@@ -32,10 +31,6 @@ SAMPLES = ((0.02, 4), (0.005, 8), (0.0, 16))
 """Smallest accuracy and number of angles in a period. Four instead of eight change the means of the plane half
 turn by 0.3 %, those of the cup drive by 0.5 %; the summary of a run has the
 change by half of its own angles."""
-
-RTOL = 1e-7
-"""Newton's tolerance. Its part in the error of the stresses is far below the lowest accuracy. At 1e-5 the input torque
-of a fine plane mesh has an error of 0.6 %, and a solve takes one iteration less."""
 
 RATIO, ORDER = 1.5, 2
 """Elements in every direction of a mesh of the drive over those of the one before, but for rounding, and the order of
@@ -66,20 +61,17 @@ class ChosenMesh:
 
 
 def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
-    """The design with the angles and the tolerance that suit an accuracy, where it does not say them itself.
+    """The design with as many angles of the period as suit an accuracy, where it does not say them itself.
 
     Raises InputError where the accuracy is out of range.
     """
     if not LOWEST <= accuracy <= HIGHEST:
         raise InputError(f"--accuracy {accuracy:g} is out of range: allowed {LOWEST:g} to {HIGHEST:g}")
-    changes: dict[str, Any] = {}
     whole_period = design.steps.rotation >= 0.999999 * design.periods * np.degrees(design.period_angle)
-    if "samples" not in design.steps.model_fields_set and whole_period:
-        samples = next(count for least, count in SAMPLES if accuracy >= least)
-        changes["steps"] = design.steps.model_copy(update={"samples": samples})
-    if "rtol" not in design.solver.model_fields_set:
-        changes["solver"] = design.solver.model_copy(update={"rtol": RTOL})
-    return design.model_copy(update=changes)
+    if "samples" in design.steps.model_fields_set or not whole_period:
+        return design
+    samples = next(count for least, count in SAMPLES if accuracy >= least)
+    return design.model_copy(update={"steps": design.steps.model_copy(update={"samples": samples})})
 
 
 def resized(recipe: MeshRecipe, ratio: float) -> MeshRecipe:
