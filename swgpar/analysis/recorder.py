@@ -88,7 +88,8 @@ class Recorder(ABC):
 
     def _keep_pairs(self, state: LoadState) -> None:
         if state.is_periodic:
-            when = {"step": int(self.rows[-1]["step"]), "wg_angle_deg": self.rows[-1]["wg_angle_deg"]}
+            row = self.rows[-1]
+            when = {"increment": len(self.rows), "step": int(row["step"]), "wg_angle_deg": row["wg_angle_deg"]}
             contacts = pair_contacts(self.model, state)
             self.pairs += [{**when, **contact.row()} for contact in contacts]
             self.contact_lines += [{**when, **row} for contact in contacts for row in contact.station_rows()]

@@ -31,7 +31,7 @@ SOLVER_CHOICES = {"linear", "keep_factor", "far_teeth"}
 """Keys of [solver] that a restart may change: they are about how systems are solved."""
 
 
-FORMAT = 2
+FORMAT = 3
 """Of the checkpoint's content."""
 
 

@@ -99,6 +99,15 @@ def _print_contact(contact: Mapping[str, Any]) -> None:
         )
 
 
+def _print_sharing(sharing: Mapping[str, Any]) -> None:
+    pairs = sharing["pairs"]
+    console.print(
+        f"load sharing: {pairs['mean']:.3g} pairs in contact ({pairs['smallest']:.0f} to {pairs['largest']:.0f}), "
+        f"{100.0 * sharing['teeth_share']['mean']:.3g} % of the teeth; one tooth carries up to "
+        f"{100.0 * sharing['largest_force_share']:.3g} % of the force, one pair {sharing['largest_force_N']:.4g} N"
+    )
+
+
 def _print_over_period(over: Mapping[str, Any], count: int) -> None:
     half = over["sampling_error"]
     console.print(
@@ -121,6 +130,8 @@ def _print_errors(summary: Mapping[str, Any]) -> None:
             _print_over_period(root["over_period"], len(root["period"]))
     if contact := summary.get("contact"):
         _print_contact(contact)
+    if sharing := summary.get("load_sharing"):
+        _print_sharing(sharing)
     asked = summary["accuracy"]
     if error := summary["mesh_error"]:
         if summary["means"]:

@@ -54,6 +54,16 @@ RESOLVED = {
 }
 """Quantities of runs with `output.root_stress`, which a study has to set."""
 
+SHARING = {
+    "sharing.pairs": Quantity("pairs of flanks in contact, mean over the rotation", ""),
+    "sharing.largest_pairs": Quantity("pairs of flanks in contact, most over the rotation", ""),
+    "sharing.teeth_share": Quantity("share of the flexible spline's teeth in contact, mean over the rotation", ""),
+    "sharing.largest_force_share": Quantity("largest share of one tooth in the force of all pairs", ""),
+    "sharing.largest_force": Quantity("largest force of one pair", "N"),
+    "sharing.largest_line_load": Quantity("largest line load of one pair", "N/mm"),
+}
+"""Quantities of the load sharing."""
+
 
 class Drives(System[DriveDesign, DriveResult]):
     """The drive's adapter: analysis, results and quantities under the names that all systems share."""
@@ -118,6 +128,7 @@ class Drives(System[DriveDesign, DriveResult]):
         known = {f"mean.{name}": quantity(name, "mean over the rotation") for name in MEANS}
         if design.output.root_stress:
             known |= RESOLVED
+        known |= SHARING
         return known | {f"step{k}.{name}": quantity(name, f"end of step {k}") for k in GROUPS for name in COLUMNS}
 
     def main_quantities(self, known: Mapping[str, Quantity]) -> tuple[str, ...]:
@@ -125,6 +136,7 @@ class Drives(System[DriveDesign, DriveResult]):
 
     def describe_names(self, known: Mapping[str, Quantity]) -> str:
         names = f"mean. with {', '.join(MEANS)}, or step1. to step{GROUPS[-1]}. with a column of history.csv"
+        names = f"{names}; {', '.join(SHARING)}"
         return f"{names}; with output.root_stress = true {', '.join(RESOLVED)}"
 
     def check_published(self, design: DriveDesign, names: Iterable[str]) -> None:
@@ -149,7 +161,7 @@ class Drives(System[DriveDesign, DriveResult]):
     def measure(self, result: DriveResult) -> Measured:
         summary = result.summary
         return Measured(
-            values=values(summary["means"], result.history) | resolved(summary, result.pairs),
+            values=values(summary["means"], result.history) | resolved(summary, result.pairs) | sharing(summary),
             wall_s=summary["wall_s"],
             elements=summary["elements"],
             newton_mean=summary["newton_iterations_mean"],
@@ -169,6 +181,22 @@ def resolved(summary: Mapping[str, Any], pairs: Mapping[str, np.ndarray]) -> dic
         if not contact["edge"]:
             found["contact.pressure"] = contact["pressure_MPa"]
     return found
+
+
+def sharing(summary: Mapping[str, Any]) -> dict[str, float]:
+    """The quantities of `SHARING`, without those that the run does not have."""
+    found = summary["load_sharing"]
+    if not found:
+        return {}
+    known = {
+        "sharing.pairs": found["pairs"]["mean"],
+        "sharing.largest_pairs": found["pairs"]["largest"],
+        "sharing.teeth_share": found["teeth_share"]["mean"],
+        "sharing.largest_force_share": found["largest_force_share"],
+        "sharing.largest_force": found["largest_force_N"],
+        "sharing.largest_line_load": found["largest_line_load_Nmm"],
+    }
+    return {name: value for name, value in known.items() if value is not None}
 
 
 def values(means: Mapping[str, float], history: Mapping[str, np.ndarray]) -> dict[str, float]:
