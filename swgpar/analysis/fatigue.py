@@ -148,12 +148,13 @@ def _history_at(
 
 
 def _change_by_half(values: np.ndarray, cycle: StressCycle, safety: float) -> float | None:
-    """Change of Goodman's safety with half as many angles in a period; None for an odd number of them."""
+    """Largest change of Goodman's safety with one or the other half of the angles; None for an odd number of them."""
     if cycle.model.design.steps.samples % 2:
         return None
-    half = values[::2]
-    amplitude, mean = np.array([0.5 * np.ptp(half)]), np.array([0.5 * (half.max() + half.min())])
-    return abs(1.0 / float(goodman(amplitude, mean, cycle.model.design.fatigue)[0]) - safety)
+    halves = values.reshape(-1, 2)
+    high, low = halves.max(axis=0), halves.min(axis=0)
+    utilisation = goodman(0.5 * (high - low), 0.5 * (high + low), cycle.model.design.fatigue)
+    return float(np.abs(1.0 / utilisation - safety).max())
 
 
 def _place(cycle: StressCycle, k: int, nodal: dict[str, np.ndarray], regions: np.ndarray) -> dict[str, Any]:

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from mpi4py import MPI
 
+from swgpar.analysis.fatigue_figures import draw_haigh, sector_picture
 from swgpar.design.sections import GEARS
 from swgpar.errors import InputError
 from swgpar.results.figure_set import Drawings, FigureSet
+from swgpar.results.sector_fields import SectorFields
 
 if TYPE_CHECKING:
     import pyvista
@@ -44,7 +46,7 @@ class DriveFigures(FigureSet):
     `save` writes all of them. Every rank calls it, and the methods whose figures show fields.
     """
 
-    exact_size = ("deformed_drive",)
+    exact_size = ("deformed_drive", "safety")
 
     def __init__(self, result: DriveResult, comm: MPI.Comm, *, gathered: bool) -> None:
         super().__init__(comm, gathered=gathered)
@@ -60,6 +62,8 @@ class DriveFigures(FigureSet):
             found |= {"pairs": self.pairs, "load_sharing": self.load_sharing}
             if np.isfinite(self._result.pairs["pressure_MPa"]).any():
                 found["contact_pattern"] = self.contact_pattern
+        if self._result.fatigue is not None:
+            found |= {"haigh": self.haigh, "safety": self.safety}
         if self._result.increments:
             found["deformed_drive"] = self.deformed
         return found
@@ -158,6 +162,22 @@ class DriveFigures(FigureSet):
             axes.set_ylim(bottom=0.0)
             axes.grid(alpha=0.3)
         return figure
+
+    def haigh(self) -> Figure:
+        """Haigh's diagram of all nodes of a sector, and the normal stress over the cycle where the safety is the least.
+
+        Runs with the section [fatigue] have it.
+        """
+        return draw_haigh(self._fatigue(), self._result.fatigue_cycle, self._result.summary)
+
+    def safety(self) -> Figure:
+        """One sector of the flexible spline, coloured by Goodman's safety factor."""
+        return _as_figure(sector_picture(self._fatigue(), self._result.is_plane))
+
+    def _fatigue(self) -> SectorFields:
+        if self._result.fatigue is None:
+            raise InputError("this run has no fatigue: allowed with the section [fatigue]")
+        return self._result.fatigue
 
     def _draw(self, axes: Axes, name: str, label: str | None) -> None:
         """Draw a column under load: points where it was computed, and the curve through them."""

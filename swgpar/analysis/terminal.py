@@ -108,6 +108,38 @@ def _print_sharing(sharing: Mapping[str, Any]) -> None:
     )
 
 
+def _print_fatigue(found: Mapping[str, Any]) -> None:
+    worst, other = found["goodman"], found["crossland"]
+    errors = [found[name] for name in ("mesh_error", "sampling_error") if found[name] is not None]
+    error = f" ± {float(np.hypot.reduce(errors)):.2g}" if errors else ""
+    console.print(
+        f"least safety against fatigue: {worst['safety']:.3g}{error} by Goodman, {worst['region']} (radius "
+        f"{worst['radius']:.2f}, z {worst['z']:.2f} mm; amplitude {worst['amplitude_MPa']:.0f}, mean "
+        f"{worst['mean_MPa']:.0f} MPa); {other['safety_crossland']:.3g} by Crossland, {other['region']}; "
+        f"{found['yield']['safety_yield']:.3g} against yield"
+    )
+    life = found["life_turns"]
+    console.print(
+        "life by Basquin: "
+        + (f"{life:.2g} turns of the wave generator, {found['life_hours']:.2g} h" if life else "without end")
+    )
+    if found["root_factor"]:
+        console.print(f"stresses in the tooth root are scaled by {found['root_factor']:.3f}, from windows")
+    else:
+        console.print("stresses in the tooth root are nodal averages, up to 25 % low: set output.root_stress = true")
+    console.print(found["warning"], markup=False)  # a section's name is no markup
+
+
+def _print_losses(losses: Mapping[str, Any]) -> None:
+    parts = losses["parts_Nmm"]
+    shares = ", ".join(f"{name.replace('_', ' ')} {value:.3g}" for name, value in parts.items())
+    efficiency = losses["efficiency"]
+    console.print(
+        f"losses take {losses['loss_torque_Nmm']:.3g} N·mm of input torque ({shares}); "
+        + (f"efficiency {100.0 * efficiency:.1f} %" if efficiency else "this is the no-load torque")
+    )
+
+
 def _print_over_period(over: Mapping[str, Any], count: int) -> None:
     half = over["sampling_error"]
     console.print(
@@ -132,6 +164,10 @@ def _print_errors(summary: Mapping[str, Any]) -> None:
         _print_contact(contact)
     if sharing := summary.get("load_sharing"):
         _print_sharing(sharing)
+    if fatigue := summary.get("fatigue"):
+        _print_fatigue(fatigue)
+    if losses := summary.get("losses"):
+        _print_losses(losses)
     asked = summary["accuracy"]
     if error := summary["mesh_error"]:
         if summary["means"]:

@@ -64,6 +64,26 @@ SHARING = {
 }
 """Quantities of the load sharing."""
 
+FATIGUE = {
+    "fatigue.goodman": Quantity("least safety factor by Goodman", ""),
+    "fatigue.crossland": Quantity("least safety factor by Crossland", ""),
+    "fatigue.yield": Quantity("least safety factor against yield", ""),
+    "fatigue.amplitude": Quantity("amplitude of the normal stress where Goodman's safety is the least", "MPa"),
+    "fatigue.mean": Quantity("its mean", "MPa"),
+    "fatigue.life_turns": Quantity("life by Basquin, turns of the wave generator", ""),
+    "fatigue.life_hours": Quantity("life by Basquin", "h"),
+}
+"""Quantities of designs with [fatigue]; a life without end is left out."""
+
+LOSSES = {
+    "losses.torque": Quantity("input torque that the losses take", "N·mm"),
+    "losses.flank_friction": Quantity("its part by friction of the flanks", "N·mm"),
+    "losses.hysteresis": Quantity("its part by hysteresis of the flexible spline", "N·mm"),
+    "losses.bearing": Quantity("its part by friction of the wave generator's bearing", "N·mm"),
+    "losses.efficiency": Quantity("efficiency", ""),
+}
+"""Quantities of designs with [losses]; without a torque there is no efficiency."""
+
 
 class Drives(System[DriveDesign, DriveResult]):
     """The drive's adapter: analysis, results and quantities under the names that all systems share."""
@@ -129,6 +149,8 @@ class Drives(System[DriveDesign, DriveResult]):
         if design.output.root_stress:
             known |= RESOLVED
         known |= SHARING
+        for section, names in ((design.fatigue, FATIGUE), (design.losses, LOSSES)):
+            known |= names if section else {}
         return known | {f"step{k}.{name}": quantity(name, f"end of step {k}") for k in GROUPS for name in COLUMNS}
 
     def main_quantities(self, known: Mapping[str, Quantity]) -> tuple[str, ...]:
@@ -136,7 +158,7 @@ class Drives(System[DriveDesign, DriveResult]):
 
     def describe_names(self, known: Mapping[str, Quantity]) -> str:
         names = f"mean. with {', '.join(MEANS)}, or step1. to step{GROUPS[-1]}. with a column of history.csv"
-        names = f"{names}; {', '.join(SHARING)}"
+        names = f"{names}; {', '.join(SHARING)}; with [fatigue] {', '.join(FATIGUE)}; with [losses] {', '.join(LOSSES)}"
         return f"{names}; with output.root_stress = true {', '.join(RESOLVED)}"
 
     def check_published(self, design: DriveDesign, names: Iterable[str]) -> None:
@@ -161,7 +183,12 @@ class Drives(System[DriveDesign, DriveResult]):
     def measure(self, result: DriveResult) -> Measured:
         summary = result.summary
         return Measured(
-            values=values(summary["means"], result.history) | resolved(summary, result.pairs) | sharing(summary),
+            values={
+                **values(summary["means"], result.history),
+                **resolved(summary, result.pairs),
+                **sharing(summary),
+                **cycle_values(summary),
+            },
             wall_s=summary["wall_s"],
             elements=summary["elements"],
             newton_mean=summary["newton_iterations_mean"],
@@ -197,6 +224,26 @@ def sharing(summary: Mapping[str, Any]) -> dict[str, float]:
         "sharing.largest_line_load": found["largest_line_load_Nmm"],
     }
     return {name: value for name, value in known.items() if value is not None}
+
+
+def cycle_values(summary: Mapping[str, Any]) -> dict[str, float]:
+    """The quantities of `FATIGUE` and `LOSSES`, without those that the run does not have."""
+    found: dict[str, float | None] = {}
+    if fatigue := summary.get("fatigue"):
+        worst = fatigue["goodman"]
+        found |= {
+            "fatigue.goodman": worst["safety"],
+            "fatigue.crossland": fatigue["crossland"]["safety_crossland"],
+            "fatigue.yield": fatigue["yield"]["safety_yield"],
+            "fatigue.amplitude": worst["amplitude_MPa"],
+            "fatigue.mean": worst["mean_MPa"],
+            "fatigue.life_turns": fatigue["life_turns"],
+            "fatigue.life_hours": fatigue["life_hours"],
+        }
+    if losses := summary.get("losses"):
+        found |= {"losses.torque": losses["loss_torque_Nmm"], "losses.efficiency": losses["efficiency"]}
+        found |= {f"losses.{name}": value for name, value in losses["parts_Nmm"].items()}
+    return {name: value for name, value in found.items() if value is not None}
 
 
 def values(means: Mapping[str, float], history: Mapping[str, np.ndarray]) -> dict[str, float]:
