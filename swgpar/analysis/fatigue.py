@@ -117,7 +117,7 @@ def _regions(cycle: StressCycle) -> tuple[np.ndarray, np.ndarray]:
     """Region and warning (n,) of the kept nodes; collective."""
     design, mesh = cycle.model.design, cycle.body.layout.mesh
     touched = np.zeros(len(mesh.coords), dtype=bool)
-    touched[cycle.nodes] = cycle.model.comm.allreduce(cycle.touched.astype(int), op=MPI.MAX) > 0
+    touched[cycle.nodes] = cycle.model.comm.allreduce(cycle.touched.astype(int), op=MPI.SUM) > 0
     near = near_contact(mesh, touched[None], APART_DISTANCE * design.drive.module)[0]
     regions, warnings = [], []
     for node in cycle.nodes:

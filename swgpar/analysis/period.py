@@ -11,6 +11,7 @@ import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import LoadState
+from swgpar.errors import InputError
 from swgpar.results.history import Row
 
 
@@ -27,6 +28,16 @@ def sample_of(design: DriveDesign, state: LoadState) -> int | None:
     # with friction the first of two periods settles
     number = round(state.angle / design.period_angle * samples) - (samples + 1 if design.contact.friction else 0)
     return number if 0 <= number < samples else None
+
+
+def require_samples(design: DriveDesign) -> None:
+    """Raise InputError where fatigue or losses are asked for without a sampled period."""
+    if (design.fatigue or design.losses) and not design.steps.samples:
+        section = "fatigue" if design.fatigue else "losses"
+        raise InputError(
+            f"[{section}] is not available with steps.samples = 0: allowed 1 to 1000, with steps.rotation of at least "
+            f"{np.degrees(design.period_angle) * design.periods:.6g} degrees"
+        )
 
 
 def sampling_error(design: DriveDesign, rows: list[Row], names: tuple[str, ...]) -> dict[str, float]:

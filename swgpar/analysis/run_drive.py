@@ -28,7 +28,7 @@ from swgpar.analysis.mesh_refinement import (
     size_ratio,
     with_accuracy,
 )
-from swgpar.analysis.period import continued
+from swgpar.analysis.period import continued, require_samples
 from swgpar.analysis.recorder import FolderRecorder, MemoryRecorder, Recorder
 from swgpar.analysis.restart import identity, resume
 from swgpar.analysis.root_stress import RootStress, resolve_root_stress, with_angle
@@ -89,6 +89,7 @@ def run_drive(
     if not plain:
         shortcuts = with_shortcuts(design, recipe, levels=accuracy is None)
         design, left_out = shortcuts.design, shortcuts.left_out
+    require_samples(design)
     resumed = False
     if folder is not None:
         require_parallel(comm)
@@ -270,6 +271,7 @@ class _Run:
         """Fatigue and losses over the sampled period, also into the summary."""
         recorder, design, tables = self.recorder, self.model.design, DriveTables()
         cycle = recorder.cycle
+        summary |= {"fatigue": None, "losses": None}
         if cycle is None or not cycle.complete:
             return tables
         with self.model.phases("fatigue and losses"):

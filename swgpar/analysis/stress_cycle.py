@@ -17,7 +17,6 @@ from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.period import sample_of
 from swgpar.analysis.places import pressed_nodes
 from swgpar.design.load_states import LoadState
-from swgpar.errors import InputError
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, BodyLayout
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.partition import split
@@ -41,7 +40,6 @@ class StressCycle:
     """
 
     def __init__(self, model: DriveModel) -> None:
-        require_samples(model)
         self.model = model
         self.body = model.elements.bodies[FLEXIBLE_SPLINE]
         mesh = self.body.layout.mesh
@@ -77,7 +75,7 @@ class StressCycle:
 
     def state(self) -> dict[str, Any]:
         """What else a checkpoint needs; collective."""
-        touched = self.model.comm.allreduce(self.touched.astype(int), op=MPI.MAX)
+        touched = self.model.comm.allreduce(self.touched.astype(int), op=MPI.SUM)
         return {"samples": sorted(self.samples), "touched": np.flatnonzero(touched).tolist()}
 
     @staticmethod
@@ -127,17 +125,6 @@ def history_by_renaming(
     stress = np.stack(period, axis=1)  # sector, sample, node, component
     in_time = stress[-np.arange(layout.count) % layout.count]
     return mine, in_time.reshape(-1, len(mine), 6)
-
-
-def require_samples(model: DriveModel) -> None:
-    """Raise InputError where fatigue or losses are asked for without a sampled period."""
-    design = model.design
-    if not design.steps.samples:
-        section = "fatigue" if design.fatigue else "losses"
-        raise InputError(
-            f"[{section}] is not available with steps.samples = 0: allowed 1 to 1000, with steps.rotation of at least "
-            f"{np.degrees(design.period_angle) * design.periods:.6g} degrees"
-        )
 
 
 def sector_stress(body: BodyElements, fields: Mapping[str, np.ndarray]) -> np.ndarray:

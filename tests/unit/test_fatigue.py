@@ -5,12 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from support.paths import DESIGN
+import swgpar
+from support.paths import DESIGN, RECIPE
+from support.small_drive import PLANE
 from swgpar.analysis.fatigue_criteria import critical_plane, crossland, damage, fatigue_limits, goodman, smallest_ball
 from swgpar.analysis.stress_cycle import rotated_tensor
 from swgpar.design.design_file import load_design
 from swgpar.design.sections import Fatigue
 from swgpar.errors import InputError
+from swgpar.systems.drive import DRIVE, FATIGUE, LOSSES
 
 STEEL = Fatigue()
 PHASE = 2.0 * np.pi * np.arange(360) / 360
@@ -119,3 +122,45 @@ def test_bad_input_is_refused(override: str, words: str) -> None:
     with pytest.raises(InputError) as error:
         load_design(DESIGN, [override])
     assert words in str(error.value)
+
+
+def test_a_run_has_figures_and_quantities() -> None:
+    """The nodes with the least safety are those of the fields; every quantity of studies has a value."""
+    pytest.importorskip("rainflow")
+    sampled = [*PLANE, "steps.samples=2", "steps.rotation=9", "fatigue.size_factor=1.0", "losses.loss_factor=1e-3"]
+    design = swgpar.load_design(DESIGN, sampled)
+    result = swgpar.run(design, RECIPE)
+    found, fields = result.summary["fatigue"], result.fatigue.fields
+    names = list(found["regions"])
+    sound = np.isin(fields["region"], [k for k, name in enumerate(names) if not found["regions"][name]["warning"]])
+    for criterion in ("goodman", "crossland"):
+        place = found[criterion]
+        values = fields[f"safety_{criterion}"][sound]
+        assert values.min() == pytest.approx(place["safety" if criterion == "goodman" else "safety_crossland"])
+        assert fields["region"][sound][values.argmin()] == names.index(place["region"])
+    worst, values = found["goodman"], result.fatigue_cycle["normal_stress_MPa"]
+    assert worst["amplitude_MPa"] == pytest.approx(0.5 * np.ptp(values))
+    assert worst["mean_MPa"] == pytest.approx(0.5 * (values.max() + values.min()))
+    assert found["phases"] == len(values) == 2 * 20
+    assert found["cycles_per_turn"] == pytest.approx(2.0 * 42.0 / 40.0)
+    assert found["root_factor"] is None and found["warning"].startswith("the strengths in [fatigue]")
+    assert {*FATIGUE, *LOSSES} <= set(DRIVE.measure(result).values) & set(DRIVE.quantities(design))
+    assert {"haigh", "safety"} <= set(result.plot.names)
+    assert len(result.plot.haigh().axes) == 2 and result.plot.safety().axes
+
+
+def test_windows_scale_the_tooth_root() -> None:
+    """Stresses in the root grow by the factor, all others stay."""
+    pytest.importorskip("rainflow")
+    sampled = [*PLANE, "steps.samples=2", "steps.rotation=9", "fatigue.size_factor=1.0"]
+    plain, scaled = (
+        swgpar.run(swgpar.load_design(DESIGN, [*sampled, f"output.root_stress={flag}"]), RECIPE).summary
+        for flag in ("false", "true")
+    )
+    root, factor = scaled["root_stress"], scaled["fatigue"]["root_factor"]
+    assert factor == pytest.approx(root["s1"] / root["on_mesh"]) and factor > 1.0
+    for region, values in plain["fatigue"]["regions"].items():
+        by = factor if region == "tooth root" else 1.0
+        assert scaled["fatigue"]["regions"][region]["goodman"] == pytest.approx(values["goodman"] / by, rel=1e-5)
+    relative = scaled["fatigue"]["mesh_error"] / scaled["fatigue"]["goodman"]["safety"]
+    assert relative == pytest.approx(root["total_error"] / root["s1"])
