@@ -79,7 +79,7 @@ def evaluate_fatigue(cycle: StressCycle, root_stress: RootStress | None) -> Fati
     half = _change_by_half(values, cycle, 1.0 / nodal["goodman"][least["goodman"]])
     at_root = scale[least["goodman"]] != 1.0
     summary = {
-        **{name: _place(cycle, least[name], nodal, regions) for name in CRITERIA},
+        **{name: _place(cycle, name, least[name], nodal, regions) for name in CRITERIA},
         "regions": _by_region(nodal, regions, warnings),
         "normal": normal.tolist(),
         "mesh_error": factor_error / factor / nodal["goodman"][least["goodman"]] if at_root else None,
@@ -157,14 +157,14 @@ def _change_by_half(values: np.ndarray, cycle: StressCycle, safety: float) -> fl
     return float(np.abs(1.0 / utilisation - safety).max())
 
 
-def _place(cycle: StressCycle, k: int, nodal: dict[str, np.ndarray], regions: np.ndarray) -> dict[str, Any]:
-    """Safety factors at a node and where it is; `angle_deg` from the middle of its tooth, counter-clockwise."""
+def _place(
+    cycle: StressCycle, criterion: str, k: int, nodal: dict[str, np.ndarray], regions: np.ndarray
+) -> dict[str, Any]:
+    """Safety by a criterion at a node and where it is; `angle_deg` from the middle of its tooth, counter-clockwise."""
     mesh = cycle.body.layout.mesh
     x, y, z = mesh.coords[cycle.nodes[k]]
     return {
-        "safety": _safety(nodal["goodman"][k]),
-        "safety_crossland": _safety(nodal["crossland"][k]),
-        "safety_yield": _safety(nodal["yield"][k]),
+        "safety": _safety(nodal[criterion][k]),
         "amplitude_MPa": float(nodal["amplitude"][k]),
         "mean_MPa": float(nodal["mean"][k]),
         "region": str(regions[k]),

@@ -11,8 +11,8 @@ from swgpar.results.sector_fields import SectorFields
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-HIGHEST = 5.0
-"""Safety factor at the end of the colour scale."""
+SHOWN = (0.5, 20.0)
+"""Safety factors at the ends of the colour scale, which is logarithmic."""
 
 
 def draw_haigh(sector: SectorFields, cycle: dict[str, np.ndarray], summary: dict[str, Any]) -> Figure:
@@ -56,14 +56,15 @@ def sector_picture(sector: SectorFields, plane: bool) -> np.ndarray:
 
     cells = np.hstack([np.full((len(sector.cells), 1), 8), sector.cells]).ravel()
     grid = pyvista.UnstructuredGrid(cells, np.full(len(sector.cells), pyvista.CellType.HEXAHEDRON), sector.points)
-    grid.point_data["safety"] = np.minimum(sector.fields["safety_goodman"], HIGHEST)
+    grid.point_data["safety"] = np.clip(sector.fields["safety_goodman"], *SHOWN)
     pyvista.OFF_SCREEN = True
     plotter = pyvista.Plotter(off_screen=True, window_size=(1200, 900))
     plotter.add_mesh(
         grid.extract_surface(algorithm="dataset_surface"),
         scalars="safety",
         cmap="turbo_r",
-        clim=(0.0, HIGHEST),
+        clim=SHOWN,
+        log_scale=True,
         show_edges=True,
         edge_opacity=0.2,
         scalar_bar_args={"title": "safety by Goodman", "position_x": 0.2, "position_y": 0.02},
@@ -75,6 +76,7 @@ def sector_picture(sector: SectorFields, plane: bool) -> np.ndarray:
     else:
         plotter.camera_position = [(1.2, 0.6, -1.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)]
         plotter.reset_camera()
+        plotter.camera.zoom(1.3)
     picture = plotter.screenshot(return_img=True)
     plotter.close()
     return picture

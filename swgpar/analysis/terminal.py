@@ -115,8 +115,8 @@ def _print_fatigue(found: Mapping[str, Any]) -> None:
     console.print(
         f"least safety against fatigue: {worst['safety']:.3g}{error} by Goodman, {worst['region']} (radius "
         f"{worst['radius']:.2f}, z {worst['z']:.2f} mm; amplitude {worst['amplitude_MPa']:.0f}, mean "
-        f"{worst['mean_MPa']:.0f} MPa); {other['safety_crossland']:.3g} by Crossland, {other['region']}; "
-        f"{found['yield']['safety_yield']:.3g} against yield"
+        f"{worst['mean_MPa']:.0f} MPa); {other['safety']:.3g} by Crossland, {other['region']}; "
+        f"{found['yield']['safety']:.3g} against yield"
     )
     life = found["life_turns"]
     console.print(

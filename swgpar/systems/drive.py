@@ -233,8 +233,8 @@ def cycle_values(summary: Mapping[str, Any]) -> dict[str, float]:
         worst = fatigue["goodman"]
         found |= {
             "fatigue.goodman": worst["safety"],
-            "fatigue.crossland": fatigue["crossland"]["safety_crossland"],
-            "fatigue.yield": fatigue["yield"]["safety_yield"],
+            "fatigue.crossland": fatigue["crossland"]["safety"],
+            "fatigue.yield": fatigue["yield"]["safety"],
             "fatigue.amplitude": worst["amplitude_MPa"],
             "fatigue.mean": worst["mean_MPa"],
             "fatigue.life_turns": fatigue["life_turns"],

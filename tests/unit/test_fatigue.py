@@ -133,10 +133,10 @@ def test_a_run_has_figures_and_quantities() -> None:
     found, fields = result.summary["fatigue"], result.fatigue.fields
     names = list(found["regions"])
     sound = np.isin(fields["region"], [k for k, name in enumerate(names) if not found["regions"][name]["warning"]])
-    for criterion in ("goodman", "crossland"):
+    for criterion in ("goodman", "crossland", "yield"):
         place = found[criterion]
         values = fields[f"safety_{criterion}"][sound]
-        assert values.min() == pytest.approx(place["safety" if criterion == "goodman" else "safety_crossland"])
+        assert values.min() == pytest.approx(place["safety"])
         assert fields["region"][sound][values.argmin()] == names.index(place["region"])
     worst, values = found["goodman"], result.fatigue_cycle["normal_stress_MPa"]
     assert worst["amplitude_MPa"] == pytest.approx(0.5 * np.ptp(values))
