@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from mpi4py import MPI
 
+from swgpar.analysis.fatigue_figures import draw_haigh, sector_picture
 from swgpar.design.sections import GEARS
 from swgpar.errors import InputError
 from swgpar.results.figure_set import Drawings, FigureSet
+from swgpar.results.sector_fields import SectorFields
 
 if TYPE_CHECKING:
     import pyvista
@@ -44,7 +46,7 @@ class DriveFigures(FigureSet):
     `save` writes all of them. Every rank calls it, and the methods whose figures show fields.
     """
 
-    exact_size = ("deformed_drive",)
+    exact_size = ("deformed_drive", "safety")
 
     def __init__(self, result: DriveResult, comm: MPI.Comm, *, gathered: bool) -> None:
         super().__init__(comm, gathered=gathered)
@@ -57,7 +59,11 @@ class DriveFigures(FigureSet):
             "torque_and_transmission_error": self.torque_and_transmission_error,
         }
         if self._result.pairs:
-            found |= {"pairs": self.pairs, "contact_pattern": self.contact_pattern}
+            found |= {"pairs": self.pairs, "load_sharing": self.load_sharing}
+            if np.isfinite(self._result.pairs["pressure_MPa"]).any():
+                found["contact_pattern"] = self.contact_pattern
+        if self._result.fatigue is not None:
+            found |= {"haigh": self.haigh, "safety": self.safety}
         if self._result.increments:
             found["deformed_drive"] = self.deformed
         return found
@@ -112,12 +118,8 @@ class DriveFigures(FigureSet):
         All computed increments under load are drawn: a tooth goes through these positions one after the other. Pairs
         whose contact lies on an edge have hollow marks: their pressure is no property of the drive.
         """
-        pairs, teeth = self._result.pairs, self._result.summary["design"]["drive"]["teeth_fs"]
-        position = pairs["tooth"] * 360.0 / teeth - pairs["wg_angle_deg"]
-        if self._result.summary["design"]["drive"]["layout"] == "ring_fixed":  # the teeth turn with the output
-            history = self._result.history
-            position = position + np.interp(pairs["step"], history["step"], history["output_angle_deg"])
-        position = (position + 90.0) % 180.0 - 90.0
+        pairs = self._result.pairs
+        position = (pairs["angle_deg"] + 90.0) % 180.0 - 90.0
         figure, panels = _panels(2)
         for axes, name in zip(panels, ("force_N", "pressure_MPa"), strict=True):
             for side, colour in (("clockwise", "tab:orange"), ("counter-clockwise", "tab:blue")):
@@ -131,6 +133,51 @@ class DriveFigures(FigureSet):
         panels[1].set(ylabel="largest pressure (MPa)", xlabel="tooth, from the major axis (degrees)")
         panels[0].legend(fontsize=8)
         return figure
+
+    def load_sharing(self) -> Figure:
+        """Share (%) of every pair in the forces between the flanks, over its angle from the major axis.
+
+        All computed increments under load are drawn, and below the number of pairs at these angles.
+        """
+        from matplotlib.figure import Figure
+
+        pairs, history = self._result.pairs, self._result.history
+        figure = Figure(figsize=(7.0, 6.0), layout="constrained")
+        upper, lower = figure.subplots(2, 1)
+        far = np.abs(pairs["angle_deg"]) > 90.0
+        angle, share = (pairs["angle_deg"] + 90.0) % 180.0 - 90.0, 100.0 * pairs["force_share"]
+        for side, colour in (("clockwise", "tab:orange"), ("counter-clockwise", "tab:blue")):
+            for end, mark in ((~far, "o"), (far, "x")):
+                chosen = (pairs["flank"] == side) & end
+                if chosen.any():
+                    label = f"{side} flank" + (", other end" if mark == "x" else "")
+                    upper.plot(angle[chosen], share[chosen], mark, ms=5, mec=colour, mfc="none", label=label)
+        upper.set(xlabel="pair, from the major axis (degrees)", ylabel="share of the force (%)")
+        upper.set_title("force of a pair over that of all pairs, at all computed angles", fontsize=10)
+        upper.legend(fontsize=8)
+        rows = np.unique(pairs["increment"]).astype(int) - 1
+        lower.step(history["wg_angle_deg"][rows], history["pairs_in_contact"][rows], "o-", where="mid", ms=4)
+        lower.set(xlabel=ANGLE, ylabel="pairs in contact")
+        for axes in (upper, lower):
+            axes.set_ylim(bottom=0.0)
+            axes.grid(alpha=0.3)
+        return figure
+
+    def haigh(self) -> Figure:
+        """Haigh's diagram of all nodes of a sector, and the normal stress over the cycle where the safety is the least.
+
+        Runs with the section [fatigue] have it.
+        """
+        return draw_haigh(self._fatigue(), self._result.fatigue_cycle, self._result.summary)
+
+    def safety(self) -> Figure:
+        """One sector of the flexible spline, coloured by Goodman's safety factor."""
+        return _as_figure(sector_picture(self._fatigue(), self._result.is_plane))
+
+    def _fatigue(self) -> SectorFields:
+        if self._result.fatigue is None:
+            raise InputError("this run has no fatigue: allowed with the section [fatigue]")
+        return self._result.fatigue
 
     def _draw(self, axes: Axes, name: str, label: str | None) -> None:
         """Draw a column under load: points where it was computed, and the curve through them."""
@@ -150,9 +197,11 @@ class DriveFigures(FigureSet):
 
         pairs, lines = self._result.pairs, self._result.contact_lines
         if step is None:
-            off_edge = np.where(pairs["edge"] == 0, pairs["pressure_MPa"], 0.0)
-            step = int(pairs["step"][(off_edge if off_edge.any() else pairs["pressure_MPa"]).argmax()])
-        chosen = np.flatnonzero(pairs["step"] == step)
+            pressure = np.nan_to_num(pairs["pressure_MPa"])
+            off_edge = np.where(pairs["edge"] == 0, pressure, 0.0)
+            step = int(pairs["step"][(off_edge if off_edge.any() else pressure).argmax()])
+        increment = pairs["increment"][pairs["step"] == step].max(initial=0.0)  # the last one of a step
+        chosen = np.flatnonzero((pairs["increment"] == increment) & np.isfinite(pairs["pressure_MPa"]))
         if not len(chosen):
             raise InputError(f"step = {step} has no flanks in contact: allowed are steps of result.pairs")
         chosen = np.sort(chosen[np.argsort(-pairs["force_N"][chosen])][:MOST_FLANKS])
@@ -232,7 +281,7 @@ class _Flank:
         edge = ", on an edge" if pairs["edge"][k] else ""
         load = f"{pairs['force_N'][k]:.3g} N, {pairs['pressure_MPa'][k]:.4g} MPa{edge}"
         self.name = f"tooth {pairs['tooth'][k]:.0f}, {pairs['flank'][k]}\n{load}"
-        here = np.all([lines[name] == pairs[name][k] for name in ("step", "tooth", "flank", "ring_tooth")], axis=0)
+        here = np.all([lines[name] == pairs[name][k] for name in ("increment", "tooth", "flank", "ring_tooth")], axis=0)
         self.z, self.s = lines["z_mm"][here], lines["s_mm"][here]
         self.half_width, self.peak = lines["half_width_mm"][here], lines["pressure_MPa"][here]
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,11 +14,14 @@ import numpy as np
 from swgpar.analysis.contact_pressure import nodal_pressure
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.drive_result import DriveResult, open_fields
+from swgpar.analysis.drive_tables import DriveTables
 from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.analysis.losses import cam_force
 from swgpar.analysis.pair_contact import pair_contacts
 from swgpar.analysis.places import Place, find_places
 from swgpar.analysis.restart import write_state
 from swgpar.analysis.root_stress import RootStress
+from swgpar.analysis.stress_cycle import StressCycle
 from swgpar.analysis.summary import Accuracy
 from swgpar.design.load_states import LoadState
 from swgpar.design.sections import GEARS
@@ -48,6 +52,8 @@ class Recorder(ABC):
     root_stress : of the loaded state, once it is resolved
     places : of the largest stresses under load, by column of the history
     pairs, contact_lines : rows of pairs.csv and contact_lines.csv, the contacts of flanks under load
+    cycle : stresses of the sampled period, with [fatigue] or [losses]
+    cam_forces : N, of all increments, with [losses]
     """
 
     def __init__(self, model: DriveModel) -> None:
@@ -59,6 +65,9 @@ class Recorder(ABC):
         self.places: dict[str, Place] = {}
         self.pairs: list[Row] = []
         self.contact_lines: list[Row] = []
+        design = model.design
+        self.cycle = StressCycle(model) if design.fatigue or design.losses else None
+        self.cam_forces: list[float] = []
 
     def record(self, stepper: LoadStepper, seconds: float, elapsed: float) -> None:
         """Keep the state after an increment.
@@ -72,6 +81,11 @@ class Recorder(ABC):
         with model.phases("stress"):
             self._keep_places(stepper.load_state, body_fields)
             self._keep_pairs(stepper.load_state)
+        with model.phases("fatigue and losses"):
+            if self.cycle is not None:
+                self.cycle.keep(stepper.load_state, body_fields[FLEXIBLE_SPLINE])
+            if model.design.losses:
+                self.cam_forces.append(cam_force(model))
         with model.phases("output"):
             fields = dict(zip(GEARS, body_fields, strict=True))
             if model.design.output.fields:
@@ -88,17 +102,18 @@ class Recorder(ABC):
 
     def _keep_pairs(self, state: LoadState) -> None:
         if state.is_periodic:
-            when = {"step": int(self.rows[-1]["step"]), "wg_angle_deg": self.rows[-1]["wg_angle_deg"]}
+            row = self.rows[-1]
+            when = {"increment": len(self.rows), "step": int(row["step"]), "wg_angle_deg": row["wg_angle_deg"]}
             contacts = pair_contacts(self.model, state)
             self.pairs += [{**when, **contact.row()} for contact in contacts]
             self.contact_lines += [{**when, **row} for contact in contacts for row in contact.station_rows()]
 
     def _shared(
-        self, rows: list[Row], summary: dict[str, Any]
-    ) -> tuple[list[Row], dict[str, Any], dict[str, np.ndarray], dict[str, np.ndarray]]:
-        """History, summary and contacts of rank 0 on every rank, as files hold them; collective."""
-        contacts = as_columns(self.pairs), as_columns(self.contact_lines)
-        return self.comm.bcast((rows, json.loads(to_json(summary)), *contacts) if self.comm.rank == 0 else None)
+        self, rows: list[Row], summary: dict[str, Any], tables: DriveTables
+    ) -> tuple[list[Row], dict[str, Any], DriveTables]:
+        """History, summary and tables of rank 0 on every rank, as files hold them; collective."""
+        tables = replace(tables, pairs=as_columns(self.pairs), contact_lines=as_columns(self.contact_lines))
+        return self.comm.bcast((rows, json.loads(to_json(summary)), tables) if self.comm.rank == 0 else None)
 
     @abstractmethod
     def begin(self) -> None:
@@ -109,8 +124,8 @@ class Recorder(ABC):
         """Keep the last of `rows`, and the fields if the design asks for them."""
 
     @abstractmethod
-    def finish(self, rows: list[Row], summary: dict[str, Any]) -> DriveResult:
-        """The result, with the whole history `rows` and the summary."""
+    def finish(self, rows: list[Row], summary: dict[str, Any], tables: DriveTables) -> DriveResult:
+        """The result, with the whole history `rows`, the summary and what was evaluated at the end."""
 
 
 class MemoryRecorder(Recorder):
@@ -139,8 +154,8 @@ class MemoryRecorder(Recorder):
         if self._parts is not None:
             self._parts.keep(len(self.rows), fields)
 
-    def finish(self, rows: list[Row], summary: dict[str, Any]) -> DriveResult:
-        return DriveResult(*self._shared(rows, summary), self._parts, self.comm)
+    def finish(self, rows: list[Row], summary: dict[str, Any], tables: DriveTables) -> DriveResult:
+        return DriveResult(*self._shared(rows, summary, tables), self._parts, self.comm)
 
 
 class FolderRecorder(Recorder):
@@ -198,12 +213,13 @@ class FolderRecorder(Recorder):
             write_from_root(self.comm, self.out / PAIRS, format_csv(self.pairs))
             write_from_root(self.comm, self.out / CONTACT_LINES, format_csv(self.contact_lines))
 
-    def finish(self, rows: list[Row], summary: dict[str, Any]) -> DriveResult:
+    def finish(self, rows: list[Row], summary: dict[str, Any], tables: DriveTables) -> DriveResult:
         if len(rows) > len(self.rows):
             write_from_root(self.comm, self.out / history.NAME, history.format_rows(rows))
+        tables.write(self.out, self.comm)
         write_from_root(self.comm, self.out / SUMMARY, to_json(summary))
         folder = self.out.absolute()  # the fields are read later
-        return DriveResult(*self._shared(rows, summary), open_fields(folder, self.comm), self.comm, folder)
+        return DriveResult(*self._shared(rows, summary, tables), open_fields(folder, self.comm), self.comm, folder)
 
 
 def _flank_grids(mesh: SectorMesh) -> FlankGrids:

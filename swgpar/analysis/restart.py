@@ -31,7 +31,7 @@ SOLVER_CHOICES = {"linear", "keep_factor", "far_teeth"}
 """Keys of [solver] that a restart may change: they are about how systems are solved."""
 
 
-FORMAT = 2
+FORMAT = 3
 """Of the checkpoint's content."""
 
 
@@ -61,7 +61,14 @@ def write_state(
         first, end = model.partition.owned_sectors(FLEXIBLE_SPLINE)
         for name, values in problem.flanks.traction_rows(first, end).items():
             blocks[name] = values, first, model.partition.layouts[FLEXIBLE_SPLINE].count
+    cycle = recorder.cycle
+    if cycle is not None:
+        first, _ = model.partition.owned_sectors(FLEXIBLE_SPLINE)
+        count = model.partition.layouts[FLEXIBLE_SPLINE].count
+        blocks |= {name: (values, first, count) for name, values in cycle.rows().items()}
     state = {
+        "cycle": None if cycle is None else cycle.state(),
+        "cam_forces": recorder.cam_forces,
         "format": FORMAT,
         "identity": recorder.identity,
         "done": len(recorder.rows),
@@ -110,6 +117,11 @@ def resume(recorder: FolderRecorder, stepper: LoadStepper, items: list[LoadState
             f"ends at {np.degrees(last.angle):g} degrees; allowed are values with this angle among their increments"
         )
     _restore_vector(recorder, state)
+    if recorder.cycle is not None:
+        first, end = model.partition.owned_sectors(FLEXIBLE_SPLINE)
+        ranges = dict.fromkeys(recorder.cycle.names(state["cycle"]), (first, end - first))
+        recorder.cycle.resume(state["cycle"], checkpoint.read_checkpoint(path, model.comm, ranges)[0])
+    recorder.cam_forces = state["cam_forces"]
     recorder.rows, recorder.names = state["rows"], state["names"]
     recorder.starts_loaded = state["starts_loaded"]
     recorder.accuracy = state["accuracy"] and Accuracy(**state["accuracy"])

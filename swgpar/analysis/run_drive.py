@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from mpi4py import MPI
@@ -13,7 +14,10 @@ from mpi4py import MPI
 from swgpar.analysis.coarse_start import levels, start_loaded, starts_bent
 from swgpar.analysis.drive_model import DriveModel, build_drive_model
 from swgpar.analysis.drive_result import DriveResult
+from swgpar.analysis.drive_tables import DriveTables
+from swgpar.analysis.fatigue import evaluate_fatigue
 from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.analysis.losses import evaluate_losses
 from swgpar.analysis.mesh_refinement import (
     COMPARED_LEVELS,
     RATIO,
@@ -24,7 +28,7 @@ from swgpar.analysis.mesh_refinement import (
     size_ratio,
     with_accuracy,
 )
-from swgpar.analysis.period import continued
+from swgpar.analysis.period import continued, require_samples
 from swgpar.analysis.recorder import FolderRecorder, MemoryRecorder, Recorder
 from swgpar.analysis.restart import identity, resume
 from swgpar.analysis.root_stress import RootStress, resolve_root_stress, with_angle
@@ -85,6 +89,7 @@ def run_drive(
     if not plain:
         shortcuts = with_shortcuts(design, recipe, levels=accuracy is None)
         design, left_out = shortcuts.design, shortcuts.left_out
+    require_samples(design)
     resumed = False
     if folder is not None:
         require_parallel(comm)
@@ -257,9 +262,29 @@ class _Run:
             recorder.pairs,
             self.seconds,
         )
+        tables = self._evaluate_cycle(summary)
         if design.steps.samples and summary["means"]:
             rows = continued(design, rows)
-        return recorder.finish(rows, summary)
+        return recorder.finish(rows, summary, tables)
+
+    def _evaluate_cycle(self, summary: dict[str, Any]) -> DriveTables:
+        """Fatigue and losses over the sampled period, also into the summary."""
+        recorder, design, tables = self.recorder, self.model.design, DriveTables()
+        cycle = recorder.cycle
+        summary |= {"fatigue": None, "losses": None}
+        if cycle is None or not cycle.complete:
+            return tables
+        with self.model.phases("fatigue and losses"):
+            if design.fatigue:
+                fatigue = evaluate_fatigue(cycle, recorder.root_stress)
+                summary["fatigue"] = fatigue.summary
+                tables = replace(tables, cycle=fatigue.cycle, sector=fatigue.sector)
+            if design.losses:
+                count = len(recorder.rows)
+                increments = range(count - design.steps.samples + 1, count + 1)
+                summary["losses"], columns = evaluate_losses(cycle, recorder.pairs, recorder.cam_forces, increments)
+                tables = replace(tables, losses=columns)
+        return tables
 
 
 def _start_loaded(

@@ -12,6 +12,7 @@ import numpy as np
 from petsc4py import PETSc
 
 from swgpar.analysis.drive_model import DriveModel
+from swgpar.analysis.load_sharing import load_sharing
 from swgpar.analysis.period import of_period, sampling_error
 from swgpar.analysis.places import Place
 from swgpar.analysis.root_stress import RootStress
@@ -102,7 +103,19 @@ def summarise(
         "accuracy": accuracy and asdict(accuracy),
         "places": {name: asdict(place) for name, place in places.items()},
         "root_stress": root_stress and _resolved(root_stress),
-        "contact": max(pairs, key=lambda pair: (not pair["edge"], pair["pressure_MPa"]), default=None),
+        "contact": max(
+            (pair for pair in pairs if np.isfinite(pair["pressure_MPa"])),
+            key=lambda pair: (not pair["edge"], pair["pressure_MPa"]),
+            default=None,
+        ),
+        "load_sharing": load_sharing(
+            pairs,
+            [row["tooth_torque_Nmm"] for row in rows],
+            # without a rotation the loaded state stands for it
+            range(len(rows) - max(len(sampled), 1) + 1, len(rows) + 1),
+            design.drive.teeth_fs,
+            model.copies,
+        ),
         "mesh_error": mesh_error(root_stress),
         "condensed_MPa": model.omitted_bending_stress() if design.solver.condensed_sectors else None,
         "sampling_error": sampling_error(design, rows, MEANS) if sampled_period else None,

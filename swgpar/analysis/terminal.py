@@ -99,6 +99,47 @@ def _print_contact(contact: Mapping[str, Any]) -> None:
         )
 
 
+def _print_sharing(sharing: Mapping[str, Any]) -> None:
+    pairs = sharing["pairs"]
+    console.print(
+        f"load sharing: {pairs['mean']:.3g} pairs in contact ({pairs['smallest']:.0f} to {pairs['largest']:.0f}), "
+        f"{100.0 * sharing['teeth_share']['mean']:.3g} % of the teeth; one tooth carries up to "
+        f"{100.0 * sharing['largest_force_share']:.3g} % of the force, one pair {sharing['largest_force_N']:.4g} N"
+    )
+
+
+def _print_fatigue(found: Mapping[str, Any]) -> None:
+    worst, other = found["goodman"], found["crossland"]
+    errors = [found[name] for name in ("mesh_error", "sampling_error") if found[name] is not None]
+    error = f" ± {float(np.hypot.reduce(errors)):.2g}" if errors else ""
+    console.print(
+        f"least safety against fatigue: {worst['safety']:.3g}{error} by Goodman, {worst['region']} (radius "
+        f"{worst['radius']:.2f}, z {worst['z']:.2f} mm; amplitude {worst['amplitude_MPa']:.0f}, mean "
+        f"{worst['mean_MPa']:.0f} MPa); {other['safety']:.3g} by Crossland, {other['region']}; "
+        f"{found['yield']['safety']:.3g} against yield"
+    )
+    life = found["life_turns"]
+    console.print(
+        "life by Basquin: "
+        + (f"{life:.2g} turns of the wave generator, {found['life_hours']:.2g} h" if life else "without end")
+    )
+    if found["root_factor"]:
+        console.print(f"stresses in the tooth root are scaled by {found['root_factor']:.3f}, from windows")
+    else:
+        console.print("stresses in the tooth root are nodal averages, up to 25 % low: set output.root_stress = true")
+    console.print(found["warning"], markup=False)  # a section's name is no markup
+
+
+def _print_losses(losses: Mapping[str, Any]) -> None:
+    parts = losses["parts_Nmm"]
+    shares = ", ".join(f"{name.replace('_', ' ')} {value:.3g}" for name, value in parts.items())
+    efficiency = losses["efficiency"]
+    console.print(
+        f"losses take {losses['loss_torque_Nmm']:.3g} N·mm of input torque ({shares}); "
+        + (f"efficiency {100.0 * efficiency:.1f} %" if efficiency else "this is the no-load torque")
+    )
+
+
 def _print_over_period(over: Mapping[str, Any], count: int) -> None:
     half = over["sampling_error"]
     console.print(
@@ -121,6 +162,12 @@ def _print_errors(summary: Mapping[str, Any]) -> None:
             _print_over_period(root["over_period"], len(root["period"]))
     if contact := summary.get("contact"):
         _print_contact(contact)
+    if sharing := summary.get("load_sharing"):
+        _print_sharing(sharing)
+    if fatigue := summary.get("fatigue"):
+        _print_fatigue(fatigue)
+    if losses := summary.get("losses"):
+        _print_losses(losses)
     asked = summary["accuracy"]
     if error := summary["mesh_error"]:
         if summary["means"]:

@@ -13,9 +13,11 @@ from swgpar.design.sections import (
     Cup,
     Drive,
     ExternalGear,
+    Fatigue,
     GearName,
     InternalGear,
     Load,
+    Losses,
     Material,
     MicroGeometry,
     Output,
@@ -44,6 +46,8 @@ class DriveDesign(Design):
     steps: Steps = Steps()
     solver: Solver = Solver()
     output: Output = Output()
+    fatigue: Fatigue | None = None
+    losses: Losses | None = None
 
     @classmethod
     def from_table(cls, table: dict[str, Any]) -> DriveDesign:

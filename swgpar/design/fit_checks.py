@@ -28,6 +28,7 @@ def check_fit(design: DriveDesign) -> None:
     _check_teeth(design)
     _check_wave_generator(design)
     _check_steps(design)
+    _check_fatigue(design)
     if design.wave_generator.face_width > design.drive.face_width:
         width = design.drive.face_width
         _refuse(
@@ -82,6 +83,25 @@ def _check_steps(design: DriveDesign) -> None:
     if steps.samples and steps.rotation < 0.999999 * least:
         allowed = f"{least:.6g} deg (periods: {design.periods}) and more with steps.samples"
         _refuse("steps.rotation", steps.rotation, allowed)
+
+
+def _check_fatigue(design: DriveDesign) -> None:
+    """Strengths in their order; Crossland's criterion needs a shear fatigue limit above that of von Mises."""
+    fatigue = design.fatigue
+    if fatigue is None:
+        return
+    tensile, limit = fatigue.tensile_strength, fatigue.fatigue_limit
+    for key, most, name in (
+        ("yield_strength", tensile, "tensile_strength"),
+        ("fatigue_limit", tensile, "tensile_strength"),
+        ("shear_fatigue_limit", limit, "fatigue_limit"),
+    ):
+        if getattr(fatigue, key) > most:
+            _refuse(f"fatigue.{key}", getattr(fatigue, key), f"above 0 to {most:g} MPa (fatigue.{name})")
+    least = limit / np.sqrt(3.0)
+    if fatigue.shear_fatigue_limit < least:
+        allowed = f"{least:.4g} (fatigue.fatigue_limit over the root of 3) to {limit:g} MPa"
+        _refuse("fatigue.shear_fatigue_limit", fatigue.shear_fatigue_limit, allowed)
 
 
 def _check_plane(design: DriveDesign) -> None:

@@ -150,3 +150,32 @@ class Output(Section):
     root_stress: bool = quantity(
         True, text="resolve the largest tensile stress at the teeth under load by windows on finer meshes"
     )
+
+
+class Fatigue(Section):
+    """Section [fatigue]: strengths of the flexible spline, for polished specimens; present to compute its fatigue.
+
+    The defaults are those of a steel like 30CrNiMo8, quenched and tempered (docs/theory/fatigue.md).
+    """
+
+    tensile_strength: float = quantity(1250.0, unit="MPa", text="tensile strength", gt=0.0)
+    yield_strength: float = quantity(1050.0, unit="MPa", text="yield strength", gt=0.0)
+    fatigue_limit: float = quantity(560.0, unit="MPa", text="fatigue limit under alternating tension", gt=0.0)
+    shear_fatigue_limit: float = quantity(348.0, unit="MPa", text="fatigue limit under alternating torsion", gt=0.0)
+    surface_factor: float = quantity(0.86, text="factor of the surface on the fatigue strengths", gt=0.0, le=1.5)
+    size_factor: float = quantity(1.0, text="factor of the size on the fatigue strengths", gt=0.0, le=1.5)
+    basquin_coefficient: float = quantity(1875.0, unit="MPa", text="Basquin's coefficient, of reversals", gt=0.0)
+    basquin_exponent: float = quantity(-0.087, text="Basquin's exponent", ge=-0.5, lt=0.0)
+
+
+class Losses(Section):
+    """Section [losses]: coefficients of the losses; present to compute them."""
+
+    loss_factor: float = quantity(3e-4, text="loss factor of the flexible spline's material", ge=0.0, le=0.1)
+    flank_friction: float = quantity(
+        0.05, text="friction between the flanks for their losses, without contact.friction", ge=0.0, le=1.0
+    )
+    bearing_friction: float = quantity(0.0015, text="friction of the wave generator's bearing", ge=0.0, le=0.1)
+    bearing_diameter: float | None = quantity(
+        None, unit="mm", text="diameter at which that friction acts; that of the spline's bore without it", gt=0.0
+    )

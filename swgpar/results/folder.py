@@ -26,6 +26,15 @@ PAIRS = "pairs.csv"
 CONTACT_LINES = "contact_lines.csv"
 """The same along the face width."""
 
+SECTOR, SECTOR_XDMF = "fatigue.h5", "fatigue.xdmf"
+"""Safety factors at the nodes of one sector."""
+
+CYCLE = "fatigue_cycle.csv"
+"""Stress over a cycle where the safety is the least."""
+
+LOSSES = "losses.csv"
+"""Losses at the angles of the sampled period."""
+
 SUMMARY = "summary.json"
 """Written last: a folder that has it is that of a finished run."""
 
@@ -38,6 +47,10 @@ RESULTS = (
     SUMMARY,
     PAIRS,
     CONTACT_LINES,
+    SECTOR,
+    SECTOR_XDMF,
+    CYCLE,
+    LOSSES,
     "published.csv",
     RECIPE,
     f"{TABLES}/*.csv",

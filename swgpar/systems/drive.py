@@ -54,6 +54,36 @@ RESOLVED = {
 }
 """Quantities of runs with `output.root_stress`, which a study has to set."""
 
+SHARING = {
+    "sharing.pairs": Quantity("pairs of flanks in contact, mean over the rotation", ""),
+    "sharing.largest_pairs": Quantity("pairs of flanks in contact, most over the rotation", ""),
+    "sharing.teeth_share": Quantity("share of the flexible spline's teeth in contact, mean over the rotation", ""),
+    "sharing.largest_force_share": Quantity("largest share of one tooth in the force of all pairs", ""),
+    "sharing.largest_force": Quantity("largest force of one pair", "N"),
+    "sharing.largest_line_load": Quantity("largest line load of one pair", "N/mm"),
+}
+"""Quantities of the load sharing."""
+
+FATIGUE = {
+    "fatigue.goodman": Quantity("least safety factor by Goodman", ""),
+    "fatigue.crossland": Quantity("least safety factor by Crossland", ""),
+    "fatigue.yield": Quantity("least safety factor against yield", ""),
+    "fatigue.amplitude": Quantity("amplitude of the normal stress where Goodman's safety is the least", "MPa"),
+    "fatigue.mean": Quantity("its mean", "MPa"),
+    "fatigue.life_turns": Quantity("life by Basquin, turns of the wave generator", ""),
+    "fatigue.life_hours": Quantity("life by Basquin", "h"),
+}
+"""Quantities of designs with [fatigue]; a life without end is left out."""
+
+LOSSES = {
+    "losses.torque": Quantity("input torque that the losses take", "N·mm"),
+    "losses.flank_friction": Quantity("its part by friction of the flanks", "N·mm"),
+    "losses.hysteresis": Quantity("its part by hysteresis of the flexible spline", "N·mm"),
+    "losses.bearing": Quantity("its part by friction of the wave generator's bearing", "N·mm"),
+    "losses.efficiency": Quantity("efficiency", ""),
+}
+"""Quantities of designs with [losses]; without a torque there is no efficiency."""
+
 
 class Drives(System[DriveDesign, DriveResult]):
     """The drive's adapter: analysis, results and quantities under the names that all systems share."""
@@ -118,6 +148,9 @@ class Drives(System[DriveDesign, DriveResult]):
         known = {f"mean.{name}": quantity(name, "mean over the rotation") for name in MEANS}
         if design.output.root_stress:
             known |= RESOLVED
+        known |= SHARING
+        for section, names in ((design.fatigue, FATIGUE), (design.losses, LOSSES)):
+            known |= names if section else {}
         return known | {f"step{k}.{name}": quantity(name, f"end of step {k}") for k in GROUPS for name in COLUMNS}
 
     def main_quantities(self, known: Mapping[str, Quantity]) -> tuple[str, ...]:
@@ -125,6 +158,7 @@ class Drives(System[DriveDesign, DriveResult]):
 
     def describe_names(self, known: Mapping[str, Quantity]) -> str:
         names = f"mean. with {', '.join(MEANS)}, or step1. to step{GROUPS[-1]}. with a column of history.csv"
+        names = f"{names}; {', '.join(SHARING)}; with [fatigue] {', '.join(FATIGUE)}; with [losses] {', '.join(LOSSES)}"
         return f"{names}; with output.root_stress = true {', '.join(RESOLVED)}"
 
     def check_published(self, design: DriveDesign, names: Iterable[str]) -> None:
@@ -149,7 +183,12 @@ class Drives(System[DriveDesign, DriveResult]):
     def measure(self, result: DriveResult) -> Measured:
         summary = result.summary
         return Measured(
-            values=values(summary["means"], result.history) | resolved(summary, result.pairs),
+            values={
+                **values(summary["means"], result.history),
+                **resolved(summary, result.pairs),
+                **sharing(summary),
+                **cycle_values(summary),
+            },
             wall_s=summary["wall_s"],
             elements=summary["elements"],
             newton_mean=summary["newton_iterations_mean"],
@@ -169,6 +208,42 @@ def resolved(summary: Mapping[str, Any], pairs: Mapping[str, np.ndarray]) -> dic
         if not contact["edge"]:
             found["contact.pressure"] = contact["pressure_MPa"]
     return found
+
+
+def sharing(summary: Mapping[str, Any]) -> dict[str, float]:
+    """The quantities of `SHARING`, without those that the run does not have."""
+    found = summary["load_sharing"]
+    if not found:
+        return {}
+    known = {
+        "sharing.pairs": found["pairs"]["mean"],
+        "sharing.largest_pairs": found["pairs"]["largest"],
+        "sharing.teeth_share": found["teeth_share"]["mean"],
+        "sharing.largest_force_share": found["largest_force_share"],
+        "sharing.largest_force": found["largest_force_N"],
+        "sharing.largest_line_load": found["largest_line_load_Nmm"],
+    }
+    return {name: value for name, value in known.items() if value is not None}
+
+
+def cycle_values(summary: Mapping[str, Any]) -> dict[str, float]:
+    """The quantities of `FATIGUE` and `LOSSES`, without those that the run does not have."""
+    found: dict[str, float | None] = {}
+    if fatigue := summary.get("fatigue"):
+        worst = fatigue["goodman"]
+        found |= {
+            "fatigue.goodman": worst["safety"],
+            "fatigue.crossland": fatigue["crossland"]["safety"],
+            "fatigue.yield": fatigue["yield"]["safety"],
+            "fatigue.amplitude": worst["amplitude_MPa"],
+            "fatigue.mean": worst["mean_MPa"],
+            "fatigue.life_turns": fatigue["life_turns"],
+            "fatigue.life_hours": fatigue["life_hours"],
+        }
+    if losses := summary.get("losses"):
+        found |= {"losses.torque": losses["loss_torque_Nmm"], "losses.efficiency": losses["efficiency"]}
+        found |= {f"losses.{name}": value for name, value in losses["parts_Nmm"].items()}
+    return {name: value for name, value in found.items() if value is not None}
 
 
 def values(means: Mapping[str, float], history: Mapping[str, np.ndarray]) -> dict[str, float]:
