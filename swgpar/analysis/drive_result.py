@@ -16,7 +16,7 @@ from swgpar.results import history
 from swgpar.results.atomic import agreed
 from swgpar.results.field_sources import BodyMesh, FieldFiles, FieldSource, chosen_increment
 from swgpar.results.fields import INDEX
-from swgpar.results.folder import CONTACT_LINES, PAIRS, read_summary
+from swgpar.results.folder import CONTACT_LINES, PAIRS, PROGRAM, read_summary
 from swgpar.results.history import Curves, Row
 from swgpar.results.table import read_columns
 
@@ -59,6 +59,8 @@ class DriveResult:
         Columns of pairs.csv, a value for every pair of flanks in contact at every computed increment under load.
     contact_lines : dict of (n,) arrays
         Columns of contact_lines.csv, a value for every station along the face width of these contacts.
+    program : dict of (n,) arrays
+        Columns of program.csv, a value for every point of a load program: torque and rotation of the output.
     folder : Path or None
         The results folder; None when the run was in memory.
 
@@ -76,13 +78,14 @@ class DriveResult:
         summary: dict[str, Any],
         pairs: Mapping[str, np.ndarray],
         contact_lines: Mapping[str, np.ndarray],
+        program: Mapping[str, np.ndarray],
         fields: FieldSource | None,
         comm: MPI.Comm,
         folder: Path | None = None,
     ) -> None:
         self.history: dict[str, np.ndarray] = history.columns(rows)
         self.summary = summary
-        self.pairs, self.contact_lines = dict(pairs), dict(contact_lines)
+        self.pairs, self.contact_lines, self.program = dict(pairs), dict(contact_lines), dict(program)
         self.folder = folder
         self._fields, self._comm = fields, comm
 
@@ -99,6 +102,22 @@ class DriveResult:
     def is_plane(self) -> bool:
         """Whether the drive is a plane model."""
         return self.summary["design"]["drive"]["model"] == "plane"
+
+    @property
+    def stiffness(self) -> dict[str, Any] | None:
+        """Torsional stiffness: K1, K2, K3 (N m / rad), lost motion, hysteresis, backlash (arc minutes) and more.
+
+        None for a design without the section [stiffness]. It is the entry ``stiffness`` of the summary.
+        """
+        return self.summary["stiffness"]
+
+    @property
+    def ratcheting(self) -> dict[str, Any] | None:
+        """The torque's peak under a prescribed rotation of the output, and what gave way.
+
+        None for a design without the section [ratcheting]. It is the entry ``ratcheting`` of the summary.
+        """
+        return self.summary["ratcheting"]
 
     def curves(self) -> Curves:
         """Columns of the history under load, over one period where the rotation was sampled."""
@@ -247,8 +266,9 @@ def open_drive(folder: Path, comm: MPI.Comm) -> DriveResult:
     folder = folder.absolute()  # the fields are read later
     with agreed(comm, folder, "read"):
         summary, rows = read_summary(folder), history.read_history(folder / history.NAME)
-        contacts = [read_columns(folder / name) if (folder / name).exists() else {} for name in (PAIRS, CONTACT_LINES)]
-    return DriveResult(rows, summary, *contacts, open_fields(folder, comm), comm, folder)
+        names = (PAIRS, CONTACT_LINES, PROGRAM)
+        tables = [read_columns(folder / name) if (folder / name).exists() else {} for name in names]
+    return DriveResult(rows, summary, *tables, open_fields(folder, comm), comm, folder)
 
 
 def open_fields(folder: Path, comm: MPI.Comm) -> FieldFiles | None:

@@ -62,17 +62,14 @@ class LoadStepper:
         Raises ConvergenceError after `solver.max_cutbacks` halvings; x is then the last converged state.
         """
         self.iterations = 0
-        origin, x = self.load_state, self.problem.x
-        if origin.control == "rotation" and target.control == "torque":
-            # after a cut-back the increment begins with the torque that held the output
-            reactions = self.problem.supports.reactions(self.problem.multipliers())
-            origin = replace(origin, torque=float(reactions[-1]))
-            self._close_backlash(target)
+        origin, x = self._origin(target), self.problem.x
         done, share, cutbacks = 0.0, 1.0, 0
         while done < 1.0:
             saved = x.copy()
             end = min(1.0, done + share)
             state = origin.interpolate(target, end, self.design.drive.module, self.design.deflection)
+            if self._takes_up_torque(state):
+                self._close_backlash(state)
             self._predict(state)
             result = self.solver.solve(state, establish_contact=state.switches_on(self.load_state))
             self.iterations += result.iterations
@@ -89,6 +86,25 @@ class LoadStepper:
                 "   cut back to %.3g of the increment (%s, residual %.1e)", share, result.reason, result.residual
             )
 
+    def _origin(self, target: LoadState) -> LoadState:
+        """The present load state with what the output has under the control of the target.
+
+        After a cut-back an increment begins with the torque that held the output, or with the angle that it had.
+        """
+        here, problem = self.load_state, self.problem
+        if here.control == target.control:
+            return here
+        if target.control == "torque":
+            return replace(here, torque=float(problem.supports.reactions(problem.multipliers())[-1]))
+        return replace(here, output_rotation=problem.output_rotation())
+
+    def _takes_up_torque(self, state: LoadState) -> bool:
+        """Whether other flanks may have to carry than those of the present state: a backlash is to be closed first."""
+        here = self.load_state
+        if state.control == "rotation" or not state.torque:
+            return False
+        return here.control == "rotation" or here.torque * state.torque <= 0.0
+
     def jump(self, target: LoadState) -> None:
         """Solve for `target` from the present x in one increment, whatever it is; raises ConvergenceError."""
         if target.control == "torque":
@@ -100,10 +116,10 @@ class LoadStepper:
         self._take(target, result)
 
     def _take(self, state: LoadState, result: SolveResult) -> None:
-        self.load_state, self.residual = state, result.residual
+        before, self.load_state, self.residual = self.load_state, state, result.residual
         if state.is_periodic:
-            self.known_states = [*self.known_states, KnownState(state.angle, self.problem.x.copy())]
-            self.known_states = self.known_states[-MAX_KNOWN_STATES:]
+            known = self.known_states if state.continues_period(before, self.design.ratio) else []
+            self.known_states = [*known, KnownState(state.angle, self.problem.x.copy())][-MAX_KNOWN_STATES:]
 
     @staticmethod
     def _failure(target: LoadState, state: LoadState, result: SolveResult, cutbacks: int) -> str:
@@ -118,6 +134,9 @@ class LoadStepper:
         here = self.load_state
         if state.angle != here.angle:
             self._predict_rotation(state.angle)
+            if not state.continues_period(here, self.design.ratio) and state.control == "rotation":
+                drift = (state.angle - here.angle) / self.design.ratio
+                self._rotate_output(state.output_rotation - here.output_rotation - drift)
         elif state.control == "rotation" and state.output_rotation != here.output_rotation:
             self._rotate_output(state.output_rotation - here.output_rotation)
         elif state.stage == here.stage == Stage.DEFLECT:

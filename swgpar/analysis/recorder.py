@@ -16,8 +16,10 @@ from swgpar.analysis.drive_result import DriveResult, open_fields
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.pair_contact import pair_contacts
 from swgpar.analysis.places import Place, find_places
+from swgpar.analysis.program_results import PointRow, point_rows
 from swgpar.analysis.restart import write_state
 from swgpar.analysis.root_stress import RootStress
+from swgpar.analysis.stiffness import loop_rows
 from swgpar.analysis.summary import Accuracy
 from swgpar.design.load_states import LoadState
 from swgpar.design.sections import GEARS
@@ -27,7 +29,7 @@ from swgpar.results import history
 from swgpar.results.atomic import to_json, write_from_root
 from swgpar.results.field_sources import BodyPart, FieldParts, FlankGrids
 from swgpar.results.fields import FieldWriter
-from swgpar.results.folder import CONTACT_LINES, PAIRS, SUMMARY
+from swgpar.results.folder import CONTACT_LINES, PAIRS, PROGRAM, STIFFNESS, SUMMARY
 from swgpar.results.history import Row
 from swgpar.results.table import as_columns, format_csv
 
@@ -95,10 +97,14 @@ class Recorder(ABC):
 
     def _shared(
         self, rows: list[Row], summary: dict[str, Any]
-    ) -> tuple[list[Row], dict[str, Any], dict[str, np.ndarray], dict[str, np.ndarray]]:
-        """History, summary and contacts of rank 0 on every rank, as files hold them; collective."""
-        contacts = as_columns(self.pairs), as_columns(self.contact_lines)
-        return self.comm.bcast((rows, json.loads(to_json(summary)), *contacts) if self.comm.rank == 0 else None)
+    ) -> tuple[list[Row], dict[str, Any], dict[str, np.ndarray], dict[str, np.ndarray], dict[str, np.ndarray]]:
+        """History, summary and tables of rank 0 on every rank, as files hold them; collective."""
+        tables = as_columns(self.pairs), as_columns(self.contact_lines), as_columns(self.program_rows())
+        return self.comm.bcast((rows, json.loads(to_json(summary)), *tables) if self.comm.rank == 0 else None)
+
+    def program_rows(self) -> list[PointRow]:
+        """Rows of program.csv."""
+        return point_rows(self.model.design, self.rows)
 
     @abstractmethod
     def begin(self) -> None:
@@ -197,6 +203,10 @@ class FolderRecorder(Recorder):
         if self.pairs:
             write_from_root(self.comm, self.out / PAIRS, format_csv(self.pairs))
             write_from_root(self.comm, self.out / CONTACT_LINES, format_csv(self.contact_lines))
+        if program := self.program_rows():
+            write_from_root(self.comm, self.out / PROGRAM, format_csv(program))
+            if self.model.design.stiffness:
+                write_from_root(self.comm, self.out / STIFFNESS, format_csv(loop_rows(program)))
 
     def finish(self, rows: list[Row], summary: dict[str, Any]) -> DriveResult:
         if len(rows) > len(self.rows):

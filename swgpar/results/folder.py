@@ -26,6 +26,12 @@ PAIRS = "pairs.csv"
 CONTACT_LINES = "contact_lines.csv"
 """The same along the face width."""
 
+PROGRAM = "program.csv"
+"""Torque and rotation of the output at the points of a load program."""
+
+STIFFNESS = "stiffness.csv"
+"""The same on the branches of the stiffness loops."""
+
 SUMMARY = "summary.json"
 """Written last: a folder that has it is that of a finished run."""
 
@@ -38,6 +44,8 @@ RESULTS = (
     SUMMARY,
     PAIRS,
     CONTACT_LINES,
+    PROGRAM,
+    STIFFNESS,
     "published.csv",
     RECIPE,
     f"{TABLES}/*.csv",
