@@ -17,6 +17,7 @@ from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.pair_contact import pair_contacts
 from swgpar.analysis.places import Place, find_places
 from swgpar.analysis.program_results import PointRow, point_rows
+from swgpar.analysis.ratcheting import tooth_rotation
 from swgpar.analysis.restart import write_state
 from swgpar.analysis.root_stress import RootStress
 from swgpar.analysis.stiffness import loop_rows
@@ -49,6 +50,7 @@ class Recorder(ABC):
     accuracy : what was asked for and reached, if an accuracy was asked for
     root_stress : of the loaded state, once it is resolved
     places : of the largest stresses under load, by column of the history
+    tooth_rotations : deg, mean rotation of the flexible spline's teeth at every increment, with [ratcheting]
     pairs, contact_lines : rows of pairs.csv and contact_lines.csv, the contacts of flanks under load
     """
 
@@ -61,6 +63,7 @@ class Recorder(ABC):
         self.places: dict[str, Place] = {}
         self.pairs: list[Row] = []
         self.contact_lines: list[Row] = []
+        self.tooth_rotations: list[float] = []
 
     def record(self, stepper: LoadStepper, seconds: float, elapsed: float) -> None:
         """Keep the state after an increment.
@@ -71,6 +74,8 @@ class Recorder(ABC):
         with model.phases("stress"):
             values, body_fields = model.stresses()
         self.rows.append(history.plain_row({**stepper.row(), **values, "wall_s": seconds}))
+        if model.design.ratcheting:
+            self.tooth_rotations.append(tooth_rotation(model))
         with model.phases("stress"):
             self._keep_places(stepper.load_state, body_fields)
             self._keep_pairs(stepper.load_state)
@@ -89,7 +94,7 @@ class Recorder(ABC):
                     self.places[name] = place
 
     def _keep_pairs(self, state: LoadState) -> None:
-        if state.is_periodic:
+        if state.is_periodic and not self.model.design.stiffness:
             when = {"step": int(self.rows[-1]["step"]), "wg_angle_deg": self.rows[-1]["wg_angle_deg"]}
             contacts = pair_contacts(self.model, state)
             self.pairs += [{**when, **contact.row()} for contact in contacts]

@@ -276,6 +276,7 @@ class _Run:
             recorder.places,
             recorder.pairs,
             self.seconds,
+            tooth_rotations=recorder.tooth_rotations,
             stiffness_error=error,
             ended_early=self.ended_early,
         )

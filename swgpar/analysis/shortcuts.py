@@ -84,7 +84,7 @@ def with_shortcuts(design: DriveDesign, recipe: MeshRecipe, *, levels: bool = Tr
             left_out.append(f"residuals below {rtol:g} of the contact force")
         if stiffness and "loop" not in stiffness.model_fields_set:
             stiffness = stiffness.model_copy(update={"loop": False})
-            left_out.append("the way back of the stiffness loop")
+            left_out.append("the way back of the stiffness loop and positions that mirror others")
     if not left_out:
         return Shortcuts(design, ())
     content: dict[str, Any] = {**steps.model_dump(exclude_unset=True), **changes}

@@ -18,6 +18,7 @@ from swgpar.design.load_program import (
     POSITIVE_LOADING,
     POSITIVE_UNLOADING,
     TRAVEL,
+    computed_angle,
     rated_torque,
     stiffness_angles,
     stiffness_torque,
@@ -138,7 +139,8 @@ def by_position(design: DriveDesign, rows: Sequence[PointRow]) -> dict[float, St
     """The stiffness at every angle (deg) of the wave generator, from all rows of program.csv."""
     found = {}
     for angle in stiffness_angles(design):
-        found[angle] = at_position(design, [row for row in rows if abs(row["wg_angle_deg"] - angle) < SAME_ANGLE])
+        computed = computed_angle(design, angle)
+        found[angle] = at_position(design, [row for row in rows if abs(row["wg_angle_deg"] - computed) < SAME_ANGLE])
     return found
 
 

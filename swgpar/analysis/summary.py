@@ -79,6 +79,7 @@ def summarise(
     pairs: Sequence[Row],
     seconds: float,
     *,
+    tooth_rotations: Sequence[float] = (),
     stiffness_error: Mapping[str, float] | None = None,
     ended_early: bool = False,
 ) -> dict[str, Any]:
@@ -93,6 +94,7 @@ def summarise(
     places : of the largest stresses under load
     pairs : contacts of the flanks under load
     seconds : wall time of the run, restarts included
+    tooth_rotations : (n,) deg, of the flexible spline's teeth, with [ratcheting]
     stiffness_error : of the torsional stiffness by the mesh, if it is known
     ended_early : whether a load program has ended before its last point
     """
@@ -119,7 +121,7 @@ def summarise(
         "balance_error_Nmm": max((r["torque_balance_Nmm"] for r in rows), default=0.0),
         "program": summarise_program(program),
         "stiffness": summarise_stiffness(design, program, stiffness_error),
-        "ratcheting": summarise_ratcheting(design, program, pairs, ended_early=ended_early),
+        "ratcheting": summarise_ratcheting(design, program, tooth_rotations, ended_early=ended_early),
         "wg_torque_expected_Nmm": 1000.0 * design.load.torque / abs(design.ratio),
         "ratio": design.ratio,
         "design": design.model_dump(),

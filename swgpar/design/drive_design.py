@@ -95,8 +95,13 @@ class DriveDesign(Design):
         return bool(self.load.program or self.stiffness or self.ratcheting)
 
     @property
+    def is_mirror_symmetric(self) -> bool:
+        """Whether the undeformed drive is its own image in the plane through the axis and the major axis."""
+        return self.wave_generator.type != "asymmetric_parabolic"
+
+    @property
     def resolves_roots(self) -> bool:
-        """Whether the largest tension at the teeth is resolved by windows; a load program has no single loaded state."""
+        """Whether the largest tension at the teeth is resolved by windows: only where there is one loaded state."""
         return self.output.root_stress and not self.has_program
 
     @property

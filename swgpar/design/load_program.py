@@ -117,7 +117,8 @@ def stiffness_torques(design: DriveDesign) -> list[float]:
     """Torques (N·m) of one branch of the stiffness loop, ascending from that which stands for zero."""
     section, top = design.stiffness, stiffness_torque(design)
     even = np.linspace(0.0, 1.0, section.points + 1)[1:] * top
-    needed = [NO_TORQUE * top, section.lost_motion_share * rated_torque(design), *(b * top for b in section.break_points)]
+    ends = [share * top for share in (NO_TORQUE, *section.break_points)]
+    needed = [*ends, section.lost_motion_share * rated_torque(design)]
     return sorted({round(float(torque), 12) for torque in [*even, *needed]})
 
 
@@ -127,13 +128,23 @@ def stiffness_angles(design: DriveDesign) -> list[float]:
     return [float(np.degrees(design.period_angle)) * k / count for k in range(count)]
 
 
+def computed_angle(design: DriveDesign, angle: float) -> float:
+    """The angle (deg) whose loop stands for that at `angle`.
+
+    Without friction a drive with a mirror plane has the same stiffness at the angle that the mirror makes of it.
+    """
+    mirrored = float(np.degrees(design.period_angle)) - angle
+    return angle if design.stiffness.loop or not design.is_mirror_symmetric else min(angle, mirrored)
+
+
 def _stiffness(design: DriveDesign) -> list[ProgramPoint]:
     torques, points = stiffness_torques(design), []
 
     def add(stage: str, angle: float, values: Sequence[float]) -> None:
         points.extend(ProgramPoint(stage, angle, "torque", value) for value in values)
 
-    for k, angle in enumerate(stiffness_angles(design)):
+    angles = [angle for angle in stiffness_angles(design) if computed_angle(design, angle) == angle]
+    for k, angle in enumerate(angles):
         down, up = torques[::-1], [-torque for torque in torques]
         branches = dict(zip(BRANCHES, (down, up, up[::-1], torques), strict=True))
         if design.stiffness.loop:

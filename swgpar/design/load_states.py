@@ -203,9 +203,7 @@ def _engagement(design: DriveDesign) -> Iterator[LoadState]:
 
 def _program(design: DriveDesign) -> Iterator[LoadState]:
     for step, point in enumerate(program_points(design), start=int(Stage.LOAD)):
-        state = LoadState(
-            Stage.PROGRAM, step, float(np.radians(point.angle)), cam_clearance=0.0, flank_clearance=0.0
-        )
+        state = LoadState(Stage.PROGRAM, step, float(np.radians(point.angle)), cam_clearance=0.0, flank_clearance=0.0)
         if point.control == "torque":
             yield replace(state, control="torque", torque=internal_torque(design, point.value))
         else:

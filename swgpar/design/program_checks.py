@@ -54,8 +54,8 @@ def _check_stages(design: DriveDesign) -> None:
             )
         if stage.torque is not None and stage.output_rotation is not None:
             raise InputError(
-                f"{key}.torque = {stage.torque:g} and {key}.output_rotation = {stage.output_rotation:g} are both given: "
-                "allowed one of them"
+                f"{key}.torque = {stage.torque:g} and {key}.output_rotation = {stage.output_rotation:g} are both "
+                "given: allowed one of them"
             )
         if stage.points > 1 and k and kinds[k] != kinds[k - 1]:
             raise InputError(
@@ -77,13 +77,13 @@ def _check_stiffness(design: DriveDesign) -> None:
     ends = section.break_points
     if len(ends) != 2 or not share < ends[0] < ends[1] < 1.0:
         raise InputError(
-            f"stiffness.break_points = {ends} is out of range: allowed two shares of the largest torque, ascending, above "
-            f"{share:.3g} (that of the lost motion) and below 1"
+            f"stiffness.break_points = {ends} is out of range: allowed two shares of the largest torque, ascending, "
+            f"above {share:.3g} (that of the lost motion) and below 1"
         )
     if share <= NO_TORQUE:
         raise InputError(
-            f"stiffness.lost_motion_share = {section.lost_motion_share:g} is out of range: allowed above {NO_TORQUE:g} of "
-            "the largest torque"
+            f"stiffness.lost_motion_share = {section.lost_motion_share:g} is out of range: allowed above {NO_TORQUE:g} "
+            "of the largest torque"
         )
     if section.loop is False and design.contact.friction:
         raise InputError("stiffness.loop = false is out of range: allowed true with friction, whose loop has an area")

@@ -13,7 +13,11 @@ class ProgramStage(Section):
         None, unit="N·m", text="output torque at the end of the stage, positive against the output's motion"
     )
     output_rotation: float | None = quantity(
-        None, unit="deg", text="prescribed angle of the output at the end instead, as in the history", gt=-180.0, lt=180.0
+        None,
+        unit="deg",
+        text="prescribed angle of the output at the end instead, as in the history",
+        gt=-180.0,
+        lt=180.0,
     )
     wave_generator: float | None = quantity(
         None, unit="deg", text="angle of the wave generator at the end", ge=-36000.0, le=36000.0
@@ -37,7 +41,10 @@ class Stiffness(Section):
         0.04, text="share of the rated torque at which the lost motion is measured", gt=0.0, lt=1.0
     )
     points: int = quantity(
-        2, text="evenly spaced torques between zero and the largest one, beside those that the results need", ge=1, le=200
+        2,
+        text="evenly spaced torques between zero and the largest one, beside those that the results need",
+        ge=1,
+        le=200,
     )
     positions: int = quantity(3, text="angles of the wave generator in one period, evenly spaced", ge=1, le=360)
     loop: bool = quantity(
@@ -51,7 +58,11 @@ class Ratcheting(Section):
 
     wave_generator: float = quantity(0.0, unit="deg", text="angle of the wave generator", ge=0.0, lt=360.0)
     increment: float = quantity(
-        0.02, unit="pitches", text="rotation of the output between two records, in pitches of the ring gear", gt=0.0, le=0.5
+        0.02,
+        unit="pitches",
+        text="rotation of the output between two records, in pitches of the ring gear",
+        gt=0.0,
+        le=0.5,
     )
     limit: float = quantity(
         1.5, unit="pitches", text="rotation of the output at which the run ends at the latest", gt=0.0, le=20.0

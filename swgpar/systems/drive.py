@@ -10,6 +10,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.analysis.drive_result import DriveResult, open_drive
+from swgpar.analysis.program_results import COLUMNS as PROGRAM_COLUMNS
 from swgpar.analysis.restart import identity
 from swgpar.analysis.run_drive import run_drive
 from swgpar.analysis.shortcuts import MESHES
@@ -53,6 +54,24 @@ RESOLVED = {
     "contact.on_edge": Quantity("whether a contact under load lies on an edge: 1 or 0", ""),
 }
 """Quantities of runs with `output.root_stress`, which a study has to set."""
+
+
+STIFFNESS = {
+    "stiffness.K1": Quantity("torsional stiffness up to the first break point", "N·m/rad"),
+    "stiffness.K2": Quantity("torsional stiffness between the break points", "N·m/rad"),
+    "stiffness.K3": Quantity("torsional stiffness above the second break point", "N·m/rad"),
+    "stiffness.lost_motion": Quantity("lost motion", "arc minutes"),
+    "stiffness.hysteresis": Quantity("width of the loop at zero torque", "arc minutes"),
+    "stiffness.backlash": Quantity("rotation without torque between the flanks", "arc minutes"),
+    "stiffness.loop_work": Quantity("area of the loop", "N·mm"),
+}
+"""Quantities of designs with [stiffness]: means over the positions. Names end as in the summary."""
+
+RATCHETING = {
+    "ratcheting.peak_torque_Nm": Quantity("largest torque of the output", "N·m"),
+    "ratcheting.peak_rotation_deg": Quantity("rotation of the output there", "deg"),
+}
+"""Quantities of designs with [ratcheting]. Names end as in the summary."""
 
 
 class Drives(System[DriveDesign, DriveResult]):
@@ -115,15 +134,24 @@ class Drives(System[DriveDesign, DriveResult]):
         def quantity(column: str, when: str) -> Quantity:
             return Quantity(f"{MEANINGS.get(column, column)}, {when}", UNITS[column])
 
+        if design.has_program:
+            return program_quantities(design)
         known = {f"mean.{name}": quantity(name, "mean over the rotation") for name in MEANS}
         if design.output.root_stress:
             known |= RESOLVED
         return known | {f"step{k}.{name}": quantity(name, f"end of step {k}") for k in GROUPS for name in COLUMNS}
 
     def main_quantities(self, known: Mapping[str, Quantity]) -> tuple[str, ...]:
+        for group in (STIFFNESS, RATCHETING):
+            if group.keys() <= known.keys():
+                return tuple(group)
+        if "mean.fs_s1" not in known:
+            return tuple(name for name in known if name.endswith((".torque_Nm", ".rotation_arcmin")))
         return tuple(f"mean.{name}" for name in MAIN)
 
     def describe_names(self, known: Mapping[str, Quantity]) -> str:
+        if "mean.fs_s1" not in known:
+            return ", ".join(known)
         names = f"mean. with {', '.join(MEANS)}, or step1. to step{GROUPS[-1]}. with a column of history.csv"
         return f"{names}; with output.root_stress = true {', '.join(RESOLVED)}"
 
@@ -149,7 +177,7 @@ class Drives(System[DriveDesign, DriveResult]):
     def measure(self, result: DriveResult) -> Measured:
         summary = result.summary
         return Measured(
-            values=values(summary["means"], result.history) | resolved(summary, result.pairs),
+            values=values(summary["means"], result.history) | resolved(summary, result.pairs) | of_program(summary),
             wall_s=summary["wall_s"],
             elements=summary["elements"],
             newton_mean=summary["newton_iterations_mean"],
@@ -169,6 +197,35 @@ def resolved(summary: Mapping[str, Any], pairs: Mapping[str, np.ndarray]) -> dic
         if not contact["edge"]:
             found["contact.pressure"] = contact["pressure_MPa"]
     return found
+
+
+def program_quantities(design: DriveDesign) -> dict[str, Quantity]:
+    """Quantities of a design with a load program: at the end of its stages, or of what is generated from it."""
+    if design.stiffness:
+        return STIFFNESS
+    if design.ratcheting:
+        return RATCHETING
+    return {
+        f"program.{stage.name}.{name}": Quantity(f"{name} at the end of {stage.name}", unit)
+        for stage in design.load.program
+        for name, unit in PROGRAM_COLUMNS.items()
+        if name not in ("step", "stage")
+    }
+
+
+def of_program(summary: Mapping[str, Any]) -> dict[str, float]:
+    """The quantities of a load program, without those that the run does not have."""
+    for group in (STIFFNESS, RATCHETING):
+        section = next(iter(group)).partition(".")[0]
+        if summary[section]:
+            return {name: summary[section][name.partition(".")[2]] for name in group}
+    stages = summary["program"] or {}
+    return {
+        f"program.{stage}.{name}": value
+        for stage, row in stages.items()
+        for name, value in row.items()
+        if name != "step"
+    }
 
 
 def values(means: Mapping[str, float], history: Mapping[str, np.ndarray]) -> dict[str, float]:
