@@ -25,9 +25,9 @@ from swgpar.analysis.mesh_refinement import (
     with_accuracy,
 )
 from swgpar.analysis.period import continued
+from swgpar.analysis.ratcheting import has_fallen
 from swgpar.analysis.recorder import FolderRecorder, MemoryRecorder, Recorder
 from swgpar.analysis.restart import identity, resume
-from swgpar.analysis.ratcheting import has_fallen
 from swgpar.analysis.root_stress import RootStress, resolve_root_stress, with_angle
 from swgpar.analysis.shortcuts import finds_contacts, with_shortcuts
 from swgpar.analysis.stiffness_error import stiffness_error

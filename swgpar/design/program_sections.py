@@ -15,7 +15,7 @@ class ProgramStage(Section):
     output_rotation: float | None = quantity(
         None,
         unit="deg",
-        text="prescribed angle of the output at the end instead, as in the history",
+        text="instead: prescribed angle of the output, as in the history",
         gt=-180.0,
         lt=180.0,
     )
@@ -42,7 +42,7 @@ class Stiffness(Section):
     )
     points: int = quantity(
         2,
-        text="evenly spaced torques between zero and the largest one, beside those that the results need",
+        text="evenly spaced torques up to the largest one, beside those that the results need",
         ge=1,
         le=200,
     )
@@ -60,7 +60,7 @@ class Ratcheting(Section):
     increment: float = quantity(
         0.02,
         unit="pitches",
-        text="rotation of the output between two records, in pitches of the ring gear",
+        text="rotation of the output in an increment, in pitches of the ring gear",
         gt=0.0,
         le=0.5,
     )
