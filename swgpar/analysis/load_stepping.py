@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from petsc4py import PETSc
 
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.predictor import KnownState, predict
@@ -19,6 +20,9 @@ MAX_KNOWN_STATES = 40
 
 MAX_JUMP_ITERATIONS = 60
 """Newton iterations of a solve for the loaded state at once; step by step it takes some 35 in all."""
+
+MAX_EXTRAPOLATION = 2.0
+"""Largest step of a load program that is predicted along the last one, over that one."""
 
 MAX_CLOSING_ROTATIONS = 10
 """Rotations in which a backlash is closed: each leaves about an eighth of it, by the pressure angle."""
@@ -44,10 +48,13 @@ class LoadStepper:
         self.iterations = 0
         self.residual = 0.0
         self.known_states: list[KnownState] = []
+        self._last: tuple[LoadState, PETSc.Vec] | None = None
+        self._before: tuple[LoadState, PETSc.Vec] | None = None
 
     def reset(self) -> None:
         """Go back to the undeformed drive."""
         self.load_state, self.known_states = start_state(self.design), []
+        self._last = self._before = None
         self.problem.x.set(0.0)
         self.problem.resume({})
 
@@ -117,6 +124,8 @@ class LoadStepper:
 
     def _take(self, state: LoadState, result: SolveResult) -> None:
         before, self.load_state, self.residual = self.load_state, state, result.residual
+        if state.stage == Stage.PROGRAM:
+            self._before, self._last = self._last, (state, self.problem.x.copy())
         if state.is_periodic:
             known = self.known_states if state.continues_period(before, self.design.ratio) else []
             self.known_states = [*known, KnownState(state.angle, self.problem.x.copy())][-MAX_KNOWN_STATES:]
@@ -137,6 +146,10 @@ class LoadStepper:
             if not state.continues_period(here, self.design.ratio) and state.control == "rotation":
                 drift = (state.angle - here.angle) / self.design.ratio
                 self._rotate_output(state.output_rotation - here.output_rotation - drift)
+        elif (factor := self._extrapolation(state)) > 0.0:
+            (_, older), (_, last) = self._before, self._last
+            self.problem.x.axpy(factor, last)
+            self.problem.x.axpy(-factor, older)
         elif state.control == "rotation" and state.output_rotation != here.output_rotation:
             self._rotate_output(state.output_rotation - here.output_rotation)
         elif state.stage == here.stage == Stage.DEFLECT:
@@ -145,6 +158,23 @@ class LoadStepper:
                 s.cam_clearance if s.pin_inset is None else s.pin_inset for s in (start_state(self.design), here, state)
             )
             self.problem.x.scale((first - new) / (first - old))
+
+    def _extrapolation(self, state: LoadState) -> float:
+        """Share of the last step of a load program that leads on to `state`; 0 where not only the load goes on.
+
+        It is bounded: contacts that come and go make the state bend off from the line.
+        """
+        if self._before is None or self._last is None or self._last[0] != self.load_state:
+            return 0.0
+        older, last = self._before[0], self._last[0]
+        if older.angle != last.angle or {older.control, last.control} != {state.control}:
+            return 0.0
+        name = "torque" if state.control == "torque" else "output_rotation"
+        values = [getattr(one, name) for one in (older, last, state)]
+        if state.control == "torque" and min(values) < 0.0 < max(values):  # there may be a backlash between
+            return 0.0
+        step = values[1] - values[0]
+        return min((values[2] - values[1]) / step, MAX_EXTRAPOLATION) if step else 0.0
 
     def _close_backlash(self, target: LoadState) -> None:
         """Rotate the output until the flanks that are to carry nearly meet.

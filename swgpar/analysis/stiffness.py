@@ -138,8 +138,8 @@ def _loop_work(branches: Sequence[Sequence[PointRow]]) -> float:
 def by_position(design: DriveDesign, rows: Sequence[PointRow]) -> dict[float, Stiffness]:
     """The stiffness at every angle (deg) of the wave generator, from all rows of program.csv."""
     found = {}
-    for angle in stiffness_angles(design):
-        computed = computed_angle(design, angle)
+    for k, angle in enumerate(stiffness_angles(design)):
+        computed = computed_angle(design, k)
         found[angle] = at_position(design, [row for row in rows if abs(row["wg_angle_deg"] - computed) < SAME_ANGLE])
     return found
 

@@ -128,13 +128,13 @@ def stiffness_angles(design: DriveDesign) -> list[float]:
     return [float(np.degrees(design.period_angle)) * k / count for k in range(count)]
 
 
-def computed_angle(design: DriveDesign, angle: float) -> float:
-    """The angle (deg) whose loop stands for that at `angle`.
+def computed_angle(design: DriveDesign, k: int) -> float:
+    """Angle (deg) of the wave generator whose loop stands for that at the angle k of `stiffness_angles`.
 
     Without friction a drive with a mirror plane has the same stiffness at the angle that the mirror makes of it.
     """
-    mirrored = float(np.degrees(design.period_angle)) - angle
-    return angle if design.stiffness.loop or not design.is_mirror_symmetric else min(angle, mirrored)
+    mirrored = not design.stiffness.loop and design.is_mirror_symmetric
+    return stiffness_angles(design)[min(k, design.stiffness.positions - k) if mirrored else k]
 
 
 def _stiffness(design: DriveDesign) -> list[ProgramPoint]:
@@ -143,7 +143,7 @@ def _stiffness(design: DriveDesign) -> list[ProgramPoint]:
     def add(stage: str, angle: float, values: Sequence[float]) -> None:
         points.extend(ProgramPoint(stage, angle, "torque", value) for value in values)
 
-    angles = [angle for angle in stiffness_angles(design) if computed_angle(design, angle) == angle]
+    angles = dict.fromkeys(computed_angle(design, k) for k in range(design.stiffness.positions))
     for k, angle in enumerate(angles):
         down, up = torques[::-1], [-torque for torque in torques]
         branches = dict(zip(BRANCHES, (down, up, up[::-1], torques), strict=True))
@@ -162,8 +162,8 @@ def _stiffness(design: DriveDesign) -> list[ProgramPoint]:
 
 
 def pitch_angle(design: DriveDesign) -> float:
-    """Angle of a pitch of the ring gear, deg."""
-    return 360.0 / design.drive.teeth_rg
+    """Angle of a pitch of the output, deg: a rotation by it with the wave generator locked renames its teeth."""
+    return 360.0 / (design.drive.teeth_fs if design.drive.layout == "ring_fixed" else design.drive.teeth_rg)
 
 
 def _ratcheting(design: DriveDesign) -> list[ProgramPoint]:

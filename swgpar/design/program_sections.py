@@ -60,7 +60,7 @@ class Ratcheting(Section):
     increment: float = quantity(
         0.02,
         unit="pitches",
-        text="rotation of the output in an increment, in pitches of the ring gear",
+        text="rotation of the output in an increment, in pitches of the output",
         gt=0.0,
         le=0.5,
     )
