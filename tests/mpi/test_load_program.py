@@ -12,7 +12,8 @@ from pytest_mpi import parallel_assert
 
 import swgpar
 from support.friction_work import FrictionWork
-from support.paths import RECIPE
+from support.paths import DESIGN, RECIPE
+from support.small_drive import PLANE
 from support.stepping import load_stepper, small
 from swgpar.analysis.drive_result import DriveResult
 from swgpar.analysis.program_results import PointRow, point_rows, work_by_torque
@@ -232,6 +233,29 @@ def test_ranks() -> None:
     for name in ("K1", "K3", "lost_motion"):
         same = several.stiffness[name] == pytest.approx(one.stiffness[name], rel=1e-6)
         parallel_assert(same, f"{name}: {several.stiffness[name]} and {one.stiffness[name]}")
+
+
+def test_studies_vary_programs_and_take_their_results(tmp_path: Path) -> None:
+    """Twice the torque turns the output, flanks closed, twice as far; names that do not exist are refused."""
+    stages = [{"name": "off", "torque": 0.0}, {"name": "up", "torque": TORQUE}]
+    lines = [
+        "[study]",
+        f'design = "{DESIGN}"',
+        f'meshes = ["{RECIPE}"]',
+        "vary = { load.program.2.torque = [0.2, 0.4] }",
+    ]
+    quantities = [f"program.{name}.rotation_arcmin" for name in ("off", "up")]
+    plane = ", ".join(f"'{item}'" for item in PLANE)
+    written = ", ".join(f'{{ name = "{stage["name"]}", torque = {stage["torque"]} }}' for stage in stages)
+    lines += [f"set = [{plane}, 'load.program=[{written}]']", f"quantities = {quantities}"]
+    (tmp_path / "study.toml").write_text("\n".join(lines), encoding="utf-8")
+    table = swgpar.study(tmp_path / "study.toml").table
+    off, up = (table[name] for name in quantities)
+    assert (up[1] - off[1]) == pytest.approx(2.0 * (up[0] - off[0]), rel=0.02)
+    lines[-1] = 'quantities = ["program.down.rotation_arcmin"]'
+    (tmp_path / "study.toml").write_text("\n".join(lines), encoding="utf-8")
+    with pytest.raises(InputError, match="program.down.rotation_arcmin"):
+        swgpar.study(tmp_path / "study.toml")
 
 
 def test_no_accuracy_with_a_program() -> None:
