@@ -66,6 +66,8 @@ class DriveResult:
         Columns of fatigue_cycle.csv: stress over a cycle where the safety is the least.
     losses : dict of (n,) arrays
         Columns of losses.csv: losses at the angles of the sampled period.
+    program : dict of (n,) arrays
+        Columns of program.csv, a value for every point of a load program: torque and rotation of the output.
     folder : Path or None
         The results folder; None when the run was in memory.
 
@@ -89,6 +91,7 @@ class DriveResult:
         self.history: dict[str, np.ndarray] = history.columns(rows)
         self.summary = summary
         self.pairs, self.contact_lines = dict(tables.pairs), dict(tables.contact_lines)
+        self.program: dict[str, np.ndarray] = dict(tables.program)
         self.fatigue: SectorFields | None = tables.sector
         self.fatigue_cycle, self.losses = dict(tables.cycle), dict(tables.losses)
         self.folder = folder
@@ -107,6 +110,22 @@ class DriveResult:
     def is_plane(self) -> bool:
         """Whether the drive is a plane model."""
         return self.summary["design"]["drive"]["model"] == "plane"
+
+    @property
+    def stiffness(self) -> dict[str, Any] | None:
+        """Torsional stiffness: K1, K2, K3 (N m / rad), lost motion, hysteresis, backlash (arc minutes) and more.
+
+        None for a design without the section [stiffness]. It is the entry ``stiffness`` of the summary.
+        """
+        return self.summary["stiffness"]
+
+    @property
+    def ratcheting(self) -> dict[str, Any] | None:
+        """The torque's peak under a prescribed rotation of the output, and what gave way.
+
+        None for a design without the section [ratcheting]. It is the entry ``ratcheting`` of the summary.
+        """
+        return self.summary["ratcheting"]
 
     def curves(self) -> Curves:
         """Columns of the history under load, over one period where the rotation was sampled."""

@@ -9,6 +9,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.analysis.fatigue_figures import draw_haigh, sector_picture
+from swgpar.analysis.program_figures import torque_against_rotation
 from swgpar.design.sections import GEARS
 from swgpar.errors import InputError
 from swgpar.results.figure_set import Drawings, FigureSet
@@ -54,10 +55,11 @@ class DriveFigures(FigureSet):
 
     @property
     def drawings(self) -> Drawings:
-        found: dict[str, Callable[[], Figure]] = {
-            "stress": self.stress,
-            "torque_and_transmission_error": self.torque_and_transmission_error,
-        }
+        found: dict[str, Callable[[], Figure]] = {"stress": self.stress}
+        if self._result.program:
+            found["torque_against_rotation"] = self.torque_against_rotation
+        else:
+            found["torque_and_transmission_error"] = self.torque_and_transmission_error
         if self._result.pairs:
             found |= {"pairs": self.pairs, "load_sharing": self.load_sharing}
             if np.isfinite(self._result.pairs["pressure_MPa"]).any():
@@ -111,6 +113,10 @@ class DriveFigures(FigureSet):
     def _draw_transmission_error(self, axes: Axes) -> None:
         self._draw(axes, "transmission_error", None)
         axes.set(ylabel="arc seconds", title="transmission error: output angle less its kinematic value")
+
+    def torque_against_rotation(self) -> Figure:
+        """Torque on the output (N·m) against its rotation (arc minutes), along a load program."""
+        return torque_against_rotation(self._result.program, self._result.summary)
 
     def pairs(self) -> Figure:
         """Force (N) and largest contact pressure (MPa) of the pairs, over the tooth's angle from the major axis.

@@ -19,8 +19,11 @@ from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.losses import cam_force
 from swgpar.analysis.pair_contact import pair_contacts
 from swgpar.analysis.places import Place, find_places
+from swgpar.analysis.program_results import PointRow, point_rows
+from swgpar.analysis.ratcheting import tooth_rotation
 from swgpar.analysis.restart import write_state
 from swgpar.analysis.root_stress import RootStress
+from swgpar.analysis.stiffness import loop_rows
 from swgpar.analysis.stress_cycle import StressCycle
 from swgpar.analysis.summary import Accuracy
 from swgpar.design.load_states import LoadState
@@ -31,7 +34,7 @@ from swgpar.results import history
 from swgpar.results.atomic import to_json, write_from_root
 from swgpar.results.field_sources import BodyPart, FieldParts, FlankGrids
 from swgpar.results.fields import FieldWriter
-from swgpar.results.folder import CONTACT_LINES, PAIRS, SUMMARY
+from swgpar.results.folder import CONTACT_LINES, PAIRS, PROGRAM, STIFFNESS, SUMMARY
 from swgpar.results.history import Row
 from swgpar.results.table import as_columns, format_csv
 
@@ -51,6 +54,7 @@ class Recorder(ABC):
     accuracy : what was asked for and reached, if an accuracy was asked for
     root_stress : of the loaded state, once it is resolved
     places : of the largest stresses under load, by column of the history
+    tooth_rotations : deg, mean rotation of the flexible spline's teeth at every increment, with [ratcheting]
     pairs, contact_lines : rows of pairs.csv and contact_lines.csv, the contacts of flanks under load
     cycle : stresses of the sampled period, with [fatigue] or [losses]
     cam_forces : N, of all increments, with [losses]
@@ -68,6 +72,7 @@ class Recorder(ABC):
         design = model.design
         self.cycle = StressCycle(model) if design.fatigue or design.losses else None
         self.cam_forces: list[float] = []
+        self.tooth_rotations: list[float] = []
 
     def record(self, stepper: LoadStepper, seconds: float, elapsed: float) -> None:
         """Keep the state after an increment.
@@ -78,6 +83,8 @@ class Recorder(ABC):
         with model.phases("stress"):
             values, body_fields = model.stresses()
         self.rows.append(history.plain_row({**stepper.row(), **values, "wall_s": seconds}))
+        if model.design.ratcheting:
+            self.tooth_rotations.append(tooth_rotation(model))
         with model.phases("stress"):
             self._keep_places(stepper.load_state, body_fields)
             self._keep_pairs(stepper.load_state)
@@ -101,7 +108,7 @@ class Recorder(ABC):
                     self.places[name] = place
 
     def _keep_pairs(self, state: LoadState) -> None:
-        if state.is_periodic:
+        if state.is_periodic and not self.model.design.stiffness:
             row = self.rows[-1]
             when = {"increment": len(self.rows), "step": int(row["step"]), "wg_angle_deg": row["wg_angle_deg"]}
             contacts = pair_contacts(self.model, state)
@@ -112,8 +119,17 @@ class Recorder(ABC):
         self, rows: list[Row], summary: dict[str, Any], tables: DriveTables
     ) -> tuple[list[Row], dict[str, Any], DriveTables]:
         """History, summary and tables of rank 0 on every rank, as files hold them; collective."""
-        tables = replace(tables, pairs=as_columns(self.pairs), contact_lines=as_columns(self.contact_lines))
+        tables = replace(
+            tables,
+            pairs=as_columns(self.pairs),
+            contact_lines=as_columns(self.contact_lines),
+            program=as_columns(self.program_rows()),
+        )
         return self.comm.bcast((rows, json.loads(to_json(summary)), tables) if self.comm.rank == 0 else None)
+
+    def program_rows(self) -> list[PointRow]:
+        """Rows of program.csv."""
+        return point_rows(self.model.design, self.rows)
 
     @abstractmethod
     def begin(self) -> None:
@@ -212,6 +228,10 @@ class FolderRecorder(Recorder):
         if self.pairs:
             write_from_root(self.comm, self.out / PAIRS, format_csv(self.pairs))
             write_from_root(self.comm, self.out / CONTACT_LINES, format_csv(self.contact_lines))
+        if program := self.program_rows():
+            write_from_root(self.comm, self.out / PROGRAM, format_csv(program))
+            if self.model.design.stiffness:
+                write_from_root(self.comm, self.out / STIFFNESS, format_csv(loop_rows(program)))
 
     def finish(self, rows: list[Row], summary: dict[str, Any], tables: DriveTables) -> DriveResult:
         if len(rows) > len(self.rows):

@@ -83,6 +83,7 @@ def write_state(
         "root_stress": recorder.root_stress and asdict(recorder.root_stress),
         "pairs": recorder.pairs,
         "contact_lines": recorder.contact_lines,
+        "tooth_rotations": recorder.tooth_rotations,
         "places": {name: asdict(place) for name, place in recorder.places.items()},
     }
     checkpoint.write_checkpoint(recorder.out, model.comm, blocks, state)
@@ -127,6 +128,7 @@ def resume(recorder: FolderRecorder, stepper: LoadStepper, items: list[LoadState
     recorder.accuracy = state["accuracy"] and Accuracy(**state["accuracy"])
     recorder.places = {name: Place(**place) for name, place in state.get("places", {}).items()}
     recorder.pairs, recorder.contact_lines = state.get("pairs", []), state.get("contact_lines", [])
+    recorder.tooth_rotations = state.get("tooth_rotations", [])
     recorder.root_stress = state.get("root_stress") and RootStress(**state["root_stress"])
     stepper.resume_at(last)
     for name, value in state["phases_s"].items():

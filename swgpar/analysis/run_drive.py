@@ -29,10 +29,12 @@ from swgpar.analysis.mesh_refinement import (
     with_accuracy,
 )
 from swgpar.analysis.period import continued, require_samples
+from swgpar.analysis.ratcheting import has_fallen
 from swgpar.analysis.recorder import FolderRecorder, MemoryRecorder, Recorder
 from swgpar.analysis.restart import identity, resume
 from swgpar.analysis.root_stress import RootStress, resolve_root_stress, with_angle
 from swgpar.analysis.shortcuts import finds_contacts, with_shortcuts
+from swgpar.analysis.stiffness_error import stiffness_error
 from swgpar.analysis.summary import Accuracy, summarise
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import LoadState, Stage, from_loaded, load_sequence
@@ -84,6 +86,8 @@ def run_drive(
         raise InputError("restart = true needs the results folder out: a run in memory leaves no checkpoint")
     require_sections(design, recipe)
     if accuracy is not None:
+        if design.has_program:
+            raise InputError(f"--accuracy {accuracy:g} is not available with a load program: allowed a mesh recipe")
         design = with_accuracy(design, accuracy)
     left_out: tuple[str, ...] = ()
     if not plain:
@@ -161,7 +165,7 @@ class _Run:
     ) -> None:
         self.model, self.recipe, self.recorder, self.stepper = model, recipe, recorder, LoadStepper(model)
         self.on_increment, self.begin = on_increment, begin
-        self.earlier_seconds = 0.0
+        self.earlier_seconds, self.ended_early = 0.0, False
         self.coarse: tuple[MeshRecipe, tuple[float, ...]] | None = None
         counts = model.counts()
         logger.info(
@@ -183,7 +187,7 @@ class _Run:
         """Bring back the state of the checkpoint; returns all increments that the run consists of."""
         items, self.earlier_seconds = resume(self.recorder, self.stepper, list(load_sequence(self.model.design)))
         logger.info("restarted after increment %d", len(self.recorder.rows))
-        if self.model.design.output.root_stress and not self.recorder.root_stress:
+        if self.model.design.resolves_roots and not self.recorder.root_stress:
             logger.info("the stress at the teeth is resolved only by the run that computes the loaded state")
         return items
 
@@ -198,7 +202,7 @@ class _Run:
 
     def _keep_coarse(self, model: DriveModel, recipe: MeshRecipe) -> None:
         """Resolve the stress at the teeth on a coarser mesh of the drive, to see what the mesh changes."""
-        if model.design.output.root_stress:
+        if model.design.resolves_roots:
             loaded = from_loaded(list(load_sequence(model.design)))[0]
             try:
                 self.coarse = recipe, resolve_root_stress(model, loaded, COMPARED_LEVELS).levels
@@ -214,16 +218,30 @@ class _Run:
                 state.stage.label, np.degrees(state.angle), its, ratio
             )
             for item in items[len(recorder.rows) :]:
+                if has_fallen(self.model.design, recorder.program_rows()):
+                    break
                 start = time.perf_counter()
-                if item != stepper.load_state:  # a start at once ends with the first one
-                    stepper.advance(item)
+                if item != stepper.load_state and not self._advance(item):  # a start at once ends with the first one
+                    break
                 seconds = time.perf_counter() - start
-                if self.model.design.output.root_stress:
+                if self.model.design.resolves_roots:
                     recorder.root_stress = self._root_stress(item, item == loaded)
                 recorder.record(stepper, seconds, self.seconds)
                 angle = float(np.degrees(item.angle))
                 progress.increment(item.stage.label, angle, stepper.iterations, stepper.residual, seconds)
                 self.on_increment()
+
+    def _advance(self, item: LoadState) -> bool:
+        """Compute an increment; False where the output is rotated beyond the strength and finds no equilibrium."""
+        try:
+            self.stepper.advance(item)
+            return True
+        except ConvergenceError as error:
+            if self.model.design.ratcheting is None or item.stage != Stage.PROGRAM or not self.recorder.program_rows():
+                raise
+            logger.warning("the rotation of the output ends here: %s", error)
+            self.ended_early = True
+            return False
 
     def _root_stress(self, state: LoadState, loaded: bool) -> RootStress | None:
         """Largest tensile stress at the teeth by windows; the one known before where a window cannot be computed."""
@@ -252,6 +270,8 @@ class _Run:
         """Summarise the run."""
         recorder, design = self.recorder, self.model.design
         rows = recorder.rows
+        with self.model.phases("coarser mesh"):
+            error = stiffness_error(design, self.recipe, recorder.program_rows(), self.model.comm)
         summary = summarise(
             self.model,
             rows,
@@ -261,6 +281,9 @@ class _Run:
             recorder.places,
             recorder.pairs,
             self.seconds,
+            tooth_rotations=recorder.tooth_rotations,
+            stiffness_error=error,
+            ended_early=self.ended_early,
         )
         tables = self._evaluate_cycle(summary)
         if design.steps.samples and summary["means"]:
@@ -298,7 +321,7 @@ def _start_loaded(
     ways = [coarser_ones] if coarser_ones else []
     if starts_bent(stepper.design):
         compared = resized(recipe, 1.0 / RATIO)
-        if stepper.design.output.root_stress and not ways and finds_contacts(compared):
+        if stepper.design.resolves_roots and not ways and finds_contacts(compared):
             ways.append([compared])
         ways.append([])
     for recipes in ways:

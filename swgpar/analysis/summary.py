@@ -15,7 +15,10 @@ from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.load_sharing import load_sharing
 from swgpar.analysis.period import of_period, sampling_error
 from swgpar.analysis.places import Place
+from swgpar.analysis.program_results import point_rows, summarise_program
+from swgpar.analysis.ratcheting import summarise_ratcheting
 from swgpar.analysis.root_stress import RootStress
+from swgpar.analysis.stiffness import summarise_stiffness
 from swgpar.design.load_states import Stage
 from swgpar.results.history import Row, column, transmission_error
 from swgpar.version import __version__
@@ -76,6 +79,10 @@ def summarise(
     places: Mapping[str, Place],
     pairs: Sequence[Row],
     seconds: float,
+    *,
+    tooth_rotations: Sequence[float] = (),
+    stiffness_error: Mapping[str, float] | None = None,
+    ended_early: bool = False,
 ) -> dict[str, Any]:
     """Content of summary.json; collective.
 
@@ -88,9 +95,13 @@ def summarise(
     places : of the largest stresses under load
     pairs : contacts of the flanks under load
     seconds : wall time of the run, restarts included
+    tooth_rotations : (n,) deg, of the flexible spline's teeth, with [ratcheting]
+    stiffness_error : of the torsional stiffness by the mesh, if it is known
+    ended_early : whether a load program has ended before its last point
     """
     design = model.design
-    rotation = [row for row in rows if int(row["step"]) >= Stage.ROTATE]
+    program = point_rows(design, rows)
+    rotation = [] if program else [row for row in rows if int(row["step"]) >= Stage.ROTATE]
     sampled = of_period(design, rows) if design.steps.samples else rotation
     values = over_rotation(sampled, design.ratio)
     sampled_period = design.steps.samples and values["means"]
@@ -121,6 +132,9 @@ def summarise(
         "sampling_error": sampling_error(design, rows, MEANS) if sampled_period else None,
         "newton_iterations_mean": float(np.mean([r["newton_iterations"] for r in rotation])) if rotation else None,
         "balance_error_Nmm": max((r["torque_balance_Nmm"] for r in rows), default=0.0),
+        "program": summarise_program(program),
+        "stiffness": summarise_stiffness(design, program, stiffness_error),
+        "ratcheting": summarise_ratcheting(design, program, tooth_rotations, ended_early=ended_early),
         "wg_torque_expected_Nmm": 1000.0 * design.load.torque / abs(design.ratio),
         "ratio": design.ratio,
         "design": design.model_dump(),

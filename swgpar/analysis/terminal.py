@@ -36,6 +36,10 @@ def print_drive(history: Mapping[str, np.ndarray], summary: Mapping[str, Any]) -
         _print_places(places)
     if summary["means"]:
         _print_means(summary)
+    if summary["stiffness"]:
+        _print_stiffness(summary["stiffness"])
+    if summary["ratcheting"]:
+        _print_ratcheting(summary["ratcheting"])
     _print_errors(summary)
     console.print(
         f"torque balance error {summary['balance_error_Nmm']:.1e} N·mm; "
@@ -65,6 +69,37 @@ def _print_means(summary: Mapping[str, Any]) -> None:
             f"over the rotation: input torque varies by {100.0 * ripple:.1f} % of its mean, transmission error by "
             f"{summary['transmission_error_arcsec']:.1f} arc seconds"
         )
+
+
+def _print_stiffness(found: Mapping[str, Any]) -> None:
+    spread, error = found["spread"], found["mesh_error"]
+
+    def value(name: str, spec: str) -> str:
+        by_mesh = "" if error is None else f" ± {format(error[name], spec)}"
+        return f"{format(found[name], spec)}{by_mesh} (spread {format(spread[name], spec)})"
+
+    console.print(
+        f"torsional stiffness up to {found['torque_Nm']:g} N·m over {len(found['positions'])} positions, in N·m/rad: "
+        + ", ".join(f"{name} {value(name, '.4g')}" for name in ("K1", "K2", "K3"))
+    )
+    console.print(
+        "in arc minutes: "
+        + ", ".join(
+            f"{words} {value(name, '.3g')}"
+            for name, words in (("lost_motion", "lost motion"), ("hysteresis", "hysteresis"), ("backlash", "backlash"))
+        )
+    )
+    if error is None:
+        console.print("the error of the stiffness by the mesh is not known")
+
+
+def _print_ratcheting(found: Mapping[str, Any]) -> None:
+    size = f"{found['peak_torque_Nm']:.4g} N·m" if found["is_peak"] else f"above {found['peak_torque_Nm']:.4g} N·m"
+    console.print(
+        f"largest torque of the output: {size} at {found['peak_rotation_deg']:.4g} degrees "
+        f"({found['peak_rotation_pitches']:.2f} pitches); what gives way: {found['gave_way']}; "
+        f"end of the run: {found['ended']}"
+    )
 
 
 def _print_places(places: Mapping[str, Mapping[str, Any]]) -> None:

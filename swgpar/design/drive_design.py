@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from swgpar.design.fit_checks import check_fit
+from swgpar.design.program_sections import Ratcheting, Stiffness
 from swgpar.design.sections import (
     GEARS,
     Contact,
@@ -42,6 +43,8 @@ class DriveDesign(Design):
     micro_geometry: MicroGeometry = MicroGeometry()
     material: Material
     load: Load = Load()
+    stiffness: Stiffness | None = None
+    ratcheting: Ratcheting | None = None
     contact: Contact = Contact()
     steps: Steps = Steps()
     solver: Solver = Solver()
@@ -89,6 +92,21 @@ class DriveDesign(Design):
     def period_angle(self) -> float:
         """Period of the motion, rad of the wave generator: one pitch angle of the fixed gear."""
         return 2.0 * np.pi / (self.drive.teeth_rg if self.drive.layout == "ring_fixed" else self.drive.teeth_fs)
+
+    @property
+    def has_program(self) -> bool:
+        """Whether the output follows a load program, in place of one torque and a rotation of the wave generator."""
+        return bool(self.load.program or self.stiffness or self.ratcheting)
+
+    @property
+    def is_mirror_symmetric(self) -> bool:
+        """Whether the undeformed drive is its own image in the plane through the axis and the major axis."""
+        return self.wave_generator.type != "asymmetric_parabolic"
+
+    @property
+    def resolves_roots(self) -> bool:
+        """Whether the largest tension at the teeth is resolved by windows: only where there is one loaded state."""
+        return self.output.root_stress and not self.has_program
 
     @property
     def periods(self) -> int:

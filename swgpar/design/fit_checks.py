@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from swgpar.design.program_checks import check_program
 from swgpar.design.sections import GEARS
 from swgpar.errors import InputError
 from swgpar.geometry.cams import FourRoller
@@ -29,6 +30,7 @@ def check_fit(design: DriveDesign) -> None:
     _check_wave_generator(design)
     _check_steps(design)
     _check_fatigue(design)
+    check_program(design)
     if design.wave_generator.face_width > design.drive.face_width:
         width = design.drive.face_width
         _refuse(

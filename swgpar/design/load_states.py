@@ -8,6 +8,9 @@ The stages follow each other:
 3. LOAD: the torque is applied. The output rotates until the flanks carry it.
 4. ROTATE: the wave generator rotates in increments.
 
+PROGRAM takes the place of LOAD and ROTATE where the design has a load program: every increment goes to one of its
+points.
+
 Without a torque, a drive with backlash has no definite output angle. The output is then held at its kinematic angle,
 and the torque that this takes is reported.
 """
@@ -22,6 +25,7 @@ from typing import Any, Literal
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.load_program import internal_torque, program_points
 from swgpar.geometry.cams import pin_travel
 
 PIN_RETRACTION = 0.25
@@ -31,14 +35,22 @@ CAM_START_CLEARANCE, FLANK_START_CLEARANCE = 0.05, 0.05
 """Clearance from which cam and flanks grow into place, as a share of the module."""
 
 
+SAME_ROTATION = 1e-12
+"""Rotation (rad) below which the output has followed the wave generator by its ratio."""
+
+
 class Stage(enum.IntEnum):
-    """Stage of the load sequence; its value is the number in the column `step` of the first increment."""
+    """Stage of the load sequence; its value is the number in the column `step` of the first increment.
+
+    Points of a load program are numbered from that of LOAD on.
+    """
 
     START = 0
     DEFLECT = 1
     ENGAGE = 2
     LOAD = 3
     ROTATE = 4
+    PROGRAM = 5
 
     @property
     def label(self) -> str:
@@ -87,6 +99,18 @@ class LoadState:
 
         return before.stage == Stage.START or any(new and not old for new, old in zip(active(self), active(before)))
 
+    def continues_period(self, before: LoadState, ratio: float) -> bool:
+        """Whether this state follows from `before` in the drive's periodic motion, that is under the same load.
+
+        ratio : speed of the wave generator over that of the output
+        """
+        if self.stage != Stage.PROGRAM:
+            return True
+        if self.control == "torque" or self.control != before.control:
+            return (self.control, self.torque) == (before.control, before.torque)
+        turned = self.output_rotation - before.output_rotation - (self.angle - before.angle) / ratio
+        return abs(turned) < SAME_ROTATION
+
     def interpolate(self, target: LoadState, share: float, module: float, deflection: float) -> LoadState:
         """State between this one (share 0) and `target` (share 1).
 
@@ -132,7 +156,10 @@ def load_sequence(design: DriveDesign) -> Iterator[LoadState]:
     """Load states at the ends of all increments of a run, in order."""
     yield from _deflection(design)
     yield from _engagement(design)
-    torque = -np.copysign(1000.0 * design.load.torque, design.ratio)
+    if design.has_program:
+        yield from _program(design)
+        return
+    torque = internal_torque(design, design.load.torque)
     control: Literal["rotation", "torque"] = "torque" if torque else "rotation"
     loaded = LoadState(Stage.LOAD, 3, cam_clearance=0.0, flank_clearance=0.0, control=control)
     if torque:
@@ -174,9 +201,19 @@ def _engagement(design: DriveDesign) -> Iterator[LoadState]:
         )
 
 
+def _program(design: DriveDesign) -> Iterator[LoadState]:
+    for step, point in enumerate(program_points(design), start=int(Stage.LOAD)):
+        state = LoadState(Stage.PROGRAM, step, float(np.radians(point.angle)), cam_clearance=0.0, flank_clearance=0.0)
+        if point.control == "torque":
+            yield replace(state, control="torque", torque=internal_torque(design, point.value))
+        else:
+            yield replace(state, output_rotation=float(np.radians(point.value)))
+
+
 def from_loaded(states: list[LoadState]) -> list[LoadState]:
-    """The load states from the fully loaded one on."""
-    loaded = max(k for k, state in enumerate(states) if state.stage == Stage.LOAD)
+    """The load states from the fully loaded one on, of a load program from its first point on."""
+    ends = [k for k, state in enumerate(states) if state.stage == Stage.LOAD]
+    loaded = ends[-1] if ends else next(k for k, state in enumerate(states) if state.stage == Stage.PROGRAM)
     return states[loaded:]
 
 

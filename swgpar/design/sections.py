@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
+from swgpar.design.program_sections import ProgramStage
 from swgpar.geometry.profiles import ExternalProfile, InternalProfile
 from swgpar.input.quantities import Section, quantity
 
@@ -83,6 +84,9 @@ class Load(Section):
     torque: float = quantity(0.0, unit="N·m", text="output torque, against the output's motion", ge=0.0)
     input_speed: float = quantity(
         2000.0, unit="1/min", text="speed of the wave generator, for sliding speeds", gt=0.0, le=1e6
+    )
+    program: list[ProgramStage] = quantity(
+        [], text="stages of a load program, which takes the place of torque and rotation"
     )
 
 

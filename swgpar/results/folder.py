@@ -34,6 +34,11 @@ CYCLE = "fatigue_cycle.csv"
 
 LOSSES = "losses.csv"
 """Losses at the angles of the sampled period."""
+PROGRAM = "program.csv"
+"""Torque and rotation of the output at the points of a load program."""
+
+STIFFNESS = "stiffness.csv"
+"""The same on the branches of the stiffness loops."""
 
 SUMMARY = "summary.json"
 """Written last: a folder that has it is that of a finished run."""
@@ -51,6 +56,8 @@ RESULTS = (
     SECTOR_XDMF,
     CYCLE,
     LOSSES,
+    PROGRAM,
+    STIFFNESS,
     "published.csv",
     RECIPE,
     f"{TABLES}/*.csv",

@@ -13,7 +13,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from swgpar.constraints.supports import Supports
-from swgpar.contact.clearance import FlankClearance
+from swgpar.contact.clearance import LOADED_SIDE, FlankClearance
 from swgpar.contact.contact import Contact, largest
 from swgpar.contact.flank_state import ActiveSegments, SearchRange
 from swgpar.contact.flanks import FlankContact
@@ -288,7 +288,7 @@ class DiscreteProblem:
         """Bound of the output's motion in a Newton step, in units of the last border; None where it is prescribed."""
         if state.control != "torque":
             return None
-        return self.scale * self.clearance.largest_rotation()
+        return self.scale * self.clearance.largest_rotation(self._loaded_side(state))
 
     def closing_rotation(self, state: LoadState) -> float:
         """Rotation (rad) of the output, in the direction of the torque of `state`, that brings its flanks together.
@@ -297,7 +297,12 @@ class DiscreteProblem:
         """
         self.search(state)
         self.flanks.evaluate(self.displacement(), state, None, None)
-        return float(np.copysign(self.clearance.closing_rotation(), state.torque))
+        return float(np.copysign(self.clearance.closing_rotation(self._loaded_side(state)), state.torque))
+
+    def _loaded_side(self, state: LoadState) -> int:
+        """Side of the flanks that carry the torque of `state`, on the flexible spline or on the ring gear."""
+        counter_clockwise = (state.torque >= 0.0) == (len(self.supports.couplings) == 1)
+        return LOADED_SIDE if counter_clockwise else -LOADED_SIDE
 
     # -- segments of the flanks ------------------------------------------------------------------------
 

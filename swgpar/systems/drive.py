@@ -10,6 +10,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.analysis.drive_result import DriveResult, open_drive
+from swgpar.analysis.program_results import COLUMNS as PROGRAM_COLUMNS
 from swgpar.analysis.restart import identity
 from swgpar.analysis.run_drive import run_drive
 from swgpar.analysis.shortcuts import MESHES
@@ -85,6 +86,24 @@ LOSSES = {
 """Quantities of designs with [losses]; without a torque there is no efficiency."""
 
 
+STIFFNESS = {
+    "stiffness.K1": Quantity("torsional stiffness up to the first break point", "N·m/rad"),
+    "stiffness.K2": Quantity("torsional stiffness between the break points", "N·m/rad"),
+    "stiffness.K3": Quantity("torsional stiffness above the second break point", "N·m/rad"),
+    "stiffness.lost_motion": Quantity("lost motion", "arc minutes"),
+    "stiffness.hysteresis": Quantity("width of the loop at zero torque", "arc minutes"),
+    "stiffness.backlash": Quantity("rotation without torque between the flanks", "arc minutes"),
+    "stiffness.loop_work": Quantity("area of the loop", "N·mm"),
+}
+"""Quantities of designs with [stiffness]: means over the positions. Names end as in the summary."""
+
+RATCHETING = {
+    "ratcheting.peak_torque_Nm": Quantity("largest torque of the output", "N·m"),
+    "ratcheting.peak_rotation_deg": Quantity("rotation of the output there", "deg"),
+}
+"""Quantities of designs with [ratcheting]. Names end as in the summary."""
+
+
 class Drives(System[DriveDesign, DriveResult]):
     """The drive's adapter: analysis, results and quantities under the names that all systems share."""
 
@@ -145,6 +164,8 @@ class Drives(System[DriveDesign, DriveResult]):
         def quantity(column: str, when: str) -> Quantity:
             return Quantity(f"{MEANINGS.get(column, column)}, {when}", UNITS[column])
 
+        if design.has_program:
+            return program_quantities(design)
         known = {f"mean.{name}": quantity(name, "mean over the rotation") for name in MEANS}
         if design.output.root_stress:
             known |= RESOLVED
@@ -154,9 +175,16 @@ class Drives(System[DriveDesign, DriveResult]):
         return known | {f"step{k}.{name}": quantity(name, f"end of step {k}") for k in GROUPS for name in COLUMNS}
 
     def main_quantities(self, known: Mapping[str, Quantity]) -> tuple[str, ...]:
+        for group in (STIFFNESS, RATCHETING):
+            if group.keys() <= known.keys():
+                return tuple(group)
+        if "mean.fs_s1" not in known:
+            return tuple(name for name in known if name.endswith((".torque_Nm", ".rotation_arcmin")))
         return tuple(f"mean.{name}" for name in MAIN)
 
     def describe_names(self, known: Mapping[str, Quantity]) -> str:
+        if "mean.fs_s1" not in known:
+            return ", ".join(known)
         names = f"mean. with {', '.join(MEANS)}, or step1. to step{GROUPS[-1]}. with a column of history.csv"
         names = f"{names}; {', '.join(SHARING)}; with [fatigue] {', '.join(FATIGUE)}; with [losses] {', '.join(LOSSES)}"
         return f"{names}; with output.root_stress = true {', '.join(RESOLVED)}"
@@ -188,6 +216,7 @@ class Drives(System[DriveDesign, DriveResult]):
                 **resolved(summary, result.pairs),
                 **sharing(summary),
                 **cycle_values(summary),
+                **of_program(summary),
             },
             wall_s=summary["wall_s"],
             elements=summary["elements"],
@@ -244,6 +273,35 @@ def cycle_values(summary: Mapping[str, Any]) -> dict[str, float]:
         found |= {"losses.torque": losses["loss_torque_Nmm"], "losses.efficiency": losses["efficiency"]}
         found |= {f"losses.{name}": value for name, value in losses["parts_Nmm"].items()}
     return {name: value for name, value in found.items() if value is not None}
+
+
+def program_quantities(design: DriveDesign) -> dict[str, Quantity]:
+    """Quantities of a design with a load program: at the end of its stages, or of what is generated from it."""
+    if design.stiffness:
+        return STIFFNESS
+    if design.ratcheting:
+        return RATCHETING
+    return {
+        f"program.{stage.name}.{name}": Quantity(f"{name} at the end of {stage.name}", unit)
+        for stage in design.load.program
+        for name, unit in PROGRAM_COLUMNS.items()
+        if name not in ("step", "stage")
+    }
+
+
+def of_program(summary: Mapping[str, Any]) -> dict[str, float]:
+    """The quantities of a load program, without those that the run does not have."""
+    for group in (STIFFNESS, RATCHETING):
+        section = next(iter(group)).partition(".")[0]
+        if summary[section]:
+            return {name: summary[section][name.partition(".")[2]] for name in group}
+    stages = summary["program"] or {}
+    return {
+        f"program.{stage}.{name}": value
+        for stage, row in stages.items()
+        for name, value in row.items()
+        if name != "step"
+    }
 
 
 def values(means: Mapping[str, float], history: Mapping[str, np.ndarray]) -> dict[str, float]:
