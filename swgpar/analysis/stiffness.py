@@ -18,7 +18,7 @@ from swgpar.design.load_program import (
     POSITIVE_LOADING,
     POSITIVE_UNLOADING,
     TRAVEL,
-    computed_angle,
+    computed_position,
     rated_torque,
     stiffness_angles,
     stiffness_torque,
@@ -29,6 +29,9 @@ ARC_MINUTE = np.pi / 10800.0
 
 SAME_ANGLE = 1e-6
 """Difference (deg) below which two angles of the wave generator are the same."""
+
+POSITIVE = (POSITIVE_UNLOADING, POSITIVE_LOADING)
+"""Branches with a positive torque."""
 
 WAY_BACK = {
     POSITIVE_UNLOADING: POSITIVE_LOADING,
@@ -92,11 +95,15 @@ def at_position(design: DriveDesign, rows: Sequence[PointRow]) -> Stiffness:
             branch += before  # it begins where the one before has ended
         branch.append(row)
         before = [row]
-    branches = {name: found[name] or found[WAY_BACK[name]] for name in BRANCHES}
-    unloading, loading = (
-        [Branch(branches[name], sign) for name, sign in ((positive, 1.0), (negative, -1.0))]
-        for positive, negative in ((POSITIVE_UNLOADING, NEGATIVE_UNLOADING), (POSITIVE_LOADING, NEGATIVE_LOADING))
-    )
+    branches = {
+        name: Branch(found[name] or found[WAY_BACK[name]], 1.0 if name in POSITIVE else -1.0)
+        for name in BRANCHES
+        if found[name] or found[WAY_BACK[name]]
+    }
+    # a side that is left out is the image of the other one
+    one = next(iter(branches.values()))
+    unloading = [branches.get(name, one) for name in (POSITIVE_UNLOADING, NEGATIVE_UNLOADING)]
+    loading = [branches.get(name, one) for name in (POSITIVE_LOADING, NEGATIVE_LOADING)]
 
     def middle(side: int, torque: float) -> float:
         return 0.5 * (unloading[side].at(torque) + loading[side].at(torque))
@@ -139,7 +146,7 @@ def by_position(design: DriveDesign, rows: Sequence[PointRow]) -> dict[float, St
     """The stiffness at every angle (deg) of the wave generator, from all rows of program.csv."""
     found = {}
     for k, angle in enumerate(stiffness_angles(design)):
-        computed = computed_angle(design, k)
+        computed = stiffness_angles(design)[computed_position(design, k)]
         found[angle] = at_position(design, [row for row in rows if abs(row["wg_angle_deg"] - computed) < SAME_ANGLE])
     return found
 

@@ -26,6 +26,10 @@ COLUMNS = {
 """Columns of the history: title and format of their values."""
 
 
+NOTHING = 1e-6
+"""Stiffness and lost motion below which 0 is printed: round-off, in arc minutes."""
+
+
 def print_drive(history: Mapping[str, np.ndarray], summary: Mapping[str, Any]) -> None:
     """Print history and summary of a run; call it on one rank."""
     _print_history({name: values[: summary["increments"]] for name, values in history.items()})
@@ -75,8 +79,10 @@ def _print_stiffness(found: Mapping[str, Any]) -> None:
     spread, error = found["spread"], found["mesh_error"]
 
     def value(name: str, spec: str) -> str:
-        by_mesh = "" if error is None else f" ± {format(error[name], spec)}"
-        return f"{format(found[name], spec)}{by_mesh} (spread {format(spread[name], spec)})"
+        size, by_mesh, over = (
+            0.0 if abs(x) < NOTHING else x for x in (found[name], (error or found)[name], spread[name])
+        )
+        return f"{size:{spec}}{'' if error is None else f' ± {by_mesh:.2g}'} (spread {over:.2g})"
 
     console.print(
         f"torsional stiffness up to {found['torque_Nm']:g} N·m over {len(found['positions'])} positions, in N·m/rad: "

@@ -128,37 +128,51 @@ def stiffness_angles(design: DriveDesign) -> list[float]:
     return [float(np.degrees(design.period_angle)) * k / count for k in range(count)]
 
 
-def computed_angle(design: DriveDesign, k: int) -> float:
-    """Angle (deg) of the wave generator whose loop stands for that at the angle k of `stiffness_angles`.
+def computed_position(design: DriveDesign, k: int) -> int:
+    """Index of the angle of `stiffness_angles` whose loop stands for that at the angle k.
 
     Without friction a drive with a mirror plane has the same stiffness at the angle that the mirror makes of it.
     """
-    mirrored = not design.stiffness.loop and design.is_mirror_symmetric
-    return stiffness_angles(design)[min(k, design.stiffness.positions - k) if mirrored else k]
+    return min(k, design.stiffness.positions - k) if _uses_mirror(design) else k
+
+
+def _uses_mirror(design: DriveDesign) -> bool:
+    return not design.stiffness.loop and design.is_mirror_symmetric
 
 
 def _stiffness(design: DriveDesign) -> list[ProgramPoint]:
-    torques, points = stiffness_torques(design), []
+    torques, angles = stiffness_torques(design), stiffness_angles(design)
+    down, up = torques[::-1], [-torque for torque in torques]
+    branches = dict(zip(BRANCHES, (down, up, up[::-1], torques), strict=True))
+    points: list[ProgramPoint] = []
 
     def add(stage: str, angle: float, values: Sequence[float]) -> None:
         points.extend(ProgramPoint(stage, angle, "torque", value) for value in values)
 
-    angles = dict.fromkeys(computed_angle(design, k) for k in range(design.stiffness.positions))
-    for k, angle in enumerate(angles):
-        down, up = torques[::-1], [-torque for torque in torques]
-        branches = dict(zip(BRANCHES, (down, up, up[::-1], torques), strict=True))
+    for k in dict.fromkeys(computed_position(design, k) for k in range(len(angles))):
         if design.stiffness.loop:
             if k:
                 add(TRAVEL, points[-1].angle, torques[:1])
-                add(TRAVEL, angle, torques[:1])
-            add(FIRST_LOADING, angle, torques[1:] if k else torques)
-            # a branch that begins with the largest torque begins where the one before has ended
+                add(TRAVEL, angles[k], torques[:1])
+            add(FIRST_LOADING, angles[k], torques[1:] if k else torques)
             for name, values in branches.items():
-                add(name, angle, values[1:] if values[0] in (torques[-1], -torques[-1]) else values)
-        else:  # the way back is the same: alternately down and up
-            for name in BRANCHES[2:] if k % 2 else BRANCHES[:2]:
-                add(name, angle, branches[name])
+                # an unloading begins where the loading before it has ended
+                add(name, angles[k], values[1:] if abs(values[0]) > abs(values[-1]) else values)
+        else:
+            for name in _one_way(design, k, points[-1].value if points else 0.0):
+                add(name, angles[k], branches[name])
     return points
+
+
+def _one_way(design: DriveDesign, k: int, torque: float) -> tuple[str, ...]:
+    """Branches that suffice at the angle k where the way back is the same. torque : in which the position before ended
+
+    Where the mirror plane is that of the wave generator too, one side of the loop is the image of the other.
+    """
+    way = BRANCHES[:2] if torque >= 0.0 else BRANCHES[2:]
+    if _uses_mirror(design) and 2 * k in (0, design.stiffness.positions):
+        return way[:1] if k else (POSITIVE_LOADING,)
+    return way
 
 
 def pitch_angle(design: DriveDesign) -> float:

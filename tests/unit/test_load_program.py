@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,14 @@ from swgpar.analysis.program_results import work_by_torque
 from swgpar.analysis.ratcheting import AT_TEETH, IN_SPLINE, NOTHING, has_fallen, summarise_ratcheting
 from swgpar.analysis.shortcuts import with_shortcuts
 from swgpar.analysis.stiffness import ARC_MINUTE, by_position, summarise_stiffness
-from swgpar.design.load_program import NO_TORQUE, POSITIVE_UNLOADING, TRAVEL, pitch_angle, program_points
+from swgpar.design.load_program import (
+    NO_TORQUE,
+    POSITIVE_UNLOADING,
+    TRAVEL,
+    pitch_angle,
+    program_points,
+    stiffness_torques,
+)
 from swgpar.design.load_states import Stage, from_loaded, load_sequence
 from swgpar.errors import InputError
 from swgpar.meshing import load_recipe
@@ -107,8 +115,14 @@ def test_shortcuts_of_programs() -> None:
     recipe = load_recipe("plane_coarse")
     found = with_shortcuts(small("plane").with_values({"stiffness.positions": 6}), recipe).design
     assert found.steps.bent_start and not found.steps.samples and not found.stiffness.loop
-    # of six positions two mirror others
-    assert len({p.angle for p in program_points(found)}) == 4
+    # of six positions two mirror others, and at the first and the fourth one side mirrors the other
+    points = program_points(found)
+    period, half = 360.0 / 42.0, len(stiffness_torques(found))
+    counts = [sum(p.angle == pytest.approx(period * k / 6.0) for p in points) for k in range(6)]
+    assert counts == [half, 2 * half, 2 * half, half, 0, 0]
+    # the wave generator turns under the torque in which the position before has ended
+    for a, b in itertools.pairwise(points):
+        assert a.angle == b.angle or a.value == b.value
     turned = program({"name": "turn", "wave_generator": 1.0, "torque": 0.2})
     assert not with_shortcuts(small("plane").with_values(turned), recipe).design.steps.bent_start
     friction = small("plane", "contact.friction=0.1").with_values({"stiffness.positions": 4})
