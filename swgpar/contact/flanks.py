@@ -20,6 +20,7 @@ import numpy as np
 from swgpar.contact import friction
 from swgpar.contact.contact import NO_KEYS, FacePressure
 from swgpar.contact.enforcement import penetration
+from swgpar.contact.flank_deviations import FlankDeviations
 from swgpar.contact.flank_pairs import Faces, FlankPairs
 from swgpar.contact.flank_state import ActiveSegments, Crowning, FrictionStart, RingMotion, SearchRange
 from swgpar.contact.friction import Friction, PairKey
@@ -59,6 +60,7 @@ class FlankContact:
     tractions : tangential tractions of the last accepted state by flank pair
     frozen : whether the segments are frozen
     found : pairs and faces of the last search, None before the first one
+    deviations : of the flanks, None where they are ideal
     """
 
     def __init__(
@@ -88,6 +90,7 @@ class FlankContact:
         self.tractions: dict[PairKey, np.ndarray] = {}
         self.frozen = False
         self.found: FlankPairs | None = None
+        self.deviations: FlankDeviations | None = None
         self._near_faces = np.zeros(0, dtype=np.int64)
         self._friction_start: FrictionStart | None = None
         self._active: ActiveSegments | None = None
@@ -142,6 +145,8 @@ class FlankContact:
         self._ring_rotation = self.ring_motion.ring_rotation(u)
         if found.faces is None:
             return NO_KEYS
+        if self.deviations is not None:
+            found.deviate(self.deviations)
         gap, foot_point = self._gaps_at_centers(u)
         self._near_faces = np.flatnonzero(gap < distances.near)
         if accepted is not None:
@@ -152,6 +157,13 @@ class FlankContact:
     def reset(self) -> None:
         """Forget the segments with their multipliers, gaps and pressures."""
         self._active, self.frozen = None, False
+
+    def deviate(self, deviations: FlankDeviations) -> None:
+        """Let the flanks deviate from now on, also those of the last search, which begin with new segments."""
+        self.deviations = deviations
+        if self.found is not None:
+            self.found.deviate(deviations)
+        self.reset()
 
     def _stored_tractions(self) -> np.ndarray:
         samples = np.zeros((len(self.pairs), self.n_face, friction.SAMPLES, friction.SAMPLES, 2))

@@ -33,16 +33,32 @@ class SurfacePose:
     """Position of the rigid surface: rotated by `angle` (rad), every gap opened by `clearance` (mm).
 
     inset : None for the cam; for the pins, the distance (mm) by which each is drawn in along the major axis
+    shift : mm, of the surface's axis, in the cam's frame;  lean : displacement of that axis per mm along z
     """
 
     angle: float
     clearance: float = 0.0
     inset: float | None = None
+    shift: tuple[float, float] = (0.0, 0.0)
+    lean: tuple[float, float] = (0.0, 0.0)
 
     def rotation(self) -> np.ndarray:
         """Matrix (3, 3) that takes vectors from the cam's frame to the fixed one."""
         c, s = np.cos(self.angle), np.sin(self.angle)
-        return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        turned = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        return turned @ _leaning(*self.lean) if any(self.lean) else turned
+
+
+def _leaning(x: float, y: float) -> np.ndarray:
+    """Rotation (3, 3) that takes the axis z to the direction (x, y, 1)."""
+    size = np.hypot(x, y)
+    u = np.array([x, y]) / size
+    cosine = 1.0 / np.hypot(1.0, size)
+    sine = size * cosine
+    matrix = np.eye(3)
+    matrix[:2, :2] += (cosine - 1.0) * np.outer(u, u)
+    matrix[:2, 2], matrix[2, :2], matrix[2, 2] = sine * u, -sine * u, cosine
+    return matrix
 
 
 def cam_pose(state: LoadState) -> SurfacePose | None:
@@ -169,6 +185,8 @@ class RigidContact:
         field[self.flip == 1] *= HALF_TURN
         x = np.einsum("qa,fai->fqi", self.shape, self.coords + field)
         points = (x @ pose.rotation()).reshape(-1, 3)
+        if any(pose.shift):
+            points[:, :2] -= pose.shift
         reachable = self.inside
         if pose.inset is not None:
             points[:, 1] += pose.inset * np.sign(points[:, 1])
