@@ -44,8 +44,8 @@ RAMP = (0.25, 0.5, 0.75, 1.0)
 class TurnPoint:
     """State at an angle of the wave generator.
 
-    index : of the angle;  wg_angle, output_angle : rad;  wg_torque : N mm;  iterations : of Newton, 0 where a state that
-    is known repeats
+    index : of the angle;  wg_angle, output_angle : rad;  wg_torque : N mm
+    iterations : of Newton, 0 where a state that is known repeats
     """
 
     index: int
@@ -134,6 +134,7 @@ class DeviatingDrive:
             ideal.copy(self.model.problem.x)
             self.model.problem.search(state)  # all states of the phase are near this one
             seen: dict[tuple[int, ...], tuple[int, TurnPoint]] = {}
+            guess = ideal
             for pitch in range(self.pitches):
                 index = pitch * len(ideals) + phase
                 if index in known:
@@ -142,7 +143,8 @@ class DeviatingDrive:
                 if key in seen:
                     yield self._repeated(*seen[key], pitch, index)
                 else:
-                    found = self._point(index, pitch, state, ideal)
+                    found = self._point(index, pitch, state, ideal, guess)
+                    guess = self.model.problem.x.copy()
                     seen[key] = pitch, found
                     yield found
 
@@ -179,12 +181,12 @@ class DeviatingDrive:
         lean = share * rotated(part.lean, turn)
         offsets[FLEXIBLE_SPLINE, [TILT_X, TILT_Y]] = -lean[1], lean[0]
 
-    def _point(self, index: int, pitch: int, state: LoadState, ideal: PETSc.Vec) -> TurnPoint:
-        """The state at a phase of a pitch, from the ideal one."""
+    def _point(self, index: int, pitch: int, state: LoadState, ideal: PETSc.Vec, guess: PETSc.Vec) -> TurnPoint:
+        """The state at a phase of a pitch, from a guess, or from the ideal one by shares of the deviations."""
         problem, iterations = self.model.problem, 0
         deviations = self.tables.rolled(pitch)
-        for shares in (RAMP[-1:], RAMP):
-            ideal.copy(problem.x)
+        for start, shares in ((guess, RAMP[-1:]), (ideal, RAMP)):
+            start.copy(problem.x)
             for share in shares:
                 self._displace_bore(pitch, state, share)
                 problem.flanks.deviate(deviations.scaled(share))

@@ -16,7 +16,7 @@ from swgpar.results import history
 from swgpar.results.atomic import agreed
 from swgpar.results.field_sources import BodyMesh, FieldFiles, FieldSource, chosen_increment
 from swgpar.results.fields import INDEX
-from swgpar.results.folder import CONTACT_LINES, PAIRS, read_summary
+from swgpar.results.folder import CONTACT_LINES, PAIRS, TRANSMISSION_ERROR, read_summary
 from swgpar.results.history import Curves, Row
 from swgpar.results.table import read_columns
 
@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 ROTATED = {"displacement": (-1.0, -1.0, 1.0), "stress": (1.0, 1.0, -1.0, 1.0, -1.0, 1.0)}
 """Signs of the components of vectors, and of tensors xx xy xz yy yz zz, after half a turn about z."""
 
+
+Tables = Mapping[str, Mapping[str, np.ndarray]]
+"""Columns of the tables of a run by the names of their files: pairs, contact lines, transmission error."""
 
 SPLINE: GearName = "flexible_spline"
 
@@ -59,6 +62,9 @@ class DriveResult:
         Columns of pairs.csv, a value for every pair of flanks in contact at every computed increment under load.
     contact_lines : dict of (n,) arrays
         Columns of contact_lines.csv, a value for every station along the face width of these contacts.
+    transmission_error : dict of (n,) arrays
+        Columns of transmission_error.csv: angles of input and output, transmission error and input torque over the
+        sampled period, or with ``[deviations]`` over whole turns. ``summary["transmission_error"]`` has what follows.
     folder : Path or None
         The results folder; None when the run was in memory.
 
@@ -74,15 +80,16 @@ class DriveResult:
         self,
         rows: Sequence[Row],
         summary: dict[str, Any],
-        pairs: Mapping[str, np.ndarray],
-        contact_lines: Mapping[str, np.ndarray],
+        tables: Tables,
         fields: FieldSource | None,
         comm: MPI.Comm,
         folder: Path | None = None,
     ) -> None:
         self.history: dict[str, np.ndarray] = history.columns(rows)
         self.summary = summary
-        self.pairs, self.contact_lines = dict(pairs), dict(contact_lines)
+        self.pairs, self.contact_lines, self.transmission_error = (
+            dict(tables[name]) for name in (PAIRS, CONTACT_LINES, TRANSMISSION_ERROR)
+        )
         self.folder = folder
         self._fields, self._comm = fields, comm
 
@@ -247,8 +254,9 @@ def open_drive(folder: Path, comm: MPI.Comm) -> DriveResult:
     folder = folder.absolute()  # the fields are read later
     with agreed(comm, folder, "read"):
         summary, rows = read_summary(folder), history.read_history(folder / history.NAME)
-        contacts = [read_columns(folder / name) if (folder / name).exists() else {} for name in (PAIRS, CONTACT_LINES)]
-    return DriveResult(rows, summary, *contacts, open_fields(folder, comm), comm, folder)
+        names = (PAIRS, CONTACT_LINES, TRANSMISSION_ERROR)
+        tables = {name: read_columns(folder / name) if (folder / name).exists() else {} for name in names}
+    return DriveResult(rows, summary, tables, open_fields(folder, comm), comm, folder)
 
 
 def open_fields(folder: Path, comm: MPI.Comm) -> FieldFiles | None:

@@ -12,7 +12,7 @@ import numpy as np
 
 from swgpar.analysis.contact_pressure import nodal_pressure
 from swgpar.analysis.drive_model import DriveModel
-from swgpar.analysis.drive_result import DriveResult, open_fields
+from swgpar.analysis.drive_result import DriveResult, Tables, open_fields
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.pair_contact import pair_contacts
 from swgpar.analysis.places import Place, find_places
@@ -24,12 +24,12 @@ from swgpar.design.sections import GEARS
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.meshing import SectorMesh
 from swgpar.results import history
-from swgpar.results.atomic import to_json, write_from_root
+from swgpar.results.atomic import agreed, to_json, write_from_root
 from swgpar.results.field_sources import BodyPart, FieldParts, FlankGrids
 from swgpar.results.fields import FieldWriter
-from swgpar.results.folder import CONTACT_LINES, PAIRS, SUMMARY
+from swgpar.results.folder import CONTACT_LINES, PAIRS, SUMMARY, TRANSMISSION_ERROR
 from swgpar.results.history import Row
-from swgpar.results.table import as_columns, format_csv
+from swgpar.results.table import as_columns, format_csv, read_columns
 
 NodalFields = dict[str, dict[str, np.ndarray]]
 """Body -> name of the field -> values (n_sectors, n_local[, n_components]) of the owned sectors."""
@@ -48,6 +48,7 @@ class Recorder(ABC):
     root_stress : of the loaded state, once it is resolved
     places : of the largest stresses under load, by column of the history
     pairs, contact_lines : rows of pairs.csv and contact_lines.csv, the contacts of flanks under load
+    turns : rows of transmission_error.csv
     """
 
     def __init__(self, model: DriveModel) -> None:
@@ -59,6 +60,7 @@ class Recorder(ABC):
         self.places: dict[str, Place] = {}
         self.pairs: list[Row] = []
         self.contact_lines: list[Row] = []
+        self.turns: list[Row] = []
 
     def record(self, stepper: LoadStepper, seconds: float, elapsed: float) -> None:
         """Keep the state after an increment.
@@ -93,12 +95,22 @@ class Recorder(ABC):
             self.pairs += [{**when, **contact.row()} for contact in contacts]
             self.contact_lines += [{**when, **row} for contact in contacts for row in contact.station_rows()]
 
-    def _shared(
-        self, rows: list[Row], summary: dict[str, Any]
-    ) -> tuple[list[Row], dict[str, Any], dict[str, np.ndarray], dict[str, np.ndarray]]:
-        """History, summary and contacts of rank 0 on every rank, as files hold them; collective."""
-        contacts = as_columns(self.pairs), as_columns(self.contact_lines)
-        return self.comm.bcast((rows, json.loads(to_json(summary)), *contacts) if self.comm.rank == 0 else None)
+    def keep_turns(self, rows: list[Row]) -> None:
+        """Keep rows of transmission_error.csv in place of those before."""
+        self.turns = rows
+
+    def known_turns(self) -> list[Row]:
+        """Rows of transmission_error.csv that the run which is continued has left."""
+        return []
+
+    def _shared(self, rows: list[Row], summary: dict[str, Any]) -> tuple[list[Row], dict[str, Any], Tables]:
+        """History, summary and tables of rank 0 on every rank, as files hold them; collective."""
+        tables = {
+            PAIRS: as_columns(self.pairs),
+            CONTACT_LINES: as_columns(self.contact_lines),
+            TRANSMISSION_ERROR: as_columns(self.turns),
+        }
+        return self.comm.bcast((rows, json.loads(to_json(summary)), tables) if self.comm.rank == 0 else None)
 
     @abstractmethod
     def begin(self) -> None:
@@ -186,6 +198,19 @@ class FolderRecorder(Recorder):
             )
         self.write_index()
         write_state(self, stepper, {body: values["displacement"] for body, values in fields.items()}, elapsed)
+
+    def keep_turns(self, rows: list[Row]) -> None:
+        super().keep_turns(rows)
+        if rows:
+            write_from_root(self.comm, self.out / TRANSMISSION_ERROR, format_csv(rows))
+
+    def known_turns(self) -> list[Row]:
+        path = self.out / TRANSMISSION_ERROR
+        present = self.comm.bcast(path.exists() if self.comm.rank == 0 else None)
+        with agreed(self.comm, path, "read"):
+            columns = read_columns(path) if present else {}
+        rows = [dict(zip(columns, values)) for values in zip(*(column.tolist() for column in columns.values()))]
+        return [{**row, "newton_iterations": int(row["newton_iterations"])} for row in rows]
 
     def write_index(self) -> None:
         """Write the index of the fields, and the history."""

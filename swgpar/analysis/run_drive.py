@@ -13,6 +13,7 @@ from mpi4py import MPI
 from swgpar.analysis.coarse_start import levels, start_loaded, starts_bent
 from swgpar.analysis.drive_model import DriveModel, build_drive_model
 from swgpar.analysis.drive_result import DriveResult
+from swgpar.analysis.follow_turns import follow_turns
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.mesh_refinement import (
     COMPARED_LEVELS,
@@ -30,6 +31,7 @@ from swgpar.analysis.restart import identity, resume
 from swgpar.analysis.root_stress import RootStress, resolve_root_stress, with_angle
 from swgpar.analysis.shortcuts import finds_contacts, with_shortcuts
 from swgpar.analysis.summary import Accuracy, summarise
+from swgpar.analysis.transmission_error import period_rows
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import LoadState, Stage, from_loaded, load_sequence
 from swgpar.errors import ConvergenceError, InputError, SwgparError
@@ -247,6 +249,10 @@ class _Run:
         """Summarise the run."""
         recorder, design = self.recorder, self.model.design
         rows = recorder.rows
+        if design.deviations is not None:
+            follow_turns(design, self.recipe, recorder)
+        else:
+            recorder.keep_turns(period_rows(design, rows))
         summary = summarise(
             self.model,
             rows,
@@ -255,6 +261,7 @@ class _Run:
             recorder.root_stress,
             recorder.places,
             recorder.pairs,
+            recorder.turns,
             self.seconds,
         )
         if design.steps.samples and summary["means"]:

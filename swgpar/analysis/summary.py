@@ -15,6 +15,7 @@ from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.period import of_period, sampling_error
 from swgpar.analysis.places import Place
 from swgpar.analysis.root_stress import RootStress
+from swgpar.analysis.transmission_error import summarise_turns
 from swgpar.design.load_states import Stage
 from swgpar.results.history import Row, column, transmission_error
 from swgpar.version import __version__
@@ -74,6 +75,7 @@ def summarise(
     root_stress: RootStress | None,
     places: Mapping[str, Place],
     pairs: Sequence[Row],
+    turns: Sequence[Row],
     seconds: float,
 ) -> dict[str, Any]:
     """Content of summary.json; collective.
@@ -86,6 +88,7 @@ def summarise(
     root_stress : largest tensile stress at the teeth, by windows
     places : of the largest stresses under load
     pairs : contacts of the flanks under load
+    turns : transmission error over the sampled period, or over whole turns with deviations
     seconds : wall time of the run, restarts included
     """
     design = model.design
@@ -99,6 +102,7 @@ def summarise(
         "increments": len(rows),
         **_program(model, seconds),
         **values,
+        "transmission_error": summarise_turns(design, turns),
         "accuracy": accuracy and asdict(accuracy),
         "places": {name: asdict(place) for name, place in places.items()},
         "root_stress": root_stress and _resolved(root_stress),

@@ -26,6 +26,10 @@ COLUMNS = {
 """Columns of the history: title and format of their values."""
 
 
+ORDERS = 5
+"""Orders of the transmission error that are shown."""
+
+
 def print_drive(history: Mapping[str, np.ndarray], summary: Mapping[str, Any]) -> None:
     """Print history and summary of a run; call it on one rank."""
     _print_history({name: values[: summary["increments"]] for name, values in history.items()})
@@ -36,6 +40,8 @@ def print_drive(history: Mapping[str, np.ndarray], summary: Mapping[str, Any]) -
         _print_places(places)
     if summary["means"]:
         _print_means(summary)
+    if turns := summary["transmission_error"]:
+        _print_turns(turns)
     _print_errors(summary)
     console.print(
         f"torque balance error {summary['balance_error_Nmm']:.1e} N·mm; "
@@ -65,6 +71,17 @@ def _print_means(summary: Mapping[str, Any]) -> None:
             f"over the rotation: input torque varies by {100.0 * ripple:.1f} % of its mean, transmission error by "
             f"{summary['transmission_error_arcsec']:.1f} arc seconds"
         )
+
+
+def _print_turns(turns: Mapping[str, Any]) -> None:
+    """Transmission error over whole turns, or over the period of the ideal drive."""
+    where = f"{turns['turns']:.0f} turns with deviations" if turns["turns"] >= 1.0 else "one period of the ideal drive"
+    console.print(
+        f"transmission error over {where}: {turns['peak_to_peak']:.4g} arc seconds peak to peak; input torque "
+        f"{turns['torque']['mean']:.2f} N·mm, {turns['torque']['peak_to_peak']:.4g} peak to peak"
+    )
+    for line in turns["spectrum"][:ORDERS]:
+        console.print(f"  order {line['order']:8.3f}: {line['amplitude']:.3g} arc seconds, {line['cause']}")
 
 
 def _print_places(places: Mapping[str, Mapping[str, Any]]) -> None:

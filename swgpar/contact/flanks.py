@@ -94,6 +94,7 @@ class FlankContact:
         self._near_faces = np.zeros(0, dtype=np.int64)
         self._friction_start: FrictionStart | None = None
         self._active: ActiveSegments | None = None
+        self._cut_at: np.ndarray | None = None  # displacement at which unfrozen segments were cut
         self._ring_rotation = 0.0
 
     # -- search ----------------------------------------------------------------------------------------
@@ -156,7 +157,7 @@ class FlankContact:
 
     def reset(self) -> None:
         """Forget the segments with their multipliers, gaps and pressures."""
-        self._active, self.frozen = None, False
+        self._active, self._cut_at, self.frozen = None, None, False
 
     def deviate(self, deviations: FlankDeviations) -> None:
         """Let the flanks deviate from now on, also those of the last search, which begin with new segments."""
@@ -229,8 +230,8 @@ class FlankContact:
         """Moment (N mm) on the ring gear's rotation from owned pairs, and keys of missing blocks."""
         if not len(self._near_faces):
             return 0.0, NO_KEYS
-        if not self.frozen:
-            self._active = self._cut(u)
+        if not self.frozen and (self._cut_at is None or not np.array_equal(u, self._cut_at)):
+            self._active, self._cut_at = self._cut(u), u.copy()
         active = self._active
         if active.friction is not None:
             active.friction.stiffness = friction.STIFFNESS * self.penalty
@@ -254,7 +255,8 @@ class FlankContact:
         corners = all_faces.corners(self._near_faces)
         zero = np.zeros(corners.weight.shape)
         foot_point = self._call_kernel(corners, u, zero, 0.0, beyond=CONTINUATION)[2]
-        segments = cut_faces(foot_point, all_faces.size[self._near_faces], masters.s, masters.z, self.order)
+        size, plane = all_faces.size[self._near_faces], self.spline.layout.mesh.plane
+        segments = cut_faces(foot_point, size, masters.s, masters.z, self.order, plane)
         faces = all_faces.cut(self._near_faces, segments)
         segments = replace(segments, parent=self._near_faces[segments.parent])
         multiplier = np.zeros_like(faces.weight)
@@ -301,7 +303,8 @@ class FlankContact:
     @property
     def multiplier(self) -> np.ndarray:
         """Multipliers (n_segment, n_q) MPa of the present segments."""
-        return np.zeros((0, self.order**2)) if self._active is None else self._active.multiplier
+        points = self.order if self.spline.layout.mesh.plane else self.order**2
+        return np.zeros((0, points)) if self._active is None else self._active.multiplier
 
     @multiplier.setter
     def multiplier(self, values: np.ndarray) -> None:
@@ -318,7 +321,7 @@ class FlankContact:
 
     def freeze_segments(self) -> None:
         """Freeze the segments of the last evaluation until `release_segments` or the next search."""
-        self.frozen = self._active is not None
+        self.frozen, self._cut_at = self._active is not None, None
 
     def release_segments(self) -> None:
         """Cut the faces anew in every evaluation again."""

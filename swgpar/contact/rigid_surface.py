@@ -110,9 +110,13 @@ class RigidContact:
         self.flip = np.ascontiguousarray(body.flip[sectors][:, faces].reshape(-1, 4))
         self.coords = body.positions()[sectors][:, faces].reshape(-1, 4, 3)
         self.owned = np.repeat(sectors >= first, len(faces))
-        point, weight = np.polynomial.legendre.leggauss(n_quadrature)
-        a, b = (v.ravel() for v in np.meshgrid(point, point, indexing="ij"))
-        weight = np.outer(weight, weight).ravel()
+        counts = [n_quadrature, n_quadrature]
+        if body.layout.mesh.plane:  # nothing changes along z, in which one of the two directions of a face runs
+            along = np.ptp(body.layout.mesh.coords[faces[0, :2], 2]) == 0.0
+            counts[int(along)] = 1
+        (point_a, weight_a), (point_b, weight_b) = (np.polynomial.legendre.leggauss(n) for n in counts)
+        a, b = (v.ravel() for v in np.meshgrid(point_a, point_b, indexing="ij"))
+        weight = np.outer(weight_a, weight_b).ravel()
         corner = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
         self.shape = 0.25 * (1 + a[:, None] * corner[:, 0]) * (1 + b[:, None] * corner[:, 1])
         da = 0.25 * corner[:, 0] * (1 + b[:, None] * corner[:, 1])

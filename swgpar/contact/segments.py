@@ -125,25 +125,29 @@ def _ends(
     return np.where(np.isnan(low), high - length, low), np.where(np.isnan(high), low + length, high)
 
 
-def cut_faces(foot_point: np.ndarray, size: np.ndarray, s: np.ndarray, z: np.ndarray, order: int) -> Segments:
+def cut_faces(
+    foot_point: np.ndarray, size: np.ndarray, s: np.ndarray, z: np.ndarray, order: int, plane: bool = False
+) -> Segments:
     """Cut faces along the lines s and z of the master's nodes.
 
     foot_point : (n_face, 4, 2) mm, foot points of the corners on the master, nan where there is none
     size : (n_face, 2) mm of the faces along arc length, which runs in the opposite sense on the master, and z
     s, z : lines, ascending;  order : Gauss points per direction of a segment
+    plane : nothing changes along z, where one point stands for all
     """
-    along = [
-        _cuts(*_ends(foot_point[..., 0], ([0, 3], [1, 2]), -size[:, 0]), s),
-        _cuts(*_ends(foot_point[..., 1], ([0, 1], [3, 2]), size[:, 1]), z),
-    ]
+    along = [_cuts(*_ends(foot_point[..., 0], ([0, 3], [1, 2]), -size[:, 0]), s)]
+    if plane:
+        along.append(np.tile([0.0, 1.0], (len(size), 1)))
+    else:
+        along.append(_cuts(*_ends(foot_point[..., 1], ([0, 1], [3, 2]), size[:, 1]), z))
     width = [np.diff(ends, axis=1) for ends in along]
     parent, i, j = np.nonzero((width[0] > 1e-12)[:, :, None] & (width[1] > 1e-12)[:, None, :])
-    t, w = np.polynomial.legendre.leggauss(order)
-    ta, tb = (v.ravel() for v in np.meshgrid(0.5 * (t + 1.0), 0.5 * (t + 1.0), indexing="ij"))
+    (t, w), (tz, wz) = (np.polynomial.legendre.leggauss(n) for n in (order, 1 if plane else order))
+    ta, tb = (v.ravel() for v in np.meshgrid(0.5 * (t + 1.0), 0.5 * (tz + 1.0), indexing="ij"))
     size_a, size_b = width[0][parent, i, None], width[1][parent, j, None]
     return Segments(
         parent,
         along[0][parent, i, None] + size_a * ta,
         along[1][parent, j, None] + size_b * tb,
-        size_a * size_b * (0.25 * np.outer(w, w).ravel()),
+        size_a * size_b * (0.25 * np.outer(w, wz).ravel()),
     )

@@ -109,4 +109,3 @@ class GearDeviations:
         turned = self.moved(points + tangent, angle) - moved
         bend = rise[:, None] * normal - (height * profile.curvature(s))[:, None] * tangent
         return moved + height[:, None] * normal, turned + bend
-

@@ -23,6 +23,9 @@ TABLES = "tables"
 PAIRS = "pairs.csv"
 """Contacts of the flanks under load."""
 
+TRANSMISSION_ERROR = "transmission_error.csv"
+"""Transmission error and input torque over a period, or with deviations over whole turns."""
+
 CONTACT_LINES = "contact_lines.csv"
 """The same along the face width."""
 
@@ -38,6 +41,7 @@ RESULTS = (
     SUMMARY,
     PAIRS,
     CONTACT_LINES,
+    TRANSMISSION_ERROR,
     "published.csv",
     RECIPE,
     f"{TABLES}/*.csv",

@@ -55,6 +55,15 @@ RESOLVED = {
 """Quantities of runs with `output.root_stress`, which a study has to set."""
 
 
+TRANSMISSION = {
+    "transmission_error.peak_to_peak": Quantity("transmission error, peak to peak", "arcsec"),
+    "transmission_error.amplitude": Quantity("transmission error, half of peak to peak", "arcsec"),
+    "transmission_error.torque_mean": Quantity("input torque over the same angles, mean", "N·mm"),
+    "transmission_error.torque_peak_to_peak": Quantity("input torque over the same angles, peak to peak", "N·mm"),
+}
+"""Quantities of runs with `steps.samples`, over their period, and of those with [deviations], over whole turns."""
+
+
 class Drives(System[DriveDesign, DriveResult]):
     """The drive's adapter: analysis, results and quantities under the names that all systems share."""
 
@@ -118,6 +127,7 @@ class Drives(System[DriveDesign, DriveResult]):
         known = {f"mean.{name}": quantity(name, "mean over the rotation") for name in MEANS}
         if design.output.root_stress:
             known |= RESOLVED
+        known |= TRANSMISSION
         return known | {f"step{k}.{name}": quantity(name, f"end of step {k}") for k in GROUPS for name in COLUMNS}
 
     def main_quantities(self, known: Mapping[str, Quantity]) -> tuple[str, ...]:
@@ -125,6 +135,7 @@ class Drives(System[DriveDesign, DriveResult]):
 
     def describe_names(self, known: Mapping[str, Quantity]) -> str:
         names = f"mean. with {', '.join(MEANS)}, or step1. to step{GROUPS[-1]}. with a column of history.csv"
+        names += f", or {', '.join(TRANSMISSION)}"
         return f"{names}; with output.root_stress = true {', '.join(RESOLVED)}"
 
     def check_published(self, design: DriveDesign, names: Iterable[str]) -> None:
@@ -149,7 +160,7 @@ class Drives(System[DriveDesign, DriveResult]):
     def measure(self, result: DriveResult) -> Measured:
         summary = result.summary
         return Measured(
-            values=values(summary["means"], result.history) | resolved(summary, result.pairs),
+            values=values(summary["means"], result.history) | resolved(summary, result.pairs) | transmission(summary),
             wall_s=summary["wall_s"],
             elements=summary["elements"],
             newton_mean=summary["newton_iterations_mean"],
@@ -169,6 +180,15 @@ def resolved(summary: Mapping[str, Any], pairs: Mapping[str, np.ndarray]) -> dic
         if not contact["edge"]:
             found["contact.pressure"] = contact["pressure_MPa"]
     return found
+
+
+def transmission(summary: Mapping[str, Any]) -> dict[str, float]:
+    """The quantities of `TRANSMISSION`; none of a run that has no transmission error over a period or a turn."""
+    found = summary["transmission_error"]
+    if not found:
+        return {}
+    torque = {f"transmission_error.torque_{name}": found["torque"][name] for name in ("mean", "peak_to_peak")}
+    return {f"transmission_error.{name}": found[name] for name in ("peak_to_peak", "amplitude")} | torque
 
 
 def values(means: Mapping[str, float], history: Mapping[str, np.ndarray]) -> dict[str, float]:
