@@ -197,7 +197,9 @@ def build_supports(design: DriveDesign, *, partition: Partition, elements: Eleme
     """Coupling of the bore; with the spline fixed also that of the ring gear, and the housing."""
     spline, ring = elements.bodies
     halved = is_halved(design)
-    couplings, housing = [DistributingCoupling(partition, spline, "bore", halved)], None
+    # a plane section with deviations is centred by its cam alone: the wall of the cup gives way
+    centred = design.drive.model == "cup" or design.deviations is None
+    couplings, housing = [DistributingCoupling(partition, spline, "bore", halved, centred)], None
     if design.drive.layout == "spline_fixed":
         couplings.append(DistributingCoupling(partition, ring, "outer", halved))
         outer = float(np.hypot(*couplings[-1].reference[:, :2].T).max(initial=0.0))

@@ -68,6 +68,9 @@ class DriveResult:
         Columns of losses.csv: losses at the angles of the sampled period.
     program : dict of (n,) arrays
         Columns of program.csv, a value for every point of a load program: torque and rotation of the output.
+    transmission_error : dict of (n,) arrays
+        Columns of transmission_error.csv: angles of input and output, transmission error and input torque over the
+        sampled period, or with ``[deviations]`` over whole turns. ``summary["transmission_error"]`` has what follows.
     folder : Path or None
         The results folder; None when the run was in memory.
 
@@ -94,6 +97,7 @@ class DriveResult:
         self.program: dict[str, np.ndarray] = dict(tables.program)
         self.fatigue: SectorFields | None = tables.sector
         self.fatigue_cycle, self.losses = dict(tables.cycle), dict(tables.losses)
+        self.transmission_error: dict[str, np.ndarray] = dict(tables.turns)
         self.folder = folder
         self._fields, self._comm = fields, comm
 

@@ -10,6 +10,7 @@ from mpi4py import MPI
 
 from swgpar.analysis.fatigue_figures import draw_haigh, sector_picture
 from swgpar.analysis.program_figures import torque_against_rotation
+from swgpar.analysis.transmission_error import orders
 from swgpar.design.sections import GEARS
 from swgpar.errors import InputError
 from swgpar.results.figure_set import Drawings, FigureSet
@@ -60,6 +61,8 @@ class DriveFigures(FigureSet):
             found["torque_against_rotation"] = self.torque_against_rotation
         else:
             found["torque_and_transmission_error"] = self.torque_and_transmission_error
+        if self._result.transmission_error:
+            found["transmission_error_spectrum"] = self.transmission_error_spectrum
         if self._result.pairs:
             found |= {"pairs": self.pairs, "load_sharing": self.load_sharing}
             if np.isfinite(self._result.pairs["pressure_MPa"]).any():
@@ -101,6 +104,31 @@ class DriveFigures(FigureSet):
         figure, (upper, lower) = _panels(2)
         self._draw_torque(upper)
         self._draw_transmission_error(lower)
+        return figure
+
+    def transmission_error_spectrum(self) -> Figure:
+        """Transmission error (arc seconds) over the angle of the input, and its orders of the input's turn.
+
+        Over whole turns with deviations, or over the sampled period of the ideal drive.
+        """
+        from matplotlib.figure import Figure
+
+        rows, summary = self._result.transmission_error, self._result.summary["transmission_error"]
+        figure = Figure(figsize=(7.0, 6.0), layout="constrained")
+        upper, lower = figure.subplots(2, 1)
+        error = rows["transmission_error_arcsec"]
+        upper.plot(rows["wg_angle_deg"], error - error.mean(), lw=1.0, marker="o" if len(error) < 40 else None, ms=3)
+        upper.set(xlabel=ANGLE, ylabel="arc seconds", title="transmission error less its mean")
+        order, amplitude, _ = orders(summary, rows)
+        lower.vlines(order, 0.0, amplitude, lw=1.2)
+        named = summary["spectrum"][:4]
+        for line in named:
+            lower.plot(line["order"], line["amplitude"], "o", ms=4, label=f"{line['order']:.4g}: {line['cause']}")
+        lower.set(xlabel="order of the input's turn", ylabel="amplitude (arc seconds)", ylim=(0.0, None))
+        if named:
+            lower.legend(fontsize=7)
+        for axes in (upper, lower):
+            axes.grid(alpha=0.3)
         return figure
 
     def _draw_torque(self, axes: Axes) -> None:

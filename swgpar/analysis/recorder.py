@@ -31,12 +31,12 @@ from swgpar.design.sections import GEARS
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.meshing import SectorMesh
 from swgpar.results import history
-from swgpar.results.atomic import to_json, write_from_root
+from swgpar.results.atomic import agreed, to_json, write_from_root
 from swgpar.results.field_sources import BodyPart, FieldParts, FlankGrids
 from swgpar.results.fields import FieldWriter
-from swgpar.results.folder import CONTACT_LINES, PAIRS, PROGRAM, STIFFNESS, SUMMARY
+from swgpar.results.folder import CONTACT_LINES, PAIRS, PROGRAM, STIFFNESS, SUMMARY, TRANSMISSION_ERROR
 from swgpar.results.history import Row
-from swgpar.results.table import as_columns, format_csv
+from swgpar.results.table import as_columns, format_csv, read_columns
 
 NodalFields = dict[str, dict[str, np.ndarray]]
 """Body -> name of the field -> values (n_sectors, n_local[, n_components]) of the owned sectors."""
@@ -58,6 +58,7 @@ class Recorder(ABC):
     pairs, contact_lines : rows of pairs.csv and contact_lines.csv, the contacts of flanks under load
     cycle : stresses of the sampled period, with [fatigue] or [losses]
     cam_forces : N, of all increments, with [losses]
+    turns : rows of transmission_error.csv
     """
 
     def __init__(self, model: DriveModel) -> None:
@@ -73,6 +74,7 @@ class Recorder(ABC):
         self.cycle = StressCycle(model) if design.fatigue or design.losses else None
         self.cam_forces: list[float] = []
         self.tooth_rotations: list[float] = []
+        self.turns: list[Row] = []
 
     def record(self, stepper: LoadStepper, seconds: float, elapsed: float) -> None:
         """Keep the state after an increment.
@@ -115,6 +117,14 @@ class Recorder(ABC):
             self.pairs += [{**when, **contact.row()} for contact in contacts]
             self.contact_lines += [{**when, **row} for contact in contacts for row in contact.station_rows()]
 
+    def keep_turns(self, rows: list[Row]) -> None:
+        """Keep rows of transmission_error.csv in place of those before."""
+        self.turns = rows
+
+    def known_turns(self) -> list[Row]:
+        """Rows of transmission_error.csv that the run which is continued has left."""
+        return []
+
     def _shared(
         self, rows: list[Row], summary: dict[str, Any], tables: DriveTables
     ) -> tuple[list[Row], dict[str, Any], DriveTables]:
@@ -124,6 +134,7 @@ class Recorder(ABC):
             pairs=as_columns(self.pairs),
             contact_lines=as_columns(self.contact_lines),
             program=as_columns(self.program_rows()),
+            turns=as_columns(self.turns),
         )
         return self.comm.bcast((rows, json.loads(to_json(summary)), tables) if self.comm.rank == 0 else None)
 
@@ -217,6 +228,19 @@ class FolderRecorder(Recorder):
             )
         self.write_index()
         write_state(self, stepper, {body: values["displacement"] for body, values in fields.items()}, elapsed)
+
+    def keep_turns(self, rows: list[Row]) -> None:
+        super().keep_turns(rows)
+        if rows:
+            write_from_root(self.comm, self.out / TRANSMISSION_ERROR, format_csv(rows))
+
+    def known_turns(self) -> list[Row]:
+        path = self.out / TRANSMISSION_ERROR
+        present = self.comm.bcast(path.exists() if self.comm.rank == 0 else None)
+        with agreed(self.comm, path, "read"):
+            columns = read_columns(path) if present else {}
+        rows = [dict(zip(columns, values)) for values in zip(*(column.tolist() for column in columns.values()))]
+        return [{**row, "newton_iterations": int(row["newton_iterations"])} for row in rows]
 
     def write_index(self) -> None:
         """Write the index of the fields, and the history."""

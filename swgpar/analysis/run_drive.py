@@ -16,6 +16,7 @@ from swgpar.analysis.drive_model import DriveModel, build_drive_model
 from swgpar.analysis.drive_result import DriveResult
 from swgpar.analysis.drive_tables import DriveTables
 from swgpar.analysis.fatigue import evaluate_fatigue
+from swgpar.analysis.follow_turns import follow_turns
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.losses import evaluate_losses
 from swgpar.analysis.mesh_refinement import (
@@ -36,6 +37,7 @@ from swgpar.analysis.root_stress import RootStress, resolve_root_stress, with_an
 from swgpar.analysis.shortcuts import finds_contacts, with_shortcuts
 from swgpar.analysis.stiffness_error import stiffness_error
 from swgpar.analysis.summary import Accuracy, summarise
+from swgpar.analysis.transmission_error import period_rows
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import LoadState, Stage, from_loaded, load_sequence
 from swgpar.errors import ConvergenceError, InputError, SwgparError
@@ -272,6 +274,10 @@ class _Run:
         rows = recorder.rows
         with self.model.phases("coarser mesh"):
             error = stiffness_error(design, self.recipe, recorder.program_rows(), self.model.comm)
+        if design.deviations is not None:
+            follow_turns(design, self.recipe, recorder)
+        else:
+            recorder.keep_turns(period_rows(design, rows))
         summary = summarise(
             self.model,
             rows,
@@ -280,6 +286,7 @@ class _Run:
             recorder.root_stress,
             recorder.places,
             recorder.pairs,
+            recorder.turns,
             self.seconds,
             tooth_rotations=recorder.tooth_rotations,
             stiffness_error=error,

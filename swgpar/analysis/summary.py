@@ -19,6 +19,7 @@ from swgpar.analysis.program_results import point_rows, summarise_program
 from swgpar.analysis.ratcheting import summarise_ratcheting
 from swgpar.analysis.root_stress import RootStress
 from swgpar.analysis.stiffness import summarise_stiffness
+from swgpar.analysis.transmission_error import summarise_turns
 from swgpar.design.load_states import Stage
 from swgpar.results.history import Row, column, transmission_error
 from swgpar.version import __version__
@@ -78,6 +79,7 @@ def summarise(
     root_stress: RootStress | None,
     places: Mapping[str, Place],
     pairs: Sequence[Row],
+    turns: Sequence[Row],
     seconds: float,
     *,
     tooth_rotations: Sequence[float] = (),
@@ -94,6 +96,7 @@ def summarise(
     root_stress : largest tensile stress at the teeth, by windows
     places : of the largest stresses under load
     pairs : contacts of the flanks under load
+    turns : transmission error over the sampled period, or over whole turns with deviations
     seconds : wall time of the run, restarts included
     tooth_rotations : (n,) deg, of the flexible spline's teeth, with [ratcheting]
     stiffness_error : of the torsional stiffness by the mesh, if it is known
@@ -111,6 +114,7 @@ def summarise(
         "increments": len(rows),
         **_program(model, seconds),
         **values,
+        "transmission_error": summarise_turns(design, turns),
         "accuracy": accuracy and asdict(accuracy),
         "places": {name: asdict(place) for name, place in places.items()},
         "root_stress": root_stress and _resolved(root_stress),

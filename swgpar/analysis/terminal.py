@@ -29,6 +29,9 @@ COLUMNS = {
 NOTHING = 1e-6
 """Stiffness and lost motion below which 0 is printed: round-off, in arc minutes."""
 
+ORDERS = 5
+"""Orders of the transmission error that are shown."""
+
 
 def print_drive(history: Mapping[str, np.ndarray], summary: Mapping[str, Any]) -> None:
     """Print history and summary of a run; call it on one rank."""
@@ -44,6 +47,8 @@ def print_drive(history: Mapping[str, np.ndarray], summary: Mapping[str, Any]) -
         _print_stiffness(summary["stiffness"])
     if summary["ratcheting"]:
         _print_ratcheting(summary["ratcheting"])
+    if turns := summary["transmission_error"]:
+        _print_turns(turns)
     _print_errors(summary)
     console.print(
         f"torque balance error {summary['balance_error_Nmm']:.1e} N·mm; "
@@ -106,6 +111,17 @@ def _print_ratcheting(found: Mapping[str, Any]) -> None:
         f"({found['peak_rotation_pitches']:.2f} pitches); what gives way: {found['gave_way']}; "
         f"end of the run: {found['ended']}"
     )
+
+
+def _print_turns(turns: Mapping[str, Any]) -> None:
+    """Transmission error over whole turns, or over the period of the ideal drive."""
+    where = f"{turns['turns']:.0f} turns with deviations" if turns["turns"] >= 1.0 else "one period of the ideal drive"
+    console.print(
+        f"transmission error over {where}: {turns['peak_to_peak']:.4g} arc seconds peak to peak; input torque "
+        f"{turns['torque']['mean']:.2f} N·mm, {turns['torque']['peak_to_peak']:.4g} peak to peak"
+    )
+    for line in turns["spectrum"][:ORDERS]:
+        console.print(f"  order {line['order']:8.3f}: {line['amplitude']:.3g} arc seconds, {line['cause']}")
 
 
 def _print_places(places: Mapping[str, Mapping[str, Any]]) -> None:

@@ -64,9 +64,12 @@ class DistributingCoupling:
     partition : ownership
     body : elements of the body on this rank (bound to local nodes);  surface : name of its node set
     images : the model holds half a turn; then only z and the rotation can be non-zero
+    centred : whether the mean displacement along x and y is coupled
     """
 
-    def __init__(self, partition: Partition, body: BodyElements, surface: str, images: bool) -> None:
+    def __init__(
+        self, partition: Partition, body: BodyElements, surface: str, images: bool, centred: bool = True
+    ) -> None:
         self.comm = partition.comm
         self.images = images
         mesh = body.layout.mesh
@@ -86,7 +89,8 @@ class DistributingCoupling:
         self.radius2 = float(self.sum(self.weight * (self.arm[:, 0] ** 2 + self.arm[:, 1] ** 2)))
         self.solid = partition.dims == 3
         whole = not images
-        self.active = np.array([whole, whole, self.solid, whole and self.solid, whole and self.solid, True])
+        held = whole and centred
+        self.active = np.array([held, held, self.solid, whole and self.solid, whole and self.solid, True])
 
     def sum(self, value: np.ndarray) -> np.ndarray:
         """Sum over all nodes of the surface, on all ranks."""

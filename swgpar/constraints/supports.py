@@ -30,6 +30,7 @@ class Supports:
     Attributes
     ----------
     ground_vectors : B of the grounding B B^T, one for each supported direction
+    offsets : (n_couplings, 6) values at which coupled quantities are held, mm and rad
     """
 
     def __init__(
@@ -43,6 +44,7 @@ class Supports:
     ) -> None:
         self.partition, self.couplings, self.housing = partition, couplings, housing
         self.scale, self.share = scale, share
+        self.offsets = np.zeros((len(couplings), N_COUPLED))
         self.ground_vectors: list[PETSc.Vec] = []
         self._grounded_nodes: list[tuple[int, np.ndarray]] = []
         for coupling in couplings:
@@ -102,8 +104,8 @@ class Supports:
         rows = self.scale * multiplier  # unused ones are zero; used ones are overwritten below
         if not motion:
             return rows
-        target = np.zeros((len(motion), N_COUPLED))
-        target[-1, ROTATION] = state.output_rotation
+        target = self.offsets.copy()
+        target[-1, ROTATION] += state.output_rotation
         for i, k in self.prescribed(state):
             gradient = motion[i].gradient[k]
             residual[self.couplings[i].nodes] += self.scale * multiplier[N_COUPLED * i + k] * gradient

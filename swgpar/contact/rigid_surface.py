@@ -33,16 +33,32 @@ class SurfacePose:
     """Position of the rigid surface: rotated by `angle` (rad), every gap opened by `clearance` (mm).
 
     inset : None for the cam; for the pins, the distance (mm) by which each is drawn in along the major axis
+    shift : mm, of the surface's axis, in the cam's frame;  lean : displacement of that axis per mm along z
     """
 
     angle: float
     clearance: float = 0.0
     inset: float | None = None
+    shift: tuple[float, float] = (0.0, 0.0)
+    lean: tuple[float, float] = (0.0, 0.0)
 
     def rotation(self) -> np.ndarray:
         """Matrix (3, 3) that takes vectors from the cam's frame to the fixed one."""
         c, s = np.cos(self.angle), np.sin(self.angle)
-        return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        turned = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        return turned @ _leaning(*self.lean) if any(self.lean) else turned
+
+
+def _leaning(x: float, y: float) -> np.ndarray:
+    """Rotation (3, 3) that takes the axis z to the direction (x, y, 1)."""
+    size = np.hypot(x, y)
+    u = np.array([x, y]) / size
+    cosine = 1.0 / np.hypot(1.0, size)
+    sine = size * cosine
+    matrix = np.eye(3)
+    matrix[:2, :2] += (cosine - 1.0) * np.outer(u, u)
+    matrix[:2, 2], matrix[2, :2], matrix[2, 2] = sine * u, -sine * u, cosine
+    return matrix
 
 
 def cam_pose(state: LoadState) -> SurfacePose | None:
@@ -94,9 +110,13 @@ class RigidContact:
         self.flip = np.ascontiguousarray(body.flip[sectors][:, faces].reshape(-1, 4))
         self.coords = body.positions()[sectors][:, faces].reshape(-1, 4, 3)
         self.owned = np.repeat(sectors >= first, len(faces))
-        point, weight = np.polynomial.legendre.leggauss(n_quadrature)
-        a, b = (v.ravel() for v in np.meshgrid(point, point, indexing="ij"))
-        weight = np.outer(weight, weight).ravel()
+        counts = [n_quadrature, n_quadrature]
+        if body.layout.mesh.plane:  # nothing changes along z, in which one of the two directions of a face runs
+            along = np.ptp(body.layout.mesh.coords[faces[0, :2], 2]) == 0.0
+            counts[int(along)] = 1
+        (point_a, weight_a), (point_b, weight_b) = (np.polynomial.legendre.leggauss(n) for n in counts)
+        a, b = (v.ravel() for v in np.meshgrid(point_a, point_b, indexing="ij"))
+        weight = np.outer(weight_a, weight_b).ravel()
         corner = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
         self.shape = 0.25 * (1 + a[:, None] * corner[:, 0]) * (1 + b[:, None] * corner[:, 1])
         da = 0.25 * corner[:, 0] * (1 + b[:, None] * corner[:, 1])
@@ -169,6 +189,8 @@ class RigidContact:
         field[self.flip == 1] *= HALF_TURN
         x = np.einsum("qa,fai->fqi", self.shape, self.coords + field)
         points = (x @ pose.rotation()).reshape(-1, 3)
+        if any(pose.shift):
+            points[:, :2] -= pose.shift
         reachable = self.inside
         if pose.inset is not None:
             points[:, 1] += pose.inset * np.sign(points[:, 1])

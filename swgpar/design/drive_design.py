@@ -6,10 +6,12 @@ from typing import Any
 
 import numpy as np
 
+from swgpar.design.deviations import Deviations
 from swgpar.design.fit_checks import check_fit
 from swgpar.design.program_sections import Ratcheting, Stiffness
 from swgpar.design.sections import (
     GEARS,
+    OMITTED_BENDING,
     Contact,
     Cup,
     Drive,
@@ -51,6 +53,7 @@ class DriveDesign(Design):
     output: Output = Output()
     fatigue: Fatigue | None = None
     losses: Losses | None = None
+    deviations: Deviations | None = None
 
     @classmethod
     def from_table(cls, table: dict[str, Any]) -> DriveDesign:
@@ -149,6 +152,11 @@ class DriveDesign(Design):
         curvature = factor * 1.5 * self.deflection / self.inner_radius**2
         pitch = 2.0 * np.pi * self.inner_radius / self.drive.teeth_fs
         return (curvature * pitch) ** 2 / 8.0 / (0.5 * self.flexible_spline.rim * curvature)
+
+    @property
+    def can_condense(self) -> bool:
+        """Whether sectors may be condensed: in the plane model, where that leaves out little bending strain."""
+        return self.drive.model == "plane" and self.omitted_bending <= OMITTED_BENDING
 
     @property
     def cup_thickness(self) -> float:

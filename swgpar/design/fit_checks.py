@@ -6,16 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from swgpar.design.deviation_checks import check_deviations
 from swgpar.design.program_checks import check_program
-from swgpar.design.sections import GEARS
+from swgpar.design.sections import GEARS, OMITTED_BENDING
 from swgpar.errors import InputError
 from swgpar.geometry.cams import FourRoller
 
 if TYPE_CHECKING:  # a design checks itself
     from swgpar.design.drive_design import DriveDesign
-
-OMITTED_BENDING = 0.01
-"""Largest share of the bending strain that condensed sectors may leave out."""
 
 SMALLEST_MINOR_AXIS = 0.4
 """Smallest minor semi-axis of a cam over the inner radius of the flexible spline."""
@@ -43,6 +41,8 @@ def check_fit(design: DriveDesign) -> None:
             f'solver.linear = "iterative" is not available with contact.friction = {design.contact.friction:g}: '
             'allowed "direct" with friction'
         )
+    if design.deviations is not None:
+        check_deviations(design, design.deviations)
     if design.drive.model == "plane":
         _check_plane(design)
     else:
@@ -107,7 +107,7 @@ def _check_fatigue(design: DriveDesign) -> None:
 
 
 def _check_plane(design: DriveDesign) -> None:
-    if design.solver.condensed_sectors and design.omitted_bending > OMITTED_BENDING:
+    if design.solver.condensed_sectors and not design.can_condense:
         raise InputError(
             f"solver.condensed_sectors = true leaves out {design.omitted_bending:.2g} of the bending strain: allowed "
             f"up to {OMITTED_BENDING:g}, with more teeth or a thicker flexible_spline.rim"

@@ -14,6 +14,9 @@ GearName = Literal["flexible_spline", "ring_gear"]
 GEARS: tuple[GearName, GearName] = ("flexible_spline", "ring_gear")
 """Both gears, in the order of the bodies."""
 
+OMITTED_BENDING = 0.01
+"""Largest share of the bending strain that condensed sectors may leave out."""
+
 
 class Drive(Section):
     """Section [drive]: layout, tooth numbers and sizes both gears share."""

@@ -23,6 +23,9 @@ TABLES = "tables"
 PAIRS = "pairs.csv"
 """Contacts of the flanks under load."""
 
+TRANSMISSION_ERROR = "transmission_error.csv"
+"""Transmission error and input torque over a period, or with deviations over whole turns."""
+
 CONTACT_LINES = "contact_lines.csv"
 """The same along the face width."""
 
@@ -58,6 +61,7 @@ RESULTS = (
     LOSSES,
     PROGRAM,
     STIFFNESS,
+    TRANSMISSION_ERROR,
     "published.csv",
     RECIPE,
     f"{TABLES}/*.csv",

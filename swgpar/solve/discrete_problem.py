@@ -179,6 +179,11 @@ class DiscreteProblem:
             contact.reset()
         self.set_pattern(pattern)
 
+    def reset_contacts(self) -> None:
+        """Begin all contacts anew with the pairs and faces of the last search."""
+        for contact in self.contacts:
+            contact.reset()
+
     def moved_since_search(self) -> float:
         """Largest displacement (mm) of a node since the last search, by component; collective."""
         moved = np.abs(self.x.array_r - self._searched)

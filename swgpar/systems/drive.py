@@ -104,6 +104,15 @@ RATCHETING = {
 """Quantities of designs with [ratcheting]. Names end as in the summary."""
 
 
+TRANSMISSION = {
+    "transmission_error.peak_to_peak": Quantity("transmission error, peak to peak", "arcsec"),
+    "transmission_error.amplitude": Quantity("transmission error, half of peak to peak", "arcsec"),
+    "transmission_error.torque_mean": Quantity("input torque over the same angles, mean", "N·mm"),
+    "transmission_error.torque_peak_to_peak": Quantity("input torque over the same angles, peak to peak", "N·mm"),
+}
+"""Quantities of runs with `steps.samples`, over their period, and of those with [deviations], over whole turns."""
+
+
 class Drives(System[DriveDesign, DriveResult]):
     """The drive's adapter: analysis, results and quantities under the names that all systems share."""
 
@@ -172,6 +181,7 @@ class Drives(System[DriveDesign, DriveResult]):
         known |= SHARING
         for section, names in ((design.fatigue, FATIGUE), (design.losses, LOSSES)):
             known |= names if section else {}
+        known |= TRANSMISSION
         return known | {f"step{k}.{name}": quantity(name, f"end of step {k}") for k in GROUPS for name in COLUMNS}
 
     def main_quantities(self, known: Mapping[str, Quantity]) -> tuple[str, ...]:
@@ -187,6 +197,7 @@ class Drives(System[DriveDesign, DriveResult]):
             return ", ".join(known)
         names = f"mean. with {', '.join(MEANS)}, or step1. to step{GROUPS[-1]}. with a column of history.csv"
         names = f"{names}; {', '.join(SHARING)}; with [fatigue] {', '.join(FATIGUE)}; with [losses] {', '.join(LOSSES)}"
+        names += f", or {', '.join(TRANSMISSION)}"
         return f"{names}; with output.root_stress = true {', '.join(RESOLVED)}"
 
     def check_published(self, design: DriveDesign, names: Iterable[str]) -> None:
@@ -217,6 +228,7 @@ class Drives(System[DriveDesign, DriveResult]):
                 **sharing(summary),
                 **cycle_values(summary),
                 **of_program(summary),
+                **transmission(summary),
             },
             wall_s=summary["wall_s"],
             elements=summary["elements"],
@@ -302,6 +314,15 @@ def of_program(summary: Mapping[str, Any]) -> dict[str, float]:
         for name, value in row.items()
         if name != "step"
     }
+
+
+def transmission(summary: Mapping[str, Any]) -> dict[str, float]:
+    """The quantities of `TRANSMISSION`; none of a run that has no transmission error over a period or a turn."""
+    found = summary["transmission_error"]
+    if not found:
+        return {}
+    torque = {f"transmission_error.torque_{name}": found["torque"][name] for name in ("mean", "peak_to_peak")}
+    return {f"transmission_error.{name}": found[name] for name in ("peak_to_peak", "amplitude")} | torque
 
 
 def values(means: Mapping[str, float], history: Mapping[str, np.ndarray]) -> dict[str, float]:
