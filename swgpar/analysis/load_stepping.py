@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from swgpar.analysis.bent_start import bend
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.predictor import KnownState, predict
 from swgpar.analysis.torques import torques
@@ -116,6 +117,11 @@ class LoadStepper:
     def _predict(self, state: LoadState) -> None:
         """Set x to a guess of the state."""
         here = self.load_state
+        if here.stage == Stage.START and self.design.bearing is not None:
+            # nothing but contacts holds the race: they have to act at once
+            bend(self.model)
+            self.problem.x.scale(1.0 - (state.cam_clearance or 0.0) / (here.cam_clearance or 1.0))
+            return
         if state.angle != here.angle:
             self._predict_rotation(state.angle)
         elif state.control == "rotation" and state.output_rotation != here.output_rotation:

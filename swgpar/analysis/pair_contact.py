@@ -124,7 +124,7 @@ def _peak(load: LineLoad) -> float:
 
 def moved_teeth(model: DriveModel, pairs: list[FlankPair]) -> tuple[list[Neighbours], list[Neighbours]]:
     """The teeth of every pair, of the flexible spline and of the ring gear, between their neighbours; collective."""
-    spline, ring = model.partition.layouts
+    spline, ring = model.partition.layouts[:2]
     around, x = np.arange(-1, 2), model.problem.x
 
     def fields(body: int, sectors: list[int]) -> np.ndarray:
@@ -149,7 +149,7 @@ def _contact(
     model: DriveModel, pair: FlankPair, load: LineLoad, teeth: Neighbours, ring_teeth: Neighbours
 ) -> PairContact:
     """Contact of one pair."""
-    spline, ring = model.partition.layouts
+    spline, ring = model.partition.layouts[:2]
     tooth, facing = teeth[1], ring_teeth[1]
     direction = load.load.sum(axis=0) / np.linalg.norm(load.load.sum(axis=0))
     along = load.load @ direction

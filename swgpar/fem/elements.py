@@ -208,7 +208,7 @@ class Elements:
         multipliers = partition.multiplier_nodes
         own = multipliers - local.row_start
         touched[own[(own >= 0) & (own < local.n_own)]] = True
-        blocks = [self._blocks(body.assembled.conn) for body in self.bodies]
+        blocks = [self.block_keys(body.assembled.conn) for body in self.bodies]
         diagonal = np.arange(local.row_start, local.row_start + local.n_own)
         keys = [*(block.ravel() for block in blocks), diagonal * partition.n_global + diagonal]
         if local.n_own and local.row_start + local.n_own == partition.n_global:
@@ -218,7 +218,7 @@ class Elements:
         positions = [np.where(block >= 0, np.searchsorted(keys, block), -1) for block in blocks]
         return TangentPattern(keys, positions, np.flatnonzero(~touched))
 
-    def _blocks(self, conn: np.ndarray) -> np.ndarray:
+    def block_keys(self, conn: np.ndarray) -> np.ndarray:
         """Keys row * n_global + column (n, m * m) of the owned blocks of elements, -1 elsewhere; conn : (n, m)."""
         local = self.local
         number = np.where(conn >= 0, local.number[conn], -1).astype(np.int64)
