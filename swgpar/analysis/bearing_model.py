@@ -8,7 +8,7 @@ import numpy as np
 
 from swgpar.constraints.distributing_coupling import DistributingCoupling
 from swgpar.constraints.race_coupling import RaceCoupling
-from swgpar.contact.ball_contact import BallContact, BallSet
+from swgpar.contact.ball_contact import LARGEST_REACH, BallContact, BallSet
 from swgpar.contact.point_contact import ball_spring, effective_modulus
 from swgpar.contact.race_contact import RaceContact
 from swgpar.design.drive_design import DriveDesign
@@ -63,11 +63,13 @@ def build_ball_contact(design: DriveDesign, elements: Elements) -> BallContact:
     nodes = race_grid(race.layout.mesh, "inner")
     z = race.layout.mesh.coords[nodes[0], 2]
     share = np.array([np.interp(0.0, z, unit) for unit in np.eye(len(z))])  # shape functions in the mid-plane
+    sector = 2.0 * np.pi * design.bearing_sizes.outer_groove / race.layout.mesh.n_sectors
     return BallContact(
         race,
         build_balls(design),
         groove=nodes[:, share > 0.0],
         spread=share[share > 0.0],
+        reach=min(design.bearing.race_thickness, LARGEST_REACH * sector),
     )
 
 

@@ -230,7 +230,7 @@ def build_wave_generator_contacts(design: DriveDesign, *, elements: Elements) ->
         return [*build_rigid_contacts(design, elements=elements)], NO_KEYS
     race = build_race_contact(design, elements, 0.5 * design.race_width * EDGE, PRESSURE_LIMIT * design.race_material[0])
     balls = build_ball_contact(design, elements)
-    keys = np.unique(np.concatenate([elements.block_keys(contact.conn).ravel() for contact in (race, balls)]))
+    keys = np.unique(np.concatenate([elements.block_keys(conn).ravel() for conn in (race.conn, balls.windows)]))
     return [race, balls], keys[keys >= 0]
 
 

@@ -56,8 +56,10 @@ class BearingSizes:
         return (self.inner_groove + self.outer_groove * outer_speed) / (self.inner_groove + self.outer_groove)
 
 
-def ball_lines(cam: Cam, depth: float, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Centres (n, 2) mm of the balls between the races and normals (n, 2) of the grooves there, in the cam's frame.
+def ball_lines(cam: Cam, depth: float, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Centres (n, 2) mm of the balls between the races, and normals (n, 2) and curvatures (n,) 1/mm of their curve there.
+
+    All in the cam's frame; the grooves have the same normals.
 
     cam : curve of the cam;  depth : mm, of the centres inside of it
     angle : (n,) rad, of the centres from the major axis, counter-clockwise
@@ -71,7 +73,8 @@ def ball_lines(cam: Cam, depth: float, angle: np.ndarray) -> tuple[np.ndarray, n
         if np.abs(step).max(initial=0.0) < 1e-14 * radius.max(initial=0.0):
             break
     centre = radius[:, None] * ray
-    return centre, cam.evaluate(centre)[1]
+    _, normal, curvature = cam.evaluate(centre)
+    return centre, normal, curvature
 
 
 def smallest_curvature_radius(cam: Cam, n: int = 2000) -> float:
