@@ -45,6 +45,9 @@ pattern, radial distance of the tips."""
 FOOT_REACH = 0.5
 """Largest gap over the module at which a foot point is looked for."""
 
+PREFIXES = ("fs", "rg", "race")
+"""Of the names of stresses, by body."""
+
 EDGE = 1.0 + 1e-9
 """Factor on the width of a rigid surface: points on its edge belong to it."""
 
@@ -117,10 +120,10 @@ class DriveModel:
         return {layout.name: body_counts(layout) for layout in self.partition.layouts}
 
     def stresses(self) -> tuple[dict[str, float], list[dict[str, np.ndarray]]]:
-        """Largest stresses (MPa) by column of the history, and the nodal fields of both bodies."""
+        """Largest stresses (MPa) by body and kind ("fs_s1", "race_vm" and so on), and the nodal fields of all bodies."""
         u = self.problem.displacement()
         values, fields = {}, []
-        for prefix, body in zip(("fs", "rg"), self.elements.bodies):
+        for prefix, body in zip(PREFIXES, self.elements.bodies):
             field = body_fields(body, u)
             fields.append(field)
             values.update({f"{prefix}_{k}": v for k, v in maxima(self.comm, field).items()})

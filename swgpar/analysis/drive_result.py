@@ -16,7 +16,7 @@ from swgpar.results import history
 from swgpar.results.atomic import agreed
 from swgpar.results.field_sources import BodyMesh, FieldFiles, FieldSource, chosen_increment
 from swgpar.results.fields import INDEX
-from swgpar.results.folder import CONTACT_LINES, PAIRS, read_summary
+from swgpar.results.folder import BALLS, CONTACT_LINES, PAIRS, read_summary
 from swgpar.results.history import Curves, Row
 from swgpar.results.table import read_columns
 
@@ -59,6 +59,8 @@ class DriveResult:
         Columns of pairs.csv, a value for every pair of flanks in contact at every computed increment under load.
     contact_lines : dict of (n,) arrays
         Columns of contact_lines.csv, a value for every station along the face width of these contacts.
+    balls : dict of (n,) arrays
+        Columns of balls.csv, a value for every ball of a bearing at every computed increment; empty without a bearing.
     folder : Path or None
         The results folder; None when the run was in memory.
 
@@ -76,13 +78,14 @@ class DriveResult:
         summary: dict[str, Any],
         pairs: Mapping[str, np.ndarray],
         contact_lines: Mapping[str, np.ndarray],
+        balls: Mapping[str, np.ndarray],
         fields: FieldSource | None,
         comm: MPI.Comm,
         folder: Path | None = None,
     ) -> None:
         self.history: dict[str, np.ndarray] = history.columns(rows)
         self.summary = summary
-        self.pairs, self.contact_lines = dict(pairs), dict(contact_lines)
+        self.pairs, self.contact_lines, self.balls = dict(pairs), dict(contact_lines), dict(balls)
         self.folder = folder
         self._fields, self._comm = fields, comm
 
@@ -224,8 +227,9 @@ class DriveResult:
         return points, cells, {name: self.field(name, increment, body) for name in self.names(body, increment)}
 
     def _source(self, body: GearName) -> FieldSource:
-        if body not in GEARS:
-            raise InputError(f"body {body!r} is not available: allowed {' or '.join(GEARS)}")
+        bodies = list(self.summary["bodies"])
+        if body not in bodies:
+            raise InputError(f"body {body!r} is not available: allowed {' or '.join(bodies)}")
         if self._fields is None or not self._fields.increments:
             raise InputError("this run kept no fields: allowed with output.fields = true")
         return self._fields
@@ -247,7 +251,8 @@ def open_drive(folder: Path, comm: MPI.Comm) -> DriveResult:
     folder = folder.absolute()  # the fields are read later
     with agreed(comm, folder, "read"):
         summary, rows = read_summary(folder), history.read_history(folder / history.NAME)
-        contacts = [read_columns(folder / name) if (folder / name).exists() else {} for name in (PAIRS, CONTACT_LINES)]
+        tables = (PAIRS, CONTACT_LINES, BALLS)
+        contacts = [read_columns(folder / name) if (folder / name).exists() else {} for name in tables]
     return DriveResult(rows, summary, *contacts, open_fields(folder, comm), comm, folder)
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from swgpar.analysis.bearing_loads import ComplianceShares
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.places import Place
 from swgpar.analysis.root_stress import RootStress
@@ -41,6 +42,8 @@ def identity(design: DriveDesign, recipe: MeshRecipe, accuracy: float | None) ->
     The angles of the rotation are compared one by one.
     """
     content = design.model_dump(exclude={"output": True, "steps": {"rotation", "samples"}, "solver": SOLVER_CHOICES})
+    if design.bearing is not None:
+        content["cage_speed"] = design.cage_speed  # follows from steps.samples
     content = {"design": content, "recipe": recipe.model_dump(), "accuracy": accuracy}
     return hashlib.sha256(to_json(content)).hexdigest()
 
@@ -76,6 +79,9 @@ def write_state(
         "root_stress": recorder.root_stress and asdict(recorder.root_stress),
         "pairs": recorder.pairs,
         "contact_lines": recorder.contact_lines,
+        "balls": recorder.balls,
+        "race_stress": recorder.race_stress,
+        "bearing_shares": {name: asdict(share) for name, share in recorder.bearing_shares.items()},
         "places": {name: asdict(place) for name, place in recorder.places.items()},
     }
     checkpoint.write_checkpoint(recorder.out, model.comm, blocks, state)
@@ -115,6 +121,9 @@ def resume(recorder: FolderRecorder, stepper: LoadStepper, items: list[LoadState
     recorder.accuracy = state["accuracy"] and Accuracy(**state["accuracy"])
     recorder.places = {name: Place(**place) for name, place in state.get("places", {}).items()}
     recorder.pairs, recorder.contact_lines = state.get("pairs", []), state.get("contact_lines", [])
+    recorder.balls, recorder.race_stress = state.get("balls", []), state.get("race_stress", {})
+    shares = state.get("bearing_shares", {})
+    recorder.bearing_shares = {name: ComplianceShares(**share) for name, share in shares.items()}
     recorder.root_stress = state.get("root_stress") and RootStress(**state["root_stress"])
     stepper.resume_at(last)
     for name, value in state["phases_s"].items():

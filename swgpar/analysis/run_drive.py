@@ -6,10 +6,12 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from mpi4py import MPI
 
+from swgpar.analysis.bearing_loads import summarise_bearing
 from swgpar.analysis.coarse_start import levels, start_loaded, starts_bent
 from swgpar.analysis.drive_model import DriveModel, build_drive_model
 from swgpar.analysis.drive_result import DriveResult
@@ -38,6 +40,7 @@ from swgpar.meshing import MeshRecipe, load_recipe, require_sections
 from swgpar.meshing.recipe import to_toml
 from swgpar.results.atomic import on_all, write_from_root
 from swgpar.results.folder import RECIPE, open_log, prepare
+from swgpar.results.history import loaded_increments
 from swgpar.results.parallel_hdf5 import require_parallel
 
 
@@ -80,6 +83,8 @@ def run_drive(
         raise InputError("restart = true needs the results folder out: a run in memory leaves no checkpoint")
     require_sections(design, recipe)
     if accuracy is not None:
+        if design.bearing is not None:
+            raise InputError(f"accuracy = {accuracy:g} is not available with wave_generator.bearing: allowed without it")
         design = with_accuracy(design, accuracy)
     left_out: tuple[str, ...] = ()
     if not plain:
@@ -178,7 +183,7 @@ class _Run:
         """Bring back the state of the checkpoint; returns all increments that the run consists of."""
         items, self.earlier_seconds = resume(self.recorder, self.stepper, list(load_sequence(self.model.design)))
         logger.info("restarted after increment %d", len(self.recorder.rows))
-        if self.model.design.output.root_stress and not self.recorder.root_stress:
+        if self.model.design.resolves_root_stress and not self.recorder.root_stress:
             logger.info("the stress at the teeth is resolved only by the run that computes the loaded state")
         return items
 
@@ -193,7 +198,7 @@ class _Run:
 
     def _keep_coarse(self, model: DriveModel, recipe: MeshRecipe) -> None:
         """Resolve the stress at the teeth on a coarser mesh of the drive, to see what the mesh changes."""
-        if model.design.output.root_stress:
+        if model.design.resolves_root_stress:
             loaded = from_loaded(list(load_sequence(model.design)))[0]
             try:
                 self.coarse = recipe, resolve_root_stress(model, loaded, COMPARED_LEVELS).levels
@@ -213,7 +218,7 @@ class _Run:
                 if item != stepper.load_state:  # a start at once ends with the first one
                     stepper.advance(item)
                 seconds = time.perf_counter() - start
-                if self.model.design.output.root_stress:
+                if self.model.design.resolves_root_stress:
                     recorder.root_stress = self._root_stress(item, item == loaded)
                 recorder.record(stepper, seconds, self.seconds)
                 angle = float(np.degrees(item.angle))
@@ -243,6 +248,15 @@ class _Run:
         coarse, levels = self.coarse
         return replace(found, drive_error=drive_error(levels, found.levels, size_ratio(coarse, self.recipe)))
 
+    def _bearing(self) -> dict[str, Any] | None:
+        """Entry of the summary for the bearing: over the increments under load."""
+        recorder, design = self.recorder, self.model.design
+        if design.bearing is None:
+            return None
+        steps = [int(row["step"]) for row in recorder.rows]
+        loaded = loaded_increments({"step": np.array(steps)})
+        return summarise_bearing(design, recorder.balls, [int(k) + 1 for k in loaded], recorder.bearing_shares, recorder.race_stress)
+
     def finish(self, recipe_name: str) -> DriveResult:
         """Summarise the run."""
         recorder, design = self.recorder, self.model.design
@@ -255,6 +269,7 @@ class _Run:
             recorder.root_stress,
             recorder.places,
             recorder.pairs,
+            self._bearing(),
             self.seconds,
         )
         if design.steps.samples and summary["means"]:
@@ -273,7 +288,7 @@ def _start_loaded(
     ways = [coarser_ones] if coarser_ones else []
     if starts_bent(stepper.design):
         compared = resized(recipe, 1.0 / RATIO)
-        if stepper.design.output.root_stress and not ways and finds_contacts(compared):
+        if stepper.design.resolves_root_stress and not ways and finds_contacts(compared):
             ways.append([compared])
         ways.append([])
     for recipes in ways:

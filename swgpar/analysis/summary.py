@@ -74,6 +74,7 @@ def summarise(
     root_stress: RootStress | None,
     places: Mapping[str, Place],
     pairs: Sequence[Row],
+    bearing: dict[str, Any] | None,
     seconds: float,
 ) -> dict[str, Any]:
     """Content of summary.json; collective.
@@ -85,7 +86,7 @@ def summarise(
     accuracy : what was asked for and reached
     root_stress : largest tensile stress at the teeth, by windows
     places : of the largest stresses under load
-    pairs : contacts of the flanks under load
+    pairs : contacts of the flanks under load;  bearing : loads of its balls, None without one
     seconds : wall time of the run, restarts included
     """
     design = model.design
@@ -103,6 +104,7 @@ def summarise(
         "places": {name: asdict(place) for name, place in places.items()},
         "root_stress": root_stress and _resolved(root_stress),
         "contact": max(pairs, key=lambda pair: (not pair["edge"], pair["pressure_MPa"]), default=None),
+        "bearing": bearing,
         "mesh_error": mesh_error(root_stress),
         "condensed_MPa": model.omitted_bending_stress() if design.solver.condensed_sectors else None,
         "sampling_error": sampling_error(design, rows, MEANS) if sampled_period else None,

@@ -275,6 +275,10 @@ class BallContact:
         blocks[..., :2, :2] = np.einsum("nabij,y,z->naybzij", core, self.spread, self.spread)
         add_face_blocks(conn, flip, np.ascontiguousarray(blocks.reshape(n, m * n_z, m * n_z, 3, 3)), rows)
 
+    def owned_forces(self) -> np.ndarray:
+        """Forces (n,) N of the balls of this rank in the last evaluation."""
+        return self.balls.spring.force(self.owned_loads()[1])
+
     def owned_loads(self) -> tuple[np.ndarray, np.ndarray]:
         """Indices (n,) of the balls of this rank in the last evaluation, and their approaches (n,) mm."""
         if self.touch is None:

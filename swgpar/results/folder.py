@@ -26,6 +26,9 @@ PAIRS = "pairs.csv"
 CONTACT_LINES = "contact_lines.csv"
 """The same along the face width."""
 
+BALLS = "balls.csv"
+"""Loads of the balls of a bearing."""
+
 SUMMARY = "summary.json"
 """Written last: a folder that has it is that of a finished run."""
 
@@ -38,6 +41,7 @@ RESULTS = (
     SUMMARY,
     PAIRS,
     CONTACT_LINES,
+    BALLS,
     "published.csv",
     RECIPE,
     f"{TABLES}/*.csv",

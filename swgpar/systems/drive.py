@@ -55,6 +55,19 @@ RESOLVED = {
 """Quantities of runs with `output.root_stress`, which a study has to set."""
 
 
+BEARING = {
+    "bearing.largest_load": Quantity("largest ball load under load", "N"),
+    "bearing.pressure": Quantity("largest pressure of a ball on a race under load", "MPa"),
+    "bearing.mean_load": Quantity("mean ball load under load", "N"),
+    "bearing.load_ripple": Quantity("range of the largest ball load over its mean", ""),
+    "bearing.torsional_share": Quantity("share of the bearing in the torsional compliance", ""),
+    "bearing.radial_share": Quantity("share of the bearing in the radial compliance", ""),
+    "bearing.life_turns": Quantity("rating life L10 of the bearing, turns of the wave generator", ""),
+    "bearing.life_hours": Quantity("rating life L10 of the bearing", "h"),
+}
+"""Quantities of drives with a bearing."""
+
+
 class Drives(System[DriveDesign, DriveResult]):
     """The drive's adapter: analysis, results and quantities under the names that all systems share."""
 
@@ -118,6 +131,8 @@ class Drives(System[DriveDesign, DriveResult]):
         known = {f"mean.{name}": quantity(name, "mean over the rotation") for name in MEANS}
         if design.output.root_stress:
             known |= RESOLVED
+        if design.bearing is not None:
+            known |= BEARING
         return known | {f"step{k}.{name}": quantity(name, f"end of step {k}") for k in GROUPS for name in COLUMNS}
 
     def main_quantities(self, known: Mapping[str, Quantity]) -> tuple[str, ...]:
@@ -125,7 +140,7 @@ class Drives(System[DriveDesign, DriveResult]):
 
     def describe_names(self, known: Mapping[str, Quantity]) -> str:
         names = f"mean. with {', '.join(MEANS)}, or step1. to step{GROUPS[-1]}. with a column of history.csv"
-        return f"{names}; with output.root_stress = true {', '.join(RESOLVED)}"
+        return f"{names}; with output.root_stress = true {', '.join(RESOLVED)}; with a bearing {', '.join(BEARING)}"
 
     def check_published(self, design: DriveDesign, names: Iterable[str]) -> None:
         for name in names:
@@ -149,7 +164,7 @@ class Drives(System[DriveDesign, DriveResult]):
     def measure(self, result: DriveResult) -> Measured:
         summary = result.summary
         return Measured(
-            values=values(summary["means"], result.history) | resolved(summary, result.pairs),
+            values=values(summary["means"], result.history) | resolved(summary, result.pairs) | of_bearing(summary),
             wall_s=summary["wall_s"],
             elements=summary["elements"],
             newton_mean=summary["newton_iterations_mean"],
@@ -169,6 +184,24 @@ def resolved(summary: Mapping[str, Any], pairs: Mapping[str, np.ndarray]) -> dic
         if not contact["edge"]:
             found["contact.pressure"] = contact["pressure_MPa"]
     return found
+
+
+def of_bearing(summary: Mapping[str, Any]) -> dict[str, float]:
+    """The quantities of `BEARING`, without those that the run does not have."""
+    bearing = summary.get("bearing")
+    if not bearing:
+        return {}
+    found = {
+        "largest_load": bearing["largest_load_N"],
+        "pressure": bearing["largest_pressure_MPa"],
+        "mean_load": bearing["mean_load_N"],
+        "load_ripple": bearing["load_ripple"],
+        "torsional_share": bearing["torsional_share"] and bearing["torsional_share"]["bearing"],
+        "radial_share": bearing["radial_share"] and bearing["radial_share"]["bearing"],
+        "life_turns": bearing["life"]["L10_turns"],
+        "life_hours": bearing["life"]["L10_hours"],
+    }
+    return {f"bearing.{name}": value for name, value in found.items() if value is not None}
 
 
 def values(means: Mapping[str, float], history: Mapping[str, np.ndarray]) -> dict[str, float]:
