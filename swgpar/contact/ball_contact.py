@@ -158,10 +158,15 @@ class BallContact:
     def evaluate(
         self, u: np.ndarray, state: LoadState, residual: np.ndarray | None, rows: BlockRows | None
     ) -> np.ndarray:
-        """Add the forces and the stiffness of the balls; see `Contact`."""
+        """Add the forces and the stiffness of the balls; see `Contact`.
+
+        Raises FloatingPointError where the race has passed the centre of a ball.
+        """
         if not self.is_active(state):
             return NO_KEYS
         self.touch = touch = self._find(u, state)
+        if (touch.approach > 0.5 * self.balls.diameter).any():
+            raise FloatingPointError("the outer race has passed the centre of a ball")
         carries = np.flatnonzero(touch.approach > 0.0)
         if residual is not None:
             self._add_forces(touch, carries, residual)
@@ -185,7 +190,8 @@ class BallContact:
         along = np.column_stack([-normal[:, 1], normal[:, 0]])
         away = nodes[None] - centre[:, None]
         tau, nu = np.einsum("bni,bi->bn", away, along), np.einsum("bni,bi->bn", away, normal)
-        ball, piece = self._crossed(tau, nu)
+        from_axis = nu + np.einsum("bi,bi->b", centre, normal)[:, None]
+        ball, piece = self._crossed(tau, from_axis)
         tau, nu, n, t = tau[ball], nu[ball], normal[ball], along[ball]
         place = self.angle[piece]
         for _ in range(STEPS):
@@ -212,13 +218,13 @@ class BallContact:
             curvature=np.sum(second * (nu - slope[:, None] * tau), axis=1),
         )
 
-    def _crossed(self, tau: np.ndarray, nu: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _crossed(self, tau: np.ndarray, height: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Balls (n,) and the pieces (n,) of the race between two nodes that their lines cross.
 
-        tau, nu : (n_ball, n_node) mm, of the nodes across and along the lines
+        tau, height : (n_ball, n_node) mm, of the nodes across the lines, and along them from the axis
         """
         shift = TIE * np.diff(tau, axis=1)
-        crossed = (tau[:, :-1] <= shift) & (tau[:, 1:] > shift) & (nu[:, 1:] > 0.0)
+        crossed = (tau[:, :-1] <= shift) & (tau[:, 1:] > shift) & (height[:, 1:] > 0.0)
         # without neighbours every ball is this rank's; with them those that reach its nodes come along
         more = 0 if self.alone else self.n_nodes // 2 + 1
         outside = np.ones(crossed.shape[1], dtype=bool)

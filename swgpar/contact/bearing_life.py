@@ -17,6 +17,9 @@ import numpy as np
 MATERIAL_FACTOR = 1.3
 """b_m of radial ball bearings (ISO 281, table 1)."""
 
+BALL_FACTOR = 0.41 * 0.95 * 98.0665
+"""Constant of f_c for deep groove ball bearings (ISO/TR 1281-1)."""
+
 LARGEST_BALL = 25.4
 """Diameter (mm) above which ISO 281 counts balls with a smaller power."""
 
@@ -40,16 +43,16 @@ class BearingSeries:
     def _size(self) -> float:
         return self.diameter / self.pitch_diameter
 
-    def _races(self) -> float:
-        """Capacity of the inner race's contact over that of the outer one's."""
+    def _races(self, constant: float) -> float:
+        """Capacity of the inner race's contact over that of the outer one's, with the constant of a standard."""
         size = self._size()
         grooves = self.inner * (2.0 * self.outer - 1.0) / (self.outer * (2.0 * self.inner - 1.0))
-        return 1.044 * ((1.0 - size) / (1.0 + size)) ** 1.72 * grooves**0.41
+        return constant * ((1.0 - size) / (1.0 + size)) ** 1.72 * grooves**0.41
 
     def load_rating(self) -> float:
         """Basic dynamic load rating C, N."""
-        size, ratio = self._size(), self._races()
-        factor = 39.9 * (1.0 + ratio ** (10.0 / 3.0)) ** -0.3
+        size, ratio = self._size(), self._races(1.04)
+        factor = BALL_FACTOR * (1.0 + ratio ** (10.0 / 3.0)) ** -0.3
         factor *= size**0.3 * (1.0 - size) ** 1.39 / (1.0 + size) ** (1.0 / 3.0)
         factor *= (2.0 * self.inner / (2.0 * self.inner - 1.0)) ** 0.41
         power = self.diameter**1.8 if self.diameter <= LARGEST_BALL else 3.647 * self.diameter**1.4
@@ -57,7 +60,7 @@ class BearingSeries:
 
     def contact_capacities(self, load_rating: float) -> tuple[float, float]:
         """Capacities Q_c (N) of the contacts on the inner and on the outer race, by the load rating C (N)."""
-        ratio = self._races() ** (10.0 / 3.0)
+        ratio = self._races(1.044) ** (10.0 / 3.0)
         inner = load_rating / (0.407 * self.number) * (1.0 + ratio) ** 0.3
         outer = load_rating / (0.389 * self.number) * (1.0 + 1.0 / ratio) ** 0.3
         return inner, outer
