@@ -64,7 +64,10 @@ def ball_rows(model: DriveModel, state: LoadState, increment: int, step: int) ->
 
 
 def summarise_bearing(
-    design: DriveDesign, rows: Sequence[Row], increments: Sequence[int], shares: Mapping[str, ComplianceShares],
+    design: DriveDesign,
+    rows: Sequence[Row],
+    increments: Sequence[int],
+    shares: Mapping[str, ComplianceShares],
     race_stress: Mapping[str, float],
 ) -> dict[str, Any]:
     """Entry `bearing` of the summary.

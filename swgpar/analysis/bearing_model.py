@@ -73,7 +73,9 @@ def build_ball_contact(design: DriveDesign, elements: Elements) -> BallContact:
     )
 
 
-def build_race_contact(design: DriveDesign, elements: Elements, half_width: float, pressure_limit: float) -> RaceContact:
+def build_race_contact(
+    design: DriveDesign, elements: Elements, half_width: float, pressure_limit: float
+) -> RaceContact:
     """Contact of the race with the flexible spline. half_width : mm, of the race;  pressure_limit : MPa"""
     spline, race = elements.bodies[FLEXIBLE_SPLINE], elements.bodies[OUTER_RACE]
     micro = design.micro_geometry

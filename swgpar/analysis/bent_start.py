@@ -68,11 +68,11 @@ def bent_ring(design: DriveDesign) -> np.ndarray:
 class BentSpline:
     """The bent flexible spline as a field of displacements.
 
-    inset : mm, by which its inner surface lies inside of the cam's
+    inset : mm, by which its inner surface lies inside of the cam's; without it that of contact
     """
 
-    def __init__(self, design: DriveDesign, inset: float) -> None:
-        self.design, self.inset = design, inset
+    def __init__(self, design: DriveDesign, inset: float | None = None) -> None:
+        self.design, self.inset = design, PENETRATION * design.drive.module if inset is None else inset
         self.amplitudes = bent_ring(design)
         self.order = 2.0 * np.arange(len(self.amplitudes))
         self.radius = design.inner_radius + 0.5 * design.flexible_spline.rim

@@ -6,7 +6,6 @@ parts of the model, so that each part has its share. K_i x is the difference of 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np

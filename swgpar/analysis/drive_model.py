@@ -120,7 +120,7 @@ class DriveModel:
         return {layout.name: body_counts(layout) for layout in self.partition.layouts}
 
     def stresses(self) -> tuple[dict[str, float], list[dict[str, np.ndarray]]]:
-        """Largest stresses (MPa) by body and kind ("fs_s1", "race_vm" and so on), and the nodal fields of all bodies."""
+        """Largest stresses (MPa) by body and kind ("fs_s1", "race_vm", …), and the nodal fields of all bodies."""
         u = self.problem.displacement()
         values, fields = {}, []
         for prefix, body in zip(PREFIXES, self.elements.bodies):
@@ -231,7 +231,9 @@ def build_wave_generator_contacts(design: DriveDesign, *, elements: Elements) ->
     """Contacts of the cam, or of the bearing on it, and keys (n,) of the tangent's blocks that they need."""
     if design.bearing is None:
         return [*build_rigid_contacts(design, elements=elements)], NO_KEYS
-    race = build_race_contact(design, elements, 0.5 * design.race_width * EDGE, PRESSURE_LIMIT * design.race_material[0])
+    race = build_race_contact(
+        design, elements, 0.5 * design.race_width * EDGE, PRESSURE_LIMIT * design.race_material[0]
+    )
     balls = build_ball_contact(design, elements)
     keys = np.unique(np.concatenate([elements.block_keys(conn).ravel() for conn in (race.conn, balls.windows)]))
     return [race, balls], keys[keys >= 0]

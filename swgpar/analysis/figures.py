@@ -145,7 +145,7 @@ class DriveFigures(FigureSet):
         return ", over one period" if self._result.summary["design"]["steps"]["samples"] else ""
 
     def ball_loads(self) -> Figure:
-        """Loads of a bearing's balls (N) against their angle from the major axis, and the largest during the rotation."""
+        """Loads of a bearing's balls (N) over the angle from the major axis, and the largest during the rotation."""
         from matplotlib.figure import Figure
 
         balls, bearing = self._result.balls, self._result.summary["bearing"]

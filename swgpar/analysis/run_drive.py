@@ -84,7 +84,9 @@ def run_drive(
     require_sections(design, recipe)
     if accuracy is not None:
         if design.bearing is not None:
-            raise InputError(f"accuracy = {accuracy:g} is not available with wave_generator.bearing: allowed without it")
+            raise InputError(
+                f"accuracy = {accuracy:g} is not available with wave_generator.bearing: allowed without it"
+            )
         design = with_accuracy(design, accuracy)
     left_out: tuple[str, ...] = ()
     if not plain:
@@ -255,7 +257,9 @@ class _Run:
             return None
         steps = [int(row["step"]) for row in recorder.rows]
         loaded = loaded_increments({"step": np.array(steps)})
-        return summarise_bearing(design, recorder.balls, [int(k) + 1 for k in loaded], recorder.bearing_shares, recorder.race_stress)
+        return summarise_bearing(
+            design, recorder.balls, [int(k) + 1 for k in loaded], recorder.bearing_shares, recorder.race_stress
+        )
 
     def finish(self, recipe_name: str) -> DriveResult:
         """Summarise the run."""

@@ -127,8 +127,8 @@ def _print_bearing(bearing: Mapping[str, Any]) -> None:
     life = bearing["life"]
     if life["L10_hours"] is not None:
         console.print(
-            f"rating life of the bearing: L10 {life['L10_hours']:.3g} h, {life['L10_turns']:.3g} turns (equivalent load "
-            f"{life['equivalent_load_N']:.0f} N of {life['load_rating_N']:.0f} N)"
+            f"rating life of the bearing: L10 {life['L10_hours']:.3g} h, {life['L10_turns']:.3g} turns (equivalent "
+            f"load {life['equivalent_load_N']:.0f} N of {life['load_rating_N']:.0f} N)"
         )
 
 

@@ -1,8 +1,8 @@
 """Balls between the rigid inner race on the cam and the elastic outer race; Hertz's springs, see `point_contact`.
 
-A ball lies on the line through its centre along the normals of the grooves. Where this line meets the outer race's inner
-surface, the surface is at the height nu above the place that it has when the race's outer surface is on the cam's curve.
-The ball's approach is delta = max(0, -nu - clearance), its energy 2/5 K delta^2.5. The forces on the race and the
+A ball lies on the line through its centre along the normals of the grooves. Where this line meets the outer race's
+inner surface, nu is the height of the surface above its place when the race's outer surface is on the cam's curve. The
+ball's approach is delta = max(0, -nu - clearance), its energy 2/5 K delta^2.5. The forces on the race and the
 tangent are the derivatives of that energy, so that the forces are normal to the race's surface.
 """
 
@@ -23,7 +23,7 @@ from swgpar.geometry.rotation import HALF_TURN, rotated
 from swgpar.kernel import add_face_blocks
 
 TIE = 1e-7
-"""Share of a facet by which the ends of facets are shifted, so that a ball on a node belongs to one facet on all ranks."""
+"""Share of a piece of the race by which its ends are shifted, so that a ball on a node belongs to one piece only."""
 
 POINTS, KERNEL_MOMENT = 8, 0.2
 """Gauss points over the reach; second moment of its weight 3/4 (1 - s²), -1 <= s <= 1."""
@@ -82,7 +82,7 @@ class _Touch:
 class BallContact:
     """All balls on the inner surface of the outer race; meets the protocol `Contact`.
 
-    Hertz's approach includes what the surface yields right below the ball. So the race carries the force as a beam does:
+    Hertz's approach includes what the surface yields right below the ball. So the race carries the force like a beam,
     spread over a `reach` around the ball, on the smooth curve through its nodes (`smooth_curve`).
 
     Parameters

@@ -1,11 +1,11 @@
 """Rating life of a ball bearing by ISO 281, from the loads of its balls.
 
-C = b_m f_c Z^(2/3) D^1.8 with the factor f_c of ISO/TR 1281-1. Loads that are not those of one radial force are taken ball
-by ball, as in ISO/TS 16281: with the capacities Q_c of the contacts that follow from C,
+C = b_m f_c Z^(2/3) D^1.8 with the factor f_c of ISO/TR 1281-1. Loads that are not those of one radial force are taken
+ball by ball, as in ISO/TS 16281: with the capacities Q_c of the contacts that follow from C,
 
     L10 = ((Q_ci / Q_ei)^(-10/3) + (Q_co / Q_eo)^(-10/3))^(-9/10) million turns,
 
-where Q_e is the mean load of power 3 of a race that rotates relative to the load, and of power 10/3 of one that does not.
+where Q_e is the mean load of power 3 of a race that rotates relative to the load, of power 10/3 of one that does not.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Frictionless contact of the outer race of a bearing with the inner surface of the flexible spline.
 
 The gap of a point x of the spline is its distance from the smooth curve X(lambda) of the race's outer surface at the
-same z, in the plane across the axis: g = n . (x - X) where x - X is normal to the curve. With dr = dx - dX, a = dr . X',
-b = n . dX', m = X' . X' and k = n . X'' its differentials are
+same z, in the plane across the axis: g = n . (x - X) where x - X is normal to the curve. With dr = dx - dX,
+a = dr . X', b = n . dX', m = X' . X' and k = n . X'' its differentials are
 
     dg = n . dr,    d²g = -(k a² + 2 m a b + m g b²) / (m (m - g k)).
 
@@ -66,7 +66,9 @@ class RaceContact:
     ) -> None:
         self.full_penalty = self.penalty = penalty
         self.pressure_limit = pressure_limit
-        sectors = np.arange(len(spline.sectors)) if spline.preceding.any() else np.arange(len(spline.sectors))[spline.owned]
+        sectors = (
+            np.arange(len(spline.sectors)) if spline.preceding.any() else np.arange(len(spline.sectors))[spline.owned]
+        )
         points = FaceQuadrature(spline, "inner", radius, n_quadrature, sectors)
         sector, column, layer = (
             np.repeat(sectors, len(column)),
@@ -77,7 +79,9 @@ class RaceContact:
         sector, column, layer = sector[chosen], column[chosen], layer[chosen]
         self.owned = (sector >= spline.owned.start) & (sector < spline.owned.stop)
         sector, nodes = curve_nodes(grid, sector, column)
-        nodes = np.stack([np.take_along_axis(nodes, (layer + k)[:, None, None], axis=2)[..., 0] for k in (0, 1)], axis=2)
+        nodes = np.stack(
+            [np.take_along_axis(nodes, (layer + k)[:, None, None], axis=2)[..., 0] for k in (0, 1)], axis=2
+        )
         sector, shape = sector[..., None], (len(sector), NODES * LAYERS)
         self.conn = np.hstack([points.conn[chosen], race.local[sector, nodes].reshape(shape)])
         self.flip = np.hstack([points.flip[chosen], race.flip[sector, nodes].reshape(shape)])
@@ -92,7 +96,9 @@ class RaceContact:
         upper = (position[..., 2] - low[:, None]) / (high - low)[:, None]
         self.layers = np.stack([1.0 - upper, upper], axis=-1)
         start, end = of_race[:, 1, 0, None, :2], of_race[:, 2, 0, None, :2]
-        self.first_place = np.sum((position[..., :2] - start) * (end - start), axis=-1) / np.sum((end - start) ** 2, axis=-1)
+        self.first_place = np.sum((position[..., :2] - start) * (end - start), axis=-1) / np.sum(
+            (end - start) ** 2, axis=-1
+        )
         self.reset()
 
     @staticmethod
@@ -168,15 +174,13 @@ class RaceContact:
         point = np.einsum("qa,fai->fqi", self.shape, x[:, :4])
         curve = np.einsum("fqk,fnki->fqni", self.layers, x[:, 4:].reshape(len(x), NODES, LAYERS, 2))
         polynomials, place = self.polynomials[:, None], self.first_place
-        for _ in range(STEPS):
+        for step in range(STEPS + 1):  # the last evaluation is at the foot point
             value, rate, second = shape_functions(polynomials, place)
-            away, tangent, bend = (point - np.einsum("fqn,fqni->fqi", value, curve), *(
-                np.einsum("fqn,fqni->fqi", weights, curve) for weights in (rate, second)
-            ))
-            place = place + np.sum(away * tangent, axis=-1) / np.sum(tangent * tangent - away * bend, axis=-1)
-        value, rate, second = shape_functions(polynomials, place)
-        away = point - np.einsum("fqn,fqni->fqi", value, curve)
-        tangent, bend = (np.einsum("fqn,fqni->fqi", weights, curve) for weights in (rate, second))
+            away = point - np.einsum("fqn,fqni->fqi", value, curve)
+            tangent, bend = (np.einsum("fqn,fqni->fqi", weights, curve) for weights in (rate, second))
+            if step < STEPS:
+                steepness = np.sum(tangent * tangent - away * bend, axis=-1)
+                place = place + np.sum(away * tangent, axis=-1) / steepness
         length = np.sum(tangent * tangent, axis=-1)
         normal = np.stack([tangent[..., 1], -tangent[..., 0]], axis=-1) / np.sqrt(length)[..., None]
         distance, k = np.sum(normal * away, axis=-1), np.sum(normal * bend, axis=-1)

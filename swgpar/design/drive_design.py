@@ -128,8 +128,8 @@ class DriveDesign(Design):
     def cage_speed(self) -> float:
         """Speed of the cage over that of the wave generator.
 
-        With `steps.samples` it is 1: the balls are then fixed to the cam, because the drive repeats after a period only
-        if they are. Otherwise it is the key, or that of balls that roll on a race that rotates with the flexible spline.
+        With `steps.samples` it is 1: the balls are then fixed to the cam, because only then the drive repeats after a
+        period. Otherwise it is the key, or that of balls that roll on a race that rotates with the flexible spline.
         """
         if self.steps.samples:
             return 1.0

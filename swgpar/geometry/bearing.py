@@ -57,7 +57,7 @@ class BearingSizes:
 
 
 def ball_lines(cam: Cam, depth: float, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Centres (n, 2) mm of the balls between the races, and normals (n, 2) and curvatures (n,) 1/mm of their curve there.
+    """Centres (n, 2) mm of the balls, and normals (n, 2) and curvatures (n,) 1/mm of their curve there.
 
     All in the cam's frame; the grooves have the same normals.
 

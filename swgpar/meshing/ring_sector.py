@@ -95,9 +95,7 @@ def _distinct(values: np.ndarray) -> np.ndarray:
     return ordered[np.append(True, np.diff(ordered) > SAME * np.ptp(ordered))]
 
 
-def _sector(
-    body: str, radius: np.ndarray, angle: np.ndarray, z: np.ndarray, sectors: int, plane: bool
-) -> SectorMesh:
+def _sector(body: str, radius: np.ndarray, angle: np.ndarray, z: np.ndarray, sectors: int, plane: bool) -> SectorMesh:
     """Sector with nodes at these radii (mm), angles (rad from +y, counter-clockwise) and z (mm)."""
     z, r, phi = np.meshgrid(z, radius, angle, indexing="ij")
     coords = np.stack([-r * np.sin(phi), r * np.cos(phi), z], axis=-1).reshape(-1, 3)

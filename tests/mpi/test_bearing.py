@@ -43,7 +43,9 @@ def test_same_on_any_ranks() -> None:
     stepper = jumped(*BEARING, "wave_generator.bearing.first_ball=4.0")
     found, values = loads(stepper), row(stepper)
     stepper.model.destroy()
-    alone = jumped(*BEARING, "wave_generator.bearing.first_ball=4.0", "solver.twofold_symmetry=false", comm=MPI.COMM_SELF)
+    alone = jumped(
+        *BEARING, "wave_generator.bearing.first_ball=4.0", "solver.twofold_symmetry=false", comm=MPI.COMM_SELF
+    )
     parallel_assert(np.abs(found - loads(alone)).max() < 1e-6 * found.max())
     assert_agree(values, row(alone), [*NAMES, "wg_torque_Nmm"], rel=1e-6)
     parallel_assert(values["torque_balance_Nmm"] < 1e-6 * 200.0)
@@ -52,7 +54,7 @@ def test_same_on_any_ranks() -> None:
 
 @pytest.mark.parallel([1, 2])
 def test_balls_balance_the_force_on_the_spline() -> None:
-    """An odd number of balls, so that the whole drive is modelled: forces and moments of the balls are those on the spline."""
+    """Forces and moments of the balls are those on the spline. All of the drive is modelled: their number is odd."""
     stepper = jumped(*BEARING, "wave_generator.bearing.balls=19", "wave_generator.bearing.first_ball=3.0")
     problem, state = stepper.problem, stepper.load_state
     u = problem.displacement()
@@ -71,7 +73,11 @@ def test_balls_balance_the_force_on_the_spline() -> None:
         moment = np.sum(x[:, 0] * f[:, 1] - x[:, 1] * f[:, 0])
         return WORLD.allreduce(np.array([*f[:, :2].sum(axis=0), moment]), op=MPI.SUM)
 
-    on_spline, on_race, of_balls = resultant("race", FLEXIBLE_SPLINE), resultant("race", OUTER_RACE), resultant("balls", OUTER_RACE)
+    on_spline, on_race, of_balls = (
+        resultant("race", FLEXIBLE_SPLINE),
+        resultant("race", OUTER_RACE),
+        resultant("balls", OUTER_RACE),
+    )
     total = loads(stepper).sum()
     parallel_assert(total > 100.0)
     parallel_assert(np.abs(on_spline + on_race)[:2].max() < 1e-9 * total)
@@ -103,7 +109,9 @@ def test_shares_of_compliance() -> None:
         stepper.advance(replace(middle, torque=torque))
         rows = ball_rows(stepper.model, stepper.load_state, 1, 3)
         rotation = np.radians(row(stepper)["output_angle_deg"])
-        states.append((torque, rotation, *(np.array([ball[key] for ball in rows]) for key in ("load_N", "approach_um"))))
+        states.append(
+            (torque, rotation, *(np.array([ball[key] for ball in rows]) for key in ("load_N", "approach_um")))
+        )
     change = [after - before for before, after in zip(*states)]
     work = np.sum(change[2] * 1e-3 * change[3]) / (change[0] * change[1])
     parallel_assert(shares["torsional"].balls == pytest.approx(work, rel=1e-3))
@@ -114,7 +122,7 @@ def test_shares_of_compliance() -> None:
 
 @pytest.mark.parallel(1)
 def test_stiff_balls_take_no_share() -> None:
-    """Balls a thousand times as stiff yield a hundredth at the same force. What is left is their forces' change of place."""
+    """Balls a thousand times as stiff yield a hundredth at the same force."""
     soft, stiff = jumped(*BEARING), jumped(*BEARING, "wave_generator.bearing.stiffness_factor=1e3")
     shares = [bearing_shares(one.model, one.load_state)["torsional"].balls for one in (soft, stiff)]
     assert abs(shares[1]) < 0.01 * shares[0]

@@ -31,7 +31,9 @@ class Bearing(Section):
     )
     E: float | None = quantity(None, unit="MPa", text="modulus of elasticity; without it that of [material]", gt=0.0)
     nu: float | None = quantity(None, text="Poisson's ratio; without it that of [material]", ge=0.0, le=0.499)
-    stiffness_factor: float = quantity(1.0, text="factor on the stiffness of the ball contacts; 1: Hertz", gt=0.0, le=1e6)
+    stiffness_factor: float = quantity(
+        1.0, text="factor on the stiffness of the ball contacts; 1: Hertz", gt=0.0, le=1e6
+    )
     load_rating: float | None = quantity(
         None, unit="N", text="basic dynamic load rating; without it that of ISO 281 for these sizes", gt=0.0
     )
