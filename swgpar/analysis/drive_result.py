@@ -71,6 +71,8 @@ class DriveResult:
     transmission_error : dict of (n,) arrays
         Columns of transmission_error.csv: angles of input and output, transmission error and input torque over the
         sampled period, or with ``[deviations]`` over whole turns. ``summary["transmission_error"]`` has what follows.
+    balls : dict of (n,) arrays
+        Columns of balls.csv, a value for every ball of a bearing at every computed increment; empty without a bearing.
     folder : Path or None
         The results folder; None when the run was in memory.
 
@@ -98,6 +100,7 @@ class DriveResult:
         self.fatigue: SectorFields | None = tables.sector
         self.fatigue_cycle, self.losses = dict(tables.cycle), dict(tables.losses)
         self.transmission_error: dict[str, np.ndarray] = dict(tables.turns)
+        self.balls: dict[str, np.ndarray] = dict(tables.balls)
         self.folder = folder
         self._fields, self._comm = fields, comm
 
@@ -255,8 +258,9 @@ class DriveResult:
         return points, cells, {name: self.field(name, increment, body) for name in self.names(body, increment)}
 
     def _source(self, body: GearName) -> FieldSource:
-        if body not in GEARS:
-            raise InputError(f"body {body!r} is not available: allowed {' or '.join(GEARS)}")
+        bodies = list(self.summary["bodies"])
+        if body not in bodies:
+            raise InputError(f"body {body!r} is not available: allowed {' or '.join(bodies)}")
         if self._fields is None or not self._fields.increments:
             raise InputError("this run kept no fields: allowed with output.fields = true")
         return self._fields

@@ -10,7 +10,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.results.atomic import write_from_root
-from swgpar.results.folder import CONTACT_LINES, CYCLE, LOSSES, PAIRS, PROGRAM, TRANSMISSION_ERROR
+from swgpar.results.folder import BALLS, CONTACT_LINES, CYCLE, LOSSES, PAIRS, PROGRAM, TRANSMISSION_ERROR
 from swgpar.results.sector_fields import SectorFields, read_sector, write_sector
 from swgpar.results.table import format_columns, read_columns
 
@@ -22,7 +22,7 @@ class DriveTables:
     """Columns of the tables, empty where there are none.
 
     pairs, contact_lines : contacts of the flanks under load;  program : points of a load program
-    turns : transmission error over the sampled period or whole turns
+    turns : transmission error over the sampled period or whole turns;  balls : loads of a bearing's balls
     cycle : stress where the safety is the least
     losses : at the angles of the sampled period;  sector : safety factors at the nodes of a sector, None without
     """
@@ -31,6 +31,7 @@ class DriveTables:
     contact_lines: Columns = field(default_factory=dict)
     program: Columns = field(default_factory=dict)
     turns: Columns = field(default_factory=dict)
+    balls: Columns = field(default_factory=dict)
     cycle: Columns = field(default_factory=dict)
     losses: Columns = field(default_factory=dict)
     sector: SectorFields | None = None
@@ -46,6 +47,6 @@ class DriveTables:
 
 def read_tables(folder: Path) -> DriveTables:
     """The tables in a results folder."""
-    names = PAIRS, CONTACT_LINES, PROGRAM, TRANSMISSION_ERROR, CYCLE, LOSSES
+    names = PAIRS, CONTACT_LINES, PROGRAM, TRANSMISSION_ERROR, BALLS, CYCLE, LOSSES
     columns = [read_columns(folder / name) if (folder / name).exists() else {} for name in names]
     return DriveTables(*columns, sector=read_sector(folder))

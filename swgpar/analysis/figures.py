@@ -11,6 +11,7 @@ from mpi4py import MPI
 from swgpar.analysis.fatigue_figures import draw_haigh, sector_picture
 from swgpar.analysis.program_figures import torque_against_rotation
 from swgpar.analysis.transmission_error import orders
+from swgpar.design.load_states import Stage
 from swgpar.design.sections import GEARS
 from swgpar.errors import InputError
 from swgpar.results.figure_set import Drawings, FigureSet
@@ -69,6 +70,8 @@ class DriveFigures(FigureSet):
                 found["contact_pattern"] = self.contact_pattern
         if self._result.fatigue is not None:
             found |= {"haigh": self.haigh, "safety": self.safety}
+        if self._result.balls:
+            found["ball_loads"] = self.ball_loads
         if self._result.increments:
             found["deformed_drive"] = self.deformed
         return found
@@ -221,6 +224,33 @@ class DriveFigures(FigureSet):
 
     def _over_period(self) -> str:
         return ", over one period" if self._result.summary["design"]["steps"]["samples"] else ""
+
+    def ball_loads(self) -> Figure:
+        """Loads of a bearing's balls (N) over the angle from the major axis, and the largest during the rotation."""
+        from matplotlib.figure import Figure
+
+        balls, bearing = self._result.balls, self._result.summary["bearing"]
+        loaded = balls["step"] >= Stage.LOAD
+        shown = {name: values[loaded] if loaded.any() else values for name, values in balls.items()}
+        figure = Figure(figsize=(7.0, 6.5), layout="constrained")
+        upper, lower = figure.subplots(2, 1)
+        increments = np.unique(shown["increment"])
+        angles = []
+        for increment in increments:
+            here = shown["increment"] == increment
+            order = np.argsort(shown["cam_angle_deg"][here])
+            upper.plot(shown["cam_angle_deg"][here][order], shown["load_N"][here][order], "o-", ms=3, lw=0.6)
+            angles.append(shown["wg_angle_deg"][here][0])
+        upper.set(xlabel="angle from the major axis (degrees)", ylabel="ball load (N)", xlim=(-180.0, 180.0))
+        upper.set_title(f"loads of {len(shown['ball']) // len(increments)} balls at {len(increments)} angles")
+        peaks = shown["load_N"].reshape(len(increments), -1).max(axis=1)
+        lower.plot(angles, peaks, "o-", ms=4)
+        fixed = ", balls fixed to the cam" if bearing["balls_fixed_to_cam"] else ""
+        lower.set(xlabel=ANGLE, ylabel="largest ball load (N)" + fixed)
+        for axes in (upper, lower):
+            axes.set_ylim(bottom=0.0)
+            axes.grid(alpha=0.3)
+        return figure
 
     def contact_pattern(self, step: int | None = None) -> Figure:
         """Pressure (MPa) on all loaded flanks, over arc length and face width.

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from petsc4py import PETSc
 
+from swgpar.analysis.bent_start import bend
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.predictor import KnownState, predict
 from swgpar.analysis.torques import torques
@@ -141,6 +142,11 @@ class LoadStepper:
     def _predict(self, state: LoadState) -> None:
         """Set x to a guess of the state."""
         here = self.load_state
+        if here.stage == Stage.START and self.design.bearing is not None:
+            # nothing but contacts holds the race: they have to act at once
+            bend(self.model)
+            self.problem.x.scale(1.0 - (state.cam_clearance or 0.0) / (here.cam_clearance or 1.0))
+            return
         if state.angle != here.angle:
             self._predict_rotation(state.angle)
             if not state.continues_period(here, self.design.ratio) and state.control == "rotation":

@@ -170,7 +170,7 @@ def _peak(load: LineLoad) -> float:
 
 def moved_teeth(model: DriveModel, pairs: list[FlankPair]) -> tuple[list[Neighbours], list[Neighbours]]:
     """The teeth of every pair, of the flexible spline and of the ring gear, between their neighbours; collective."""
-    spline, ring = model.partition.layouts
+    spline, ring = model.partition.layouts[:2]
     around, x = np.arange(-1, 2), model.problem.x
 
     def fields(body: int, sectors: list[int]) -> np.ndarray:

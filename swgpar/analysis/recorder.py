@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from swgpar.analysis.bearing_loads import ComplianceShares, ball_rows
+from swgpar.analysis.compliance import bearing_shares
 from swgpar.analysis.contact_pressure import nodal_pressure
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.drive_result import DriveResult, open_fields
@@ -26,15 +28,22 @@ from swgpar.analysis.root_stress import RootStress
 from swgpar.analysis.stiffness import loop_rows
 from swgpar.analysis.stress_cycle import StressCycle
 from swgpar.analysis.summary import Accuracy
-from swgpar.design.load_states import LoadState
-from swgpar.design.sections import GEARS
+from swgpar.design.load_states import LoadState, Stage
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.meshing import SectorMesh
 from swgpar.results import history
 from swgpar.results.atomic import agreed, to_json, write_from_root
 from swgpar.results.field_sources import BodyPart, FieldParts, FlankGrids
 from swgpar.results.fields import FieldWriter
-from swgpar.results.folder import CONTACT_LINES, PAIRS, PROGRAM, STIFFNESS, SUMMARY, TRANSMISSION_ERROR
+from swgpar.results.folder import (
+    BALLS,
+    CONTACT_LINES,
+    PAIRS,
+    PROGRAM,
+    STIFFNESS,
+    SUMMARY,
+    TRANSMISSION_ERROR,
+)
 from swgpar.results.history import Row
 from swgpar.results.table import as_columns, format_csv, read_columns
 
@@ -59,6 +68,9 @@ class Recorder(ABC):
     cycle : stresses of the sampled period, with [fatigue] or [losses]
     cam_forces : N, of all increments, with [losses]
     turns : rows of transmission_error.csv
+    balls : rows of balls.csv, the loads of a bearing's balls
+    race_stress : largest stresses of the outer race under load, MPa
+    bearing_shares : of the bearing in the compliance of the loaded state
     """
 
     def __init__(self, model: DriveModel) -> None:
@@ -75,6 +87,9 @@ class Recorder(ABC):
         self.cam_forces: list[float] = []
         self.tooth_rotations: list[float] = []
         self.turns: list[Row] = []
+        self.balls: list[Row] = []
+        self.race_stress: dict[str, float] = {}
+        self.bearing_shares: dict[str, ComplianceShares] = {}
 
     def record(self, stepper: LoadStepper, seconds: float, elapsed: float) -> None:
         """Keep the state after an increment.
@@ -84,19 +99,21 @@ class Recorder(ABC):
         model = self.model
         with model.phases("stress"):
             values, body_fields = model.stresses()
+        race = {name: values.pop(name) for name in list(values) if name.startswith("race_")}
         self.rows.append(history.plain_row({**stepper.row(), **values, "wall_s": seconds}))
         if model.design.ratcheting:
             self.tooth_rotations.append(tooth_rotation(model))
         with model.phases("stress"):
             self._keep_places(stepper.load_state, body_fields)
             self._keep_pairs(stepper.load_state)
+            self._keep_balls(stepper.load_state, race)
         with model.phases("fatigue and losses"):
             if self.cycle is not None:
                 self.cycle.keep(stepper.load_state, body_fields[FLEXIBLE_SPLINE])
             if model.design.losses:
                 self.cam_forces.append(cam_force(model))
         with model.phases("output"):
-            fields = dict(zip(GEARS, body_fields, strict=True))
+            fields = dict(zip([layout.name for layout in model.partition.layouts], body_fields, strict=True))
             if model.design.output.fields:
                 spline = model.elements.bodies[FLEXIBLE_SPLINE]
                 fields[spline.layout.name]["pressure"] = nodal_pressure(model.problem, stepper.load_state, spline)
@@ -117,6 +134,15 @@ class Recorder(ABC):
             self.pairs += [{**when, **contact.row()} for contact in contacts]
             self.contact_lines += [{**when, **row} for contact in contacts for row in contact.station_rows()]
 
+    def _keep_balls(self, state: LoadState, race: Mapping[str, float]) -> None:
+        if self.model.design.bearing is not None:
+            self.balls += ball_rows(self.model, state, len(self.rows), int(self.rows[-1]["step"]))
+            if state.is_periodic:
+                for name, value in race.items():
+                    self.race_stress[name] = max(value, self.race_stress.get(name, value))
+            if state.stage == Stage.LOAD:
+                self.bearing_shares = bearing_shares(self.model, state)
+
     def keep_turns(self, rows: list[Row]) -> None:
         """Keep rows of transmission_error.csv in place of those before."""
         self.turns = rows
@@ -135,6 +161,7 @@ class Recorder(ABC):
             contact_lines=as_columns(self.contact_lines),
             program=as_columns(self.program_rows()),
             turns=as_columns(self.turns),
+            balls=as_columns(self.balls),
         )
         return self.comm.bcast((rows, json.loads(to_json(summary)), tables) if self.comm.rank == 0 else None)
 
@@ -209,7 +236,8 @@ class FolderRecorder(Recorder):
             mesh, (first, _) = body.layout.mesh, self.model.partition.owned_sectors(k)
             bodies[mesh.body] = (body.positions()[body.owned], mesh.hexes.astype(np.int64), first, body.layout.count)
             grids = _flank_grids(mesh)
-            extra |= {f"{mesh.body}/flank_{name}": values for name, values in grids._asdict().items()}
+            if mesh.flanks:
+                extra |= {f"{mesh.body}/flank_{name}": values for name, values in grids._asdict().items()}
         self._writer.write_mesh(bodies, extra)
 
     def _keep(self, stepper: LoadStepper, fields: NodalFields, elapsed: float) -> None:
@@ -256,6 +284,8 @@ class FolderRecorder(Recorder):
             write_from_root(self.comm, self.out / PROGRAM, format_csv(program))
             if self.model.design.stiffness:
                 write_from_root(self.comm, self.out / STIFFNESS, format_csv(loop_rows(program)))
+        if self.balls:
+            write_from_root(self.comm, self.out / BALLS, format_csv(self.balls))
 
     def finish(self, rows: list[Row], summary: dict[str, Any], tables: DriveTables) -> DriveResult:
         if len(rows) > len(self.rows):
@@ -267,4 +297,6 @@ class FolderRecorder(Recorder):
 
 
 def _flank_grids(mesh: SectorMesh) -> FlankGrids:
+    if not mesh.flanks:
+        return FlankGrids(np.zeros((0, 0, 0), dtype=np.int32), np.zeros(0), np.zeros(0))
     return FlankGrids(np.array([grid.nodes for grid in mesh.flanks]), mesh.flanks[0].s, mesh.flanks[0].z)

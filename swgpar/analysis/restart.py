@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from swgpar.analysis.bearing_loads import ComplianceShares
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.places import Place
 from swgpar.analysis.root_stress import RootStress
@@ -41,6 +42,8 @@ def identity(design: DriveDesign, recipe: MeshRecipe, accuracy: float | None) ->
     The angles of the rotation are compared one by one.
     """
     content = design.model_dump(exclude={"output": True, "steps": {"rotation", "samples"}, "solver": SOLVER_CHOICES})
+    if design.bearing is not None:
+        content["cage_speed"] = design.cage_speed  # follows from steps.samples
     content = {"design": content, "recipe": recipe.model_dump(), "accuracy": accuracy}
     return hashlib.sha256(to_json(content)).hexdigest()
 
@@ -84,6 +87,9 @@ def write_state(
         "pairs": recorder.pairs,
         "contact_lines": recorder.contact_lines,
         "tooth_rotations": recorder.tooth_rotations,
+        "balls": recorder.balls,
+        "race_stress": recorder.race_stress,
+        "bearing_shares": {name: asdict(share) for name, share in recorder.bearing_shares.items()},
         "places": {name: asdict(place) for name, place in recorder.places.items()},
     }
     checkpoint.write_checkpoint(recorder.out, model.comm, blocks, state)
@@ -129,6 +135,9 @@ def resume(recorder: FolderRecorder, stepper: LoadStepper, items: list[LoadState
     recorder.places = {name: Place(**place) for name, place in state.get("places", {}).items()}
     recorder.pairs, recorder.contact_lines = state.get("pairs", []), state.get("contact_lines", [])
     recorder.tooth_rotations = state.get("tooth_rotations", [])
+    recorder.balls, recorder.race_stress = state.get("balls", []), state.get("race_stress", {})
+    shares = state.get("bearing_shares", {})
+    recorder.bearing_shares = {name: ComplianceShares(**share) for name, share in shares.items()}
     recorder.root_stress = state.get("root_stress") and RootStress(**state["root_stress"])
     stepper.resume_at(last)
     for name, value in state["phases_s"].items():

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
+from swgpar.analysis.bearing_loads import summarise_bearing
 from swgpar.analysis.coarse_start import levels, start_loaded, starts_bent
 from swgpar.analysis.drive_model import DriveModel, build_drive_model
 from swgpar.analysis.drive_result import DriveResult
@@ -46,6 +47,7 @@ from swgpar.meshing import MeshRecipe, load_recipe, require_sections
 from swgpar.meshing.recipe import to_toml
 from swgpar.results.atomic import on_all, write_from_root
 from swgpar.results.folder import RECIPE, open_log, prepare
+from swgpar.results.history import loaded_increments
 from swgpar.results.parallel_hdf5 import require_parallel
 
 
@@ -90,6 +92,10 @@ def run_drive(
     if accuracy is not None:
         if design.has_program:
             raise InputError(f"--accuracy {accuracy:g} is not available with a load program: allowed a mesh recipe")
+        if design.bearing is not None:
+            raise InputError(
+                f"accuracy = {accuracy:g} is not available with wave_generator.bearing: allowed without it"
+            )
         design = with_accuracy(design, accuracy)
     left_out: tuple[str, ...] = ()
     if not plain:
@@ -189,7 +195,7 @@ class _Run:
         """Bring back the state of the checkpoint; returns all increments that the run consists of."""
         items, self.earlier_seconds = resume(self.recorder, self.stepper, list(load_sequence(self.model.design)))
         logger.info("restarted after increment %d", len(self.recorder.rows))
-        if self.model.design.resolves_roots and not self.recorder.root_stress:
+        if self.model.design.resolves_root_stress and not self.recorder.root_stress:
             logger.info("the stress at the teeth is resolved only by the run that computes the loaded state")
         return items
 
@@ -204,7 +210,7 @@ class _Run:
 
     def _keep_coarse(self, model: DriveModel, recipe: MeshRecipe) -> None:
         """Resolve the stress at the teeth on a coarser mesh of the drive, to see what the mesh changes."""
-        if model.design.resolves_roots:
+        if model.design.resolves_root_stress:
             loaded = from_loaded(list(load_sequence(model.design)))[0]
             try:
                 self.coarse = recipe, resolve_root_stress(model, loaded, COMPARED_LEVELS).levels
@@ -226,7 +232,7 @@ class _Run:
                 if item != stepper.load_state and not self._advance(item):  # a start at once ends with the first one
                     break
                 seconds = time.perf_counter() - start
-                if self.model.design.resolves_roots:
+                if self.model.design.resolves_root_stress:
                     recorder.root_stress = self._root_stress(item, item == loaded)
                 recorder.record(stepper, seconds, self.seconds)
                 angle = float(np.degrees(item.angle))
@@ -268,6 +274,17 @@ class _Run:
         coarse, levels = self.coarse
         return replace(found, drive_error=drive_error(levels, found.levels, size_ratio(coarse, self.recipe)))
 
+    def _bearing(self) -> dict[str, Any] | None:
+        """Entry of the summary for the bearing: over the increments under load."""
+        recorder, design = self.recorder, self.model.design
+        if design.bearing is None:
+            return None
+        steps = [int(row["step"]) for row in recorder.rows]
+        loaded = loaded_increments({"step": np.array(steps)})
+        return summarise_bearing(
+            design, recorder.balls, [int(k) + 1 for k in loaded], recorder.bearing_shares, recorder.race_stress
+        )
+
     def finish(self, recipe_name: str) -> DriveResult:
         """Summarise the run."""
         recorder, design = self.recorder, self.model.design
@@ -287,6 +304,7 @@ class _Run:
             recorder.places,
             recorder.pairs,
             recorder.turns,
+            self._bearing(),
             self.seconds,
             tooth_rotations=recorder.tooth_rotations,
             stiffness_error=error,
@@ -328,7 +346,7 @@ def _start_loaded(
     ways = [coarser_ones] if coarser_ones else []
     if starts_bent(stepper.design):
         compared = resized(recipe, 1.0 / RATIO)
-        if stepper.design.resolves_roots and not ways and finds_contacts(compared):
+        if stepper.design.resolves_root_stress and not ways and finds_contacts(compared):
             ways.append([compared])
         ways.append([])
     for recipes in ways:

@@ -61,6 +61,9 @@ def with_shortcuts(design: DriveDesign, recipe: MeshRecipe, *, levels: bool = Tr
     points = program_points(design)
     stiffness = design.stiffness
 
+    # with a bearing balls pass: no angle of another period has the same state
+    repeats = design.bearing is None
+
     def leave_out(key: str, value: int | bool, words: str) -> None:
         if key not in steps.model_fields_set and value != getattr(steps, key):
             changes[key] = value
@@ -68,7 +71,9 @@ def with_shortcuts(design: DriveDesign, recipe: MeshRecipe, *, levels: bool = Tr
 
     if not design.contact.friction:
         period = float(np.degrees(design.period_angle))
-        samples_enough = steps.rotation >= 0.999999 * period and steps.rotation > (SAMPLES - 1) * steps.increment
+        samples_enough = (
+            repeats and steps.rotation >= 0.999999 * period and steps.rotation > (SAMPLES - 1) * steps.increment
+        )
         if samples_enough and not points:
             words = f"{steps.rotation - period:.4g} of {steps.rotation:.4g} degrees ({SAMPLES} angles of one period)"
             leave_out("samples", SAMPLES, words)

@@ -80,6 +80,7 @@ def summarise(
     places: Mapping[str, Place],
     pairs: Sequence[Row],
     turns: Sequence[Row],
+    bearing: dict[str, Any] | None,
     seconds: float,
     *,
     tooth_rotations: Sequence[float] = (),
@@ -95,7 +96,7 @@ def summarise(
     accuracy : what was asked for and reached
     root_stress : largest tensile stress at the teeth, by windows
     places : of the largest stresses under load
-    pairs : contacts of the flanks under load
+    pairs : contacts of the flanks under load;  bearing : loads of its balls, None without one
     turns : transmission error over the sampled period, or over whole turns with deviations
     seconds : wall time of the run, restarts included
     tooth_rotations : (n,) deg, of the flexible spline's teeth, with [ratcheting]
@@ -131,6 +132,7 @@ def summarise(
             design.drive.teeth_fs,
             model.copies,
         ),
+        "bearing": bearing,
         "mesh_error": mesh_error(root_stress),
         "condensed_MPa": model.omitted_bending_stress() if design.solver.condensed_sectors else None,
         "sampling_error": sampling_error(design, rows, MEANS) if sampled_period else None,

@@ -206,6 +206,30 @@ def _print_over_period(over: Mapping[str, Any], count: int) -> None:
     )
 
 
+def _print_bearing(bearing: Mapping[str, Any]) -> None:
+    console.print(
+        f"largest ball load: {bearing['largest_load_N']:.1f} N, {bearing['largest_pressure_MPa']:.0f} MPa, "
+        f"{bearing['cam_angle_deg']:.0f} degrees from the major axis; {bearing['mean_load_N']:.1f} N on average"
+    )
+    if share := bearing["torsional_share"]:
+        radial = bearing["radial_share"]
+        console.print(
+            f"share of the bearing: {100.0 * share['bearing']:.0f} % of the torsional compliance (balls "
+            f"{100.0 * share['balls']:.0f} %), {100.0 * radial['bearing']:.0f} % of the radial one (balls "
+            f"{100.0 * radial['balls']:.0f} %)"
+        )
+    if bearing["balls_fixed_to_cam"]:
+        console.print("the balls are fixed to the cam: ball passing is left out")
+    elif not bearing["covers_ball_passing"]:
+        console.print(f"a ball passes every {bearing['ball_passing_deg']:.3g} degrees: the run covers less than that")
+    life = bearing["life"]
+    if life["L10_hours"] is not None:
+        console.print(
+            f"rating life of the bearing: L10 {life['L10_hours']:.3g} h, {life['L10_turns']:.3g} turns (equivalent "
+            f"load {life['equivalent_load_N']:.0f} N of {life['load_rating_N']:.0f} N)"
+        )
+
+
 def _print_errors(summary: Mapping[str, Any]) -> None:
     if root := summary.get("root_stress"):
         console.print(
@@ -225,6 +249,8 @@ def _print_errors(summary: Mapping[str, Any]) -> None:
         _print_fatigue(fatigue)
     if losses := summary.get("losses"):
         _print_losses(losses)
+    if bearing := summary.get("bearing"):
+        _print_bearing(bearing)
     asked = summary["accuracy"]
     if error := summary["mesh_error"]:
         if summary["means"]:

@@ -12,6 +12,7 @@ it is work-conjugate to phi at any rotation (section 3.4.5, "Load application").
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from mpi4py import MPI
@@ -32,6 +33,22 @@ class MeanMotion:
 
     value: np.ndarray
     gradient: np.ndarray
+
+
+class Coupling(Protocol):
+    """Quantities of nodes that may be prescribed.
+
+    nodes : (n,) local nodes;  active : (6,) bool, quantities that are prescribed
+    """
+
+    nodes: np.ndarray
+    active: np.ndarray
+
+    def evaluate(self, u: np.ndarray) -> MeanMotion:
+        """Coupled quantities and their gradients at displacement u (n_local, 3); collective."""
+
+    def supports(self) -> np.ndarray:
+        """Directions (m, n, 3) on single nodes that support the body rigidly; collective."""
 
 
 def node_weights(coords: np.ndarray, nodes: np.ndarray, ccw: np.ndarray) -> np.ndarray:

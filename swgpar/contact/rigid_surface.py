@@ -14,6 +14,7 @@ import numpy as np
 
 from swgpar.contact.contact import NO_KEYS, FacePressure
 from swgpar.contact.enforcement import penetration, pressure
+from swgpar.contact.face_quadrature import FaceQuadrature
 from swgpar.design.load_states import LoadState
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.sparse import BlockRows
@@ -103,32 +104,12 @@ class RigidContact:
         self.surface, self.pose = surface, pose
         self.full_penalty = self.penalty = penalty
         self.pressure_limit = pressure_limit
-        faces = body.layout.mesh.faces["inner"]
-        first = body.owned.start
-        sectors = np.r_[np.flatnonzero(body.preceding), np.arange(first, body.owned.stop)]
-        self.conn = np.ascontiguousarray(body.local[sectors][:, faces].reshape(-1, 4))
-        self.flip = np.ascontiguousarray(body.flip[sectors][:, faces].reshape(-1, 4))
-        self.coords = body.positions()[sectors][:, faces].reshape(-1, 4, 3)
-        self.owned = np.repeat(sectors >= first, len(faces))
-        counts = [n_quadrature, n_quadrature]
-        if body.layout.mesh.plane:  # nothing changes along z, in which one of the two directions of a face runs
-            along = np.ptp(body.layout.mesh.coords[faces[0, :2], 2]) == 0.0
-            counts[int(along)] = 1
-        (point_a, weight_a), (point_b, weight_b) = (np.polynomial.legendre.leggauss(n) for n in counts)
-        a, b = (v.ravel() for v in np.meshgrid(point_a, point_b, indexing="ij"))
-        weight = np.outer(weight_a, weight_b).ravel()
-        corner = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
-        self.shape = 0.25 * (1 + a[:, None] * corner[:, 0]) * (1 + b[:, None] * corner[:, 1])
-        da = 0.25 * corner[:, 0] * (1 + b[:, None] * corner[:, 1])
-        db = 0.25 * corner[:, 1] * (1 + a[:, None] * corner[:, 0])
-        normal = np.cross(np.einsum("qa,fai->fqi", da, self.coords), np.einsum("qa,fai->fqi", db, self.coords))
-        x = np.einsum("qa,fai->fqi", self.shape, self.coords)
-        radial = np.hypot(x[..., 0], x[..., 1])
-        # the exact area of the cylinder above the facet, not the facet's
-        self.weight = np.linalg.norm(normal, axis=2) * weight * radius / radial
-        self.offset = radius - radial
+        points = FaceQuadrature(body, "inner", radius, n_quadrature)
+        self.conn, self.flip, self.coords, self.owned = points.conn, points.flip, points.coords, points.owned
+        self.shape, self.weight, self.offset = points.shape, points.weight, points.offset
+        x = points.position
         self.inside = np.abs(x[..., 2]) <= half_width
-        self.cosine = np.abs(x[..., 1]) / radial
+        self.cosine = np.abs(x[..., 1]) / np.hypot(x[..., 0], x[..., 1])
         self.angle_limit = np.cos(pin_half_angle)
         self.multiplier = np.zeros_like(self.weight)
         self.gap = np.full_like(self.weight, np.inf)

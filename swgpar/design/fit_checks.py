@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from swgpar.design.bearing_checks import check_bearing
 from swgpar.design.deviation_checks import check_deviations
 from swgpar.design.program_checks import check_program
 from swgpar.design.sections import GEARS, OMITTED_BENDING
@@ -49,6 +50,8 @@ def check_fit(design: DriveDesign) -> None:
         _check_cup(design)
         _check_micro_geometry(design)
     _check_outline(design)
+    if design.bearing is not None:
+        check_bearing(design)
 
 
 def _refuse(key: str, value: float, allowed: str) -> None:
@@ -169,6 +172,6 @@ def _check_outline(design: DriveDesign) -> None:
 
 def _shape_keys(design: DriveDesign) -> str:
     """The keys that determine the curve of the cam; a smaller C, where there is one, makes it slimmer."""
-    others = ("type", "face_width", "pin_half_angle")
+    others = ("type", "face_width", "pin_half_angle", "bearing")
     keys = sorted(set(type(design.wave_generator).model_fields).difference(others))
     return ", ".join(f"wave_generator.{key}{' (smaller is slimmer)' if key == 'C' else ''}" for key in keys)

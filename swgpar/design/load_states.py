@@ -3,7 +3,8 @@
 The stages follow each other:
 
 1. DEFLECT: the pins, the two halves of the cam, push the flexible spline outward by d / 2 each. A cam that bulges
-   beside its tips pushes farther. With `steps.pins = false` the cam grows out of the circle instead.
+   beside its tips pushes farther. With `steps.pins = false`, and with a bearing, the cam grows
+   out of the circle instead.
 2. ENGAGE: the wave generator grows into place, the pins are drawn back, and the flanks may touch.
 3. LOAD: the torque is applied. The output rotates until the flanks carry it.
 4. ROTATE: the wave generator rotates in increments.
@@ -147,7 +148,7 @@ class LoadState:
 def start_state(design: DriveDesign) -> LoadState:
     """Undeformed drive; the pins, or the shrunk cam, touch the inner surface."""
     travel = pin_travel(design.cam(), design.inner_radius)
-    if design.steps.pins:
+    if design.uses_pins:
         return LoadState(Stage.START, 0, pin_inset=travel)
     return LoadState(Stage.START, 0, cam_clearance=travel)
 
@@ -189,7 +190,7 @@ def _deflection(design: DriveDesign) -> Iterator[LoadState]:
 
 
 def _engagement(design: DriveDesign) -> Iterator[LoadState]:
-    pins, module, n = design.steps.pins, design.drive.module, design.steps.engage_increments
+    pins, module, n = design.uses_pins, design.drive.module, design.steps.engage_increments
     for i in range(1, n + 1):
         t = i / n
         yield LoadState(

@@ -112,7 +112,9 @@ class Steps(Section):
 
     rotation: float = quantity(45.0, unit="deg", text="rotation of the wave generator", ge=0.0, le=36000.0)
     increment: float = quantity(5.0, unit="deg", text="increment of that rotation", ge=0.01, le=45.0)
-    pins: bool = quantity(True, text="deflect the spline by pins before the cam acts; false: by the growing cam")
+    pins: bool = quantity(
+        True, text="deflect the spline by pins before the cam acts; false, or with a bearing: by the growing cam"
+    )
     deflect_increments: int = quantity(1, text="increments of the deflection (step 1)", ge=1, le=1000)
     engage_increments: int = quantity(1, text="increments of the engagement", ge=1, le=1000)
     load_increments: int = quantity(1, text="increments of the torque", ge=1, le=1000)

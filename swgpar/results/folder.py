@@ -42,6 +42,8 @@ PROGRAM = "program.csv"
 
 STIFFNESS = "stiffness.csv"
 """The same on the branches of the stiffness loops."""
+BALLS = "balls.csv"
+"""Loads of the balls of a bearing."""
 
 SUMMARY = "summary.json"
 """Written last: a folder that has it is that of a finished run."""
@@ -62,6 +64,7 @@ RESULTS = (
     PROGRAM,
     STIFFNESS,
     TRANSMISSION_ERROR,
+    BALLS,
     "published.csv",
     RECIPE,
     f"{TABLES}/*.csv",

@@ -113,6 +113,19 @@ TRANSMISSION = {
 """Quantities of runs with `steps.samples`, over their period, and of those with [deviations], over whole turns."""
 
 
+BEARING = {
+    "bearing.largest_load": Quantity("largest ball load under load", "N"),
+    "bearing.pressure": Quantity("largest pressure of a ball on a race under load", "MPa"),
+    "bearing.mean_load": Quantity("mean ball load under load", "N"),
+    "bearing.load_ripple": Quantity("range of the largest ball load over its mean", ""),
+    "bearing.torsional_share": Quantity("share of the bearing in the torsional compliance", ""),
+    "bearing.radial_share": Quantity("share of the bearing in the radial compliance", ""),
+    "bearing.life_turns": Quantity("rating life L10 of the bearing, turns of the wave generator", ""),
+    "bearing.life_hours": Quantity("rating life L10 of the bearing", "h"),
+}
+"""Quantities of drives with a bearing."""
+
+
 class Drives(System[DriveDesign, DriveResult]):
     """The drive's adapter: analysis, results and quantities under the names that all systems share."""
 
@@ -182,6 +195,8 @@ class Drives(System[DriveDesign, DriveResult]):
         for section, names in ((design.fatigue, FATIGUE), (design.losses, LOSSES)):
             known |= names if section else {}
         known |= TRANSMISSION
+        if design.bearing is not None:
+            known |= BEARING
         return known | {f"step{k}.{name}": quantity(name, f"end of step {k}") for k in GROUPS for name in COLUMNS}
 
     def main_quantities(self, known: Mapping[str, Quantity]) -> tuple[str, ...]:
@@ -198,7 +213,7 @@ class Drives(System[DriveDesign, DriveResult]):
         names = f"mean. with {', '.join(MEANS)}, or step1. to step{GROUPS[-1]}. with a column of history.csv"
         names = f"{names}; {', '.join(SHARING)}; with [fatigue] {', '.join(FATIGUE)}; with [losses] {', '.join(LOSSES)}"
         names += f", or {', '.join(TRANSMISSION)}"
-        return f"{names}; with output.root_stress = true {', '.join(RESOLVED)}"
+        return f"{names}; with output.root_stress = true {', '.join(RESOLVED)}; with a bearing {', '.join(BEARING)}"
 
     def check_published(self, design: DriveDesign, names: Iterable[str]) -> None:
         for name in names:
@@ -228,6 +243,7 @@ class Drives(System[DriveDesign, DriveResult]):
                 **sharing(summary),
                 **cycle_values(summary),
                 **of_program(summary),
+                **of_bearing(summary),
                 **transmission(summary),
             },
             wall_s=summary["wall_s"],
@@ -323,6 +339,24 @@ def transmission(summary: Mapping[str, Any]) -> dict[str, float]:
         return {}
     torque = {f"transmission_error.torque_{name}": found["torque"][name] for name in ("mean", "peak_to_peak")}
     return {f"transmission_error.{name}": found[name] for name in ("peak_to_peak", "amplitude")} | torque
+
+
+def of_bearing(summary: Mapping[str, Any]) -> dict[str, float]:
+    """The quantities of `BEARING`, without those that the run does not have."""
+    bearing = summary.get("bearing")
+    if not bearing:
+        return {}
+    found = {
+        "largest_load": bearing["largest_load_N"],
+        "pressure": bearing["largest_pressure_MPa"],
+        "mean_load": bearing["mean_load_N"],
+        "load_ripple": bearing["load_ripple"],
+        "torsional_share": bearing["torsional_share"] and bearing["torsional_share"]["bearing"],
+        "radial_share": bearing["radial_share"] and bearing["radial_share"]["bearing"],
+        "life_turns": bearing["life"]["L10_turns"],
+        "life_hours": bearing["life"]["L10_hours"],
+    }
+    return {f"bearing.{name}": value for name, value in found.items() if value is not None}
 
 
 def values(means: Mapping[str, float], history: Mapping[str, np.ndarray]) -> dict[str, float]:
