@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NoReturn
 
-from swgpar.errors import InputError, StudyError, SwgparError
+from swgpar.errors import InputError, StudyError, SwgparError, printable, shortened
 from swgpar.version import __version__
 
 OPTIONS = tuple("--set --mesh --accuracy --plain --out --restart --overwrite --format --help --version".split())
@@ -213,7 +213,7 @@ def _study(arguments: argparse.Namespace) -> None:
     if MPI.COMM_WORLD.rank == 0:
         print_results(found.results, found.comparisons)
         for path in sorted([*folder.glob("*.csv"), *folder.glob("*.html")]):
-            console.print(f"written {path}")
+            console.print(printable(f"written {path}"), markup=False)
     MPI.COMM_WORLD.Barrier()  # mpirun ends all ranks when one of them fails
     if found.failed:
         reasons = folder / "study.csv"
@@ -257,7 +257,7 @@ def _print(lines: Iterable[str]) -> None:
 
     if MPI.COMM_WORLD.rank == 0:
         for line in lines:
-            print(line)
+            print(printable(line))
 
 
 def _check_rest(rest: Sequence[str], petsc: bool) -> None:
@@ -268,7 +268,7 @@ def _check_rest(rest: Sequence[str], petsc: bool) -> None:
         if not option and not after_option:
             near = difflib.get_close_matches(word, OPTIONS, n=1)
             hint = f": did you mean {near[0]}?" if near else "; options of PETSc begin with one dash" if petsc else ""
-            raise InputError(f"unknown argument {word}{hint}")
+            raise InputError(f"unknown argument {shortened(word)}{hint}")
         after_option = option
 
 
@@ -282,9 +282,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         _check_rest(rest, petsc=solves)
         known.overrides = [item for group in getattr(known, "set", []) for item in group]
         if solves:
-            import petsc4py
+            from swgpar import petsc
 
-            petsc4py.init(["swgpar", *rest])
+            petsc.start(rest)
         {"run": _run, "study": _study, "mesh": _mesh, "check": _check, "report": _report}[command](known)
     except SwgparError as error:
         from mpi4py import MPI

@@ -9,6 +9,7 @@ PURPOSE = {
     "rooms": "this order",
     "version": "version of the package",
     "errors": "exceptions of one sentence, with exit codes",
+    "petsc": "start of PETSc and its options",
     "log": "log of rank 0, progress, wall seconds by phase",
     "input": "quantities with units and ranges, TOML files, sentences that refuse bad values",
     "geometry": "exact cams and tooth profiles, crowning and slope, from numbers",

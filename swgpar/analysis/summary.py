@@ -9,13 +9,13 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
-from petsc4py import PETSc
 
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.period import of_period, sampling_error
 from swgpar.analysis.places import Place
 from swgpar.analysis.root_stress import RootStress
 from swgpar.design.load_states import Stage
+from swgpar.petsc import PETSc
 from swgpar.results.history import Row, column, transmission_error
 from swgpar.version import __version__
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from petsc4py import PETSc
 
 from swgpar.fem.partition import Partition
 from swgpar.fem.vectors import create_vector, read_multipliers
 from swgpar.log import logger
+from swgpar.petsc import PETSc
 from swgpar.solve.factor_reuse import ReusedFactor
 
 ORDERING = {2: 6, 3: 4}

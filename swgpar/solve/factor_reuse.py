@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from petsc4py import PETSc
+from swgpar.petsc import PETSc
 
 RTOL = 1e-4
 """Relative tolerance of GMRES. A Newton step with it loses nothing but its last, quadratic, iteration. Looser steps

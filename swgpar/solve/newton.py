@@ -15,11 +15,11 @@ from collections.abc import Callable
 
 import numpy as np
 from mpi4py import MPI
-from petsc4py import PETSc
 
 from swgpar.design.load_states import LoadState, Stage
 from swgpar.fem.vectors import create_vector
 from swgpar.log import logger
+from swgpar.petsc import PETSc
 from swgpar.solve.active_set_cycles import (
     MAX_ITERATIONS_FACTOR,
     MIN_DECREASE,
