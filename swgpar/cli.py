@@ -196,6 +196,7 @@ def _run(arguments: argparse.Namespace) -> None:
     )
     if comm.rank == 0:
         system_of(design).print(result)
+    _warn()
     comm.Barrier()  # mpirun ends all ranks when one of them fails
 
 
@@ -214,6 +215,7 @@ def _study(arguments: argparse.Namespace) -> None:
         print_results(found.results, found.comparisons)
         for path in sorted([*folder.glob("*.csv"), *folder.glob("*.html")]):
             console.print(printable(f"written {path}"), markup=False)
+    _warn()
     MPI.COMM_WORLD.Barrier()  # mpirun ends all ranks when one of them fails
     if found.failed:
         reasons = folder / "study.csv"
@@ -249,6 +251,16 @@ def _report(arguments: argparse.Namespace) -> None:
 
     files = api.open_result(arguments.out).plot.save(arguments.out)
     _print(f"figure {path}" for path in files)
+
+
+def _warn() -> None:
+    """Warn of options of PETSc that a study, or a system without PETSc, has not used; a drive says it earlier."""
+    from mpi4py import MPI
+
+    from swgpar import log, petsc
+
+    with log.session(MPI.COMM_WORLD):
+        petsc.warn_of_unused_options()
 
 
 def _print(lines: Iterable[str]) -> None:

@@ -7,14 +7,20 @@ the options of the environment variable PETSC_OPTIONS as far as they name no fil
 
 from __future__ import annotations
 
+import ctypes
 import os
 import shlex
-from collections.abc import Sequence
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from mpi4py import MPI
 
-from swgpar.errors import InputError
+from swgpar.errors import InputError, shortened
+from swgpar.log import logger
 
 if TYPE_CHECKING:
     from petsc4py import PETSc as PETSc
@@ -31,6 +37,18 @@ LIBRARIES = ("-dll_prepend", "-dll_append")
 VARIABLES = ("PETSC_OPTIONS", "PETSC_OPTIONS_YAML")
 """Environment variables that PETSc reads."""
 
+ABOUT_OPTIONS = (56, 62, 63, 65, 83, 86, 92)
+"""Error codes of PETSc (petscsystypes.h) that follow from options: not supported, wrong argument, out of range, a file
+that cannot be opened, a user's error, an unknown type, no such package for a factor."""
+
+AT_END = ("citations", "get_total_flops", "mpidump", "options_left", "skip_petscrc")
+"""Options that PETSc asks for when it ends, or that are always given."""
+
+_given: set[str] = set()
+"""Names of the options at the start."""
+
+_warned_of: set[str] = set()
+
 
 def start(arguments: Sequence[str] = ()) -> None:
     """Initialise PETSc on all ranks with options of the command line; collective. Without effect when it has been.
@@ -44,21 +62,92 @@ def start(arguments: Sequence[str] = ()) -> None:
         raise words
     hidden = {name: os.environ.pop(name) for name in VARIABLES if name in os.environ}
     try:
-        petsc4py.init(["swgpar", *_without_files(words), *NO_FILES])
+        with _without_messages() as messages:
+            petsc4py.init(["swgpar", *_without_files(words), *NO_FILES])
+    except RuntimeError:  # PETSc.Error is one
+        raise InputError(f"options of PETSc: {messages[0]}") from None
     finally:
         os.environ.update(hidden)
     from petsc4py import PETSc
 
-    if any(_is_one_of(word, FILES) for word in words):
-        try:
+    with accepted_options(MPI.COMM_WORLD):
+        if any(_is_one_of(word, FILES) for word in words):
             PETSc.Options().insertString(" ".join(f"'{word}'" if '"' in word else f'"{word}"' for word in words))
-        except PETSc.Error as error:
-            raise InputError(f"options of PETSc: {reason(error)}") from None
+    _given.update(PETSc.Options().getAll())
 
 
-def reason(error: Exception) -> str:
-    """Last line of an error of PETSc, without the rank."""
-    return str(error).splitlines()[-1].partition("] ")[2] or str(error)
+@contextmanager
+def accepted_options(comm: MPI.Comm) -> Iterator[None]:
+    """Run a block in which PETSc reads options; what it does not accept is an InputError on all ranks. Collective.
+
+    An error of PETSc that is not about options is raised as it is.
+    """
+    from petsc4py import PETSc
+
+    failure: str | None = None
+    try:
+        yield
+    except PETSc.Error as error:
+        if error.ierr not in ABOUT_OPTIONS:
+            raise
+        text = str(error).splitlines()[-1].partition("] ")[2]
+        values = PETSc.Options().getAll()
+        named = [f"-{name} {values[name]}: " for name in sorted(_given & set(values)) if values[name] in text.split()]
+        failure = "".join(named[:1]) + text
+    reason = next((text for text in comm.allgather(failure) if text is not None), None)
+    if reason is not None:
+        raise InputError(f"options of PETSc: {reason}")
+
+
+def unused_options() -> list[str]:
+    """Options that were given at the start and that PETSc has not asked for so far, as they are written: "-name"."""
+    if not _given:
+        return []
+    from petsc4py import PETSc
+
+    library = ctypes.CDLL(PETSc.__file__)  # petsc4py does not offer it
+    count = np.zeros(1, dtype=PETSc.IntType)
+    names, values = ctypes.POINTER(ctypes.c_char_p)(), ctypes.POINTER(ctypes.c_char_p)()
+    arguments = ctypes.c_void_p(count.ctypes.data), ctypes.byref(names), ctypes.byref(values)
+    if library.PetscOptionsLeftGet(None, *arguments) != 0:
+        return []
+    found = [names[k].decode(errors="replace") for k in range(count[0])]
+    library.PetscOptionsLeftRestore(None, *arguments)
+    return [f"-{name}" for name in found if name in _given and name not in AT_END]
+
+
+def warn_of_unused_options() -> None:
+    """Log a warning with the options that nothing has used, once."""
+    found = [name for name in unused_options() if name not in _warned_of]
+    _warned_of.update(found)
+    if found:
+        logger.warning("options of PETSc that nothing has used: %s", ", ".join(map(shortened, found)))
+
+
+@contextmanager
+def _without_messages() -> Iterator[list[str]]:
+    """Keep what is written to stderr from the terminal; the list then holds the text of PETSc's error.
+
+    While it starts, PETSc writes its errors itself. Everything else is written again at the end.
+    """
+    messages: list[str] = []
+    sys.stderr.flush()
+    terminal = os.dup(2)
+    with tempfile.TemporaryFile() as file:
+        os.dup2(file.fileno(), 2)
+        try:
+            yield messages
+        finally:
+            os.dup2(terminal, 2)
+            os.close(terminal)
+            file.seek(0)
+            lines = file.read().decode(errors="replace").splitlines()
+            errors = [line.partition("PETSC ERROR: ")[2] for line in lines if "PETSC ERROR: " in line]
+            messages += [text for text in errors if text and text[0] not in "-#"][:2][::-1]
+            messages += ["they are refused"]
+            for line in lines:
+                if "PETSC ERROR: " not in line:
+                    print(line, file=sys.stderr)
 
 
 def _words(arguments: Sequence[str]) -> list[str] | InputError:

@@ -36,6 +36,7 @@ from swgpar.errors import ConvergenceError, InputError, SwgparError
 from swgpar.log import IncrementProgress, logger
 from swgpar.meshing import MeshRecipe, load_recipe, require_sections
 from swgpar.meshing.recipe import to_toml
+from swgpar.petsc import warn_of_unused_options
 from swgpar.results.atomic import on_all, write_from_root
 from swgpar.results.folder import RECIPE, open_log, prepare
 from swgpar.results.parallel_hdf5 import require_parallel
@@ -219,6 +220,8 @@ class _Run:
                 angle = float(np.degrees(item.angle))
                 progress.increment(item.stage.label, angle, stepper.iterations, stepper.residual, seconds)
                 self.on_increment()
+                if terminal:
+                    warn_of_unused_options()
 
     def _root_stress(self, state: LoadState, loaded: bool) -> RootStress | None:
         """Largest tensile stress at the teeth by windows; the one known before where a window cannot be computed."""

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from support.commands import environment, execute, swgpar
+from support.commands import environment, execute, run_command, succeed, swgpar
 from support.paths import DESIGN, RECIPE, ROOT
 from support.small_drive import PLANE
 
@@ -62,6 +62,42 @@ def test_files_of_the_command_line_are_read(tmp_path: Path) -> None:
     assert "options of PETSc: Unknown first token" in options_of(start + FOUND, tmp_path).stderr.splitlines()[-1]
     os.remove(tmp_path / "mine")
     assert "-options_file mine: there is no such file" in options_of(start + FOUND, tmp_path).stderr
+
+
+@pytest.mark.parametrize(
+    ("ranks", "option", "words"),
+    [
+        (1, "-stiffness_ksp_type nonsense", "-stiffness_ksp_type nonsense: Unable to find requested KSP type nonsense"),
+        (
+            2,
+            "-stiffness_mat_mumps_icntl_7 abc",
+            "-stiffness_mat_mumps_icntl_7 abc: Input string abc has no integer value",
+        ),
+        (1, "-snes_max_it 2.5x", "-snes_max_it 2.5x: Input string 2.5x has no integer value"),
+        (2, "-malloc_debug maybe", "Unknown logical value: maybe"),
+        (1, "-options_file nowhere", "-options_file nowhere: there is no such file"),
+    ],
+)
+def test_options_that_cannot_be_used_are_refused(tmp_path: Path, ranks: int, option: str, words: str) -> None:
+    done = execute(run_command(tmp_path / "run", *option.split(), ranks=ranks), timeout=300.0)
+    (sentence,) = done.stderr.splitlines()
+    assert done.returncode == 2 and sentence.startswith("swgpar: error: ") and words in sentence
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_options_that_nothing_uses_are_named(tmp_path: Path, ranks: int) -> None:
+    words = ("-snes_monitorr", "-snes_rtol", "1e-30", "-stiffness_ksp_max_it", "abc", "-options_left", "0")
+    short = (*PLANE, "steps.rotation=2.0", "steps.increment=2.0")
+    done = succeed(run_command(tmp_path / "run", *words, ranks=ranks, overrides=short))
+    sentence = "options of PETSc that nothing has used: -snes_monitorr, -stiffness_ksp_max_it"
+    assert [line.partition("  ")[2] for line in done.stdout.splitlines() if "nothing has used" in line] == [sentence]
+    assert sentence in (tmp_path / "run" / "run.log").read_text(encoding="utf-8")
+
+
+def test_a_gear_train_uses_no_options_of_petsc(tmp_path: Path) -> None:
+    command = swgpar("run", ROOT / "drivers" / "gear_pair.toml", "--out", tmp_path / "pair", "-snes_monitor")
+    done = succeed([*command, "--set", "output.figures=false"])
+    assert "options of PETSc that nothing has used: -snes_monitor" in done.stdout
 
 
 def test_petsc_is_started_in_one_place() -> None:
