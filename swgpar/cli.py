@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NoReturn
 
-from swgpar.errors import InputError, StudyError, SwgparError
+from swgpar.errors import InputError, StudyError, SwgparError, printable, shortened
 from swgpar.version import __version__
 
 OPTIONS = tuple("--set --mesh --accuracy --plain --out --restart --overwrite --format --help --version".split())
@@ -196,6 +196,7 @@ def _run(arguments: argparse.Namespace) -> None:
     )
     if comm.rank == 0:
         system_of(design).print(result)
+    _warn()
     comm.Barrier()  # mpirun ends all ranks when one of them fails
 
 
@@ -213,7 +214,8 @@ def _study(arguments: argparse.Namespace) -> None:
     if MPI.COMM_WORLD.rank == 0:
         print_results(found.results, found.comparisons)
         for path in sorted([*folder.glob("*.csv"), *folder.glob("*.html")]):
-            console.print(f"written {path}")
+            console.print(printable(f"written {path}"), markup=False)
+    _warn()
     MPI.COMM_WORLD.Barrier()  # mpirun ends all ranks when one of them fails
     if found.failed:
         reasons = folder / "study.csv"
@@ -251,13 +253,23 @@ def _report(arguments: argparse.Namespace) -> None:
     _print(f"figure {path}" for path in files)
 
 
+def _warn() -> None:
+    """Warn of options of PETSc that a study, or a system without PETSc, has not used; a drive says it earlier."""
+    from mpi4py import MPI
+
+    from swgpar import log, petsc
+
+    with log.session(MPI.COMM_WORLD):
+        petsc.warn_of_unused_options()
+
+
 def _print(lines: Iterable[str]) -> None:
     """Print lines, on rank 0 only."""
     from mpi4py import MPI
 
     if MPI.COMM_WORLD.rank == 0:
         for line in lines:
-            print(line)
+            print(printable(line))
 
 
 def _check_rest(rest: Sequence[str], petsc: bool) -> None:
@@ -268,7 +280,7 @@ def _check_rest(rest: Sequence[str], petsc: bool) -> None:
         if not option and not after_option:
             near = difflib.get_close_matches(word, OPTIONS, n=1)
             hint = f": did you mean {near[0]}?" if near else "; options of PETSc begin with one dash" if petsc else ""
-            raise InputError(f"unknown argument {word}{hint}")
+            raise InputError(f"unknown argument {shortened(word)}{hint}")
         after_option = option
 
 
@@ -282,9 +294,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         _check_rest(rest, petsc=solves)
         known.overrides = [item for group in getattr(known, "set", []) for item in group]
         if solves:
-            import petsc4py
+            from swgpar import petsc
 
-            petsc4py.init(["swgpar", *rest])
+            petsc.start(rest)
         {"run": _run, "study": _study, "mesh": _mesh, "check": _check, "report": _report}[command](known)
     except SwgparError as error:
         from mpi4py import MPI

@@ -2,9 +2,30 @@
 
 from __future__ import annotations
 
+LONGEST = 1000
+"""Letters of a sentence; what is longer holds keys or values of that size and is cut."""
+
+SHOWN = 60
+"""Letters of a key or a value in a sentence."""
+
+
+def printable(text: str) -> str:
+    """The text with escapes for what a terminal would not show as a letter: control characters, bytes without meaning.
+
+    Files and arguments of a user may hold them. Line breaks stay.
+    """
+    return "".join(c if c.isprintable() or c == "\n" else c.encode("unicode_escape").decode() for c in text)
+
+
+def shortened(text: str, longest: int = SHOWN) -> str:
+    """The text, or its beginning and three points, with at most so many letters."""
+    return text if len(text) <= longest else text[: longest - 3] + "..."
+
 
 class SwgparError(Exception):
     """Any failure that swgpar reports as one sentence instead of a traceback.
+
+    The sentence is printable, on one line and not longer than `LONGEST`.
 
     Attributes
     ----------
@@ -13,6 +34,9 @@ class SwgparError(Exception):
     """
 
     exit_code = 1
+
+    def __init__(self, sentence: str) -> None:
+        super().__init__(shortened(printable(" ".join(sentence.split("\n"))), LONGEST))
 
 
 class InputError(SwgparError):

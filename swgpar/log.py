@@ -28,7 +28,18 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
+from swgpar.errors import printable
+
 logger = logging.getLogger("swgpar")
+
+
+def _printable(record: logging.LogRecord) -> bool:
+    """Escape what a message holds of control characters: paths and values of a user may."""
+    record.msg, record.args = printable(record.getMessage()), None
+    return True
+
+
+logger.addFilter(_printable)
 
 
 def _redirected() -> bool:

@@ -10,6 +10,7 @@ PURPOSE = {
     "version": "version of the package",
     "errors": "exceptions of one sentence, with exit codes",
     "log": "log of rank 0, progress, wall seconds by phase",
+    "petsc": "start of PETSc and its options",
     "input": "quantities with units and ranges, TOML files, sentences that refuse bad values",
     "geometry": "exact cams and tooth profiles, crowning and slope, from numbers",
     "design": "design file of the drive: sections, derived quantities, checks of fit, load states",

@@ -16,7 +16,7 @@ from typing import Any
 
 from mpi4py import MPI
 
-from swgpar.log import PhaseTimes  # noqa: F401  (petsc4py is initialised by what is imported here, outside the clock)
+from swgpar.log import PhaseTimes  # noqa: F401  (PETSc is initialised by what is imported here, outside the clock)
 
 Solved = tuple[int, dict[str, float], dict[str, float]]
 """Unknowns, values, closed forms."""

@@ -22,9 +22,6 @@ MESHES = ("tests/data/tiny.toml", "coarse", "medium", "full")
 
 def measure(mesh: str, linear: str) -> None:
     """Print the numbers of one case; run under mpirun."""
-    import petsc4py
-
-    petsc4py.init([])
     from mpi4py import MPI
 
     from swgpar.analysis.drive_model import build_drive_model

@@ -11,7 +11,6 @@ from collections.abc import Callable
 
 import numpy as np
 from mpi4py import MPI
-from petsc4py import PETSc
 
 from swgpar.analysis.bent_start import bend
 from swgpar.analysis.drive_model import DriveModel, build_drive_model
@@ -25,6 +24,7 @@ from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.interpolation import interpolation
 from swgpar.meshing.recipe_counts import coarser
+from swgpar.petsc import PETSc
 
 
 def transfer(coarse: DriveModel, x: PETSc.Vec, fine: DriveModel, y: PETSc.Vec) -> None:

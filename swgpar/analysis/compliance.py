@@ -10,7 +10,6 @@ from dataclasses import replace
 
 import numpy as np
 from mpi4py import MPI
-from petsc4py import PETSc
 
 from swgpar.analysis.bearing_loads import ComplianceShares, ball_contact
 from swgpar.analysis.drive_model import DriveModel
@@ -18,6 +17,7 @@ from swgpar.contact.contact import largest
 from swgpar.design.load_states import LoadState
 from swgpar.fem.body_layout import OUTER_RACE
 from swgpar.fem.vectors import create_vector
+from swgpar.petsc import PETSc
 
 STEP = 1e-6
 """Largest displacement (mm) of the differences, and change of the cam's size: far below the approach of balls."""

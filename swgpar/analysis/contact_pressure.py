@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from petsc4py import PETSc
 
 from swgpar.contact.contact import FacePressure
 from swgpar.design.load_states import LoadState
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.vectors import create_vector
+from swgpar.petsc import PETSc
 from swgpar.solve.discrete_problem import DiscreteProblem
 
 

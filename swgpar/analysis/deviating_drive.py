@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from mpi4py import MPI
-from petsc4py import PETSc
 
 from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.analysis.drive_model import DriveModel
@@ -32,6 +31,7 @@ from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.geometry.rotation import rotated
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.recipe_counts import coarser
+from swgpar.petsc import PETSc
 
 NEAR = 0.06
 """Distance over the module within which flanks are followed; the check after every solve finds those that it misses."""

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from petsc4py import PETSc
 
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.design.load_states import LoadState
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.fem.vectors import create_vector, read_field
 from swgpar.meshing.sector import FlankGrid, SectorMesh
+from swgpar.petsc import PETSc
 
 POINTS = 4
 """Gauss points along z on each piece between the stations of both meshes."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from petsc4py import PETSc
 
 from swgpar.analysis.bent_start import bend
 from swgpar.analysis.drive_model import DriveModel
@@ -14,6 +13,7 @@ from swgpar.analysis.torques import torques
 from swgpar.design.load_states import LoadState, Stage, start_state
 from swgpar.errors import ConvergenceError
 from swgpar.log import logger
+from swgpar.petsc import PETSc
 from swgpar.solve.solve_state import SolveResult
 
 MAX_KNOWN_STATES = 40

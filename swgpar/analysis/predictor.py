@@ -9,11 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from petsc4py import PETSc
 
 from swgpar.fem.partition import Partition
 from swgpar.fem.vectors import read_field, write_field
 from swgpar.geometry.rotation import rotated
+from swgpar.petsc import PETSc
 
 MIN_SPACING = 1.5
 """Smallest distance of the second state on one side over that of the first: of states close together the difference

@@ -45,6 +45,7 @@ from swgpar.errors import ConvergenceError, InputError, SwgparError
 from swgpar.log import IncrementProgress, logger
 from swgpar.meshing import MeshRecipe, load_recipe, require_sections
 from swgpar.meshing.recipe import to_toml
+from swgpar.petsc import warn_of_unused_options
 from swgpar.results.atomic import on_all, write_from_root
 from swgpar.results.folder import RECIPE, open_log, prepare
 from swgpar.results.history import loaded_increments
@@ -238,6 +239,8 @@ class _Run:
                 angle = float(np.degrees(item.angle))
                 progress.increment(item.stage.label, angle, stepper.iterations, stepper.residual, seconds)
                 self.on_increment()
+                if terminal:
+                    warn_of_unused_options()
 
     def _advance(self, item: LoadState) -> bool:
         """Compute an increment; False where the output is rotated beyond the strength and finds no equilibrium."""

@@ -9,7 +9,6 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
-from petsc4py import PETSc
 
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.load_sharing import load_sharing
@@ -21,6 +20,7 @@ from swgpar.analysis.root_stress import RootStress
 from swgpar.analysis.stiffness import summarise_stiffness
 from swgpar.analysis.transmission_error import summarise_turns
 from swgpar.design.load_states import Stage
+from swgpar.petsc import PETSc
 from swgpar.results.history import Row, column, transmission_error
 from swgpar.version import __version__
 

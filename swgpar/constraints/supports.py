@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from mpi4py import MPI
-from petsc4py import PETSc
 
 from swgpar.constraints.distributing_coupling import N_COUPLED, ROTATION, Coupling, DistributingCoupling, Housing
 from swgpar.constraints.race_coupling import RaceCoupling
@@ -12,6 +11,7 @@ from swgpar.design.load_states import LoadState
 from swgpar.fem.partition import Partition
 from swgpar.fem.sparse import BlockRows, add_diagonal
 from swgpar.fem.vectors import create_vector
+from swgpar.petsc import PETSc
 
 GROUNDING = 0.1
 """Stiffness of the grounding over E times the module."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from petsc4py import PETSc
 
 from swgpar.fem.partition import Partition
+from swgpar.petsc import PETSc
 
 
 @dataclass

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from petsc4py import PETSc
 
 from swgpar.fem.partition import Partition
 from swgpar.geometry.rotation import HALF_TURN
+from swgpar.petsc import PETSc
 
 
 def create_vector(partition: Partition) -> PETSc.Vec:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from swgpar.errors import InputError
-from swgpar.input.quantities import show
+from swgpar.input.quantities import show, show_key
 
 Quantities = Mapping[str, tuple[str, int]]
 """What a model computes: name -> meaning with its unit, number of values."""
@@ -67,10 +67,10 @@ def check_published(published: Mapping[str, Any], known: Quantities) -> None:
     for name, given in published.items():
         if name not in known:
             if new_name := current_name(name, known):
-                raise InputError(f"published.{name} is not available: this quantity is named {new_name}")
+                raise InputError(f"published.{show_key(name)} is not available: this quantity is named {new_name}")
             near = difflib.get_close_matches(name, known, n=1)
             hint = f"did you mean {near[0]}?" if near else f"allowed {', '.join(known)}"
-            raise InputError(f"published.{name} is not a quantity of this gear train: {hint}")
+            raise InputError(f"published.{show_key(name)} is not a quantity of this gear train: {hint}")
         values = given if isinstance(given, list) else [given]
         numbers = all(isinstance(v, (int, float)) and not isinstance(v, bool) and np.isfinite(v) for v in values)
         if not numbers or len(values) != known[name][1]:

@@ -10,6 +10,8 @@ import annotated_types
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic.fields import FieldInfo
 
+from swgpar.errors import shortened
+
 
 class Section(BaseModel):
     """One table of an input file: immutable, no unknown keys, no silent conversion, finite numbers only."""
@@ -55,7 +57,12 @@ def show(value: Any) -> str:
         text = "a table" if value else "an empty table"
     else:
         text = " ".join(repr(value).split())
-    return text if len(text) <= 60 else text[:57] + "..."
+    return shortened(text)
+
+
+def show_key(*names: Any) -> str:
+    """Return the dotted key of these names, shortened when long."""
+    return shortened(".".join(map(str, names)))
 
 
 def unit_of(field: FieldInfo) -> str:

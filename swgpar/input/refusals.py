@@ -10,7 +10,7 @@ from typing import Any, get_args, get_origin
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 
-from swgpar.input.quantities import Section, allowed, show
+from swgpar.input.quantities import Section, allowed, show, show_key
 
 RANGE_FINDINGS = ("greater_than", "greater_than_equal", "less_than", "less_than_equal")
 """Kinds of pydantic's findings for numbers beyond the limits of their field."""
@@ -55,10 +55,10 @@ def _locate(model: type[Section], path: Sequence[Any]) -> tuple[type[Section], F
 
 def _unknown_key(model: type[Section], path: Sequence[Any], value: Any) -> str:
     """Refuse an unknown key and suggest the one most likely meant."""
-    parent = ".".join(map(str, path[:-1]))
+    parent = show_key(*path[:-1])
     names = list(model.model_fields)
     where = f"section [{parent}]" if parent else "design file"
-    given = f"{'.'.join(map(str, path))} = {show(value)}"
+    given = f"{show_key(*path)} = {show(value)}"
     near = difflib.get_close_matches(str(path[-1]), names, n=1, cutoff=0.5)
     if near:
         return f"{given} is not a key of the {where}: did you mean {parent + '.' if parent else ''}{near[0]}?"
@@ -79,7 +79,7 @@ def sentence(model: type[Section], error: ValidationError) -> str:
     owner, field, path = _locate(model, path)
     if kind == "extra_forbidden" or field is None:
         return _unknown_key(owner, path, value)
-    key = ".".join(map(str, path))
+    key = show_key(*path)
     if _section_classes(field):
         return _bad_section(field, kind, key, value)
     if kind == "literal_error":

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from swgpar.errors import InputError
-from swgpar.input.quantities import Section, show
+from swgpar.input.quantities import Section, show, show_key
 from swgpar.input.refusals import sentence
 
 SectionType = TypeVar("SectionType", bound=Section)
@@ -93,7 +93,7 @@ def with_value(table: dict[str, Any], key: str, value: Any) -> dict[str, Any]:
         target = _entry(target, name, key, value) if isinstance(target, list) else target.setdefault(name, {})
         if not isinstance(target, dict | list):
             raise InputError(
-                f"{key} = {show(value)} cannot be applied: {'.'.join(names[:depth])} = {show(target)} "
+                f"{show_key(key)} = {show(value)} cannot be applied: {show_key(*names[:depth])} = {show(target)} "
                 "is a value, not a section"
             )
     if isinstance(target, list):

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from swgpar.errors import InputError
-from swgpar.input.quantities import Section, quantity, show
+from swgpar.input.quantities import Section, quantity, show, show_key
 from swgpar.input.toml_file import read_toml, validate
 
 RECIPES = ("coarse", "forces", "medium", "full", "plane_coarse", "plane", "plane_fine")
@@ -78,13 +78,13 @@ def recipe_path(mesh: str | Path) -> Path:
     Raises InputError for a plain word that is neither.
     """
     path = Path(mesh)
-    if not is_recipe_name(path) or path.is_file():
-        return path
-    if str(path) not in RECIPES:
+    if str(path) in RECIPES:  # whatever the working directory holds
+        return Path(__file__).with_name("recipes") / f"{path}.toml"
+    if is_recipe_name(path) and not path.is_file():
         raise InputError(
             f"mesh = {show(str(path))} is not available: allowed {', '.join(RECIPES)} or the path of a mesh recipe"
         )
-    return Path(__file__).with_name("recipes") / f"{path}.toml"
+    return path
 
 
 def load_recipe(mesh: str | Path) -> MeshRecipe:
@@ -105,7 +105,7 @@ def make_recipe(table: dict[str, Any]) -> MeshRecipe:
     for key, value in table.items():
         if key not in MeshRecipe.model_fields:
             allowed = ", ".join(MeshRecipe.model_fields)
-            raise InputError(f"{key} = {show(value)} is not a section of a mesh recipe: allowed {allowed}")
+            raise InputError(f"{show_key(key)} = {show(value)} is not a section of a mesh recipe: allowed {allowed}")
     return validate(MeshRecipe, table)
 
 

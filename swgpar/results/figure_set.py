@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import sys
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -23,6 +25,19 @@ DOTS_PER_INCH = 150
 
 Drawings = Mapping[str, "Callable[[], Figure]"]
 """Name of a figure, without suffix that of its file -> function that draws it."""
+
+
+def import_matplotlib() -> None:
+    """Import matplotlib without the settings that a file matplotlibrc of the working directory may hold."""
+    if "matplotlib" in sys.modules:
+        return
+    here = os.open(".", os.O_RDONLY)
+    try:
+        os.chdir("/")
+        import matplotlib  # noqa: F401
+    finally:
+        os.fchdir(here)
+        os.close(here)
 
 
 class FigureSet(ABC):
@@ -55,6 +70,7 @@ class FigureSet(ABC):
         OutputError
             A figure cannot be drawn or written; on all ranks.
         """
+        import_matplotlib()
         figures, root = Path(folder) / FOLDER, self._comm.rank == 0
         with agreed(self._comm, figures):
             if root:

@@ -10,15 +10,38 @@ from typing import Any
 
 import numpy as np
 
+from swgpar.errors import printable
+
+FORMULA = ("=", "+", "-", "@")
+"""First letters of a text that spreadsheets take for a formula and compute."""
+
 
 def format_csv(rows: Sequence[Mapping[str, Any]]) -> bytes:
     """The text of a table given by its rows; the columns are those of the first."""
     text = io.StringIO()
-    writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
-    writer.writeheader()
-    for row in rows:
-        writer.writerow({k: repr(v) if isinstance(v, float) else v for k, v in row.items()})
+    writer = csv.writer(text, lineterminator="\n")
+    names = list(rows[0])
+    writer.writerow([_cell(name) for name in names])
+    writer.writerows([_cell(row[name]) for name in names] for row in rows)
     return text.getvalue().encode()
+
+
+def _cell(value: Any) -> Any:
+    """A value as a file has it: a text that a spreadsheet would compute begins with an apostrophe."""
+    if isinstance(value, float):
+        return repr(value)
+    if not isinstance(value, str):
+        return value
+    value = printable(value)
+    return f"'{value}" if value.startswith(FORMULA) and not _is_number(value) else value
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
 
 
 def format_columns(columns: Mapping[str, Sequence[Any] | np.ndarray]) -> bytes:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from petsc4py import PETSc
 
 from swgpar.fem.partition import Partition
 from swgpar.fem.vectors import create_vector, read_multipliers
 from swgpar.log import logger
+from swgpar.petsc import PETSc, accepted_options
 from swgpar.solve.factor_reuse import ReusedFactor
 
 ORDERING = {2: 6, 3: 4}
@@ -119,7 +119,8 @@ class BorderedSystem:
             coords = PETSc.Vec().createWithArray(coords, bsize=partition.dims, comm=partition.comm)
             self.modes = PETSc.NullSpace().createRigidBody(coords)
         option_defaults.set(options_prefix, self.defaults)
-        self.ksp.setFromOptions()
+        with accepted_options(partition.comm):
+            self.ksp.setFromOptions()
         self.grounding: list[PETSc.Vec] = []
         self.border: list[PETSc.Vec] = []
         self.rows: list[int] = []
@@ -200,7 +201,8 @@ class BorderedSystem:
             matrix = self.unblocked
         self.ksp.setOperators(matrix)
         self.ksp.getPC().setReusePreconditioner(False)
-        self.ksp.setUp()
+        with accepted_options(self.partition.comm):
+            self.ksp.setUp()
         if self.modes is None:
             self._retry_with_memory(matrix)
         self.ksp.getPC().setReusePreconditioner(self.reused is not None)  # the matrix changes, the factor does not

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from mpi4py import MPI
-from petsc4py import PETSc
 
 from swgpar.constraints.supports import Supports
 from swgpar.contact.clearance import LOADED_SIDE, FlankClearance
@@ -28,6 +27,7 @@ from swgpar.fem.sparse import BlockRows, add_unit_diagonal, create_matrix, fill_
 from swgpar.fem.vectors import Exchange, create_vector, read_multipliers
 from swgpar.geometry.rotation import HALF_TURN
 from swgpar.log import PhaseTimes
+from swgpar.petsc import PETSc
 
 FORCE_FLOOR = 1e-6
 """Contact force below which a residual is not judged by it, as a share of E times the module squared."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from petsc4py import PETSc
+from swgpar.petsc import PETSc, accepted_options
 
 RTOL = 1e-4
 """Relative tolerance of GMRES. A Newton step with it loses nothing but its last, quadratic, iteration. Looser steps
@@ -78,7 +78,8 @@ class ReusedFactor:
         pc = self.ksp.getPC()
         pc.setType(PETSc.PC.Type.PYTHON)
         pc.setPythonContext(_Solve(solve))
-        self.ksp.setFromOptions()
+        with accepted_options(self.ksp.comm.tompi4py()):
+            self.ksp.setFromOptions()
 
     def destroy(self) -> None:
         """Release GMRES, which refers to the system; collective."""

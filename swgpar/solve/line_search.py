@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 from mpi4py import MPI
-from petsc4py import PETSc
 
 from swgpar.log import PhaseTimes
+from swgpar.petsc import PETSc
 from swgpar.solve.bordered_system import BorderedSystem
 
 CONSTRAINT_SHARE = 0.1

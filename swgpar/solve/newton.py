@@ -15,11 +15,11 @@ from collections.abc import Callable
 
 import numpy as np
 from mpi4py import MPI
-from petsc4py import PETSc
 
 from swgpar.design.load_states import LoadState, Stage
 from swgpar.fem.vectors import create_vector
 from swgpar.log import logger
+from swgpar.petsc import PETSc, accepted_options
 from swgpar.solve.active_set_cycles import (
     MAX_ITERATIONS_FACTOR,
     MIN_DECREASE,
@@ -123,7 +123,8 @@ class NewtonSolver:
         ksp.setType(PETSc.KSP.Type.PREONLY)
         ksp.getPC().setType(PETSc.PC.Type.PYTHON)
         ksp.getPC().setPythonContext(self.line_search)
-        snes.setFromOptions()
+        with accepted_options(problem.partition.comm):
+            snes.setFromOptions()
         # SNES sees vectors of three unknowns per node. The matrix has two in the plane: only the bordered system knows
         # it.
         shell = PETSc.Mat().create(comm=problem.partition.comm)

@@ -6,10 +6,10 @@ import enum
 from dataclasses import dataclass, field
 
 import numpy as np
-from petsc4py import PETSc
 
 from swgpar.contact.flank_state import ActiveSegments
 from swgpar.design.load_states import LoadState
+from swgpar.petsc import PETSc
 from swgpar.solve.active_set_cycles import VisitedSets
 
 

@@ -12,8 +12,9 @@ import numpy as np
 
 from swgpar.errors import InputError
 from swgpar.input.design import Design
+from swgpar.input.quantities import show_key
 from swgpar.meshing import MeshRecipe
-from swgpar.studies.spec import CaseSection
+from swgpar.studies.spec import CaseSection, folder_name
 from swgpar.systems import Measured, Quantity, System
 
 
@@ -85,8 +86,8 @@ class Job:
 
     @property
     def mesh_name(self) -> str:
-        """Empty without a mesh."""
-        return self.mesh.stem if self.mesh is not None else ""
+        """That of its folder; empty without a mesh."""
+        return folder_name(self.mesh.stem) if self.mesh is not None else ""
 
     @property
     def title(self) -> str:
@@ -114,4 +115,4 @@ def not_known(where: str, known: Mapping[str, Quantity], system: System[Any, Any
         return InputError(f"{where}{name} is not available: this quantity is named {new_name}")
     near = difflib.get_close_matches(name, known, n=1)
     hint = f"did you mean {near[0]}?" if near else f"allowed {system.describe_names(known)}"
-    return InputError(f"{where}{name} is not a quantity of a run: {hint}")
+    return InputError(f"{where}{show_key(name)} is not a quantity of a run: {hint}")

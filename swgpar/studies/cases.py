@@ -14,7 +14,7 @@ from swgpar.input.toml_file import apply_overrides, read_toml, with_value
 from swgpar.meshing import MeshRecipe, load_recipe
 from swgpar.meshing.recipe import is_recipe_name
 from swgpar.studies.case import Case, Job, named, not_known
-from swgpar.studies.spec import CaseSection, Study
+from swgpar.studies.spec import CaseSection, Study, folder_name
 from swgpar.systems import Quantity, System, system_of_table
 
 
@@ -47,6 +47,7 @@ def _expand(study: Study) -> list[Job]:
         recipes.update({mesh: load_recipe(mesh) for mesh in meshes if mesh not in recipes})
         for varied, suffix in combinations(section.vary, section.mode):
             name = "_".join(part for part in (entry.name, suffix) if part) or Path(section.design).stem
+            name = folder_name(name)
             design, refusal, known = None, "", {}
             try:
                 table = apply_overrides({**base, **entry.section}, entry.set)
@@ -86,7 +87,7 @@ def _meshes(study: Study, case: CaseSection, system: System) -> tuple[Path, ...]
         raise InputError(f"study.compared = {show(section.compared)} is none of study.meshes = {show(section.meshes)}")
     wanted = case.meshes or section.meshes
     meshes = tuple(Path(mesh) if is_recipe_name(mesh) else study.folder / mesh for mesh in wanted)
-    stems = [mesh.stem for mesh in meshes]
+    stems = [folder_name(mesh.stem) for mesh in meshes]
     if len(set(stems)) < len(stems):
         raise InputError(f"meshes = {show(stems)} have a name twice: allowed are recipes of different names")
     return meshes

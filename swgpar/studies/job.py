@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from mpi4py import MPI
-from petsc4py import PETSc
 
 from swgpar import log
-from swgpar.errors import InputError, SwgparError
+from swgpar.errors import InputError, SwgparError, printable
 from swgpar.log import logger
+from swgpar.petsc import PETSc
 from swgpar.results.atomic import agreed, sentence, to_json, write_file, write_from_root
 from swgpar.results.figure_set import save_figures
 from swgpar.studies.case import Job, Outcome
@@ -64,7 +64,7 @@ def run_job(
         outcome = Outcome("failed", str(error))
     except Exception as error:
         logger.exception("unexpected error")
-        outcome = Outcome("failed", f"{type(error).__name__}: {sentence(error)}")
+        outcome = Outcome("failed", printable(f"{type(error).__name__}: {sentence(error)}"))
         if comm.size > 1:
             if folder is not None:
                 with suppress(OSError):

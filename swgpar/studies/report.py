@@ -8,6 +8,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
+from swgpar.results.figure_set import import_matplotlib
 from swgpar.studies import figures
 from swgpar.studies.spec import Study
 from swgpar.studies.table import (
@@ -61,6 +62,7 @@ def make_report(study: Study, results: Sequence[Result], comparisons: Sequence[C
         parts += ["<h2>Error estimates from meshes</h2>", f"<p>{ESTIMATE}</p>", estimates]
     parts += _failures(results, out)
     try:
+        import_matplotlib()
         parts += _figures(study, results)
     except Exception as error:  # a picture that fails must not cost the report
         parts.append(f"<p class=bad>Figures could not be drawn: {escape(str(error))}</p>")

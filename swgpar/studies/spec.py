@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import re
 from collections.abc import Mapping
@@ -10,11 +11,28 @@ from pathlib import Path
 from typing import Any, Literal
 
 from swgpar.errors import InputError
-from swgpar.input.quantities import Section, quantity, show
+from swgpar.input.quantities import Section, quantity, show, show_key
 from swgpar.input.toml_file import read_toml, split_override, validate
 
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.,+=-]*")
 """Names of cases are names of folders."""
+
+
+LONGEST_NAME = 100
+"""Letters of the name of a case or mesh."""
+
+
+def folder_name(text: str) -> str:
+    """A name for a folder inside another one, made from keys, values and names of files.
+
+    Letters that do not fit are replaced, a long text by its beginning and a number that stands for the whole of it.
+    """
+    name = re.sub(r"[^\w.,+=-]", "-", text)
+    name = name if name[0].isalnum() else f"_{name}"
+    if len(name) <= LONGEST_NAME:
+        return name
+    number = hashlib.sha256(text.encode(errors="surrogateescape")).hexdigest()[:12]
+    return f"{name[: LONGEST_NAME - 13]}-{number}"
 
 
 class CaseSection(Section):
@@ -90,7 +108,7 @@ def _make_study(table: Mapping[str, Any], name: str, folder: Path, text: str) ->
     try:
         for key, value in table.items():
             if key != "study" or not isinstance(value, dict):
-                raise InputError(f"{key} = {show(value)} is not a section of a study file: allowed [study]")
+                raise InputError(f"{show_key(key)} = {show(value)} is not a section of a study file: allowed [study]")
         study = dict(table.get("study", {}))
         tables = study.pop("case", [])
         if isinstance(study.get("vary"), dict):
@@ -143,37 +161,40 @@ def _check_study(study: StudySection) -> None:
     for override in study.set:
         split_override(override)
     for key, values in study.vary.items():
+        where = f'study.vary."{show_key(key)}"'
         if not isinstance(values, list) or not values:
-            raise InputError(f'study.vary."{key}" = {show(values)} is not a list of values: allowed one value or more')
+            raise InputError(f"{where} = {show(values)} is not a list of values: allowed one value or more")
         if "." not in key and not all(isinstance(value, dict) for value in values):
-            raise InputError(f'study.vary."{key}" holds a value: allowed "section.key", or tables for a whole section')
+            raise InputError(f'{where} holds a value: allowed "section.key", or tables for a whole section')
         for other in study.vary:
             if other.startswith(f"{key}."):
-                raise InputError(f'study.vary."{key}" replaces study.vary."{other}": allowed is one of both')
+                raise InputError(f'{where} replaces study.vary."{show_key(other)}": allowed is one of both')
     lengths = {key: len(values) for key, values in study.vary.items()}
     if study.mode == "sweep" and len(set(lengths.values())) > 1:
-        counted = ", ".join(f"{key} has {n}" for key, n in lengths.items())
+        counted = ", ".join(f"{show_key(key)} has {n}" for key, n in lengths.items())
         raise InputError(f'study.mode = "sweep" takes values in step: allowed are lists of one length, but {counted}')
 
 
 def _check_case(case: CaseSection, study: StudySection) -> None:
     where = f"study.case {show(case.name)}"
-    if not NAME.fullmatch(case.name):
+    if not NAME.fullmatch(case.name) or len(case.name) > LONGEST_NAME:
         raise InputError(
-            f"study.case.name = {show(case.name)} names no folder: allowed letters, digits and _ . , + = -"
+            f"study.case.name = {show(case.name)} names no folder: allowed letters, digits and _ . , + = -, at most "
+            f"{LONGEST_NAME}"
         )
     for override in case.set:
         key, _ = split_override(override)
         for varied in study.vary:
             if f"{key}.".startswith(f"{varied}.") or varied.startswith(f"{key}."):
-                raise InputError(f"{where} sets {key}, which study.vary varies: allowed in one of both")
+                raise InputError(f"{where} sets {show_key(key)}, which study.vary varies: allowed in one of both")
     for name, value in case.section.items():
         if not isinstance(value, dict):
-            raise InputError(f"{where}: section.{name} = {show(value)} is not a section: allowed a table")
+            raise InputError(f"{where}: section.{show_key(name)} = {show(value)} is not a section: allowed a table")
     for name, percent in case.tolerance.items():
+        tolerance = f"{where}: tolerance.{show_key(name)}"
         if name not in case.published:
-            raise InputError(f"{where}: tolerance.{name} has no published value: allowed {', '.join(case.published)}")
+            raise InputError(f"{tolerance} has no published value: allowed {', '.join(case.published)}")
         if percent <= 0.0:
-            raise InputError(f"{where}: tolerance.{name} = {show(percent)} is out of range: allowed above 0 to inf %")
+            raise InputError(f"{tolerance} = {show(percent)} is out of range: allowed above 0 to inf %")
         if case.published[name] == 0.0:
-            raise InputError(f"{where}: tolerance.{name} is a share of a published 0: allowed for other values only")
+            raise InputError(f"{tolerance} is a share of a published 0: allowed for other values only")

@@ -8,10 +8,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from mpi4py import MPI
-from petsc4py import PETSc
 from pytest_mpi import parallel_assert
 
 from swgpar.log import PhaseTimes
+from swgpar.petsc import PETSc
 from swgpar.solve.active_set_cycles import VisitedSets, fingerprint, is_exhausted
 from swgpar.solve.line_search import LineSearch
 

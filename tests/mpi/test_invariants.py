@@ -8,7 +8,6 @@ from functools import lru_cache
 import numpy as np
 import pytest
 from mpi4py import MPI
-from petsc4py import PETSc
 from pytest_mpi import parallel_assert
 
 from support.stepping import MODELS, WORLD, assert_agree, loaded, rotate, small
@@ -19,6 +18,7 @@ from swgpar.contact.flank_state import ActiveSegments
 from swgpar.design.load_states import LoadState
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.fem.stress import body_fields
+from swgpar.petsc import PETSc
 from swgpar.solve.active_set_cycles import VisitedSets
 from swgpar.solve.discrete_problem import ResidualInfo
 from swgpar.solve.newton import NewtonSolver

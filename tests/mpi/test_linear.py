@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from mpi4py import MPI
-from petsc4py import PETSc
 from pytest_mpi import parallel_assert
 
 from support.messages import Messages
@@ -17,6 +16,7 @@ from swgpar.design.design_file import load_design
 from swgpar.design.load_states import LoadState, Stage
 from swgpar.fem.vectors import create_vector
 from swgpar.meshing import load_recipe
+from swgpar.petsc import PETSc
 from swgpar.solve.bordered_system import ORDERING, BorderedSystem
 
 

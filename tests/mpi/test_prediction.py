@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from mpi4py import MPI
-from petsc4py import PETSc
 
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
@@ -15,6 +14,7 @@ from swgpar.design.design_file import load_design
 from swgpar.fem.vectors import create_vector, read_field, write_field
 from swgpar.geometry.rotation import rotated
 from swgpar.meshing import load_recipe
+from swgpar.petsc import PETSc
 
 CASES = ((), ("drive.layout=spline_fixed",), ("solver.twofold_symmetry=false",))
 

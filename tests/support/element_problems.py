@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
-from petsc4py import PETSc
 
 from support.contact_blocks import block
 from support.element_mesh import ElementMesh
+from swgpar.petsc import PETSc
 from swgpar.solve.bordered_system import GAMG_DEFAULTS, mumps_defaults, option_defaults
 
 GAMG_RTOL = 1e-9

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from petsc4py import PETSc
-
 from swgpar.fem.vectors import create_vector
+from swgpar.petsc import PETSc
 from swgpar.solve.discrete_problem import DiscreteProblem
 
 

@@ -1,0 +1,188 @@
+"""The one place where PETSc is initialised: `from swgpar.petsc import PETSc`.
+
+PETSc by itself reads the files .petscrc and petscrc of the working directory, and .petscrc of the home directory. What
+they name is executed. None of them is read here: only options of the command line, the files that these name, and
+the options of the environment variable PETSC_OPTIONS as far as they name no file.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import shlex
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from mpi4py import MPI
+
+from swgpar.errors import InputError, shortened
+from swgpar.log import logger
+
+if TYPE_CHECKING:
+    from petsc4py import PETSc as PETSc
+
+NO_FILES = ("-skip_petscrc", "1")
+"""Arguments that keep PETSc from reading files that nobody named; the last one of a name counts."""
+
+FILES = ("-options_file", "-options_file_yaml")
+"""Options with the name of a file of options."""
+
+LIBRARIES = ("-dll_prepend", "-dll_append")
+"""Options with the name of a library that PETSc executes."""
+
+VARIABLES = ("PETSC_OPTIONS", "PETSC_OPTIONS_YAML")
+"""Environment variables that PETSc reads."""
+
+ABOUT_OPTIONS = (56, 62, 63, 65, 83, 86, 92)
+"""Error codes of PETSc (petscsystypes.h) that follow from options: not supported, wrong argument, out of range, a file
+that cannot be opened, a user's error, an unknown type, no such package for a factor."""
+
+AT_END = ("citations", "get_total_flops", "mpidump", "options_left", "skip_petscrc")
+"""Options that PETSc asks for when it ends, or that are always given."""
+
+_given: set[str] = set()
+"""Names of the options at the start."""
+
+_warned_of: set[str] = set()
+
+
+def start(arguments: Sequence[str] = ()) -> None:
+    """Initialise PETSc on all ranks with options of the command line; collective. Without effect when it has been.
+
+    Raises InputError, on all ranks, when an option names a file that cannot be read or PETSC_OPTIONS names one at all.
+    """
+    import petsc4py
+
+    words = MPI.COMM_WORLD.bcast(_words(arguments) if MPI.COMM_WORLD.rank == 0 else None)
+    if isinstance(words, InputError):
+        raise words
+    hidden = {name: os.environ.pop(name) for name in VARIABLES if name in os.environ}
+    try:
+        with _without_messages() as messages:
+            petsc4py.init(["swgpar", *_without_files(words), *NO_FILES])
+    except RuntimeError:  # PETSc.Error is one
+        raise InputError(f"options of PETSc: {messages[0]}") from None
+    finally:
+        os.environ.update(hidden)
+    from petsc4py import PETSc
+
+    with accepted_options(MPI.COMM_WORLD):
+        if any(_is_one_of(word, FILES) for word in words):
+            PETSc.Options().insertString(" ".join(f"'{word}'" if '"' in word else f'"{word}"' for word in words))
+    _given.update(PETSc.Options().getAll())
+
+
+@contextmanager
+def accepted_options(comm: MPI.Comm) -> Iterator[None]:
+    """Run a block in which PETSc reads options; what it does not accept is an InputError on all ranks. Collective.
+
+    An error of PETSc that is not about options is raised as it is.
+    """
+    from petsc4py import PETSc
+
+    failure: str | None = None
+    try:
+        yield
+    except PETSc.Error as error:
+        if error.ierr not in ABOUT_OPTIONS:
+            raise
+        text = str(error).splitlines()[-1].partition("] ")[2]
+        values = PETSc.Options().getAll()
+        named = [f"-{name} {values[name]}: " for name in sorted(_given & set(values)) if values[name] in text.split()]
+        failure = "".join(named[:1]) + text
+    reason = next((text for text in comm.allgather(failure) if text is not None), None)
+    if reason is not None:
+        raise InputError(f"options of PETSc: {reason}")
+
+
+def unused_options() -> list[str]:
+    """Options that were given at the start and that PETSc has not asked for so far, as they are written: "-name"."""
+    if not _given:
+        return []
+    from petsc4py import PETSc
+
+    library = ctypes.CDLL(PETSc.__file__)  # petsc4py does not offer it
+    count = np.zeros(1, dtype=PETSc.IntType)
+    names, values = ctypes.POINTER(ctypes.c_char_p)(), ctypes.POINTER(ctypes.c_char_p)()
+    arguments = ctypes.c_void_p(count.ctypes.data), ctypes.byref(names), ctypes.byref(values)
+    if library.PetscOptionsLeftGet(None, *arguments) != 0:
+        return []
+    found = [names[k].decode(errors="replace") for k in range(count[0])]
+    library.PetscOptionsLeftRestore(None, *arguments)
+    return [f"-{name}" for name in found if name in _given and name not in AT_END]
+
+
+def warn_of_unused_options() -> None:
+    """Log a warning with the options that nothing has used, once."""
+    found = [name for name in unused_options() if name not in _warned_of]
+    _warned_of.update(found)
+    if found:
+        logger.warning("options of PETSc that nothing has used: %s", ", ".join(map(shortened, found)))
+
+
+@contextmanager
+def _without_messages() -> Iterator[list[str]]:
+    """Keep what is written to stderr from the terminal; the list then holds the text of PETSc's error.
+
+    While it starts, PETSc writes its errors itself. Everything else is written again at the end.
+    """
+    messages: list[str] = []
+    sys.stderr.flush()
+    terminal = os.dup(2)
+    with tempfile.TemporaryFile() as file:
+        os.dup2(file.fileno(), 2)
+        try:
+            yield messages
+        finally:
+            os.dup2(terminal, 2)
+            os.close(terminal)
+            file.seek(0)
+            lines = file.read().decode(errors="replace").splitlines()
+            errors = [line.partition("PETSC ERROR: ")[2] for line in lines if "PETSC ERROR: " in line]
+            messages += [text for text in errors if text and text[0] not in "-#"][:2][::-1]
+            messages += ["they are refused"]
+            for line in lines:
+                if "PETSC ERROR: " not in line:
+                    print(line, file=sys.stderr)
+
+
+def _words(arguments: Sequence[str]) -> list[str] | InputError:
+    """Options of PETSC_OPTIONS, then those of the command line; or why they are refused."""
+    try:
+        given = shlex.split(os.environ.get(VARIABLES[0], ""))
+    except ValueError as error:
+        return InputError(f"{VARIABLES[0]} cannot be read: {error}")
+    for word in given:
+        if _is_one_of(word, (*FILES, *LIBRARIES)):
+            return InputError(f"{VARIABLES[0]} holds {word}: files are named on the command line only")
+    if VARIABLES[1] in os.environ:
+        return InputError(f"{VARIABLES[1]} is not read: give its options on the command line, and unset it")
+    for word, name in zip(arguments, [*arguments[1:], ""]):
+        if _is_one_of(word, FILES) and not os.access(name, os.R_OK):
+            return InputError(f"{word} {name}: there is no such file that can be read")
+    return [*given, *arguments]
+
+
+def _without_files(words: Sequence[str]) -> list[str]:
+    """Options without those that name files of options: PETSc reports their errors well only once it has started."""
+    after_file = [False, *(_is_one_of(word, FILES) for word in words)]
+    return [word for word, skipped in zip(words, after_file) if not skipped and not _is_one_of(word, FILES)]
+
+
+def _is_one_of(word: str, names: Sequence[str]) -> bool:
+    return word.lower() in names  # as PETSc compares them
+
+
+def __getattr__(name: str) -> Any:
+    """PETSc is initialised with the first import of its name."""
+    if name != "PETSc":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    start()
+    from petsc4py import PETSc
+
+    globals()["PETSc"] = PETSc
+    return PETSc

@@ -1,0 +1,115 @@
+"""Start of PETSc: no file that nobody named, wherever it is started from."""
+
+from __future__ import annotations
+
+import ast
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from support.commands import environment, execute, run_command, succeed, swgpar
+from support.paths import DESIGN, RECIPE, ROOT
+from support.small_drive import PLANE
+
+FOUND = "from swgpar.petsc import PETSc; print(PETSc.Options().getAll())"
+
+
+@pytest.fixture
+def hostile(tmp_path: Path) -> Path:
+    """A working directory and home with files that PETSc would read and execute."""
+    for name in (".petscrc", "petscrc"):
+        (tmp_path / name).write_text(f"-dll_prepend {tmp_path}/evil.so\n-found {name}\n", encoding="utf-8")
+    return tmp_path
+
+
+def options_of(code: str, cwd: Path, **variables: str) -> subprocess.CompletedProcess[str]:
+    variables = {**environment(), "HOME": str(cwd), **variables}
+    command = [sys.executable, "-P", "-c", code]
+    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, env=variables, timeout=120)
+
+
+def test_no_file_is_read(hostile: Path) -> None:
+    done = options_of(FOUND, hostile)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.strip() == "{'skip_petscrc': '1'}" and not done.stderr
+
+
+@pytest.mark.parametrize("command", [("run", "--mesh", RECIPE), ("check",), ("mesh", "--mesh", RECIPE)])
+def test_commands_in_a_hostile_directory(hostile: Path, command: tuple[object, ...]) -> None:
+    name, *more = command
+    out = [] if name == "check" else ["--out", hostile / "out"]
+    done = execute(swgpar(name, DESIGN, *more, *out, "--set", *PLANE, "load.torque=-1"), cwd=hostile, timeout=120.0)
+    assert done.returncode == 2 and len(done.stderr.splitlines()) == 1, done.stderr
+
+
+def test_the_environment_gives_options_but_names_no_file(hostile: Path) -> None:
+    assert "'given': '1'" in options_of(FOUND, hostile, PETSC_OPTIONS="-given 1").stdout
+    for words in ("-options_file x", "-Options_File x", "-dll_append x"):
+        done = options_of(FOUND, hostile, PETSC_OPTIONS=words)
+        assert done.returncode == 1
+        assert f"PETSC_OPTIONS holds {words.split()[0]}: files are named on the command line only" in done.stderr
+
+
+def test_files_of_the_command_line_are_read(tmp_path: Path) -> None:
+    (tmp_path / "mine").write_text("-given 2\n", encoding="utf-8")
+    start = "from swgpar import petsc; petsc.start(['-before', 'a', '-options_file', 'mine', '-after', 'b c']); "
+    found = ast.literal_eval(options_of(start + FOUND, tmp_path).stdout)
+    assert found["before"] == "a" and found["given"] == "2" and found["after"].startswith("b")
+    (tmp_path / "mine").write_text("given 2\n", encoding="utf-8")
+    assert "options of PETSc: Unknown first token" in options_of(start + FOUND, tmp_path).stderr.splitlines()[-1]
+    os.remove(tmp_path / "mine")
+    assert "-options_file mine: there is no such file" in options_of(start + FOUND, tmp_path).stderr
+
+
+@pytest.mark.parametrize(
+    ("ranks", "option", "words"),
+    [
+        (1, "-stiffness_ksp_type nonsense", "-stiffness_ksp_type nonsense: Unable to find requested KSP type nonsense"),
+        (
+            2,
+            "-stiffness_mat_mumps_icntl_7 abc",
+            "-stiffness_mat_mumps_icntl_7 abc: Input string abc has no integer value",
+        ),
+        (1, "-snes_max_it 2.5x", "-snes_max_it 2.5x: Input string 2.5x has no integer value"),
+        (2, "-malloc_debug maybe", "Unknown logical value: maybe"),
+        (1, "-options_file nowhere", "-options_file nowhere: there is no such file"),
+    ],
+)
+def test_options_that_cannot_be_used_are_refused(tmp_path: Path, ranks: int, option: str, words: str) -> None:
+    done = execute(run_command(tmp_path / "run", *option.split(), ranks=ranks), timeout=300.0)
+    (sentence,) = done.stderr.splitlines()
+    assert done.returncode == 2 and sentence.startswith("swgpar: error: ") and words in sentence
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_options_that_nothing_uses_are_named(tmp_path: Path, ranks: int) -> None:
+    words = ("-snes_monitorr", "-snes_rtol", "1e-30", "-stiffness_ksp_max_it", "abc", "-options_left", "0")
+    short = (*PLANE, "steps.rotation=2.0", "steps.increment=2.0")
+    done = succeed(run_command(tmp_path / "run", *words, ranks=ranks, overrides=short))
+    sentence = "options of PETSc that nothing has used: -snes_monitorr, -stiffness_ksp_max_it"
+    assert [line.partition("  ")[2] for line in done.stdout.splitlines() if "nothing has used" in line] == [sentence]
+    assert sentence in (tmp_path / "run" / "run.log").read_text(encoding="utf-8")
+
+
+def test_a_gear_train_uses_no_options_of_petsc(tmp_path: Path) -> None:
+    command = swgpar("run", ROOT / "drivers" / "gear_pair.toml", "--out", tmp_path / "pair", "-snes_monitor")
+    done = succeed([*command, "--set", "output.figures=false"])
+    assert "options of PETSc that nothing has used: -snes_monitor" in done.stdout
+
+
+def test_petsc_is_started_in_one_place() -> None:
+    """Nothing else imports petsc4py, which would start it with the files of the working directory."""
+    found = [
+        str(path.relative_to(ROOT))
+        for folder in ("swgpar", "tests", "scripts", "drivers", "docs")
+        for path in sorted((ROOT / folder).rglob("*.py"))
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Import)
+        and any(alias.name.startswith("petsc4py") for alias in node.names)
+        or isinstance(node, ast.ImportFrom)
+        and (node.module or "").startswith("petsc4py")
+    ]
+    assert set(found) == {"swgpar/petsc.py"}
