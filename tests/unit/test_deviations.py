@@ -9,8 +9,8 @@ import pytest
 
 from support.paths import DRIVERS
 from swgpar.analysis.transmission_error import Causes, spectrum
-from swgpar.design.deviations import gear_deviations
 from swgpar.design.design_file import load_design
+from swgpar.design.deviations import gear_deviations
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.geometry.flank_deviations import GearDeviations
