@@ -94,6 +94,7 @@ class DeviatingDrive:
 
     Attributes
     ----------
+    bore_z : mm, of the middle of the bore
     tables : deviations of all flanks;  periods : numbers of pitches after which those of each gear repeat
     """
 
@@ -109,7 +110,9 @@ class DeviatingDrive:
         self.loaded = from_loaded(items)[0]
         self.stepper.resume_at(self.loaded)
         gears = [gear_deviations(self.deviations, gear, design.teeth(gear)) for gear in GEARS]
-        self.tables = flank_deviations(*self.model.partition.layouts, *gears)
+        self.tables = flank_deviations(*self.model.partition.layouts, *gears, design.axial_travel)
+        bore = problem.supports.couplings[FLEXIBLE_SPLINE]
+        self.bore_z = float(bore.sum(bore.weight * bore.reference[:, 2]))
         spline, ring = self.tables.periods()
         cup = self.deviations.cup
         self.periods = (design.drive.teeth_fs if cup.eccentricity or cup.tilt else spline, ring)
@@ -177,8 +180,8 @@ class DeviatingDrive:
         turn = -2.0 * np.pi * pitch / self.design.drive.teeth_fs
         if self.design.drive.layout == "ring_fixed":
             turn += state.angle / self.design.ratio
-        offsets[FLEXIBLE_SPLINE, [X, Y]] = share * rotated(part.shift, turn)
         lean = share * rotated(part.lean, turn)
+        offsets[FLEXIBLE_SPLINE, [X, Y]] = share * rotated(part.shift, turn) + self.bore_z * lean
         offsets[FLEXIBLE_SPLINE, [TILT_X, TILT_Y]] = -lean[1], lean[0]
 
     def _point(self, index: int, pitch: int, state: LoadState, ideal: PETSc.Vec, guess: PETSc.Vec) -> TurnPoint:

@@ -82,9 +82,12 @@ def _period(tables: Sequence[np.ndarray]) -> int:
 
 
 def flank_deviations(
-    spline: BodyLayout, ring: BodyLayout, of_spline: GearDeviations, of_ring: GearDeviations
+    spline: BodyLayout, ring: BodyLayout, of_spline: GearDeviations, of_ring: GearDeviations, axial_travel: float
 ) -> FlankDeviations:
-    """Tables of the deviations of both gears."""
+    """Tables of the deviations of both gears.
+
+    axial_travel : mm, by which teeth in mesh have moved along z: they meet the tilted ring gear there
+    """
     profile, teeth = spline.mesh.profile, np.arange(spline.mesh.n_sectors)
     angle = spline.sector_angle(teeth)
     heights, points, tangents, leans = [], [], [], []
@@ -104,6 +107,6 @@ def flank_deviations(
             normal = profile.normal(s.ravel()) * (MIRROR if side < 0 else np.ones(2))
             slot = ring_angle + side * np.pi / ring.mesh.n_sectors
             away = rotated(np.broadcast_to(of_ring.tilt, (len(slot), 2)), -slot)
-            leans.append(-(z.ravel() * (away @ normal.T)).reshape(len(ring_teeth), *s.shape))
+            leans.append(-((z.ravel() + axial_travel) * (away @ normal.T)).reshape(len(ring_teeth), *s.shape))
     tables = [np.stack(table, axis=1) for table in (heights, points, tangents)]
     return FlankDeviations(*tables, np.stack(leans, axis=1) if leans else None)

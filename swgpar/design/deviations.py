@@ -90,7 +90,9 @@ class Deviations(Section):
     """Section [deviations]: the transmission error is followed over whole turns with these deviations."""
 
     turns: int = quantity(1, text="turns of the wave generator", ge=1, le=1000)
-    angles_per_pitch: int = quantity(2, text="angles per pitch of the fixed gear", ge=1, le=64)
+    angles_per_pitch: int = quantity(
+        1, text="angles per pitch of the fixed gear; orders of the mesh need 3 or more", ge=1, le=64
+    )
     mesh: Literal["coarse", "same"] = quantity(
         "coarse", text="the coarsest mesh that finds the contacts of the flanks, or that of the run"
     )

@@ -71,13 +71,13 @@ def test_renamed_deviations_are_those_of_a_drive_that_is_rotated(layout: str) ->
     drive.model.problem = stepper.problem
     drive._displace_cam()
     stepper.problem.flanks.deviate(tables)
-    # where the ring gear rotates, its deviations do not turn with it in the step-by-step computation, by 2e-3 rad
-    rel = 1e-6 if layout == "ring_fixed" else 2e-3
     stepper.advance(stepper.load_state)
     for index in (0, 1, 7):
         row = rotate(stepper, index * step) if index else stepper.row()
         kinematic = np.degrees(index * step / ratio)
         mine, brute = np.degrees(found[index].output_angle) - kinematic, row["output_angle_deg"] - kinematic
+        # deviations of a ring gear that rotates keep their directions: step by step they are off by its angle
+        rel = 1e-6 if layout == "ring_fixed" else 1e-6 + abs(index * step / ratio)
         print(layout, index, mine, brute, found[index].wg_torque, row["wg_torque_Nmm"])
         assert mine == pytest.approx(brute, rel=rel)
         assert found[index].wg_torque == pytest.approx(row["wg_torque_Nmm"], rel=max(rel, 1e-5))
@@ -156,19 +156,30 @@ def test_ranks_do_not_matter() -> None:
         parallel_assert(several[k].wg_torque == pytest.approx(one[k].wg_torque, rel=1e-5))
 
 
-@pytest.mark.parametrize(("name", "amount", "rel"), [("eccentricity", 0.01, 1e-4), ("tilt", 0.1, 0.05)])
-def test_only_the_relative_position_of_the_axes_matters(name: str, amount: float, rel: float) -> None:
-    """A cup drive whose ring gear is displaced, and one whose cam and bore are displaced the other way."""
-    direction = "direction" if name == "eccentricity" else "tilt_direction"
+def test_only_the_relative_position_of_the_axes_matters() -> None:
+    """A cup drive whose ring gear is displaced, and one whose cam and bore are displaced the other way.
 
-    def outputs(*displaced: tuple[str, float]) -> tuple[float, float]:
-        keys = [f"deviations.{part}.{name}={amount}" for part, _ in displaced]
-        keys += [f"deviations.{part}.{direction}={angle}" for part, angle in displaced]
-        found = points(deviating(*keys, model="cup"), (0,))[0]
-        return found.output_angle, found.wg_torque
+    A tilt of the ring gear is taken along the normals of the facing flanks and at the axial travel of the teeth at the
+    major axis: some per cent of what it changes.
+    """
 
-    ideal = outputs()
-    first, second = outputs(("ring_gear", 60.0)), outputs(("wave_generator", 240.0), ("cup", 240.0))
-    for a, b, c in zip(first, second, ideal):
-        print(name, a - c, b - c)
-        assert a - c == pytest.approx(b - c, rel=rel, abs=1e-9)
+    def output(tilt: float, *displaced: str, angle: float) -> float:
+        keys = [
+            f"deviations.{part}.{key}={value}"
+            for part in displaced
+            for key, value in {
+                "eccentricity": 0.01,
+                "direction": angle,
+                "tilt": tilt,
+                "tilt_direction": angle,
+            }.items()
+        ]
+        return points(deviating(*keys, model="cup"), (0,))[0].output_angle
+
+    first, second = (
+        [output(tilt, *parts, angle=angle) for tilt in (0.0, 0.1)]
+        for parts, angle in ((("ring_gear",), 60.0), (("wave_generator", "cup"), 240.0))
+    )
+    print(first, second)
+    assert first[0] == pytest.approx(second[0], rel=1e-8)
+    assert first[1] - first[0] == pytest.approx(second[1] - second[0], rel=0.05)
