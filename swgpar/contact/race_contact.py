@@ -99,7 +99,9 @@ class RaceContact:
         self.first_place = np.sum((position[..., :2] - start) * (end - start), axis=-1) / np.sum(
             (end - start) ** 2, axis=-1
         )
-        self.reset()
+        self.multiplier = np.zeros_like(self.weight)
+        self.gap = np.full_like(self.weight, np.inf)
+        self.pressure = np.zeros_like(self.weight)
 
     @staticmethod
     def _reach_owned_nodes(spline: BodyElements, sector: np.ndarray, column: np.ndarray, n: int) -> np.ndarray:
