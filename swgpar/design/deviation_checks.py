@@ -33,7 +33,7 @@ def check_deviations(design: DriveDesign, deviations: Deviations) -> None:
         if abs(value) > most:
             raise InputError(
                 f"deviations.{key} = {value:g} is out of range: allowed up to {most:g} "
-                f"{'mm' if unit == 1.0 else 'um'} (a tenth of the module)"
+                f"{'mm' if unit == 1.0 else 'µm'} (a tenth of the module)"
             )
     if design.drive.model == "plane":
         for key in ("cup.eccentricity", "cup.tilt", "ring_gear.tilt", "wave_generator.tilt"):
@@ -66,6 +66,6 @@ def _check_pitch(design: DriveDesign, deviations: Deviations, gear: str) -> None
     most = LARGEST * design.drive.module / MICRO
     if errors and np.ptp(errors) > most:
         raise InputError(
-            f"{key}.pitch_errors = {show(max(errors, key=abs))} is out of range: allowed differences up to {most:g} um "
+            f"{key}.pitch_errors = {show(max(errors, key=abs))} is out of range: allowed differences up to {most:g} µm "
             "(a tenth of the module)"
         )

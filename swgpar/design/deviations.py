@@ -50,15 +50,15 @@ class ToothDeviations(Section):
     """Deviations of the teeth of a gear."""
 
     pitch_errors: list[float] = quantity(
-        [], unit="um", text="position of each tooth on the pitch circle less the theoretical one, counter-clockwise"
+        [], unit="µm", text="position of each tooth on the pitch circle less the theoretical one, counter-clockwise"
     )
     pitch_file: str = quantity("", text="CSV file with the pitch errors, instead of the list")
     pitch_column: str = quantity("", text="its column, in micrometres; without one the only column")
     pitch_grade: int = quantity(
         0, text="ISO 1328-1 tolerance class of random pitch errors, instead of the list; 0: none", ge=0, le=11
     )
-    profile_slope: float = quantity(0.0, unit="um", text="slope deviation of the profile; above 0: full at the tip")
-    profile_form: float = quantity(0.0, unit="um", text="form deviation of the profile: height of a wave", ge=0.0)
+    profile_slope: float = quantity(0.0, unit="µm", text="slope deviation of the profile; above 0: full at the tip")
+    profile_form: float = quantity(0.0, unit="µm", text="form deviation of the profile: height of a wave", ge=0.0)
 
     @model_validator(mode="before")
     @classmethod

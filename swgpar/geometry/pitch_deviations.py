@@ -16,14 +16,14 @@ import numpy as np
 
 
 class PitchTolerances(NamedTuple):
-    """single : f_pT, um, bound of the difference of neighbouring teeth;  total : F_pT, um, of any two teeth"""
+    """single : f_pT, µm, bound of the difference of neighbouring teeth;  total : F_pT, µm, of any two teeth"""
 
     single: float
     total: float
 
 
 def pitch_tolerances(diameter: float, module: float, grade: int) -> PitchTolerances:
-    """Tolerances (um) of a gear of this pitch diameter and module (mm), tolerance class 1 to 11."""
+    """Tolerances (µm) of a gear of this pitch diameter and module (mm), tolerance class 1 to 11."""
     factor = 2.0 ** (0.5 * (grade - 5))
     single = (0.001 * diameter + 0.4 * module + 5.0) * factor
     total = (0.002 * diameter + 0.55 * np.sqrt(diameter) + 0.7 * module + 12.0) * factor
@@ -31,7 +31,7 @@ def pitch_tolerances(diameter: float, module: float, grade: int) -> PitchToleran
 
 
 def random_pitch_errors(n_teeth: int, tolerances: PitchTolerances, seed: tuple[int, ...]) -> np.ndarray:
-    """Positions (n_teeth,) um of the teeth on the pitch circle less their theoretical ones, with mean 0.
+    """Positions (n_teeth,) µm of the teeth on the pitch circle less their theoretical ones, with mean 0.
 
     Differences of neighbours are drawn from a normal distribution and closed over the circle. They are then scaled
     so that single and total pitch deviation stay in their tolerances and one of them reaches it: the gear just

@@ -136,7 +136,7 @@ BAD = [
     ("deviations.ring_gear.eccentricity=-0.1", "allowed 0 to inf mm"),
     ("deviations.ring_gear.eccentricity=0.2", "allowed up to 0.1 mm"),
     ("deviations.ring_gear.ovality=0.3", "allowed up to 0.1 mm"),
-    ("deviations.flexible_spline.profile_slope=-200.0", "allowed up to 100 um"),
+    ("deviations.flexible_spline.profile_slope=-200.0", "allowed up to 100 µm"),
     ("deviations.wave_generator.tilt=0.1", 'only 0 with drive.model = "plane"'),
     ("deviations.cup.eccentricity=0.1", 'only 0 with drive.model = "plane"'),
     ("deviations.turns=0", "allowed 1 to 1000"),
