@@ -11,7 +11,7 @@ from typing import Any
 
 from mpi4py import MPI
 
-from swgpar import log
+from swgpar import log, watch
 from swgpar.errors import InputError, OutputError
 from swgpar.results.atomic import agreed, first_reason, write_from_root
 from swgpar.results.folder import prepare
@@ -93,6 +93,7 @@ class _Book:
         self.jobs, self.out = jobs, out
         self.outcomes: dict[int, Outcome] = {}
         self.progress = StudyProgress(jobs) if terminal else None
+        watch.saved("cases", 0, len(jobs))
 
     def receive(self, message: tuple[int, Outcome | None]) -> None:
         """Job number with its outcome, or None after an increment."""
@@ -102,6 +103,8 @@ class _Book:
                 self.progress.increment(number)
             return
         self.outcomes[number] = outcome
+        watch.saved("cases", len(self.outcomes), len(self.jobs))
+        watch.doing(f"{len(self.outcomes)} of {len(self.jobs)} cases have ended")
         if self.progress is not None:
             self.progress.outcome(number, outcome)
         if self.out is not None:
