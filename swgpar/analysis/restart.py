@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping
 from dataclasses import asdict
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -29,10 +28,6 @@ if TYPE_CHECKING:
 
 SOLVER_CHOICES = {"linear", "keep_factor", "far_teeth"}
 """Keys of [solver] that a restart may change: they are about how systems are solved."""
-
-
-FORMAT = 2
-"""Of the checkpoint's content."""
 
 
 def identity(design: DriveDesign, recipe: MeshRecipe, accuracy: float | None) -> str:
@@ -62,7 +57,6 @@ def write_state(
         for name, values in problem.flanks.traction_rows(first, end).items():
             blocks[name] = values, first, model.partition.layouts[FLEXIBLE_SPLINE].count
     state = {
-        "format": FORMAT,
         "identity": recorder.identity,
         "done": len(recorder.rows),
         "rows": recorder.rows,
@@ -95,9 +89,8 @@ def resume(recorder: FolderRecorder, stepper: LoadStepper, items: list[LoadState
             "same ones (--plain as before), only steps.rotation, the output, solver.linear, keep_factor and far_teeth "
             "may differ"
         )
-    if state.get("format") != FORMAT:
-        raise _of_another_version(path)
-    last = _last_state(path, state)
+    checkpoint.require_undamaged(path, model.comm)
+    last = LoadState.from_dict(state["load_state"])
     if state["starts_loaded"] or state["accuracy"]:
         items = from_loaded(items)
     computed = [float(np.radians(row["wg_angle_deg"])) for row in state["rows"]]
@@ -121,17 +114,6 @@ def resume(recorder: FolderRecorder, stepper: LoadStepper, items: list[LoadState
         model.phases.seconds[name] += value
     recorder.write_index()
     return items, float(state["wall_s"])
-
-
-def _last_state(path: Path, state: dict[str, Any]) -> LoadState:
-    try:
-        return LoadState.from_dict(state["load_state"])
-    except (KeyError, TypeError):
-        raise _of_another_version(path) from None
-
-
-def _of_another_version(path: Path) -> InputError:
-    return InputError(f"restart: {path} was written by another version of swgpar: start again")
 
 
 def _restore_vector(recorder: FolderRecorder, state: dict[str, Any]) -> None:
