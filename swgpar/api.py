@@ -24,7 +24,7 @@ from swgpar.meshing.drive_mesh import DriveMesh
 from swgpar.meshing.recipe import make_recipe
 from swgpar.results.atomic import agreed, on_all
 from swgpar.results.figure_set import save_figures
-from swgpar.results.folder import read_summary
+from swgpar.results.folder import given_folder, read_summary
 from swgpar.systems import Result, system_of, system_of_table
 
 if TYPE_CHECKING:
@@ -157,7 +157,7 @@ def run(
     comm = MPI.COMM_WORLD if comm is None else comm
     checked, recipe = on_all(comm, lambda: _checked(design, mesh, accuracy, plain, restart))
     system = system_of(checked)
-    folder = None if out is None else Path(out)
+    folder = given_folder(out)
     terminal = log.console.is_terminal if progress is None else progress
     with log.session(comm, terminal=terminal):
         result = system.run(
@@ -339,9 +339,9 @@ def mesh(
     """
     if out is None:
         return _drive_mesh(design, mesh)
-    comm = MPI.COMM_WORLD if comm is None else comm
+    comm, folder = MPI.COMM_WORLD if comm is None else comm, given_folder(out)
     found = on_all(comm, lambda: _drive_mesh(design, mesh))
-    on_all(comm, lambda: found.write(out, formats) if comm.rank == 0 else None)
+    on_all(comm, lambda: found.write(folder, formats) if comm.rank == 0 else None)
     return found
 
 

@@ -8,10 +8,13 @@ import sys
 import traceback
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from swgpar.errors import InputError, StudyError, SwgparError, printable, shortened
 from swgpar.version import __version__
+
+if TYPE_CHECKING:
+    from swgpar.systems import System
 
 OPTIONS = tuple("--set --mesh --accuracy --plain --out --restart --overwrite --format --help --version".split())
 
@@ -183,6 +186,7 @@ def _run(arguments: argparse.Namespace) -> None:
 
     comm = MPI.COMM_WORLD
     design = on_all(comm, lambda: api.load_design(arguments.design, arguments.overrides))
+    _begin(arguments, system_of(design))
     result = api.run(
         design,
         arguments.mesh,
@@ -207,6 +211,7 @@ def _study(arguments: argparse.Namespace) -> None:
     from swgpar.log import console
     from swgpar.studies.terminal import print_results
 
+    _begin(arguments)
     found = api.study(
         arguments.study, arguments.out, restart=arguments.restart, overwrite=arguments.overwrite, progress=True
     )
@@ -284,8 +289,28 @@ def _check_rest(rest: Sequence[str], petsc: bool) -> None:
         after_option = option
 
 
+def _begin(arguments: argparse.Namespace, system: System[Any, Any] | None = None) -> None:
+    """Say what is saved when a signal ends the command. system : of the design of a run"""
+    from mpi4py import MPI
+
+    from swgpar import watch
+    from swgpar.log import console
+
+    if MPI.COMM_WORLD.rank == 0:
+        kind = "cases" if system is None else "increments"
+        restarts = system is None or "restart" in system.options
+        watch.begin(kind, arguments.out, restarts=restarts, terminal=console.is_terminal)
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Entry point; returns the exit code (0, or that of the error)."""
+    """Entry point; returns the exit code: 0, that of the error, 130 or 143 after a signal."""
+    from swgpar import watch
+
+    with watch.armed():
+        return _main(arguments)
+
+
+def _main(arguments: Sequence[str] | None) -> int:
     command = None
     try:
         known, rest = parser().parse_known_args(arguments)
@@ -293,10 +318,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         solves = command in ("run", "study")
         _check_rest(rest, petsc=solves)
         known.overrides = [item for group in getattr(known, "set", []) for item in group]
-        if solves:
-            from swgpar import petsc
+        from swgpar import petsc, watch
 
-            petsc.start(rest)
+        petsc.start(rest)
+        watch.rearm()
         {"run": _run, "study": _study, "mesh": _mesh, "check": _check, "report": _report}[command](known)
     except SwgparError as error:
         from mpi4py import MPI

@@ -28,6 +28,7 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
+from swgpar import watch
 from swgpar.errors import printable
 
 logger = logging.getLogger("swgpar")
@@ -60,6 +61,14 @@ class _RunLog(logging.FileHandler):
 
     def handleError(self, record: logging.LogRecord) -> None:  # noqa: N802 (name given by logging)
         self.setLevel(logging.CRITICAL + 1)
+
+
+class _Plain(logging.StreamHandler):
+    """Writes to a file or pipe in the place of a terminal."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        super().emit(record)
+        watch.note_output()
 
 
 class _ToRoot(logging.Handler):
@@ -113,7 +122,7 @@ def _terminal_handler() -> logging.Handler:
             log_time_format="%H:%M:%S",
             omit_repeated_times=False,
         )
-    plain = logging.StreamHandler(sys.stdout)
+    plain = _Plain(sys.stdout)
     plain.setFormatter(logging.Formatter("%(asctime)s  %(message)s", "%H:%M:%S"))
     return plain
 
@@ -150,6 +159,7 @@ class IncrementProgress:
         self._bar: Progress | None = None
         self._task: TaskID | None = None
         self._total, self._count = total, done
+        watch.saved("increments", done, total)
         if comm.rank == 0 and console.is_terminal and terminal:
             self._bar = progress_bar()
             self._task = self._bar.add_task("start", total=total, completed=done)
@@ -169,11 +179,13 @@ class IncrementProgress:
             self._bar.update(
                 self._task, description=f"{step} {angle_deg:.2f}° Newton {iteration} residual {residual:.1e}"
             )
+        watch.doing(f"{step} {angle_deg:.2f} degrees, Newton iteration {iteration}, residual {residual:.1e}")
         logger.debug("   %s %.3f deg  Newton %d  residual %.3e", step, angle_deg, iteration, residual)
 
     def increment(self, step: str, angle_deg: float, iterations: int, residual: float, seconds: float) -> None:
         """Report a converged increment."""
         self._count += 1
+        watch.saved("increments", self._count, self._total)
         logger.info(
             "%3d/%d  %-8s %8.3f deg  %2d Newton iterations  residual %.1e  %7.1f s",
             self._count,

@@ -25,8 +25,8 @@ from swgpar.log import logger
 if TYPE_CHECKING:
     from petsc4py import PETSc as PETSc
 
-NO_FILES = ("-skip_petscrc", "1")
-"""Arguments that keep PETSc from reading files that nobody named; the last one of a name counts."""
+NO_FILES = "-skip_petscrc"
+"""Argument that keeps PETSc from reading files that nobody named; the last one of a name counts."""
 
 FILES = ("-options_file", "-options_file_yaml")
 """Options with the name of a file of options."""
@@ -60,20 +60,27 @@ def start(arguments: Sequence[str] = ()) -> None:
     words = MPI.COMM_WORLD.bcast(_words(arguments) if MPI.COMM_WORLD.rank == 0 else None)
     if isinstance(words, InputError):
         raise words
-    hidden = {name: os.environ.pop(name) for name in VARIABLES if name in os.environ}
     try:
-        with _without_messages() as messages:
-            petsc4py.init(["swgpar", *_without_files(words), *NO_FILES])
+        with hidden_variables(), _without_messages() as messages:
+            petsc4py.init(["swgpar", *_without_files(words), NO_FILES])
     except RuntimeError:  # PETSc.Error is one
         raise InputError(f"options of PETSc: {messages[0]}") from None
-    finally:
-        os.environ.update(hidden)
     from petsc4py import PETSc
 
     with accepted_options(MPI.COMM_WORLD):
         if any(_is_one_of(word, FILES) for word in words):
             PETSc.Options().insertString(" ".join(f"'{word}'" if '"' in word else f'"{word}"' for word in words))
     _given.update(PETSc.Options().getAll())
+
+
+@contextmanager
+def hidden_variables() -> Iterator[None]:
+    """Hide the environment variables that PETSc reads inside the block."""
+    hidden = {name: os.environ.pop(name) for name in VARIABLES if name in os.environ}
+    try:
+        yield
+    finally:
+        os.environ.update(hidden)
 
 
 @contextmanager

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping
 from dataclasses import asdict
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -30,10 +29,6 @@ if TYPE_CHECKING:
 
 SOLVER_CHOICES = {"linear", "keep_factor", "far_teeth"}
 """Keys of [solver] that a restart may change: they are about how systems are solved."""
-
-
-FORMAT = 3
-"""Of the checkpoint's content."""
 
 
 def identity(design: DriveDesign, recipe: MeshRecipe, accuracy: float | None) -> str:
@@ -72,7 +67,6 @@ def write_state(
     state = {
         "cycle": None if cycle is None else cycle.state(),
         "cam_forces": recorder.cam_forces,
-        "format": FORMAT,
         "identity": recorder.identity,
         "done": len(recorder.rows),
         "rows": recorder.rows,
@@ -109,9 +103,8 @@ def resume(recorder: FolderRecorder, stepper: LoadStepper, items: list[LoadState
             "same ones (--plain as before), only steps.rotation, the output, solver.linear, keep_factor and far_teeth "
             "may differ"
         )
-    if state.get("format") != FORMAT:
-        raise _of_another_version(path)
-    last = _last_state(path, state)
+    checkpoint.require_undamaged(path, model.comm)
+    last = LoadState.from_dict(state["load_state"])
     if state["starts_loaded"] or state["accuracy"]:
         items = from_loaded(items)
     computed = [float(np.radians(row["wg_angle_deg"])) for row in state["rows"]]
@@ -144,17 +137,6 @@ def resume(recorder: FolderRecorder, stepper: LoadStepper, items: list[LoadState
         model.phases.seconds[name] += value
     recorder.write_index()
     return items, float(state["wall_s"])
-
-
-def _last_state(path: Path, state: dict[str, Any]) -> LoadState:
-    try:
-        return LoadState.from_dict(state["load_state"])
-    except (KeyError, TypeError):
-        raise _of_another_version(path) from None
-
-
-def _of_another_version(path: Path) -> InputError:
-    return InputError(f"restart: {path} was written by another version of swgpar: start again")
 
 
 def _restore_vector(recorder: FolderRecorder, state: dict[str, Any]) -> None:

@@ -47,11 +47,13 @@ from swgpar.meshing import MeshRecipe, load_recipe, require_sections
 from swgpar.meshing.recipe import to_toml
 from swgpar.petsc import warn_of_unused_options
 from swgpar.results.atomic import on_all, write_from_root
-from swgpar.results.folder import RECIPE, open_log, prepare
+from swgpar.results.folder import RECIPE, given_folder, open_log, prepare
 from swgpar.results.history import loaded_increments
+from swgpar.results.lock import releasing
 from swgpar.results.parallel_hdf5 import require_parallel
 
 
+@releasing
 def run_drive(
     design: DriveDesign,
     recipe: MeshRecipe,
@@ -86,7 +88,7 @@ def run_drive(
         be continued with `restart`.
     """
     begin = time.perf_counter()
-    folder = None if out is None else Path(out)
+    folder = given_folder(out)
     if folder is None and restart:
         raise InputError("restart = true needs the results folder out: a run in memory leaves no checkpoint")
     require_sections(design, recipe)

@@ -24,7 +24,8 @@ from swgpar.input.toml_file import validate
 from swgpar.log import logger
 from swgpar.results.atomic import agreed
 from swgpar.results.figure_set import Drawings, NamedFigures
-from swgpar.results.folder import open_log, prepare
+from swgpar.results.folder import given_folder, open_log, prepare
+from swgpar.results.lock import releasing
 from swgpar.version import __version__
 
 SECTION = "gear_train"
@@ -81,6 +82,7 @@ def model_of(design: TrainDesign) -> TrainModel:
     return next(model for model in MODELS.values() if model.design is type(design))
 
 
+@releasing
 def run_train(
     design: TrainDesign,
     out: str | Path | None = None,
@@ -100,7 +102,7 @@ def run_train(
     InputError, OutputError, ConvergenceError
         On all ranks.
     """
-    folder, begin, model = None if out is None else Path(out), time.perf_counter(), model_of(design)
+    folder, begin, model = given_folder(out), time.perf_counter(), model_of(design)
     if folder is not None:
         prepare(folder, comm, False, overwrite)
     open_log(folder, comm)

@@ -8,7 +8,9 @@ from types import ModuleType
 
 import numpy as np
 
+from swgpar import watch
 from swgpar.geometry.arrays import Floats, Ints
+from swgpar.petsc import NO_FILES, hidden_variables
 
 
 @dataclass(frozen=True)
@@ -85,8 +87,12 @@ class MappedBlocks:
 
         owner = not gmsh.isInitialized()
         if owner:
-            gmsh.initialize(argv=["gmsh"], readConfigFiles=False, interruptible=False)
+            with hidden_variables():  # Gmsh has a PETSc of its own, which reads files and takes signals as the other
+                arguments = ["gmsh", "-v", "0", NO_FILES]  # without the warning that the option is not one of Gmsh
+                gmsh.initialize(argv=arguments, readConfigFiles=False, interruptible=False)
+            watch.rearm()
         try:
+            gmsh.option.setNumber("General.Verbosity", 5)
             gmsh.option.setNumber("General.Terminal", 0)
             gmsh.option.setNumber("General.NumThreads", 1)
             gmsh.model.add("tooth section")

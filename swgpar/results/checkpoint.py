@@ -1,8 +1,14 @@
-"""The last converged state in one file, independent of the number of ranks that wrote it."""
+"""The last converged state in one file, independent of the number of ranks that wrote it.
+
+The file has the version of its content, and sums by which damage is found: one of the attributes, and one of every
+data set, the same however its rows are distributed.
+"""
 
 from __future__ import annotations
 
+import hashlib
 import json
+import zlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -10,12 +16,18 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
+from swgpar.errors import OutputError
 from swgpar.results import parallel_hdf5
-from swgpar.results.atomic import agreed, to_json
+from swgpar.results.atomic import agreed, sentence, to_json
 from swgpar.results.parallel_hdf5 import Block
 
 NAME = "checkpoint.h5"
-_ATTRS = "attrs_json"
+
+VERSION = 3
+"""Of the content, the attributes of a run included."""
+
+_ATTRS, _VERSION, _DIGEST = "attrs_json", "version", "attrs_sha256"
+_SUMS = "sums"
 
 
 def write_checkpoint(
@@ -29,10 +41,16 @@ def write_checkpoint(
     blocks : name -> (rows of this rank (n, ...), first row, rows in total)
     attrs : what else the state is made of, as JSON can hold it (numbers keep all digits); used from rank 0
     """
-    # An HDF5 attribute ends at 64 KiB, the history of a long run does not: the text goes into a data set.
-    text = np.frombuffer(comm.bcast(to_json(dict(attrs)) if comm.rank == 0 else None), dtype=np.uint8)
     rows = {name: Block(np.asarray(array), first, total) for name, (array, first, total) in blocks.items()}
-    rows[_ATTRS] = Block(text if comm.rank == 0 else text[:0], 0, len(text))
+    sums = {name: comm.allreduce(_sum(block.array, block.first)) for name, block in rows.items()}
+    # An HDF5 attribute ends at 64 KiB, the history of a long run does not: the text goes into a data set.
+    text = comm.bcast(to_json({**attrs, _SUMS: sums}) if comm.rank == 0 else None)
+    for name, values in (
+        (_ATTRS, np.frombuffer(text, dtype=np.uint8)),
+        (_DIGEST, np.frombuffer(hashlib.sha256(text).digest(), dtype=np.uint8)),
+        (_VERSION, np.array([VERSION])),
+    ):
+        rows[name] = Block(values if comm.rank == 0 else values[:0], 0, len(values))
     parallel_hdf5.write(Path(out) / NAME, comm, rows)
 
 
@@ -52,15 +70,76 @@ def read_checkpoint(
     -------
     arrays : name -> (count, ...)
     attrs : as given to `write_checkpoint`
+
+    Raises
+    ------
+    OutputError
+        The file cannot be read, is damaged, none of swgpar, or of another version; on all ranks.
     """
-    path = Path(path)
-    size = 0
+    path, text, failure = Path(path), b"", None
+    if comm.rank == 0:
+        try:
+            text = _read_attrs(path)
+        except OutputError as error:
+            failure = error
+    failure, text = comm.bcast((failure, text))
+    if failure is not None:
+        raise failure
+    arrays = parallel_hdf5.read_rows(path, comm, ranges or {})
+    attrs = json.loads(text)
+    attrs.pop(_SUMS)
+    return arrays, attrs
+
+
+def require_undamaged(path: Path, comm: MPI.Comm) -> None:
+    """Read the whole checkpoint, each rank a part of it; raises OutputError on all ranks where it is damaged."""
+    read_checkpoint(path, comm)
+    sums: dict[str, int] = {}
     with agreed(comm, path, "read"):
-        if comm.rank == 0:
-            with parallel_hdf5.h5py.File(path, "r") as file:
-                if _ATTRS not in file:
-                    raise ValueError("it is not a checkpoint of swgpar")
-                size = file[_ATTRS].shape[0]
-    size = comm.bcast(size)
-    arrays = parallel_hdf5.read_rows(path, comm, {**(ranges or {}), _ATTRS: (0, size)})
-    return arrays, json.loads(arrays.pop(_ATTRS).tobytes())
+        sums = json.loads(_read_attrs(path))[_SUMS]
+    found: dict[str, int] = {}
+    with agreed(comm, path, "read"):
+        with parallel_hdf5.h5py.File(path, "r") as file:
+            for name in sums:
+                rows = file[name].shape[0] if name in file else 0
+                first, end = (rows * rank // comm.size for rank in (comm.rank, comm.rank + 1))
+                found[name] = _sum(file[name][first:end], first) if rows else 0
+    for name, expected in sums.items():
+        if comm.allreduce(found[name]) != expected:
+            raise _damaged(path, f"{name} is not what was written")
+
+
+def _read_attrs(path: Path) -> bytes:
+    """Text of the attributes of a file of this version."""
+    try:
+        with parallel_hdf5.h5py.File(path, "r") as file:
+            names = set(file)
+            if _ATTRS not in names:
+                raise OutputError(
+                    f"{path} is no checkpoint of swgpar: restore the one of this run, or start again with overwrite = "
+                    "true (--overwrite)"
+                )
+            if not {_VERSION, _DIGEST} <= names or file[_VERSION][0] != VERSION:
+                raise OutputError(
+                    f"{path} was written by another version of swgpar: continue with that version, or start again "
+                    "with overwrite = true (--overwrite)"
+                )
+            text, digest = file[_ATTRS][:].tobytes(), file[_DIGEST][:].tobytes()
+    except (OSError, RuntimeError, ValueError, KeyError, TypeError, IndexError) as error:
+        if isinstance(error, OSError) and error.errno is not None:
+            raise OutputError(f"cannot read {path}: {sentence(error)}") from None
+        raise _damaged(path, sentence(error)) from None
+    if hashlib.sha256(text).digest() != digest:
+        raise _damaged(path, "its attributes are not what was written")
+    return text
+
+
+def _damaged(path: Path, reason: str) -> OutputError:
+    return OutputError(
+        f"{path} is damaged: {reason}; restore it from a copy, or start again with overwrite = true (--overwrite)"
+    )
+
+
+def _sum(rows: np.ndarray, first: int) -> int:
+    """Sum over rows of their CRC, each begun with the number of its row: it adds up over ranks."""
+    return sum(zlib.crc32(np.ascontiguousarray(row).tobytes(), first + k) for k, row in enumerate(rows))

@@ -9,8 +9,9 @@ from typing import Any
 from mpi4py import MPI
 
 from swgpar import log
-from swgpar.errors import OutputError
-from swgpar.results import checkpoint, history
+from swgpar.errors import InputError, OutputError
+from swgpar.input.quantities import show
+from swgpar.results import checkpoint, history, lock
 from swgpar.results.atomic import TEMPORARY, agreed, discard, sentence, write_file
 from swgpar.results.fields import FOLDER, INDEX
 
@@ -77,6 +78,13 @@ RESULTS = (
 """Files that `overwrite` removes."""
 
 
+def given_folder(out: str | Path | None) -> Path | None:
+    """The folder that a user has given; raises InputError for an empty text, which would be the working directory."""
+    if isinstance(out, str) and not out.strip():
+        raise InputError(f"out = {show(out)} names no folder: give the path of one")
+    return None if out is None else Path(out)
+
+
 def open_log(out: Path | None, comm: MPI.Comm) -> None:
     """Send the log into run.log of the folder from now on, or into no file; collective."""
     log.close_file()
@@ -86,7 +94,9 @@ def open_log(out: Path | None, comm: MPI.Comm) -> None:
 
 
 def prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> bool:
-    """Make the folder and try to write in it; raises OutputError on all ranks.
+    """Make the folder, lock it and try to write in it; raises OutputError on all ranks.
+
+    The function that runs releases the lock: it is decorated with `lock.releasing`.
 
     Results of an earlier run are refused unless `restart` continues them or `overwrite` replaces them. Returns whether
     there is a checkpoint to continue from: a run that ended before its first checkpoint starts again.
@@ -94,6 +104,7 @@ def prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> bool:
     with agreed(comm, out):
         if comm.rank == 0:
             out.mkdir(parents=True, exist_ok=True)
+            lock.acquire(out)
             probe = out / f"probe{TEMPORARY}"
             write_file(probe, b"swgpar")
             probe.unlink()
@@ -109,10 +120,15 @@ def prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> bool:
     if overwrite and not restart:
         with agreed(comm, out):
             if comm.rank == 0:
-                for pattern in RESULTS:
-                    for old in out.glob(pattern):
-                        old.unlink()
+                remove_results(out)
     return restart and saved
+
+
+def remove_results(out: Path) -> None:
+    """Remove the results of an earlier run from a folder; call it on one rank."""
+    for pattern in RESULTS:
+        for old in out.glob(pattern):
+            old.unlink()
 
 
 def read_summary(folder: Path) -> dict[str, Any]:

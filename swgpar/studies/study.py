@@ -11,10 +11,11 @@ from typing import Any
 
 from mpi4py import MPI
 
-from swgpar import log
+from swgpar import log, watch
 from swgpar.errors import InputError, OutputError
 from swgpar.results.atomic import agreed, first_reason, write_from_root
-from swgpar.results.folder import prepare
+from swgpar.results.folder import given_folder, remove_results
+from swgpar.results.lock import acquire, releasing
 from swgpar.results.table import format_csv
 from swgpar.studies.case import Job, Outcome
 from swgpar.studies.cases import expand
@@ -93,6 +94,7 @@ class _Book:
         self.jobs, self.out = jobs, out
         self.outcomes: dict[int, Outcome] = {}
         self.progress = StudyProgress(jobs) if terminal else None
+        watch.saved("cases", 0, len(jobs))
 
     def receive(self, message: tuple[int, Outcome | None]) -> None:
         """Job number with its outcome, or None after an increment."""
@@ -102,6 +104,8 @@ class _Book:
                 self.progress.increment(number)
             return
         self.outcomes[number] = outcome
+        watch.saved("cases", len(self.outcomes), len(self.jobs))
+        watch.doing(f"{len(self.outcomes)} of {len(self.jobs)} cases have ended")
         if self.progress is not None:
             self.progress.outcome(number, outcome)
         if self.out is not None:
@@ -113,6 +117,7 @@ class _Book:
         return [(self.jobs[number], self.outcomes[number]) for number in sorted(self.outcomes)]
 
 
+@releasing
 def run_study(
     source: str | Path | Mapping[str, Any],
     out: str | Path | None = None,
@@ -139,7 +144,7 @@ def run_study(
     OutputError
         A folder that cannot be written. A case that fails is an outcome.
     """
-    folder = None if out is None else Path(out)
+    folder = given_folder(out)
     study, jobs = _read(source, comm)
     statuses: list[str | None] | None = [None] * len(jobs)
     if folder is not None:
@@ -192,6 +197,10 @@ def _read(source: str | Path | Mapping[str, Any], comm: MPI.Comm) -> tuple[Study
 
 
 def _prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> None:
+    with agreed(comm, out):
+        if comm.rank == 0:
+            out.mkdir(parents=True, exist_ok=True)
+            acquire(out)
     present = comm.bcast((out / "cases").exists() if comm.rank == 0 else None)
     if present and not restart and not overwrite:
         raise OutputError(
@@ -203,7 +212,7 @@ def _prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> None:
             (out / "cases").mkdir(parents=True, exist_ok=True)
             if overwrite and not restart:
                 for status in [*out.glob(f"cases/**/{STATUS}")]:
-                    prepare(status.parent, MPI.COMM_SELF, restart=False, overwrite=True)
+                    remove_results(status.parent)
                     status.unlink()
                 for name in (TABLE, PUBLISHED, REPORT):
                     (out / name).unlink(missing_ok=True)

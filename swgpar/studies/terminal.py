@@ -8,6 +8,7 @@ from contextlib import suppress
 from rich import box
 from rich.table import Table
 
+from swgpar import watch
 from swgpar.log import console, progress_bar
 from swgpar.studies.case import Job, Outcome
 from swgpar.studies.table import Comparison, Result, shown_quantities
@@ -55,6 +56,7 @@ class StudyProgress:
             words.append(f"failed: {outcome.reason}")
         with suppress(OSError, SystemExit):  # the reader of our output has gone: the others are at work
             console.print("  ".join(words), markup=False)
+            watch.note_output()
         self._update()
 
     def stop(self) -> None:

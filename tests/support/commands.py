@@ -39,16 +39,22 @@ def run_command(out: Path, *more: str, ranks: int = 1, overrides: Sequence[str] 
     return on_ranks(ranks) + swgpar(*arguments)
 
 
-def execute(command: list[str], *, timeout: float = 900.0, cwd: Path = DATA) -> subprocess.CompletedProcess[str]:
+def execute(
+    command: list[str], *, timeout: float = 900.0, cwd: Path = DATA, **variables: str
+) -> subprocess.CompletedProcess[str]:
     """Run to the end, keeping both streams.
 
     cwd : not the root of a checkout, from which python -m would take the source tree, whose kernels are not built
+    variables : of the environment, beside those of this process
     """
-    return subprocess.run(command, capture_output=True, text=True, timeout=timeout, cwd=cwd, env=environment())
+    variables = {**environment(), **variables}
+    return subprocess.run(command, capture_output=True, text=True, timeout=timeout, cwd=cwd, env=variables)
 
 
-def succeed(command: list[str], *, cwd: Path = DATA) -> subprocess.CompletedProcess[str]:
-    done = execute(command, cwd=cwd)
+def succeed(
+    command: list[str], *, timeout: float = 900.0, cwd: Path = DATA, **variables: str
+) -> subprocess.CompletedProcess[str]:
+    done = execute(command, timeout=timeout, cwd=cwd, **variables)
     assert done.returncode == 0, done.stderr + done.stdout
     return done
 

@@ -34,15 +34,18 @@ def options_of(code: str, cwd: Path, **variables: str) -> subprocess.CompletedPr
 def test_no_file_is_read(hostile: Path) -> None:
     done = options_of(FOUND, hostile)
     assert done.returncode == 0, done.stderr
-    assert done.stdout.strip() == "{'skip_petscrc': '1'}" and not done.stderr
+    assert done.stdout.strip() == "{'skip_petscrc': None}" and not done.stderr
 
 
-@pytest.mark.parametrize("command", [("run", "--mesh", RECIPE), ("check",), ("mesh", "--mesh", RECIPE)])
-def test_commands_in_a_hostile_directory(hostile: Path, command: tuple[object, ...]) -> None:
-    name, *more = command
-    out = [] if name == "check" else ["--out", hostile / "out"]
-    done = execute(swgpar(name, DESIGN, *more, *out, "--set", *PLANE, "load.torque=-1"), cwd=hostile, timeout=120.0)
-    assert done.returncode == 2 and len(done.stderr.splitlines()) == 1, done.stderr
+@pytest.mark.parametrize("command", ["check", "mesh", "run"])
+def test_commands_in_a_hostile_directory(tmp_path: Path, command: str) -> None:
+    """Whoever opens one of these pipes waits for ever: PETSc, and the one that Gmsh brings."""
+    for name in (".petscrc", "petscrc"):
+        os.mkfifo(tmp_path / name)
+    out = [] if command == "check" else ["--out", tmp_path / "out"]
+    overrides = (*PLANE, "steps.rotation=2.0", "steps.increment=2.0")
+    full = swgpar(command, DESIGN, "--mesh", RECIPE, *out, "--set", *overrides)
+    succeed(full, cwd=tmp_path, HOME=str(tmp_path), timeout=120.0)
 
 
 def test_the_environment_gives_options_but_names_no_file(hostile: Path) -> None:
@@ -71,7 +74,7 @@ def test_files_of_the_command_line_are_read(tmp_path: Path) -> None:
         (
             2,
             "-stiffness_mat_mumps_icntl_7 abc",
-            "-stiffness_mat_mumps_icntl_7 abc: Input string abc has no integer value",
+            "-stiffness_mat_mumps_icntl_7 abc: Input string abc has no",
         ),
         (1, "-snes_max_it 2.5x", "-snes_max_it 2.5x: Input string 2.5x has no integer value"),
         (2, "-malloc_debug maybe", "Unknown logical value: maybe"),

@@ -1,0 +1,62 @@
+"""Signals to a run: one sentence, no waiting rank, and a restart that continues from what is saved."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+from support.commands import assert_same_history, environment, of_session, run_command, succeed
+from support.paths import DATA
+from swgpar.results import history
+
+
+def rank_of(pid: int) -> int | None:
+    """Rank of a process of the run that is no mpirun; 0 without mpirun."""
+    words = Path(f"/proc/{pid}/cmdline").read_text(encoding="utf-8").split("\0")
+    if "swgpar.cli" not in words or words[0].endswith("mpirun"):
+        return None
+    found = re.search(r"OMPI_COMM_WORLD_RANK=(\d+)", Path(f"/proc/{pid}/environ").read_text(encoding="utf-8"))
+    return int(found[1]) if found else 0
+
+
+@pytest.mark.parametrize(
+    ("ranks", "number", "target", "code"),
+    [
+        (1, signal.SIGINT, 0, 130),
+        (2, signal.SIGTERM, 0, 143),
+        (2, signal.SIGINT, 1, 130),
+        (2, signal.SIGHUP, None, 1),  # mpirun itself ends with 1, whatever its ranks end with
+    ],
+)
+def test_a_signal_ends_a_run(
+    plain: Path, tmp_path: Path, ranks: int, number: signal.Signals, target: int | None, code: int
+) -> None:
+    """target : rank that gets the signal, None for mpirun"""
+    out, pipe = tmp_path / "run", subprocess.PIPE
+    process = subprocess.Popen(
+        run_command(out, ranks=ranks), cwd=DATA, env=environment(), start_new_session=True, stderr=pipe, text=True
+    )
+    limit = time.monotonic() + 600.0
+    while not ((out / "checkpoint.h5").exists() and len(history.read_history(out / "history.csv")) >= 2):
+        assert process.poll() is None and time.monotonic() < limit
+        time.sleep(0.02)
+    members = {rank_of(pid): pid for pid in of_session(process.pid)}
+    os.kill(process.pid if target is None else members[target], number)
+    _, stderr = process.communicate(timeout=30)
+    assert process.returncode == code and "Traceback" not in stderr
+    (sentence,) = [line for line in stderr.splitlines() if line.startswith("swgpar: ")]
+    name = number.name if target == 0 else "SIGTERM"  # the one with which mpirun ends rank 0
+    assert re.fullmatch(
+        rf"swgpar: stopped by {name}: \d of 5 increments are saved in {re.escape(str(out))}; "
+        "the same command with --restart continues",
+        sentence,
+    )
+    assert len(history.read_history(out / "history.csv")) >= int(sentence.split()[4]) >= 1
+    succeed(run_command(out, "--restart", ranks=ranks))
+    assert_same_history(out, plain, iterations=False)
