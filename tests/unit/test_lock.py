@@ -19,9 +19,13 @@ from support.paths import DESIGN, RECIPE
 from swgpar.errors import OutputError
 from swgpar.results import lock
 
-HOLD = (
-    "from pathlib import Path; from swgpar.results import lock; lock.acquire(Path({!r})); print(1, flush=True); input()"
-)
+HOLD = """
+from pathlib import Path
+from swgpar.results import lock
+lock.acquire(Path({!r}))
+print(1, flush=True)
+input()
+"""
 
 
 @pytest.fixture
