@@ -15,6 +15,7 @@ from swgpar.studies.table import (
     Comparison,
     Result,
     by_case,
+    complete,
     estimate_of,
     published_rows,
     shown_quantities,
@@ -45,10 +46,20 @@ LOG_LINES = 12
 """Of a failed run, in the report."""
 
 
-def make_report(study: Study, results: Sequence[Result], comparisons: Sequence[Comparison], out: Path) -> bytes:
-    """The whole page; reads the logs of failed cases below `out`. Call it on one rank."""
+def make_report(
+    study: Study, results: Sequence[Result], comparisons: Sequence[Comparison], out: Path, missing: int = 0
+) -> bytes:
+    """The whole page; reads the logs of failed cases below `out`. Call it on one rank.
+
+    missing : number of runs that have not ended; their report has no figures
+    """
     title = study.title
     parts = [f"<h1>{escape(title)}</h1>", _introduction(study, results)]
+    if missing:
+        parts.append(
+            f"<p class=bad>{missing} more runs have not ended. Figures are drawn when all have: swgpar study with "
+            "--restart continues.</p>"
+        )
     if comparisons:
         parts += ["<h2>Published values</h2>", _comparisons(comparisons)]
     parts += [
@@ -57,13 +68,14 @@ def make_report(study: Study, results: Sequence[Result], comparisons: Sequence[C
         "<h2>Quantities</h2>",
         _meanings(results),
     ]
-    estimates = _estimates(results)
+    estimates = _estimates(complete(results))
     if estimates or any(c.estimate for c in comparisons):
         parts += ["<h2>Error estimates from meshes</h2>", f"<p>{ESTIMATE}</p>", estimates]
     parts += _failures(results, out)
     try:
-        import_matplotlib()
-        parts += _figures(study, results)
+        if not missing:
+            import_matplotlib()
+            parts += _figures(study, results)
     except Exception as error:  # a picture that fails must not cost the report
         parts.append(f"<p class=bad>Figures could not be drawn: {escape(str(error))}</p>")
     if study.section.remarks:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -23,7 +24,7 @@ from swgpar.studies.job import STATUS, read_status, run_job
 from swgpar.studies.report import make_report
 from swgpar.studies.schedule import Counter, Reports
 from swgpar.studies.spec import Study, load_study, make_study
-from swgpar.studies.table import Comparison, Result, compare, published_rows, study_rows
+from swgpar.studies.table import Comparison, Result, compare, complete, published_rows, study_rows
 from swgpar.studies.terminal import StudyProgress
 
 Report = Callable[[tuple[int, Outcome | None]], None]
@@ -87,11 +88,16 @@ class StudyResult:
         return None if self.folder is None else self.folder / REPORT
 
 
-class _Book:
-    """What rank 0 knows: outcomes by job. The table on the disk follows each of them."""
+SHARE = 0.05
+"""Largest share of the time that is spent on tables and report while cases are computed."""
 
-    def __init__(self, jobs: Sequence[Job], out: Path | None, terminal: bool) -> None:
-        self.jobs, self.out = jobs, out
+
+class _Book:
+    """What rank 0 knows: outcomes by job. Tables and report on the disk follow them, for a study that is stopped."""
+
+    def __init__(self, study: Study, jobs: Sequence[Job], out: Path | None, terminal: bool) -> None:
+        self.study, self.jobs, self.out = study, jobs, out
+        self.next_writing = 0.0
         self.outcomes: dict[int, Outcome] = {}
         self.progress = StudyProgress(jobs) if terminal else None
         watch.saved("cases", 0, len(jobs))
@@ -108,9 +114,12 @@ class _Book:
         watch.doing(f"{len(self.outcomes)} of {len(self.jobs)} cases have ended")
         if self.progress is not None:
             self.progress.outcome(number, outcome)
-        if self.out is not None:
+        begin = time.perf_counter()
+        if self.out is not None and begin >= self.next_writing and len(self.outcomes) < len(self.jobs):
             with suppress(OutputError):  # the others are at work: said at the end, when all write
-                write_from_root(MPI.COMM_SELF, self.out / TABLE, format_csv(study_rows(self.results())))
+                _write(self.study, self.results(), self.out, MPI.COMM_SELF, len(self.jobs) - len(self.outcomes))
+            end = time.perf_counter()
+            self.next_writing = end + (end - begin) / SHARE
 
     def results(self) -> list[Result]:
         """Jobs that have ended, in the order of the study."""
@@ -166,7 +175,7 @@ def _run_all(
     study: Study, jobs: list[Job], order: list[int], run: Run, out: Path | None, terminal: bool, comm: MPI.Comm
 ) -> list[Result]:
     """All jobs and their outcomes, on every rank."""
-    book = _Book(jobs, out, terminal) if comm.rank == 0 else None
+    book = _Book(study, jobs, out, terminal) if comm.rank == 0 else None
     receive: Report = book.receive if book is not None else lambda _: None
     try:
         if study.section.parallel == "cases":
@@ -249,10 +258,11 @@ def _cases_at_once(order: Sequence[int], comm: MPI.Comm, receive: Report, run: R
     own.Free()
 
 
-def _write(study: Study, results: Sequence[Result], out: Path, comm: MPI.Comm) -> None:
-    comparisons = compare(results)
+def _write(study: Study, results: Sequence[Result], out: Path, comm: MPI.Comm, missing: int = 0) -> None:
+    """Write tables and report; collective. missing : number of jobs that have not ended"""
+    comparisons = compare(complete(results))
     write_from_root(comm, out / TABLE, format_csv(study_rows(results)))
     if comparisons:
         write_from_root(comm, out / PUBLISHED, format_csv(published_rows(comparisons)))
-    page = make_report(study, results, comparisons, out) if comm.rank == 0 else b""
+    page = make_report(study, results, comparisons, out, missing) if comm.rank == 0 else b""
     write_from_root(comm, out / REPORT, page)

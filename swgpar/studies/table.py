@@ -46,6 +46,12 @@ def by_case(results: Sequence[Result]) -> list[tuple[Case, list[Outcome]]]:
     return list(groups.values())
 
 
+def complete(results: Sequence[Result]) -> list[Result]:
+    """Results of the cases that have ended on all of their meshes."""
+    ended = {case.name for case, outcomes in by_case(results) if len(outcomes) == max(len(case.meshes), 1)}
+    return [(job, outcome) for job, outcome in results if job.case.name in ended]
+
+
 def shown_quantities(results: Sequence[Result]) -> dict[str, Quantity]:
     """The quantities in tables and figures, of all cases."""
     return {name: job.case.known[name] for job, _ in results for name in job.case.shown if name in job.case.known}

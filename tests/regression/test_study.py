@@ -87,6 +87,9 @@ def test_kill_and_restart(whole: Path, tmp_path: Path) -> None:
     path, out = study_file(tmp_path), tmp_path / "out"
     kill_after(study_command(path, out), out / "cases" / GOOD[1] / "tiny", rows=2)
     assert status(out, GOOD[0])["status"] == "finished" and status(out, GOOD[1])["status"] == "started"
+    page = (out / "study.html").read_text(encoding="utf-8")  # of what is there
+    assert "3 more runs have not ended" in page and [row["case"] for row in table(out)] == [GOOD[0]]
+    assert [row["verdict"] for row in table(out, "published.csv")] == ["inside"]
     refused = execute(study_command(path, out))
     assert refused.returncode == 4 and "--restart" in refused.stderr
     done = execute(study_command(path, out, "--restart", ranks=2))

@@ -19,9 +19,13 @@ from support.paths import DESIGN, RECIPE
 from swgpar.errors import OutputError
 from swgpar.results import lock
 
-HOLD = (
-    "from pathlib import Path; from swgpar.results import lock; lock.acquire(Path({!r})); print(1, flush=True); input()"
-)
+HOLD = """
+from pathlib import Path
+from swgpar.results import lock
+lock.acquire(Path({!r}))
+print(1, flush=True)
+input()
+"""
 
 
 @pytest.fixture
@@ -72,6 +76,7 @@ def test_the_lock_is_released_after_an_error(tmp_path: Path) -> None:
         (platform.node(), 2**22 + 1, "1", False),
         ("elsewhere", 2**22 + 1, "1", True),
     ],
+    ids=["this process", "its number before", "an ended process", "another machine"],
 )
 def test_without_locks_the_record_decides(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, host: str, process: int, begun: str | None, refused: bool
