@@ -47,5 +47,5 @@ def _mark_chords(axes: Axes, program: Mapping[str, np.ndarray], found: Mapping[s
     for share in found["break_points"]:
         axes.axhline(share * found["torque_Nm"], color="0.4", ls=":", lw=0.8)
     words = "\n".join(f"{name} = {found[name]:.4g} N·m/rad" for name in ("K1", "K2", "K3"))
-    words += f"\nlost motion {found['lost_motion']:.3g}′, hysteresis {found['hysteresis']:.3g}′"
+    words += f"\nlost motion {found['lost_motion']:.3g}′, hysteresis {abs(found['hysteresis']):.2g}′"
     axes.text(0.02, 0.98, words, transform=axes.transAxes, va="top", fontsize=9)
