@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from swgpar.analysis.drive_model import DriveModel
+from swgpar.analysis.jamming import jamming_remark
 from swgpar.analysis.period import of_period, sampling_error
 from swgpar.analysis.places import Place
 from swgpar.analysis.root_stress import RootStress
@@ -109,6 +110,7 @@ def summarise(
         "newton_iterations_mean": float(np.mean([r["newton_iterations"] for r in rotation])) if rotation else None,
         "balance_error_Nmm": max((r["torque_balance_Nmm"] for r in rows), default=0.0),
         "wg_torque_expected_Nmm": 1000.0 * design.load.torque / abs(design.ratio),
+        "jammed": jamming_remark(design, sampled, values["means"]),
         "ratio": design.ratio,
         "design": design.model_dump(),
     }

@@ -22,6 +22,7 @@ from typing import Any, Literal
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.remarks import torque_remark
 from swgpar.geometry.cams import pin_travel
 
 PIN_RETRACTION = 0.25
@@ -132,7 +133,8 @@ def load_sequence(design: DriveDesign) -> Iterator[LoadState]:
     """Load states at the ends of all increments of a run, in order."""
     yield from _deflection(design)
     yield from _engagement(design)
-    torque = -np.copysign(1000.0 * design.load.torque, design.ratio)
+    given = 0.0 if torque_remark(design) else 1000.0 * design.load.torque
+    torque = -np.copysign(given, design.ratio)
     control: Literal["rotation", "torque"] = "torque" if torque else "rotation"
     loaded = LoadState(Stage.LOAD, 3, cam_clearance=0.0, flank_clearance=0.0, control=control)
     if torque:
