@@ -246,9 +246,12 @@ def _check(arguments: argparse.Namespace) -> None:
 
     from swgpar import api
     from swgpar.results.atomic import on_all
+    from swgpar.systems import system_of
 
-    values = on_all(MPI.COMM_WORLD, lambda: api.check(arguments.design, arguments.overrides, arguments.mesh))
+    design = on_all(MPI.COMM_WORLD, lambda: api.load_design(arguments.design, arguments.overrides))
+    values = on_all(MPI.COMM_WORLD, lambda: api.check(design, mesh=arguments.mesh))
     _print(f"{name:40s} {value:.6g}" for name, value in values.items())
+    _print(f"warning: {text}" for text in system_of(design).remarks(design, values))
 
 
 def _report(arguments: argparse.Namespace) -> None:

@@ -41,6 +41,7 @@ from swgpar.analysis.summary import Accuracy, summarise
 from swgpar.analysis.transmission_error import period_rows
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import LoadState, Stage, from_loaded, load_sequence
+from swgpar.design.remarks import torque_remark
 from swgpar.errors import ConvergenceError, InputError, SwgparError
 from swgpar.log import IncrementProgress, logger
 from swgpar.meshing import MeshRecipe, load_recipe, require_sections
@@ -110,6 +111,8 @@ def run_drive(
         require_parallel(comm)
         resumed = prepare(folder, comm, restart, overwrite)
     open_log(folder, comm)
+    if (remark := torque_remark(design)) is not None:
+        logger.warning("%s", remark)
     if left_out:
         logger.info("left out: %s; --plain computes all of it", ", ".join(left_out))
     chosen = None
@@ -316,6 +319,8 @@ class _Run:
             ended_early=self.ended_early,
         )
         tables = self._evaluate_cycle(summary)
+        if summary["jammed"]:
+            logger.warning("%s", summary["jammed"])
         if design.steps.samples and summary["means"]:
             rows = continued(design, rows)
         return recorder.finish(rows, summary, tables)

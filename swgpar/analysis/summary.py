@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from swgpar.analysis.drive_model import DriveModel
+from swgpar.analysis.jamming import jamming_remark
 from swgpar.analysis.load_sharing import load_sharing
 from swgpar.analysis.period import of_period, sampling_error
 from swgpar.analysis.places import Place
@@ -142,6 +143,7 @@ def summarise(
         "stiffness": summarise_stiffness(design, program, stiffness_error),
         "ratcheting": summarise_ratcheting(design, program, tooth_rotations, ended_early=ended_early),
         "wg_torque_expected_Nmm": 1000.0 * design.load.torque / abs(design.ratio),
+        "jammed": jamming_remark(design, sampled, values["means"]),
         "ratio": design.ratio,
         "design": design.model_dump(),
     }

@@ -27,6 +27,7 @@ import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_program import internal_torque, program_points
+from swgpar.design.remarks import torque_remark
 from swgpar.geometry.cams import pin_travel
 
 PIN_RETRACTION = 0.25
@@ -160,7 +161,7 @@ def load_sequence(design: DriveDesign) -> Iterator[LoadState]:
     if design.has_program:
         yield from _program(design)
         return
-    torque = internal_torque(design, design.load.torque)
+    torque = 0.0 if torque_remark(design) else internal_torque(design, design.load.torque)
     control: Literal["rotation", "torque"] = "torque" if torque else "rotation"
     loaded = LoadState(Stage.LOAD, 3, cam_clearance=0.0, flank_clearance=0.0, control=control)
     if torque:

@@ -19,6 +19,7 @@ from swgpar.analysis.terminal import print_drive
 from swgpar.design.derived_geometry import derived_geometry
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import Stage, load_sequence
+from swgpar.design.remarks import remarks
 from swgpar.errors import InputError
 from swgpar.input.toml_file import apply_overrides
 from swgpar.meshing import MeshRecipe, load_recipe
@@ -137,6 +138,9 @@ class Drives(System[DriveDesign, DriveResult]):
 
     def check(self, design: DriveDesign) -> dict[str, float]:
         return derived_geometry(design)
+
+    def remarks(self, design: DriveDesign, derived: dict[str, float]) -> list[str]:
+        return remarks(design, derived)
 
     def run(
         self,
