@@ -59,7 +59,7 @@ def _unknown_key(model: type[Section], path: Sequence[Any], value: Any) -> str:
     names = list(model.model_fields)
     where = f"section [{parent}]" if parent else "design file"
     given = f"{show_key(*path)} = {show(value)}"
-    near = difflib.get_close_matches(str(path[-1]), names, n=1, cutoff=0.5)
+    near = difflib.get_close_matches(str(path[-1]), names, n=1, cutoff=0.6)
     if near:
         return f"{given} is not a key of the {where}: did you mean {parent + '.' if parent else ''}{near[0]}?"
     return f"{given} is not a key of the {where}: allowed {', '.join(names)}"
