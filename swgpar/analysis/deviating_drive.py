@@ -36,8 +36,11 @@ from swgpar.petsc import PETSc
 NEAR = 0.06
 """Distance over the module within which flanks are followed; the check after every solve finds those that it misses."""
 
-RAMP = (0.25, 0.5, 0.75, 1.0)
-"""Shares of the deviations that lead to them where they cannot be reached at once."""
+STEPS = (4, 16)
+"""Equal steps from the ideal state to the deviations where these cannot be reached at once; then more of them."""
+
+MAX_ITERATIONS = 50
+"""Newton iterations before the residual has to halve: small loads on teeth with large deviations take many."""
 
 
 @dataclass(frozen=True)
@@ -70,6 +73,7 @@ def turn_design(design: DriveDesign) -> DriveDesign:
         update={
             "twofold_symmetry": design.solver.twofold_symmetry and _is_twofold(design, deviations),
             "condensed_sectors": design.can_condense,
+            "max_iterations": max(design.solver.max_iterations, MAX_ITERATIONS),
         }
     )
     steps = design.steps.model_copy(update={"bent_start": True, "samples": 0, "rotation": 0.0})
@@ -188,9 +192,9 @@ class DeviatingDrive:
         """The state at a phase of a pitch, from a guess, or from the ideal one by shares of the deviations."""
         problem, iterations = self.model.problem, 0
         deviations = self.tables.rolled(pitch)
-        for start, shares in ((guess, RAMP[-1:]), (ideal, RAMP)):
+        for start, steps in ((guess, 1), *((ideal, steps) for steps in STEPS)):
             start.copy(problem.x)
-            for share in shares:
+            for share in np.arange(1, steps + 1) / steps:
                 self._displace_bore(pitch, state, share)
                 problem.flanks.deviate(deviations.scaled(share))
                 result = self.model.solver.solve(state, search=False)

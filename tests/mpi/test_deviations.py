@@ -58,6 +58,7 @@ def test_renamed_deviations_are_those_of_a_drive_that_is_rotated(layout: str) ->
     """States of a turn by renaming equal those of a drive whose wave generator is rotated step by step."""
     overrides = (
         *PITCH,
+        "deviations.angles_per_pitch=2",
         f"drive.layout={layout}",
         "deviations.ring_gear.eccentricity=0.01",
         "deviations.ring_gear.direction=30",
