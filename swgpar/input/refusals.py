@@ -56,10 +56,12 @@ def _locate(model: type[Section], path: Sequence[Any]) -> tuple[type[Section], F
 def _unknown_key(model: type[Section], path: Sequence[Any], value: Any) -> str:
     """Refuse an unknown key and suggest the one most likely meant."""
     parent = show_key(*path[:-1])
+    tables = {name for name, field in model.model_fields.items() if _section_classes(field)}
     names = list(model.model_fields)
     where = f"section [{parent}]" if parent else "design file"
     given = f"{show_key(*path)} = {show(value)}"
-    near = difflib.get_close_matches(str(path[-1]), names, n=1, cutoff=0.6)
+    alike = [name for name in names if (name in tables) == isinstance(value, dict)]
+    near = difflib.get_close_matches(str(path[-1]), alike, n=1, cutoff=0.5)
     if near:
         return f"{given} is not a key of the {where}: did you mean {parent + '.' if parent else ''}{near[0]}?"
     return f"{given} is not a key of the {where}: allowed {', '.join(names)}"

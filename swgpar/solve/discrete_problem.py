@@ -309,7 +309,7 @@ class DiscreteProblem:
 
     def _loaded_side(self, state: LoadState) -> int:
         """Side of the flanks that carry the torque of `state`, on the flexible spline or on the ring gear."""
-        counter_clockwise = (state.torque >= 0.0) == (len(self.supports.couplings) == 1)
+        counter_clockwise = (state.torque >= 0.0) == (not self.supports.floats)
         return LOADED_SIDE if counter_clockwise else -LOADED_SIDE
 
     # -- segments of the flanks ------------------------------------------------------------------------

@@ -183,6 +183,7 @@ class Stopped(Exception):
 @pytest.mark.parametrize("friction", [0.0, 0.1])
 def test_restart(tmp_path: Path, friction: float) -> None:
     values = {"stiffness.positions": 1 if friction else 2, "stiffness.points": 1, "contact.friction": friction}
+    values["solver.rtol"] = 1e-9  # chords of small rotations: the state is predicted anew after a restart
     design = small("plane").with_values(values)
     whole = run(design, out=tmp_path / "whole")
     count = 0
