@@ -94,7 +94,7 @@ class Deviations(Section):
         1, text="angles per pitch of the fixed gear; orders of the mesh need 3 or more", ge=1, le=64
     )
     mesh: Literal["coarse", "same"] = quantity(
-        "coarse", text="the coarsest mesh that finds the contacts of the flanks, or that of the run"
+        "coarse", text="the coarsest mesh that finds the contacts, with fewer points on the cam, or that of the run"
     )
     seed: int = quantity(1, text="of random pitch errors; another one is another drive of the same grade", ge=0)
     flexible_spline: SplineDeviations = SplineDeviations()
