@@ -104,8 +104,11 @@ class DriveDesign(Design):
 
     @property
     def is_mirror_symmetric(self) -> bool:
-        """Whether the undeformed drive is its own image in the plane through the axis and the major axis."""
-        return self.wave_generator.type != "asymmetric_parabolic"
+        """Whether the undeformed drive is its own image in the plane through the axis and the major axis.
+
+        The balls of a bearing are placed on one side of it or the other.
+        """
+        return self.wave_generator.type != "asymmetric_parabolic" and self.bearing is None
 
     @property
     def periods(self) -> int:
