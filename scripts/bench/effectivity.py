@@ -13,9 +13,10 @@ import math
 import subprocess
 import sys
 from pathlib import Path
+from statistics import median
 from typing import Any
 
-from page import markdown, write_results
+from page import markdown, put, write_results
 
 from support.commands import environment, on_ranks
 from support.drive_groups import CUP, PLANE, Case, cams
@@ -150,6 +151,26 @@ def table(rows: list[dict[str, Any]]) -> str:
     return markdown(cells) + "\n" + words
 
 
+def nodal_table(done: dict[str, dict[str, Any]]) -> str:
+    """The page's table of nodal averages: estimated over true errors of all drives, by column of the history."""
+    cells = [["stress", "drives", "true error, %: middle", "largest", "ratio: middle", "0.5 to 3", "below", "above"]]
+    names = dict.fromkeys(name for one in done.values() for name in one["usual"]["nodal_errors"])
+    for name in names:
+        ratios, errors = [], []
+        for one in done.values():
+            usual, reference = one["usual"], one["reference"]["nodal"]
+            if name not in usual["nodal_errors"] or name not in reference:
+                continue
+            true = abs(usual["nodal"][name] - reference[name])
+            ratios.append(usual["nodal_errors"][name] / true)
+            errors.append(100.0 * true / reference[name])
+        if ratios:
+            counts = [sum(0.5 <= r <= 3.0 for r in ratios), sum(r < 0.5 for r in ratios), sum(r > 3.0 for r in ratios)]
+            numbers = [f"{median(errors):.1f}", f"{max(errors):.1f}", f"{median(ratios):.2f}"]
+            cells.append([name.replace("_", " "), str(len(ratios)), *numbers, *map(str, counts)])
+    return markdown(cells)
+
+
 def main() -> None:
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--only", nargs="+", choices=list(drives()), default=list(drives()), metavar="DRIVE")
@@ -170,6 +191,7 @@ def main() -> None:
     if len(rows) < len(drives()):
         return
     write_results("effectivity", COLUMNS, rows, table(rows))
+    put(Path("docs/verification/effectivity.md"), "nodal", nodal_table(done))
 
 
 if __name__ == "__main__":

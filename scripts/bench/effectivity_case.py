@@ -3,7 +3,8 @@
 The argument is the case as JSON: `design` and `overrides`, `mesh`, `times` (elements in every direction over those of
 the mesh), `further` (windows beyond the usual ones; None for a usual run, whose errors are estimated). The output is
 JSON: largest tension at the teeth, its errors by the windows and by the mesh of the drive, the stress on every window,
-pressure of the flanks, elements and seconds.
+largest nodal averages by column of the history and their errors by a coarser mesh, pressure of the flanks, elements and
+seconds.
 """
 
 from __future__ import annotations
@@ -17,8 +18,9 @@ from mpi4py import MPI
 
 import swgpar
 from swgpar.analysis.coarse_start import solve_to_load
-from swgpar.analysis.mesh_refinement import Refinement, resized
+from swgpar.analysis.mesh_refinement import CoarseStresses, Refinement, resized
 from swgpar.analysis.pair_contact import pair_contacts
+from swgpar.analysis.places import find_places
 from swgpar.analysis.root_stress import LEVELS, resolve_root_stress
 from swgpar.analysis.shortcuts import with_shortcuts
 from swgpar.design.load_states import from_loaded, load_sequence
@@ -33,13 +35,16 @@ def solve(case: dict[str, Any]) -> dict[str, Any]:
     design = with_shortcuts(swgpar.load_design(case["design"], case["overrides"]), recipe, levels=False).design
     states = list(load_sequence(design))
     loaded = from_loaded(states)[0]
+    coarse = None
     if case["further"] is None:
         usual = Refinement(design, recipe, states, MPI.COMM_WORLD, LARGEST)
         model, found = usual.model, usual.found
+        coarse = CoarseStresses(usual.coarse_places, usual.ratio)
     else:
         model = solve_to_load(design, recipe, states, MPI.COMM_WORLD)
         found = resolve_root_stress(model, loaded, LEVELS[design.drive.model] + case["further"])
     pairs = pair_contacts(model, loaded)
+    places = find_places(model, loaded, model.stresses()[1])
     result = {
         "s1": found.s1,
         "error": found.error,
@@ -48,6 +53,8 @@ def solve(case: dict[str, Any]) -> dict[str, Any]:
         "region": found.region,
         "pressure": max((pair.pressure_MPa for pair in pairs if not pair.edge), default=0.0),
         "edge": any(pair.edge for pair in pairs),
+        "nodal": {name: place.value for name, place in places.items() if not place.warning},
+        "nodal_errors": coarse and {name: share * places[name].value for name, share in coarse.errors(places).items()},
         "elements": model.n_elements(),
         "wall_s": time.perf_counter() - begin,
     }

@@ -7,7 +7,7 @@ are small enough together (docs/theory/meshes.md).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,6 +15,7 @@ from mpi4py import MPI
 
 from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.analysis.drive_model import DriveModel
+from swgpar.analysis.places import Place, find_places
 from swgpar.analysis.root_stress import LEVELS, MOST_LEVELS, RootStress, resolve_root_stress
 from swgpar.analysis.shortcuts import finds_contacts
 from swgpar.design.drive_design import DriveDesign
@@ -36,6 +37,9 @@ RATIO, ORDER = 1.5, 2
 """Elements in every direction of a mesh of the drive over those of the one before, but for rounding, and the order of
 its displacements."""
 
+NODAL_ORDER = 1
+"""Order of the largest nodal averages of stress (docs/verification/convergence.md)."""
+
 COMPARED_LEVELS = 2
 """Windows that show what the mesh of the drive changes."""
 
@@ -51,13 +55,37 @@ LARGEST = {"plane": 1_500_000, "cup": 700_000}
 
 
 @dataclass(frozen=True)
+class CoarseStresses:
+    """Largest stresses on a coarser mesh under load, of which finer ones have their errors.
+
+    places : by column of the history;  ratio : of the element sizes, coarse over fine
+    """
+
+    places: Mapping[str, Place]
+    ratio: float
+
+    def errors(self, fine: Mapping[str, Place]) -> dict[str, float]:
+        """Errors of the stresses on the finer mesh as shares of them; none of those that depend on the mesh."""
+        return {
+            name: abs(place.value - self.places[name].value) / (self.ratio**NODAL_ORDER - 1.0) / place.value
+            for name, place in fine.items()
+            if not place.warning and place.value > 0.0
+        }
+
+
+@dataclass(frozen=True)
 class ChosenMesh:
-    """The model on the mesh chosen, in its loaded state. root_stress : with both errors;  error : relative"""
+    """The model on the mesh chosen, in its loaded state.
+
+    root_stress : with both errors;  error : relative
+    coarse : what the mesh before it gives
+    """
 
     model: DriveModel
     recipe: MeshRecipe
     root_stress: RootStress
     error: float
+    coarse: CoarseStresses
 
 
 def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
@@ -122,6 +150,7 @@ class Refinement:
         self.model = solve_to_load(design, coarse, load_states, comm)
         try:
             self.coarse = resolve_root_stress(self.model, self.loaded, COMPARED_LEVELS).levels
+            self.coarse_places = self._places()
             self._load(recipe)
             self.found = self._resolve()
         except SwgparError:
@@ -132,6 +161,9 @@ class Refinement:
     def loaded(self) -> LoadState:
         """The loaded state."""
         return from_loaded(self.load_states)[0]
+
+    def _places(self) -> dict[str, Place]:
+        return find_places(self.model, self.loaded, self.model.stresses()[1])
 
     def _load(self, recipe: MeshRecipe) -> None:
         """Take the model on this mesh, from the present one's state where the path to the state does not matter."""
@@ -181,14 +213,15 @@ class Refinement:
             return False
         if sum(len(mesh.hexes) * mesh.n_sectors for mesh in meshes) > self.largest:
             return False
-        earlier = self.coarse, self.ratio, self.found
+        earlier = self.coarse, self.ratio, self.found, self.coarse_places
+        self.coarse_places = self._places()
         self.coarse, self.ratio = self.found.levels, size_ratio(self.recipe, finer)
         try:
             self._load(finer)
             self.found = self._resolve(self.found.drive_error)
         except (ConvergenceError, InputError) as error:
             logger.warning("no finer mesh of the drive: %s", error)
-            self.coarse, self.ratio, self.found = earlier
+            self.coarse, self.ratio, self.found, self.coarse_places = earlier
             self.model.destroy()
             self.model = solve_to_load(self.design, self.recipe, self.load_states, self.comm)
             return False
@@ -224,7 +257,8 @@ def choose_mesh(
         part = max(refine, key=lambda part: errors[part])
         if not refine[part]():
             del refine[part]
-    return ChosenMesh(drive.model, drive.recipe, drive.found, relative_error(drive.found))
+    coarse = CoarseStresses(drive.coarse_places, drive.ratio)
+    return ChosenMesh(drive.model, drive.recipe, drive.found, relative_error(drive.found), coarse)
 
 
 def relative_error(found: RootStress) -> float:

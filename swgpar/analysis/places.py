@@ -46,6 +46,7 @@ class Place:
     tooth : number, counter-clockwise from +y in the undeformed drive
     radius, z : mm;  angle_deg : from +y, counter-clockwise
     warning : why the value depends on the mesh; empty where it converges
+    error : MPa, estimated, by the drive's mesh; None where it is not known
     """
 
     value: float
@@ -56,6 +57,7 @@ class Place:
     z: float
     angle_deg: float
     warning: str
+    error: float | None = None
 
 
 def find_places(model: DriveModel, state: LoadState, fields: Sequence[Mapping[str, np.ndarray]]) -> dict[str, Place]:

@@ -19,6 +19,7 @@ from swgpar.analysis.drive_result import DriveResult, open_fields
 from swgpar.analysis.drive_tables import DriveTables
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.losses import cam_force
+from swgpar.analysis.mesh_refinement import CoarseStresses
 from swgpar.analysis.pair_contact import pair_contacts
 from swgpar.analysis.places import Place, find_places
 from swgpar.analysis.program_results import PointRow, point_rows
@@ -63,6 +64,7 @@ class Recorder(ABC):
     accuracy : what was asked for and reached, if an accuracy was asked for
     root_stress : of the loaded state, once it is resolved
     places : of the largest stresses under load, by column of the history
+    coarse : largest stresses on a coarser mesh, where a run has one;  stress_errors : by it, as shares, of `places`
     tooth_rotations : deg, mean rotation of the flexible spline's teeth at every increment, with [ratcheting]
     pairs, contact_lines : rows of pairs.csv and contact_lines.csv, the contacts of flanks under load
     cycle : stresses of the sampled period, with [fatigue] or [losses]
@@ -80,6 +82,8 @@ class Recorder(ABC):
         self.accuracy: Accuracy | None = None
         self.root_stress: RootStress | None = None
         self.places: dict[str, Place] = {}
+        self.coarse: CoarseStresses | None = None
+        self.stress_errors: dict[str, float] = {}
         self.pairs: list[Row] = []
         self.contact_lines: list[Row] = []
         design = model.design
@@ -125,6 +129,17 @@ class Recorder(ABC):
             for name, place in find_places(self.model, state, fields).items():
                 if name not in self.places or place.value > self.places[name].value:
                     self.places[name] = place
+            if self.coarse is not None:
+                self.stress_errors, self.coarse = self.coarse.errors(self.places), None
+
+    def places_with_errors(self) -> dict[str, Place]:
+        """The places with the errors of their stresses where they are known: in proportion to those under load."""
+        return {
+            name: replace(place, error=self.stress_errors[name] * place.value)
+            if name in self.stress_errors and not place.warning
+            else place
+            for name, place in self.places.items()
+        }
 
     def _keep_pairs(self, state: LoadState) -> None:
         if state.is_periodic and not self.model.design.stiffness:

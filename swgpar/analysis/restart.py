@@ -84,6 +84,7 @@ def write_state(
         "balls": recorder.balls,
         "race_stress": recorder.race_stress,
         "bearing_shares": {name: asdict(share) for name, share in recorder.bearing_shares.items()},
+        "stress_errors": recorder.stress_errors,
         "places": {name: asdict(place) for name, place in recorder.places.items()},
     }
     checkpoint.write_checkpoint(recorder.out, model.comm, blocks, state)
@@ -126,6 +127,7 @@ def resume(recorder: FolderRecorder, stepper: LoadStepper, items: list[LoadState
     recorder.starts_loaded = state["starts_loaded"]
     recorder.accuracy = state["accuracy"] and Accuracy(**state["accuracy"])
     recorder.places = {name: Place(**place) for name, place in state.get("places", {}).items()}
+    recorder.stress_errors = state.get("stress_errors", {})
     recorder.pairs, recorder.contact_lines = state.get("pairs", []), state.get("contact_lines", [])
     recorder.tooth_rotations = state.get("tooth_rotations", [])
     recorder.balls, recorder.race_stress = state.get("balls", []), state.get("race_stress", {})

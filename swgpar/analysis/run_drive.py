@@ -24,6 +24,7 @@ from swgpar.analysis.mesh_refinement import (
     COMPARED_LEVELS,
     RATIO,
     ChosenMesh,
+    CoarseStresses,
     choose_mesh,
     drive_error,
     resized,
@@ -31,6 +32,7 @@ from swgpar.analysis.mesh_refinement import (
     with_accuracy,
 )
 from swgpar.analysis.period import continued, require_samples
+from swgpar.analysis.places import find_places
 from swgpar.analysis.ratcheting import has_fallen
 from swgpar.analysis.recorder import FolderRecorder, MemoryRecorder, Recorder
 from swgpar.analysis.restart import identity, resume
@@ -160,7 +162,7 @@ def _record_choice(recorder: Recorder, chosen: ChosenMesh, accuracy: float, fold
     if folder is not None:
         write_from_root(recorder.comm, folder / RECIPE, to_toml(chosen.recipe).encode())
     recorder.accuracy = Accuracy(accuracy, chosen.error, chosen.error <= accuracy)
-    recorder.root_stress = chosen.root_stress
+    recorder.root_stress, recorder.coarse = chosen.root_stress, chosen.coarse
 
 
 class _Run:
@@ -215,9 +217,11 @@ class _Run:
         return from_loaded(items) if self.recorder.starts_loaded else items
 
     def _keep_coarse(self, model: DriveModel, recipe: MeshRecipe) -> None:
-        """Resolve the stress at the teeth on a coarser mesh of the drive, to see what the mesh changes."""
+        """Keep the largest stresses of a coarser mesh of the drive, to see what the mesh changes."""
+        loaded = from_loaded(list(load_sequence(model.design)))[0]
+        places = find_places(model, loaded, model.stresses()[1])
+        self.recorder.coarse = CoarseStresses(places, size_ratio(recipe, self.recipe))
         if model.design.resolves_root_stress:
-            loaded = from_loaded(list(load_sequence(model.design)))[0]
             try:
                 self.coarse = recipe, resolve_root_stress(model, loaded, COMPARED_LEVELS).levels
             except (ConvergenceError, InputError) as error:
@@ -309,7 +313,7 @@ class _Run:
             recipe_name,
             recorder.accuracy,
             recorder.root_stress,
-            recorder.places,
+            recorder.places_with_errors(),
             recorder.pairs,
             recorder.turns,
             self._bearing(),

@@ -46,11 +46,20 @@ class Accuracy:
     reached: bool
 
 
-def mesh_error(root_stress: RootStress | None) -> dict[str, float] | None:
-    """Error (MPa) of the largest nodal s1 by the drive's mesh: how far windows are from it, and their own error."""
-    if root_stress is None:
-        return None
-    return {"fs_s1": abs(root_stress.on_mesh - root_stress.s1) + root_stress.total_error}
+def mesh_error(
+    root_stress: RootStress | None, means: Mapping[str, float], places: Mapping[str, Place]
+) -> dict[str, float]:
+    """Errors (MPa) of the means of nodal stresses by the drive's mesh, by column of the history, where they are known.
+
+    That of s1 is how far windows are from it, and their own error. Others are in proportion to those of the largest
+    stresses under load, which a coarser mesh gives.
+    """
+    found = {
+        name: means[name] * place.error / place.value for name, place in places.items() if name in means and place.error
+    }
+    if root_stress is not None:
+        found["fs_s1"] = abs(root_stress.on_mesh - root_stress.s1) + root_stress.total_error
+    return found
 
 
 def over_rotation(rows: Sequence[Row], ratio: float) -> dict[str, Any]:
@@ -134,7 +143,7 @@ def summarise(
             model.copies,
         ),
         "bearing": bearing,
-        "mesh_error": mesh_error(root_stress),
+        "mesh_error": mesh_error(root_stress, values["means"], places),
         "condensed_MPa": model.omitted_bending_stress() if design.solver.condensed_sectors else None,
         "sampling_error": sampling_error(design, rows, MEANS) if sampled_period else None,
         "newton_iterations_mean": float(np.mean([r["newton_iterations"] for r in rotation])) if rotation else None,

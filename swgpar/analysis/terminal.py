@@ -131,15 +131,27 @@ def _print_places(places: Mapping[str, Mapping[str, Any]]) -> None:
         box=box.SIMPLE_HEAD,
         padding=(0, 1, 0, 0),
     )
-    for heading in ("", "MPa", "region", "tooth", "radius", "z", "angle"):
+    for heading in ("", "MPa", "± by mesh", "region", "tooth", "radius", "z", "angle"):
         table.add_column(heading, justify="left" if heading in ("", "region") else "right", no_wrap=True)
     for name, place in places.items():
-        row = [name.replace("_", " "), f"{place['value']:.1f}", place["region"] + ("*" if place["warning"] else "")]
+        error = "" if place["error"] is None else f"{place['error']:.1f}"
+        row = [name.replace("_", " "), f"{place['value']:.1f}", error]
+        row.append(place["region"] + ("*" if place["warning"] else ""))
         row += [str(place["tooth"]), f"{place['radius']:.2f}", f"{place['z']:.2f}", f"{place['angle_deg']:.1f}"]
         table.add_row(*row)
     console.print(table)
     for warning in dict.fromkeys(place["warning"] for place in places.values() if place["warning"]):
         console.print(f"* {warning}")
+
+
+def _print_mesh_error(error: Mapping[str, float]) -> None:
+    """What the drive's mesh makes of the means of nodal averages."""
+    names = {"fs_s1": "s1", "fs_s3": "|s3|", "fs_vm": "von Mises", "rg_vm": "von Mises of the ring gear"}
+    known = ", ".join(f"{words} {error[name]:.0f}" for name, words in names.items() if name in error)
+    unknown = " and ".join(words for name, words in names.items() if name not in error)
+    if known:
+        rest = f"; {unknown} without estimate" if unknown else ""
+        console.print(f"errors of these means by the drive's mesh, up to (MPa): {known}{rest}")
 
 
 def _print_contact(contact: Mapping[str, Any]) -> None:
@@ -252,12 +264,8 @@ def _print_errors(summary: Mapping[str, Any]) -> None:
     if bearing := summary.get("bearing"):
         _print_bearing(bearing)
     asked = summary["accuracy"]
-    if error := summary["mesh_error"]:
-        if summary["means"]:
-            console.print(
-                f"the mean of s1 is that of nodal averages: up to {error['fs_s1']:.0f} MPa of it are the mesh's error "
-                "(by windows, under load); |s3| and von Mises have no estimate"
-            )
+    if summary["means"]:
+        _print_mesh_error(summary["mesh_error"])
     if asked:
         console.print(
             f"accuracy of that stress: {asked['asked']:g} asked for, {asked['estimated']:.2g} "

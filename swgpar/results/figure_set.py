@@ -63,7 +63,9 @@ class FigureSet(ABC):
         return tuple(self.drawings)
 
     def save(self, folder: str | Path) -> list[Path]:
-        """Write every figure as ``folder``/figures/NAME.png and return the files; collective, rank 0 writes.
+        """Write every figure as ``folder``/figures/NAME.png and return the files; collective.
+
+        The ranks share the figures among them, unless these show gathered fields: then rank 0 writes all.
 
         Raises
         ------
@@ -71,21 +73,23 @@ class FigureSet(ABC):
             A figure cannot be drawn or written; on all ranks.
         """
         import_matplotlib()
-        figures, root = Path(folder) / FOLDER, self._comm.rank == 0
-        with agreed(self._comm, figures):
-            if root:
+        figures, comm = Path(folder) / FOLDER, self._comm
+        with agreed(comm, figures):
+            if comm.rank == 0:
                 figures.mkdir(parents=True, exist_ok=True)
         paths = {name: figures / f"{name}.png" for name in self.drawings}
-        for name, path in paths.items():
-            failure: SwgparError | None = None
+        failure: SwgparError | None = None
+        for number, (name, path) in enumerate(reversed(paths.items())):  # the last ones take the longest
+            writes = comm.rank == (0 if self._gathered else number % comm.size)
+            if not writes and not self._gathered:
+                continue
             try:
-                if root or self._gathered:
-                    figure = self.drawings[name]()
-                if root:
+                figure = self.drawings[name]()
+                if writes:
                     figure.savefig(path, dpi=figure.dpi if name in self.exact_size else DOTS_PER_INCH)
             except Exception as error:  # whatever a drawing library raises
-                failure = OutputError(f"cannot draw {path}: {sentence(error)}")
-            raise_first(self._comm, failure)
+                failure = failure or OutputError(f"cannot draw {path}: {sentence(error)}")
+        raise_first(comm, failure)
         return list(paths.values())
 
     exact_size: tuple[str, ...] = ()

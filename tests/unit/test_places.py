@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import swgpar
 from support.paths import DESIGN, RECIPE, REFERENCE
 from support.small_drive import PLANE
-from swgpar.analysis.places import APART, AVERAGE, region_of
+from swgpar.analysis.mesh_refinement import CoarseStresses
+from swgpar.analysis.places import APART, AVERAGE, Place, region_of
 from swgpar.analysis.summary import STRESSES
 from swgpar.design.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
@@ -77,3 +80,24 @@ def test_a_run_says_where_its_largest_stresses_are() -> None:
         assert (place["warning"] == AVERAGE) == (place["region"] == "flank under contact")
     assert places["fs_s1"]["region"] in ("tooth root", "rim inside")
     assert design.inner_radius - 0.1 < places["fs_s1"]["radius"] < 0.5 * design.drive.teeth_rg
+
+
+def test_the_error_of_a_stress_follows_from_two_meshes() -> None:
+    """Errors of first order are found; a stress that depends on the mesh has none."""
+    place = Place(300.0, "flexible_spline", "tooth root", 0, 59.0, 0.0, 0.0, "")
+    under = replace(place, region="flank under contact", warning=AVERAGE)
+    coarse = CoarseStresses({"fs_s1": replace(place, value=300.0 - 15.0), "fs_s3": under}, 1.5)
+    found = coarse.errors({"fs_s1": replace(place, value=300.0 - 10.0), "fs_s3": under})
+    assert found == {"fs_s1": pytest.approx(10.0 / 290.0)}
+
+
+def test_a_start_on_a_coarser_mesh_gives_errors() -> None:
+    values = [*PLANE, "steps.rotation=4", "steps.increment=2", "steps.start_levels=1", "steps.bent_start=true"]
+    summary = swgpar.run(load_design(DESIGN, values), swgpar.load_mesh("plane_coarse"), plain=True).summary
+    errors = {name: place["error"] for name, place in summary["places"].items()}
+    for name, place in summary["places"].items():
+        assert (errors[name] is None) == bool(place["warning"]), name
+        assert errors[name] is None or 0.0 < errors[name] < 0.5 * place["value"]
+    for name, error in summary["mesh_error"].items():
+        share = errors[name] / summary["places"][name]["value"]
+        assert error == pytest.approx(share * summary["means"][name])
