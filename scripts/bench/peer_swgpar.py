@@ -1,6 +1,8 @@
 """One of the peer problems by this program, under mpirun: fields of every rank, its memory and Newton's iterations.
 
-mpirun -n 2 python scripts/bench/peer_swgpar.py "linear: pinched ring" 160 2 8 OUT
+mpirun -n 2 python scripts/bench/peer_swgpar.py "linear: pinched ring" 160 2 8 whole OUT
+
+With `half` instead of `whole` the twofold symmetry of ring and loads is used, as a run of a drive uses it.
 """
 
 from __future__ import annotations
@@ -27,9 +29,9 @@ RTOL = 1e-6
 """Newton's tolerance, that of a drive's default run in the plane. CalculiX accepts 5e-3."""
 
 
-def pinched(design: RingDesign, counts: RingCounts, force: float) -> tuple[BodyElements, np.ndarray, int]:
+def pinched(design: RingDesign, counts: RingCounts, force: float, halved: bool) -> tuple[BodyElements, np.ndarray, int]:
     """The ring under two forces (N): its elements, displacements (n_local, 3) mm and the iterations it took."""
-    ring = RingBody(design, counts, MPI.COMM_WORLD, halved=False)
+    ring = RingBody(design, counts, MPI.COMM_WORLD, halved=halved)
     nodes, share = line(ring.mesh.coords)
     sectors = ring.body.sectors[ring.body.owned]
     local, forces = [np.zeros(0, dtype=np.int64)], [np.zeros((0, 3))]
@@ -47,18 +49,19 @@ def pinched(design: RingDesign, counts: RingCounts, force: float) -> tuple[BodyE
 
 
 def main() -> None:
-    name, *numbers, folder = sys.argv[1:]
+    name, *numbers, part, folder = sys.argv[1:]
+    halved = part == "half"
     problem: Problem = PROBLEMS[name]
     counts = RingCounts(*map(int, numbers))
     contact = Contact(wg_penalty_coef=PENALTY, wg_quadrature=7, penetration_tolerance=1e-4)
     design = RingDesign(2.0 * OUTER, OUTER - INNER, WIDTH, False, STEEL, contact, Solver(rtol=RTOL))
     if problem.travel:
         cam = EllipticalCam(*CAM)
-        model = RingModel(design, counts, cam, np.radians(CAM_HALF_ANGLE), MPI.COMM_WORLD, halved=False)
+        model = RingModel(design, counts, cam, np.radians(CAM_HALF_ANGLE), MPI.COMM_WORLD, halved=halved)
         iterations, body = model.spread(problem.travel), model.body
         u = model.problem.displacement()
     else:
-        body, u, iterations = pinched(design, counts, problem.force)
+        body, u, iterations = pinched(design, counts, problem.force, halved)
     fields = body_fields(body, u)
     out, comm = Path(folder), MPI.COMM_WORLD
     np.savez(
