@@ -53,7 +53,6 @@ from swgpar.results.atomic import on_all, write_from_root
 from swgpar.results.folder import RECIPE, given_folder, open_log, prepare
 from swgpar.results.history import loaded_increments
 from swgpar.results.lock import releasing
-from swgpar.results.parallel_hdf5 import require_parallel
 
 
 @releasing
@@ -110,7 +109,6 @@ def run_drive(
     require_samples(design)
     resumed = False
     if folder is not None:
-        require_parallel(comm)
         resumed = prepare(folder, comm, restart, overwrite)
     open_log(folder, comm)
     if (remark := torque_remark(design)) is not None:

@@ -13,6 +13,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 from mpi4py import MPI
 
@@ -99,7 +100,7 @@ def require_undamaged(path: Path, comm: MPI.Comm) -> None:
         sums = json.loads(_read_attrs(path))[_SUMS]
     found: dict[str, int] = {}
     with agreed(comm, path, "read"):
-        with parallel_hdf5.h5py.File(path, "r") as file:
+        with h5py.File(path, "r") as file:
             for name in sums:
                 rows = file[name].shape[0] if name in file else 0
                 first, end = (rows * rank // comm.size for rank in (comm.rank, comm.rank + 1))
@@ -112,7 +113,7 @@ def require_undamaged(path: Path, comm: MPI.Comm) -> None:
 def _read_attrs(path: Path) -> bytes:
     """Text of the attributes of a file of this version."""
     try:
-        with parallel_hdf5.h5py.File(path, "r") as file:
+        with h5py.File(path, "r") as file:
             names = set(file)
             if _ATTRS not in names:
                 raise OutputError(

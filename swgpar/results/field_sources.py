@@ -7,13 +7,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
+import h5py
 import numpy as np
 from mpi4py import MPI
 
 from swgpar.errors import InputError, OutputError
 from swgpar.results.atomic import sentence
 from swgpar.results.fields import FOLDER, INDEX, MESH, increment_name, stored
-from swgpar.results.parallel_hdf5 import h5py
 
 
 class BodyMesh(NamedTuple):

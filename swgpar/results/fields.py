@@ -11,12 +11,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
+import h5py
 import numpy as np
 from mpi4py import MPI
 
 from swgpar.results import parallel_hdf5
 from swgpar.results.atomic import TEMPORARY, agreed, discard, finish, write_from_root
-from swgpar.results.parallel_hdf5 import Block, h5py
+from swgpar.results.parallel_hdf5 import Block
 
 INDEX = "fields.h5"
 """Links to the mesh and to the fields of all increments."""

@@ -1,31 +1,27 @@
 """One HDF5 file written by all ranks at once, completely or not at all.
 
-Rank 0 lays out the file (contiguous data sets, space set aside on the disk), all ranks then open it with
-HDF5's MPI driver and write their own rows, rank 0 renames it. HDF5 does not survive a full disk inside
-a parallel write or close; here the disk is found full before the first parallel call.
+Rank 0 lays out the file (contiguous data sets, space set aside on the disk) and closes it. All ranks then write
+their own rows with MPI-IO, at the offsets of the data sets in the file, and rank 0 renames it. HDF5 is used by one
+process at a time and needs no MPI. A full disk is found by rank 0 before the first row is written.
 """
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
-from contextlib import nullcontext, suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import h5py
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.errors import OutputError
 from swgpar.results.atomic import TEMPORARY, agreed, discard, finish, reserve
-
-if MPI.COMM_WORLD.size > 1:  # Debian's h5py picks its MPI build by looking at Open MPI's own launcher only
-    os.environ.setdefault("H5PY_ALWAYS_USE_MPI", "1")
-
-import h5py  # noqa: E402
 
 LAYOUT_BYTES = 65536
 """Upper bound of the size of a file's headers."""
+
+PIECE_BYTES = 2**30
+"""Most bytes of one call of MPI, which counts them in 32 bits."""
 
 
 class Block(NamedTuple):
@@ -39,15 +35,6 @@ class Block(NamedTuple):
     array: np.ndarray
     first: int
     total: int
-
-
-def require_parallel(comm: MPI.Comm) -> None:
-    """Raise OutputError when several ranks are to write and h5py has no MPI support."""
-    if comm.size > 1 and not h5py.get_config().mpi:
-        raise OutputError(
-            f"cannot write results on {comm.size} ranks: this h5py was built without MPI "
-            "(Debian: install python3-h5py-mpi; pip: HDF5_MPI=ON pip install --no-binary=h5py h5py)"
-        )
 
 
 def write(
@@ -70,11 +57,12 @@ def write(
         On every rank, naming file and reason; the earlier file is then untouched.
     """
     temporary = path.with_name(path.name + TEMPORARY)
+    offsets: dict[str, int] = {}
     try:
         with agreed(comm, path):
             if comm.rank == 0:
-                _lay_out(temporary, blocks, attrs or {})
-        _fill(temporary, path, comm, blocks)
+                offsets = _lay_out(temporary, blocks, attrs or {})
+        _fill(temporary, path, comm, blocks, comm.bcast(offsets))
         with agreed(comm, path):
             if comm.rank == 0:
                 finish(temporary, path)
@@ -84,7 +72,8 @@ def write(
         raise
 
 
-def _lay_out(temporary: Path, blocks: Mapping[str, Block], attrs: Mapping[str, Mapping[str, Any]]) -> None:
+def _lay_out(temporary: Path, blocks: Mapping[str, Block], attrs: Mapping[str, Mapping[str, Any]]) -> dict[str, int]:
+    """Make the file without its rows; returns where in the file the rows of each data set begin."""
     shapes = {name: (block.total, *block.array.shape[1:]) for name, block in blocks.items()}
     size = sum(int(np.prod(shapes[name])) * blocks[name].array.dtype.itemsize for name in blocks) + LAYOUT_BYTES
     discard(temporary)
@@ -93,40 +82,53 @@ def _lay_out(temporary: Path, blocks: Mapping[str, Block], attrs: Mapping[str, M
     early.set_layout(h5py.h5d.CONTIGUOUS)
     early.set_alloc_time(h5py.h5d.ALLOC_TIME_EARLY)
     early.set_fill_time(h5py.h5d.FILL_TIME_NEVER)
+    offsets = {}
     with h5py.File(temporary, "w") as file:
         for name, block in blocks.items():
             group, _, leaf = name.rpartition("/")
             parent = file.require_group(group) if group else file
-            h5py.h5d.create(
+            made = h5py.h5d.create(
                 parent.id,
                 leaf.encode(),
                 h5py.h5t.py_create(block.array.dtype),
                 h5py.h5s.create_simple(shapes[name]),
                 dcpl=early,
             )
+            offsets[name] = made.get_offset()  # None without rows
         for name, values in attrs.items():
             file.require_group(name).attrs.update(values)
     reserve(temporary, temporary.stat().st_size)
+    return offsets
 
 
-def _fill(temporary: Path, path: Path, comm: MPI.Comm, blocks: Mapping[str, Block]) -> None:
-    # Opening and closing are collective, writing one's own rows is not: a rank that fails never leaves
+def _fill(temporary: Path, path: Path, comm: MPI.Comm, blocks: Mapping[str, Block], offsets: Mapping[str, int]) -> None:
+    # Opening, flushing and closing are collective, writing one's own rows is not: a rank that fails never leaves
     # the others waiting in a call that it skipped.
-    driver = {"driver": "mpio", "comm": comm} if comm.size > 1 else {}
     with agreed(comm, path):
-        file = h5py.File(temporary, "r+", **driver)
+        file = MPI.File.Open(comm, str(temporary), MPI.MODE_WRONLY)
     failure: Exception | None = None
     try:
         for name, (array, first, _) in blocks.items():
             if len(array):
-                file[name][first : first + len(array)] = array
-    except (OSError, RuntimeError, ValueError, TypeError) as error:
+                _write_rows(file, offsets[name], array, first)
+    except (OSError, RuntimeError, ValueError, TypeError) as error:  # MPI.Exception is a RuntimeError
         failure = error
     with agreed(comm, path):
-        with suppress(RuntimeError) if failure else nullcontext():
-            file.close()
+        try:
+            file.Sync()
+        finally:
+            file.Close()
         if failure:
             raise OSError(str(failure))
+
+
+def _write_rows(file: MPI.File, begin: int, array: np.ndarray, first: int) -> None:
+    """Write rows first .. of the data set whose rows begin at byte `begin`."""
+    rows = np.ascontiguousarray(array)
+    row_bytes = rows.nbytes // len(rows)
+    content = rows.reshape(-1).view(np.uint8)
+    for start in range(0, len(content), PIECE_BYTES):
+        file.Write_at(begin + first * row_bytes + start, [content[start : start + PIECE_BYTES], MPI.BYTE])
 
 
 def read_rows(path: Path, comm: MPI.Comm, ranges: Mapping[str, tuple[int, int]]) -> dict[str, np.ndarray]:

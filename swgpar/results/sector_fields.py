@@ -7,13 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
+import h5py
 import numpy as np
 from mpi4py import MPI
 
 from swgpar.results import parallel_hdf5
 from swgpar.results.atomic import write_from_root
 from swgpar.results.folder import SECTOR, SECTOR_XDMF
-from swgpar.results.parallel_hdf5 import Block, h5py
+from swgpar.results.parallel_hdf5 import Block
 
 
 @dataclass(frozen=True)

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 from mpi4py import MPI
 
 from swgpar.errors import OutputError
 from swgpar.results import checkpoint
-from swgpar.results.parallel_hdf5 import h5py
 
 ROWS = np.arange(7 * 5 * 3, dtype=float).reshape(7, 5, 3)
 ATTRS = {"identity": "x", "rows": [{"a": 0.1}], "wall_s": 1.5}

@@ -8,13 +8,13 @@ import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
+import h5py
 import pytest
 from mpi4py import MPI
 
 from support.commands import assert_same_history, execute, run_command, succeed
 from support.small_drive import PLANE
 from swgpar.results import checkpoint, history
-from swgpar.results.parallel_hdf5 import h5py
 
 
 class Disk:
