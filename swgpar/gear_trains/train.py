@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import platform
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
@@ -22,7 +23,7 @@ from swgpar.gear_trains.result import TrainResult, read, write
 from swgpar.input.quantities import show
 from swgpar.input.toml_file import validate
 from swgpar.log import logger
-from swgpar.results.atomic import agreed
+from swgpar.results.atomic import agreed, sentence
 from swgpar.results.figure_set import Drawings, NamedFigures
 from swgpar.results.folder import given_folder, open_log, prepare
 from swgpar.results.lock import releasing
@@ -106,7 +107,8 @@ def run_train(
     if folder is not None:
         prepare(folder, comm, False, overwrite)
     open_log(folder, comm)
-    computed = model.compute(design, comm)
+    with reported_arithmetic():
+        computed = model.compute(design, comm)
     seconds = comm.bcast(time.perf_counter() - begin)
     result = replace(
         computed,
@@ -125,6 +127,15 @@ def run_train(
         write(result, folder, comm)
     logger.info("finished in %.1f s on %d ranks", seconds, comm.size)
     return _with_figures(result, comm)
+
+
+@contextmanager
+def reported_arithmetic() -> Iterator[None]:
+    """Refuse values that fit their ranges and are still too far apart for the arithmetic inside the block."""
+    try:
+        yield
+    except (np.linalg.LinAlgError, ArithmeticError, ValueError, MemoryError) as error:
+        raise InputError(f"the gear train cannot be computed with these values: {sentence(error)}") from None
 
 
 def open_train(folder: Path, comm: MPI.Comm) -> TrainResult:
