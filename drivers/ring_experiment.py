@@ -13,7 +13,8 @@ Printed are, for every measured point, what a dial reads in the ways that can be
     fixed    45 degrees, the dial stands still as the other support does; it reads outward, the sign is turned
     minor    90 degrees, against the ring's centre: half of what the ring's minor axis has lost
 
-the change by halving all elements, and a check against the closed form at a micrometre. About a minute on 2 cores.
+the torque that turns the ring, by internal friction (section A.9 set out to measure it), the change by halving all
+elements, and a check against the closed form at a micrometre. About a minute on 2 cores.
 
     mpirun -n 2 python drivers/ring_experiment.py --out results/ring_experiment
 """
@@ -49,6 +50,9 @@ READINGS = {
     "fixed": "45°, dial at rest like the other support",
     "minor": "90°, half the minor axis' loss",
 }
+LOSS_FACTOR = 3e-4
+"""Of steel (Cremer and Heckl: 0.2 to 3 in 10 000)."""
+
 SMALL = 1e-3
 """mm, the travel at which the closed form holds"""
 
@@ -77,7 +81,10 @@ def press(
     support_diameter: float = SUPPORT_DIAMETER,
     comm: MPI.Comm = MPI.COMM_WORLD,
 ) -> dict[str, np.ndarray]:
-    """Readings (n,) mm at the supports' travels (n,) mm: those of `READINGS`, and `top`, outward at the major axis."""
+    """Readings (n,) mm at the supports' travels (n,) mm: those of `READINGS`, and `top`, outward at the major axis.
+
+    `torque` (n,) N mm is that of the internal friction with a loss factor of 1.
+    """
     # both supports are one curve, drawn apart by the pose: a stadium of which only the ends can touch
     cam = simplified(design.inner_radius, 0.5 * support_diameter)
     model = RingModel(design, counts, cam, np.radians(20.0), comm)
@@ -86,16 +93,28 @@ def press(
     for travel in travels:
         iterations = model.spread(float(travel))
         half = [model.dial(0.25 * np.pi, moved) for moved in (travel, 0.0, -travel)]
-        rows.append((*half[:2], -half[2], model.dial(0.5 * np.pi), -model.dial(0.0)))
+        rows.append((*half[:2], -half[2], model.dial(0.5 * np.pi), -model.dial(0.0), model.hysteresis_torque()))
         sizes = (2 * counts.sectors, counts.radial) + (() if design.plane else (counts.axial,))
         mesh = " x ".join(map(str, sizes))
         logger.info("%s, %s elements: a = %.3f mm, %d iterations", kind, mesh, travel, iterations)
     model.destroy()
-    return dict(zip((*READINGS, "top"), np.array(rows).T))
+    return dict(zip((*READINGS, "top", "torque"), np.array(rows).T))
 
 
-def table(computed: dict[str, dict[str, np.ndarray]]) -> list[str]:
-    """Lines of the tables; computed : readings in the plane and of the solid."""
+def thin_ring_torque(travel: np.ndarray, width: float) -> np.ndarray:
+    """Torque (n,) N mm of a thin ring with a loss factor of 1 under two forces that move by `travel` (n,) mm each.
+
+    4 P^2 R^3 / (pi E I) times the sum of n / (n^2 - 1)^2 over even n; P follows from the travel by `closed_form`.
+    """
+    radius = 0.5 * (OUTER_DIAMETER - THICKNESS)
+    bending = STEEL.E * width * THICKNESS**3 / 12.0
+    force = travel * bending / (closed_form(0.0) * radius**3)
+    n = np.arange(2.0, 2001.0, 2.0)
+    return 4.0 * force**2 * radius**3 / (np.pi * bending) * np.sum(n / (n**2 - 1.0) ** 2)
+
+
+def table(computed: dict[str, dict[str, np.ndarray]], width: float) -> list[str]:
+    """Lines of the tables; computed : readings in the plane and of the solid;  width : mm, of the ring"""
     plane, solid = computed["plane"], computed["solid"]
     lines = []
     for name, text in READINGS.items():
@@ -108,6 +127,13 @@ def table(computed: dict[str, dict[str, np.ndarray]]) -> list[str]:
         off = solid[name] - MEASURED
         rms = np.sqrt(np.mean(off**2))
         lines += [f"        root mean square of the difference {rms:.3f} mm, largest {np.abs(off).max():.3f} mm", ""]
+    lines.append(f"torque (N mm) by internal friction, loss factor {LOSS_FACTOR:g}")
+    lines.append("     a     plane        3D  thin ring")
+    thin = thin_ring_torque(OUTWARD, width)
+    for k, a in enumerate(OUTWARD):
+        torques = [LOSS_FACTOR * values[k] for values in (plane["torque"], solid["torque"], thin)]
+        lines.append(f"{a:6.3f}  " + "  ".join(f"{torque:8.4f}" for torque in torques))
+    lines.append("")
     slope, offset = np.polyfit(OUTWARD, MEASURED, 1)
     spread = np.std(MEASURED - slope * OUTWARD - offset)
     return [
@@ -195,7 +221,7 @@ def main() -> None:
     }
     support = arguments.support_diameter
     fine = {kind: press(design, counts.refined(), OUTWARD, support) for kind, design in designs.items()}
-    lines = [*table(fine), *checks(designs, counts, fine, support)]
+    lines = [*table(fine, arguments.width), *checks(designs, counts, fine, support)]
     write_from_root(comm, arguments.out / "ring_experiment.csv", csv(fine))
     write_from_root(comm, arguments.out / "ring_experiment.png", figure(fine) if comm.rank == 0 else b"")
     if comm.rank == 0:

@@ -71,6 +71,7 @@ def start(arguments: Sequence[str] = ()) -> None:
         if any(_is_one_of(word, FILES) for word in words):
             PETSc.Options().insertString(" ".join(f"'{word}'" if '"' in word else f'"{word}"' for word in words))
     _given.update(PETSc.Options().getAll())
+    globals()["PETSc"] = PETSc  # ranks that import it later, and not all together, do not start it again
 
 
 @contextmanager
@@ -189,7 +190,4 @@ def __getattr__(name: str) -> Any:
     if name != "PETSc":
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     start()
-    from petsc4py import PETSc
-
-    globals()["PETSc"] = PETSc
-    return PETSc
+    return globals()["PETSc"]

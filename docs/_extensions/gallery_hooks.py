@@ -22,6 +22,7 @@ ORDER = (
     "torque_sweep",
     "layouts",
     "friction",
+    "fatigue",
     "ring_on_cam",
 )
 """Scripts in the order of the page; the others follow by name."""

@@ -104,11 +104,17 @@ def table(lines: list[Row]) -> str:
 def plain_rows(section: type[Section], prefix: str = "", skip: tuple[str, ...] = ()) -> Iterator[Row]:
     """Rows of the plain keys of a section, and of the sections inside it that are no choice."""
     for name, field in section.model_fields.items():
-        inner = choices(field)
-        if len(inner) == 1:
-            yield from plain_rows(inner[0], f"{prefix}{name}.")
-        elif not inner and name not in skip:
-            yield row(f"{prefix}{name}", field)
+        if name not in skip:
+            yield from rows_of(f"{prefix}{name}", field)
+
+
+def rows_of(key: str, field: FieldInfo) -> Iterator[Row]:
+    """The row of a plain key, or those of the keys of a section; none of a choice of sections."""
+    inner = choices(field)
+    if len(inner) == 1:
+        yield from plain_rows(inner[0], f"{key}.")
+    elif not inner:
+        yield row(key, field)
 
 
 def chosen(prefix: str, kinds: list[type[Section]]) -> dict[str, list[Row]]:
@@ -123,7 +129,7 @@ def chosen(prefix: str, kinds: list[type[Section]]) -> dict[str, list[Row]]:
     ]
     types = " or ".join(f"`{kind(section)}`" for section in kinds)
     shared = [(f"{prefix}type", str(first["type"].description), "", f'`"{kind(kinds[0])}"`', types)]
-    out = {"": shared + [row(f"{prefix}{name}", first[name]) for name in common]}
+    out = {"": shared + [line for name in common for line in rows_of(f"{prefix}{name}", first[name])]}
     for section in kinds:
         out[f'With `{prefix}type = "{kind(section)}"`:'] = list(plain_rows(section, prefix, ("type", *common)))
     return out

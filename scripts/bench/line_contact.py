@@ -71,7 +71,8 @@ def rows(torque: float, mesh: str, ranks: int) -> list[list[str]]:
     result = swgpar.open_result(folder)
     peak = result.flank_pressure().pressure.max(axis=(2, 3))
     found = []
-    for k, tooth in enumerate(result.pairs["tooth"].astype(int)):
+    for k in np.flatnonzero(np.isfinite(result.pairs["pressure_MPa"])):
+        tooth = int(result.pairs["tooth"][k])
         side = int(result.pairs["flank"][k] != "clockwise")
         found.append(
             [
@@ -98,6 +99,7 @@ def cup_rows(width: int, ranks: int) -> list[list[str]]:
     return [
         [f"{width}", f"{tooth:.0f}", *(f"{pairs[name][k]:{form}}" for name, form in names.items())]
         for k, tooth in enumerate(pairs["tooth"])
+        if np.isfinite(pairs["pressure_MPa"][k])
     ]
 
 

@@ -17,11 +17,14 @@ from peer_problems import CAM, CAM_HALF_ANGLE, INNER, OUTER, PENALTY, PROBLEMS, 
 from swgpar.analysis.plain_ring import RingBody, RingCounts, RingDesign, RingModel
 from swgpar.constraints.boundary_conditions import DeadLoad
 from swgpar.design.load_states import LoadState, Stage
-from swgpar.design.sections import Contact
+from swgpar.design.sections import Contact, Solver
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.stress import body_fields
 from swgpar.geometry.cams import EllipticalCam
 from swgpar.solve.line_search import LineSearch
+
+RTOL = 1e-6
+"""Newton's tolerance, that of a drive's default run in the plane. CalculiX accepts 5e-3."""
 
 
 def pinched(design: RingDesign, counts: RingCounts, force: float) -> tuple[BodyElements, np.ndarray, int]:
@@ -37,7 +40,7 @@ def pinched(design: RingDesign, counts: RingCounts, force: float) -> tuple[BodyE
     # the search is made for contact: in bending without it a full step, which stretches the ring, is the way out
     LineSearch.TRIALS = 0
     solver = ring.solver(DeadLoad(np.concatenate(local), np.concatenate(forces)))
-    solved = solver.solve(LoadState(Stage.LOAD, 3, cam_clearance=0.0))
+    solved = solver.solve(LoadState(Stage.ROTATE, 4, cam_clearance=0.0))  # a stage that keeps a factor
     if not solved.converged:
         raise SystemExit(f"not converged: {solved}")
     return ring.body, solver.problem.displacement(), solved.iterations
@@ -48,7 +51,7 @@ def main() -> None:
     problem: Problem = PROBLEMS[name]
     counts = RingCounts(*map(int, numbers))
     contact = Contact(wg_penalty_coef=PENALTY, wg_quadrature=7, penetration_tolerance=1e-4)
-    design = RingDesign(2.0 * OUTER, OUTER - INNER, WIDTH, False, STEEL, contact)
+    design = RingDesign(2.0 * OUTER, OUTER - INNER, WIDTH, False, STEEL, contact, Solver(rtol=RTOL))
     if problem.travel:
         cam = EllipticalCam(*CAM)
         model = RingModel(design, counts, cam, np.radians(CAM_HALF_ANGLE), MPI.COMM_WORLD, halved=False)

@@ -12,7 +12,7 @@ import numpy as np
 
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.design.drive_design import DriveDesign
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE, OUTER_RACE
 from swgpar.fem.vectors import write_field
 from swgpar.geometry.rotation import rotated
 
@@ -30,6 +30,9 @@ NEAR = 0.003
 
 PENETRATION = 1e-5
 """Depth over the module to which it is laid into the cam, so that the contact acts at once."""
+
+BALL_APPROACH = 1e-3
+"""Approach of the balls, over their diameter, to which an outer race is laid: of the order of that under load."""
 
 
 def bent_ring(design: DriveDesign) -> np.ndarray:
@@ -63,10 +66,13 @@ def bent_ring(design: DriveDesign) -> np.ndarray:
 
 
 class BentSpline:
-    """The bent flexible spline as a field of displacements."""
+    """The bent flexible spline as a field of displacements.
 
-    def __init__(self, design: DriveDesign) -> None:
-        self.design = design
+    inset : mm, by which its inner surface lies inside of the cam's; without it that of contact
+    """
+
+    def __init__(self, design: DriveDesign, inset: float | None = None) -> None:
+        self.design, self.inset = design, PENETRATION * design.drive.module if inset is None else inset
         self.amplitudes = bent_ring(design)
         self.order = 2.0 * np.arange(len(self.amplitudes))
         self.radius = design.inner_radius + 0.5 * design.flexible_spline.rim
@@ -82,10 +88,10 @@ class BentSpline:
         radius, theta = np.hypot(x, y), np.arctan2(-x, y)
         within = np.clip(z, -self.half, self.half)
         share, on_cam = self._share(z), self._share(within)
-        gap, *_ = self.surface.evaluate(self._section(theta, np.full_like(theta, self.design.inner_radius), within))
+        gap, *_ = self.surface.evaluate(self.section(theta, np.full_like(theta, self.design.inner_radius), within))
         near = NEAR * 0.5 * self.design.deflection
-        lift = np.where(gap < near, -gap - PENETRATION * self.design.drive.module, 0.0)
-        moved = self._section(theta, radius, z) - points
+        lift = np.where(gap < near, -gap - self.inset, 0.0)
+        moved = self.section(theta, radius, z) - points
         moved[:, :2] += (lift * share / on_cam)[:, None] * np.column_stack([-np.sin(theta), np.cos(theta)])
         if self.design.drive.model == "cup":
             moved[:, 2] = self._axial(theta, radius)
@@ -99,7 +105,7 @@ class BentSpline:
             return np.ones_like(z)
         return np.clip((self.end - z) / self.end, 0.0, None)
 
-    def _section(self, theta: np.ndarray, radius: np.ndarray, z: np.ndarray) -> np.ndarray:
+    def section(self, theta: np.ndarray, radius: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Positions (n, 3) mm of points of the bent sections, whose normals stay normal to the middle line."""
         outward, around, slope = self._waves(theta)
         share, height = self._share(z), radius - self.radius
@@ -162,13 +168,43 @@ class BentSpline:
         return power, np.linalg.solve(conditions, [1.0 / order**2, 1.0, 0.0, 0.0])
 
 
+class BentRace:
+    """The outer race of a bearing, bent along with the flexible spline whose inner surface it touches.
+
+    inset : mm, by which its outer surface lies inside of the cam's
+    """
+
+    def __init__(self, design: DriveDesign, inset: float) -> None:
+        self.spline, self.inset = BentSpline(design, inset), inset
+        self.spline.radius = design.inner_radius - 0.5 * design.bearing.race_thickness
+
+    def displacement(self, points: np.ndarray) -> np.ndarray:
+        """Displacement (n, 3) mm of points (n, 3) mm of the undeformed race."""
+        spline, (x, y, z) = self.spline, points.T
+        radius, theta = np.hypot(x, y), np.arctan2(-x, y)
+        surface = spline.section(theta, np.full_like(theta, spline.design.inner_radius), z)
+        gap, normal, _ = spline.surface.evaluate(surface)
+        moved = spline.section(theta, radius, z) - points
+        return moved - (gap + self.inset)[:, None] * normal * (1.0, 1.0, 0.0)
+
+
 def bend(model: DriveModel) -> None:
-    """Set the model's x to the bent spline on the unturned cam; collective."""
-    layout = model.partition.layouts[FLEXIBLE_SPLINE]
-    first, end = model.partition.owned_sectors(FLEXIBLE_SPLINE)
-    sectors = np.arange(first, end)
-    angle = layout.sector_angle(layout.first_tooth + sectors)
-    points = rotated(np.broadcast_to(layout.mesh.coords, (len(sectors), *layout.mesh.coords.shape)), angle[:, None])
-    values = BentSpline(model.design).displacement(points.reshape(-1, 3)).reshape(points.shape)
+    """Set the model's x to the bent spline on the unturned cam, with a bearing between them; collective."""
+    design, penetration = model.design, PENETRATION * model.design.drive.module
+    inset = penetration
+    if design.bearing is not None:
+        inset = design.bearing.clearance + BALL_APPROACH * design.bearing.ball_diameter
+    fields: dict[int, BentSpline | BentRace] = {}
+    if design.bearing is not None:
+        fields[OUTER_RACE] = BentRace(design, inset)
+        inset += penetration
+    fields[FLEXIBLE_SPLINE] = BentSpline(design, inset)
     model.problem.x.set(0.0)
-    write_field(model.partition, FLEXIBLE_SPLINE, sectors, values, model.problem.x)
+    for body, field in fields.items():
+        layout = model.partition.layouts[body]
+        first, end = model.partition.owned_sectors(body)
+        sectors = np.arange(first, end)
+        angle = layout.sector_angle(layout.first_tooth + sectors)
+        points = rotated(np.broadcast_to(layout.mesh.coords, (len(sectors), *layout.mesh.coords.shape)), angle[:, None])
+        values = field.displacement(points.reshape(-1, 3)).reshape(points.shape)
+        write_field(model.partition, body, sectors, values, model.problem.x)

@@ -16,7 +16,7 @@ from swgpar.analysis.bent_start import bend
 from swgpar.analysis.drive_model import DriveModel, build_drive_model
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.load_states import LoadState, Stage, from_loaded
+from swgpar.design.load_states import LoadState, from_loaded
 from swgpar.errors import ConvergenceError, SwgparError
 from swgpar.fem.vectors import read_field, write_field
 from swgpar.geometry.rotation import rotated
@@ -102,10 +102,12 @@ def _reach_load(stepper: LoadStepper, load_states: list[LoadState]) -> list[int]
             logger.info("no start from the bent shape: %s", error)
             stepper.reset()
     iterations = []
+    loaded = from_loaded(load_states)[0]
     for state in load_states:
-        if state.stage <= Stage.LOAD:
-            stepper.advance(state)
-            iterations.append(stepper.iterations)
+        stepper.advance(state)
+        iterations.append(stepper.iterations)
+        if state == loaded:
+            break
     return iterations
 
 

@@ -8,9 +8,16 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
+from swgpar.analysis.bearing_model import (
+    build_ball_contact,
+    build_race_contact,
+    build_race_mesh,
+    race_coupling,
+    race_reference,
+)
 from swgpar.constraints.distributing_coupling import DistributingCoupling, Housing
 from swgpar.constraints.supports import Supports
-from swgpar.contact.contact import largest
+from swgpar.contact.contact import NO_KEYS, Contact, largest
 from swgpar.contact.flank_state import Crowning, SearchRange
 from swgpar.contact.flanks import FlankContact
 from swgpar.contact.rigid_surface import RigidContact, cam_pose, pin_pose
@@ -38,13 +45,19 @@ pattern, radial distance of the tips."""
 FOOT_REACH = 0.5
 """Largest gap over the module at which a foot point is looked for."""
 
+PREFIXES = ("fs", "rg", "race")
+"""Of the names of stresses, by body."""
+
 EDGE = 1.0 + 1e-9
 """Factor on the width of a rigid surface: points on its edge belong to it."""
 
 
 def is_halved(design: DriveDesign) -> bool:
     """Whether the model is half of the drive: it equals itself rotated by 180 degrees, and the design allows it."""
-    even = design.drive.teeth_fs % 2 == 0 and design.drive.teeth_rg % 2 == 0
+    counts = [design.drive.teeth_fs, design.drive.teeth_rg]
+    if design.bearing is not None:
+        counts.append(design.bearing.balls)
+    even = all(count % 2 == 0 for count in counts)
     return design.solver.twofold_symmetry and even
 
 
@@ -107,10 +120,10 @@ class DriveModel:
         return {layout.name: body_counts(layout) for layout in self.partition.layouts}
 
     def stresses(self) -> tuple[dict[str, float], list[dict[str, np.ndarray]]]:
-        """Largest stresses (MPa) by column of the history, and the nodal fields of both bodies."""
+        """Largest stresses (MPa) by body and kind ("fs_s1", "race_vm", …), and the nodal fields of all bodies."""
         u = self.problem.displacement()
         values, fields = {}, []
-        for prefix, body in zip(("fs", "rg"), self.elements.bodies):
+        for prefix, body in zip(PREFIXES, self.elements.bodies):
             field = body_fields(body, u)
             fields.append(field)
             values.update({f"{prefix}_{k}": v for k, v in maxima(self.comm, field).items()})
@@ -142,21 +155,27 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
     with phases("elements"):
         references = {name: _reference(design, mesh) for name, mesh in meshes.items()}
         layouts = [build_layout(design, mesh, references[name]) for name, mesh in meshes.items()]
+        if design.bearing is not None:
+            race = build_race_mesh(design, meshes["flexible_spline"])
+            references[race.body] = race_reference(design, race)
+            layouts.append(build_layout(design, race))
     partition = Partition(layouts, comm)
     with phases("elements"):
         symmetric = design.contact.friction == 0.0
         elements = Elements(partition, list(references.values()), symmetric=symmetric)
     supports = build_supports(design, partition=partition, elements=elements)
+    contacts, coupling_keys = build_wave_generator_contacts(design, elements=elements)
     problem = DiscreteProblem(
         partition=partition,
         elements=elements,
         supports=supports,
-        rigid_contacts=build_rigid_contacts(design, elements=elements),
+        rigid_contacts=contacts,
         flanks=build_flank_contact(design, partition=partition, elements=elements, supports=supports),
         contact_search=contact_search(design),
         module=design.drive.module,
         inner_radius=design.inner_radius,
         inactive=InactiveSectors(layouts[RING_GEAR].count) if _leaves_out_sectors(design) else None,
+        coupling_keys=coupling_keys,
         phases=phases,
     )
     solver = NewtonSolver(problem, newton_settings(design))
@@ -194,17 +213,32 @@ def _leaves_out_sectors(design: DriveDesign) -> bool:
 
 
 def build_supports(design: DriveDesign, *, partition: Partition, elements: Elements) -> Supports:
-    """Coupling of the bore; with the spline fixed also that of the ring gear, and the housing."""
-    spline, ring = elements.bodies
+    """Coupling of the bore; with the spline fixed also that of the ring gear, and the housing; that of a bearing."""
+    spline, ring = elements.bodies[:2]
     halved = is_halved(design)
-    couplings, housing = [DistributingCoupling(partition, spline, "bore", halved)], None
+    # a plane section with deviations is centred by its cam alone: the wall of the cup gives way
+    centred = design.drive.model == "cup" or design.deviations is None
+    couplings, housing = [DistributingCoupling(partition, spline, "bore", halved, centred)], None
     if design.drive.layout == "spline_fixed":
         couplings.append(DistributingCoupling(partition, ring, "outer", halved))
         outer = float(np.hypot(*couplings[-1].reference[:, :2].T).max(initial=0.0))
         area = 2.0 * np.pi * outer * design.drive.face_width / (2.0 if halved else 1.0)
         housing = Housing(couplings[-1], area, design.penalty)
     scale = design.material.E * design.drive.module
-    return Supports(partition, couplings, housing=housing, scale=scale, share=0.5 if halved else 1.0)
+    race = None if design.bearing is None else race_coupling(partition, elements, couplings[0], halved)
+    return Supports(partition, couplings, housing=housing, scale=scale, share=0.5 if halved else 1.0, race=race)
+
+
+def build_wave_generator_contacts(design: DriveDesign, *, elements: Elements) -> tuple[list[Contact], np.ndarray]:
+    """Contacts of the cam, or of the bearing on it, and keys (n,) of the tangent's blocks that they need."""
+    if design.bearing is None:
+        return [*build_rigid_contacts(design, elements=elements)], NO_KEYS
+    race = build_race_contact(
+        design, elements, 0.5 * design.race_width * EDGE, PRESSURE_LIMIT * design.race_material[0]
+    )
+    balls = build_ball_contact(design, elements)
+    keys = np.unique(np.concatenate([elements.block_keys(conn).ravel() for conn in (race.conn, balls.windows)]))
+    return [race, balls], keys[keys >= 0]
 
 
 def build_rigid_contacts(design: DriveDesign, *, elements: Elements) -> list[RigidContact]:
@@ -236,7 +270,7 @@ def build_flank_contact(
     design: DriveDesign, *, partition: Partition, elements: Elements, supports: Supports
 ) -> FlankContact:
     """Contact of the flexible spline's flanks on the ring gear's."""
-    spline, ring = elements.bodies
+    spline, ring = elements.bodies[:2]
     return FlankContact(
         partition,
         spline,

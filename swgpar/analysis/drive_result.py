@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from mpi4py import MPI
 
+from swgpar.analysis.drive_tables import DriveTables, read_tables
 from swgpar.analysis.figures import DriveFigures
 from swgpar.design.sections import GEARS, GearName
 from swgpar.errors import InputError
@@ -16,9 +17,9 @@ from swgpar.results import history
 from swgpar.results.atomic import agreed
 from swgpar.results.field_sources import BodyMesh, FieldFiles, FieldSource, chosen_increment
 from swgpar.results.fields import INDEX
-from swgpar.results.folder import CONTACT_LINES, PAIRS, read_summary
+from swgpar.results.folder import read_summary
 from swgpar.results.history import Curves, Row
-from swgpar.results.table import read_columns
+from swgpar.results.sector_fields import SectorFields
 
 if TYPE_CHECKING:
     import pyvista
@@ -59,6 +60,19 @@ class DriveResult:
         Columns of pairs.csv, a value for every pair of flanks in contact at every computed increment under load.
     contact_lines : dict of (n,) arrays
         Columns of contact_lines.csv, a value for every station along the face width of these contacts.
+    fatigue : SectorFields or None
+        With [fatigue]: safety factors, amplitude and mean at the nodes of one sector; ``fatigue.fields["amplitude"]``.
+    fatigue_cycle : dict of (n,) arrays
+        Columns of fatigue_cycle.csv: stress over a cycle where the safety is the least.
+    losses : dict of (n,) arrays
+        Columns of losses.csv: losses at the angles of the sampled period.
+    program : dict of (n,) arrays
+        Columns of program.csv, a value for every point of a load program: torque and rotation of the output.
+    transmission_error : dict of (n,) arrays
+        Columns of transmission_error.csv: angles of input and output, transmission error and input torque over the
+        sampled period, or with ``[deviations]`` over whole turns. ``summary["transmission_error"]`` has what follows.
+    balls : dict of (n,) arrays
+        Columns of balls.csv, a value for every ball of a bearing at every computed increment; empty without a bearing.
     folder : Path or None
         The results folder; None when the run was in memory.
 
@@ -74,15 +88,19 @@ class DriveResult:
         self,
         rows: Sequence[Row],
         summary: dict[str, Any],
-        pairs: Mapping[str, np.ndarray],
-        contact_lines: Mapping[str, np.ndarray],
+        tables: DriveTables,
         fields: FieldSource | None,
         comm: MPI.Comm,
         folder: Path | None = None,
     ) -> None:
         self.history: dict[str, np.ndarray] = history.columns(rows)
         self.summary = summary
-        self.pairs, self.contact_lines = dict(pairs), dict(contact_lines)
+        self.pairs, self.contact_lines = dict(tables.pairs), dict(tables.contact_lines)
+        self.program: dict[str, np.ndarray] = dict(tables.program)
+        self.fatigue: SectorFields | None = tables.sector
+        self.fatigue_cycle, self.losses = dict(tables.cycle), dict(tables.losses)
+        self.transmission_error: dict[str, np.ndarray] = dict(tables.turns)
+        self.balls: dict[str, np.ndarray] = dict(tables.balls)
         self.folder = folder
         self._fields, self._comm = fields, comm
 
@@ -99,6 +117,22 @@ class DriveResult:
     def is_plane(self) -> bool:
         """Whether the drive is a plane model."""
         return self.summary["design"]["drive"]["model"] == "plane"
+
+    @property
+    def stiffness(self) -> dict[str, Any] | None:
+        """Torsional stiffness: K1, K2, K3 (N m / rad), lost motion, hysteresis, backlash (arc minutes) and more.
+
+        None for a design without the section [stiffness]. It is the entry ``stiffness`` of the summary.
+        """
+        return self.summary["stiffness"]
+
+    @property
+    def ratcheting(self) -> dict[str, Any] | None:
+        """The torque's peak under a prescribed rotation of the output, and what gave way.
+
+        None for a design without the section [ratcheting]. It is the entry ``ratcheting`` of the summary.
+        """
+        return self.summary["ratcheting"]
 
     def curves(self) -> Curves:
         """Columns of the history under load, over one period where the rotation was sampled."""
@@ -224,8 +258,9 @@ class DriveResult:
         return points, cells, {name: self.field(name, increment, body) for name in self.names(body, increment)}
 
     def _source(self, body: GearName) -> FieldSource:
-        if body not in GEARS:
-            raise InputError(f"body {body!r} is not available: allowed {' or '.join(GEARS)}")
+        bodies = list(self.summary["bodies"])
+        if body not in bodies:
+            raise InputError(f"body {body!r} is not available: allowed {' or '.join(bodies)}")
         if self._fields is None or not self._fields.increments:
             raise InputError("this run kept no fields: allowed with output.fields = true")
         return self._fields
@@ -247,8 +282,8 @@ def open_drive(folder: Path, comm: MPI.Comm) -> DriveResult:
     folder = folder.absolute()  # the fields are read later
     with agreed(comm, folder, "read"):
         summary, rows = read_summary(folder), history.read_history(folder / history.NAME)
-        contacts = [read_columns(folder / name) if (folder / name).exists() else {} for name in (PAIRS, CONTACT_LINES)]
-    return DriveResult(rows, summary, *contacts, open_fields(folder, comm), comm, folder)
+        tables = read_tables(folder)
+    return DriveResult(rows, summary, tables, open_fields(folder, comm), comm, folder)
 
 
 def open_fields(folder: Path, comm: MPI.Comm) -> FieldFiles | None:

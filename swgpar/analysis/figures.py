@@ -8,9 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from mpi4py import MPI
 
+from swgpar.analysis.fatigue_figures import draw_haigh, sector_picture
+from swgpar.analysis.program_figures import torque_against_rotation
+from swgpar.analysis.transmission_error import orders
+from swgpar.design.load_states import Stage
 from swgpar.design.sections import GEARS
 from swgpar.errors import InputError
 from swgpar.results.figure_set import Drawings, FigureSet
+from swgpar.results.sector_fields import SectorFields
 
 if TYPE_CHECKING:
     import pyvista
@@ -44,7 +49,7 @@ class DriveFigures(FigureSet):
     `save` writes all of them. Every rank calls it, and the methods whose figures show fields.
     """
 
-    exact_size = ("deformed_drive",)
+    exact_size = ("deformed_drive", "safety")
 
     def __init__(self, result: DriveResult, comm: MPI.Comm, *, gathered: bool) -> None:
         super().__init__(comm, gathered=gathered)
@@ -52,12 +57,21 @@ class DriveFigures(FigureSet):
 
     @property
     def drawings(self) -> Drawings:
-        found: dict[str, Callable[[], Figure]] = {
-            "stress": self.stress,
-            "torque_and_transmission_error": self.torque_and_transmission_error,
-        }
+        found: dict[str, Callable[[], Figure]] = {"stress": self.stress}
+        if self._result.program:
+            found["torque_against_rotation"] = self.torque_against_rotation
+        else:
+            found["torque_and_transmission_error"] = self.torque_and_transmission_error
+        if self._result.transmission_error:
+            found["transmission_error_spectrum"] = self.transmission_error_spectrum
         if self._result.pairs:
-            found |= {"pairs": self.pairs, "contact_pattern": self.contact_pattern}
+            found |= {"pairs": self.pairs, "load_sharing": self.load_sharing}
+            if np.isfinite(self._result.pairs["pressure_MPa"]).any():
+                found["contact_pattern"] = self.contact_pattern
+        if self._result.fatigue is not None:
+            found |= {"haigh": self.haigh, "safety": self.safety}
+        if self._result.balls:
+            found["ball_loads"] = self.ball_loads
         if self._result.increments:
             found["deformed_drive"] = self.deformed
         return found
@@ -95,6 +109,31 @@ class DriveFigures(FigureSet):
         self._draw_transmission_error(lower)
         return figure
 
+    def transmission_error_spectrum(self) -> Figure:
+        """Transmission error (arc seconds) over the angle of the input, and its orders of the input's turn.
+
+        Over whole turns with deviations, or over the sampled period of the ideal drive.
+        """
+        from matplotlib.figure import Figure
+
+        rows, summary = self._result.transmission_error, self._result.summary["transmission_error"]
+        figure = Figure(figsize=(7.0, 6.0), layout="constrained")
+        upper, lower = figure.subplots(2, 1)
+        error = rows["transmission_error_arcsec"]
+        upper.plot(rows["wg_angle_deg"], error - error.mean(), lw=1.0, marker="o" if len(error) < 40 else None, ms=3)
+        upper.set(xlabel=ANGLE, ylabel="arc seconds", title="transmission error less its mean")
+        order, amplitude, _ = orders(summary, rows)
+        lower.vlines(order, 0.0, amplitude, lw=1.2)
+        named = summary["spectrum"][:4]
+        for line in named:
+            lower.plot(line["order"], line["amplitude"], "o", ms=4, label=f"{line['order']:.4g}: {line['cause']}")
+        lower.set(xlabel="order of the input's turn", ylabel="amplitude (arc seconds)", ylim=(0.0, None))
+        if named:
+            lower.legend(fontsize=7)
+        for axes in (upper, lower):
+            axes.grid(alpha=0.3)
+        return figure
+
     def _draw_torque(self, axes: Axes) -> None:
         self._draw(axes, "wg_torque_Nmm", "wave generator")
         expected = self._result.summary["wg_torque_expected_Nmm"]
@@ -106,18 +145,18 @@ class DriveFigures(FigureSet):
         self._draw(axes, "transmission_error", None)
         axes.set(ylabel="arc seconds", title="transmission error: output angle less its kinematic value")
 
+    def torque_against_rotation(self) -> Figure:
+        """Torque on the output (N·m) against its rotation (arc minutes), along a load program."""
+        return torque_against_rotation(self._result.program, self._result.summary)
+
     def pairs(self) -> Figure:
         """Force (N) and largest contact pressure (MPa) of the pairs, over the tooth's angle from the major axis.
 
         All computed increments under load are drawn: a tooth goes through these positions one after the other. Pairs
         whose contact lies on an edge have hollow marks: their pressure is no property of the drive.
         """
-        pairs, teeth = self._result.pairs, self._result.summary["design"]["drive"]["teeth_fs"]
-        position = pairs["tooth"] * 360.0 / teeth - pairs["wg_angle_deg"]
-        if self._result.summary["design"]["drive"]["layout"] == "ring_fixed":  # the teeth turn with the output
-            history = self._result.history
-            position = position + np.interp(pairs["step"], history["step"], history["output_angle_deg"])
-        position = (position + 90.0) % 180.0 - 90.0
+        pairs = self._result.pairs
+        position = (pairs["angle_deg"] + 90.0) % 180.0 - 90.0
         figure, panels = _panels(2)
         for axes, name in zip(panels, ("force_N", "pressure_MPa"), strict=True):
             for side, colour in (("clockwise", "tab:orange"), ("counter-clockwise", "tab:blue")):
@@ -132,6 +171,51 @@ class DriveFigures(FigureSet):
         panels[0].legend(fontsize=8)
         return figure
 
+    def load_sharing(self) -> Figure:
+        """Share (%) of every pair in the forces between the flanks, over its angle from the major axis.
+
+        All computed increments under load are drawn, and below the number of pairs at these angles.
+        """
+        from matplotlib.figure import Figure
+
+        pairs, history = self._result.pairs, self._result.history
+        figure = Figure(figsize=(7.0, 6.0), layout="constrained")
+        upper, lower = figure.subplots(2, 1)
+        far = np.abs(pairs["angle_deg"]) > 90.0
+        angle, share = (pairs["angle_deg"] + 90.0) % 180.0 - 90.0, 100.0 * pairs["force_share"]
+        for side, colour in (("clockwise", "tab:orange"), ("counter-clockwise", "tab:blue")):
+            for end, mark in ((~far, "o"), (far, "x")):
+                chosen = (pairs["flank"] == side) & end
+                if chosen.any():
+                    label = f"{side} flank" + (", other end" if mark == "x" else "")
+                    upper.plot(angle[chosen], share[chosen], mark, ms=5, mec=colour, mfc="none", label=label)
+        upper.set(xlabel="pair, from the major axis (degrees)", ylabel="share of the force (%)")
+        upper.set_title("force of a pair over that of all pairs, at all computed angles", fontsize=10)
+        upper.legend(fontsize=8)
+        rows = np.unique(pairs["increment"]).astype(int) - 1
+        lower.step(history["wg_angle_deg"][rows], history["pairs_in_contact"][rows], "o-", where="mid", ms=4)
+        lower.set(xlabel=ANGLE, ylabel="pairs in contact")
+        for axes in (upper, lower):
+            axes.set_ylim(bottom=0.0)
+            axes.grid(alpha=0.3)
+        return figure
+
+    def haigh(self) -> Figure:
+        """Haigh's diagram of all nodes of a sector, and the normal stress over the cycle where the safety is the least.
+
+        Runs with the section [fatigue] have it.
+        """
+        return draw_haigh(self._fatigue(), self._result.fatigue_cycle, self._result.summary)
+
+    def safety(self) -> Figure:
+        """One sector of the flexible spline, coloured by Goodman's safety factor."""
+        return _as_figure(sector_picture(self._fatigue(), self._result.is_plane))
+
+    def _fatigue(self) -> SectorFields:
+        if self._result.fatigue is None:
+            raise InputError("this run has no fatigue: allowed with the section [fatigue]")
+        return self._result.fatigue
+
     def _draw(self, axes: Axes, name: str, label: str | None) -> None:
         """Draw a column under load: points where it was computed, and the curve through them."""
         curves = self._result.curves()
@@ -140,6 +224,33 @@ class DriveFigures(FigureSet):
 
     def _over_period(self) -> str:
         return ", over one period" if self._result.summary["design"]["steps"]["samples"] else ""
+
+    def ball_loads(self) -> Figure:
+        """Loads of a bearing's balls (N) over the angle from the major axis, and the largest during the rotation."""
+        from matplotlib.figure import Figure
+
+        balls, bearing = self._result.balls, self._result.summary["bearing"]
+        loaded = balls["step"] >= Stage.LOAD
+        shown = {name: values[loaded] if loaded.any() else values for name, values in balls.items()}
+        figure = Figure(figsize=(7.0, 6.5), layout="constrained")
+        upper, lower = figure.subplots(2, 1)
+        increments = np.unique(shown["increment"])
+        angles = []
+        for increment in increments:
+            here = shown["increment"] == increment
+            order = np.argsort(shown["cam_angle_deg"][here])
+            upper.plot(shown["cam_angle_deg"][here][order], shown["load_N"][here][order], "o-", ms=3, lw=0.6)
+            angles.append(shown["wg_angle_deg"][here][0])
+        upper.set(xlabel="angle from the major axis (degrees)", ylabel="ball load (N)", xlim=(-180.0, 180.0))
+        upper.set_title(f"loads of {len(shown['ball']) // len(increments)} balls at {len(increments)} angles")
+        peaks = shown["load_N"].reshape(len(increments), -1).max(axis=1)
+        lower.plot(angles, peaks, "o-", ms=4)
+        fixed = ", balls fixed to the cam" if bearing["balls_fixed_to_cam"] else ""
+        lower.set(xlabel=ANGLE, ylabel="largest ball load (N)" + fixed)
+        for axes in (upper, lower):
+            axes.set_ylim(bottom=0.0)
+            axes.grid(alpha=0.3)
+        return figure
 
     def contact_pattern(self, step: int | None = None) -> Figure:
         """Pressure (MPa) on all loaded flanks, over arc length and face width.
@@ -150,9 +261,11 @@ class DriveFigures(FigureSet):
 
         pairs, lines = self._result.pairs, self._result.contact_lines
         if step is None:
-            off_edge = np.where(pairs["edge"] == 0, pairs["pressure_MPa"], 0.0)
-            step = int(pairs["step"][(off_edge if off_edge.any() else pairs["pressure_MPa"]).argmax()])
-        chosen = np.flatnonzero(pairs["step"] == step)
+            pressure = np.nan_to_num(pairs["pressure_MPa"])
+            off_edge = np.where(pairs["edge"] == 0, pressure, 0.0)
+            step = int(pairs["step"][(off_edge if off_edge.any() else pressure).argmax()])
+        increment = pairs["increment"][pairs["step"] == step].max(initial=0.0)  # the last one of a step
+        chosen = np.flatnonzero((pairs["increment"] == increment) & np.isfinite(pairs["pressure_MPa"]))
         if not len(chosen):
             raise InputError(f"step = {step} has no flanks in contact: allowed are steps of result.pairs")
         chosen = np.sort(chosen[np.argsort(-pairs["force_N"][chosen])][:MOST_FLANKS])
@@ -232,7 +345,7 @@ class _Flank:
         edge = ", on an edge" if pairs["edge"][k] else ""
         load = f"{pairs['force_N'][k]:.3g} N, {pairs['pressure_MPa'][k]:.4g} MPa{edge}"
         self.name = f"tooth {pairs['tooth'][k]:.0f}, {pairs['flank'][k]}\n{load}"
-        here = np.all([lines[name] == pairs[name][k] for name in ("step", "tooth", "flank", "ring_tooth")], axis=0)
+        here = np.all([lines[name] == pairs[name][k] for name in ("increment", "tooth", "flank", "ring_tooth")], axis=0)
         self.z, self.s = lines["z_mm"][here], lines["s_mm"][here]
         self.half_width, self.peak = lines["half_width_mm"][here], lines["pressure_MPa"][here]
 

@@ -10,7 +10,7 @@ from swgpar.analysis.drive_model import DriveModel
 from swgpar.design.load_states import LoadState
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.fem.vectors import create_vector, read_field
-from swgpar.meshing.sector import FlankGrid
+from swgpar.meshing.sector import FlankGrid, SectorMesh
 from swgpar.petsc import PETSc
 
 POINTS = 4
@@ -29,6 +29,12 @@ class LineLoad:
     load: np.ndarray
     s: np.ndarray
 
+    @property
+    def direction(self) -> np.ndarray:
+        """Unit vector (3,) of the sum of the loads of all stations."""
+        total = self.load.sum(axis=0)
+        return total / np.linalg.norm(total)
+
 
 def nodal_flank_forces(model: DriveModel, state: LoadState) -> PETSc.Vec:
     """Nodal contact forces (N) of the flanks by the last evaluation; collective. Each pair counts on one rank."""
@@ -41,17 +47,24 @@ def nodal_flank_forces(model: DriveModel, state: LoadState) -> PETSc.Vec:
     return total
 
 
-def line_loads(model: DriveModel, state: LoadState, teeth: np.ndarray) -> dict[tuple[int, int], LineLoad]:
-    """Line loads of the flanks of `teeth` (n,) by (index in `teeth`, side); none of flanks without load. Collective."""
+def flank_forces(model: DriveModel, state: LoadState, teeth: np.ndarray) -> np.ndarray:
+    """Contact forces (n, n_node, 3) N on the nodes of the flexible spline's `teeth` (n,); collective."""
     layout = model.partition.layouts[FLEXIBLE_SPLINE]
     vector = nodal_flank_forces(model, state)
     forces = read_field(model.partition, FLEXIBLE_SPLINE, teeth - layout.first_tooth, vector)
     vector.destroy()
-    if layout.mesh.plane:
-        forces *= 0.5  # both layers have the force of the lower one
+    # in the plane both layers have the force of the lower one
+    return 0.5 * forces if layout.mesh.plane else forces
+
+
+def line_loads(mesh: SectorMesh, forces: np.ndarray) -> dict[tuple[int, int], LineLoad]:
+    """Line loads of the flanks of teeth by (index of the tooth, side) from nodal forces (n, n_node, 3) N.
+
+    Flanks without load have none.
+    """
     found = {}
-    for k in range(len(teeth)):
-        for grid in layout.mesh.flanks:
+    for k in range(len(forces)):
+        for grid in mesh.flanks:
             load = line_load(grid, forces[k])
             if load is not None:
                 found[k, grid.side] = load

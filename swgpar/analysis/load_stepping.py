@@ -6,12 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 
+from swgpar.analysis.bent_start import bend
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.predictor import KnownState, predict
 from swgpar.analysis.torques import torques
 from swgpar.design.load_states import LoadState, Stage, start_state
 from swgpar.errors import ConvergenceError
 from swgpar.log import logger
+from swgpar.petsc import PETSc
 from swgpar.solve.solve_state import SolveResult
 
 MAX_KNOWN_STATES = 40
@@ -19,6 +21,9 @@ MAX_KNOWN_STATES = 40
 
 MAX_JUMP_ITERATIONS = 60
 """Newton iterations of a solve for the loaded state at once; step by step it takes some 35 in all."""
+
+MAX_EXTRAPOLATION = 2.0
+"""Largest step of a load program that is predicted along the last one, over that one."""
 
 MAX_CLOSING_ROTATIONS = 10
 """Rotations in which a backlash is closed: each leaves about an eighth of it, by the pressure angle."""
@@ -44,10 +49,13 @@ class LoadStepper:
         self.iterations = 0
         self.residual = 0.0
         self.known_states: list[KnownState] = []
+        self._last: tuple[LoadState, PETSc.Vec] | None = None
+        self._before: tuple[LoadState, PETSc.Vec] | None = None
 
     def reset(self) -> None:
         """Go back to the undeformed drive."""
         self.load_state, self.known_states = start_state(self.design), []
+        self._last = self._before = None
         self.problem.x.set(0.0)
         self.problem.resume({})
 
@@ -62,17 +70,14 @@ class LoadStepper:
         Raises ConvergenceError after `solver.max_cutbacks` halvings; x is then the last converged state.
         """
         self.iterations = 0
-        origin, x = self.load_state, self.problem.x
-        if origin.control == "rotation" and target.control == "torque":
-            # after a cut-back the increment begins with the torque that held the output
-            reactions = self.problem.supports.reactions(self.problem.multipliers())
-            origin = replace(origin, torque=float(reactions[-1]))
-            self._close_backlash(target)
+        origin, x = self._origin(target), self.problem.x
         done, share, cutbacks = 0.0, 1.0, 0
         while done < 1.0:
             saved = x.copy()
             end = min(1.0, done + share)
             state = origin.interpolate(target, end, self.design.drive.module, self.design.deflection)
+            if self._takes_up_torque(state):
+                self._close_backlash(state)
             self._predict(state)
             result = self.solver.solve(state, establish_contact=state.switches_on(self.load_state))
             self.iterations += result.iterations
@@ -89,6 +94,25 @@ class LoadStepper:
                 "   cut back to %.3g of the increment (%s, residual %.1e)", share, result.reason, result.residual
             )
 
+    def _origin(self, target: LoadState) -> LoadState:
+        """The present load state with what the output has under the control of the target.
+
+        After a cut-back an increment begins with the torque that held the output, or with the angle that it had.
+        """
+        here, problem = self.load_state, self.problem
+        if here.control == target.control:
+            return here
+        if target.control == "torque":
+            return replace(here, torque=float(problem.supports.reactions(problem.multipliers())[-1]))
+        return replace(here, output_rotation=problem.output_rotation())
+
+    def _takes_up_torque(self, state: LoadState) -> bool:
+        """Whether other flanks may have to carry than those of the present state: a backlash is to be closed first."""
+        here = self.load_state
+        if state.control == "rotation" or not state.torque:
+            return False
+        return here.control == "rotation" or here.torque * state.torque <= 0.0
+
     def jump(self, target: LoadState) -> None:
         """Solve for `target` from the present x in one increment, whatever it is; raises ConvergenceError."""
         if target.control == "torque":
@@ -100,10 +124,12 @@ class LoadStepper:
         self._take(target, result)
 
     def _take(self, state: LoadState, result: SolveResult) -> None:
-        self.load_state, self.residual = state, result.residual
+        before, self.load_state, self.residual = self.load_state, state, result.residual
+        if state.stage == Stage.PROGRAM:
+            self._before, self._last = self._last, (state, self.problem.x.copy())
         if state.is_periodic:
-            self.known_states = [*self.known_states, KnownState(state.angle, self.problem.x.copy())]
-            self.known_states = self.known_states[-MAX_KNOWN_STATES:]
+            known = self.known_states if state.continues_period(before, self.design.ratio) else []
+            self.known_states = [*known, KnownState(state.angle, self.problem.x.copy())][-MAX_KNOWN_STATES:]
 
     @staticmethod
     def _failure(target: LoadState, state: LoadState, result: SolveResult, cutbacks: int) -> str:
@@ -116,8 +142,20 @@ class LoadStepper:
     def _predict(self, state: LoadState) -> None:
         """Set x to a guess of the state."""
         here = self.load_state
+        if here.stage == Stage.START and self.design.bearing is not None:
+            # nothing but contacts holds the race: they have to act at once
+            bend(self.model)
+            self.problem.x.scale(1.0 - (state.cam_clearance or 0.0) / (here.cam_clearance or 1.0))
+            return
         if state.angle != here.angle:
             self._predict_rotation(state.angle)
+            if not state.continues_period(here, self.design.ratio) and state.control == "rotation":
+                drift = (state.angle - here.angle) / self.design.ratio
+                self._rotate_output(state.output_rotation - here.output_rotation - drift)
+        elif (factor := self._extrapolation(state)) > 0.0:
+            (_, older), (_, last) = self._before, self._last
+            self.problem.x.axpy(factor, last)
+            self.problem.x.axpy(-factor, older)
         elif state.control == "rotation" and state.output_rotation != here.output_rotation:
             self._rotate_output(state.output_rotation - here.output_rotation)
         elif state.stage == here.stage == Stage.DEFLECT:
@@ -126,6 +164,23 @@ class LoadStepper:
                 s.cam_clearance if s.pin_inset is None else s.pin_inset for s in (start_state(self.design), here, state)
             )
             self.problem.x.scale((first - new) / (first - old))
+
+    def _extrapolation(self, state: LoadState) -> float:
+        """Share of the last step of a load program that leads on to `state`; 0 where not only the load goes on.
+
+        It is bounded: contacts that come and go make the state bend off from the line.
+        """
+        if self._before is None or self._last is None or self._last[0] != self.load_state:
+            return 0.0
+        older, last = self._before[0], self._last[0]
+        if older.angle != last.angle or {older.control, last.control} != {state.control}:
+            return 0.0
+        name = "torque" if state.control == "torque" else "output_rotation"
+        values = [getattr(one, name) for one in (older, last, state)]
+        if state.control == "torque" and min(values) < 0.0 < max(values):  # there may be a backlash between
+            return 0.0
+        step = values[1] - values[0]
+        return min((values[2] - values[1]) / step, MAX_EXTRAPOLATION) if step else 0.0
 
     def _close_backlash(self, target: LoadState) -> None:
         """Rotate the output until the flanks that are to carry nearly meet.

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from swgpar.analysis.drive_model import DriveModel, build_rigid_contacts, newton_settings
-from swgpar.analysis.flank_loads import line_loads, nodal_forces
+from swgpar.analysis.flank_loads import flank_forces, line_loads, nodal_forces
 from swgpar.analysis.places import END, region_of, warning_of
 from swgpar.analysis.torques import torques
 from swgpar.constraints.boundary_conditions import DeadLoad, PrescribedDisplacement
@@ -117,7 +117,8 @@ class LocalProblem:
         self.elements = Elements(self.partition, [reference])
         self.body = self.elements.bodies[FLEXIBLE_SPLINE]
         teeth = first + np.arange(SECTORS)
-        self.loads = line_loads(model, state, teeth)
+        drive_mesh = model.partition.layouts[FLEXIBLE_SPLINE].mesh
+        self.loads = line_loads(drive_mesh, flank_forces(model, state, teeth))
         displacement = self._of_the_drive(teeth)
         scale = design.material.E * design.drive.module
         problem = DiscreteProblem(

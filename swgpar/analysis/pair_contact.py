@@ -7,14 +7,15 @@ moved with their teeth. In the plane model the gap between them goes into the li
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
 from scipy.integrate import trapezoid
 
 from swgpar.analysis.drive_model import DriveModel, flank_crowning
-from swgpar.analysis.flank_loads import LineLoad, line_loads
+from swgpar.analysis.flank_loads import LineLoad, flank_forces, line_loads
 from swgpar.analysis.moved_teeth import MovedTooth
 from swgpar.contact.line_contact import LineContact, effective_modulus, line_contact
 from swgpar.contact.patch_contact import PatchContact, patch_contact
@@ -26,7 +27,7 @@ from swgpar.geometry.rotation import HALF_TURN, rotated
 from swgpar.log import logger
 
 SMALLEST = 0.02
-"""Line load, over the largest one, below which a pair is left out."""
+"""Line load, over the largest one, below which the pressure of a pair is not computed."""
 
 WIDTH = 0.05
 """Width over the module within which the contact is looked for at first."""
@@ -63,29 +64,37 @@ class PairContact:
     """Contact of two flanks.
 
     tooth, ring_tooth : numbers of the teeth, counter-clockwise from +y;  flank : of the flexible spline's tooth
-    force_N : normal force;  width_mm : length along the face width that carries it
+    angle_deg : of the force on the deformed flank, from the major axis, counter-clockwise, -180 to 180
+    force_N : force between the flanks;  force_share : over the sum of the forces of all pairs of the drive
+    torque_Nmm : about the axis, on the flexible spline
+    width_mm : length along the face width that carries the force
     line_load_Nmm : largest line load, N/mm, at `z_mm`;  radius_mm : of the contact, on the undeformed flexible spline
     pressure_MPa, half_width_mm, shear_MPa : largest pressure, half width of the contact and largest shear below it
     sliding_mm_s : sliding of the flexible spline's flank on the other in the section, at the speed of the input
     edge : 1 where the contact ends at the tip of a profile, or the load at an end of the face width; the pressure is
     then no property of the drive
     stations : along the face width, those that carry a load
+
+    From `width_mm` to `sliding_mm_s` all are nan where the pressure is not computed.
     """
 
     tooth: int
     flank: str
     ring_tooth: int
+    angle_deg: float
     force_N: float
-    width_mm: float
-    line_load_Nmm: float
-    z_mm: float
-    radius_mm: float
-    pressure_MPa: float
-    half_width_mm: float
-    shear_MPa: float
-    sliding_mm_s: float
-    edge: int
-    stations: tuple[ContactStation, ...]
+    force_share: float
+    torque_Nmm: float
+    width_mm: float = np.nan
+    line_load_Nmm: float = np.nan
+    z_mm: float = np.nan
+    radius_mm: float = np.nan
+    pressure_MPa: float = np.nan
+    half_width_mm: float = np.nan
+    shear_MPa: float = np.nan
+    sliding_mm_s: float = np.nan
+    edge: int = 0
+    stations: tuple[ContactStation, ...] = ()
 
     def row(self) -> dict[str, Any]:
         """The row of pairs.csv."""
@@ -98,24 +107,61 @@ class PairContact:
 
 
 def pair_contacts(model: DriveModel, state: LoadState) -> list[PairContact]:
-    """Contacts of all pairs that carry a load, by tooth, the same on all ranks; collective."""
+    """Contacts of all touching pairs, by tooth, the same on all ranks; collective."""
     spline = model.partition.layouts[FLEXIBLE_SPLINE]
     first, end = model.partition.owned_sectors(FLEXIBLE_SPLINE)
-    loads = line_loads(model, state, spline.first_tooth + np.arange(first, end))
+    forces = flank_forces(model, state, spline.first_tooth + np.arange(first, end))
+    loads = line_loads(spline.mesh, forces)
     pairs = [pair for pair in model.problem.flanks.pairs if (pair.sector - first, pair.side) in loads]
+    carried = _carried(model, state, pairs, forces, loads)
     top = max(model.comm.allgather(max((_peak(load) for load in loads.values()), default=0.0)))
-    pairs = [pair for pair in pairs if _peak(loads[pair.sector - first, pair.side]) > SMALLEST * top]
-    moved, facing = moved_teeth(model, pairs)
-    found, failed = [], []
-    for pair, teeth, ring_teeth in zip(pairs, moved, facing):
+    resolved = [k for k, pair in enumerate(pairs) if _peak(loads[pair.sector - first, pair.side]) > SMALLEST * top]
+    moved, facing = moved_teeth(model, [pairs[k] for k in resolved])
+    failed = []
+    for k, teeth, ring_teeth in zip(resolved, moved, facing):
+        load = loads[pairs[k].sector - first, pairs[k].side]
         try:
-            found.append(_contact(model, pair, loads[pair.sector - first, pair.side], teeth, ring_teeth))
+            carried[k] = _with_pressure(carried[k], model, load, teeth, ring_teeth)
         except (ArithmeticError, np.linalg.LinAlgError) as error:
-            failed.append(f"tooth {pair.sector}: {error}")
-    contacts = [contact for part in model.comm.allgather(found) for contact in part]
+            failed.append(f"tooth {pairs[k].sector}: {error}")
+    contacts = [contact for part in model.comm.allgather(carried) for contact in part]
     for reason in (reason for part in model.comm.allgather(failed) for reason in part):
-        logger.warning("the contact of a pair is left out of pairs.csv: %s", reason)
+        logger.warning("the pressure of a pair is left out of pairs.csv: %s", reason)
+    total = model.copies * sum(contact.force_N for contact in contacts)
+    contacts = [replace(contact, force_share=contact.force_N / total) for contact in contacts]
     return sorted(contacts, key=lambda one: (one.tooth, one.flank))
+
+
+def _carried(
+    model: DriveModel,
+    state: LoadState,
+    pairs: list[FlankPair],
+    forces: np.ndarray,
+    loads: Mapping[tuple[int, int], LineLoad],
+) -> list[PairContact]:
+    """Force, torque and place of owned pairs, without pressure and share. forces : (n_owned, n_node, 3) N"""
+    body, ring = model.elements.bodies[FLEXIBLE_SPLINE], model.partition.layouts[RING_GEAR]
+    spline, (first, _) = body.layout, model.partition.owned_sectors(FLEXIBLE_SPLINE)
+    positions = (body.positions() + body.displacement(model.problem.displacement()))[body.owned]
+    grids = {grid.side: grid for grid in spline.mesh.flanks}
+    found = []
+    for pair in pairs:
+        k, nodes = pair.sector - first, grids[pair.side].nodes.ravel()
+        force, (x, y, _) = forces[k, nodes], positions[k, nodes].T
+        load, size = loads[k, pair.side], np.linalg.norm(force, axis=1)
+        place = np.arctan2(-(size @ x), size @ y) - state.angle
+        found.append(
+            PairContact(
+                tooth=(spline.first_tooth + pair.sector) % spline.mesh.n_sectors,
+                flank="clockwise" if pair.side > 0 else "counter-clockwise",
+                ring_tooth=pair.ring_tooth % ring.mesh.n_sectors,
+                angle_deg=float(np.degrees(np.arctan2(np.sin(place), np.cos(place)))),
+                force_N=float(trapezoid(load.load @ load.direction, load.z)),
+                force_share=np.nan,
+                torque_Nmm=float(x @ force[:, 1] - y @ force[:, 0]),
+            )
+        )
+    return found
 
 
 def _peak(load: LineLoad) -> float:
@@ -124,7 +170,7 @@ def _peak(load: LineLoad) -> float:
 
 def moved_teeth(model: DriveModel, pairs: list[FlankPair]) -> tuple[list[Neighbours], list[Neighbours]]:
     """The teeth of every pair, of the flexible spline and of the ring gear, between their neighbours; collective."""
-    spline, ring = model.partition.layouts
+    spline, ring = model.partition.layouts[:2]
     around, x = np.arange(-1, 2), model.problem.x
 
     def fields(body: int, sectors: list[int]) -> np.ndarray:
@@ -145,23 +191,20 @@ def moved_teeth(model: DriveModel, pairs: list[FlankPair]) -> tuple[list[Neighbo
     return moved, facing
 
 
-def _contact(
-    model: DriveModel, pair: FlankPair, load: LineLoad, teeth: Neighbours, ring_teeth: Neighbours
+def _with_pressure(
+    contact: PairContact, model: DriveModel, load: LineLoad, teeth: Neighbours, ring_teeth: Neighbours
 ) -> PairContact:
-    """Contact of one pair."""
-    spline, ring = model.partition.layouts
+    """The contact of a pair with its local pressure."""
     tooth, facing = teeth[1], ring_teeth[1]
-    direction = load.load.sum(axis=0) / np.linalg.norm(load.load.sum(axis=0))
-    along = load.load @ direction
-    force = float(trapezoid(along, load.z))
+    along = load.load @ load.direction
     gap = _Gap(tooth, facing)
-    if spline.mesh.plane:
+    if model.design.drive.model == "plane":
         found = _line(model, gap, load)
         shape, width, on_edge = found, float(np.ptp(load.z)), found.at_end
         size = float(along[0])
         stations = (ContactStation(0.0, size, found.middle, found.half_width, found.peak),)
     else:
-        patch = _patch(model, gap, load, along, force)
+        patch = _patch(model, gap, load, along, contact.force_N)
         shape, on_edge = patch.strongest, patch.at_end or patch.reaches
         columns = (patch.z, patch.line_load, patch.middle, patch.half_width, patch.pressure)
         stations = tuple(ContactStation(*map(float, values)) for values in zip(*columns, strict=True))
@@ -170,11 +213,8 @@ def _contact(
     ends = top.s_mm + top.half_width_mm * np.array([[-1.0], [1.0]])
     on_tip = gap.foot(ends, np.array([top.z_mm])).min() < END * model.design.drive.module
     middle = tooth.profile.point(np.clip(top.s_mm, 0.0, tooth.profile.length))[0]
-    return PairContact(
-        tooth=(spline.first_tooth + pair.sector) % spline.mesh.n_sectors,
-        flank="clockwise" if pair.side > 0 else "counter-clockwise",
-        ring_tooth=pair.ring_tooth % ring.mesh.n_sectors,
-        force_N=force,
+    return replace(
+        contact,
         width_mm=width,
         line_load_Nmm=top.line_load_Nmm,
         z_mm=top.z_mm,

@@ -10,12 +10,34 @@ from __future__ import annotations
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.load_states import LoadState
+from swgpar.errors import InputError
 from swgpar.results.history import Row
 
 
 def of_period(design: DriveDesign, rows: list[Row]) -> list[Row]:
     """The last `steps.samples` rows, which are repeated; without friction the first of them is the loaded state."""
     return rows[-design.steps.samples :]
+
+
+def sample_of(design: DriveDesign, state: LoadState) -> int | None:
+    """Number of the sample of the repeated period, from 0, that a load state is; None outside of that period."""
+    samples = design.steps.samples
+    if not samples or not state.is_periodic:
+        return None
+    # with friction the first of two periods settles
+    number = round(state.angle / design.period_angle * samples) - (samples + 1 if design.contact.friction else 0)
+    return number if 0 <= number < samples else None
+
+
+def require_samples(design: DriveDesign) -> None:
+    """Raise InputError where fatigue or losses are asked for without a sampled period."""
+    if (design.fatigue or design.losses) and not design.steps.samples:
+        section = "fatigue" if design.fatigue else "losses"
+        raise InputError(
+            f"[{section}] is not available with steps.samples = 0: allowed 1 to 1000, with steps.rotation of at least "
+            f"{np.degrees(design.period_angle) * design.periods:.6g} degrees"
+        )
 
 
 def sampling_error(design: DriveDesign, rows: list[Row], names: tuple[str, ...]) -> dict[str, float]:

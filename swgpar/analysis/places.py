@@ -65,17 +65,14 @@ def find_places(model: DriveModel, state: LoadState, fields: Sequence[Mapping[st
 
     fields : nodal fields of both bodies as `DriveModel.stresses` gives them
     """
-    pressure = nodal_pressure(model.problem, state, model.elements.bodies[FLEXIBLE_SPLINE])
-    top = max(model.comm.allgather(float(pressure.max(initial=0.0))))
-    # pressures are known on the spline; any flank of the ring gear may be touched
-    pressed = pressure > TOUCHED * top if top > 0.0 else np.zeros(pressure.shape, dtype=bool)
+    pressed = pressed_nodes(model, state)  # those of the spline; any flank of the ring gear may be touched
     found, distance = {}, APART_DISTANCE * model.design.drive.module
     for k, prefix in enumerate(("fs", "rg")):
         body = model.elements.bodies[k]
         ring = k != FLEXIBLE_SPLINE
         touched = np.ones(fields[k]["s3"].shape, dtype=bool) if ring else pressed
         # every sector of the ring gear is alike: one stands for all
-        near = _near_contact(body.layout.mesh, touched[:1] if ring else touched, distance)
+        near = near_contact(body.layout.mesh, touched[:1] if ring else touched, distance)
         apart = np.broadcast_to(~near, touched.shape)
         for stress in ("s1", "s3", "vm"):
             values = -fields[k][stress] if stress == "s3" else fields[k][stress]
@@ -86,7 +83,14 @@ def find_places(model: DriveModel, state: LoadState, fields: Sequence[Mapping[st
     return found
 
 
-def _near_contact(mesh: SectorMesh, touched: np.ndarray, distance: float) -> np.ndarray:
+def pressed_nodes(model: DriveModel, state: LoadState) -> np.ndarray:
+    """Nodes (n_owned, n_node) bool of the flexible spline that a contact presses on; collective."""
+    pressure = nodal_pressure(model.problem, state, model.elements.bodies[FLEXIBLE_SPLINE])
+    top = max(model.comm.allgather(float(pressure.max(initial=0.0))))
+    return pressure > TOUCHED * top if top > 0.0 else np.zeros(pressure.shape, dtype=bool)
+
+
+def near_contact(mesh: SectorMesh, touched: np.ndarray, distance: float) -> np.ndarray:
     """Nodes (n_sectors, n_node) within a distance (mm) of touched ones on the working parts of the flanks."""
     working = np.zeros(len(mesh.coords), dtype=bool)
     for grid in mesh.flanks:

@@ -8,6 +8,8 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.analysis.drive_model import EDGE, PRESSURE_LIMIT
+from swgpar.analysis.losses import work_per_cycle
+from swgpar.analysis.stress_cycle import history_by_renaming, sector_stress
 from swgpar.constraints.distributing_coupling import DistributingCoupling
 from swgpar.constraints.supports import Supports
 from swgpar.contact.contact import Contact
@@ -218,6 +220,20 @@ class RingModel:
     def stresses(self) -> dict[str, float]:
         """Largest s1, s3 (positive in compression) and von Mises stress of the nodal averages, MPa."""
         return maxima(self.comm, body_fields(self.body, self.problem.displacement()))
+
+    def hysteresis_torque(self) -> float:
+        """Torque (N mm) that turns the ring under the surface if its material has a loss factor of 1; collective.
+
+        Every sector of the ring is at another phase of the cycle that all go through.
+        """
+        design, body = self.design, self.body
+        layout, lower = body.layout, body.layout.mesh.lower_nodes
+        nodes = np.arange(len(layout.mesh.coords)) if lower is None else np.unique(lower)
+        stress = sector_stress(body, body_fields(body, self.problem.displacement()))[:, nodes]
+        mine, history = history_by_renaming(self.comm, layout, nodes, [stress])
+        thickness = design.width if design.plane else None
+        work = work_per_cycle(self.comm, layout, nodes[mine], history, design.material, thickness)
+        return work * layout.mesh.n_sectors / layout.count / (2.0 * np.pi)
 
     def contact_force(self) -> float:
         """Contact pressure integrated over the whole inner surface, N."""

@@ -5,31 +5,47 @@ from __future__ import annotations
 import json
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from swgpar.analysis.bearing_loads import ComplianceShares, ball_rows
+from swgpar.analysis.compliance import bearing_shares
 from swgpar.analysis.contact_pressure import nodal_pressure
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.drive_result import DriveResult, open_fields
+from swgpar.analysis.drive_tables import DriveTables
 from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.analysis.losses import cam_force
 from swgpar.analysis.pair_contact import pair_contacts
 from swgpar.analysis.places import Place, find_places
+from swgpar.analysis.program_results import PointRow, point_rows
+from swgpar.analysis.ratcheting import tooth_rotation
 from swgpar.analysis.restart import write_state
 from swgpar.analysis.root_stress import RootStress
+from swgpar.analysis.stiffness import loop_rows
+from swgpar.analysis.stress_cycle import StressCycle
 from swgpar.analysis.summary import Accuracy
-from swgpar.design.load_states import LoadState
-from swgpar.design.sections import GEARS
+from swgpar.design.load_states import LoadState, Stage
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.meshing import SectorMesh
 from swgpar.results import history
-from swgpar.results.atomic import to_json, write_from_root
+from swgpar.results.atomic import agreed, to_json, write_from_root
 from swgpar.results.field_sources import BodyPart, FieldParts, FlankGrids
 from swgpar.results.fields import FieldWriter
-from swgpar.results.folder import CONTACT_LINES, PAIRS, SUMMARY
+from swgpar.results.folder import (
+    BALLS,
+    CONTACT_LINES,
+    PAIRS,
+    PROGRAM,
+    STIFFNESS,
+    SUMMARY,
+    TRANSMISSION_ERROR,
+)
 from swgpar.results.history import Row
-from swgpar.results.table import as_columns, format_csv
+from swgpar.results.table import as_columns, format_csv, read_columns
 
 NodalFields = dict[str, dict[str, np.ndarray]]
 """Body -> name of the field -> values (n_sectors, n_local[, n_components]) of the owned sectors."""
@@ -47,7 +63,14 @@ class Recorder(ABC):
     accuracy : what was asked for and reached, if an accuracy was asked for
     root_stress : of the loaded state, once it is resolved
     places : of the largest stresses under load, by column of the history
+    tooth_rotations : deg, mean rotation of the flexible spline's teeth at every increment, with [ratcheting]
     pairs, contact_lines : rows of pairs.csv and contact_lines.csv, the contacts of flanks under load
+    cycle : stresses of the sampled period, with [fatigue] or [losses]
+    cam_forces : N, of all increments, with [losses]
+    turns : rows of transmission_error.csv
+    balls : rows of balls.csv, the loads of a bearing's balls
+    race_stress : largest stresses of the outer race under load, MPa
+    bearing_shares : of the bearing in the compliance of the loaded state
     """
 
     def __init__(self, model: DriveModel) -> None:
@@ -59,6 +82,14 @@ class Recorder(ABC):
         self.places: dict[str, Place] = {}
         self.pairs: list[Row] = []
         self.contact_lines: list[Row] = []
+        design = model.design
+        self.cycle = StressCycle(model) if design.fatigue or design.losses else None
+        self.cam_forces: list[float] = []
+        self.tooth_rotations: list[float] = []
+        self.turns: list[Row] = []
+        self.balls: list[Row] = []
+        self.race_stress: dict[str, float] = {}
+        self.bearing_shares: dict[str, ComplianceShares] = {}
 
     def record(self, stepper: LoadStepper, seconds: float, elapsed: float) -> None:
         """Keep the state after an increment.
@@ -68,12 +99,21 @@ class Recorder(ABC):
         model = self.model
         with model.phases("stress"):
             values, body_fields = model.stresses()
+        race = {name: values.pop(name) for name in list(values) if name.startswith("race_")}
         self.rows.append(history.plain_row({**stepper.row(), **values, "wall_s": seconds}))
+        if model.design.ratcheting:
+            self.tooth_rotations.append(tooth_rotation(model))
         with model.phases("stress"):
             self._keep_places(stepper.load_state, body_fields)
             self._keep_pairs(stepper.load_state)
+            self._keep_balls(stepper.load_state, race)
+        with model.phases("fatigue and losses"):
+            if self.cycle is not None:
+                self.cycle.keep(stepper.load_state, body_fields[FLEXIBLE_SPLINE])
+            if model.design.losses:
+                self.cam_forces.append(cam_force(model))
         with model.phases("output"):
-            fields = dict(zip(GEARS, body_fields, strict=True))
+            fields = dict(zip([layout.name for layout in model.partition.layouts], body_fields, strict=True))
             if model.design.output.fields:
                 spline = model.elements.bodies[FLEXIBLE_SPLINE]
                 fields[spline.layout.name]["pressure"] = nodal_pressure(model.problem, stepper.load_state, spline)
@@ -87,18 +127,47 @@ class Recorder(ABC):
                     self.places[name] = place
 
     def _keep_pairs(self, state: LoadState) -> None:
-        if state.is_periodic:
-            when = {"step": int(self.rows[-1]["step"]), "wg_angle_deg": self.rows[-1]["wg_angle_deg"]}
+        if state.is_periodic and not self.model.design.stiffness:
+            row = self.rows[-1]
+            when = {"increment": len(self.rows), "step": int(row["step"]), "wg_angle_deg": row["wg_angle_deg"]}
             contacts = pair_contacts(self.model, state)
             self.pairs += [{**when, **contact.row()} for contact in contacts]
             self.contact_lines += [{**when, **row} for contact in contacts for row in contact.station_rows()]
 
+    def _keep_balls(self, state: LoadState, race: Mapping[str, float]) -> None:
+        if self.model.design.bearing is not None:
+            self.balls += ball_rows(self.model, state, len(self.rows), int(self.rows[-1]["step"]))
+            if state.is_periodic:
+                for name, value in race.items():
+                    self.race_stress[name] = max(value, self.race_stress.get(name, value))
+            if state.stage == Stage.LOAD:
+                self.bearing_shares = bearing_shares(self.model, state)
+
+    def keep_turns(self, rows: list[Row]) -> None:
+        """Keep rows of transmission_error.csv in place of those before."""
+        self.turns = rows
+
+    def known_turns(self) -> list[Row]:
+        """Rows of transmission_error.csv that the run which is continued has left."""
+        return []
+
     def _shared(
-        self, rows: list[Row], summary: dict[str, Any]
-    ) -> tuple[list[Row], dict[str, Any], dict[str, np.ndarray], dict[str, np.ndarray]]:
-        """History, summary and contacts of rank 0 on every rank, as files hold them; collective."""
-        contacts = as_columns(self.pairs), as_columns(self.contact_lines)
-        return self.comm.bcast((rows, json.loads(to_json(summary)), *contacts) if self.comm.rank == 0 else None)
+        self, rows: list[Row], summary: dict[str, Any], tables: DriveTables
+    ) -> tuple[list[Row], dict[str, Any], DriveTables]:
+        """History, summary and tables of rank 0 on every rank, as files hold them; collective."""
+        tables = replace(
+            tables,
+            pairs=as_columns(self.pairs),
+            contact_lines=as_columns(self.contact_lines),
+            program=as_columns(self.program_rows()),
+            turns=as_columns(self.turns),
+            balls=as_columns(self.balls),
+        )
+        return self.comm.bcast((rows, json.loads(to_json(summary)), tables) if self.comm.rank == 0 else None)
+
+    def program_rows(self) -> list[PointRow]:
+        """Rows of program.csv."""
+        return point_rows(self.model.design, self.rows)
 
     @abstractmethod
     def begin(self) -> None:
@@ -109,8 +178,8 @@ class Recorder(ABC):
         """Keep the last of `rows`, and the fields if the design asks for them."""
 
     @abstractmethod
-    def finish(self, rows: list[Row], summary: dict[str, Any]) -> DriveResult:
-        """The result, with the whole history `rows` and the summary."""
+    def finish(self, rows: list[Row], summary: dict[str, Any], tables: DriveTables) -> DriveResult:
+        """The result, with the whole history `rows`, the summary and what was evaluated at the end."""
 
 
 class MemoryRecorder(Recorder):
@@ -139,8 +208,8 @@ class MemoryRecorder(Recorder):
         if self._parts is not None:
             self._parts.keep(len(self.rows), fields)
 
-    def finish(self, rows: list[Row], summary: dict[str, Any]) -> DriveResult:
-        return DriveResult(*self._shared(rows, summary), self._parts, self.comm)
+    def finish(self, rows: list[Row], summary: dict[str, Any], tables: DriveTables) -> DriveResult:
+        return DriveResult(*self._shared(rows, summary, tables), self._parts, self.comm)
 
 
 class FolderRecorder(Recorder):
@@ -167,7 +236,8 @@ class FolderRecorder(Recorder):
             mesh, (first, _) = body.layout.mesh, self.model.partition.owned_sectors(k)
             bodies[mesh.body] = (body.positions()[body.owned], mesh.hexes.astype(np.int64), first, body.layout.count)
             grids = _flank_grids(mesh)
-            extra |= {f"{mesh.body}/flank_{name}": values for name, values in grids._asdict().items()}
+            if mesh.flanks:
+                extra |= {f"{mesh.body}/flank_{name}": values for name, values in grids._asdict().items()}
         self._writer.write_mesh(bodies, extra)
 
     def _keep(self, stepper: LoadStepper, fields: NodalFields, elapsed: float) -> None:
@@ -187,6 +257,19 @@ class FolderRecorder(Recorder):
         self.write_index()
         write_state(self, stepper, {body: values["displacement"] for body, values in fields.items()}, elapsed)
 
+    def keep_turns(self, rows: list[Row]) -> None:
+        super().keep_turns(rows)
+        if rows:
+            write_from_root(self.comm, self.out / TRANSMISSION_ERROR, format_csv(rows))
+
+    def known_turns(self) -> list[Row]:
+        path = self.out / TRANSMISSION_ERROR
+        present = self.comm.bcast(path.exists() if self.comm.rank == 0 else None)
+        with agreed(self.comm, path, "read"):
+            columns = read_columns(path) if present else {}
+        rows = [dict(zip(columns, values)) for values in zip(*(column.tolist() for column in columns.values()))]
+        return [{**row, "newton_iterations": int(row["newton_iterations"])} for row in rows]
+
     def write_index(self) -> None:
         """Write the index of the fields, and the history."""
         if self._writer is not None:
@@ -197,14 +280,23 @@ class FolderRecorder(Recorder):
         if self.pairs:
             write_from_root(self.comm, self.out / PAIRS, format_csv(self.pairs))
             write_from_root(self.comm, self.out / CONTACT_LINES, format_csv(self.contact_lines))
+        if program := self.program_rows():
+            write_from_root(self.comm, self.out / PROGRAM, format_csv(program))
+            if self.model.design.stiffness:
+                write_from_root(self.comm, self.out / STIFFNESS, format_csv(loop_rows(program)))
+        if self.balls:
+            write_from_root(self.comm, self.out / BALLS, format_csv(self.balls))
 
-    def finish(self, rows: list[Row], summary: dict[str, Any]) -> DriveResult:
+    def finish(self, rows: list[Row], summary: dict[str, Any], tables: DriveTables) -> DriveResult:
         if len(rows) > len(self.rows):
             write_from_root(self.comm, self.out / history.NAME, history.format_rows(rows))
+        tables.write(self.out, self.comm)
         write_from_root(self.comm, self.out / SUMMARY, to_json(summary))
         folder = self.out.absolute()  # the fields are read later
-        return DriveResult(*self._shared(rows, summary), open_fields(folder, self.comm), self.comm, folder)
+        return DriveResult(*self._shared(rows, summary, tables), open_fields(folder, self.comm), self.comm, folder)
 
 
 def _flank_grids(mesh: SectorMesh) -> FlankGrids:
+    if not mesh.flanks:
+        return FlankGrids(np.zeros((0, 0, 0), dtype=np.int32), np.zeros(0), np.zeros(0))
     return FlankGrids(np.array([grid.nodes for grid in mesh.flanks]), mesh.flanks[0].s, mesh.flanks[0].z)

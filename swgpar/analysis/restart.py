@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from swgpar.analysis.bearing_loads import ComplianceShares
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.places import Place
 from swgpar.analysis.root_stress import RootStress
@@ -36,6 +37,8 @@ def identity(design: DriveDesign, recipe: MeshRecipe, accuracy: float | None) ->
     The angles of the rotation are compared one by one.
     """
     content = design.model_dump(exclude={"output": True, "steps": {"rotation", "samples"}, "solver": SOLVER_CHOICES})
+    if design.bearing is not None:
+        content["cage_speed"] = design.cage_speed  # follows from steps.samples
     content = {"design": content, "recipe": recipe.model_dump(), "accuracy": accuracy}
     return hashlib.sha256(to_json(content)).hexdigest()
 
@@ -56,7 +59,14 @@ def write_state(
         first, end = model.partition.owned_sectors(FLEXIBLE_SPLINE)
         for name, values in problem.flanks.traction_rows(first, end).items():
             blocks[name] = values, first, model.partition.layouts[FLEXIBLE_SPLINE].count
+    cycle = recorder.cycle
+    if cycle is not None:
+        first, _ = model.partition.owned_sectors(FLEXIBLE_SPLINE)
+        count = model.partition.layouts[FLEXIBLE_SPLINE].count
+        blocks |= {name: (values, first, count) for name, values in cycle.rows().items()}
     state = {
+        "cycle": None if cycle is None else cycle.state(),
+        "cam_forces": recorder.cam_forces,
         "identity": recorder.identity,
         "done": len(recorder.rows),
         "rows": recorder.rows,
@@ -70,6 +80,10 @@ def write_state(
         "root_stress": recorder.root_stress and asdict(recorder.root_stress),
         "pairs": recorder.pairs,
         "contact_lines": recorder.contact_lines,
+        "tooth_rotations": recorder.tooth_rotations,
+        "balls": recorder.balls,
+        "race_stress": recorder.race_stress,
+        "bearing_shares": {name: asdict(share) for name, share in recorder.bearing_shares.items()},
         "places": {name: asdict(place) for name, place in recorder.places.items()},
     }
     checkpoint.write_checkpoint(recorder.out, model.comm, blocks, state)
@@ -103,11 +117,20 @@ def resume(recorder: FolderRecorder, stepper: LoadStepper, items: list[LoadState
             f"ends at {np.degrees(last.angle):g} degrees; allowed are values with this angle among their increments"
         )
     _restore_vector(recorder, state)
+    if recorder.cycle is not None:
+        first, end = model.partition.owned_sectors(FLEXIBLE_SPLINE)
+        ranges = dict.fromkeys(recorder.cycle.names(state["cycle"]), (first, end - first))
+        recorder.cycle.resume(state["cycle"], checkpoint.read_checkpoint(path, model.comm, ranges)[0])
+    recorder.cam_forces = state["cam_forces"]
     recorder.rows, recorder.names = state["rows"], state["names"]
     recorder.starts_loaded = state["starts_loaded"]
     recorder.accuracy = state["accuracy"] and Accuracy(**state["accuracy"])
     recorder.places = {name: Place(**place) for name, place in state.get("places", {}).items()}
     recorder.pairs, recorder.contact_lines = state.get("pairs", []), state.get("contact_lines", [])
+    recorder.tooth_rotations = state.get("tooth_rotations", [])
+    recorder.balls, recorder.race_stress = state.get("balls", []), state.get("race_stress", {})
+    shares = state.get("bearing_shares", {})
+    recorder.bearing_shares = {name: ComplianceShares(**share) for name, share in shares.items()}
     recorder.root_stress = state.get("root_stress") and RootStress(**state["root_stress"])
     stepper.resume_at(last)
     for name, value in state["phases_s"].items():

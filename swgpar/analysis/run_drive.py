@@ -6,14 +6,20 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from mpi4py import MPI
 
+from swgpar.analysis.bearing_loads import summarise_bearing
 from swgpar.analysis.coarse_start import levels, start_loaded, starts_bent
 from swgpar.analysis.drive_model import DriveModel, build_drive_model
 from swgpar.analysis.drive_result import DriveResult
+from swgpar.analysis.drive_tables import DriveTables
+from swgpar.analysis.fatigue import evaluate_fatigue
+from swgpar.analysis.follow_turns import follow_turns
 from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.analysis.losses import evaluate_losses
 from swgpar.analysis.mesh_refinement import (
     COMPARED_LEVELS,
     RATIO,
@@ -24,12 +30,15 @@ from swgpar.analysis.mesh_refinement import (
     size_ratio,
     with_accuracy,
 )
-from swgpar.analysis.period import continued
+from swgpar.analysis.period import continued, require_samples
+from swgpar.analysis.ratcheting import has_fallen
 from swgpar.analysis.recorder import FolderRecorder, MemoryRecorder, Recorder
 from swgpar.analysis.restart import identity, resume
 from swgpar.analysis.root_stress import RootStress, resolve_root_stress, with_angle
 from swgpar.analysis.shortcuts import finds_contacts, with_shortcuts
+from swgpar.analysis.stiffness_error import stiffness_error
 from swgpar.analysis.summary import Accuracy, summarise
+from swgpar.analysis.transmission_error import period_rows
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import LoadState, Stage, from_loaded, load_sequence
 from swgpar.design.remarks import torque_remark
@@ -40,6 +49,7 @@ from swgpar.meshing.recipe import to_toml
 from swgpar.petsc import warn_of_unused_options
 from swgpar.results.atomic import on_all, write_from_root
 from swgpar.results.folder import RECIPE, given_folder, open_log, prepare
+from swgpar.results.history import loaded_increments
 from swgpar.results.lock import releasing
 from swgpar.results.parallel_hdf5 import require_parallel
 
@@ -84,11 +94,18 @@ def run_drive(
         raise InputError("restart = true needs the results folder out: a run in memory leaves no checkpoint")
     require_sections(design, recipe)
     if accuracy is not None:
+        if design.has_program:
+            raise InputError(f"--accuracy {accuracy:g} is not available with a load program: allowed a mesh recipe")
+        if design.bearing is not None:
+            raise InputError(
+                f"accuracy = {accuracy:g} is not available with wave_generator.bearing: allowed without it"
+            )
         design = with_accuracy(design, accuracy)
     left_out: tuple[str, ...] = ()
     if not plain:
         shortcuts = with_shortcuts(design, recipe, levels=accuracy is None)
         design, left_out = shortcuts.design, shortcuts.left_out
+    require_samples(design)
     resumed = False
     if folder is not None:
         require_parallel(comm)
@@ -162,7 +179,7 @@ class _Run:
     ) -> None:
         self.model, self.recipe, self.recorder, self.stepper = model, recipe, recorder, LoadStepper(model)
         self.on_increment, self.begin = on_increment, begin
-        self.earlier_seconds = 0.0
+        self.earlier_seconds, self.ended_early = 0.0, False
         self.coarse: tuple[MeshRecipe, tuple[float, ...]] | None = None
         counts = model.counts()
         logger.info(
@@ -184,7 +201,7 @@ class _Run:
         """Bring back the state of the checkpoint; returns all increments that the run consists of."""
         items, self.earlier_seconds = resume(self.recorder, self.stepper, list(load_sequence(self.model.design)))
         logger.info("restarted after increment %d", len(self.recorder.rows))
-        if self.model.design.output.root_stress and not self.recorder.root_stress:
+        if self.model.design.resolves_root_stress and not self.recorder.root_stress:
             logger.info("the stress at the teeth is resolved only by the run that computes the loaded state")
         return items
 
@@ -199,7 +216,7 @@ class _Run:
 
     def _keep_coarse(self, model: DriveModel, recipe: MeshRecipe) -> None:
         """Resolve the stress at the teeth on a coarser mesh of the drive, to see what the mesh changes."""
-        if model.design.output.root_stress:
+        if model.design.resolves_root_stress:
             loaded = from_loaded(list(load_sequence(model.design)))[0]
             try:
                 self.coarse = recipe, resolve_root_stress(model, loaded, COMPARED_LEVELS).levels
@@ -215,11 +232,13 @@ class _Run:
                 state.stage.label, np.degrees(state.angle), its, ratio
             )
             for item in items[len(recorder.rows) :]:
+                if has_fallen(self.model.design, recorder.program_rows()):
+                    break
                 start = time.perf_counter()
-                if item != stepper.load_state:  # a start at once ends with the first one
-                    stepper.advance(item)
+                if item != stepper.load_state and not self._advance(item):  # a start at once ends with the first one
+                    break
                 seconds = time.perf_counter() - start
-                if self.model.design.output.root_stress:
+                if self.model.design.resolves_root_stress:
                     recorder.root_stress = self._root_stress(item, item == loaded)
                 recorder.record(stepper, seconds, self.seconds)
                 angle = float(np.degrees(item.angle))
@@ -227,6 +246,18 @@ class _Run:
                 self.on_increment()
                 if terminal:
                     warn_of_unused_options()
+
+    def _advance(self, item: LoadState) -> bool:
+        """Compute an increment; False where the output is rotated beyond the strength and finds no equilibrium."""
+        try:
+            self.stepper.advance(item)
+            return True
+        except ConvergenceError as error:
+            if self.model.design.ratcheting is None or item.stage != Stage.PROGRAM or not self.recorder.program_rows():
+                raise
+            logger.warning("the rotation of the output ends here: %s", error)
+            self.ended_early = True
+            return False
 
     def _root_stress(self, state: LoadState, loaded: bool) -> RootStress | None:
         """Largest tensile stress at the teeth by windows; the one known before where a window cannot be computed."""
@@ -251,10 +282,27 @@ class _Run:
         coarse, levels = self.coarse
         return replace(found, drive_error=drive_error(levels, found.levels, size_ratio(coarse, self.recipe)))
 
+    def _bearing(self) -> dict[str, Any] | None:
+        """Entry of the summary for the bearing: over the increments under load."""
+        recorder, design = self.recorder, self.model.design
+        if design.bearing is None:
+            return None
+        steps = [int(row["step"]) for row in recorder.rows]
+        loaded = loaded_increments({"step": np.array(steps)})
+        return summarise_bearing(
+            design, recorder.balls, [int(k) + 1 for k in loaded], recorder.bearing_shares, recorder.race_stress
+        )
+
     def finish(self, recipe_name: str) -> DriveResult:
         """Summarise the run."""
         recorder, design = self.recorder, self.model.design
         rows = recorder.rows
+        with self.model.phases("coarser mesh"):
+            error = stiffness_error(design, self.recipe, recorder.program_rows(), self.model.comm)
+        if design.deviations is not None:
+            follow_turns(design, self.recipe, recorder)
+        else:
+            recorder.keep_turns(period_rows(design, rows))
         summary = summarise(
             self.model,
             rows,
@@ -263,13 +311,38 @@ class _Run:
             recorder.root_stress,
             recorder.places,
             recorder.pairs,
+            recorder.turns,
+            self._bearing(),
             self.seconds,
+            tooth_rotations=recorder.tooth_rotations,
+            stiffness_error=error,
+            ended_early=self.ended_early,
         )
+        tables = self._evaluate_cycle(summary)
         if summary["jammed"]:
             logger.warning("%s", summary["jammed"])
         if design.steps.samples and summary["means"]:
             rows = continued(design, rows)
-        return recorder.finish(rows, summary)
+        return recorder.finish(rows, summary, tables)
+
+    def _evaluate_cycle(self, summary: dict[str, Any]) -> DriveTables:
+        """Fatigue and losses over the sampled period, also into the summary."""
+        recorder, design, tables = self.recorder, self.model.design, DriveTables()
+        cycle = recorder.cycle
+        summary |= {"fatigue": None, "losses": None}
+        if cycle is None or not cycle.complete:
+            return tables
+        with self.model.phases("fatigue and losses"):
+            if design.fatigue:
+                fatigue = evaluate_fatigue(cycle, recorder.root_stress)
+                summary["fatigue"] = fatigue.summary
+                tables = replace(tables, cycle=fatigue.cycle, sector=fatigue.sector)
+            if design.losses:
+                count = len(recorder.rows)
+                increments = range(count - design.steps.samples + 1, count + 1)
+                summary["losses"], columns = evaluate_losses(cycle, recorder.pairs, recorder.cam_forces, increments)
+                tables = replace(tables, losses=columns)
+        return tables
 
 
 def _start_loaded(
@@ -283,7 +356,7 @@ def _start_loaded(
     ways = [coarser_ones] if coarser_ones else []
     if starts_bent(stepper.design):
         compared = resized(recipe, 1.0 / RATIO)
-        if stepper.design.output.root_stress and not ways and finds_contacts(compared):
+        if stepper.design.resolves_root_stress and not ways and finds_contacts(compared):
             ways.append([compared])
         ways.append([])
     for recipes in ways:

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.load_program import program_points
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.recipe_counts import coarser
 
@@ -57,6 +58,11 @@ def with_shortcuts(design: DriveDesign, recipe: MeshRecipe, *, levels: bool = Tr
     levels : whether the run may start on coarser meshes;  with `--accuracy` it has meshes of its own
     """
     steps, solver, changes, left_out = design.steps, design.solver, {}, []
+    points = program_points(design)
+    stiffness = design.stiffness
+
+    # with a bearing balls pass: no angle of another period has the same state
+    repeats = design.bearing is None
 
     def leave_out(key: str, value: int | bool, words: str) -> None:
         if key not in steps.model_fields_set and value != getattr(steps, key):
@@ -65,10 +71,14 @@ def with_shortcuts(design: DriveDesign, recipe: MeshRecipe, *, levels: bool = Tr
 
     if not design.contact.friction:
         period = float(np.degrees(design.period_angle))
-        if steps.rotation >= 0.999999 * period and steps.rotation > (SAMPLES - 1) * steps.increment:
+        samples_enough = (
+            repeats and steps.rotation >= 0.999999 * period and steps.rotation > (SAMPLES - 1) * steps.increment
+        )
+        if samples_enough and not points:
             words = f"{steps.rotation - period:.4g} of {steps.rotation:.4g} degrees ({SAMPLES} angles of one period)"
             leave_out("samples", SAMPLES, words)
-        if steps.load_increments == 1:
+        # the bent spline lies on the cam that is not turned
+        if points[0].angle == 0.0 if points else steps.load_increments == 1:
             leave_out("bent_start", True, "deflection and engagement step by step")
         worth = levels and recipe.flexible_spline.flank >= WORTH[design.drive.model]
         count = _useful_levels(recipe) if worth else 0
@@ -77,10 +87,13 @@ def with_shortcuts(design: DriveDesign, recipe: MeshRecipe, *, levels: bool = Tr
             rtol = RTOL[design.drive.model]
             solver = solver.model_copy(update={"rtol": rtol})
             left_out.append(f"residuals below {rtol:g} of the contact force")
+        if stiffness and "loop" not in stiffness.model_fields_set:
+            stiffness = stiffness.model_copy(update={"loop": False})
+            left_out.append("the way back of the stiffness loop and positions that mirror others")
     if not left_out:
         return Shortcuts(design, ())
     content: dict[str, Any] = {**steps.model_dump(exclude_unset=True), **changes}
-    update = {"steps": type(steps).model_validate(content), "solver": solver}
+    update = {"steps": type(steps).model_validate(content), "solver": solver, "stiffness": stiffness}
     return Shortcuts(design.model_copy(update=update), tuple(left_out))
 
 

@@ -12,9 +12,14 @@ import numpy as np
 
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.jamming import jamming_remark
+from swgpar.analysis.load_sharing import load_sharing
 from swgpar.analysis.period import of_period, sampling_error
 from swgpar.analysis.places import Place
+from swgpar.analysis.program_results import point_rows, summarise_program
+from swgpar.analysis.ratcheting import summarise_ratcheting
 from swgpar.analysis.root_stress import RootStress
+from swgpar.analysis.stiffness import summarise_stiffness
+from swgpar.analysis.transmission_error import summarise_turns
 from swgpar.design.load_states import Stage
 from swgpar.petsc import PETSc
 from swgpar.results.history import Row, column, transmission_error
@@ -75,7 +80,13 @@ def summarise(
     root_stress: RootStress | None,
     places: Mapping[str, Place],
     pairs: Sequence[Row],
+    turns: Sequence[Row],
+    bearing: dict[str, Any] | None,
     seconds: float,
+    *,
+    tooth_rotations: Sequence[float] = (),
+    stiffness_error: Mapping[str, float] | None = None,
+    ended_early: bool = False,
 ) -> dict[str, Any]:
     """Content of summary.json; collective.
 
@@ -86,11 +97,16 @@ def summarise(
     accuracy : what was asked for and reached
     root_stress : largest tensile stress at the teeth, by windows
     places : of the largest stresses under load
-    pairs : contacts of the flanks under load
+    pairs : contacts of the flanks under load;  bearing : loads of its balls, None without one
+    turns : transmission error over the sampled period, or over whole turns with deviations
     seconds : wall time of the run, restarts included
+    tooth_rotations : (n,) deg, of the flexible spline's teeth, with [ratcheting]
+    stiffness_error : of the torsional stiffness by the mesh, if it is known
+    ended_early : whether a load program has ended before its last point
     """
     design = model.design
-    rotation = [row for row in rows if int(row["step"]) >= Stage.ROTATE]
+    program = point_rows(design, rows)
+    rotation = [] if program else [row for row in rows if int(row["step"]) >= Stage.ROTATE]
     sampled = of_period(design, rows) if design.steps.samples else rotation
     values = over_rotation(sampled, design.ratio)
     sampled_period = design.steps.samples and values["means"]
@@ -100,15 +116,32 @@ def summarise(
         "increments": len(rows),
         **_program(model, seconds),
         **values,
+        "transmission_error": summarise_turns(design, turns),
         "accuracy": accuracy and asdict(accuracy),
         "places": {name: asdict(place) for name, place in places.items()},
         "root_stress": root_stress and _resolved(root_stress),
-        "contact": max(pairs, key=lambda pair: (not pair["edge"], pair["pressure_MPa"]), default=None),
+        "contact": max(
+            (pair for pair in pairs if np.isfinite(pair["pressure_MPa"])),
+            key=lambda pair: (not pair["edge"], pair["pressure_MPa"]),
+            default=None,
+        ),
+        "load_sharing": load_sharing(
+            pairs,
+            [row["tooth_torque_Nmm"] for row in rows],
+            # without a rotation the loaded state stands for it
+            range(len(rows) - max(len(sampled), 1) + 1, len(rows) + 1),
+            design.drive.teeth_fs,
+            model.copies,
+        ),
+        "bearing": bearing,
         "mesh_error": mesh_error(root_stress),
         "condensed_MPa": model.omitted_bending_stress() if design.solver.condensed_sectors else None,
         "sampling_error": sampling_error(design, rows, MEANS) if sampled_period else None,
         "newton_iterations_mean": float(np.mean([r["newton_iterations"] for r in rotation])) if rotation else None,
         "balance_error_Nmm": max((r["torque_balance_Nmm"] for r in rows), default=0.0),
+        "program": summarise_program(program),
+        "stiffness": summarise_stiffness(design, program, stiffness_error),
+        "ratcheting": summarise_ratcheting(design, program, tooth_rotations, ended_early=ended_early),
         "wg_torque_expected_Nmm": 1000.0 * design.load.torque / abs(design.ratio),
         "jammed": jamming_remark(design, sampled, values["means"]),
         "ratio": design.ratio,

@@ -26,6 +26,13 @@ COLUMNS = {
 """Columns of the history: title and format of their values."""
 
 
+NOTHING = 1e-6
+"""Stiffness and lost motion below which 0 is printed: round-off, in arc minutes."""
+
+ORDERS = 5
+"""Orders of the transmission error that are shown."""
+
+
 def print_drive(history: Mapping[str, np.ndarray], summary: Mapping[str, Any]) -> None:
     """Print history and summary of a run; call it on one rank."""
     _print_history({name: values[: summary["increments"]] for name, values in history.items()})
@@ -36,6 +43,12 @@ def print_drive(history: Mapping[str, np.ndarray], summary: Mapping[str, Any]) -
         _print_places(places)
     if summary["means"]:
         _print_means(summary)
+    if summary["stiffness"]:
+        _print_stiffness(summary["stiffness"])
+    if summary["ratcheting"]:
+        _print_ratcheting(summary["ratcheting"])
+    if turns := summary["transmission_error"]:
+        _print_turns(turns)
     _print_errors(summary)
     console.print(
         f"torque balance error {summary['balance_error_Nmm']:.1e} N·mm; "
@@ -65,6 +78,50 @@ def _print_means(summary: Mapping[str, Any]) -> None:
             f"over the rotation: input torque varies by {100.0 * ripple:.1f} % of its mean, transmission error by "
             f"{summary['transmission_error_arcsec']:.1f} arc seconds"
         )
+
+
+def _print_stiffness(found: Mapping[str, Any]) -> None:
+    spread, error = found["spread"], found["mesh_error"]
+
+    def value(name: str, spec: str) -> str:
+        size, by_mesh, over = (
+            0.0 if abs(x) < NOTHING else x for x in (found[name], (error or found)[name], spread[name])
+        )
+        return f"{size:{spec}}{'' if error is None else f' ± {by_mesh:.2g}'} (spread {over:.2g})"
+
+    console.print(
+        f"torsional stiffness up to {found['torque_Nm']:g} N·m over {len(found['positions'])} positions, in N·m/rad: "
+        + ", ".join(f"{name} {value(name, '.4g')}" for name in ("K1", "K2", "K3"))
+    )
+    console.print(
+        "in arc minutes: "
+        + ", ".join(
+            f"{words} {value(name, '.3g')}"
+            for name, words in (("lost_motion", "lost motion"), ("hysteresis", "hysteresis"), ("backlash", "backlash"))
+        )
+    )
+    if error is None:
+        console.print("the error of the stiffness by the mesh is not known")
+
+
+def _print_ratcheting(found: Mapping[str, Any]) -> None:
+    size = f"{found['peak_torque_Nm']:.4g} N·m" if found["is_peak"] else f"above {found['peak_torque_Nm']:.4g} N·m"
+    console.print(
+        f"largest torque of the output: {size} at {found['peak_rotation_deg']:.4g} degrees "
+        f"({found['peak_rotation_pitches']:.2f} pitches); what gives way: {found['gave_way']}; "
+        f"end of the run: {found['ended']}"
+    )
+
+
+def _print_turns(turns: Mapping[str, Any]) -> None:
+    """Transmission error over whole turns, or over the period of the ideal drive."""
+    where = f"{turns['turns']:.0f} turns with deviations" if turns["turns"] >= 1.0 else "one period of the ideal drive"
+    console.print(
+        f"transmission error over {where}: {turns['peak_to_peak']:.4g} arc seconds peak to peak; input torque "
+        f"{turns['torque']['mean']:.2f} N·mm, {turns['torque']['peak_to_peak']:.4g} peak to peak"
+    )
+    for line in turns["spectrum"][:ORDERS]:
+        console.print(f"  order {line['order']:8.3f}: {line['amplitude']:.3g} arc seconds, {line['cause']}")
 
 
 def _print_places(places: Mapping[str, Mapping[str, Any]]) -> None:
@@ -99,6 +156,47 @@ def _print_contact(contact: Mapping[str, Any]) -> None:
         )
 
 
+def _print_sharing(sharing: Mapping[str, Any]) -> None:
+    pairs = sharing["pairs"]
+    console.print(
+        f"load sharing: {pairs['mean']:.3g} pairs in contact ({pairs['smallest']:.0f} to {pairs['largest']:.0f}), "
+        f"{100.0 * sharing['teeth_share']['mean']:.3g} % of the teeth; one tooth carries up to "
+        f"{100.0 * sharing['largest_force_share']:.3g} % of the force, one pair {sharing['largest_force_N']:.4g} N"
+    )
+
+
+def _print_fatigue(found: Mapping[str, Any]) -> None:
+    worst, other = found["goodman"], found["crossland"]
+    errors = [found[name] for name in ("mesh_error", "sampling_error") if found[name] is not None]
+    error = f" ± {float(np.hypot.reduce(errors)):.2g}" if errors else ""
+    console.print(
+        f"least safety against fatigue: {worst['safety']:.3g}{error} by Goodman, {worst['region']} (radius "
+        f"{worst['radius']:.2f}, z {worst['z']:.2f} mm; amplitude {worst['amplitude_MPa']:.0f}, mean "
+        f"{worst['mean_MPa']:.0f} MPa); {other['safety']:.3g} by Crossland, {other['region']}; "
+        f"{found['yield']['safety']:.3g} against yield"
+    )
+    life = found["life_turns"]
+    console.print(
+        "life by Basquin: "
+        + (f"{life:.2g} turns of the wave generator, {found['life_hours']:.2g} h" if life else "without end")
+    )
+    if found["root_factor"]:
+        console.print(f"stresses in the tooth root are scaled by {found['root_factor']:.3f}, from windows")
+    else:
+        console.print("stresses in the tooth root are nodal averages, up to 25 % low: set output.root_stress = true")
+    console.print(found["warning"], markup=False)  # a section's name is no markup
+
+
+def _print_losses(losses: Mapping[str, Any]) -> None:
+    parts = losses["parts_Nmm"]
+    shares = ", ".join(f"{name.replace('_', ' ')} {value:.3g}" for name, value in parts.items())
+    efficiency = losses["efficiency"]
+    console.print(
+        f"losses take {losses['loss_torque_Nmm']:.3g} N·mm of input torque ({shares}); "
+        + (f"efficiency {100.0 * efficiency:.1f} %" if efficiency else "this is the no-load torque")
+    )
+
+
 def _print_over_period(over: Mapping[str, Any], count: int) -> None:
     half = over["sampling_error"]
     console.print(
@@ -106,6 +204,30 @@ def _print_over_period(over: Mapping[str, Any], count: int) -> None:
         f"{over['maximum']:.1f}, of {count} angles with one window at each further one"
         + ("" if half is None else f" (half as many change the mean by {half:.1f})")
     )
+
+
+def _print_bearing(bearing: Mapping[str, Any]) -> None:
+    console.print(
+        f"largest ball load: {bearing['largest_load_N']:.1f} N, {bearing['largest_pressure_MPa']:.0f} MPa, "
+        f"{bearing['cam_angle_deg']:.0f} degrees from the major axis; {bearing['mean_load_N']:.1f} N on average"
+    )
+    if share := bearing["torsional_share"]:
+        radial = bearing["radial_share"]
+        console.print(
+            f"share of the bearing: {100.0 * share['bearing']:.0f} % of the torsional compliance (balls "
+            f"{100.0 * share['balls']:.0f} %), {100.0 * radial['bearing']:.0f} % of the radial one (balls "
+            f"{100.0 * radial['balls']:.0f} %)"
+        )
+    if bearing["balls_fixed_to_cam"]:
+        console.print("the balls are fixed to the cam: ball passing is left out")
+    elif not bearing["covers_ball_passing"]:
+        console.print(f"a ball passes every {bearing['ball_passing_deg']:.3g} degrees: the run covers less than that")
+    life = bearing["life"]
+    if life["L10_hours"] is not None:
+        console.print(
+            f"rating life of the bearing: L10 {life['L10_hours']:.3g} h, {life['L10_turns']:.3g} turns (equivalent "
+            f"load {life['equivalent_load_N']:.0f} N of {life['load_rating_N']:.0f} N)"
+        )
 
 
 def _print_errors(summary: Mapping[str, Any]) -> None:
@@ -121,6 +243,14 @@ def _print_errors(summary: Mapping[str, Any]) -> None:
             _print_over_period(root["over_period"], len(root["period"]))
     if contact := summary.get("contact"):
         _print_contact(contact)
+    if sharing := summary.get("load_sharing"):
+        _print_sharing(sharing)
+    if fatigue := summary.get("fatigue"):
+        _print_fatigue(fatigue)
+    if losses := summary.get("losses"):
+        _print_losses(losses)
+    if bearing := summary.get("bearing"):
+        _print_bearing(bearing)
     asked = summary["accuracy"]
     if error := summary["mesh_error"]:
         if summary["means"]:

@@ -8,7 +8,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.design.load_states import LoadState
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE, OUTER_RACE
 from swgpar.solve.discrete_problem import DiscreteProblem
 
 
@@ -16,7 +16,8 @@ from swgpar.solve.discrete_problem import DiscreteProblem
 class Torques:
     """Torques about z of the whole drive, N mm.
 
-    wave_generator, teeth : on the flexible spline, of the wave generator with its pins and of the teeth
+    wave_generator, teeth : on the flexible spline, of the wave generator with its pins and of the teeth; with a bearing
+    on the spline and the outer race together, of the balls
     output : load on the output
     balance : largest sum that should vanish, over the bodies that are free to rotate
     """
@@ -30,14 +31,15 @@ class Torques:
 def torques(problem: DiscreteProblem, state: LoadState) -> Torques:
     """Torques of the present x, which is in equilibrium under `state`; collective."""
     u, supports, comm = problem.displacement(), problem.supports, problem.partition.comm
-    body = problem.elements.bodies[FLEXIBLE_SPLINE]
     rigid, teeth = np.zeros_like(u), np.zeros_like(u)
     for contact in problem.rigid_contacts:
         contact.add_owned_forces(u, state, rigid)
     if problem.flanks is not None:
         problem.flanks.add_owned_forces(u, state, teeth)
     spline = np.zeros(len(u), dtype=bool)
-    spline[body.local[body.local >= 0]] = True
+    bodies = problem.elements.bodies
+    for body in (bodies[FLEXIBLE_SPLINE], *bodies[OUTER_RACE:]):  # the race and the spline press on each other
+        spline[body.local[body.local >= 0]] = True
     x = problem.positions() + u
 
     def moment(residual: np.ndarray) -> float:

@@ -12,6 +12,7 @@ it is work-conjugate to phi at any rotation (section 3.4.5, "Load application").
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from mpi4py import MPI
@@ -32,6 +33,22 @@ class MeanMotion:
 
     value: np.ndarray
     gradient: np.ndarray
+
+
+class Coupling(Protocol):
+    """Quantities of nodes that may be prescribed.
+
+    nodes : (n,) local nodes;  active : (6,) bool, quantities that are prescribed
+    """
+
+    nodes: np.ndarray
+    active: np.ndarray
+
+    def evaluate(self, u: np.ndarray) -> MeanMotion:
+        """Coupled quantities and their gradients at displacement u (n_local, 3); collective."""
+
+    def supports(self) -> np.ndarray:
+        """Directions (m, n, 3) on single nodes that support the body rigidly; collective."""
 
 
 def node_weights(coords: np.ndarray, nodes: np.ndarray, ccw: np.ndarray) -> np.ndarray:
@@ -64,9 +81,12 @@ class DistributingCoupling:
     partition : ownership
     body : elements of the body on this rank (bound to local nodes);  surface : name of its node set
     images : the model holds half a turn; then only z and the rotation can be non-zero
+    centred : whether the mean displacement along x and y is coupled
     """
 
-    def __init__(self, partition: Partition, body: BodyElements, surface: str, images: bool) -> None:
+    def __init__(
+        self, partition: Partition, body: BodyElements, surface: str, images: bool, centred: bool = True
+    ) -> None:
         self.comm = partition.comm
         self.images = images
         mesh = body.layout.mesh
@@ -86,7 +106,8 @@ class DistributingCoupling:
         self.radius2 = float(self.sum(self.weight * (self.arm[:, 0] ** 2 + self.arm[:, 1] ** 2)))
         self.solid = partition.dims == 3
         whole = not images
-        self.active = np.array([whole, whole, self.solid, whole and self.solid, whole and self.solid, True])
+        held = whole and centred
+        self.active = np.array([held, held, self.solid, whole and self.solid, whole and self.solid, True])
 
     def sum(self, value: np.ndarray) -> np.ndarray:
         """Sum over all nodes of the surface, on all ranks."""

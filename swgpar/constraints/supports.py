@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.constraints.distributing_coupling import N_COUPLED, ROTATION, DistributingCoupling, Housing
+from swgpar.constraints.distributing_coupling import N_COUPLED, ROTATION, Coupling, DistributingCoupling, Housing
+from swgpar.constraints.race_coupling import RaceCoupling
 from swgpar.design.load_states import LoadState
 from swgpar.fem.partition import Partition
 from swgpar.fem.sparse import BlockRows, add_diagonal
@@ -17,7 +18,7 @@ GROUNDING = 0.1
 
 
 class Supports:
-    """The couplings of all bodies that float, the output's last.
+    """The couplings of all bodies that float: of the gears, the output's last, then of a bearing's outer race.
 
     Parameters
     ----------
@@ -26,10 +27,12 @@ class Supports:
     housing : around the ring gear, or None
     scale : unit of the multipliers and of the grounding: E times the module, N/mm
     share : modelled share of the drive, 1 or 0.5
+    race : coupling of the outer race, without a bearing None
 
     Attributes
     ----------
     ground_vectors : B of the grounding B B^T, one for each supported direction
+    offsets : (n_couplings, 6) values at which coupled quantities are held, mm and rad
     """
 
     def __init__(
@@ -40,16 +43,20 @@ class Supports:
         housing: Housing | None = None,
         scale: float,
         share: float,
+        race: RaceCoupling | None = None,
     ) -> None:
-        self.partition, self.couplings, self.housing = partition, couplings, housing
+        self.partition, self.housing = partition, housing
+        self.couplings: list[Coupling] = [*couplings] if race is None else [*couplings, race]
+        self._output, self.floats = len(couplings) - 1, len(couplings) > 1
         self.scale, self.share = scale, share
+        self.offsets = np.zeros((len(self.couplings), N_COUPLED))
         self.ground_vectors: list[PETSc.Vec] = []
         self._grounded_nodes: list[tuple[int, np.ndarray]] = []
-        for coupling in couplings:
+        for coupling in self.couplings:
             for support in coupling.supports():
                 self._ground(coupling, support)
 
-    def _ground(self, coupling: DistributingCoupling, support: np.ndarray) -> None:
+    def _ground(self, coupling: Coupling, support: np.ndarray) -> None:
         """Ground the coupling's nodes along their directions in `support` (n_local, 3)."""
         vector = create_vector(self.partition)
         array = vector.array.reshape(-1, 3)
@@ -60,15 +67,15 @@ class Supports:
         self.ground_vectors.append(vector)
 
     @property
-    def output(self) -> DistributingCoupling:
+    def output(self) -> Coupling:
         """Coupling of the output."""
-        return self.couplings[-1]
+        return self.couplings[self._output]
 
     def prescribed(self, state: LoadState) -> list[tuple[int, int]]:
         """Pairs (coupling, coupled quantity) that the load state prescribes."""
         active = [(i, int(k)) for i, c in enumerate(self.couplings) for k in np.flatnonzero(c.active)]
         if state.control == "torque":
-            active.remove((len(self.couplings) - 1, ROTATION))
+            active.remove((self._output, ROTATION))
         return active
 
     def unused_multipliers(self, state: LoadState) -> np.ndarray:
@@ -83,11 +90,11 @@ class Supports:
 
     def ring_rotation(self, u: np.ndarray) -> float:
         """Rotation (rad) of the ring gear at displacement u (n_local, 3) mm, zero when it is fixed; collective."""
-        return self.output_rotation(u) if len(self.couplings) > 1 else 0.0
+        return self.output_rotation(u) if self.floats else 0.0
 
     def add_ring_moment(self, u: np.ndarray, moment: float, residual: np.ndarray) -> None:
         """Add this rank's part of a moment (N mm) on a ring gear that is not fixed to residual (n_local, 3) N."""
-        if len(self.couplings) > 1:
+        if self.floats:
             ring, moment = self.output, self.partition.comm.allreduce(moment, op=MPI.SUM)
             residual[ring.nodes] += moment * ring.evaluate(u).gradient[ROTATION]
 
@@ -102,14 +109,14 @@ class Supports:
         rows = self.scale * multiplier  # unused ones are zero; used ones are overwritten below
         if not motion:
             return rows
-        target = np.zeros((len(motion), N_COUPLED))
-        target[-1, ROTATION] = state.output_rotation
+        target = self.offsets.copy()
+        target[self._output, ROTATION] += state.output_rotation
         for i, k in self.prescribed(state):
             gradient = motion[i].gradient[k]
             residual[self.couplings[i].nodes] += self.scale * multiplier[N_COUPLED * i + k] * gradient
             rows[N_COUPLED * i + k] = self.scale * (motion[i].value[k] - target[i, k])
         if state.control == "torque":
-            residual[self.output.nodes] -= self.share * state.torque * motion[-1].gradient[ROTATION]
+            residual[self.output.nodes] -= self.share * state.torque * motion[self._output].gradient[ROTATION]
         return rows
 
     def add_blocks(self, u: np.ndarray, rows: BlockRows) -> None:
@@ -123,7 +130,7 @@ class Supports:
         """Gradients of all prescribed quantities, with the rows of their multipliers; the output's rotation is last."""
         prescribed = self.prescribed(state)
         if state.control == "torque":
-            prescribed.append((len(self.couplings) - 1, ROTATION))
+            prescribed.append((self._output, ROTATION))
         motion, border = [coupling.evaluate(u) for coupling in self.couplings], []
         for i, k in prescribed:
             vector = create_vector(self.partition)
@@ -132,5 +139,5 @@ class Supports:
         return border, [N_COUPLED * i + k for i, k in prescribed]
 
     def reactions(self, multiplier: np.ndarray) -> np.ndarray:
-        """Torques (N mm) about z of the whole drive that support the floating bodies, from the multipliers."""
-        return -self.scale * multiplier[ROTATION::N_COUPLED] / self.share
+        """Torques (N mm) about z of the whole drive that support the floating gears, from the multipliers."""
+        return -self.scale * multiplier[ROTATION::N_COUPLED][: self._output + 1] / self.share

@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from swgpar.contact.flank_deviations import FlankDeviations
 from swgpar.contact.search import FlankPair
 from swgpar.contact.segments import MIRROR, FlankFaces, Segments, bilinear, lagrange
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR
@@ -131,10 +132,20 @@ class FlankPairs:
         self.masters = self._master_flanks(masters)
         placed = [self._placed(slaves[p.side], p, k) for k, p in enumerate(pairs)]
         self.faces = PlacedFaces.joined(placed) if placed else None
+        self._ideal = self.masters.point, self.masters.tangent, None if self.faces is None else self.faces.offset
         owner = np.array(
             [partition.owner_of_sector(FLEXIBLE_SPLINE, np.array(p.sector)) for p in pairs], dtype=np.int64
         )
         self.owned = owner == partition.comm.rank
+
+    def deviate(self, deviations: FlankDeviations) -> None:
+        """Move the flanks from their ideal places by these deviations, in place of earlier ones."""
+        if self.faces is None:
+            return
+        point, tangent, offset = self._ideal
+        shift, turned = deviations.master_shifts(self.pairs)
+        self.masters.point, self.masters.tangent = point + shift, tangent + turned
+        self.faces.offset = offset + deviations.slave_heights(self.pairs, self.spline.layout.first_tooth)
 
     def _master_flanks(self, grids: Mapping[int, FlankGrid]) -> MasterFlanks:
         grid, n_pair = self.ring.layout.mesh.flanks[0], len(self.pairs)

@@ -20,6 +20,7 @@ import numpy as np
 from swgpar.contact import friction
 from swgpar.contact.contact import NO_KEYS, FacePressure
 from swgpar.contact.enforcement import penetration
+from swgpar.contact.flank_deviations import FlankDeviations
 from swgpar.contact.flank_pairs import Faces, FlankPairs
 from swgpar.contact.flank_state import ActiveSegments, Crowning, FrictionStart, RingMotion, SearchRange
 from swgpar.contact.friction import Friction, PairKey
@@ -59,6 +60,7 @@ class FlankContact:
     tractions : tangential tractions of the last accepted state by flank pair
     frozen : whether the segments are frozen
     found : pairs and faces of the last search, None before the first one
+    deviations : of the flanks, None where they are ideal
     """
 
     def __init__(
@@ -88,9 +90,11 @@ class FlankContact:
         self.tractions: dict[PairKey, np.ndarray] = {}
         self.frozen = False
         self.found: FlankPairs | None = None
+        self.deviations: FlankDeviations | None = None
         self._near_faces = np.zeros(0, dtype=np.int64)
         self._friction_start: FrictionStart | None = None
         self._active: ActiveSegments | None = None
+        self._cut_at: np.ndarray | None = None  # displacement at which unfrozen segments were cut
         self._ring_rotation = 0.0
 
     # -- search ----------------------------------------------------------------------------------------
@@ -142,6 +146,8 @@ class FlankContact:
         self._ring_rotation = self.ring_motion.ring_rotation(u)
         if found.faces is None:
             return NO_KEYS
+        if self.deviations is not None:
+            found.deviate(self.deviations)
         gap, foot_point = self._gaps_at_centers(u)
         self._near_faces = np.flatnonzero(gap < distances.near)
         if accepted is not None:
@@ -151,7 +157,14 @@ class FlankContact:
 
     def reset(self) -> None:
         """Forget the segments with their multipliers, gaps and pressures."""
-        self._active, self.frozen = None, False
+        self._active, self._cut_at, self.frozen = None, None, False
+
+    def deviate(self, deviations: FlankDeviations) -> None:
+        """Let the flanks deviate from now on, also those of the last search, which begin with new segments."""
+        self.deviations = deviations
+        if self.found is not None:
+            self.found.deviate(deviations)
+        self.reset()
 
     def _stored_tractions(self) -> np.ndarray:
         samples = np.zeros((len(self.pairs), self.n_face, friction.SAMPLES, friction.SAMPLES, 2))
@@ -217,8 +230,8 @@ class FlankContact:
         """Moment (N mm) on the ring gear's rotation from owned pairs, and keys of missing blocks."""
         if not len(self._near_faces):
             return 0.0, NO_KEYS
-        if not self.frozen:
-            self._active = self._cut(u)
+        if not self.frozen and (self._cut_at is None or not np.array_equal(u, self._cut_at)):
+            self._active, self._cut_at = self._cut(u), u.copy()
         active = self._active
         if active.friction is not None:
             active.friction.stiffness = friction.STIFFNESS * self.penalty
@@ -242,7 +255,8 @@ class FlankContact:
         corners = all_faces.corners(self._near_faces)
         zero = np.zeros(corners.weight.shape)
         foot_point = self._call_kernel(corners, u, zero, 0.0, beyond=CONTINUATION)[2]
-        segments = cut_faces(foot_point, all_faces.size[self._near_faces], masters.s, masters.z, self.order)
+        size, plane = all_faces.size[self._near_faces], self.spline.layout.mesh.plane
+        segments = cut_faces(foot_point, size, masters.s, masters.z, self.order, plane)
         faces = all_faces.cut(self._near_faces, segments)
         segments = replace(segments, parent=self._near_faces[segments.parent])
         multiplier = np.zeros_like(faces.weight)
@@ -289,7 +303,8 @@ class FlankContact:
     @property
     def multiplier(self) -> np.ndarray:
         """Multipliers (n_segment, n_q) MPa of the present segments."""
-        return np.zeros((0, self.order**2)) if self._active is None else self._active.multiplier
+        points = self.order if self.spline.layout.mesh.plane else self.order**2
+        return np.zeros((0, points)) if self._active is None else self._active.multiplier
 
     @multiplier.setter
     def multiplier(self, values: np.ndarray) -> None:
@@ -306,7 +321,7 @@ class FlankContact:
 
     def freeze_segments(self) -> None:
         """Freeze the segments of the last evaluation until `release_segments` or the next search."""
-        self.frozen = self._active is not None
+        self.frozen, self._cut_at = self._active is not None, None
 
     def release_segments(self) -> None:
         """Cut the faces anew in every evaluation again."""

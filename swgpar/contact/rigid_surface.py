@@ -14,6 +14,7 @@ import numpy as np
 
 from swgpar.contact.contact import NO_KEYS, FacePressure
 from swgpar.contact.enforcement import penetration, pressure
+from swgpar.contact.face_quadrature import FaceQuadrature
 from swgpar.design.load_states import LoadState
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.sparse import BlockRows
@@ -33,16 +34,32 @@ class SurfacePose:
     """Position of the rigid surface: rotated by `angle` (rad), every gap opened by `clearance` (mm).
 
     inset : None for the cam; for the pins, the distance (mm) by which each is drawn in along the major axis
+    shift : mm, of the surface's axis, in the cam's frame;  lean : displacement of that axis per mm along z
     """
 
     angle: float
     clearance: float = 0.0
     inset: float | None = None
+    shift: tuple[float, float] = (0.0, 0.0)
+    lean: tuple[float, float] = (0.0, 0.0)
 
     def rotation(self) -> np.ndarray:
         """Matrix (3, 3) that takes vectors from the cam's frame to the fixed one."""
         c, s = np.cos(self.angle), np.sin(self.angle)
-        return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        turned = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        return turned @ _leaning(*self.lean) if any(self.lean) else turned
+
+
+def _leaning(x: float, y: float) -> np.ndarray:
+    """Rotation (3, 3) that takes the axis z to the direction (x, y, 1)."""
+    size = np.hypot(x, y)
+    u = np.array([x, y]) / size
+    cosine = 1.0 / np.hypot(1.0, size)
+    sine = size * cosine
+    matrix = np.eye(3)
+    matrix[:2, :2] += (cosine - 1.0) * np.outer(u, u)
+    matrix[:2, 2], matrix[2, :2], matrix[2, 2] = sine * u, -sine * u, cosine
+    return matrix
 
 
 def cam_pose(state: LoadState) -> SurfacePose | None:
@@ -87,28 +104,12 @@ class RigidContact:
         self.surface, self.pose = surface, pose
         self.full_penalty = self.penalty = penalty
         self.pressure_limit = pressure_limit
-        faces = body.layout.mesh.faces["inner"]
-        first = body.owned.start
-        sectors = np.r_[np.flatnonzero(body.preceding), np.arange(first, body.owned.stop)]
-        self.conn = np.ascontiguousarray(body.local[sectors][:, faces].reshape(-1, 4))
-        self.flip = np.ascontiguousarray(body.flip[sectors][:, faces].reshape(-1, 4))
-        self.coords = body.positions()[sectors][:, faces].reshape(-1, 4, 3)
-        self.owned = np.repeat(sectors >= first, len(faces))
-        point, weight = np.polynomial.legendre.leggauss(n_quadrature)
-        a, b = (v.ravel() for v in np.meshgrid(point, point, indexing="ij"))
-        weight = np.outer(weight, weight).ravel()
-        corner = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
-        self.shape = 0.25 * (1 + a[:, None] * corner[:, 0]) * (1 + b[:, None] * corner[:, 1])
-        da = 0.25 * corner[:, 0] * (1 + b[:, None] * corner[:, 1])
-        db = 0.25 * corner[:, 1] * (1 + a[:, None] * corner[:, 0])
-        normal = np.cross(np.einsum("qa,fai->fqi", da, self.coords), np.einsum("qa,fai->fqi", db, self.coords))
-        x = np.einsum("qa,fai->fqi", self.shape, self.coords)
-        radial = np.hypot(x[..., 0], x[..., 1])
-        # the exact area of the cylinder above the facet, not the facet's
-        self.weight = np.linalg.norm(normal, axis=2) * weight * radius / radial
-        self.offset = radius - radial
+        points = FaceQuadrature(body, "inner", radius, n_quadrature)
+        self.conn, self.flip, self.coords, self.owned = points.conn, points.flip, points.coords, points.owned
+        self.shape, self.weight, self.offset = points.shape, points.weight, points.offset
+        x = points.position
         self.inside = np.abs(x[..., 2]) <= half_width
-        self.cosine = np.abs(x[..., 1]) / radial
+        self.cosine = np.abs(x[..., 1]) / np.hypot(x[..., 0], x[..., 1])
         self.angle_limit = np.cos(pin_half_angle)
         self.multiplier = np.zeros_like(self.weight)
         self.gap = np.full_like(self.weight, np.inf)
@@ -169,6 +170,8 @@ class RigidContact:
         field[self.flip == 1] *= HALF_TURN
         x = np.einsum("qa,fai->fqi", self.shape, self.coords + field)
         points = (x @ pose.rotation()).reshape(-1, 3)
+        if any(pose.shift):
+            points[:, :2] -= pose.shift
         reachable = self.inside
         if pose.inset is not None:
             points[:, 1] += pose.inset * np.sign(points[:, 1])

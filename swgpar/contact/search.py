@@ -45,7 +45,7 @@ def facing_flanks(
     ring_rotation : rad, of the ring gear as a whole
     margin : mm, how far the tip of a tooth may stay inside the tip circle of the ring gear
     """
-    layout, ring = partition.layouts
+    layout, ring = partition.layouts[:2]
     first, end = partition.owned_sectors(FLEXIBLE_SPLINE)
     rows = np.arange(len(spline.sectors))[spline.owned]
     tips = np.concatenate([f.nodes[0] for f in layout.mesh.flanks])

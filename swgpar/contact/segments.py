@@ -13,9 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from swgpar.geometry.micro_geometry import crowning
+from swgpar.geometry.rotation import MIRROR
 from swgpar.meshing.sector import FlankGrid, SectorMesh
-
-MIRROR = np.array([-1.0, 1.0])
 
 SAMPLES = 0.5 - 0.5 * np.cos(np.pi * (np.arange(5) + 0.5) / 5)
 """Positions per direction, in [0, 1], at which the exact surface is sampled; it is interpolated by polynomials."""
@@ -42,9 +41,7 @@ def flank_faces(mesh: SectorMesh, grid: FlankGrid, removed: float, width: float,
     ds, dz = np.diff(grid.s), np.diff(grid.z)
     size = np.stack(np.meshgrid(ds, dz, indexing="ij"), axis=-1).reshape(-1, 2)
     a, b = (v.ravel() for v in np.meshgrid(SAMPLES, SAMPLES, indexing="ij"))
-    shape = (len(ds), len(dz), len(a))
-    s = np.broadcast_to((grid.s[:-1, None] + ds[:, None] * a)[:, None, :], shape).ravel()
-    z = np.broadcast_to((grid.z[:-1, None] + dz[:, None] * b)[None, :, :], shape).ravel()
+    s, z = (values.ravel() for values in face_samples(grid))
     profile = mesh.profile
     side = MIRROR if grid.side < 0 else np.ones(2)
     outward = profile.normal(s) * side
@@ -54,6 +51,16 @@ def flank_faces(mesh: SectorMesh, grid: FlankGrid, removed: float, width: float,
     offset = np.sum((exact - facet[:, :2]) * outward, axis=1).reshape(-1, len(SAMPLES), len(SAMPLES))
     middle = profile.normal(np.repeat(grid.s[:-1] + 0.5 * ds, len(dz))) * side
     return FlankFaces(corners, size, np.column_stack([middle, np.zeros(len(middle))]), offset)
+
+
+def face_samples(grid: FlankGrid) -> tuple[np.ndarray, np.ndarray]:
+    """Arc lengths and z (n_face, n, n) mm of the samples of all faces of a flank."""
+    n = len(SAMPLES)
+    shape = (len(grid.s) - 1, len(grid.z) - 1, n, n)
+    s = grid.s[:-1, None] + np.diff(grid.s)[:, None] * SAMPLES
+    z = grid.z[:-1, None] + np.diff(grid.z)[:, None] * SAMPLES
+    s, z = np.broadcast_to(s[:, None, :, None], shape), np.broadcast_to(z[None, :, None, :], shape)
+    return s.reshape(-1, n, n), z.reshape(-1, n, n)
 
 
 def face_corners(n: np.ndarray) -> np.ndarray:
@@ -118,25 +125,29 @@ def _ends(
     return np.where(np.isnan(low), high - length, low), np.where(np.isnan(high), low + length, high)
 
 
-def cut_faces(foot_point: np.ndarray, size: np.ndarray, s: np.ndarray, z: np.ndarray, order: int) -> Segments:
+def cut_faces(
+    foot_point: np.ndarray, size: np.ndarray, s: np.ndarray, z: np.ndarray, order: int, plane: bool = False
+) -> Segments:
     """Cut faces along the lines s and z of the master's nodes.
 
     foot_point : (n_face, 4, 2) mm, foot points of the corners on the master, nan where there is none
     size : (n_face, 2) mm of the faces along arc length, which runs in the opposite sense on the master, and z
     s, z : lines, ascending;  order : Gauss points per direction of a segment
+    plane : nothing changes along z, where one point stands for all
     """
-    along = [
-        _cuts(*_ends(foot_point[..., 0], ([0, 3], [1, 2]), -size[:, 0]), s),
-        _cuts(*_ends(foot_point[..., 1], ([0, 1], [3, 2]), size[:, 1]), z),
-    ]
+    along = [_cuts(*_ends(foot_point[..., 0], ([0, 3], [1, 2]), -size[:, 0]), s)]
+    if plane:
+        along.append(np.tile([0.0, 1.0], (len(size), 1)))
+    else:
+        along.append(_cuts(*_ends(foot_point[..., 1], ([0, 1], [3, 2]), size[:, 1]), z))
     width = [np.diff(ends, axis=1) for ends in along]
     parent, i, j = np.nonzero((width[0] > 1e-12)[:, :, None] & (width[1] > 1e-12)[:, None, :])
-    t, w = np.polynomial.legendre.leggauss(order)
-    ta, tb = (v.ravel() for v in np.meshgrid(0.5 * (t + 1.0), 0.5 * (t + 1.0), indexing="ij"))
+    (t, w), (tz, wz) = (np.polynomial.legendre.leggauss(n) for n in (order, 1 if plane else order))
+    ta, tb = (v.ravel() for v in np.meshgrid(0.5 * (t + 1.0), 0.5 * (tz + 1.0), indexing="ij"))
     size_a, size_b = width[0][parent, i, None], width[1][parent, j, None]
     return Segments(
         parent,
         along[0][parent, i, None] + size_a * ta,
         along[1][parent, j, None] + size_b * tb,
-        size_a * size_b * (0.25 * np.outer(w, w).ravel()),
+        size_a * size_b * (0.25 * np.outer(w, wz).ravel()),
     )

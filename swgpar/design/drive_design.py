@@ -6,23 +6,29 @@ from typing import Any
 
 import numpy as np
 
+from swgpar.design.deviations import Deviations
 from swgpar.design.fit_checks import check_fit
+from swgpar.design.program_sections import Ratcheting, Stiffness
 from swgpar.design.sections import (
     GEARS,
+    OMITTED_BENDING,
     Contact,
     Cup,
     Drive,
     ExternalGear,
+    Fatigue,
     GearName,
     InternalGear,
     Load,
+    Losses,
     Material,
     MicroGeometry,
     Output,
     Solver,
     Steps,
 )
-from swgpar.geometry.cams import Cam, FourRoller, WaveGenerator, make_cam
+from swgpar.geometry.bearing import BearingSizes
+from swgpar.geometry.cams import Bearing, Cam, FourRoller, WaveGenerator, make_cam
 from swgpar.geometry.micro_geometry import WaveGeneratorSurface
 from swgpar.geometry.profiles import RackInvolute, Teeth, ToothProfile, make_profile
 from swgpar.input.design import Design
@@ -40,10 +46,15 @@ class DriveDesign(Design):
     micro_geometry: MicroGeometry = MicroGeometry()
     material: Material
     load: Load = Load()
+    stiffness: Stiffness | None = None
+    ratcheting: Ratcheting | None = None
     contact: Contact = Contact()
     steps: Steps = Steps()
     solver: Solver = Solver()
     output: Output = Output()
+    fatigue: Fatigue | None = None
+    losses: Losses | None = None
+    deviations: Deviations | None = None
 
     @classmethod
     def from_table(cls, table: dict[str, Any]) -> DriveDesign:
@@ -87,6 +98,19 @@ class DriveDesign(Design):
         return 2.0 * np.pi / (self.drive.teeth_rg if self.drive.layout == "ring_fixed" else self.drive.teeth_fs)
 
     @property
+    def has_program(self) -> bool:
+        """Whether the output follows a load program, in place of one torque and a rotation of the wave generator."""
+        return bool(self.load.program or self.stiffness or self.ratcheting)
+
+    @property
+    def is_mirror_symmetric(self) -> bool:
+        """Whether the undeformed drive is its own image in the plane through the axis and the major axis.
+
+        The balls of a bearing are placed on one side of it or the other.
+        """
+        return self.wave_generator.type != "asymmetric_parabolic" and self.bearing is None
+
+    @property
     def periods(self) -> int:
         """Periods that are computed with `steps.samples`: two with friction, whose state settles in the first."""
         return 2 if self.contact.friction else 1
@@ -101,6 +125,59 @@ class DriveDesign(Design):
     def backlash_angle(self) -> float:
         """Rotation gamma of the flexible spline that closes the backlash on one side, rad (eq. 6.4)."""
         return self.backlash / (self.drive.teeth_fs * self.drive.module)
+
+    @property
+    def bearing(self) -> Bearing | None:
+        """Section [wave_generator.bearing]; None where the cam touches the flexible spline."""
+        return self.wave_generator.bearing
+
+    @property
+    def bearing_sizes(self) -> BearingSizes:
+        """Sizes of the bearing, which the design must have."""
+        return BearingSizes(self.inner_radius, self.bearing.race_thickness, self.bearing.ball_diameter)
+
+    @property
+    def race_width(self) -> float:
+        """Width of the outer race, mm."""
+        return self.bearing.race_width or self.wave_generator.face_width
+
+    @property
+    def race_material(self) -> tuple[float, float]:
+        """Modulus of elasticity (MPa) and Poisson's ratio of the bearing."""
+        bearing, material = self.bearing, self.material
+        return (bearing.E or material.E, material.nu if bearing.nu is None else bearing.nu)
+
+    @property
+    def cage_speed(self) -> float:
+        """Speed of the cage over that of the wave generator.
+
+        With `steps.samples` it is 1: the balls are then fixed to the cam, because only then the drive repeats after a
+        period. Otherwise it is the key, or that of balls that roll on a race that rotates with the flexible spline.
+        """
+        if self.steps.samples:
+            return 1.0
+        if self.bearing.cage_speed is not None:
+            return self.bearing.cage_speed
+        return self.bearing_sizes.rolling_speed(1.0 / self.ratio if self.drive.layout == "ring_fixed" else 0.0)
+
+    @property
+    def ball_passing_angle(self) -> float:
+        """Rotation (rad) of the wave generator after which a ball takes the place of the one before it on the cam.
+
+        inf where the balls are fixed to the cam.
+        """
+        slip = abs(1.0 - self.cage_speed)
+        return 2.0 * np.pi / self.bearing.balls / slip if slip > 1e-9 else np.inf
+
+    @property
+    def uses_pins(self) -> bool:
+        """Whether pins deflect the flexible spline; with a bearing the cam grows instead."""
+        return self.steps.pins and self.bearing is None
+
+    @property
+    def resolves_root_stress(self) -> bool:
+        """Whether windows resolve the stress at the teeth: with one loaded state, and on a cam without a bearing."""
+        return self.output.root_stress and not self.has_program and self.bearing is None
 
     @property
     def axial_travel(self) -> float:
@@ -127,6 +204,11 @@ class DriveDesign(Design):
         curvature = factor * 1.5 * self.deflection / self.inner_radius**2
         pitch = 2.0 * np.pi * self.inner_radius / self.drive.teeth_fs
         return (curvature * pitch) ** 2 / 8.0 / (0.5 * self.flexible_spline.rim * curvature)
+
+    @property
+    def can_condense(self) -> bool:
+        """Whether sectors may be condensed: in the plane model, where that leaves out little bending strain."""
+        return self.drive.model == "plane" and self.omitted_bending <= OMITTED_BENDING
 
     @property
     def cup_thickness(self) -> float:

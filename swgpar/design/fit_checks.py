@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from swgpar.design.sections import GEARS
+from swgpar.design.bearing_checks import check_bearing
+from swgpar.design.deviation_checks import check_deviations
+from swgpar.design.program_checks import check_program
+from swgpar.design.sections import GEARS, OMITTED_BENDING
 from swgpar.errors import InputError
 from swgpar.geometry.cams import FourRoller
 
 if TYPE_CHECKING:  # a design checks itself
     from swgpar.design.drive_design import DriveDesign
-
-OMITTED_BENDING = 0.01
-"""Largest share of the bending strain that condensed sectors may leave out."""
 
 SMALLEST_MINOR_AXIS = 0.4
 """Smallest minor semi-axis of a cam over the inner radius of the flexible spline."""
@@ -28,6 +28,8 @@ def check_fit(design: DriveDesign) -> None:
     _check_teeth(design)
     _check_wave_generator(design)
     _check_steps(design)
+    _check_fatigue(design)
+    check_program(design)
     if design.wave_generator.face_width > design.drive.face_width:
         width = design.drive.face_width
         _refuse(
@@ -40,12 +42,16 @@ def check_fit(design: DriveDesign) -> None:
             f'solver.linear = "iterative" is not available with contact.friction = {design.contact.friction:g}: '
             'allowed "direct" with friction'
         )
+    if design.deviations is not None:
+        check_deviations(design, design.deviations)
     if design.drive.model == "plane":
         _check_plane(design)
     else:
         _check_cup(design)
         _check_micro_geometry(design)
     _check_outline(design)
+    if design.bearing is not None:
+        check_bearing(design)
 
 
 def _refuse(key: str, value: float, allowed: str) -> None:
@@ -84,8 +90,27 @@ def _check_steps(design: DriveDesign) -> None:
         _refuse("steps.rotation", steps.rotation, allowed)
 
 
+def _check_fatigue(design: DriveDesign) -> None:
+    """Strengths in their order; Crossland's criterion needs a shear fatigue limit above that of von Mises."""
+    fatigue = design.fatigue
+    if fatigue is None:
+        return
+    tensile, limit = fatigue.tensile_strength, fatigue.fatigue_limit
+    for key, most, name in (
+        ("yield_strength", tensile, "tensile_strength"),
+        ("fatigue_limit", tensile, "tensile_strength"),
+        ("shear_fatigue_limit", limit, "fatigue_limit"),
+    ):
+        if getattr(fatigue, key) > most:
+            _refuse(f"fatigue.{key}", getattr(fatigue, key), f"above 0 to {most:g} MPa (fatigue.{name})")
+    least = limit / np.sqrt(3.0)
+    if fatigue.shear_fatigue_limit < least:
+        allowed = f"{least:.4g} (fatigue.fatigue_limit over the root of 3) to {limit:g} MPa"
+        _refuse("fatigue.shear_fatigue_limit", fatigue.shear_fatigue_limit, allowed)
+
+
 def _check_plane(design: DriveDesign) -> None:
-    if design.solver.condensed_sectors and design.omitted_bending > OMITTED_BENDING:
+    if design.solver.condensed_sectors and not design.can_condense:
         raise InputError(
             f"solver.condensed_sectors = true leaves out {design.omitted_bending:.2g} of the bending strain: allowed "
             f"up to {OMITTED_BENDING:g}, with more teeth or a thicker flexible_spline.rim"
@@ -147,6 +172,6 @@ def _check_outline(design: DriveDesign) -> None:
 
 def _shape_keys(design: DriveDesign) -> str:
     """The keys that determine the curve of the cam; a smaller C, where there is one, makes it slimmer."""
-    others = ("type", "face_width", "pin_half_angle")
+    others = ("type", "face_width", "pin_half_angle", "bearing")
     keys = sorted(set(type(design.wave_generator).model_fields).difference(others))
     return ", ".join(f"wave_generator.{key}{' (smaller is slimmer)' if key == 'C' else ''}" for key in keys)

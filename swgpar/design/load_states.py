@@ -3,10 +3,14 @@
 The stages follow each other:
 
 1. DEFLECT: the pins, the two halves of the cam, push the flexible spline outward by d / 2 each. A cam that bulges
-   beside its tips pushes farther. With `steps.pins = false` the cam grows out of the circle instead.
+   beside its tips pushes farther. With `steps.pins = false`, and with a bearing, the cam grows
+   out of the circle instead.
 2. ENGAGE: the wave generator grows into place, the pins are drawn back, and the flanks may touch.
 3. LOAD: the torque is applied. The output rotates until the flanks carry it.
 4. ROTATE: the wave generator rotates in increments.
+
+PROGRAM takes the place of LOAD and ROTATE where the design has a load program: every increment goes to one of its
+points.
 
 Without a torque, a drive with backlash has no definite output angle. The output is then held at its kinematic angle,
 and the torque that this takes is reported.
@@ -22,6 +26,7 @@ from typing import Any, Literal
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.load_program import internal_torque, program_points
 from swgpar.design.remarks import torque_remark
 from swgpar.geometry.cams import pin_travel
 
@@ -32,14 +37,22 @@ CAM_START_CLEARANCE, FLANK_START_CLEARANCE = 0.05, 0.05
 """Clearance from which cam and flanks grow into place, as a share of the module."""
 
 
+SAME_ROTATION = 1e-12
+"""Rotation (rad) below which the output has followed the wave generator by its ratio."""
+
+
 class Stage(enum.IntEnum):
-    """Stage of the load sequence; its value is the number in the column `step` of the first increment."""
+    """Stage of the load sequence; its value is the number in the column `step` of the first increment.
+
+    Points of a load program are numbered from that of LOAD on.
+    """
 
     START = 0
     DEFLECT = 1
     ENGAGE = 2
     LOAD = 3
     ROTATE = 4
+    PROGRAM = 5
 
     @property
     def label(self) -> str:
@@ -88,6 +101,18 @@ class LoadState:
 
         return before.stage == Stage.START or any(new and not old for new, old in zip(active(self), active(before)))
 
+    def continues_period(self, before: LoadState, ratio: float) -> bool:
+        """Whether this state follows from `before` in the drive's periodic motion, that is under the same load.
+
+        ratio : speed of the wave generator over that of the output
+        """
+        if self.stage != Stage.PROGRAM:
+            return True
+        if self.control == "torque" or self.control != before.control:
+            return (self.control, self.torque) == (before.control, before.torque)
+        turned = self.output_rotation - before.output_rotation - (self.angle - before.angle) / ratio
+        return abs(turned) < SAME_ROTATION
+
     def interpolate(self, target: LoadState, share: float, module: float, deflection: float) -> LoadState:
         """State between this one (share 0) and `target` (share 1).
 
@@ -124,7 +149,7 @@ class LoadState:
 def start_state(design: DriveDesign) -> LoadState:
     """Undeformed drive; the pins, or the shrunk cam, touch the inner surface."""
     travel = pin_travel(design.cam(), design.inner_radius)
-    if design.steps.pins:
+    if design.uses_pins:
         return LoadState(Stage.START, 0, pin_inset=travel)
     return LoadState(Stage.START, 0, cam_clearance=travel)
 
@@ -133,8 +158,10 @@ def load_sequence(design: DriveDesign) -> Iterator[LoadState]:
     """Load states at the ends of all increments of a run, in order."""
     yield from _deflection(design)
     yield from _engagement(design)
-    given = 0.0 if torque_remark(design) else 1000.0 * design.load.torque
-    torque = -np.copysign(given, design.ratio)
+    if design.has_program:
+        yield from _program(design)
+        return
+    torque = 0.0 if torque_remark(design) else internal_torque(design, design.load.torque)
     control: Literal["rotation", "torque"] = "torque" if torque else "rotation"
     loaded = LoadState(Stage.LOAD, 3, cam_clearance=0.0, flank_clearance=0.0, control=control)
     if torque:
@@ -164,7 +191,7 @@ def _deflection(design: DriveDesign) -> Iterator[LoadState]:
 
 
 def _engagement(design: DriveDesign) -> Iterator[LoadState]:
-    pins, module, n = design.steps.pins, design.drive.module, design.steps.engage_increments
+    pins, module, n = design.uses_pins, design.drive.module, design.steps.engage_increments
     for i in range(1, n + 1):
         t = i / n
         yield LoadState(
@@ -176,9 +203,19 @@ def _engagement(design: DriveDesign) -> Iterator[LoadState]:
         )
 
 
+def _program(design: DriveDesign) -> Iterator[LoadState]:
+    for step, point in enumerate(program_points(design), start=int(Stage.LOAD)):
+        state = LoadState(Stage.PROGRAM, step, float(np.radians(point.angle)), cam_clearance=0.0, flank_clearance=0.0)
+        if point.control == "torque":
+            yield replace(state, control="torque", torque=internal_torque(design, point.value))
+        else:
+            yield replace(state, output_rotation=float(np.radians(point.value)))
+
+
 def from_loaded(states: list[LoadState]) -> list[LoadState]:
-    """The load states from the fully loaded one on."""
-    loaded = max(k for k, state in enumerate(states) if state.stage == Stage.LOAD)
+    """The load states from the fully loaded one on, of a load program from its first point on."""
+    ends = [k for k, state in enumerate(states) if state.stage == Stage.LOAD]
+    loaded = ends[-1] if ends else next(k for k, state in enumerate(states) if state.stage == Stage.PROGRAM)
     return states[loaded:]
 
 

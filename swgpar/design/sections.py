@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
+from swgpar.design.program_sections import ProgramStage
 from swgpar.geometry.profiles import ExternalProfile, InternalProfile
 from swgpar.input.quantities import Section, quantity
 
@@ -12,6 +13,9 @@ GearName = Literal["flexible_spline", "ring_gear"]
 
 GEARS: tuple[GearName, GearName] = ("flexible_spline", "ring_gear")
 """Both gears, in the order of the bodies."""
+
+OMITTED_BENDING = 0.01
+"""Largest share of the bending strain that condensed sectors may leave out."""
 
 
 class Drive(Section):
@@ -84,6 +88,9 @@ class Load(Section):
     input_speed: float = quantity(
         2000.0, unit="1/min", text="speed of the wave generator, for sliding speeds", gt=0.0, le=1e6
     )
+    program: list[ProgramStage] = quantity(
+        [], text="stages of a load program, which takes the place of torque and rotation"
+    )
 
 
 class Contact(Section):
@@ -105,7 +112,9 @@ class Steps(Section):
 
     rotation: float = quantity(45.0, unit="deg", text="rotation of the wave generator", ge=0.0, le=36000.0)
     increment: float = quantity(5.0, unit="deg", text="increment of that rotation", ge=0.01, le=45.0)
-    pins: bool = quantity(True, text="deflect the spline by pins before the cam acts; false: by the growing cam")
+    pins: bool = quantity(
+        True, text="deflect the spline by pins before the cam acts; false, or with a bearing: by the growing cam"
+    )
     deflect_increments: int = quantity(1, text="increments of the deflection (step 1)", ge=1, le=1000)
     engage_increments: int = quantity(1, text="increments of the engagement", ge=1, le=1000)
     load_increments: int = quantity(1, text="increments of the torque", ge=1, le=1000)
@@ -149,4 +158,33 @@ class Output(Section):
     figures: bool = quantity(True, text="draw the figures")
     root_stress: bool = quantity(
         True, text="resolve the largest tensile stress at the teeth under load by windows on finer meshes"
+    )
+
+
+class Fatigue(Section):
+    """Section [fatigue]: strengths of the flexible spline, for polished specimens; present to compute its fatigue.
+
+    The defaults are those of a steel like 30CrNiMo8, quenched and tempered (docs/theory/fatigue.md).
+    """
+
+    tensile_strength: float = quantity(1250.0, unit="MPa", text="tensile strength", gt=0.0)
+    yield_strength: float = quantity(1050.0, unit="MPa", text="yield strength", gt=0.0)
+    fatigue_limit: float = quantity(560.0, unit="MPa", text="fatigue limit under alternating tension", gt=0.0)
+    shear_fatigue_limit: float = quantity(348.0, unit="MPa", text="fatigue limit under alternating torsion", gt=0.0)
+    surface_factor: float = quantity(0.86, text="factor of the surface on the fatigue strengths", gt=0.0, le=1.5)
+    size_factor: float = quantity(1.0, text="factor of the size on the fatigue strengths", gt=0.0, le=1.5)
+    basquin_coefficient: float = quantity(1875.0, unit="MPa", text="Basquin's coefficient, of reversals", gt=0.0)
+    basquin_exponent: float = quantity(-0.087, text="Basquin's exponent", ge=-0.5, lt=0.0)
+
+
+class Losses(Section):
+    """Section [losses]: coefficients of the losses; present to compute them."""
+
+    loss_factor: float = quantity(3e-4, text="loss factor of the flexible spline's material", ge=0.0, le=0.1)
+    flank_friction: float = quantity(
+        0.05, text="friction between the flanks for their losses, without contact.friction", ge=0.0, le=1.0
+    )
+    bearing_friction: float = quantity(0.0015, text="friction of the wave generator's bearing", ge=0.0, le=0.1)
+    bearing_diameter: float | None = quantity(
+        None, unit="mm", text="diameter at which that friction acts; that of the spline's bore without it", gt=0.0
     )

@@ -16,8 +16,8 @@ import numpy as np
 from swgpar.fem.condensed_sectors import CondensedSector
 from swgpar.meshing.sector import SectorMesh
 
-FLEXIBLE_SPLINE, RING_GEAR = 0, 1
-"""Indices of the bodies of a drive, in partitions, elements and layouts."""
+FLEXIBLE_SPLINE, RING_GEAR, OUTER_RACE = 0, 1, 2
+"""Indices of the bodies of a drive, in partitions, elements and layouts; the race only of drives with a bearing."""
 
 
 @dataclass(frozen=True)

@@ -111,6 +111,32 @@ class BodyElements:
             np.ascontiguousarray(self.flip[sector[:, None], nodes]),
         )
 
+    def assemble(
+        self,
+        u: np.ndarray,
+        residual: np.ndarray | None,
+        positions: np.ndarray | None = None,
+        values: np.ndarray | None = None,
+    ) -> None:
+        """Add the body's internal forces to `residual` (n_local, 3) N and tangent blocks (N/mm) to `values`.
+
+        u : (n_local, 3) mm;  positions : of the element blocks in `values`
+        Raises FloatingPointError where an element has collapsed.
+        """
+        elements = self.assembled
+        if len(elements.conn):
+            assemble_elements(
+                self.assembled_reference,
+                elements.reference,
+                elements.rotation,
+                elements.conn,
+                elements.flip,
+                u,
+                residual,
+                positions,
+                values,
+            )
+
     def displacement(self, u: np.ndarray) -> np.ndarray:
         """Displacement of all nodes of the sectors seen, images rotated; (n_sectors, n_node, 3) mm."""
         field = np.where(self.local[..., None] >= 0, u[self.local], 0.0)
@@ -208,7 +234,7 @@ class Elements:
         multipliers = partition.multiplier_nodes
         own = multipliers - local.row_start
         touched[own[(own >= 0) & (own < local.n_own)]] = True
-        blocks = [self._blocks(body.assembled.conn) for body in self.bodies]
+        blocks = [self.block_keys(body.assembled.conn) for body in self.bodies]
         diagonal = np.arange(local.row_start, local.row_start + local.n_own)
         keys = [*(block.ravel() for block in blocks), diagonal * partition.n_global + diagonal]
         if local.n_own and local.row_start + local.n_own == partition.n_global:
@@ -218,7 +244,7 @@ class Elements:
         positions = [np.where(block >= 0, np.searchsorted(keys, block), -1) for block in blocks]
         return TangentPattern(keys, positions, np.flatnonzero(~touched))
 
-    def _blocks(self, conn: np.ndarray) -> np.ndarray:
+    def block_keys(self, conn: np.ndarray) -> np.ndarray:
         """Keys row * n_global + column (n, m * m) of the owned blocks of elements, -1 elsewhere; conn : (n, m)."""
         local = self.local
         number = np.where(conn >= 0, local.number[conn], -1).astype(np.int64)
@@ -258,16 +284,6 @@ class Elements:
         Raises FloatingPointError where an element has collapsed.
         """
         for k, body in enumerate(self.bodies):
-            elements = body.assembled
-            if len(elements.conn):
-                assemble_elements(
-                    body.assembled_reference,
-                    elements.reference,
-                    elements.rotation,
-                    elements.conn,
-                    elements.flip,
-                    u,
-                    residual,
-                    None if positions is None else positions[k],
-                    None if rows is None else rows.values,
-                )
+            body.assemble(
+                u, residual, None if positions is None else positions[k], None if rows is None else rows.values
+            )

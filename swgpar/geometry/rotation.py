@@ -1,4 +1,4 @@
-"""Rotations about the drive's axis z."""
+"""Rotations about the drive's axis z, and the reflection of a tooth at its centre line."""
 
 from __future__ import annotations
 
@@ -6,6 +6,9 @@ import numpy as np
 
 HALF_TURN = np.array([-1.0, -1.0, 1.0])
 """Factors of a vector's components (x, y, z) under a rotation by 180 degrees about z."""
+
+MIRROR = np.array([-1.0, 1.0])
+"""Factors of the components (x, y) of a vector of one flank of the tooth at +y that give those of the other flank."""
 
 
 def rotated(vectors: np.ndarray, angle: float | np.ndarray) -> np.ndarray:

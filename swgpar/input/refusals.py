@@ -25,10 +25,16 @@ def _section_classes(field: FieldInfo) -> list[type[Section]]:
     return [choice for choice in choices if isinstance(choice, type) and issubclass(choice, Section)]
 
 
+def _is_list(field: FieldInfo) -> bool:
+    """Whether a field holds a list of sections."""
+    return get_origin(field.annotation) is list and bool(_section_classes(field))
+
+
 def _locate(model: type[Section], path: Sequence[Any]) -> tuple[type[Section], FieldInfo | None, list[Any]]:
     """Return the section that holds the last key of `path`, the field when it is a known key, and the keys.
 
-    Below a field with several sections pydantic adds the chosen type to the path. It is not a key, and left out.
+    Below a field with several sections pydantic adds the chosen type to the path. It is not a key, and left out. Below
+    a list of sections it adds the index, which becomes the number of the entry, from 1.
     """
     path, keys = list(path), []
     field = None
@@ -39,6 +45,8 @@ def _locate(model: type[Section], path: Sequence[Any]) -> tuple[type[Section], F
         if len(classes) > 1 and path:
             tag = path.pop(0)
             classes = [c for c in classes if tag in get_args(c.model_fields["type"].annotation)]
+        if classes and path and _is_list(field):
+            keys.append(path.pop(0) + 1)
         if not (classes and path):
             break
         model = classes[0]
@@ -48,10 +56,12 @@ def _locate(model: type[Section], path: Sequence[Any]) -> tuple[type[Section], F
 def _unknown_key(model: type[Section], path: Sequence[Any], value: Any) -> str:
     """Refuse an unknown key and suggest the one most likely meant."""
     parent = show_key(*path[:-1])
+    tables = {name for name, field in model.model_fields.items() if _section_classes(field)}
     names = list(model.model_fields)
     where = f"section [{parent}]" if parent else "design file"
     given = f"{show_key(*path)} = {show(value)}"
-    near = difflib.get_close_matches(str(path[-1]), names, n=1, cutoff=0.5)
+    alike = [name for name in names if (name in tables) == isinstance(value, dict)]
+    near = difflib.get_close_matches(str(path[-1]), alike, n=1, cutoff=0.5)
     if near:
         return f"{given} is not a key of the {where}: did you mean {parent + '.' if parent else ''}{near[0]}?"
     return f"{given} is not a key of the {where}: allowed {', '.join(names)}"
@@ -90,9 +100,10 @@ def _bad_section(field: FieldInfo, kind: str, key: str, value: Any) -> str:
         types = (name for section in sections for name in get_args(section.model_fields["type"].annotation))
         return f"{key}.type = {show(value['type'])} is not available: allowed {_choices(types)}"
     keys = ", ".join(sections[0].model_fields)
+    header = f"[[{key.rstrip('.0123456789')}]]" if _is_list(field) else f"[{key}]"
     if kind == "missing":
-        return f"{key} is missing: the section [{key}] has the keys {keys}"
-    return f"{key} = {show(value)} is not a section: write [{key}] with the keys {keys}"
+        return f"{key} is missing: the section {header} has the keys {keys}"
+    return f"{key} = {show(value)} is not a section: write {header} with the keys {keys}"
 
 
 def _expected(field: FieldInfo) -> tuple[str, str]:

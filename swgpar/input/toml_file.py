@@ -83,23 +83,37 @@ def split_override(override: str) -> tuple[str, str]:
 def with_value(table: dict[str, Any], key: str, value: Any) -> dict[str, Any]:
     """Return a copy of `table` with the value of ``section.key`` replaced; missing sections are added.
 
-    Raises InputError where a part of the key names a value instead of a section.
+    In a list of tables the part after its name is the number of the entry, from 1: ``load.program.2.torque``.
+
+    Raises InputError where a part of the key names a value instead of a section, or an entry that is not there.
     """
     table = _copy(table)
     target, names = table, key.split(".")
     for depth, name in enumerate(names[:-1], start=1):
-        target = target.setdefault(name, {})
-        if not isinstance(target, dict):
+        target = _entry(target, name, key, value) if isinstance(target, list) else target.setdefault(name, {})
+        if not isinstance(target, dict | list):
             raise InputError(
                 f"{show_key(key)} = {show(value)} cannot be applied: {show_key(*names[:depth])} = {show(target)} "
                 "is a value, not a section"
             )
+    if isinstance(target, list):
+        raise InputError(f"{key} = {show(value)} cannot be applied: write a key of the entry, {key}.key")
     target[names[-1]] = value
     return table
 
 
-def _copy(table: dict[str, Any]) -> dict[str, Any]:
-    return {key: _copy(value) if isinstance(value, dict) else value for key, value in table.items()}
+def _entry(tables: list[Any], number: str, key: str, value: Any) -> Any:
+    """The entry of a list of tables with this number, from 1."""
+    if number.isdecimal() and 1 <= int(number) <= len(tables):
+        return tables[int(number) - 1]
+    raise InputError(f"{key} = {show(value)} cannot be applied: {number} is no entry, allowed 1 to {len(tables)}")
+
+
+def _copy(value: Any) -> Any:
+    """A copy of tables and lists in each other."""
+    if isinstance(value, dict):
+        return {key: _copy(item) for key, item in value.items()}
+    return [_copy(item) for item in value] if isinstance(value, list) else value
 
 
 def validate(model: type[SectionType], table: dict[str, Any]) -> SectionType:

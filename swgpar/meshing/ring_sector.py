@@ -1,4 +1,4 @@
-"""A plain ring as a chain of congruent sectors: the body of benchmarks, without teeth."""
+"""A plain ring as a chain of congruent sectors, without teeth: the body of benchmarks, and a bearing's outer race."""
 
 from __future__ import annotations
 
@@ -8,6 +8,12 @@ from swgpar.errors import InputError
 from swgpar.meshing.quality import hex_quality
 from swgpar.meshing.sector import SectorMesh
 from swgpar.meshing.sweep import sweep_line, sweep_quads
+
+OUTER_RACE = "outer_race"
+"""Name of a bearing's outer race as a body."""
+
+SAME = 1e-9
+"""Share of a sector below which coordinates are the same."""
 
 AROUND = 2
 """Elements around a sector: even, so that nodes lie on its middle, which for sector 0 is the major axis."""
@@ -33,8 +39,64 @@ def ring_sector(
     if not 0.0 < inner < outer:
         raise InputError(f"inner radius = {inner:g} is out of range: allowed above 0 to below {outer:g} mm (the outer)")
     angle = np.pi / sectors * np.linspace(-1.0, 1.0, AROUND + 1)
-    radius = np.linspace(inner, outer, radial + 1)
     z = width * np.linspace(-0.5, 0.5, (1 if plane else axial) + 1)
+    return _sector("ring", np.linspace(inner, outer, radial + 1), angle, z, sectors, plane)
+
+
+def race_sector(spline: SectorMesh, outer: float, thickness: float, width: float, radial: int) -> SectorMesh:
+    """Sector of the outer race of a bearing, whose outer surface has its nodes opposite those of the flexible spline.
+
+    Parameters
+    ----------
+    spline : tooth sector of the flexible spline
+    outer, thickness, width : float, mm
+    radial : int, elements through the thickness
+
+    In the plane the mesh is as wide as the spline's.
+    """
+    angle, z = _grid(spline)
+    if not spline.plane:
+        z = np.unique(np.clip(z, -0.5 * width, 0.5 * width))
+    radius = np.linspace(outer - thickness, outer, radial + 1)
+    return _sector(OUTER_RACE, radius, angle, z, spline.n_sectors, spline.plane)
+
+
+def race_grid(race: SectorMesh, surface: str) -> np.ndarray:
+    """Nodes (n_around + 1, n_z) of the surface ``inner`` or ``outer`` of a race's sector, clockwise side first."""
+    angle, z = _grid(race, surface)
+    nodes = np.unique(race.faces[surface])
+    return nodes.reshape(len(z), len(angle)).T
+
+
+def opposite_cells(spline: SectorMesh, race: SectorMesh) -> tuple[np.ndarray, np.ndarray]:
+    """Cells of the race's outer surface opposite the spline's faces ``inner``, by their first nodes.
+
+    Returns columns (n_face,) around and layers (n_face,) along z; layer -1 beyond the width of the race.
+    """
+    angle, z = _grid(race, "outer")
+    corners = spline.coords[spline.faces["inner"]]
+    x, y, height = corners.mean(axis=1).T
+    # a face that the race covers in part has its middle beyond the race or within
+    inward = corners[np.arange(len(corners)), np.abs(corners[..., 2]).argmin(axis=1), 2]
+    height = np.where(np.abs(height) < z[-1], height, 0.5 * (inward + np.copysign(z[-1], height)))
+    layer = np.searchsorted(z, height) - 1
+    reached = np.abs(inward) < z[-1] * (1.0 - SAME)
+    return np.searchsorted(angle, np.arctan2(-x, y)) - 1, np.where(spline.plane | reached, layer, -1)
+
+
+def _grid(mesh: SectorMesh, surface: str = "inner") -> tuple[np.ndarray, np.ndarray]:
+    """Angles (rad, clockwise side first) and z (mm) of the nodes of a surface."""
+    x, y, z = mesh.coords[np.unique(mesh.faces[surface])].T
+    return _distinct(np.arctan2(-x, y)), _distinct(z)
+
+
+def _distinct(values: np.ndarray) -> np.ndarray:
+    ordered = np.sort(values)
+    return ordered[np.append(True, np.diff(ordered) > SAME * np.ptp(ordered))]
+
+
+def _sector(body: str, radius: np.ndarray, angle: np.ndarray, z: np.ndarray, sectors: int, plane: bool) -> SectorMesh:
+    """Sector with nodes at these radii (mm), angles (rad from +y, counter-clockwise) and z (mm)."""
     z, r, phi = np.meshgrid(z, radius, angle, indexing="ij")
     coords = np.stack([-r * np.sin(phi), r * np.cos(phi), z], axis=-1).reshape(-1, 3)
     number = np.arange(len(coords), dtype=np.int32).reshape(z.shape)
@@ -45,7 +107,7 @@ def ring_sector(
     hexes = sweep_quads(quads, rows)
     surface = number[:1] if plane else number
     return SectorMesh(
-        body="ring",
+        body=body,
         n_sectors=sectors,
         phase=0.0,
         coords=coords,

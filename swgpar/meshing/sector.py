@@ -36,7 +36,7 @@ class SectorMesh:
     Attributes
     ----------
     body : str
-        ``flexible_spline`` or ``ring_gear``, or ``ring`` for a plain one.
+        ``flexible_spline``, ``ring_gear`` or ``outer_race``, or ``ring`` for a plain one.
     n_sectors : int
         Number of teeth of the full gear.
     phase : float, rad

@@ -24,8 +24,27 @@ TABLES = "tables"
 PAIRS = "pairs.csv"
 """Contacts of the flanks under load."""
 
+TRANSMISSION_ERROR = "transmission_error.csv"
+"""Transmission error and input torque over a period, or with deviations over whole turns."""
+
 CONTACT_LINES = "contact_lines.csv"
 """The same along the face width."""
+
+SECTOR, SECTOR_XDMF = "fatigue.h5", "fatigue.xdmf"
+"""Safety factors at the nodes of one sector."""
+
+CYCLE = "fatigue_cycle.csv"
+"""Stress over a cycle where the safety is the least."""
+
+LOSSES = "losses.csv"
+"""Losses at the angles of the sampled period."""
+PROGRAM = "program.csv"
+"""Torque and rotation of the output at the points of a load program."""
+
+STIFFNESS = "stiffness.csv"
+"""The same on the branches of the stiffness loops."""
+BALLS = "balls.csv"
+"""Loads of the balls of a bearing."""
 
 SUMMARY = "summary.json"
 """Written last: a folder that has it is that of a finished run."""
@@ -39,6 +58,14 @@ RESULTS = (
     SUMMARY,
     PAIRS,
     CONTACT_LINES,
+    SECTOR,
+    SECTOR_XDMF,
+    CYCLE,
+    LOSSES,
+    PROGRAM,
+    STIFFNESS,
+    TRANSMISSION_ERROR,
+    BALLS,
     "published.csv",
     RECIPE,
     f"{TABLES}/*.csv",

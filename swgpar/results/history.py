@@ -94,8 +94,12 @@ def transmission_error(wg_angle: np.ndarray, output_angle: np.ndarray, ratio: fl
     wg_angle, output_angle : (n,) degrees; the output's angle may be given between -180 and 180
     ratio : speed of the wave generator over that of the output
     """
-    error = output_angle - wg_angle / ratio
-    return 3600.0 * (error - 360.0 * np.round(error / 360.0))
+    return 3600.0 * wrapped(output_angle - wg_angle / ratio)
+
+
+def wrapped(angle: np.ndarray) -> np.ndarray:
+    """Angles (degrees) within half a turn."""
+    return angle - 360.0 * np.round(angle / 360.0)
 
 
 def loaded_increments(history: Mapping[str, np.ndarray]) -> np.ndarray:

@@ -12,8 +12,8 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.constraints.supports import Supports
-from swgpar.contact.clearance import FlankClearance
-from swgpar.contact.contact import Contact, largest
+from swgpar.contact.clearance import LOADED_SIDE, FlankClearance
+from swgpar.contact.contact import NO_KEYS, Contact, largest
 from swgpar.contact.flank_state import ActiveSegments, SearchRange
 from swgpar.contact.flanks import FlankContact
 from swgpar.contact.friction import PairKey
@@ -67,10 +67,11 @@ class DiscreteProblem:
     ----------
     partition, elements : ownership and elements, bound to their local nodes
     supports : couplings, housing, grounding and load
-    rigid_contacts : contacts with rigid surfaces
+    rigid_contacts : contacts with rigid surfaces, and those of a bearing
     flanks, contact_search : contact of the tooth flanks and its search; None for a body without teeth
     module : mm, length that bounds and floors refer to;  inner_radius : mm, size of the body
     inactive : ring-gear sectors that are left out; None where all are modelled
+    coupling_keys : (n,) of blocks that contacts of two bodies need, row * n_global + column, sorted
     phases : wall seconds
 
     Attributes
@@ -92,6 +93,7 @@ class DiscreteProblem:
         module: float,
         inner_radius: float,
         inactive: InactiveSectors | None = None,
+        coupling_keys: np.ndarray = NO_KEYS,
         phases: PhaseTimes,
     ) -> None:
         self.partition, self.elements, self.supports, self.phases = partition, elements, supports, phases
@@ -104,7 +106,7 @@ class DiscreteProblem:
             else FlankClearance(self.flanks, partition.comm, module=module, outer_radius=contact_search.outer_radius)
         )
         self.module, self.inner_radius, self.inactive = module, inner_radius, inactive
-        self.scale = supports.scale
+        self.scale, self.coupling_keys = supports.scale, coupling_keys
         self.x, self.accepted = create_vector(partition), create_vector(partition)
         self.local = elements.local
         self.exchange = Exchange(partition, self.local.number)
@@ -167,17 +169,23 @@ class DiscreteProblem:
             self.local = self.elements.local.extended(further)
             self.exchange.destroy()
             self.exchange = Exchange(self.partition, self.local.number)
-            pattern = np.zeros(0, dtype=np.int64)
+            pattern = self.coupling_keys
             if self.flanks is not None:
                 accepted = None
                 if not self.flanks.symmetric and state.friction_acts:
                     accepted = self.displacement(self.accepted)
                 u = self.displacement()
-                pattern = self.flanks.search(pairs, self.local, u, self.contact_search.distances, accepted)
+                found = self.flanks.search(pairs, self.local, u, self.contact_search.distances, accepted)
+                pattern = np.union1d(found, self.coupling_keys)
                 self._choose_modelled_sectors()
         for contact in self.rigid_contacts:
             contact.reset()
         self.set_pattern(pattern)
+
+    def reset_contacts(self) -> None:
+        """Begin all contacts anew with the pairs and faces of the last search."""
+        for contact in self.contacts:
+            contact.reset()
 
     def moved_since_search(self) -> float:
         """Largest displacement (mm) of a node since the last search, by component; collective."""
@@ -288,7 +296,7 @@ class DiscreteProblem:
         """Bound of the output's motion in a Newton step, in units of the last border; None where it is prescribed."""
         if state.control != "torque":
             return None
-        return self.scale * self.clearance.largest_rotation()
+        return self.scale * self.clearance.largest_rotation(self._loaded_side(state))
 
     def closing_rotation(self, state: LoadState) -> float:
         """Rotation (rad) of the output, in the direction of the torque of `state`, that brings its flanks together.
@@ -297,7 +305,12 @@ class DiscreteProblem:
         """
         self.search(state)
         self.flanks.evaluate(self.displacement(), state, None, None)
-        return float(np.copysign(self.clearance.closing_rotation(), state.torque))
+        return float(np.copysign(self.clearance.closing_rotation(self._loaded_side(state)), state.torque))
+
+    def _loaded_side(self, state: LoadState) -> int:
+        """Side of the flanks that carry the torque of `state`, on the flexible spline or on the ring gear."""
+        counter_clockwise = (state.torque >= 0.0) == (not self.supports.floats)
+        return LOADED_SIDE if counter_clockwise else -LOADED_SIDE
 
     # -- segments of the flanks ------------------------------------------------------------------------
 

@@ -234,14 +234,20 @@ class NewtonSolver:
     # -- solve -----------------------------------------------------------------------------------------
 
     def solve(
-        self, load_state: LoadState, *, establish_contact: bool = False, max_iterations: int | None = None
+        self,
+        load_state: LoadState,
+        *,
+        establish_contact: bool = False,
+        max_iterations: int | None = None,
+        search: bool = True,
     ) -> SolveResult:
         """Solve for equilibrium from the present x; x is the solution, or not valid when the result says not converged.
 
         establish_contact : contacts are switched on: approach through softened penalties
         max_iterations : of all phases together; None for a multiple of that of the settings
+        search : look for pairs of flanks first; False where those of the last search are near still
         """
-        self.state = state = self._begin(load_state, establish_contact)
+        self.state = state = self._begin(load_state, establish_contact, search)
         if max_iterations is not None:
             state.max_iterations = max_iterations
         while state.result is None:
@@ -261,12 +267,15 @@ class NewtonSolver:
         state.before_augmentation = state.breaker.solution = None
         return state.result
 
-    def _begin(self, load_state: LoadState, establish_contact: bool) -> SolveState:
+    def _begin(self, load_state: LoadState, establish_contact: bool, search: bool) -> SolveState:
         problem = self.problem
         problem.clear_unused_multipliers(load_state)
         bounded = problem.flanks is not None and problem.flanks.is_active(load_state)
         self.line_search.max_node_step = MAX_NODE_STEP * problem.module if bounded else np.inf
-        problem.search(load_state)
+        if search:
+            problem.search(load_state)
+        else:
+            problem.reset_contacts()
         softenings = list(SOFT_PENALTIES) if establish_contact else []
         return SolveState(load_state, softenings, MAX_ITERATIONS_FACTOR * self.settings.max_iterations)
 

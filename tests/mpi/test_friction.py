@@ -2,60 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import pytest
 from mpi4py import MPI
 
+from support.friction_work import FrictionWork
 from support.stepping import MODELS, WORLD, assert_agree, rotate, small
 from support.stepping import loaded as under_torque
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.contact.segments import Segments
 
 PITCH = 2.0 * np.pi / 42
 
 
 def loaded(friction: float, comm: MPI.Comm = WORLD, model: str = "cup") -> LoadStepper:
     return under_torque(small(model, f"contact.friction={friction}"), comm)[0]
-
-
-@dataclass
-class Forces:
-    """Tangential forces (N) on the points of the flanks of a state, and where these are on the master (mm)."""
-
-    keys: list
-    segments: Segments
-    force: np.ndarray
-    foot_point: np.ndarray
-
-
-def forces(stepper: LoadStepper) -> tuple[Forces, float]:
-    """Forces of the present state, and their work over the slip since the one before; metric taken as one."""
-    flanks, u = stepper.problem.flanks, stepper.problem.displacement()
-    active = flanks.saved_segments()
-    if active is None:
-        none = np.zeros((0, 4, 2))
-        return Forces([], Segments(np.zeros(0, dtype=np.int64), *np.zeros((3, 0, 4))), none, none), 0.0
-    place = flanks.foot_points(active.faces, u)
-    force = active.faces.weight[..., None] * active.friction.current
-    force[~flanks.found.owned[active.faces.patch]] = 0.0
-    work = float(np.nansum(force * (place - active.friction.foot_point)))
-    return Forces([p.key for p in flanks.pairs], active.segments, force, place), work
-
-
-def onward(stepper: LoadStepper, old: Forces) -> float:
-    """Work of the forces of the state before over the slip since then."""
-    flanks, u = stepper.problem.flanks, stepper.problem.displacement()
-    now = {p.key: k for k, p in enumerate(flanks.pairs)}
-    pair, local = np.divmod(old.segments.parent, flanks.n_face)
-    new = np.array([now.get(key, -1) for key in old.keys], dtype=np.int64)[pair]
-    keep = np.flatnonzero((new >= 0) & (np.abs(old.force).sum(axis=(1, 2)) > 0.0))
-    if not len(keep):
-        return 0.0
-    part = Segments(np.arange(len(keep)), *(getattr(old.segments, n)[keep] for n in ("a", "b", "share")))
-    place = flanks.foot_points(flanks.found.faces.cut(new[keep] * flanks.n_face + local[keep], part), u)
-    return float(np.nansum(old.force[keep] * (place - old.foot_point[keep])))
 
 
 def test_input_work_is_output_work_and_dissipation() -> None:
@@ -66,24 +26,14 @@ def test_input_work_is_output_work_and_dissipation() -> None:
     samples, torque, ratio = 12, 2000.0, 20.0
     stepper = loaded(0.1)
     first = rotate(stepper, 0.2 * PITCH)
-    problem, (old, _), dissipated = stepper.problem, forces(stepper), 0.0
-    accept = problem.accept
-
-    def measure() -> None:
-        nonlocal old, dissipated
-        after = onward(stepper, old)
-        old, before = forces(stepper)
-        dissipated += 0.5 * (after + before) / problem.supports.share
-        accept()
-
-    problem.accept = measure
+    work = FrictionWork(stepper)
     rows = [rotate(stepper, (0.2 + k / samples) * PITCH) for k in range(1, samples + 1)]
     for r in rows:
         assert abs(r["wg_torque_Nmm"] + r["tooth_torque_Nmm"] + r["output_torque_Nmm"]) < 1e-6 * torque
     # the state repeats but for what is left of the start
     assert rows[-1]["wg_torque_Nmm"] == pytest.approx(first["wg_torque_Nmm"], rel=1e-3)
     excess = (np.mean([r["wg_torque_Nmm"] for r in rows]) - torque / ratio) * PITCH
-    dissipated = WORLD.allreduce(dissipated, op=MPI.SUM)
+    dissipated = work.whole()
     print(f"work over a pitch: input less output {excess:.4f}, friction {dissipated:.4f} N mm")
     assert excess > 0.05 * torque / ratio * PITCH
     # both rules see the kinks where contacts come and go only at their samples: 0.9 %

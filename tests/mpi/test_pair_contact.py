@@ -41,6 +41,24 @@ def test_any_number_of_ranks_gives_the_same(model: str) -> None:
             parallel_assert(bool(same), f"{name}: {value} and {b[name]}")
 
 
+@pytest.mark.parametrize("layout", ["ring_fixed", "spline_fixed"])
+@pytest.mark.parametrize("model", ["plane", "cup"])
+@pytest.mark.parallel([1, 2])
+def test_the_torques_of_the_pairs_make_the_output_torque(model: str, layout: str) -> None:
+    """With the ring gear fixed, its torque is that of output and wave generator together."""
+    design = small(model, f"drive.layout={layout}")
+    stepper, row = loaded(design)
+    found = pair_contacts(stepper.model, stepper.load_state)
+    on_ring_gear = stepper.model.copies * sum(one.torque_Nmm for one in found)
+    expected = row["output_torque_Nmm"]
+    if layout == "ring_fixed":
+        expected = -(expected + row["wg_torque_Nmm"])
+    parallel_assert(on_ring_gear == pytest.approx(expected, rel=1e-6))
+    parallel_assert(abs(row["output_torque_Nmm"]) == pytest.approx(1000.0 * design.load.torque, rel=1e-12))
+    parallel_assert(stepper.model.copies * sum(one.force_share for one in found) == pytest.approx(1.0, rel=1e-12))
+    parallel_assert(stepper.model.copies * len(found) == row["pairs_in_contact"])
+
+
 @pytest.mark.parallel(1)
 def test_the_forces_carry_the_torque() -> None:
     """Tangential force at the contact; normals lie within 8 degrees of the pressure angle of 20 degrees."""

@@ -76,6 +76,7 @@ def test_the_lock_is_released_after_an_error(tmp_path: Path) -> None:
         (platform.node(), 2**22 + 1, "1", False),
         ("elsewhere", 2**22 + 1, "1", True),
     ],
+    ids=["this process", "its number before", "an ended process", "another machine"],
 )
 def test_without_locks_the_record_decides(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, host: str, process: int, begun: str | None, refused: bool

@@ -98,7 +98,7 @@ def test_options_that_nothing_uses_are_named(tmp_path: Path, ranks: int) -> None
 
 
 def test_a_gear_train_uses_no_options_of_petsc(tmp_path: Path) -> None:
-    command = swgpar("run", ROOT / "drivers" / "gear_pair.toml", "--out", tmp_path / "pair", "-snes_monitor")
+    command = swgpar("run", ROOT / "drivers" / "ring_modes.toml", "--out", tmp_path / "ring", "-snes_monitor")
     done = succeed([*command, "--set", "output.figures=false"])
     assert "options of PETSc that nothing has used: -snes_monitor" in done.stdout
 

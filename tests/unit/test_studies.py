@@ -46,6 +46,8 @@ def test_one_period(path: Path) -> None:
         if case.system is not system_of_section("drive") or case.design is None or case.design.drive.model != "plane":
             continue
         drive, steps = case.design.drive, case.design.steps
+        if case.design.deviations is not None:  # whole turns follow the loaded state
+            continue
         period = 360.0 / (drive.teeth_rg if drive.layout == "ring_fixed" else drive.teeth_fs)
         share, count = (45.0 / period % 1.0, 1) if "45deg" in case.name else (1.0, 8)
         assert steps.rotation == pytest.approx(share * period, rel=1e-12)

@@ -10,6 +10,7 @@ from typing import Protocol
 import numpy as np
 from scipy.spatial import ConvexHull
 
+from swgpar.geometry.cams.bearing_keys import Bearing
 from swgpar.geometry.cams.elliptical import EllipticalCam
 from swgpar.geometry.cams.four_roller import four_roller
 from swgpar.geometry.cams.keys import (
@@ -82,4 +83,4 @@ def pin_travel(cam: Cam, radius: float, n: int = 7200) -> float:
     return float(np.max(y[upper] - np.sqrt(radius**2 - x[upper] ** 2)))
 
 
-__all__ = ["Cam", "EllipticalCam", "FourRoller", "WaveGenerator", "make_cam", "pin_travel", "taut_length"]
+__all__ = ["Bearing", "Cam", "EllipticalCam", "FourRoller", "WaveGenerator", "make_cam", "pin_travel", "taut_length"]

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field
 
+from swgpar.geometry.cams.bearing_keys import Bearing
 from swgpar.input.quantities import Section, default_type, quantity
 
 
@@ -18,6 +19,7 @@ class _WaveGenerator(Section):
     # Pins begin where they first touch. Flat or rotated parabolas touch beside the major axis, as far as 30 degrees
     # from it, and rollers wherever they are: the pins have to reach that far.
     pin_half_angle: float = _pins(60.0)
+    bearing: Bearing | None = None
 
 
 class _Reduced(_WaveGenerator):

@@ -1,0 +1,101 @@
+"""The largest stresses of every region of the loaded drives on meshes of one family, with observed orders.
+
+Runs under mpirun. The meshes of a family have elements smaller by one ratio in every direction, but for rounding to
+whole numbers. A stress is a nodal average, the largest one of its region.
+"""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+from page import markdown, write_results
+
+from swgpar.analysis.coarse_start import solve_to_load
+from swgpar.analysis.drive_model import DriveModel
+from swgpar.analysis.mesh_refinement import RATIO, resized
+from swgpar.analysis.places import region_of
+from swgpar.design.design_file import load_design
+from swgpar.design.load_states import load_sequence
+from swgpar.design.sections import GEARS
+from swgpar.meshing import load_recipe
+
+FAMILIES = {
+    "plane": ("drivers/plane_half_turn.toml", "plane_coarse", (1.0, RATIO, RATIO**2, RATIO**3)),
+    "cup": ("drivers/cup_45deg.toml", "forces", (1.0 / RATIO, 1.0, RATIO)),
+}
+"""Design, recipe, and elements in every direction over those of the recipe, coarse to fine."""
+
+LOADED = ["steps.rotation=0", "steps.bent_start=true", "solver.rtol=1e-6"]
+
+QUANTITIES = ("s1", "s3", "vm")
+
+Row = dict[str, Any]
+
+
+def by_region(model: DriveModel) -> dict[tuple[str, str, str], float]:
+    """Largest s1, |s3| and von Mises stress (MPa) by body, region and quantity; collective."""
+    found: dict[tuple[str, str, str], float] = {}
+    _, fields = model.stresses()
+    for name, body, field in zip(GEARS, model.elements.bodies, fields, strict=True):
+        mesh = body.layout.mesh
+        regions = np.array([region_of(model.design, mesh, node, False) for node in range(len(mesh.coords))])
+        for quantity in QUANTITIES:
+            values = -field["s3"] if quantity == "s3" else field[quantity]
+            for region in np.unique(regions):
+                here = float(values[:, regions == region].max(initial=-np.inf))
+                found[name, str(region), quantity] = model.comm.allreduce(here, op=MPI.MAX)
+    return found
+
+
+def order(values: list[float]) -> float | None:
+    """Order observed on the last three meshes; None where their differences do not fall with one sign."""
+    before, last = values[-2] - values[-3], values[-1] - values[-2]
+    return float(np.log(before / last) / np.log(RATIO)) if before * last > 0.0 and abs(last) < abs(before) else None
+
+
+def measure(family: str) -> list[Row]:
+    """Rows of one family; collective."""
+    path, name, ratios = FAMILIES[family]
+    design, model, levels, elements = load_design(path, LOADED), None, [], []
+    for ratio in ratios:
+        recipe = resized(load_recipe(name), ratio)
+        model = solve_to_load(design, recipe, list(load_sequence(design)), MPI.COMM_WORLD, model)
+        levels.append(by_region(model))
+        elements.append(model.n_elements())
+        if MPI.COMM_WORLD.rank == 0:
+            print(f"{family}: {elements[-1]:,} elements", flush=True)
+    model.destroy()
+    rows = []
+    for body, region, quantity in levels[0]:
+        values = [level[body, region, quantity] for level in levels]
+        row = {"model": family, "body": body, "region": region, "quantity": quantity, "elements": elements}
+        rows.append({**row, "values": [round(value, 2) for value in values], "order": order(values)})
+    return rows
+
+
+def table(rows: list[Row]) -> str:
+    """The page's table."""
+    found = [["drive", "body", "region", "stress", "MPa, coarse to fine", "last change, %", "observed order"]]
+    for row in rows:
+        values, seen = row["values"], row["order"]
+        change = 100.0 * (values[-1] / values[-2] - 1.0)
+        cells = [row["model"], row["body"].replace("_", " "), row["region"], row["quantity"]]
+        cells += [", ".join(f"{value:.1f}" for value in values), f"{change:.1f}", "" if seen is None else f"{seen:.1f}"]
+        found.append(cells)
+    return markdown(found)
+
+
+def main() -> None:
+    """Measure the families, and write the page."""
+    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options.parse_args()
+    rows = [row for family in FAMILIES for row in measure(family)]
+    if MPI.COMM_WORLD.rank == 0:
+        write_results("convergence", tuple(rows[0]), rows, table(rows))
+
+
+if __name__ == "__main__":
+    main()

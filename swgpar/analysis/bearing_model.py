@@ -1,0 +1,104 @@
+"""The parts of a drive's model that a bearing adds: outer race, balls, their contacts and the race's support."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from swgpar.constraints.distributing_coupling import DistributingCoupling
+from swgpar.constraints.race_coupling import RaceCoupling
+from swgpar.contact.ball_contact import LARGEST_REACH, BallContact, BallSet
+from swgpar.contact.point_contact import ball_spring, effective_modulus
+from swgpar.contact.race_contact import RaceContact
+from swgpar.design.drive_design import DriveDesign
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE, OUTER_RACE
+from swgpar.fem.elements import Elements
+from swgpar.fem.partition import Partition
+from swgpar.geometry.bearing import ball_lines
+from swgpar.geometry.micro_geometry import crowning
+from swgpar.kernel import ReferenceElements, reference_elements
+from swgpar.meshing.ring_sector import opposite_cells, race_grid, race_sector
+from swgpar.meshing.sector import SectorMesh
+
+RADIAL = 1
+"""Elements through the thickness of the outer race: with incompatible modes one is exact in bending."""
+
+
+def build_race_mesh(design: DriveDesign, spline: SectorMesh) -> SectorMesh:
+    """A sector of the outer race, opposite a tooth sector of the flexible spline."""
+    thickness = design.bearing.race_thickness
+    return race_sector(spline, design.inner_radius, thickness, design.race_width, RADIAL)
+
+
+def race_reference(design: DriveDesign, mesh: SectorMesh) -> ReferenceElements:
+    """Elements of a sector of the race."""
+    return reference_elements(mesh.coords[mesh.elements], *design.race_material, design.race_width)
+
+
+def build_balls(design: DriveDesign) -> BallSet:
+    """The balls with their springs, all of the bearing's material."""
+    bearing, sizes = design.bearing, design.bearing_sizes
+    return BallSet(
+        number=bearing.balls,
+        diameter=bearing.ball_diameter,
+        clearance=bearing.clearance,
+        first_angle=float(np.radians(bearing.first_ball)),
+        cage_speed=design.cage_speed,
+        lines=partial(ball_lines, design.cam(), sizes.centre_depth),
+        spring=ball_spring(
+            bearing.ball_diameter,
+            sizes.inner_groove,
+            sizes.outer_groove,
+            (bearing.inner_conformity, bearing.outer_conformity),
+            effective_modulus(design.race_material, design.race_material),
+            bearing.stiffness_factor,
+        ),
+    )
+
+
+def build_ball_contact(design: DriveDesign, elements: Elements) -> BallContact:
+    """Contact of the balls with the outer race, in the mid-plane of its width."""
+    race = elements.bodies[OUTER_RACE]
+    nodes = race_grid(race.layout.mesh, "inner")
+    z = race.layout.mesh.coords[nodes[0], 2]
+    share = np.array([np.interp(0.0, z, unit) for unit in np.eye(len(z))])  # shape functions in the mid-plane
+    sector = 2.0 * np.pi * design.bearing_sizes.outer_groove / race.layout.mesh.n_sectors
+    return BallContact(
+        race,
+        build_balls(design),
+        groove=nodes[:, share > 0.0],
+        spread=share[share > 0.0],
+        reach=min(design.bearing.race_thickness, LARGEST_REACH * sector),
+    )
+
+
+def build_race_contact(
+    design: DriveDesign, elements: Elements, half_width: float, pressure_limit: float
+) -> RaceContact:
+    """Contact of the race with the flexible spline. half_width : mm, of the race;  pressure_limit : MPa"""
+    spline, race = elements.bodies[FLEXIBLE_SPLINE], elements.bodies[OUTER_RACE]
+    micro = design.micro_geometry
+
+    def relief(z: np.ndarray) -> np.ndarray:
+        return crowning(micro.wg_crowning, z, design.wave_generator.face_width, micro.crowning_shape)[0]
+
+    column, layer = opposite_cells(spline.layout.mesh, race.layout.mesh)
+    return RaceContact(
+        spline,
+        race,
+        grid=race_grid(race.layout.mesh, "outer"),
+        column=column,
+        layer=layer,
+        half_width=half_width,
+        radius=design.inner_radius,
+        relief=relief,
+        n_quadrature=design.contact.wg_quadrature,
+        penalty=design.wg_penalty,
+        pressure_limit=pressure_limit,
+    )
+
+
+def race_coupling(partition: Partition, elements: Elements, spline: DistributingCoupling, halved: bool) -> RaceCoupling:
+    """Support of the race. spline : coupling of the flexible spline"""
+    return RaceCoupling(DistributingCoupling(partition, elements.bodies[OUTER_RACE], "outer", halved), spline)

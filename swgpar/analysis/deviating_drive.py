@@ -1,0 +1,231 @@
+"""The drive with deviations at the angles of whole turns of the wave generator.
+
+The ideal drive repeats after one pitch of the fixed gear with its teeth renamed. So every angle of a turn is an angle
+of the first pitch at which the deviations have been renamed: the ideal state is known, and only the deviations differ.
+Where these repeat, the states do too, and each is computed once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from mpi4py import MPI
+
+from swgpar.analysis.coarse_start import solve_to_load
+from swgpar.analysis.drive_model import DriveModel
+from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.analysis.shortcuts import finds_contacts
+from swgpar.analysis.torques import torques
+from swgpar.constraints.distributing_coupling import TILT_X, TILT_Y, X, Y
+from swgpar.contact.flank_deviations import flank_deviations
+from swgpar.contact.flank_state import SearchRange
+from swgpar.contact.rigid_surface import SurfacePose, cam_pose
+from swgpar.design.deviations import Deviations, gear_deviations
+from swgpar.design.drive_design import DriveDesign
+from swgpar.design.load_states import LoadState, Stage, from_loaded, load_sequence
+from swgpar.design.sections import GEARS
+from swgpar.errors import ConvergenceError
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.geometry.rotation import rotated
+from swgpar.meshing import MeshRecipe
+from swgpar.meshing.recipe_counts import coarser
+from swgpar.petsc import PETSc
+
+NEAR = 0.06
+"""Distance over the module within which flanks are followed; the check after every solve finds those that it misses."""
+
+CAM_QUADRATURE, CAM_PENALTY = 2, 1.0
+"""Largest number of points per direction and penalty coefficient of the cam on the coarse mesh: fewer points that come
+and go save a fifth of the iterations and change the output's angle by a thousandth of what deviations do."""
+
+STEPS = (4, 16)
+"""Equal steps from the ideal state to the deviations where these cannot be reached at once; then more of them."""
+
+MAX_ITERATIONS = 50
+"""Newton iterations before the residual has to halve: small loads on teeth with large deviations take many."""
+
+
+@dataclass(frozen=True)
+class TurnPoint:
+    """State at an angle of the wave generator.
+
+    index : of the angle;  wg_angle, output_angle : rad;  wg_torque : N mm
+    iterations : of Newton, 0 where a state that is known repeats
+    """
+
+    index: int
+    wg_angle: float
+    output_angle: float
+    wg_torque: float
+    iterations: int
+
+
+def turn_mesh(recipe: MeshRecipe) -> MeshRecipe:
+    """The coarsest mesh that finds the contacts of the flanks: the output's angle needs no more."""
+    simpler = coarser(recipe)
+    while simpler != recipe and finds_contacts(simpler):
+        recipe, simpler = simpler, coarser(simpler)
+    return recipe
+
+
+def turn_design(design: DriveDesign) -> DriveDesign:
+    """The design as its turns are computed: half of the drive only if the deviations allow it, condensed sectors."""
+    deviations = design.deviations
+    solver = design.solver.model_copy(
+        update={
+            "twofold_symmetry": design.solver.twofold_symmetry and _is_twofold(design, deviations),
+            "condensed_sectors": design.can_condense,
+            "max_iterations": max(design.solver.max_iterations, MAX_ITERATIONS),
+        }
+    )
+    contact = design.contact
+    if deviations.mesh == "coarse":
+        contact = contact.model_copy(
+            update={
+                "wg_quadrature": min(contact.wg_quadrature, CAM_QUADRATURE),
+                "wg_penalty_coef": min(contact.wg_penalty_coef, CAM_PENALTY),
+            }
+        )
+    steps = design.steps.model_copy(update={"bent_start": True, "samples": 0, "rotation": 0.0})
+    return design.model_copy(update={"solver": solver, "steps": steps, "contact": contact})
+
+
+def _is_twofold(design: DriveDesign, deviations: Deviations) -> bool:
+    """Whether the drive with its deviations equals itself rotated by 180 degrees."""
+    rigid = (deviations.wave_generator, deviations.cup)
+    if any(part.eccentricity or part.tilt for part in rigid):
+        return False
+    return all(gear_deviations(deviations, gear, design.teeth(gear)).is_twofold() for gear in GEARS)
+
+
+class DeviatingDrive:
+    """The loaded drive with deviations; all calls are collective.
+
+    Parameters
+    ----------
+    design : with deviations and a torque;  recipe : of the run's mesh
+    comm : communicator
+
+    Attributes
+    ----------
+    bore_z : mm, of the middle of the bore
+    tables : deviations of all flanks;  periods : numbers of pitches after which those of each gear repeat
+    """
+
+    def __init__(self, design: DriveDesign, recipe: MeshRecipe, comm: MPI.Comm) -> None:
+        self.design, self.deviations = turn_design(design), design.deviations
+        mesh = turn_mesh(recipe) if self.deviations.mesh == "coarse" else recipe
+        items = list(load_sequence(self.design))
+        self.model: DriveModel = solve_to_load(self.design, mesh, items, comm)
+        problem = self.model.problem
+        near = NEAR * design.drive.module + design.backlash
+        problem.contact_search = replace(problem.contact_search, distances=SearchRange(near=near, touch=near))
+        self.stepper = LoadStepper(self.model)
+        self.loaded = from_loaded(items)[0]
+        self.stepper.resume_at(self.loaded)
+        gears = [gear_deviations(self.deviations, gear, design.teeth(gear)) for gear in GEARS]
+        self.tables = flank_deviations(*self.model.partition.layouts, *gears, design.axial_travel)
+        bore = problem.supports.couplings[FLEXIBLE_SPLINE]
+        self.bore_z = float(bore.sum(bore.weight * bore.reference[:, 2]))
+        spline, ring = self.tables.periods()
+        cup = self.deviations.cup
+        self.periods = (design.drive.teeth_fs if cup.eccentricity or cup.tilt else spline, ring)
+
+    @property
+    def pitches(self) -> int:
+        """Pitches of the fixed gear in all turns."""
+        return self.deviations.turns * round(2.0 * np.pi / self.design.period_angle)
+
+    def destroy(self) -> None:
+        """Release the model."""
+        self.model.destroy()
+
+    def points(self, known: Container[int] = ()) -> Iterator[TurnPoint]:
+        """States at all angles but those whose indices are `known`; an index counts the angles from 0 on.
+
+        Raises ConvergenceError where a state cannot be reached.
+        """
+        ideals = self._ideal_states()
+        self._displace_cam()
+        for phase, (state, ideal) in enumerate(ideals):
+            ideal.copy(self.model.problem.x)
+            self.model.problem.search(state)  # all states of the phase are near this one
+            seen: dict[tuple[int, ...], tuple[int, TurnPoint]] = {}
+            guess = ideal
+            for pitch in range(self.pitches):
+                index = pitch * len(ideals) + phase
+                if index in known:
+                    continue
+                key = tuple(pitch % period for period in self.periods)
+                if key in seen:
+                    yield self._repeated(*seen[key], pitch, index)
+                else:
+                    found = self._point(index, pitch, state, ideal, guess)
+                    guess = self.model.problem.x.copy()
+                    seen[key] = pitch, found
+                    yield found
+
+    def _ideal_states(self) -> list[tuple[LoadState, PETSc.Vec]]:
+        """Load state and x of the ideal drive at the angles of a pitch."""
+        x, count = self.model.problem.x, self.deviations.angles_per_pitch
+        found = [(self.loaded, x.copy())]
+        for phase in range(1, count):
+            angle = self.design.period_angle * phase / count
+            state = replace(self.loaded, stage=Stage.ROTATE, step=Stage.ROTATE + phase - 1, angle=angle)
+            self.stepper.advance(state)
+            found.append((state, x.copy()))
+        return found
+
+    def _displace_cam(self) -> None:
+        """Move the cam off the axis on which it rotates."""
+        part = self.deviations.wave_generator
+        shift, lean = tuple(part.shift), tuple(part.lean)
+
+        def pose(state: LoadState) -> SurfacePose | None:
+            ideal = cam_pose(state)
+            return ideal and replace(ideal, shift=shift, lean=lean)
+
+        self.model.problem.rigid_contacts[0].pose = pose
+
+    def _displace_bore(self, pitch: int, state: LoadState, share: float) -> None:
+        """Hold the bore off the axis, in the direction that its material has at a pitch."""
+        part = self.deviations.cup
+        offsets = self.model.problem.supports.offsets
+        turn = -2.0 * np.pi * pitch / self.design.drive.teeth_fs
+        if self.design.drive.layout == "ring_fixed":
+            turn += state.angle / self.design.ratio
+        lean = share * rotated(part.lean, turn)
+        offsets[FLEXIBLE_SPLINE, [X, Y]] = share * rotated(part.shift, turn) + self.bore_z * lean
+        offsets[FLEXIBLE_SPLINE, [TILT_X, TILT_Y]] = -lean[1], lean[0]
+
+    def _point(self, index: int, pitch: int, state: LoadState, ideal: PETSc.Vec, guess: PETSc.Vec) -> TurnPoint:
+        """The state at a phase of a pitch, from a guess, or from the ideal one by shares of the deviations."""
+        problem, iterations = self.model.problem, 0
+        deviations = self.tables.rolled(pitch)
+        for start, steps in ((guess, 1), *((ideal, steps) for steps in STEPS)):
+            start.copy(problem.x)
+            for share in np.arange(1, steps + 1) / steps:
+                self._displace_bore(pitch, state, share)
+                problem.flanks.deviate(deviations.scaled(share))
+                result = self.model.solver.solve(state, search=False)
+                iterations += result.iterations
+                if not result.converged:
+                    break
+            else:
+                turned = pitch * self.design.period_angle
+                output = problem.output_rotation() + turned / self.design.ratio
+                torque = torques(problem, state).wave_generator
+                return TurnPoint(index, state.angle + turned, output, torque, iterations)
+        angle = np.degrees(state.angle + pitch * self.design.period_angle)
+        raise ConvergenceError(
+            f"the drive with [deviations] did not converge at a wave-generator angle of {angle:.4g} degrees: "
+            f"{result.reason}, residual {result.residual:.1e} of the contact force"
+        )
+
+    def _repeated(self, first: int, point: TurnPoint, pitch: int, index: int) -> TurnPoint:
+        """The state of the pitch `first` again, at another one."""
+        turned = (pitch - first) * self.design.period_angle
+        output = point.output_angle + turned / self.design.ratio
+        return TurnPoint(index, point.wg_angle + turned, output, point.wg_torque, 0)

@@ -1,0 +1,64 @@
+"""Error of the torsional stiffness by the mesh, from the first position on a coarser mesh of the drive."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from mpi4py import MPI
+
+from swgpar.analysis.coarse_start import solve_to_load
+from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.analysis.mesh_refinement import ORDER, RATIO, resized, size_ratio
+from swgpar.analysis.program_results import PointRow, point_rows
+from swgpar.analysis.shortcuts import finds_contacts
+from swgpar.analysis.stiffness import NAMES, Stiffness, by_position
+from swgpar.design.drive_design import DriveDesign
+from swgpar.design.load_states import from_loaded, load_sequence
+from swgpar.errors import ConvergenceError, InputError
+from swgpar.log import logger
+from swgpar.meshing import MeshRecipe
+
+
+def stiffness_error(
+    design: DriveDesign, recipe: MeshRecipe, rows: Sequence[PointRow], comm: MPI.Comm
+) -> dict[str, float] | None:
+    """Error of every value of `Stiffness` on the mesh of `recipe`; None where it is not asked for or not known.
+
+    rows : of program.csv on that mesh. Collective.
+    """
+    if design.stiffness is None or not design.stiffness.mesh_error:
+        return None
+    coarse = resized(recipe, 1.0 / RATIO)
+    if not finds_contacts(coarse):
+        logger.info("the error of the stiffness by the mesh is not known: a coarser one would not find the contacts")
+        return None
+    first = _first_position(design)
+    try:
+        found = _stiffness_on(first, coarse, comm)
+    except (ConvergenceError, InputError) as error:
+        logger.info("the error of the stiffness by the mesh is not known: %s", error)
+        return None
+    fine = by_position(first, rows)[0.0]
+    remaining = size_ratio(coarse, recipe) ** ORDER - 1.0
+    return {name: abs(getattr(fine, name) - getattr(found, name)) / remaining for name in NAMES}
+
+
+def _first_position(design: DriveDesign) -> DriveDesign:
+    section = design.stiffness.model_copy(update={"positions": 1})
+    return design.model_copy(update={"stiffness": section})
+
+
+def _stiffness_on(design: DriveDesign, recipe: MeshRecipe, comm: MPI.Comm) -> Stiffness:
+    """The stiffness at the only position of a design, on another mesh."""
+    states = list(load_sequence(design))
+    model = solve_to_load(design, recipe, states, comm)
+    try:
+        stepper = LoadStepper(model)
+        stepper.resume_at(from_loaded(states)[0])
+        rows = [stepper.row()]
+        for state in from_loaded(states)[1:]:
+            stepper.advance(state)
+            rows.append(stepper.row())
+    finally:
+        model.destroy()
+    return by_position(design, point_rows(design, rows))[0.0]

@@ -1,0 +1,37 @@
+"""The outer race of a bearing rotates with the flexible spline, and stays in its plane.
+
+Contact and balls are frictionless: nothing else keeps the race from rotating in the spline. Friction would take it
+along with the spline. The condition carries no torque, because the race is the same all round.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from swgpar.constraints.distributing_coupling import N_COUPLED, ROTATION, DistributingCoupling, MeanMotion, Z
+
+
+class RaceCoupling:
+    """Mean rotation of the race relative to that of the spline and, in space, its mean displacement along z.
+
+    race : coupling of the race's outer surface;  spline : coupling of the flexible spline
+    """
+
+    def __init__(self, race: DistributingCoupling, spline: DistributingCoupling) -> None:
+        self.race, self.spline = race, spline
+        self.nodes = np.concatenate([race.nodes, spline.nodes])
+        self.active = np.zeros(N_COUPLED, dtype=bool)
+        self.active[ROTATION], self.active[Z] = True, race.solid
+
+    def evaluate(self, u: np.ndarray) -> MeanMotion:
+        """Relative rotation (rad) and displacement (mm), and their gradients; the other quantities are not used."""
+        race, spline = self.race.evaluate(u), self.spline.evaluate(u)
+        value, against = race.value.copy(), np.zeros_like(spline.gradient)
+        value[ROTATION] -= spline.value[ROTATION]
+        against[ROTATION] = -spline.gradient[ROTATION]
+        return MeanMotion(value, np.concatenate([race.gradient, against], axis=1))
+
+    def supports(self) -> np.ndarray:
+        """Directions that support the race."""
+        found = self.race.supports()
+        return np.concatenate([found, np.zeros((len(found), len(self.spline.nodes), 3))], axis=1)

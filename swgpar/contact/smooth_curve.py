@@ -1,0 +1,62 @@
+"""Smooth curves through the nodes of a race's surface, around the axis.
+
+Between two nodes the curve is a cubic with the slopes of the parabolas through three nodes, so that its direction is
+the same on both sides of a node. On straight facets the direction of a frictionless force would jump at the nodes, and
+two surfaces that slide on each other would hold each other back.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+NODES = 4
+"""Nodes of a piece of the curve: its ends are the second and the third."""
+
+STEPS = 6
+"""Newton steps to a point of the curve: pieces are nearly straight, and the iteration is quadratic."""
+
+
+def curve_nodes(grid: np.ndarray, sector: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes of pieces of the curve.
+
+    grid : (n_around + 1, n_z) nodes of a sector's surface, clockwise side first
+    sector, column : (n,) index of a piece's sector, and of the piece in it
+
+    Returns indices of the sectors (n, 4) and nodes (n, 4, n_z) of the pieces; those at the ends of a sector reach into
+    the next ones.
+    """
+    n = len(grid) - 1
+    further, position = np.divmod(column[:, None] + np.arange(-1, 3), n)
+    return sector[:, None] + further, grid[position]
+
+
+def smooth_curve(nodes: np.ndarray) -> np.ndarray:
+    """Polynomials (n, 4, 4) in lambda of the four nodes, 0 to 1 on a piece; coefficients of 1 to lambda³ come last.
+
+    nodes : (n, 4, 2) mm, undeformed
+    """
+    left, middle, right = np.linalg.norm(np.diff(nodes, axis=1), axis=2).T
+    out = np.zeros((len(nodes), NODES, 4))
+    out[:, 1], out[:, 2] = (1.0, 0.0, -3.0, 2.0), (0.0, 0.0, 3.0, -2.0)
+    at_start, at_end = np.array([0.0, 1.0, -2.0, 1.0]), np.array([0.0, 0.0, -1.0, 1.0])
+    for node, hermite, before, after in ((1, at_start, left, middle), (2, at_end, middle, right)):
+        low = -middle * after / (before * (before + after))
+        high = middle * before / (after * (before + after))
+        for k, weight in ((node - 1, low), (node, -low - high), (node + 1, high)):
+            out[:, k] += weight[:, None] * hermite
+    return out
+
+
+def shape_functions(polynomials: np.ndarray, place: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Shape functions of the nodes at places lambda, and their first and second derivatives by lambda; (..., 4) each.
+
+    polynomials : (..., 4, 4);  place : (...)
+    """
+    one, zero = np.ones_like(place), np.zeros_like(place)
+    powers = (
+        np.stack([one, place, place**2, place**3], axis=-1),
+        np.stack([zero, one, 2.0 * place, 3.0 * place**2], axis=-1),
+        np.stack([zero, zero, 2.0 * one, 6.0 * place], axis=-1),
+    )
+    value, rate, second = (np.einsum("...np,...p->...n", polynomials, power) for power in powers)
+    return value, rate, second

@@ -1,0 +1,83 @@
+"""Flexible ball bearing between cam and flexible spline: its sizes, and where its balls are.
+
+The outer surface of the outer race takes the place of the cam's surface. Both grooves are curves at a constant distance
+inside of the cam's curve, so that all three have the same normals. The inner race is rigid on the cam.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from swgpar.geometry.cams import Cam
+
+MAX_STEPS = 50
+"""Newton steps along a ray to the curve of the balls; a few suffice."""
+
+
+@dataclass(frozen=True)
+class BearingSizes:
+    """Sizes of a bearing in the undeformed, circular state.
+
+    outer_radius : mm, of the outer race's outer surface, the inner radius of the flexible spline
+    thickness : mm, of the outer race;  ball_diameter : mm
+    """
+
+    outer_radius: float
+    thickness: float
+    ball_diameter: float
+
+    @property
+    def outer_groove(self) -> float:
+        """Radius of the outer race at the bottom of its groove, mm."""
+        return self.outer_radius - self.thickness
+
+    @property
+    def inner_groove(self) -> float:
+        """Mean radius of the inner race at the bottom of its groove, mm."""
+        return self.outer_groove - self.ball_diameter
+
+    @property
+    def pitch_diameter(self) -> float:
+        """Mean diameter of the curve on which the centres of the balls are, mm."""
+        return self.outer_groove + self.inner_groove
+
+    @property
+    def centre_depth(self) -> float:
+        """Distance of the centres of the balls from the cam's curve, mm."""
+        return self.thickness + 0.5 * self.ball_diameter
+
+    def rolling_speed(self, outer_speed: float) -> float:
+        """Speed of the cage over that of the wave generator when the balls roll on both races.
+
+        outer_speed : speed of the outer race over that of the wave generator
+        """
+        return (self.inner_groove + self.outer_groove * outer_speed) / (self.inner_groove + self.outer_groove)
+
+
+def ball_lines(cam: Cam, depth: float, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Centres (n, 2) mm of the balls, and normals (n, 2) and curvatures (n,) 1/mm of their curve there.
+
+    All in the cam's frame; the grooves have the same normals.
+
+    cam : curve of the cam;  depth : mm, of the centres inside of it
+    angle : (n,) rad, of the centres from the major axis, counter-clockwise
+    """
+    ray = np.column_stack([-np.sin(angle), np.cos(angle)])
+    radius = np.full(len(angle), float(np.linalg.norm(cam.outline(4), axis=1).max()))
+    for _ in range(MAX_STEPS):
+        distance, normal, _ = cam.evaluate(radius[:, None] * ray)
+        step = (distance + depth) / np.einsum("ni,ni->n", normal, ray)
+        radius = radius - step
+        if np.abs(step).max(initial=0.0) < 1e-14 * radius.max(initial=0.0):
+            break
+    centre = radius[:, None] * ray
+    _, normal, curvature = cam.evaluate(centre)
+    return centre, normal, curvature
+
+
+def smallest_curvature_radius(cam: Cam, n: int = 2000) -> float:
+    """Smallest radius of curvature (mm) of the cam's curve at n points of it; inf for straight lines only."""
+    largest = float(cam.evaluate(cam.outline(n))[2].max())
+    return 1.0 / largest if largest > 0.0 else np.inf

@@ -1,0 +1,264 @@
+"""Identities of load programs on the small plane drive: stiffness loops, clearance, ratcheting, restart, ranks."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+from pytest_mpi import parallel_assert
+
+import swgpar
+from support.friction_work import FrictionWork
+from support.paths import DESIGN, RECIPE
+from support.small_drive import PLANE
+from support.stepping import load_stepper, small
+from swgpar.analysis.drive_result import DriveResult
+from swgpar.analysis.program_results import PointRow, point_rows, work_by_torque
+from swgpar.analysis.ratcheting import AT_TEETH
+from swgpar.analysis.run_drive import run_drive
+from swgpar.contact.clearance import LOADED_SIDE
+from swgpar.design.drive_design import DriveDesign
+from swgpar.design.load_program import FIRST_LOADING, NO_TORQUE, pitch_angle
+from swgpar.design.load_states import Stage, load_sequence
+from swgpar.errors import InputError
+from swgpar.meshing import load_recipe
+
+TORQUE = 0.2
+"""N·m"""
+
+LOW_TEETH = {
+    "drive.addendum_coef": 0.1,
+    **{
+        f"{gear}.profile": {
+            "type": "quadruple_arc",
+            "r_tip": 0.1,
+            "r_addendum": 1.0,
+            "straight_l": 0.05,
+            "r_dedendum": 2.0,
+            "r_root": 0.3,
+        }
+        for gear in ("flexible_spline", "ring_gear")
+    },
+}
+"""Teeth that overlap by 0.2 mm and jump over while strains are small."""
+
+
+def run(design: DriveDesign, **options: Any) -> DriveResult:
+    return run_drive(design, load_recipe(RECIPE), **options)
+
+
+def branches(result: DriveResult, *stages: str) -> tuple[np.ndarray, np.ndarray]:
+    """Torque and rotation of branches of a loop."""
+    here = np.isin(result.program["stage"], stages)
+    return result.program["torque_Nm"][here], result.program["rotation_arcmin"][here]
+
+
+def test_a_loop_without_friction() -> None:
+    """With the major axis on a tooth and a slot: theta(-T) = -theta(T), no area, and the way back is the same."""
+    design = small("plane").with_values({"stiffness.positions": 1})
+    result = run(design, plain=True)
+    found = result.stiffness
+    unloading, loading = branches(result, "positive unloading"), branches(result, "positive loading")
+    down, back = branches(result, "negative loading"), branches(result, "negative unloading")
+    assert np.allclose(unloading[1], loading[1][:-1][::-1], rtol=1e-7)
+    assert np.allclose(-down[0][:-1], unloading[0][::-1]) and np.allclose(-down[1][:-1], unloading[1][::-1], rtol=1e-7)
+    assert np.allclose(back[1], down[1][:-1][::-1], rtol=1e-7)
+    span = 1000.0 * TORQUE * np.radians(found["lost_motion"] / 60.0)
+    assert abs(found["loop_work"]) < 1e-6 * span
+    assert found["hysteresis"] == pytest.approx(found["backlash"], rel=1e-7)
+    # the shortcuts go one way, and find the same to their tolerance: the elastic rotation is a thousandth of all
+    short = run(design).stiffness
+    for name, rel in (("K1", 2e-3), ("K2", 2e-3), ("K3", 2e-3), ("lost_motion", 1e-5), ("backlash", 1e-5)):
+        assert short[name] == pytest.approx(found[name], rel=rel), name
+
+
+@pytest.mark.parametrize("layout", ["ring_fixed", "spline_fixed"])
+def test_torque_turns_the_output_in_its_direction(layout: str) -> None:
+    values = {"stiffness.positions": 2, "stiffness.mesh_error": False}
+    found = run(small("plane", f"drive.layout={layout}").with_values(values)).stiffness
+    assert found["K1"] > 0.0 and found["lost_motion"] > 0.0 and len(found["positions"]) == 2
+
+
+def test_the_loop_with_friction_is_the_work_of_friction() -> None:
+    """With 6 x 6 points on a segment: few points see the slip of a narrow contact coarsely, and 2 x 2 miss 7 %."""
+    values = {"stiffness.torque": 5.0, "stiffness.positions": 1, "stiffness.points": 6}
+    design = small("plane", "contact.friction=0.1", "contact.quadrature=6").with_values(values)
+    stepper = load_stepper(design)
+    work, rows, done = None, [], []
+    for state in load_sequence(design):
+        if state.stage == Stage.PROGRAM and work is None:
+            work = FrictionWork(stepper)
+        stepper.advance(state)
+        rows.append(stepper.row())
+        done.append(work.total if work else 0.0)
+    points = point_rows(design, rows)
+    first = max(k for k, point in enumerate(points) if point["stage"] == FIRST_LOADING)
+    dissipated = done[-1] - done[-len(points) + first]
+    area = work_by_torque(points[first:])
+    print(f"area of the loop {area:.6f}, work of friction {dissipated:.6f} N mm")
+    assert area > 0.0
+    assert dissipated == pytest.approx(area, rel=0.01)
+
+
+def test_lost_motion_of_a_stiff_drive_is_its_clearance() -> None:
+    """The output is turned without torque until the flanks, a gap apart so far, would meet on either side.
+
+    The drive is stiff for its torque: the rotation by it is a 20,000th of the clearance.
+    """
+    stiff = small("plane")
+    found = run(stiff.with_values({"stiffness.positions": 1, "stiffness.mesh_error": False})).stiffness
+    half = 0.5 * found["lost_motion"] / 60.0
+    turned = [{"name": "turn", "output_rotation": 0.98 * half}, {"name": "on", "output_rotation": 0.99 * half}]
+    design = stiff.with_values({"load.program": turned})
+    stepper, gap = load_stepper(design), []
+    for state in load_sequence(design):
+        stepper.advance(state)
+        gap.append(stepper.problem.clearance.gap(LOADED_SIDE))
+        assert stepper.row()["pairs_in_contact"] == 0
+    closed = 0.99 * half + 0.01 * half * gap[-1] / (gap[-2] - gap[-1])
+    print(f"clearance {2.0 * closed * 60.0:.5f}, lost motion {2.0 * half * 60.0:.5f} arc minutes")
+    assert half == pytest.approx(closed, rel=1e-4)
+
+
+def follow(design: DriveDesign) -> list[PointRow]:
+    stepper, rows = load_stepper(design), []
+    for state in load_sequence(design):
+        stepper.advance(state)
+        rows.append(stepper.row())
+    return point_rows(design, rows)
+
+
+def test_a_program_changes_between_torque_and_rotation() -> None:
+    """Held where the torque has brought it, the output needs that torque, and keeps it when it is let go."""
+    up = {"name": "up", "torque": TORQUE}
+    rows = follow(small("plane").with_values({"load.program": [up]}))
+    angle = rows[0]["rotation_arcmin"] / 60.0
+    held, let_go = {"name": "held", "output_rotation": angle}, {"name": "let go", "torque": TORQUE}
+    back = {"name": "back", "torque": 0.0}
+    rows = follow(small("plane").with_values({"load.program": [up, held, let_go, back]}))
+    # the drive is stiff: 1e-9 degrees of the rotation are 1e-6 of the torque
+    assert [row["torque_Nm"] for row in rows[:3]] == pytest.approx([TORQUE] * 3, rel=1e-4)
+    assert rows[2]["rotation_arcmin"] == pytest.approx(rows[0]["rotation_arcmin"], rel=1e-8)
+    assert rows[3]["torque_Nm"] == pytest.approx(NO_TORQUE * TORQUE)
+
+
+def test_the_wave_generator_turns_within_a_program() -> None:
+    """After a pitch of the ring gear under torque the output has turned by pitch / ratio."""
+    pitch = 360.0 / 42.0
+    turn = {"name": "turn", "wave_generator": pitch, "points": 4}
+    rows = follow(small("plane").with_values({"load.program": [{"name": "up", "torque": TORQUE}, turn]}))
+    assert rows[-1]["wg_angle_deg"] == pytest.approx(pitch)
+    assert rows[-1]["rotation_arcmin"] == pytest.approx(rows[0]["rotation_arcmin"], rel=1e-6)
+    assert rows[-1]["wg_torque_Nmm"] == pytest.approx(rows[0]["wg_torque_Nmm"], rel=1e-5)
+
+
+def test_ratcheting_ends_by_itself() -> None:
+    result = run(small("plane").with_values({**LOW_TEETH, "ratcheting.increment": 0.01}))
+    found, torque = result.ratcheting, result.program["torque_Nm"]
+    assert found["ended"] == "torque fell" and found["gave_way"] == AT_TEETH and found["is_peak"]
+    assert found["peak_torque_Nm"] == torque.max() > 0.0 and torque[-1] < 0.9 * torque.max()
+    assert np.all(torque[:-1] >= 0.9 * np.maximum.accumulate(torque)[:-1])
+    assert result.program["step"][torque.argmax()] == found["peak_step"]
+    assert 0.0 < found["peak_rotation_pitches"] < 0.2
+
+
+def test_the_torque_repeats_after_a_jump() -> None:
+    """Turned by one pitch with the wave generator locked, the output is where its neighbouring teeth were."""
+    design = small("plane").with_values(LOW_TEETH)
+    pitch = pitch_angle(design)
+    angles = [0.05 * pitch, 0.5 * pitch, 1.05 * pitch]
+    stages = [{"name": f"to {k}", "output_rotation": angle} for k, angle in enumerate(angles)]
+    rows = follow(design.with_values({"load.program": stages}))
+    assert rows[0]["torque_Nm"] > 1.0
+    assert rows[2]["torque_Nm"] == pytest.approx(rows[0]["torque_Nm"], rel=1e-6)
+
+
+class Stopped(Exception):
+    """The run is interrupted."""
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.1])
+def test_restart(tmp_path: Path, friction: float) -> None:
+    values = {"stiffness.positions": 1 if friction else 2, "stiffness.points": 1, "contact.friction": friction}
+    values["solver.rtol"] = 1e-9  # chords of small rotations: the state is predicted anew after a restart
+    design = small("plane").with_values(values)
+    whole = run(design, out=tmp_path / "whole")
+    count = 0
+
+    def stop() -> None:
+        nonlocal count
+        count += 1
+        if count == 9:
+            raise Stopped
+
+    with pytest.raises(Stopped):
+        run(design, out=tmp_path / "parts", on_increment=stop)
+    rest = run(design, out=tmp_path / "parts", restart=True)
+    for name in ("torque_Nm", "rotation_arcmin"):
+        assert np.allclose(rest.program[name], whole.program[name], rtol=1e-6)
+    assert rest.stiffness["K1"] == pytest.approx(whole.stiffness["K1"], rel=1e-6)
+    header = (tmp_path / "parts" / "stiffness.csv").read_text().partition("\n")[0]
+    assert header == "position_deg,branch,torque_Nm,rotation_arcmin"
+    opened = swgpar.open_result(tmp_path / "parts")
+    assert opened.stiffness == rest.stiffness and np.array_equal(opened.program["stage"], rest.program["stage"])
+    assert "torque_against_rotation" in opened.plot.names
+    opened.plot.torque_against_rotation()
+
+
+def test_restart_of_ratcheting(tmp_path: Path) -> None:
+    design = small("plane").with_values({**LOW_TEETH, "ratcheting.increment": 0.01})
+    whole, count = run(design), 0
+
+    def stop() -> None:
+        nonlocal count
+        count += 1
+        if count == 3:
+            raise Stopped
+
+    with pytest.raises(Stopped):
+        run(design, out=tmp_path, on_increment=stop)
+    rest = run(design, out=tmp_path, restart=True)
+    assert rest.ratcheting["gave_way"] == whole.ratcheting["gave_way"]
+    assert rest.ratcheting["peak_torque_Nm"] == pytest.approx(whole.ratcheting["peak_torque_Nm"], rel=1e-6)
+    # a finished run has nothing left to compute
+    assert run(design, out=tmp_path, restart=True).summary["increments"] == rest.summary["increments"]
+
+
+@pytest.mark.parallel([2])
+def test_ranks() -> None:
+    design = small("plane").with_values({"stiffness.positions": 2, "stiffness.points": 1})
+    several, one = run(design), run(design, comm=MPI.COMM_SELF)
+    for name in ("K1", "K3", "lost_motion"):
+        same = several.stiffness[name] == pytest.approx(one.stiffness[name], rel=1e-6)
+        parallel_assert(same, f"{name}: {several.stiffness[name]} and {one.stiffness[name]}")
+
+
+def test_studies_vary_programs_and_take_their_results(tmp_path: Path) -> None:
+    """Twice the torque turns the output, flanks closed, twice as far; names that do not exist are refused."""
+    stages = [{"name": "off", "torque": 0.0}, {"name": "up", "torque": TORQUE}]
+    lines = [
+        "[study]",
+        f'design = "{DESIGN}"',
+        f'meshes = ["{RECIPE}"]',
+        "vary = { load.program.2.torque = [0.2, 0.4] }",
+    ]
+    quantities = [f"program.{name}.rotation_arcmin" for name in ("off", "up")]
+    plane = ", ".join(f"'{item}'" for item in PLANE)
+    written = ", ".join(f'{{ name = "{stage["name"]}", torque = {stage["torque"]} }}' for stage in stages)
+    lines += [f"set = [{plane}, 'load.program=[{written}]']", f"quantities = {quantities}"]
+    (tmp_path / "study.toml").write_text("\n".join(lines), encoding="utf-8")
+    table = swgpar.study(tmp_path / "study.toml").table
+    off, up = (table[name] for name in quantities)
+    assert (up[1] - off[1]) == pytest.approx(2.0 * (up[0] - off[0]), rel=0.02)
+    lines[-1] = 'quantities = ["program.down.rotation_arcmin"]'
+    (tmp_path / "study.toml").write_text("\n".join(lines), encoding="utf-8")
+    with pytest.raises(InputError, match="program.down.rotation_arcmin"):
+        swgpar.study(tmp_path / "study.toml")
+
+
+def test_no_accuracy_with_a_program() -> None:
+    with pytest.raises(InputError, match="--accuracy 0.02 is not available with a load program"):
+        run(small("plane").with_values({"stiffness.positions": 1}), accuracy=0.02)

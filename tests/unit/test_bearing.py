@@ -1,0 +1,160 @@
+"""Parts of a flexible bearing against closed forms, and designs that are refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from support.bearing import BEARING
+from support.paths import DESIGN
+from support.small_drive import PLANE
+from swgpar.contact.bearing_life import BearingSeries, million_turns
+from swgpar.contact.point_contact import ball_spring, effective_modulus, point_contact
+from swgpar.contact.smooth_curve import shape_functions, smooth_curve
+from swgpar.design.design_file import load_design
+from swgpar.errors import InputError
+from swgpar.geometry.bearing import ball_lines
+from swgpar.geometry.cams import EllipticalCam
+
+STEEL = effective_modulus((210e3, 0.3), (210e3, 0.3))
+
+
+def test_contact_of_spheres() -> None:
+    """delta³ = 9 F² / (16 E*² R), p³ = 6 F E*² / (pi³ R²)."""
+    radius, force = 2.0, 70.0
+    contact = point_contact(1.0 / radius, 1.0 / radius, STEEL)
+    approach = (9.0 * force**2 / (16.0 * STEEL**2 * radius)) ** (1.0 / 3.0)
+    assert contact.approach * force ** (2.0 / 3.0) == pytest.approx(approach, rel=1e-12)
+    pressure = (6.0 * force * STEEL**2 / (np.pi**3 * radius**2)) ** (1.0 / 3.0)
+    assert contact.pressure(force) == pytest.approx(pressure, rel=1e-12)
+    assert contact.major == pytest.approx(contact.minor, rel=1e-12)
+
+
+def surface_displacement(contact, force: float, x: float, y: float) -> float:
+    """Displacement of half spaces below the ellipse, by integration of p / r over all chords through a point."""
+    a, b = contact.minor * np.cbrt(force), contact.major * np.cbrt(force)
+    angle = np.pi * (np.arange(20000) + 0.5) / 20000
+    c, s = np.cos(angle), np.sin(angle)
+    square, linear = (c / a) ** 2 + (s / b) ** 2, x * c / a**2 + y * s / b**2
+    chords = 0.5 * np.pi * (1.0 - (x / a) ** 2 - (y / b) ** 2 + linear**2 / square) / np.sqrt(square)
+    return contact.pressure(force) / (np.pi * STEEL) * float(chords.mean()) * np.pi
+
+
+@pytest.mark.parametrize("conformity", [0.505, 0.52, 0.6, 1.5])
+def test_contact_in_a_groove(conformity: float) -> None:
+    """The elliptic pressure closes the gap: w(0) = delta, w(0) - w = kx x² / 2 + ky y² / 2."""
+    along, across, force = 2.0 / 3.0 + 1.0 / 17.0, (2.0 - 1.0 / conformity) / 3.0, 120.0
+    contact = point_contact(along, across, STEEL)
+    approach = contact.approach * force ** (2.0 / 3.0)
+    assert surface_displacement(contact, force, 0.0, 0.0) == pytest.approx(approach, rel=1e-6)
+    x, y = 0.5 * contact.minor * np.cbrt(force), 0.4 * contact.major * np.cbrt(force)
+    for px, py in ((x, 0.0), (0.0, y)):
+        gap = 0.5 * (along * px**2 + across * py**2)
+        assert approach - surface_displacement(contact, force, px, py) == pytest.approx(gap, rel=1e-5)
+
+
+def test_ball_between_two_races() -> None:
+    """The approaches of both contacts add up at the same force."""
+    spring = ball_spring(3.0, 15.0, 18.0, (0.52, 0.53), STEEL)
+    force = 80.0
+    approach = (spring.inner.approach + spring.outer.approach) * force ** (2.0 / 3.0)
+    assert spring.force(np.array(approach)) == pytest.approx(force, rel=1e-12)
+    assert spring.force(np.array(-approach)) == 0.0
+
+
+def test_smooth_curve_lies_on_the_circle() -> None:
+    """The curve through nodes on a circle, at uneven distances, leaves it by less than a thousandth of the sagitta."""
+    angle = np.array([-0.05, 0.0, 0.04, 0.1])
+    nodes = 20.0 * np.column_stack([-np.sin(angle), np.cos(angle)])
+    place = np.linspace(0.0, 1.0, 11)
+    value, rate, _ = shape_functions(np.repeat(smooth_curve(nodes[None]), 11, axis=0), place)
+    points, tangents = value @ nodes, rate @ nodes
+    sagitta = 20.0 * 0.04**2 / 8.0
+    assert np.abs(np.linalg.norm(points, axis=1) - 20.0).max() < 1e-3 * sagitta
+    across = np.abs(np.sum(points * tangents, axis=1)) / (20.0 * np.linalg.norm(tangents, axis=1))
+    assert across.max() < 0.02 * 0.04
+
+
+def test_balls_are_inside_of_the_cam() -> None:
+    """Centres lie at their angles and at their distance from the cam's curve; a round cam has them on a circle."""
+    cam, angle = EllipticalCam(21.0, 19.0), np.linspace(-3.0, 3.0, 13)
+    centre, normal, _ = ball_lines(cam, 2.5, angle)
+    assert np.arctan2(-centre[:, 0], centre[:, 1]) == pytest.approx(angle, abs=1e-12)
+    assert cam.evaluate(centre)[0] == pytest.approx(np.full(13, -2.5), abs=1e-12)
+    foot = centre + 2.5 * normal
+    assert cam.evaluate(foot)[0] == pytest.approx(np.zeros(13), abs=1e-12)
+    _, _, curvature = ball_lines(EllipticalCam(20.0, 20.0), 2.5, angle)
+    assert curvature == pytest.approx(np.full(13, 1.0 / 17.5), rel=1e-12)
+
+
+@pytest.mark.parametrize(("size", "factor"), [(0.05, 46.7), (0.1, 55.5), (0.2, 59.9)])
+def test_load_rating_of_iso_281(size: float, factor: float) -> None:
+    """f_c of table 2 of ISO 281 for deep groove ball bearings, with conformities of 0.52."""
+    series = BearingSeries(9, 10.0, 10.0 / size, 0.52, 0.52)
+    assert series.load_rating() == pytest.approx(1.3 * factor * 9 ** (2.0 / 3.0) * 10.0**1.8, rel=0.002)
+
+
+def test_life_by_equal_loads() -> None:
+    """Equal loads: the mean load is that load, and life falls with its third power."""
+    series = BearingSeries(20, 2.0, 34.0, 0.52, 0.53)
+    rating = series.load_rating()
+    inner, outer = series.contact_capacities(rating)
+    expected = ((inner / 30.0) ** (-10.0 / 3.0) + (outer / 30.0) ** (-10.0 / 3.0)) ** -0.9
+    assert million_turns(series, rating, np.full((4, 20), 30.0)) == pytest.approx(expected, rel=1e-12)
+    assert million_turns(series, rating, np.full((4, 20), 60.0)) == pytest.approx(expected / 8.0, rel=1e-12)
+    assert million_turns(series, rating, np.zeros((4, 20))) == np.inf
+
+
+def test_one_loaded_ball_in_turn() -> None:
+    """A race that rotates relative to the load has the mean of power 3, the other one that of power 10 / 3."""
+    series = BearingSeries(20, 2.0, 34.0, 0.52, 0.53)
+    rating, loads = series.load_rating(), np.zeros(20)
+    loads[3] = 30.0
+    inner, outer = series.contact_capacities(rating)
+    means = 30.0 / 20.0**0.3, 30.0 / 20.0 ** (1.0 / 3.0)
+    expected = ((inner / means[0]) ** (-10.0 / 3.0) + (outer / means[1]) ** (-10.0 / 3.0)) ** -0.9
+    assert million_turns(series, rating, loads) == pytest.approx(expected, rel=1e-12)
+
+
+BAD = [
+    ("balls=2", "balls", "3 to 2000"),
+    ("balls=60", "balls", "3 to 53"),
+    ("ball_diameter=0", "ball_diameter", "above 0"),
+    ("ball_diameter=18", "ball_diameter", "smallest radius of curvature"),
+    ("race_thickness=-1", "race_thickness", "above 0"),
+    ("race_thickness=17", "race_thickness", "smallest radius of curvature"),
+    ("race_width=9", "race_width", "drive.face_width"),
+    ("clearance=-0.1", "clearance", "0 to inf mm"),
+    ("clearance=1.0", "clearance", "half the deflection"),
+    ("inner_conformity=0.5", "inner_conformity", "above 0.5"),
+    ("outer_conformity=3", "outer_conformity", "2"),
+    ("cage_speed=1.2", "cage_speed", "0 to 1"),
+    ("nu=0.5", "nu", "0.499"),
+    ("stiffness_factor=0", "stiffness_factor", "above 0"),
+    ("load_rating=-5", "load_rating", "above 0"),
+    ("colour=1", "colour", "not a key"),
+]
+
+
+@pytest.mark.parametrize(("override", "key", "words"), BAD)
+def test_bad_bearing(override: str, key: str, words: str) -> None:
+    with pytest.raises(InputError) as caught:
+        load_design(DESIGN, [*PLANE, *BEARING, f"wave_generator.bearing.{override}"])
+    message = str(caught.value)
+    assert f"wave_generator.bearing.{key}" in message and words in message and "\n" not in message
+
+
+def test_bearing_on_rollers() -> None:
+    rollers = 'wave_generator={type="four_roller", beta=30.0, r_4=3.0, face_width=4.0}'
+    with pytest.raises(InputError, match="four_roller"):
+        load_design(DESIGN, [*PLANE, rollers, *BEARING])
+
+
+def test_cage_speed() -> None:
+    """Rolling balls: the cage has the mean of the speeds of both races, weighted by their radii."""
+    design = load_design(DESIGN, [*PLANE, *BEARING])
+    inner, outer = 18.6 - 0.5 - 2.0, 18.6 - 0.5
+    assert design.cage_speed == pytest.approx((inner - outer / 20.0) / (inner + outer), rel=1e-12)
+    assert load_design(DESIGN, [*PLANE, *BEARING, "wave_generator.bearing.cage_speed=0.4"]).cage_speed == 0.4
+    sampled = load_design(DESIGN, [*PLANE, *BEARING, "steps.samples=4", "steps.rotation=9.0"])
+    assert sampled.cage_speed == 1.0 and np.isinf(sampled.ball_passing_angle)

@@ -1,0 +1,217 @@
+"""Points of load programs, their refusals, and the stiffness from given loops."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any
+
+import numpy as np
+import pytest
+
+from support.stepping import small
+from swgpar.analysis.program_results import work_by_torque
+from swgpar.analysis.ratcheting import AT_TEETH, IN_SPLINE, NOTHING, has_fallen, summarise_ratcheting
+from swgpar.analysis.shortcuts import with_shortcuts
+from swgpar.analysis.stiffness import ARC_MINUTE, by_position, summarise_stiffness
+from swgpar.design.load_program import (
+    NO_TORQUE,
+    POSITIVE_UNLOADING,
+    TRAVEL,
+    pitch_angle,
+    program_points,
+    stiffness_torques,
+)
+from swgpar.design.load_states import Stage, from_loaded, load_sequence
+from swgpar.errors import InputError
+from swgpar.meshing import load_recipe
+
+
+def program(*stages: dict[str, Any]) -> dict[str, Any]:
+    return {"load.program": list(stages)}
+
+
+UP, OFF = {"name": "up", "torque": 0.2, "points": 2}, {"name": "off", "torque": 0.0}
+DOWN = {"name": "down", "torque": -0.2}
+
+
+def test_points_lie_evenly_between_the_ends_of_stages() -> None:
+    design = small("plane").with_values(program(UP, {"name": "turn", "wave_generator": 3.0, "points": 3}))
+    points = program_points(design)
+    assert [(p.stage, p.angle, p.value) for p in points[:2]] == [("up", 0.0, 0.1), ("up", 0.0, 0.2)]
+    assert [p.angle for p in points[2:]] == pytest.approx([1.0, 2.0, 3.0])
+    assert {p.value for p in points[2:]} == {0.2}
+
+
+def test_a_torque_of_zero_is_a_small_one_in_the_direction_before() -> None:
+    stages = OFF, {**UP, "points": 1}, {**OFF, "name": "b"}, DOWN, {**OFF, "name": "c"}
+    design = small("plane").with_values(program(*stages))
+    assert [p.value for p in program_points(design)] == pytest.approx(
+        [0.2 * NO_TORQUE, 0.2, 0.2 * NO_TORQUE, -0.2, -0.2 * NO_TORQUE]
+    )
+
+
+@pytest.mark.parametrize(("layout", "sign"), [("ring_fixed", 1.0), ("spline_fixed", -1.0)])
+def test_load_states_of_a_program(layout: str, sign: float) -> None:
+    """A positive torque acts against the output's motion; the states follow the assembly."""
+    held = {"name": "held", "output_rotation": 0.5, "wave_generator": 2.0}
+    design = small("plane", f"drive.layout={layout}").with_values(program(UP, held))
+    states = list(load_sequence(design))
+    assert [s.stage for s in states] == [Stage.DEFLECT, Stage.ENGAGE, *[Stage.PROGRAM] * 3]
+    assert [s.step for s in states] == [1, 2, 3, 4, 5] and from_loaded(states) == states[2:]
+    assert states[3].torque == pytest.approx(sign * 200.0) and states[3].control == "torque"
+    assert states[4].output_rotation == pytest.approx(np.radians(0.5)) and states[4].control == "rotation"
+    assert states[4].angle == pytest.approx(np.radians(2.0))
+
+
+REFUSED = [
+    (
+        program({"name": "a", "torqe": 1.0}),
+        "load.program.1.torqe = 1 is not a key .* mean load.program.1.torque",
+    ),
+    (program(UP, {"torque": 1.0}), "load.program.2.name is missing"),
+    (program(UP, {"name": "a", "torque": "x"}), 'load.program.2.torque = "x" is not a number'),
+    (program(UP, UP), "load.program.2.name = 'up' is not available"),
+    (program({"name": "a.b"}), "load.program.1.name = 'a.b' is not available: allowed a name"),
+    (program({"name": "a", "torque": 1.0, "output_rotation": 1.0}), "are both given: allowed one of them"),
+    (
+        program({"name": "a", "output_rotation": 1.0}, {**UP, "points": 2}),
+        "points = 2 is out of range: allowed 1",
+    ),
+    (program({"name": "a", "output_rotation": 180.0}), "load.program.1.output_rotation = 180 is out of range"),
+    (program({"name": "a", "torque": 0.0}), "load.program.1.torque = 0 is out of range: allowed beside a stage"),
+    ({"load.program": 3}, r"load.program = 3 is not a section: write \[\[load.program\]\]"),
+    ({**program(UP), "stiffness.positions": 2}, r"load.program and \[stiffness\] are both given"),
+    ({**program(UP), "steps.samples": 4, "steps.rotation": 20.0}, "steps.samples = 4 .* only 0 with load.program"),
+    ({"stiffness.break_points": [0.7, 0.2]}, r"stiffness.break_points = \[0.7, 0.2\] is out of range: allowed two"),
+    ({"stiffness.break_points": [0.01, 0.2]}, "stiffness.break_points .* above 0.04"),
+    ({"stiffness.lost_motion_share": 0.0005}, "stiffness.lost_motion_share = 0.0005 is out of range"),
+    ({"stiffness.positions": 2, "load.torque": 0.0}, "stiffness.torque is missing"),
+    ({"stiffness.loop": False, "contact.friction": 0.1}, "stiffness.loop = false .* allowed true with friction"),
+    ({"ratcheting.limit": 0.001}, "ratcheting.limit = 0.001 is out of range: allowed 0.02 pitches"),
+    ({"ratcheting.limit": 20.0}, "ratcheting.limit = 20 is out of range: allowed up to"),
+]
+
+
+@pytest.mark.parametrize(("values", "words"), REFUSED)
+def test_refusals(values: dict[str, Any], words: str) -> None:
+    with pytest.raises(InputError, match=words) as caught:
+        small("plane").with_values(values)
+    assert "\n" not in str(caught.value)
+
+
+def test_entries_are_changed_by_their_number() -> None:
+    design = small("plane").with_values(program(UP, DOWN))
+    changed = design.with_values({"load.program.2.torque": -0.1})
+    assert [stage.torque for stage in changed.load.program] == [0.2, -0.1]
+    assert [stage.torque for stage in design.load.program] == [0.2, -0.2]
+    for key in ("load.program.3.torque", "load.program.up.torque", "load.program.0.torque"):
+        with pytest.raises(InputError, match="is no entry, allowed 1 to 2"):
+            design.with_values({key: 1.0})
+    with pytest.raises(InputError, match="write a key of the entry"):
+        design.with_values({"load.program.1": 1.0})
+
+
+def test_shortcuts_of_programs() -> None:
+    recipe = load_recipe("plane_coarse")
+    found = with_shortcuts(small("plane").with_values({"stiffness.positions": 6}), recipe).design
+    assert found.steps.bent_start and not found.steps.samples and not found.stiffness.loop
+    # of six positions two mirror others, and at the first and the fourth one side mirrors the other
+    points = program_points(found)
+    period, half = 360.0 / 42.0, len(stiffness_torques(found))
+    counts = [sum(p.angle == pytest.approx(period * k / 6.0) for p in points) for k in range(6)]
+    assert counts == [half, 2 * half, 2 * half, half, 0, 0]
+    # the wave generator turns under the torque in which the position before has ended
+    for a, b in itertools.pairwise(points):
+        assert a.angle == b.angle or a.value == b.value
+    turned = program({"name": "turn", "wave_generator": 1.0, "torque": 0.2})
+    assert not with_shortcuts(small("plane").with_values(turned), recipe).design.steps.bent_start
+    friction = small("plane", "contact.friction=0.1").with_values({"stiffness.positions": 4})
+    assert with_shortcuts(friction, recipe).design == friction
+
+
+# -- results from given loops --------------------------------------------------------------------------
+
+CHORDS, SHARES = (4.0e3, 6.0e3, 8.0e3), (0.0, 0.2, 0.65, 1.0)
+TORQUE, BACKLASH, WIDTH = 10.0, 1.0, 0.4
+"""N·m; arc minutes of backlash, and of what friction adds to the width of the loop."""
+
+
+def rotation(torque: np.ndarray) -> np.ndarray:
+    """Rotation (arc minutes) by three straight lines with the stiffness `CHORDS` (N·m/rad)."""
+    ends = TORQUE * np.array(SHARES)
+    line = np.append(0.0, np.cumsum(np.diff(ends) / CHORDS)) / ARC_MINUTE
+    return np.sign(torque) * np.interp(np.abs(torque), ends, line)
+
+
+def rows_of(design: Any) -> list[dict[str, Any]]:
+    rows = []
+    for point in program_points(design):
+        unloading = 1.0 if "unloading" in point.stage else -1.0
+        # both branches meet at the largest torque
+        width = unloading * np.sign(point.value) * 0.5 * WIDTH * (1.0 - abs(point.value) / TORQUE)
+        turned = float(rotation(np.array(point.value))) + np.sign(point.value) * 0.5 * BACKLASH + width
+        if point.stage != TRAVEL:
+            row = {"stage": point.stage, "wg_angle_deg": point.angle, "torque_Nm": point.value}
+            rows.append({**row, "rotation_arcmin": float(turned)})
+    return rows
+
+
+@pytest.mark.parametrize("points", [1, 7])
+def test_stiffness_of_a_given_loop(points: int) -> None:
+    values = {"stiffness.torque": TORQUE, "stiffness.positions": 2, "stiffness.points": points}
+    design = small("plane", "contact.friction=0.1").with_values(values)
+    rows = rows_of(design)
+    found = by_position(design, rows)
+    assert list(found) == pytest.approx([0.0, 180.0 / 42.0])
+    for one in found.values():
+        assert (one.K1, one.K2, one.K3) == pytest.approx(CHORDS, rel=1e-9)
+        assert one.lost_motion == pytest.approx(BACKLASH + 2.0 * float(rotation(np.array(0.4))), rel=1e-9)
+        assert one.hysteresis == pytest.approx(BACKLASH + WIDTH, rel=1e-9)
+        assert one.backlash == pytest.approx(BACKLASH, rel=1e-9)
+        # two triangles; the torque that stands for zero cuts off their last corners
+        assert one.loop_work == pytest.approx(1000.0 * TORQUE * WIDTH * ARC_MINUTE, rel=2.5 * NO_TORQUE)
+    summary = summarise_stiffness(design, rows, None)
+    assert summary["K1"] == pytest.approx(CHORDS[0]) and summary["spread"]["K1"] == pytest.approx(0.0, abs=1e-6)
+    assert summary["mesh_error"] is None and len(summary["positions"]) == 2
+
+
+def test_one_way_of_the_loop_stands_for_both() -> None:
+    values = {"stiffness.torque": TORQUE, "stiffness.positions": 3, "stiffness.loop": False}
+    design = small("plane").with_values(values)
+    found = by_position(design, [{**row, "rotation_arcmin": row["torque_Nm"]} for row in rows_of(design)])
+    assert len(found) == 3
+    for one in found.values():
+        assert (one.K1, one.K2) == pytest.approx((1.0 / ARC_MINUTE, 1.0 / ARC_MINUTE))
+        assert one.hysteresis == pytest.approx(0.0, abs=1e-12) and one.loop_work == 0.0
+
+
+def test_work_is_the_area_below_the_torque() -> None:
+    rows = [{"torque_Nm": torque, "rotation_arcmin": 2.0 * torque} for torque in (0.0, 1.0, 3.0)]
+    assert work_by_torque(rows) == pytest.approx(1000.0 * 3.0**2 * ARC_MINUTE)
+    assert work_by_torque([*rows, *rows[::-1]]) == pytest.approx(0.0, abs=1e-15)
+
+
+@pytest.mark.parametrize(("teeth", "gave_way"), [(1.0, AT_TEETH), (-0.2, IN_SPLINE)])
+def test_what_gives_way_is_where_the_rotation_goes(teeth: float, gave_way: str) -> None:
+    """Behind the peak the teeth move on with the output, or they turn back while the spline yields."""
+    design = small("plane").with_values({"ratcheting.increment": 0.1})
+    torques = [1.0, 3.0, 2.9, 2.0]
+    rows = [
+        {"step": 3 + k, "torque_Nm": torque, "rotation_arcmin": 60.0 * k, "stage": "ratcheting"}
+        for k, torque in enumerate(torques)
+    ]
+    assert not has_fallen(design, rows[:3]) and has_fallen(design, rows)
+    moved = [0.0, 0.5, 0.5 + teeth, 0.5 + 2.0 * teeth]
+    found = summarise_ratcheting(design, rows, moved, ended_early=False)
+    assert found["gave_way"] == gave_way and found["ended"] == "torque fell"
+    assert (found["peak_torque_Nm"], found["peak_step"], found["peak_error_Nm"]) == (3.0, 4, 2.0)
+    assert found["peak_rotation_pitches"] == pytest.approx(1.0 / pitch_angle(design))
+    rising = summarise_ratcheting(design, rows[:2], moved[:2], ended_early=True)
+    assert rising["gave_way"] == NOTHING and not rising["is_peak"] and rising["ended"] == "no equilibrium found"
+
+
+def test_first_branch_begins_where_the_one_before_ended() -> None:
+    design = small("plane", "contact.friction=0.1").with_values({"stiffness.torque": TORQUE})
+    stages = [point.stage for point in program_points(design)]
+    first = stages.index(POSITIVE_UNLOADING)
+    assert program_points(design)[first - 1].value == TORQUE > program_points(design)[first].value
