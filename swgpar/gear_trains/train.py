@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import platform
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -109,6 +109,7 @@ def run_train(
     open_log(folder, comm)
     with reported_arithmetic():
         computed = model.compute(design, comm)
+    require_finite(computed.quantities)
     seconds = comm.bcast(time.perf_counter() - begin)
     result = replace(
         computed,
@@ -133,9 +134,19 @@ def run_train(
 def reported_arithmetic() -> Iterator[None]:
     """Refuse values that fit their ranges and are still too far apart for the arithmetic inside the block."""
     try:
-        yield
+        with np.errstate(all="ignore"):  # what is not finite then is found in the results
+            yield
     except (np.linalg.LinAlgError, ArithmeticError, ValueError, MemoryError) as error:
         raise InputError(f"the gear train cannot be computed with these values: {sentence(error)}") from None
+
+
+def require_finite(values: Mapping[str, float | list[float]]) -> None:
+    """Refuse values with infinite results, by name, or with none at all. A single NaN stands for what there is not."""
+    numbers = {name: np.atleast_1d(value) for name, value in values.items()}
+    infinite = [name for name, value in numbers.items() if np.isinf(value).any()]
+    if infinite or all(np.isnan(value).all() for value in numbers.values()):
+        what = f"{infinite[0]} is not finite" if infinite else "no result is a number"
+        raise InputError(f"the gear train cannot be computed with these values: {what}")
 
 
 def open_train(folder: Path, comm: MPI.Comm) -> TrainResult:
