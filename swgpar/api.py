@@ -146,6 +146,10 @@ def run(
         Design, mesh and options do not fit.
     ConvergenceError
         An increment did not converge. With `out`, the increments before it are kept and `restart` continues them.
+    TimeLimitError
+        The time of ``solver.time_limit`` has passed. The increments before are kept as with a ConvergenceError.
+    OutOfMemoryError
+        An allocation has failed, perhaps on this rank alone.
     OutputError
         The folder cannot be written, or holds other results.
 
@@ -297,7 +301,8 @@ def _needs(design: Design, recipe: MeshRecipe) -> dict[str, float]:
     if not isinstance(design, DriveDesign):
         raise InputError(f"{system_of(design).noun} has no mesh: allowed are drives")
     needs = forecast(design, recipe)
-    require_memory(needs)
+    require_memory(needs, design.solver.memory_limit)
+    build_sector_meshes(design, recipe)  # or the reason why the recipe gives no mesh
     return {
         "elements of the drive": needs.elements,
         "unknowns modelled": needs.unknowns,

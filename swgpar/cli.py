@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from swgpar.errors import InputError, StudyError, SwgparError, printable, shortened
+from swgpar.errors import InputError, OutOfMemoryError, StudyError, SwgparError, printable, shortened
 from swgpar.version import __version__
 
 if TYPE_CHECKING:
@@ -329,12 +329,22 @@ def _main(arguments: Sequence[str] | None) -> int:
     except SwgparError as error:
         from mpi4py import MPI
 
-        if MPI.COMM_WORLD.rank == 0:
+        alone = getattr(error, "alone", False) and MPI.COMM_WORLD.size > 1
+        if MPI.COMM_WORLD.rank == 0 or alone:
             print(f"swgpar: error: {error}", file=sys.stderr, flush=True)
+        if alone:  # the other ranks wait for this one
+            MPI.COMM_WORLD.Abort(error.exit_code)
         return error.exit_code
     except BrokenPipeError:  # the reader of our output has gone
         sys.stderr.close()
         return 1
+    except MemoryError:
+        print("swgpar: error: not enough memory: take a coarser mesh, or more memory", file=sys.stderr, flush=True)
+        if command in ("run", "study"):
+            from mpi4py import MPI
+
+            MPI.COMM_WORLD.Abort(OutOfMemoryError.exit_code)
+        return OutOfMemoryError.exit_code
     except Exception:
         if command not in ("run", "study"):
             raise

@@ -51,6 +51,25 @@ class ConvergenceError(SwgparError):
     exit_code = 3
 
 
+class TimeLimitError(SwgparError):
+    """A run whose time limit has passed, at its last Newton iteration."""
+
+    exit_code = 3
+
+
+class OutOfMemoryError(SwgparError):
+    """An allocation that failed.
+
+    Attributes
+    ----------
+    alone : bool
+        Whether one rank may have met it alone, for which the others then wait.
+    """
+
+    exit_code = 6
+    alone = False
+
+
 class StudyError(SwgparError):
     """A study that went through all its cases and could not finish some of them."""
 

@@ -41,6 +41,9 @@ ABOUT_OPTIONS = (56, 62, 63, 65, 83, 86, 92)
 """Error codes of PETSc (petscsystypes.h) that follow from options: not supported, wrong argument, out of range, a file
 that cannot be opened, a user's error, an unknown type, no such package for a factor."""
 
+NO_MEMORY = 55
+"""Error code of PETSc for an allocation that failed."""
+
 AT_END = ("citations", "get_total_flops", "mpidump", "options_left", "skip_petscrc")
 """Options that PETSc asks for when it ends, or that are always given."""
 
@@ -105,6 +108,11 @@ def accepted_options(comm: MPI.Comm) -> Iterator[None]:
     reason = next((text for text in comm.allgather(failure) if text is not None), None)
     if reason is not None:
         raise InputError(f"options of PETSc: {reason}")
+
+
+def is_out_of_memory(error: BaseException) -> bool:
+    """Whether an allocation of this process, or of PETSc in it, has failed."""
+    return isinstance(error, MemoryError) or getattr(error, "ierr", 0) == NO_MEMORY
 
 
 def unused_options() -> list[str]:

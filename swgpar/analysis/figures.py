@@ -117,6 +117,8 @@ class DriveFigures(FigureSet):
         from matplotlib.figure import Figure
 
         rows, summary = self._result.transmission_error, self._result.summary["transmission_error"]
+        if not rows:
+            raise InputError("this run has no transmission error: allowed with steps.samples or [deviations]")
         figure = Figure(figsize=(7.0, 6.0), layout="constrained")
         upper, lower = figure.subplots(2, 1)
         error = rows["transmission_error_arcsec"]
@@ -147,6 +149,8 @@ class DriveFigures(FigureSet):
 
     def torque_against_rotation(self) -> Figure:
         """Torque on the output (N·m) against its rotation (arc minutes), along a load program."""
+        if not self._result.program:
+            raise InputError("this run has no load program: allowed with load.program, [stiffness] or [ratcheting]")
         return torque_against_rotation(self._result.program, self._result.summary)
 
     def pairs(self) -> Figure:
@@ -155,7 +159,7 @@ class DriveFigures(FigureSet):
         All computed increments under load are drawn: a tooth goes through these positions one after the other. Pairs
         whose contact lies on an edge have hollow marks: their pressure is no property of the drive.
         """
-        pairs = self._result.pairs
+        pairs = self._pairs()
         position = (pairs["angle_deg"] + 90.0) % 180.0 - 90.0
         figure, panels = _panels(2)
         for axes, name in zip(panels, ("force_N", "pressure_MPa"), strict=True):
@@ -178,7 +182,7 @@ class DriveFigures(FigureSet):
         """
         from matplotlib.figure import Figure
 
-        pairs, history = self._result.pairs, self._result.history
+        pairs, history = self._pairs(), self._result.history
         figure = Figure(figsize=(7.0, 6.0), layout="constrained")
         upper, lower = figure.subplots(2, 1)
         far = np.abs(pairs["angle_deg"]) > 90.0
@@ -211,6 +215,11 @@ class DriveFigures(FigureSet):
         """One sector of the flexible spline, coloured by Goodman's safety factor."""
         return _as_figure(sector_picture(self._fatigue(), self._result.is_plane))
 
+    def _pairs(self) -> dict[str, np.ndarray]:
+        if not self._result.pairs:
+            raise InputError("this run has no flanks in contact under load: allowed with load.torque above 0")
+        return self._result.pairs
+
     def _fatigue(self) -> SectorFields:
         if self._result.fatigue is None:
             raise InputError("this run has no fatigue: allowed with the section [fatigue]")
@@ -230,6 +239,8 @@ class DriveFigures(FigureSet):
         from matplotlib.figure import Figure
 
         balls, bearing = self._result.balls, self._result.summary["bearing"]
+        if not balls:
+            raise InputError("this run has no balls: allowed with wave_generator.bearing")
         loaded = balls["step"] >= Stage.LOAD
         shown = {name: values[loaded] if loaded.any() else values for name, values in balls.items()}
         figure = Figure(figsize=(7.0, 6.5), layout="constrained")
@@ -259,7 +270,7 @@ class DriveFigures(FigureSet):
         """
         from matplotlib.figure import Figure
 
-        pairs, lines = self._result.pairs, self._result.contact_lines
+        pairs, lines = self._pairs(), self._result.contact_lines
         if step is None:
             pressure = np.nan_to_num(pairs["pressure_MPa"])
             off_edge = np.where(pairs["edge"] == 0, pressure, 0.0)

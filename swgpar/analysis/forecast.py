@@ -1,4 +1,4 @@
-"""What a run will need: elements, unknowns, memory and time, from one tooth sector of each gear.
+"""What a run will need: elements, unknowns, memory and time, from design and recipe, before anything is meshed.
 
 Memory and time of a gear's thin bodies grow linearly with the unknowns. The constants are those of runs on two cores
 with 27,000 to 920,000 unknowns (docs/verification/forecast.md); other machines need more or less time.
@@ -6,13 +6,19 @@ with 27,000 to 920,000 unknowns (docs/verification/forecast.md); other machines 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from swgpar.analysis.drive_model import body_counts, build_layout
+from mpi4py import MPI
+
+from swgpar.analysis.drive_model import is_halved
 from swgpar.design.drive_design import DriveDesign
-from swgpar.errors import InputError
-from swgpar.meshing import MeshRecipe, build_sector_meshes
+from swgpar.errors import InputError, OutOfMemoryError
+from swgpar.meshing import MeshRecipe
+from swgpar.meshing.sector_counts import sector_counts
+from swgpar.petsc import is_out_of_memory
 
 
 @dataclass(frozen=True)
@@ -45,36 +51,80 @@ class Forecast:
 
 
 def forecast(design: DriveDesign, recipe: MeshRecipe) -> Forecast:
-    """Needs of a run with the default shortcuts, without condensed sectors.
+    """Needs of a run with the default shortcuts and the direct solver, without condensed sectors.
 
-    Raises InputError where the recipe gives no mesh.
+    Nothing is meshed. Raises InputError where the recipe lacks a section.
     """
-    counts = [body_counts(build_layout(design, mesh)) for mesh in build_sector_meshes(design, recipe).values()]
-    unknowns = sum(count["dofs"] for count in counts)
+    plane, halved = design.drive.model == "plane", is_halved(design)
+    elements = unknowns = 0
+    for counts in sector_counts(design, recipe).values():
+        fixed = counts.outer if design.drive.layout == "ring_fixed" else 0
+        free = counts.nodes - counts.shared - fixed
+        elements += counts.elements * counts.n_sectors
+        unknowns += (2 if plane else 3) * free * (counts.n_sectors // 2 if halved else counts.n_sectors)
     growth, size = GROWTH[design.drive.model], unknowns / 1e5
     return Forecast(
-        elements=sum(count["elements_whole"] for count in counts),
+        elements=elements,
         unknowns=unknowns,
         memory=growth.memory_base + growth.memory * size,
         seconds=growth.seconds_base + growth.seconds * size,
     )
 
 
-def require_memory(needs: Forecast) -> None:
-    """Refuse what does not fit into the memory of this machine, with an InputError."""
-    free = free_memory()
-    if needs.memory > free:
-        raise InputError(
-            f"the mesh has {needs.unknowns:,} unknowns, which need about {needs.memory:.3g} GB of memory: allowed are "
-            f"meshes that need less than the {free:.3g} GB that are free"
-        )
+def fits(needs: Forecast, limit: float | None = None, comm: MPI.Comm = MPI.COMM_SELF) -> bool:
+    """Whether a run fits into the memory of the machines, or into `limit` (GB); collective."""
+    return needs.memory <= (free_memory(comm) if limit is None else limit)
 
 
-def free_memory() -> float:
-    """Memory (GB) that is free on this machine; infinite where it is not known."""
+def require_memory(needs: Forecast, limit: float | None = None, comm: MPI.Comm = MPI.COMM_SELF) -> None:
+    """Refuse what does not `fit`, with an InputError; collective."""
+    if fits(needs, limit, comm):
+        return
+    free = free_memory(comm)
+    allowed = f"the {free:.3g} GB that are free; solver.memory_limit sets another limit"
+    if limit is not None:
+        allowed = f"solver.memory_limit = {limit:g} GB ({free:.3g} GB are free)"
+    raise InputError(
+        f"the mesh has {needs.elements:,} elements and {needs.unknowns:,} unknowns, which need about "
+        f"{needs.memory:.3g} GB of memory: allowed are meshes that need at most {allowed}"
+    )
+
+
+def free_memory(comm: MPI.Comm = MPI.COMM_SELF) -> float:
+    """Memory (GB) that is free on the machines of all ranks; infinite where it is not known. Collective."""
+    node = comm.Split_type(MPI.COMM_TYPE_SHARED)
+    here = _free_here() if node.rank == 0 else 0.0
+    node.Free()
+    return float(comm.allreduce(here))
+
+
+def _free_here() -> float:
+    """Memory (GB) that is free on this machine, or in the container around this process."""
     try:
         lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
         found = next(line for line in lines if line.startswith("MemAvailable:"))
-        return float(found.split()[1]) * 1024.0 / 1e9
+        free = float(found.split()[1]) * 1024.0 / 1e9
     except (OSError, StopIteration):  # no Linux
         return float("inf")
+    group = Path("/sys/fs/cgroup")
+    try:
+        most, used = (int((group / f"memory.{name}").read_text(encoding="ascii")) for name in ("max", "current"))
+    except (OSError, ValueError):  # no container, or none with a limit
+        return free
+    return min(free, max(most - used, 0) / 1e9)
+
+
+@contextmanager
+def reported_memory(needs: Forecast) -> Iterator[None]:
+    """Turn an allocation that fails inside the block, on this rank, into an OutOfMemoryError."""
+    try:
+        yield
+    except Exception as error:
+        if not is_out_of_memory(error):
+            raise
+        failure = OutOfMemoryError(
+            f"not enough memory: {needs.unknowns:,} unknowns need about {needs.memory:.3g} GB on all ranks: "
+            "take a coarser mesh, or more memory"
+        )
+        failure.alone = True
+        raise failure from None

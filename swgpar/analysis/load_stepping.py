@@ -67,8 +67,10 @@ class LoadStepper:
     def advance(self, target: LoadState) -> None:
         """Solve up to `target`, with smaller steps where Newton's iteration fails.
 
-        Raises ConvergenceError after `solver.max_cutbacks` halvings; x is then the last converged state.
+        Raises ConvergenceError after `solver.max_cutbacks` halvings or `solver.iteration_limit` iterations; x is then
+        the last converged state.
         """
+        settings = self.design.solver
         self.iterations = 0
         origin, x = self._origin(target), self.problem.x
         done, share, cutbacks = 0.0, 1.0, 0
@@ -79,7 +81,11 @@ class LoadStepper:
             if self._takes_up_torque(state):
                 self._close_backlash(state)
             self._predict(state)
-            result = self.solver.solve(state, establish_contact=state.switches_on(self.load_state))
+            result = self.solver.solve(
+                state,
+                establish_contact=state.switches_on(self.load_state),
+                max_iterations=settings.iteration_limit - self.iterations,
+            )
             self.iterations += result.iterations
             if result.converged:
                 self._take(state, result)
@@ -87,7 +93,10 @@ class LoadStepper:
                 continue
             saved.copy(x)
             cutbacks += 1
-            if cutbacks > self.design.solver.max_cutbacks or origin == target:  # nothing to halve
+            if self.iterations >= settings.iteration_limit:
+                limit = f"{settings.iteration_limit} Newton iterations of one increment (solver.iteration_limit)"
+                raise ConvergenceError(self._failure(target, state, replace(result, reason=limit), cutbacks - 1))
+            if cutbacks > settings.max_cutbacks or origin == target:  # nothing to halve
                 raise ConvergenceError(self._failure(target, state, result, cutbacks - 1))
             share *= 0.5
             logger.info(

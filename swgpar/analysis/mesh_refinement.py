@@ -15,6 +15,7 @@ from mpi4py import MPI
 
 from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.analysis.drive_model import DriveModel
+from swgpar.analysis.forecast import fits, forecast
 from swgpar.analysis.places import Place, find_places
 from swgpar.analysis.root_stress import LEVELS, MOST_LEVELS, RootStress, resolve_root_stress
 from swgpar.analysis.shortcuts import finds_contacts
@@ -208,10 +209,11 @@ class Refinement:
         """Take a finer mesh of the drive; False where there is none, or where it is too large."""
         try:
             finer = resized(self.recipe, RATIO)
-            meshes = build_sector_meshes(self.design, finer).values()
+            needs = forecast(self.design, finer)
+            if needs.elements > self.largest or not fits(needs, self.design.solver.memory_limit, self.comm):
+                return False
+            build_sector_meshes(self.design, finer)
         except InputError:
-            return False
-        if sum(len(mesh.hexes) * mesh.n_sectors for mesh in meshes) > self.largest:
             return False
         earlier = self.coarse, self.ratio, self.found, self.coarse_places
         self.coarse_places = self._places()
@@ -252,7 +254,10 @@ def choose_mesh(
         errors = {"windows": drive.found.error, "mesh": drive.found.drive_error}
         too_large = any(errors[part] > accuracy * drive.found.s1 for part in errors.keys() - refine.keys())
         if too_large or not refine:
-            logger.info("no finer mesh is taken: the drive has at most %d elements", drive.largest)
+            logger.info(
+                "no finer mesh is taken: the drive has at most %d elements, and its run fits into the memory",
+                drive.largest,
+            )
             break
         part = max(refine, key=lambda part: errors[part])
         if not refine[part]():

@@ -27,8 +27,8 @@ from swgpar.results.atomic import to_json
 if TYPE_CHECKING:
     from swgpar.analysis.recorder import FolderRecorder
 
-SOLVER_CHOICES = {"linear", "keep_factor", "far_teeth"}
-"""Keys of [solver] that a restart may change: they are about how systems are solved."""
+SOLVER_CHOICES = {"linear", "keep_factor", "far_teeth", "iteration_limit", "time_limit", "memory_limit"}
+"""Keys of [solver] that a restart may change: they are about how systems are solved, and limits."""
 
 
 def identity(design: DriveDesign, recipe: MeshRecipe, accuracy: float | None) -> str:
@@ -101,8 +101,8 @@ def resume(recorder: FolderRecorder, stepper: LoadStepper, items: list[LoadState
     if state.get("identity") != recorder.identity:
         raise InputError(
             f"restart: {path} belongs to another design, recipe, accuracy or solver setting; allowed are the "
-            "same ones (--plain as before), only steps.rotation, the output, solver.linear, keep_factor and far_teeth "
-            "may differ"
+            "same ones (--plain as before), only steps.rotation, the output, solver.linear, keep_factor, far_teeth and "
+            "limits may differ"
         )
     checkpoint.require_undamaged(path, model.comm)
     last = LoadState.from_dict(state["load_state"])

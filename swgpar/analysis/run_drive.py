@@ -18,6 +18,7 @@ from swgpar.analysis.drive_result import DriveResult
 from swgpar.analysis.drive_tables import DriveTables
 from swgpar.analysis.fatigue import evaluate_fatigue
 from swgpar.analysis.follow_turns import follow_turns
+from swgpar.analysis.forecast import forecast, reported_memory, require_memory
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.losses import evaluate_losses
 from swgpar.analysis.mesh_refinement import (
@@ -44,7 +45,7 @@ from swgpar.analysis.transmission_error import period_rows
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import LoadState, Stage, from_loaded, load_sequence
 from swgpar.design.remarks import torque_remark
-from swgpar.errors import ConvergenceError, InputError, SwgparError
+from swgpar.errors import ConvergenceError, InputError, SwgparError, TimeLimitError
 from swgpar.log import IncrementProgress, logger
 from swgpar.meshing import MeshRecipe, load_recipe, require_sections
 from swgpar.meshing.recipe import to_toml
@@ -53,6 +54,7 @@ from swgpar.results.atomic import on_all, write_from_root
 from swgpar.results.folder import RECIPE, given_folder, open_log, prepare
 from swgpar.results.history import loaded_increments
 from swgpar.results.lock import releasing
+from swgpar.solve.time_limit import limited
 
 
 @releasing
@@ -85,9 +87,11 @@ def run_drive(
 
     Raises
     ------
-    InputError, OutputError, ConvergenceError
-        On all ranks. After a ConvergenceError everything up to the last converged increment is in the folder and can
-        be continued with `restart`.
+    InputError, OutputError, ConvergenceError, TimeLimitError
+        On all ranks. After the last two everything up to the last converged increment is in the folder and can be
+        continued with `restart`.
+    OutOfMemoryError
+        On the rank whose allocation has failed.
     """
     begin = time.perf_counter()
     folder = given_folder(out)
@@ -107,6 +111,8 @@ def run_drive(
         shortcuts = with_shortcuts(design, recipe, levels=accuracy is None)
         design, left_out = shortcuts.design, shortcuts.left_out
     require_samples(design)
+    needs = forecast(design, recipe)
+    require_memory(needs, design.solver.memory_limit, comm)
     resumed = False
     if folder is not None:
         resumed = prepare(folder, comm, restart, overwrite)
@@ -115,27 +121,35 @@ def run_drive(
         logger.warning("%s", remark)
     if left_out:
         logger.info("left out: %s; --plain computes all of it", ", ".join(left_out))
+    with reported_memory(needs), limited(design.solver.time_limit):
+        model, recipe, chosen = _model(design, recipe, accuracy, folder if resumed else None, comm)
+        recorder = _recorder(model, folder, identity(design, recipe, accuracy))
+        try:
+            if chosen is not None:
+                _record_choice(recorder, chosen, accuracy, folder)
+            if restart and not resumed:
+                logger.info("no increment was saved: starting from the beginning")
+            run = _Run(model, recipe, recorder, on_increment, begin)
+            items = run.resume() if resumed else run.start()
+            run.go_through(items, terminal)
+            result = run.finish(recipe_name)
+        except SwgparError as error:
+            model.destroy()  # collective: all ranks have this error, but perhaps not one of another kind
+            if isinstance(error, (ConvergenceError, TimeLimitError)) and recorder.rows and folder is not None:
+                raise type(error)(f"{error}; {len(recorder.rows)} increments are saved in {folder}") from None
+            raise
+        model.destroy()
+    return result
+
+
+def _model(
+    design: DriveDesign, recipe: MeshRecipe, accuracy: float | None, earlier: Path | None, comm: MPI.Comm
+) -> tuple[DriveModel, MeshRecipe, ChosenMesh | None]:
+    """The model, its recipe, and with an accuracy how its mesh was chosen. earlier : as in `_choose_mesh`"""
     chosen = None
     if accuracy is not None:
-        chosen, recipe = _choose_mesh(design, recipe, accuracy, folder if resumed else None, comm)
-    model = build_drive_model(design, recipe, comm=comm) if chosen is None else chosen.model
-    recorder = _recorder(model, folder, identity(design, recipe, accuracy))
-    try:
-        if chosen is not None:
-            _record_choice(recorder, chosen, accuracy, folder)
-        if restart and not resumed:
-            logger.info("no increment was saved: starting from the beginning")
-        run = _Run(model, recipe, recorder, on_increment, begin)
-        items = run.resume() if resumed else run.start()
-        run.go_through(items, terminal)
-        result = run.finish(recipe_name)
-    except SwgparError as error:
-        model.destroy()  # collective: all ranks have this error, but perhaps not one of another kind
-        if isinstance(error, ConvergenceError) and recorder.rows and folder is not None:
-            raise ConvergenceError(f"{error}; {len(recorder.rows)} increments are saved in {folder}") from None
-        raise
-    model.destroy()
-    return result
+        chosen, recipe = _choose_mesh(design, recipe, accuracy, earlier, comm)
+    return build_drive_model(design, recipe, comm=comm) if chosen is None else chosen.model, recipe, chosen
 
 
 def _choose_mesh(

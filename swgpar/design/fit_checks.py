@@ -19,6 +19,9 @@ if TYPE_CHECKING:  # a design checks itself
 SMALLEST_MINOR_AXIS = 0.4
 """Smallest minor semi-axis of a cam over the inner radius of the flexible spline."""
 
+THINNEST_RIM, THICKEST_RIM = 0.01, 100.0
+"""Thickness of a rim in modules: thinner and thicker ones are slips."""
+
 OUTLINE_POINTS = 2000
 """Points of the cam's outline at which its largest radius is measured."""
 
@@ -68,6 +71,11 @@ def _check_teeth(design: DriveDesign) -> None:
     if drive.dedendum_coef <= drive.addendum_coef:
         allowed = f"above {drive.addendum_coef:g} (the addendum) to 2 modules"
         _refuse("drive.dedendum_coef", drive.dedendum_coef, allowed)
+    for gear in GEARS:
+        rim, least, most = getattr(design, gear).rim, THINNEST_RIM * drive.module, THICKEST_RIM * drive.module
+        if not least <= rim <= most:
+            allowed = f"{least:g} to {most:g} mm ({THINNEST_RIM:g} to {THICKEST_RIM:g} modules)"
+            _refuse(f"{gear}.rim", rim, allowed)
     if design.inner_radius <= design.deflection:
         allowed = "a rim that leaves an inner radius above the deflection"
         _refuse("flexible_spline.rim", design.flexible_spline.rim, allowed)

@@ -141,6 +141,15 @@ class Solver(Section):
         25, text="Newton iterations before a cut-back, unless the residual falls", ge=1, le=1000
     )
     max_cutbacks: int = quantity(5, text="halvings of an increment before the run ends", ge=0, le=20)
+    iteration_limit: int = quantity(
+        600, text="Newton iterations of one increment, those before cut-backs included", ge=1, le=1_000_000
+    )
+    time_limit: float | None = quantity(
+        None, unit="s", text="wall time after which a run ends with the next Newton iteration; without it none", gt=0.0
+    )
+    memory_limit: float | None = quantity(
+        None, unit="GB", text="largest memory that a run may need by its forecast; without it what is free", gt=0.0
+    )
     twofold_symmetry: bool = quantity(True, text="model half of the drive when tooth numbers allow it")
     far_teeth: Literal["left_out", "modelled"] = quantity(
         "left_out", text="ring-gear sectors out of reach of the flexible spline, with the ring gear fixed"

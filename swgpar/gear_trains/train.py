@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import platform
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
@@ -22,7 +23,7 @@ from swgpar.gear_trains.result import TrainResult, read, write
 from swgpar.input.quantities import show
 from swgpar.input.toml_file import validate
 from swgpar.log import logger
-from swgpar.results.atomic import agreed
+from swgpar.results.atomic import agreed, sentence
 from swgpar.results.figure_set import Drawings, NamedFigures
 from swgpar.results.folder import given_folder, open_log, prepare
 from swgpar.results.lock import releasing
@@ -106,7 +107,9 @@ def run_train(
     if folder is not None:
         prepare(folder, comm, False, overwrite)
     open_log(folder, comm)
-    computed = model.compute(design, comm)
+    with reported_arithmetic():
+        computed = model.compute(design, comm)
+    require_finite(computed.quantities)
     seconds = comm.bcast(time.perf_counter() - begin)
     result = replace(
         computed,
@@ -125,6 +128,25 @@ def run_train(
         write(result, folder, comm)
     logger.info("finished in %.1f s on %d ranks", seconds, comm.size)
     return _with_figures(result, comm)
+
+
+@contextmanager
+def reported_arithmetic() -> Iterator[None]:
+    """Refuse values that fit their ranges and are still too far apart for the arithmetic inside the block."""
+    try:
+        with np.errstate(all="ignore"):  # what is not finite then is found in the results
+            yield
+    except (np.linalg.LinAlgError, ArithmeticError, ValueError, MemoryError) as error:
+        raise InputError(f"the gear train cannot be computed with these values: {sentence(error)}") from None
+
+
+def require_finite(values: Mapping[str, float | list[float]]) -> None:
+    """Refuse values with infinite results, by name, or with none at all. A single NaN stands for what there is not."""
+    numbers = {name: np.atleast_1d(value) for name, value in values.items()}
+    infinite = [name for name, value in numbers.items() if np.isinf(value).any()]
+    if infinite or all(np.isnan(value).all() for value in numbers.values()):
+        what = f"{infinite[0]} is not finite" if infinite else "no result is a number"
+        raise InputError(f"the gear train cannot be computed with these values: {what}")
 
 
 def open_train(folder: Path, comm: MPI.Comm) -> TrainResult:

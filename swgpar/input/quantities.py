@@ -4,19 +4,32 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from typing import Any
+from typing import Any, get_args
 
 import annotated_types
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, field_validator
 from pydantic.fields import FieldInfo
+from pydantic_core import PydanticCustomError
 
 from swgpar.errors import shortened
+from swgpar.input.ranges import beyond, magnitudes
+
+MAGNITUDE = "magnitude"
+"""Kind of pydantic's finding for numbers of another magnitude than those of their unit."""
 
 
 class Section(BaseModel):
     """One table of an input file: immutable, no unknown keys, no silent conversion, finite numbers only."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+    @field_validator("*", mode="after")
+    @classmethod
+    def _has_a_magnitude(cls, value: Any, info: ValidationInfo) -> Any:
+        """Refuse numbers of another magnitude than those of their unit (`swgpar.input.ranges`)."""
+        if info.field_name is not None and beyond(value, unit_of(cls.model_fields[info.field_name])):
+            raise PydanticCustomError(MAGNITUDE, "another magnitude than that of its unit")
+        return value
 
 
 def quantity(default: Any = ..., *, unit: str = "", text: str, **limits: float) -> Any:
@@ -71,10 +84,15 @@ def unit_of(field: FieldInfo) -> str:
     return str(extra.get("unit", "")) if isinstance(extra, dict) else ""
 
 
-def allowed(field: FieldInfo) -> str:
-    """Return the allowed range of a field as words, for example ``allowed above 0 to inf mm``."""
-    lower, upper = "-inf", "inf"
-    for limit in field.metadata:
+def allowed(field: FieldInfo, *, smallest: bool = False) -> str:
+    """Return the allowed range of a field as words, for example ``allowed above 0 to 100000 mm``.
+
+    smallest : with the smallest magnitude of a number with its unit, for example ``allowed 0 and 0.001 to 100000 mm``
+    """
+    least, largest = map(show, magnitudes(unit_of(field)))
+    lower, upper = f"-{largest}", largest
+    of_items = [limit for item in get_args(field.annotation) for limit in getattr(item, "__metadata__", ())]
+    for limit in [*field.metadata, *of_items]:
         if isinstance(limit, annotated_types.Ge):
             lower = show(limit.ge)
         elif isinstance(limit, annotated_types.Gt):
@@ -83,5 +101,7 @@ def allowed(field: FieldInfo) -> str:
             upper = show(limit.le)
         elif isinstance(limit, annotated_types.Lt):
             upper = f"below {show(limit.lt)}"
+    if smallest:
+        lower = {"above 0": least, "0": f"0 and {least}"}.get(lower, f"{lower} to -{least}, 0 and {least}")
     unit = unit_of(field)
     return f"allowed {lower} to {upper}" + (f" {unit}" if unit else "")

@@ -10,7 +10,7 @@ from typing import Any, get_args, get_origin
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 
-from swgpar.input.quantities import Section, allowed, show, show_key
+from swgpar.input.quantities import MAGNITUDE, Section, allowed, show, show_key
 
 RANGE_FINDINGS = ("greater_than", "greater_than_equal", "less_than", "less_than_equal")
 """Kinds of pydantic's findings for numbers beyond the limits of their field."""
@@ -129,6 +129,8 @@ def _bad_value(field: FieldInfo, kind: str, key: str, value: Any) -> str:
         return f"{key} is missing: give {noun}, {limits}"
     if kind == "finite_number":
         return f"{key} = {show(value)} is not a finite number: {limits}"
+    if kind == MAGNITUDE:
+        return f"{key} = {show(value)} is out of range: {allowed(field, smallest=True)}"
     if kind in RANGE_FINDINGS:
         return f"{key} = {show(value)} is out of range: {limits}"
     return f"{key} = {show(value)} is not {noun}: {limits}"

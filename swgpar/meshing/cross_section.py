@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 from swgpar.geometry.arrays import Floats, Ints
 from swgpar.geometry.profiles.flank import ToothProfile
 from swgpar.meshing.half_tooth import HalfTooth
-from swgpar.meshing.mapped import MappedBlocks, QuadMesh
+from swgpar.meshing.mapped import MappedBlocks, MeshError, QuadMesh
 from swgpar.meshing.recipe import ToothRecipe
 
 UNDER, ROOT, RIM = 3, 4, 5
@@ -98,7 +98,7 @@ class NodeFinder:
     def __call__(self, points: Floats) -> Ints:
         distance, node = self.tree.query(points)
         if np.any(distance > self.tolerance):
-            raise RuntimeError("a given boundary node is missing from the cross-section")
+            raise MeshError("a given boundary node is missing from the cross-section")
         return node.astype(np.int32)
 
 

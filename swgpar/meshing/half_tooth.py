@@ -31,6 +31,8 @@ from swgpar.meshing.spacing import even, graded, line, polar, share, split_count
 TIP_NORMAL, ROOT_NORMAL = np.radians(60.0), np.radians(45.0)
 """Inclination of the flank's normal, above the tangent of the pitch circle, at K and at Q."""
 
+DEEP_LEAN = 0.4
+"""Least polar angle at the interface circle of the line that begins at Q, over that of Q."""
 
 Sides = tuple[Floats, Floats, Floats, Floats]
 """Nodes (n, 2), mm, on the bottom, right, top and left side of a block."""
@@ -176,7 +178,8 @@ class HalfTooth:
         uniform = self.half_pitch * n_base / (n_base + recipe.root)
         theta_q = np.arctan2(*q)
         depth = abs(np.hypot(*q) - self.interface)
-        lean = theta_q - depth * np.tan(np.radians(15.0)) / self.interface
+        # below a deep rim the line is steeper, so that it stays within the sector
+        lean = max(theta_q - depth * np.tan(np.radians(15.0)) / self.interface, DEEP_LEAN * theta_q)
         return 0.5 * (lean + np.clip(uniform, 0.8 * lean, 1.1 * lean))
 
     def _shoulder(self, q: Floats, b: Floats, fraction: float) -> tuple[Floats, Floats]:

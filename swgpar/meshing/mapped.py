@@ -13,6 +13,10 @@ from swgpar.geometry.arrays import Floats, Ints
 from swgpar.petsc import NO_FILES, hidden_variables
 
 
+class MeshError(Exception):
+    """Blocks that cannot be meshed: their sides do not fit, cross each other, or have points that coincide."""
+
+
 @dataclass(frozen=True)
 class QuadMesh:
     """A plane mesh of quadrilaterals.
@@ -71,7 +75,7 @@ class MappedBlocks:
         sides = [self.add_points(side) for side in (bottom, right, top, left)]
         b, r, t, lf = sides
         if (b[-1], r[-1], t[0], lf[0]) != (r[0], t[-1], lf[-1], b[0]) or len(b) != len(t) or len(r) != len(lf):
-            raise ValueError("the sides of a block do not close or do not match")
+            raise MeshError("the sides of a block do not close or do not match")
         self.blocks.append((b, r, t, lf))
 
     def generate(self) -> tuple[QuadMesh, Ints]:
@@ -82,6 +86,8 @@ class MappedBlocks:
         mesh : QuadMesh
         node : (n_point,) int32
             Node of each given point.
+
+        Raises MeshError where gmsh cannot mesh the blocks.
         """
         import gmsh  # here, so that runs on an existing mesh need no graphics libraries
 
@@ -91,16 +97,18 @@ class MappedBlocks:
                 arguments = ["gmsh", "-v", "0", NO_FILES]  # without the warning that the option is not one of Gmsh
                 gmsh.initialize(argv=arguments, readConfigFiles=False, interruptible=False)
             watch.rearm()
+        gmsh.option.setNumber("General.Verbosity", 5)
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.option.setNumber("General.NumThreads", 1)
+        gmsh.model.add("tooth section")
         try:
-            gmsh.option.setNumber("General.Verbosity", 5)
-            gmsh.option.setNumber("General.Terminal", 0)
-            gmsh.option.setNumber("General.NumThreads", 1)
-            gmsh.model.add("tooth section")
             self._describe(gmsh)
             gmsh.model.mesh.generate(2)
             result = self._collect(gmsh)
-            gmsh.model.remove()
+        except Exception as error:  # gmsh raises nothing more specific
+            raise MeshError(str(error)) from error
         finally:
+            gmsh.model.remove()
             if owner:
                 gmsh.finalize()
         return result
@@ -142,7 +150,7 @@ class MappedBlocks:
             cells = np.searchsorted(tags, nodes).reshape(-1, 4)
             expected = (len(self.blocks[k][0]) - 1) * (len(self.blocks[k][1]) - 1)
             if len(cells) != expected:
-                raise RuntimeError(f"gmsh made {len(cells)} quadrilaterals where {expected} were asked for")
+                raise MeshError(f"gmsh made {len(cells)} quadrilaterals where {expected} were asked for")
             quads.append(cells)
             block.append(np.full(len(cells), k))
         node = np.array([mesh.getNodes(0, k + 1)[0][0] for k in range(len(self.points))])

@@ -14,6 +14,7 @@ from swgpar.geometry.micro_geometry import crowning
 from swgpar.geometry.profiles import ToothProfile
 from swgpar.meshing.cross_section import CrossSection, cross_section
 from swgpar.meshing.cup import attached_quads, cup_nodes
+from swgpar.meshing.mapped import MeshError
 from swgpar.meshing.quality import hex_quality, quad_quality
 from swgpar.meshing.recipe import CupRecipe, MeshRecipe, ToothRecipe
 from swgpar.meshing.relief import relief_field
@@ -22,6 +23,11 @@ from swgpar.meshing.sweep import axial_stations, sweep_line, sweep_quads
 
 THICK_CUP = 0.85
 """Cup thickness over rim thickness above which the cup continues the layers below the root as well."""
+
+
+def continues_root(design: DriveDesign) -> bool:
+    """Whether the cup of the flexible spline continues the layers below the root as well."""
+    return design.drive.model == "cup" and design.cup_thickness > THICK_CUP * design.flexible_spline.rim
 
 
 def _radii(design: DriveDesign, gear: GearName, recipe: ToothRecipe, r_root: float) -> tuple[float, float, bool]:
@@ -33,7 +39,7 @@ def _radii(design: DriveDesign, gear: GearName, recipe: ToothRecipe, r_root: flo
         return r_root + rim - lower, r_root + rim, False
     if design.drive.model == "plane":
         return design.inner_radius + lower, design.inner_radius, False
-    if design.cup_thickness > THICK_CUP * rim:
+    if continues_root(design):
         return design.inner_radius + lower, design.inner_radius, True
     return design.inner_radius + design.cup_thickness, design.inner_radius, False
 
@@ -46,13 +52,19 @@ def _swept(section: CrossSection, z: Floats, relief: Floats, amount: Floats) -> 
     return coords
 
 
+def _no_mesh(gear: str, recipe: ToothRecipe, result: str) -> str:
+    """The sentence for a tooth whose recipe, sizes and profile do not go together."""
+    counts = ", ".join(f"{name} = {value:g}" for name, value in recipe.model_dump().items())
+    return (
+        f"{gear} {result}, with {counts} of the mesh recipe: allowed are counts, a {gear}.rim and a {gear}.profile "
+        "that leave all Jacobians above 0"
+    )
+
+
 def _check(gear: str, quality: dict[str, float], recipe: ToothRecipe, unit: str) -> None:
     if not quality["min_jacobian"] > 0.0:
-        raise InputError(
-            f"{gear}.tip = {recipe.tip}, {gear}.flank = {recipe.flank} of the mesh recipe give an element that "
-            f"is inside out (Jacobian {quality['min_jacobian']:.3g} {unit}): allowed are counts, and a profile, "
-            "that leave all Jacobians above 0"
-        )
+        result = f"has an element that is inside out (Jacobian {quality['min_jacobian']:.3g} {unit})"
+        raise InputError(_no_mesh(gear, recipe, result))
 
 
 @dataclass(frozen=True)
@@ -118,7 +130,10 @@ def build_sector(design: DriveDesign, recipe: MeshRecipe, gear: GearName) -> Sec
     counts: ToothRecipe = getattr(recipe, gear)
     profile = design.profile(gear)
     interface, free, root_too = _radii(design, gear, counts, profile.r_root_circle)
-    section = cross_section(profile, counts, interface, free)
+    try:
+        section = cross_section(profile, counts, interface, free)
+    except MeshError:
+        raise InputError(_no_mesh(gear, counts, "cannot be meshed")) from None
     width = design.drive.face_width
     plane = design.drive.model == "plane"
     if plane:

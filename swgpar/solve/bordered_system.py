@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from swgpar.errors import OutOfMemoryError
 from swgpar.fem.partition import Partition
 from swgpar.fem.vectors import create_vector, read_multipliers
 from swgpar.log import logger
@@ -28,6 +29,9 @@ def mumps_defaults(dims: int) -> dict[str, object]:
 
 MORE_MEMORY, OUT_OF_ESTIMATE = (120, 240, 480), (-8, -9)
 """Per cent above MUMPS' estimate that are tried after these errors of its INFOG(1)."""
+
+NO_MEMORY = (-5, -7, -13)
+"""Errors of MUMPS' INFOG(1) for allocations that failed."""
 
 GAMG_DEFAULTS = {
     "ksp_rtol": 1e-6,
@@ -218,7 +222,14 @@ class BorderedSystem:
             pc.reset()
             self.ksp.setOperators(matrix)
             self.ksp.setUp()
-        error, detail = (pc.getFactorMatrix().getMumpsInfog(k) for k in (1, 2))
+        factor = pc.getFactorMatrix()
+        error, detail = (factor.getMumpsInfog(k) for k in (1, 2))
+        if error in NO_MEMORY:
+            needed = f"about {1e-3 * factor.getMumpsInfog(17):.3g} GB" if factor.getMumpsInfog(17) > 0 else "more"
+            raise OutOfMemoryError(
+                f"not enough memory: the factor of {matrix.getSize()[0]:,} unknowns needs {needed} on all ranks: "
+                'take a coarser mesh, more memory, or solver.linear = "iterative"'
+            )
         if error < 0:
             logger.warning("   MUMPS cannot factorise: INFOG(1) = %d, INFOG(2) = %d", error, detail)
 

@@ -17,6 +17,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.design.load_states import LoadState, Stage
+from swgpar.errors import TimeLimitError
 from swgpar.fem.vectors import create_vector
 from swgpar.log import logger
 from swgpar.petsc import PETSc, accepted_options
@@ -41,6 +42,7 @@ from swgpar.solve.solve_state import (
     SolveResult,
     SolveState,
 )
+from swgpar.solve.time_limit import passed
 
 SOFT_PENALTIES, SOFT_TOLERANCE = (1e-3, 3e-2), 1e-2
 """Shares of the penalty, and residual over contact force, of the first rough runs while contact is established."""
@@ -180,6 +182,9 @@ class NewtonSolver:
         state.residuals.append(ratio)
         if self.monitor is not None:
             self.monitor(state.load_state, its, ratio)
+        state.time_limit = passed(self.problem.partition.comm)
+        if state.time_limit is not None:
+            return PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT
         if self.last_residual.collapsed or not np.isfinite(norm):
             return PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN
         softened, rtol = state.phase is Phase.SOFTENED, self.settings.rtol
@@ -244,14 +249,16 @@ class NewtonSolver:
         """Solve for equilibrium from the present x; x is the solution, or not valid when the result says not converged.
 
         establish_contact : contacts are switched on: approach through softened penalties
-        max_iterations : of all phases together; None for a multiple of that of the settings
+        max_iterations : of all phases together, at most a multiple of that of the settings; None for that
         search : look for pairs of flanks first; False where those of the last search are near still
         """
         self.state = state = self._begin(load_state, establish_contact, search)
         if max_iterations is not None:
-            state.max_iterations = max_iterations
+            state.max_iterations = min(max_iterations, state.max_iterations)
         while state.result is None:
             outcome = self._iterate(state)
+            if state.time_limit is not None:
+                raise TimeLimitError(_late(state))
             if outcome is Outcome.FAILED:
                 self._after_failure(state)
             elif outcome is Outcome.INTERRUPTED:
@@ -384,6 +391,16 @@ class NewtonSolver:
 
     def _warn(self, state: SolveState, penetration: float) -> None:
         logger.warning("   penetration of %.2g mm remains after %d augmentations", penetration, state.augmentations)
+
+
+def _late(state: SolveState) -> str:
+    """The sentence for a time limit that has passed."""
+    here = state.load_state
+    return (
+        f"the time limit of {state.time_limit:g} s (solver.time_limit) has passed in step {here.step} "
+        f"({here.stage.label}) at a wave-generator angle of {np.degrees(here.angle):.4g} degrees, after "
+        f"{state.iterations} Newton iterations, residual {state.residual:.1e} of the contact force"
+    )
 
 
 REASONS = {value: name for name, value in vars(PETSc.SNES.ConvergedReason).items() if isinstance(value, int)}

@@ -98,6 +98,7 @@ class SolveState:
     incomplete_pattern : whether any rank misses blocks
     outdated_search : whether the nodes have moved far since the last contact search
     visited : active sets of the present run
+    time_limit : s, once it has passed
     """
 
     load_state: LoadState
@@ -116,6 +117,7 @@ class SolveState:
     breaker: CycleBreaker = field(default_factory=CycleBreaker)
     before_augmentation: AcceptableState | None = None
     result: SolveResult | None = None
+    time_limit: float | None = None
 
     @property
     def phase(self) -> Phase:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 import re
 from collections import Counter
 from pathlib import Path
@@ -38,6 +39,7 @@ def _expand(study: Study) -> list[Job]:
     table = read_toml(study.folder / section.design)
     system = system_of_table(table)
     base = apply_overrides(system.without_output(table), section.set)
+    _check_number(study)
     recipes: dict[Path, MeshRecipe] = {}
     cases: list[Case] = []
     for entry in study.cases:
@@ -66,6 +68,18 @@ def _expand(study: Study) -> list[Job]:
         for case in cases
         for index, mesh in enumerate(case.meshes or (None,))
     ]
+
+
+def _check_number(study: Study) -> None:
+    """Refuse more runs than the study allows, before any of them is made."""
+    section = study.section
+    lengths = [len(values) for values in section.vary.values()]
+    together = math.prod(lengths) if section.mode == "grid" else max(lengths, default=1)
+    runs = together * sum(max(len(case.meshes or section.meshes), 1) for case in study.cases)
+    if runs > section.max_cases:
+        raise InputError(
+            f"the study has {show(runs)} runs: allowed up to study.max_cases = {section.max_cases}, which may be raised"
+        )
 
 
 def _meshes(study: Study, case: CaseSection, system: System) -> tuple[Path, ...]:

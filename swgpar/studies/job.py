@@ -60,6 +60,8 @@ def run_job(
             restart, overwrite = restart and same, overwrite or not same
         outcome = _compute(job, folder, comm, restart, overwrite, on_increment)
     except SwgparError as error:
+        if getattr(error, "alone", False) and comm.size > 1:
+            raise
         logger.error("%s", error)
         outcome = Outcome("failed", str(error))
     except Exception as error:

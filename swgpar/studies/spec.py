@@ -61,6 +61,7 @@ class StudySection(Section):
         "cases", text="every rank works on cases of its own, or all on one case after the other"
     )
     mode: Literal["grid", "sweep"] = quantity("grid", text="all combinations of the varied values, or in step")
+    max_cases: int = quantity(100_000, text="largest number of runs, cases times meshes", ge=1, le=100_000_000)
     vary: dict[str, Any] = quantity({}, text="keys of the design file with lists of values")
 
 

@@ -15,7 +15,7 @@ from swgpar.gear_trains.common_sections import TrainDesign
 from swgpar.gear_trains.published import current_name, meaning_and_unit, numbered
 from swgpar.gear_trains.result import TrainResult
 from swgpar.gear_trains.terminal import print_compared
-from swgpar.gear_trains.train import make_train, model_of, open_train, run_train
+from swgpar.gear_trains.train import make_train, model_of, open_train, reported_arithmetic, require_finite, run_train
 from swgpar.input.toml_file import apply_overrides
 from swgpar.meshing import MeshRecipe
 from swgpar.results.atomic import to_json
@@ -32,7 +32,10 @@ class GearTrains(System[TrainDesign, TrainResult]):
         return make_train(table)
 
     def check(self, design: TrainDesign) -> dict[str, float]:
-        return model_of(design).derived(design)
+        with reported_arithmetic():
+            found = model_of(design).derived(design)
+        require_finite(found)
+        return found
 
     def run(
         self,

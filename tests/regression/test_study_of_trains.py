@@ -57,7 +57,7 @@ def test_the_table_has_what_a_run_gives(whole: Path, tmp_path: Path) -> None:
     rows = {row["case"]: row for row in table(whole)}
     assert list(rows) == CASES
     assert [name for name, row in rows.items() if row["status"] == "failed"] == REFUSED
-    assert "mesh.half_backlash = -1 is out of range: allowed 0 to inf" in rows[REFUSED[0]]["reason"]
+    assert "mesh.half_backlash = -1 is out of range: allowed 0 to 1000000 µm" in rows[REFUSED[0]]["reason"]
     for name, noise in zip(KEPT, (50, 200), strict=True):
         design = load_design(DESIGN, [*SMALL, f"load.noise={noise}.0", "mesh.half_backlash=20.0"])
         run_train(design, tmp_path / name, comm=MPI.COMM_SELF)

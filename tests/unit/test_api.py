@@ -301,4 +301,4 @@ def test_a_study_in_memory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     assert found.folder is None and found.report is None and not list(tmp_path.iterdir())
     assert found.table["load.torque"] == [0.1, -1.0] and found.table["status"] == ["finished", "failed"]
     assert found.table["mean.fs_s1"][0] > 0.0 and found.table["mean.fs_s1"][1] is None
-    assert found.failed == {"torque=-1 tiny": "load.torque = -1 is out of range: allowed 0 to inf N·m"}
+    assert found.failed == {"torque=-1 tiny": "load.torque = -1 is out of range: allowed 0 to 1000000000 N·m"}

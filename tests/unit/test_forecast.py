@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 from mpi4py import MPI
 
 import swgpar
 from support.paths import DESIGN, DRIVERS, RECIPE, REFERENCE
+from support.small_drive import PLANE
 from swgpar.analysis.drive_model import build_drive_model
-from swgpar.analysis.forecast import Forecast, forecast, free_memory, require_memory
+from swgpar.analysis.forecast import Forecast, forecast, free_memory, reported_memory, require_memory
 from swgpar.design.design_file import load_design
-from swgpar.errors import InputError
+from swgpar.errors import InputError, OutOfMemoryError
 from swgpar.meshing import load_recipe
+from swgpar.petsc import PETSc
+
+THICK_CUP = ("cup.thickness_coef=0.9", "cup.fillet_radius=2.0")
 
 
-@pytest.mark.parametrize("overrides", [(), ("drive.layout=spline_fixed",), ("solver.twofold_symmetry=false",)])
+@pytest.mark.parametrize(
+    "overrides", [(), ("drive.layout=spline_fixed",), ("solver.twofold_symmetry=false",), THICK_CUP, PLANE]
+)
 def test_counts_are_those_of_the_model(overrides: tuple[str, ...]) -> None:
     design, recipe = load_design(DESIGN, overrides), load_recipe(RECIPE)
     found = forecast(design, recipe)
@@ -33,9 +41,35 @@ def test_needs_grow_with_the_mesh() -> None:
 
 
 def test_what_does_not_fit_is_refused() -> None:
-    require_memory(Forecast(1, 1, 0.9 * free_memory(), 1.0))
-    with pytest.raises(InputError, match="need about 1e[+]06 GB of memory: allowed are meshes that need less than"):
+    require_memory(Forecast(1, 1, 0.8 * free_memory(), 1.0))
+    require_memory(Forecast(1, 1, 1e6, 1.0), limit=2e6)
+    words = "1 elements and 1 unknowns, which need about 1e[+]06 GB of memory: allowed are meshes that need at most"
+    with pytest.raises(InputError, match=f"{words} the .* GB that are free; solver.memory_limit sets another limit"):
         require_memory(Forecast(1, 1, 1e6, 1.0))
+    with pytest.raises(InputError, match=f"{words} solver.memory_limit = 10 GB"):
+        require_memory(Forecast(1, 1, 1e6, 1.0), limit=10.0)
+
+
+def test_a_run_that_does_not_fit_is_refused_before_it_is_meshed(tmp_path: Path) -> None:
+    """Nothing of the size of the mesh is built, and no folder is made."""
+    counts = {"tip": 40, "layers": 40, "flank": 400, "root": 200, "under": 100, "rim": 100}
+    cup = {"cylinder": 400, "fillet": 100, "closed_end": 400}
+    recipe = {"flexible_spline": counts, "ring_gear": counts, "face_width": {"elements": 400}, "cup": cup}
+    for design in (REFERENCE, DRIVERS / "plane_half_turn.toml"):
+        with pytest.raises(InputError, match=r"the mesh has [0-9,]* elements and .* GB of memory: allowed"):
+            swgpar.run(swgpar.load_design(design, {"solver.memory_limit": 2.0}), recipe, tmp_path / "run")
+    assert not (tmp_path / "run").exists()
+
+
+def test_an_allocation_that_fails_is_one_sentence() -> None:
+    needs = forecast(load_design(DESIGN), load_recipe(RECIPE))
+    for error in (MemoryError(), PETSc.Error(55)):
+        with pytest.raises(OutOfMemoryError, match="not enough memory: [0-9,]* unknowns need about .* GB on all ranks"):
+            with reported_memory(needs):
+                raise error
+    with pytest.raises(ValueError, match="^other$"):
+        with reported_memory(needs):
+            raise ValueError("other")
 
 
 def test_a_check_with_a_mesh_prints_the_needs() -> None:

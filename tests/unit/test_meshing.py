@@ -19,6 +19,7 @@ from swgpar.meshing.cross_section import cross_section
 from swgpar.meshing.cup import meridian
 from swgpar.meshing.export import mesh_report, whole_body, whole_drive, write_mesh
 from swgpar.meshing.quality import hex_quality, hex_volumes, quad_quality
+from swgpar.meshing.recipe import make_recipe
 from swgpar.meshing.sweep import axial_stations
 
 CUP_RECIPES = ("coarse", "forces", "medium", "full")
@@ -498,10 +499,30 @@ def test_quality_of_a_trapezium() -> None:
     assert quad_quality(points, np.array([[3, 2, 1, 0]], dtype=np.int32))["min_jacobian"] < 0.0
 
 
+@pytest.mark.parametrize("rim", [0.2, 1.0, 5.0, 20.0, 100.0])
+def test_rims_of_any_thickness_are_meshed(rim: float) -> None:
+    """In modules, of the ring gear; the module is 1 mm."""
+    mesh = build_sector_meshes(plane_design(f"ring_gear.rim={rim}"), load_recipe("plane_coarse"))["ring_gear"]
+    assert mesh.quality["min_scaled_jacobian"] > 0.5
+
+
+def coarsest(**counts: float) -> MeshRecipe:
+    """The smallest recipe of the plane with other counts on both gears."""
+    section = {"tip": 2, "flank": 2, "root": 2, "under": 1, "rim": 1, **counts}
+    return make_recipe({"flexible_spline": section, "ring_gear": section})
+
+
 def test_an_inverted_quadrilateral_is_refused() -> None:
-    """The layers of a rim of twelve modules fold below the root."""
-    with pytest.raises(InputError, match=r"Jacobian -0\.\d+ mm2"):
-        build_sector_meshes(plane_design("ring_gear.rim=12"), load_recipe("plane_coarse"))
+    """Forty layers below the flank reach into a row of elements of a hundredth of the rim."""
+    with pytest.raises(InputError, match=r"^flexible_spline has an element .* \(Jacobian -.* mm2\), with tip = 2"):
+        build_sector_meshes(plane_design(), coarsest(layers=40, rim=100))
+
+
+def test_what_gmsh_cannot_mesh_is_refused() -> None:
+    """The thinnest of the layers is 3^-40 of the thickest one."""
+    with pytest.raises(InputError, match=r"^flexible_spline cannot be meshed, with .* layer_ratio = 3, .*: allowed"):
+        build_sector_meshes(plane_design(), coarsest(layers=40, layer_ratio=3.0))
+    build_sector_meshes(plane_design(), coarsest())
 
 
 @pytest.mark.parametrize(("name", "low", "high"), [("plane", 45_000, 49_000), ("plane_coarse", 22_000, 24_000)])

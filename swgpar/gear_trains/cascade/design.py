@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from annotated_types import Len
 
 from swgpar.errors import InputError
-from swgpar.gear_trains.common_sections import GearTrain, Output, Positive, TrainDesign
+from swgpar.gear_trains.common_sections import GearTrain, Output, Positive, TrainDesign, require_steps
 from swgpar.input.quantities import Section, quantity
 
 PINIONS = 8
@@ -156,8 +156,10 @@ def check_fit(design: CascadeDesign) -> None:
             raise InputError(
                 f"load.forces = {force:g} is out of range: allowed above 0 to {design.load.peak:g} kN (load.peak)"
             )
-    if design.population.step > design.population.hold:
+    section = design.population
+    if section.step > section.hold:
         raise InputError(
-            f"population.step = {design.population.step:g} is out of range: "
-            f"allowed above 0 to {design.population.hold:g} s (population.hold)"
+            f"population.step = {section.step:g} is out of range: allowed above 0 to {section.hold:g} s "
+            "(population.hold)"
         )
+    require_steps("population.step", section.step, section.ramp + section.hold)

@@ -7,7 +7,15 @@ from typing import Annotated, Literal
 from annotated_types import Len
 
 from swgpar.errors import InputError
-from swgpar.gear_trains.common_sections import Damping, GearTrain, MonteCarlo, Output, Positive, TrainDesign
+from swgpar.gear_trains.common_sections import (
+    Damping,
+    GearTrain,
+    MonteCarlo,
+    Output,
+    Positive,
+    TrainDesign,
+    require_steps,
+)
 from swgpar.input.quantities import Section, quantity, show
 
 Torques = Annotated[list[Positive], Len(1)]
@@ -82,7 +90,4 @@ def check_fit(design: GearPairDesign) -> None:
         raise InputError(
             f"load.output = {show(design.load.output)} is out of range: allowed {cases} torques (load.input)"
         )
-    if design.time.step > design.time.end:
-        raise InputError(
-            f"time.step = {show(design.time.step)} is out of range: allowed above 0 to {design.time.end:g} s (time.end)"
-        )
+    require_steps("time.step", design.time.step, design.time.end)

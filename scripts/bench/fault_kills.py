@@ -1,0 +1,217 @@
+"""Commands that are killed at random moments, and then continued to the result of one that was not."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import subprocess
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from support.commands import environment, of_session, on_ranks, swgpar
+from support.paths import DATA, DESIGN, DRIVERS, RECIPE
+from support.small_drive import PLANE
+from support.small_trains import SMALL
+
+LONGEST = 60.0
+"""Seconds after a signal in which all processes have to end."""
+
+SKIPPED = ("wall_s", "newton_iterations")
+"""Columns that are no result: times, and iterations, which a restart may save or add."""
+
+CUP = ("steps.rotation=2.0", "steps.increment=2.0")
+ROTATION = ("steps.rotation=8.0", "steps.increment=2.0")
+FEW = ("output.figures=false",)
+
+STUDY = """[study]
+design = "{design}"
+meshes = ["{mesh}"]
+set = [{overrides}]
+[study.vary]
+"load.torque" = [0.1, 0.2, 0.3, 0.4]
+"""
+
+
+@dataclass(frozen=True)
+class Command:
+    """arguments : without --out;  restart : the option that continues it;  ranks : number of processes"""
+
+    arguments: tuple[str, ...]
+    restart: str
+    ranks: int
+
+    def line(self, out: Path, *more: str) -> list[str]:
+        """The whole command."""
+        first, *rest = self.arguments
+        return [*on_ranks(self.ranks), *swgpar(first, rest[0], "--out", out, *more, *rest[1:])]
+
+
+def commands(folder: Path) -> dict[str, Command]:
+    """What is killed, by name. folder : for the study file"""
+    small = (str(DESIGN), "--mesh", str(RECIPE))
+    overrides = ", ".join(f'"{override}"' for override in (*PLANE, "steps.rotation=2.0", "steps.increment=2.0"))
+    study = folder / "study.toml"
+    study.write_text(STUDY.format(design=DESIGN, mesh=RECIPE, overrides=overrides), encoding="utf-8")
+    found = {
+        "plane": Command(("run", *small, "--plain", "--set", *PLANE, *ROTATION, *FEW), "--restart", 2),
+        "plane, one rank": Command(("run", *small, "--plain", "--set", *PLANE, *ROTATION, *FEW), "--restart", 1),
+        "small cup": Command(("run", *small, "--plain", "--set", *CUP, *FEW), "--restart", 2),
+        "study": Command(("study", str(study)), "--restart", 2),
+        "accuracy": Command(("run", *small, "--accuracy", "0.2", "--set", *PLANE, *FEW), "--restart", 2),
+    }
+    for name in ("gear_pair", "planetary"):
+        train = ("run", str(DRIVERS / f"{name}.toml"), "--set", *SMALL[name], *FEW)
+        found[f"gear train, {name}"] = Command(train, "--overwrite", 2)
+    return found
+
+
+WAYS = ("kill all", "kill one rank", "SIGINT to one rank", "SIGTERM to mpirun", "SIGHUP to mpirun")
+"""How a command is killed; on one rank mpirun is the process itself."""
+
+
+@dataclass(frozen=True)
+class Kill:
+    """One kill. seconds : after the start;  late : seconds until all processes had ended
+
+    ended : whether the command had ended before;  difference : of the continued results, relative to each column's
+    largest value;  fault : what is wrong, empty where nothing is
+    """
+
+    command: str
+    way: str
+    seconds: float
+    late: float
+    ended: bool
+    difference: float
+    fault: str
+
+
+def complete(command: Command, out: Path, *more: str) -> subprocess.CompletedProcess[str]:
+    """Run a command to its end."""
+    return subprocess.run(command.line(out, *more), capture_output=True, text=True, cwd=DATA, env=environment())
+
+
+def kill(name: str, command: Command, reference: Path, out: Path, way: str, seconds: float) -> Kill:
+    """Kill a command after these seconds, continue it, and compare its results with those of the reference."""
+    process = subprocess.Popen(
+        command.line(out),
+        cwd=DATA,
+        env=environment(),
+        start_new_session=True,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    time.sleep(seconds)
+    ended = process.poll() is not None
+    if not ended:
+        _send(process.pid, way, command.ranks)
+    begin, fault, stderr = time.monotonic(), "", ""
+    try:
+        _, stderr = process.communicate(timeout=LONGEST)
+    except subprocess.TimeoutExpired:
+        fault = f"still there {LONGEST:.0f} s after {way}"
+        _send(process.pid, "kill all", command.ranks)
+        process.wait()
+    late = time.monotonic() - begin
+    if "Traceback" in stderr:
+        fault = f"traceback: {stderr[-300:]}"
+    _end_rest(process.pid)
+    if not fault and not ended:
+        done = complete(command, out, command.restart)
+        if done.returncode:
+            fault = f"{command.restart} ended with {done.returncode}: {(done.stderr or done.stdout)[-300:]}"
+    found = np.nan if fault else difference(out, reference)
+    if not fault and not found <= 1e-8:
+        fault = f"results differ by {found:.1e}"
+    return Kill(name, way, seconds, late, ended, found, fault)
+
+
+def _send(leader: int, way: str, ranks: int) -> None:
+    """Signals to a command whose session has this leader."""
+    members = [pid for pid in of_session(leader) if _is_rank(pid)]
+    if way == "kill all":
+        targets, number = of_session(leader), signal.SIGKILL
+    elif way == "kill one rank":
+        targets, number = members[-1:], signal.SIGKILL
+    elif way == "SIGINT to one rank":
+        targets, number = members[-1:], signal.SIGINT
+    else:
+        targets, number = [leader], signal.SIGTERM if way.startswith("SIGTERM") else signal.SIGHUP
+    for pid in targets:
+        try:
+            os.kill(pid, number)
+        except ProcessLookupError:  # ended meanwhile
+            pass
+
+
+def _is_rank(pid: int) -> bool:
+    try:
+        words = Path(f"/proc/{pid}/cmdline").read_text(encoding="utf-8").split("\0")
+    except (OSError, UnicodeDecodeError):
+        return False
+    return "swgpar.cli" in words and not words[0].endswith("mpirun")
+
+
+def _end_rest(leader: int) -> None:
+    """End what a killed mpirun has left behind, so that it cannot write any more."""
+    limit = time.monotonic() + LONGEST
+    while (rest := of_session(leader)) and time.monotonic() < limit:
+        for pid in rest:
+            try:
+                os.kill(pid, signal.SIGKILL)
+            except ProcessLookupError:
+                pass
+        time.sleep(0.05)
+
+
+def difference(out: Path, reference: Path) -> float:
+    """Largest difference of all tables of two results folders, relative to each column's largest value."""
+    names = sorted(path.relative_to(reference) for path in reference.rglob("*.csv"))
+    return max((_of_table(out / name, reference / name) for name in names), default=np.nan)
+
+
+def _of_table(path: Path, other: Path) -> float:
+    if not path.exists():
+        return np.inf
+    rows, expected = _rows(path), _rows(other)
+    if rows[0] != expected[0] or len(rows) != len(expected):
+        return np.inf
+    worst = 0.0
+    scales = {}
+    for k, column in enumerate(rows[0]):
+        if column in SKIPPED or re.match(r"newton|wall", column):
+            continue
+        a, b = ([row[k] for row in table[1:]] for table in (rows, expected))
+        try:
+            left, right = np.array(a, float), np.array(b, float)
+        except ValueError:
+            worst = max(worst, 0.0 if a == b else np.inf)
+            continue
+        scales[column] = float(np.nanmax(np.abs(right), initial=0.0))
+        # the balance is nothing but round-off, of the torques
+        scale = scales["output_torque_Nmm"] if column == "torque_balance_Nmm" else scales[column]
+        change = float(np.nanmax(np.abs(left - right), initial=0.0))
+        same_gaps = np.array_equal(np.isnan(left), np.isnan(right))
+        worst = max(worst, np.inf if not same_gaps else change / scale if scale else change)
+    return worst
+
+
+def _rows(path: Path) -> list[list[str]]:
+    return [line.split(",") for line in path.read_text(encoding="utf-8").splitlines()]
+
+
+def table(kills: Sequence[Kill]) -> list[list[str]]:
+    """Counts by command."""
+    rows = [["command", "kills", "after its end", "faults", "slowest end, s", "largest difference"]]
+    for name in (*dict.fromkeys(kill.command for kill in kills), "all"):
+        here = [kill for kill in kills if name in (kill.command, "all")]
+        largest = max((kill.difference for kill in here if np.isfinite(kill.difference)), default=np.nan)
+        counts = len(here), sum(kill.ended for kill in here), sum(bool(kill.fault) for kill in here)
+        rows.append([name, *map(str, counts), f"{max(kill.late for kill in here):.1f}", f"{largest:.1e}"])
+    return rows

@@ -1,0 +1,66 @@
+"""Elements and nodes of tooth sectors by their recipe, without a mesh: what a run will need is known before it begins.
+
+The numbers follow from the blocks of half a tooth (`half_tooth.py`) and from the sweep (`tooth_sector.py`, `cup.py`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from swgpar.design.drive_design import DriveDesign
+from swgpar.design.sections import GEARS, GearName
+from swgpar.meshing.recipe import MeshRecipe, ToothRecipe
+from swgpar.meshing.tooth_sector import continues_root, require_sections
+
+
+@dataclass(frozen=True)
+class SectorCounts:
+    """Counts of one tooth sector.
+
+    n_sectors : teeth of the gear
+    elements, nodes : of the sector; in the plane those of one layer
+    shared : nodes on one of its sides, which belong to the next sector as well
+    outer : nodes of a ring gear's outer surface, without those shared ones; 0 for a flexible spline
+    """
+
+    n_sectors: int
+    elements: int
+    nodes: int
+    shared: int
+    outer: int
+
+
+def section_counts(recipe: ToothRecipe) -> tuple[int, int, int]:
+    """Quadrilaterals and nodes of the cross-section of one tooth, and nodes on one of its sides."""
+    around, depth = recipe.tip + recipe.layers + recipe.root, recipe.under + recipe.rim
+    tooth = (recipe.tip + recipe.layers) * recipe.flank + recipe.tip * recipe.layers
+    above = recipe.flank * (recipe.layers + 1 + recipe.tip) + recipe.tip * recipe.layers
+    middle = depth + 1 + recipe.flank + recipe.layers
+    half = (around + 1) * (depth + 1) + above
+    return 2 * (tooth + around * depth), 2 * half - middle, depth + 1
+
+
+def sector_counts(design: DriveDesign, recipe: MeshRecipe) -> dict[GearName, SectorCounts]:
+    """Counts of the tooth sectors that `build_sector_meshes` makes of a design and a recipe."""
+    require_sections(design, recipe)
+    return {gear: _counts(design, recipe, gear) for gear in GEARS}
+
+
+def _counts(design: DriveDesign, recipe: MeshRecipe, gear: GearName) -> SectorCounts:
+    teeth: ToothRecipe = getattr(recipe, gear)
+    external = gear == "flexible_spline"
+    quads, nodes, side = section_counts(teeth)
+    around = 2 * (teeth.tip + teeth.layers + teeth.root)
+    n_sectors = design.drive.teeth_fs if external else design.drive.teeth_rg
+    if design.drive.model == "plane":
+        return SectorCounts(n_sectors, quads, nodes, side, 0 if external else around)
+    layers = recipe.face_width.elements
+    elements, nodes, side = quads * layers, nodes * (layers + 1), side * (layers + 1)
+    if external:
+        cup = recipe.cup
+        stations = cup.cylinder + cup.fillet + cup.closed_end
+        depth = teeth.rim + (teeth.under if continues_root(design) else 0)
+        elements += around * depth * stations
+        nodes += (around + 1) * (depth + 1) * stations
+        side += (depth + 1) * stations
+    return SectorCounts(n_sectors, elements, nodes, side, 0 if external else around * (layers + 1))

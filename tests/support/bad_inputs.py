@@ -1,0 +1,372 @@
+"""Bad inputs of all kinds of files, drawn by Hypothesis, and what becomes of them inside this process.
+
+An input begins as a file that is right. Its table is changed in one to three places, or its text is damaged. What
+comes of it is refused by one printable sentence, or accepted with finite numbers. Anything else is a fault.
+"""
+
+from __future__ import annotations
+
+import datetime
+import functools
+import json
+import math
+import time
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from hypothesis import HealthCheck, Phase, given, seed, settings
+from hypothesis import strategies as st
+from mpi4py import MPI
+
+import swgpar
+from support.paths import DESIGN, DRIVERS, RECIPE, REFERENCE
+from support.small_drive import PLANE
+from swgpar.analysis.forecast import forecast
+from swgpar.design.drive_design import DriveDesign
+from swgpar.errors import LONGEST, SwgparError
+from swgpar.input.toml_file import apply_overrides, read_toml
+from swgpar.meshing import build_sector_meshes, load_recipe
+from swgpar.meshing.recipe import RECIPES, recipe_path
+from swgpar.results import checkpoint
+from swgpar.studies.cases import expand
+from swgpar.studies.spec import load_study
+from swgpar.systems import system_of
+
+SLOWEST = 60.0
+"""Seconds after which an input counts as hanging."""
+
+MESHED = 2000
+"""Elements of a sector up to which an accepted input is meshed."""
+
+Table = dict[str, Any]
+Path_ = tuple[str | int, ...]
+
+
+@dataclass(frozen=True)
+class BadInput:
+    """kind : of the file;  files : name -> content, that of the file itself first;  what : how it was changed"""
+
+    kind: str
+    files: dict[str, bytes]
+    what: str
+
+
+@dataclass
+class Outcome:
+    """fault : what is wrong with the way it ended, empty where nothing is;  sentence : of the refusal"""
+
+    kind: str
+    status: str
+    sentence: str = ""
+    fault: str = ""
+    seconds: float = 0.0
+    what: str = ""
+    content: str = field(default="", repr=False)
+
+
+# -- right files ---------------------------------------------------------------------------------------------
+
+
+def _drives() -> list[Table]:
+    cup, small, plane = (read_toml(path) for path in (REFERENCE, DESIGN, DRIVERS / "plane_half_turn.toml"))
+    flat = apply_overrides(small, PLANE)
+    arcs = {"type": "double_arc", "r_addendum": 0.6, "r_dedendum": 0.3}
+    involute = {"type": "involute", "cutter_radius": 0.1}
+    waves = [
+        {"type": "simplified", "C": 0.9},
+        {"type": "elliptical", "C": 0.95},
+        {"type": "parabolic", "C": 1.0, "a_p": 0.0097, "C_p": 0.51, "r_c": 10.0},
+        {"type": "four_roller", "beta": 25.0, "r_4": 15.0},
+    ]
+    changed: list[Table] = [{"wave_generator": {**wave, "face_width": 10.0}} for wave in waves]
+    changed += [
+        {"flexible_spline.profile": involute, "ring_gear.profile": {**involute, "cutter_teeth": 60}},
+        {"flexible_spline.profile": arcs, "ring_gear.profile": arcs},
+        {"fatigue": {}, "losses": {"bearing_diameter": 30.0}},
+        {"stiffness": {"torque": 20.0}},
+        {"ratcheting": {"rotation": 5.0}},
+        {"deviations": {"turns": 2, "seed": 3, "ring_gear": {"pitch_grade": 5, "eccentricity": 0.01}}},
+        {"load.program": [{"name": "up", "torque": 5.0}, {"name": "back", "rotation": 0.1}]},
+        {"contact": {"friction": 0.1}, "steps": {"samples": 4}},
+    ]
+    return [cup, small, plane, flat, *(apply_overrides(plane, change) for change in changed)]
+
+
+def _trains() -> list[Table]:
+    names = ("cascade", "gear_pair", "planetary", "ring_modes", "ring_moving_load", "ring_supported")
+    return [{**read_toml(DRIVERS / f"{name}.toml"), "published": {}} for name in names]
+
+
+def _studies() -> list[Table]:
+    plane, pair = str(DRIVERS / "plane_half_turn.toml"), str(DRIVERS / "gear_pair.toml")
+    grid = {"design": plane, "meshes": ["plane_coarse"], "vary": {"load.torque": [1.0, 2.0], "material.nu": [0.3]}}
+    case = {"name": "one", "set": ["load.torque=1"], "published": {"mean.fs_s1": 300.0}, "tolerance": {"mean.fs_s1": 5}}
+    cases = {"title": "cases", "design": plane, "meshes": [str(RECIPE)], "quantities": ["mean.fs_vm"], "case": [case]}
+    trains = {"design": pair, "mode": "sweep", "vary": {"mesh.half_backlash": [10.0, 20.0], "load.noise": [50.0, 60.0]}}
+    return [{"study": study} for study in (grid, cases, trains)]
+
+
+def _pitch_file() -> bytes:
+    return "\n".join(["tooth,pitch", *(f"{k},{math.sin(k):.3f}" for k in range(42))]).encode()
+
+
+@functools.cache
+def right_files() -> dict[str, list[Table]]:
+    """Tables of right files by kind."""
+    return {
+        "drive": _drives(),
+        "gear train": _trains(),
+        "mesh recipe": [*(read_toml(recipe_path(name)) for name in RECIPES), read_toml(RECIPE)],
+        "study": _studies(),
+    }
+
+
+# -- changes -------------------------------------------------------------------------------------------------
+
+EXTREME = (0.0, -0.0, 1e-320, 1e-300, 1e-15, 1e-9, 1e9, 1e15, 1e300, math.inf, -math.inf, math.nan, 1e-7, -1.0, 0.5)
+TEXTS = ("", " ", "=1+1", "../../x", "/etc/passwd", "\x1b]0;t\x07", "\u202e", "a\nb", "nan", 3000 * "x", "\0", "#")
+NUMBERS = st.one_of(st.sampled_from(EXTREME), st.floats(), st.integers(-3, 3000), st.integers(-(10**30), 10**30))
+WORDS = st.one_of(st.sampled_from(TEXTS), st.text(max_size=20))
+SCALARS = st.one_of(NUMBERS, WORDS, st.booleans(), st.just(datetime.date(2020, 2, 29)))
+HOSTILE = st.one_of(
+    SCALARS,
+    st.lists(SCALARS, max_size=4),
+    st.dictionaries(WORDS, SCALARS, max_size=3),
+    st.just([[]]),
+    st.just([{}]),
+)
+FACTORS = st.one_of(st.sampled_from((-1.0, 0.5, 2.0, 1.001)), st.integers(-12, 12).map(lambda power: 10.0**power))
+
+
+def leaves(value: Any, above: Path_ = ()) -> Iterator[Path_]:
+    """Paths of all values and tables below a table."""
+    items = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    for key, item in items:
+        yield (*above, key)
+        yield from leaves(item, (*above, key))
+
+
+def _at(table: Any, path: Path_) -> Any:
+    for key in path:
+        table = table[key]
+    return table
+
+
+@st.composite
+def changed_tables(draw: st.DrawFn, kind: str) -> tuple[Table, str]:
+    """A right table with one to three changes, and what they are."""
+    table = json.loads(json.dumps(draw(st.sampled_from(right_files()[kind]))))
+    done = []
+    for _ in range(draw(st.sampled_from((1, 1, 1, 2, 3)))):
+        paths = list(leaves(table))
+        if not paths:
+            break
+        path = draw(st.sampled_from(paths))
+        parent, old = _at(table, path[:-1]), _at(table, path)
+        way = draw(st.sampled_from(("replace", "scale", "scale", "remove", "add", "swap")))
+        if way == "scale" and isinstance(old, (int, float)) and not isinstance(old, bool):
+            new = old * draw(FACTORS)
+            parent[path[-1]] = int(new) if isinstance(old, int) and abs(new) < 1e18 and draw(st.booleans()) else new
+        elif way == "remove":
+            del parent[path[-1]]
+        elif way == "add" and isinstance(old, dict):
+            old[draw(WORDS)] = draw(HOSTILE)
+        elif way == "swap":
+            other = draw(st.sampled_from(paths))
+            if other[: len(path)] == path or path[: len(other)] == other:  # one of them is in the other
+                continue
+            parent[path[-1]], _at(table, other[:-1])[other[-1]] = _at(table, other), old
+        else:
+            parent[path[-1]] = draw(HOSTILE)
+        done.append(f"{way} {'.'.join(map(str, path))}")
+    return table, ", ".join(done)
+
+
+@st.composite
+def damaged(draw: st.DrawFn, content: bytes) -> tuple[bytes, str]:
+    """A content that is cut, or has other bytes in between."""
+    begin = draw(st.integers(0, len(content)))
+    end = min(len(content), begin + draw(st.integers(0, 40)))
+    new = draw(st.one_of(st.binary(max_size=40), st.sampled_from((b"[", b"]]", b'"""', b"\xff\xfe", b"\r", b"= = ="))))
+    if draw(st.integers(0, 3)) == 0:
+        return content[:begin], f"cut at {begin}"
+    return content[:begin] + new + content[end:], f"bytes at {begin}"
+
+
+def to_toml(table: Mapping[str, Any], above: tuple[str, ...] = ()) -> str:
+    """A table as TOML, as far as TOML has the values."""
+    lines = [f"{_key(key)} = {_value(value)}" for key, value in table.items() if not isinstance(value, dict)]
+    text = (f"[{'.'.join(map(_key, above))}]\n" if above else "") + "\n".join(lines) + "\n"
+    nested = [(key, value) for key, value in table.items() if isinstance(value, dict)]
+    return text + "".join(to_toml(value, (*above, key)) for key, value in nested)
+
+
+def _key(name: str) -> str:
+    return json.dumps(name)
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{_key(k)} = {_value(v)}" for k, v in value.items()) + " }"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_value, value)) + "]"
+    if isinstance(value, datetime.date):
+        return value.isoformat()
+    if isinstance(value, float) and not math.isfinite(value):
+        return repr(value)
+    return json.dumps(value)
+
+
+@functools.cache
+def right_checkpoint(folder: Path) -> bytes:
+    """A checkpoint with two data sets and attributes of a run, written into the folder."""
+    rng = np.random.default_rng(1)
+    blocks = {"flexible_spline": (rng.random((20, 6, 3)), 0, 20), "ring_gear": (rng.random((21, 4, 3)), 0, 21)}
+    state = {"identity": "x" * 64, "done": 2, "rows": [{"step": 1, "fs_s1": 312.5}] * 2, "wall_s": 1.5}
+    checkpoint.write_checkpoint(folder, MPI.COMM_SELF, blocks, state)
+    return (folder / checkpoint.NAME).read_bytes()
+
+
+KINDS = ("drive", "gear train", "mesh recipe", "study", "pitch file", "checkpoint")
+
+
+@st.composite
+def bad_inputs(draw: st.DrawFn, folder: Path) -> BadInput:
+    """A bad input of any kind. folder : where a right checkpoint is written once"""
+    kind = draw(st.sampled_from((*KINDS, "drive", "drive", "gear train")))
+    if kind == "checkpoint":
+        content, what = draw(damaged(right_checkpoint(folder)))
+        return BadInput(kind, {checkpoint.NAME: content}, what)
+    if kind == "pitch file":
+        content, what = draw(damaged(_pitch_file()))
+        column = draw(st.sampled_from(("pitch", "pitch", "", "tooth", "none")))
+        return BadInput(kind, {"pitch.csv": content, "column": column.encode()}, f"{what}, column {column}")
+    table, what = draw(changed_tables(kind))
+    content = to_toml(table).encode(errors="surrogatepass")
+    if draw(st.integers(0, 7)) == 0:
+        content, damage = draw(damaged(content))
+        what = f"{what}, {damage}"
+    return BadInput(kind, {"input.toml": content}, what)
+
+
+def draw_inputs(count: int, number: int, folder: Path, visit: Callable[[BadInput], None]) -> None:
+    """Call `visit` with so many bad inputs, the same for the same number (the seed)."""
+
+    @seed(number)
+    @settings(
+        max_examples=count,
+        database=None,
+        deadline=None,
+        phases=[Phase.generate],
+        suppress_health_check=list(HealthCheck),
+    )
+    @given(bad_inputs(folder))
+    def each(bad: BadInput) -> None:
+        visit(bad)
+
+    each()
+
+
+# -- what becomes of them ------------------------------------------------------------------------------------
+
+
+def attempt(bad: BadInput, folder: Path) -> Outcome:
+    """Use an input in this process, and judge what comes of it. folder : its files are written there"""
+    for name, content in bad.files.items():
+        (folder / name).write_bytes(content)
+    begin = time.perf_counter()
+    text = next(iter(bad.files.values())).decode(errors="backslashreplace")
+    outcome = Outcome(bad.kind, "accepted", what=bad.what, content=text)
+    try:
+        outcome.fault = USES[bad.kind](folder)
+    except SwgparError as error:
+        outcome.status, outcome.sentence = "refused", str(error)
+        outcome.fault = "" if is_sentence(str(error)) else "no printable sentence"
+    except Exception as error:
+        outcome.status, outcome.fault = "traceback", f"{type(error).__name__}: {error}"
+    outcome.seconds = time.perf_counter() - begin
+    if outcome.seconds > SLOWEST:
+        outcome.fault = outcome.fault or f"takes {outcome.seconds:.0f} s"
+    return outcome
+
+
+def is_sentence(text: str) -> bool:
+    """Whether a refusal is one printable line that is not too long."""
+    return text.isprintable() and 10 < len(text) <= LONGEST and "Traceback" not in text
+
+
+def _not_finite(values: Mapping[str, float]) -> str:
+    wrong = [name for name, value in values.items() if not np.isfinite(value)]
+    return f"not finite: {', '.join(wrong)}" if wrong else ""
+
+
+def _use_design(folder: Path) -> str:
+    design = swgpar.load_design(folder / "input.toml")
+    derived = swgpar.check(design)
+    system_of(design).remarks(design, derived)
+    fault = _not_finite(derived)
+    return fault or (_use_mesh(design, load_recipe(RECIPE)) if isinstance(design, DriveDesign) else "")
+
+
+def _use_recipe(folder: Path) -> str:
+    recipe = load_recipe(folder / "input.toml")
+    designs = [swgpar.load_design(REFERENCE)] if recipe.cup and recipe.face_width else []
+    designs.append(swgpar.load_design(DRIVERS / "plane_half_turn.toml"))
+    return next(filter(None, (_use_mesh(design, recipe) for design in designs)), "")
+
+
+def _use_mesh(design: DriveDesign, recipe: swgpar.MeshRecipe) -> str:
+    needs = forecast(design, recipe)
+    if not (needs.elements > 0 < needs.unknowns and np.isfinite([needs.memory, needs.seconds]).all()):
+        return f"forecast {needs}"
+    if needs.elements > MESHED * design.drive.teeth_fs:
+        return ""
+    meshes = build_sector_meshes(design, recipe)
+    for mesh in meshes.values():
+        if not (np.isfinite(mesh.coords).all() and mesh.quality["min_jacobian"] > 0.0):
+            return f"mesh of {mesh.body}: {mesh.quality}"
+    return ""
+
+
+def _use_study(folder: Path) -> str:
+    out = folder / "out"
+    for job in expand(load_study(folder / "input.toml")):
+        if out not in job.folder(out).parents or ".." in job.folder(out).parts:
+            return f"the folder {job.folder(out)} is outside"
+    return ""
+
+
+def _use_pitch_file(folder: Path) -> str:
+    column = (folder / "column").read_text(encoding="utf-8")
+    gear = {"pitch_file": str(folder / "pitch.csv"), "pitch_column": column}
+    table = apply_overrides(read_toml(DESIGN), PLANE)
+    design = swgpar.load_design({**table, "deviations": {"ring_gear": gear}})
+    errors = design.deviations.ring_gear.pitch_errors
+    return "" if len(errors) == design.drive.teeth_rg and np.isfinite(errors).all() else f"pitch errors {errors}"
+
+
+def _use_checkpoint(folder: Path) -> str:
+    """A damaged checkpoint is refused, or all that it holds is what was written."""
+    path, ranges = folder / checkpoint.NAME, {"flexible_spline": (0, 20), "ring_gear": (0, 21)}
+    checkpoint.require_undamaged(path, MPI.COMM_SELF)
+    arrays, state = checkpoint.read_checkpoint(path, MPI.COMM_SELF, ranges)
+    rng = np.random.default_rng(1)
+    same = all(np.array_equal(arrays[name], rng.random((rows, n, 3))) for name, rows, n in SHAPES)
+    return "" if same and state["rows"] == [{"step": 1, "fs_s1": 312.5}] * 2 else "other content than was written"
+
+
+SHAPES = (("flexible_spline", 20, 6), ("ring_gear", 21, 4))
+"""Data sets of the right checkpoint: name, rows, nodes."""
+
+USES: dict[str, Callable[[Path], str]] = {
+    "drive": _use_design,
+    "gear train": _use_design,
+    "mesh recipe": _use_recipe,
+    "study": _use_study,
+    "pitch file": _use_pitch_file,
+    "checkpoint": _use_checkpoint,
+}
+"""By kind of file: use it from a folder; returns what is wrong with an input that is accepted."""
