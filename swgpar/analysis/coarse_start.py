@@ -15,6 +15,7 @@ from mpi4py import MPI
 from swgpar.analysis.bent_start import bend
 from swgpar.analysis.drive_model import DriveModel, build_drive_model
 from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.analysis.start_states import StartStates
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import LoadState, from_loaded
 from swgpar.errors import ConvergenceError, SwgparError
@@ -62,16 +63,29 @@ def solve_to_load(
     load_states: list[LoadState],
     comm: MPI.Comm,
     coarse: DriveModel | None = None,
+    *,
+    kept: StartStates | None = None,
 ) -> DriveModel:
     """The drive on one mesh in its loaded state, from the loaded state of the model `coarse`, which is released.
 
-    load_states : all increments of the run. Raises ConvergenceError or InputError where a mesh does not allow it.
+    load_states : all increments of the run
+    kept : loaded states of an earlier run, to which this one is added
+
+    Raises ConvergenceError or InputError where a mesh does not allow it.
     """
     stepper = None
     try:
         stepper = LoadStepper(build_drive_model(design, recipe, comm=comm))
-        if coarse is not None:
-            loaded, source, coarse = from_loaded(load_states)[0], coarse, None
+        loaded = from_loaded(load_states)[0]
+        if kept is not None and kept.restore(stepper.model, recipe):
+            if coarse is not None:
+                coarse.destroy()
+                coarse = None
+            stepper.load_state = loaded
+            stepper.advance(loaded)
+            iterations = [stepper.iterations]
+        elif coarse is not None:
+            source, coarse = coarse, None
             take_over(source, stepper, loaded)
             stepper.advance(loaded)
             iterations = [stepper.iterations]
@@ -84,6 +98,8 @@ def solve_to_load(
         raise
     counted = " + ".join(map(str, iterations))
     logger.info("loaded on a mesh of %d elements, Newton iterations %s", stepper.model.n_elements(), counted)
+    if kept is not None:
+        kept.save(stepper.model, recipe)
     return stepper.model
 
 
@@ -121,11 +137,13 @@ def start_loaded(
     recipes: list[MeshRecipe],
     load_states: list[LoadState],
     on_coarse: Callable[[DriveModel, MeshRecipe], None] = lambda model, recipe: None,
+    kept: StartStates | None = None,
 ) -> None:
     """Bring `stepper` to the loaded state by way of coarser meshes, the coarsest of `recipes` first, or bent at once.
 
     load_states : all increments of the run
     on_coarse : called with the model on the last of the coarser meshes, and its recipe; it raises nothing
+    kept : see `solve_to_load`
 
     Raises ConvergenceError or InputError where a mesh does not allow it; `stepper` is then to be reset.
     """
@@ -136,7 +154,7 @@ def start_loaded(
             _jump(stepper, load_states)
             return
         for recipe in recipes:
-            coarse = solve_to_load(target.design, recipe, load_states, target.comm, coarse)
+            coarse = solve_to_load(target.design, recipe, load_states, target.comm, coarse, kept=kept)
         on_coarse(coarse, recipes[-1])
         take_over(coarse, stepper, loaded)
         stepper.advance(loaded)

@@ -19,6 +19,7 @@ from swgpar.analysis.forecast import fits, forecast
 from swgpar.analysis.places import Place, find_places
 from swgpar.analysis.root_stress import LEVELS, MOST_LEVELS, RootStress, resolve_root_stress
 from swgpar.analysis.shortcuts import finds_contacts
+from swgpar.analysis.start_states import StartStates
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import LoadState, from_loaded
 from swgpar.errors import ConvergenceError, InputError, SwgparError
@@ -136,19 +137,26 @@ class Refinement:
     design, load_states, comm : the drive, all increments of its run, communicator
     recipe : the first mesh, compared with a coarser one, or where that would not find the contacts with a finer one
     largest : elements of the whole drive beyond which no mesh is taken
+    kept : loaded states of an earlier run, to which those of this one are added
     """
 
     def __init__(
-        self, design: DriveDesign, recipe: MeshRecipe, load_states: list[LoadState], comm: MPI.Comm, largest: int
+        self,
+        design: DriveDesign,
+        recipe: MeshRecipe,
+        load_states: list[LoadState],
+        comm: MPI.Comm,
+        largest: int,
+        kept: StartStates | None = None,
     ) -> None:
         self.design, self.load_states, self.comm, self.largest = design, load_states, comm, largest
-        self.kind = design.drive.model
+        self.kind, self.kept = design.drive.model, kept
         self.levels = LEVELS[self.kind]
         coarse = resized(recipe, 1.0 / RATIO)
         if not finds_contacts(coarse):
             coarse, recipe = recipe, resized(recipe, RATIO)
         self.recipe, self.ratio = recipe, size_ratio(coarse, recipe)
-        self.model = solve_to_load(design, coarse, load_states, comm)
+        self.model = solve_to_load(design, coarse, load_states, comm, kept=kept)
         try:
             self.coarse = resolve_root_stress(self.model, self.loaded, COMPARED_LEVELS).levels
             self.coarse_places = self._places()
@@ -171,13 +179,13 @@ class Refinement:
         coarse = self.model
         if self.design.contact.friction:
             coarse.destroy()
-            self.model = solve_to_load(self.design, recipe, self.load_states, self.comm)
+            self.model = solve_to_load(self.design, recipe, self.load_states, self.comm, kept=self.kept)
             return
         try:
-            self.model = solve_to_load(self.design, recipe, self.load_states, self.comm, coarse)
+            self.model = solve_to_load(self.design, recipe, self.load_states, self.comm, coarse, kept=self.kept)
         except (ConvergenceError, InputError) as error:
             logger.info("the state of another mesh does not lead to that of this one: %s", error)
-            self.model = solve_to_load(self.design, recipe, self.load_states, self.comm)
+            self.model = solve_to_load(self.design, recipe, self.load_states, self.comm, kept=self.kept)
 
     def _resolve(self, before: float | None = None) -> RootStress:
         """Windows on the present mesh. before : error (MPa) of the mesh before it"""
@@ -225,7 +233,7 @@ class Refinement:
             logger.warning("no finer mesh of the drive: %s", error)
             self.coarse, self.ratio, self.found, self.coarse_places = earlier
             self.model.destroy()
-            self.model = solve_to_load(self.design, self.recipe, self.load_states, self.comm)
+            self.model = solve_to_load(self.design, self.recipe, self.load_states, self.comm, kept=self.kept)
             return False
         self.recipe = finer
         return True
@@ -239,16 +247,19 @@ def choose_mesh(
     comm: MPI.Comm,
     *,
     largest: int | None = None,
+    kept: StartStates | None = None,
 ) -> ChosenMesh:
     """Refine `recipe` and the windows until the estimated relative error of the root's stress is at most `accuracy`.
 
     load_states : all increments of the run
     largest : elements of the whole drive beyond which no finer mesh is taken; None for those of `LARGEST`
+    kept : see `Refinement`
 
     Ends with the best mesh where the accuracy is out of reach, and says so. Raises ConvergenceError or InputError like
     a run on one of the first two meshes.
     """
-    drive = Refinement(design, recipe, load_states, comm, LARGEST[design.drive.model] if largest is None else largest)
+    largest = LARGEST[design.drive.model] if largest is None else largest
+    drive = Refinement(design, recipe, load_states, comm, largest, kept)
     refine = {"windows": drive.refine_windows, "mesh": drive.refine_drive}
     while relative_error(drive.found) > accuracy:
         errors = {"windows": drive.found.error, "mesh": drive.found.drive_error}

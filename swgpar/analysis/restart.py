@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
@@ -15,32 +14,14 @@ from swgpar.analysis.places import Place
 from swgpar.analysis.root_stress import RootStress
 from swgpar.analysis.summary import Accuracy
 from swgpar.contact import friction
-from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import LoadState, from_loaded
 from swgpar.errors import InputError
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.fem.vectors import write_field
-from swgpar.meshing import MeshRecipe
 from swgpar.results import checkpoint
-from swgpar.results.atomic import to_json
 
 if TYPE_CHECKING:
     from swgpar.analysis.recorder import FolderRecorder
-
-SOLVER_CHOICES = {"linear", "keep_factor", "far_teeth", "iteration_limit", "time_limit", "memory_limit"}
-"""Keys of [solver] that a restart may change: they are about how systems are solved, and limits."""
-
-
-def identity(design: DriveDesign, recipe: MeshRecipe, accuracy: float | None) -> str:
-    """Identity of what is computed: everything but the output, the rotation and how systems are solved.
-
-    The angles of the rotation are compared one by one.
-    """
-    content = design.model_dump(exclude={"output": True, "steps": {"rotation", "samples"}, "solver": SOLVER_CHOICES})
-    if design.bearing is not None:
-        content["cage_speed"] = design.cage_speed  # follows from steps.samples
-    content = {"design": content, "recipe": recipe.model_dump(), "accuracy": accuracy}
-    return hashlib.sha256(to_json(content)).hexdigest()
 
 
 def write_state(

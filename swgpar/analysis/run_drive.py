@@ -19,6 +19,7 @@ from swgpar.analysis.drive_tables import DriveTables
 from swgpar.analysis.fatigue import evaluate_fatigue
 from swgpar.analysis.follow_turns import follow_turns
 from swgpar.analysis.forecast import forecast, reported_memory, require_memory
+from swgpar.analysis.identity import identity
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.losses import evaluate_losses
 from swgpar.analysis.mesh_refinement import (
@@ -36,9 +37,10 @@ from swgpar.analysis.period import continued, require_samples
 from swgpar.analysis.places import find_places
 from swgpar.analysis.ratcheting import has_fallen
 from swgpar.analysis.recorder import FolderRecorder, MemoryRecorder, Recorder
-from swgpar.analysis.restart import identity, resume
+from swgpar.analysis.restart import resume
 from swgpar.analysis.root_stress import RootStress, resolve_root_stress, with_angle
 from swgpar.analysis.shortcuts import finds_contacts, with_shortcuts
+from swgpar.analysis.start_states import StartStates
 from swgpar.analysis.stiffness_error import stiffness_error
 from swgpar.analysis.summary import Accuracy, summarise
 from swgpar.analysis.transmission_error import period_rows
@@ -122,14 +124,17 @@ def run_drive(
     if left_out:
         logger.info("left out: %s; --plain computes all of it", ", ".join(left_out))
     with reported_memory(needs), limited(design.solver.time_limit):
-        model, recipe, chosen = _model(design, recipe, accuracy, folder if resumed else None, comm)
+        kept = StartStates(folder, design)
+        if not restart:
+            kept.remove(comm)
+        model, recipe, chosen = _model(design, recipe, accuracy, folder if resumed else None, kept, comm)
         recorder = _recorder(model, folder, identity(design, recipe, accuracy))
         try:
             if chosen is not None:
                 _record_choice(recorder, chosen, accuracy, folder)
             if restart and not resumed:
                 logger.info("no increment was saved: starting from the beginning")
-            run = _Run(model, recipe, recorder, on_increment, begin)
+            run = _Run(model, recipe, recorder, kept, on_increment, begin)
             items = run.resume() if resumed else run.start()
             run.go_through(items, terminal)
             result = run.finish(recipe_name)
@@ -143,17 +148,22 @@ def run_drive(
 
 
 def _model(
-    design: DriveDesign, recipe: MeshRecipe, accuracy: float | None, earlier: Path | None, comm: MPI.Comm
+    design: DriveDesign,
+    recipe: MeshRecipe,
+    accuracy: float | None,
+    earlier: Path | None,
+    kept: StartStates,
+    comm: MPI.Comm,
 ) -> tuple[DriveModel, MeshRecipe, ChosenMesh | None]:
     """The model, its recipe, and with an accuracy how its mesh was chosen. earlier : as in `_choose_mesh`"""
     chosen = None
     if accuracy is not None:
-        chosen, recipe = _choose_mesh(design, recipe, accuracy, earlier, comm)
+        chosen, recipe = _choose_mesh(design, recipe, accuracy, earlier, kept, comm)
     return build_drive_model(design, recipe, comm=comm) if chosen is None else chosen.model, recipe, chosen
 
 
 def _choose_mesh(
-    design: DriveDesign, recipe: MeshRecipe, accuracy: float, earlier: Path | None, comm: MPI.Comm
+    design: DriveDesign, recipe: MeshRecipe, accuracy: float, earlier: Path | None, kept: StartStates, comm: MPI.Comm
 ) -> tuple[ChosenMesh | None, MeshRecipe]:
     """The loaded model on a mesh for an accuracy, with its recipe; for a restart the recipe only.
 
@@ -161,7 +171,7 @@ def _choose_mesh(
     """
     if earlier is not None:
         return None, on_all(comm, lambda: load_recipe(earlier / RECIPE))
-    chosen = choose_mesh(design, recipe, list(load_sequence(design)), accuracy, comm)
+    chosen = choose_mesh(design, recipe, list(load_sequence(design)), accuracy, comm, kept=kept)
     return chosen, chosen.recipe
 
 
@@ -180,7 +190,8 @@ def _record_choice(recorder: Recorder, chosen: ChosenMesh, accuracy: float, fold
 class _Run:
     """One run: start or restart, all increments, end.
 
-    recipe : of the model's mesh;  begin : time.perf_counter() at the run's start
+    recipe : of the model's mesh;  kept : loaded states on the meshes of the start
+    begin : time.perf_counter() at the run's start
     """
 
     def __init__(
@@ -188,9 +199,11 @@ class _Run:
         model: DriveModel,
         recipe: MeshRecipe,
         recorder: Recorder,
+        kept: StartStates,
         on_increment: Callable[[], None],
         begin: float,
     ) -> None:
+        self.kept = kept
         self.model, self.recipe, self.recorder, self.stepper = model, recipe, recorder, LoadStepper(model)
         self.on_increment, self.begin = on_increment, begin
         self.earlier_seconds, self.ended_early = 0.0, False
@@ -225,7 +238,7 @@ class _Run:
         if self.recorder.accuracy is not None:  # the model was loaded when its mesh was chosen
             self.stepper.resume_at(from_loaded(items)[0])
             return from_loaded(items)
-        self.recorder.starts_loaded = _start_loaded(self.stepper, self.recipe, items, self._keep_coarse)
+        self.recorder.starts_loaded = _start_loaded(self.stepper, self.recipe, items, self._keep_coarse, self.kept)
         return from_loaded(items) if self.recorder.starts_loaded else items
 
     def _keep_coarse(self, model: DriveModel, recipe: MeshRecipe) -> None:
@@ -257,6 +270,8 @@ class _Run:
                 if self.model.design.resolves_root_stress:
                     recorder.root_stress = self._root_stress(item, item == loaded)
                 recorder.record(stepper, seconds, self.seconds)
+                if len(recorder.rows) == 1:
+                    self.kept.remove(self.model.comm)
                 angle = float(np.degrees(item.angle))
                 progress.increment(item.stage.label, angle, stepper.iterations, stepper.residual, seconds)
                 self.on_increment()
@@ -366,6 +381,7 @@ def _start_loaded(
     recipe: MeshRecipe,
     items: list[LoadState],
     on_coarse: Callable[[DriveModel, MeshRecipe], None],
+    kept: StartStates,
 ) -> bool:
     """Reach the loaded state on coarser meshes or from the bent shape; False if none is asked for, or if that fails."""
     coarser_ones = levels(stepper.design, recipe)
@@ -377,7 +393,7 @@ def _start_loaded(
         ways.append([])
     for recipes in ways:
         try:
-            start_loaded(stepper, recipes, items, on_coarse)
+            start_loaded(stepper, recipes, items, on_coarse, kept)
             return True
         except (ConvergenceError, InputError) as error:
             what = "on coarser meshes" if recipes else "from the bent shape"

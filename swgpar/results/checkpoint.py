@@ -32,27 +32,33 @@ _SUMS = "sums"
 
 
 def write_checkpoint(
-    out: Path, comm: MPI.Comm, blocks: Mapping[str, tuple[np.ndarray, int, int]], attrs: Mapping[str, Any]
+    out: Path,
+    comm: MPI.Comm,
+    blocks: Mapping[str, tuple[np.ndarray, int, int]],
+    attrs: Mapping[str, Any],
+    *,
+    name: str = NAME,
 ) -> None:
-    """Replace `out`/checkpoint.h5. The previous one stays valid until the new one is complete. Collective.
+    """Replace the file `name` in `out`. The previous one stays valid until the new one is complete. Collective.
 
     Parameters
     ----------
     out : results folder
     blocks : name -> (rows of this rank (n, ...), first row, rows in total)
     attrs : what else the state is made of, as JSON can hold it (numbers keep all digits); used from rank 0
+    name : of the file
     """
-    rows = {name: Block(np.asarray(array), first, total) for name, (array, first, total) in blocks.items()}
-    sums = {name: comm.allreduce(_sum(block.array, block.first)) for name, block in rows.items()}
+    rows = {body: Block(np.asarray(array), first, total) for body, (array, first, total) in blocks.items()}
+    sums = {body: comm.allreduce(_sum(block.array, block.first)) for body, block in rows.items()}
     # An HDF5 attribute ends at 64 KiB, the history of a long run does not: the text goes into a data set.
     text = comm.bcast(to_json({**attrs, _SUMS: sums}) if comm.rank == 0 else None)
-    for name, values in (
+    for key, values in (
         (_ATTRS, np.frombuffer(text, dtype=np.uint8)),
         (_DIGEST, np.frombuffer(hashlib.sha256(text).digest(), dtype=np.uint8)),
         (_VERSION, np.array([VERSION])),
     ):
-        rows[name] = Block(values if comm.rank == 0 else values[:0], 0, len(values))
-    parallel_hdf5.write(Path(out) / NAME, comm, rows)
+        rows[key] = Block(values if comm.rank == 0 else values[:0], 0, len(values))
+    parallel_hdf5.write(Path(out) / name, comm, rows)
 
 
 def read_checkpoint(

@@ -46,6 +46,9 @@ STIFFNESS = "stiffness.csv"
 BALLS = "balls.csv"
 """Loads of the balls of a bearing."""
 
+START_STATES = "start_*.h5"
+"""Loaded states on the meshes of a start, until there is a checkpoint."""
+
 SUMMARY = "summary.json"
 """Written last: a folder that has it is that of a finished run."""
 
@@ -55,6 +58,7 @@ LOG = "run.log"
 RESULTS = (
     history.NAME,
     checkpoint.NAME,
+    START_STATES,
     SUMMARY,
     PAIRS,
     CONTACT_LINES,

@@ -10,8 +10,8 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.analysis.drive_result import DriveResult, open_drive
+from swgpar.analysis.identity import identity
 from swgpar.analysis.program_results import COLUMNS as PROGRAM_COLUMNS
-from swgpar.analysis.restart import identity
 from swgpar.analysis.run_drive import run_drive
 from swgpar.analysis.shortcuts import MESHES
 from swgpar.analysis.summary import MEANS

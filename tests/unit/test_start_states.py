@@ -1,0 +1,49 @@
+"""Loaded states on the meshes of a start survive a run that ends before its first checkpoint."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from mpi4py import MPI
+
+from support.messages import Messages
+from support.paths import DESIGN
+from support.small_drive import PLANE
+from swgpar.analysis.coarse_start import solve_to_load
+from swgpar.analysis.start_states import StartStates
+from swgpar.design.design_file import load_design
+from swgpar.design.load_states import load_sequence
+from swgpar.meshing import load_recipe
+from swgpar.results.folder import START_STATES
+
+TAKEN_OVER = "is taken over"
+
+
+def test_a_loaded_state_is_taken_over(tmp_path: Path) -> None:
+    design = load_design(DESIGN, [*PLANE, "steps.rotation=0", "steps.bent_start=true"])
+    recipe, states, comm = load_recipe("plane_coarse"), list(load_sequence(design)), MPI.COMM_SELF
+    kept = StartStates(tmp_path, design)
+
+    def solve() -> tuple[np.ndarray, str]:
+        with Messages() as messages:
+            model = solve_to_load(design, recipe, states, comm, kept=kept)
+        x = model.problem.x.array_r.copy()
+        model.destroy()
+        return x, "\n".join(messages.texts)
+
+    first, words = solve()
+    assert TAKEN_OVER not in words
+    again, words = solve()
+    assert TAKEN_OVER in words and "Newton iterations 0" in words
+    assert np.array_equal(first, again)
+    # a damaged file costs the time of another solve
+    (path,) = tmp_path.glob(START_STATES)
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 1
+    path.write_bytes(content)
+    other, words = solve()
+    assert TAKEN_OVER not in words and "computed again" in words
+    assert np.array_equal(first, other)
+    kept.remove(comm)
+    assert not list(tmp_path.iterdir())
