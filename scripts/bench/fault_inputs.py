@@ -40,7 +40,7 @@ def run_batch(number: int, count: int, out: Path) -> list[dict[str, Any]]:
         if code == 0:
             break
         begun = lines[-1]
-        if "status" in begun:
+        if code == 1 or "status" in begun:
             raise SystemExit(f"the worker of batch {number} ended with {code}: see {out}")
         lost = {**begun, "status": "ended", "fault": f"ended the process with {code}", "sentence": "", "seconds": 0.0}
         with file.open("a", encoding="utf-8") as more:

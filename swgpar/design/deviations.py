@@ -116,6 +116,8 @@ def read_column(path: str, column: str) -> list[float]:
         column = names[0]
     if column not in names:
         raise InputError(f"pitch_column = {show(column)} is not a column of {path}: allowed {', '.join(names)}")
+    if not rows:
+        raise InputError(f"pitch_column = {show(column)} of {path} has no values: allowed is one for each tooth")
     values = [row[names.index(column)] if names.index(column) < len(row) else "" for row in rows]
     try:
         return [float(value) for value in values]

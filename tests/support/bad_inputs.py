@@ -135,8 +135,8 @@ HOSTILE = st.one_of(
     SCALARS,
     st.lists(SCALARS, max_size=4),
     st.dictionaries(WORDS, SCALARS, max_size=3),
-    st.just([[]]),
-    st.just([{}]),
+    st.builds(lambda: [[]]),
+    st.builds(lambda: [{}]),
 )
 FACTORS = st.one_of(st.sampled_from((-1.0, 0.5, 2.0, 1.001)), st.integers(-12, 12).map(lambda power: 10.0**power))
 

@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 
 from support.bad_inputs import BadInput, Outcome, attempt, bad_inputs, draw_inputs, is_sentence
 
-COUNT = 150
+COUNT = 400
 
 
 @pytest.fixture(scope="module")
