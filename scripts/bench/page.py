@@ -14,14 +14,33 @@ def markdown(rows: Iterable[Sequence[str]]) -> str:
     return "\n".join("| " + " | ".join(cells) + " |" for cells in [first, ["---"] * len(first), *others]) + "\n"
 
 
-def write_results(name: str, columns: Sequence[str], rows: Sequence[Mapping[str, Any]], text: str) -> None:
-    """Write these columns of the rows to data/NAME.csv, and `text` into NAME.md, both of docs/verification."""
-    folder = Path("docs/verification")
-    with (folder / "data" / f"{name}.csv").open("w", newline="", encoding="utf-8") as file:
+DATA = Path("docs/verification/data")
+
+
+def read_results(name: str) -> list[dict[str, Any]]:
+    """Rows of data/NAME.csv of docs/verification, numbers as such; none without the file."""
+    if not (DATA / f"{name}.csv").exists():
+        return []
+    with (DATA / f"{name}.csv").open(newline="", encoding="utf-8") as file:
+        return [{key: _value(text) for key, text in row.items()} for row in csv.DictReader(file)]
+
+
+def _value(text: str) -> float | str | None:
+    try:
+        return float(text) if text else None
+    except ValueError:
+        return text
+
+
+def write_results(
+    name: str, columns: Sequence[str], rows: Sequence[Mapping[str, Any]], text: str, page: str | None = None
+) -> None:
+    """Write these columns of the rows to data/NAME.csv, and `text` into PAGE.md or NAME.md, of docs/verification."""
+    with (DATA / f"{name}.csv").open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, columns, lineterminator="\n", extrasaction="ignore")
         writer.writeheader()
         writer.writerows(rows)
-    put(folder / f"{name}.md", name, text)
+    put(DATA.parent / f"{page or name}.md", name, text)
 
 
 def put(page: Path, name: str, text: str) -> None:

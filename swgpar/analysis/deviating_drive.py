@@ -27,7 +27,7 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import LoadState, Stage, from_loaded, load_sequence
 from swgpar.design.sections import GEARS
 from swgpar.errors import ConvergenceError
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.geometry.rotation import rotated
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.recipe_counts import coarser
@@ -89,7 +89,10 @@ def turn_design(design: DriveDesign) -> DriveDesign:
             }
         )
     steps = design.steps.model_copy(update={"bent_start": True, "samples": 0, "rotation": 0.0})
-    return design.model_copy(update={"solver": solver, "steps": steps, "contact": contact})
+    wave = design.wave_generator
+    if wave.bearing is not None:  # balls that pass would make every pitch another drive
+        wave = wave.model_copy(update={"bearing": wave.bearing.model_copy(update={"cage_speed": 1.0})})
+    return design.model_copy(update={"solver": solver, "steps": steps, "contact": contact, "wave_generator": wave})
 
 
 def _is_twofold(design: DriveDesign, deviations: Deviations) -> bool:
@@ -126,7 +129,8 @@ class DeviatingDrive:
         self.loaded = from_loaded(items)[0]
         self.stepper.resume_at(self.loaded)
         gears = [gear_deviations(self.deviations, gear, design.teeth(gear)) for gear in GEARS]
-        self.tables = flank_deviations(*self.model.partition.layouts, *gears, design.axial_travel)
+        layouts = self.model.partition.layouts
+        self.tables = flank_deviations(layouts[FLEXIBLE_SPLINE], layouts[RING_GEAR], *gears, design.axial_travel)
         bore = problem.supports.couplings[FLEXIBLE_SPLINE]
         self.bore_z = float(bore.sum(bore.weight * bore.reference[:, 2]))
         spline, ring = self.tables.periods()
@@ -180,6 +184,8 @@ class DeviatingDrive:
 
     def _displace_cam(self) -> None:
         """Move the cam off the axis on which it rotates."""
+        if self.design.bearing is not None:
+            return
         part = self.deviations.wave_generator
         shift, lean = tuple(part.shift), tuple(part.lean)
 

@@ -1,4 +1,4 @@
-"""Fatigue of the flexible spline over a turn of the wave generator: safety factors, their places, life."""
+"""Fatigue of the flexible spline over a turn of the wave generator or a load program: safety, places, life."""
 
 from __future__ import annotations
 
@@ -20,6 +20,8 @@ from swgpar.analysis.fatigue_criteria import (
 from swgpar.analysis.places import APART_DISTANCE, TOOTH_END, near_contact, region_of, warning_of
 from swgpar.analysis.root_stress import RootStress
 from swgpar.analysis.stress_cycle import StressCycle
+from swgpar.design.load_program import program_points
+from swgpar.design.load_states import Stage
 from swgpar.fem.stress import principal
 from swgpar.results.sector_fields import SectorFields
 
@@ -53,6 +55,8 @@ class FatigueResult:
 def evaluate_fatigue(cycle: StressCycle, root_stress: RootStress | None) -> FatigueResult:
     """Safety factors of every node of a sector from its stress over the cycle; collective.
 
+    In a load program the least of all sectors stand for a node.
+
     root_stress : of the loaded state, by which nodal stresses in the tooth root are scaled; None leaves them
     """
     model = cycle.model
@@ -68,14 +72,14 @@ def evaluate_fatigue(cycle: StressCycle, root_stress: RootStress | None) -> Fati
         "crossland": crossland(stress, fatigue),
         "yield": principal(stress)[2].max(axis=0) / fatigue.yield_strength,
     }
-    nodal = _gathered(comm, len(cycle.nodes), mine, {**utilisation, "amplitude": plane.amplitude, "mean": plane.mean})
+    own = _largest(len(cycle.nodes), mine, {**utilisation, "amplitude": plane.amplitude, "mean": plane.mean})
+    parts = comm.allgather(own)
+    joined = {name: np.concatenate([part[name] for part in parts]) for name in own}
+    nodal = _largest(len(cycle.nodes), np.tile(np.arange(len(cycle.nodes)), len(parts)), joined)
     sound = warnings == ""
     least = {name: int(np.where(sound, nodal[name], -1.0).argmax()) for name in CRITERIA}
     history, normal = _history_at(comm, mine, stress, plane, least["goodman"])
     values = normal_stress(history[:, None], normal[None])[:, 0]
-    speed = 2.0 * np.pi / cycle.angle  # cycles per turn of the wave generator
-    damage_per_turn = speed * damage(values, fatigue)
-    turns = 1.0 / damage_per_turn if damage_per_turn > 0.0 else None
     half = _change_by_half(values, cycle, 1.0 / nodal["goodman"][least["goodman"]])
     at_root = scale[least["goodman"]] != 1.0
     summary = {
@@ -86,17 +90,41 @@ def evaluate_fatigue(cycle: StressCycle, root_stress: RootStress | None) -> Fati
         "sampling_error": half,
         "root_factor": factor if root_stress else None,
         "root_factor_error": factor_error if root_stress else None,
-        "damage_per_turn": damage_per_turn,
-        "life_turns": turns,
-        "life_hours": turns / (60.0 * model.design.load.input_speed) if turns else None,
-        "cycles_per_turn": speed,
+        **_life(cycle, damage(values, fatigue)),
         "phases": len(values),
         "fatigue_limit_of_the_part_MPa": fatigue_limits(fatigue)[0],
         "warning": WARNING,
     }
-    angle = np.degrees(cycle.angle) * np.arange(len(values)) / len(values)
-    table = {"wg_angle_deg": angle, **dict(zip(COMPONENTS, history.T, strict=True)), "normal_stress_MPa": values}
+    table = {**_when(cycle, len(values)), **dict(zip(COMPONENTS, history.T, strict=True)), "normal_stress_MPa": values}
     return FatigueResult(summary, _sector(cycle, nodal, regions), table)
+
+
+def _life(cycle: StressCycle, damage_of_cycle: float) -> dict[str, float | None]:
+    """Damage and life in turns of the wave generator, or in passages of the load program."""
+    design = cycle.model.design
+    found: dict[str, float | None] = dict.fromkeys(
+        ("damage_per_turn", "life_turns", "life_hours", "cycles_per_turn", "damage_per_program", "life_programs")
+    )
+    life = 1.0 / damage_of_cycle if damage_of_cycle > 0.0 else None
+    if design.has_program:
+        return found | {"damage_per_program": damage_of_cycle, "life_programs": life}
+    speed = 2.0 * np.pi / cycle.angle
+    turns = life / speed if life else None
+    return found | {
+        "damage_per_turn": speed * damage_of_cycle,
+        "life_turns": turns,
+        "life_hours": turns / (60.0 * design.load.input_speed) if turns else None,
+        "cycles_per_turn": speed,
+    }
+
+
+def _when(cycle: StressCycle, count: int) -> dict[str, np.ndarray]:
+    """Columns that say when the values of a cycle are: wave-generator angles, in a load program its steps too."""
+    design = cycle.model.design
+    if not design.has_program:
+        return {"wg_angle_deg": np.degrees(cycle.angle) * np.arange(count) / count}
+    angles = np.array([point.angle for point in program_points(design)])
+    return {"step": int(Stage.LOAD) + np.arange(count), "wg_angle_deg": angles}
 
 
 def _scaled(root_stress: RootStress | None) -> list[str]:
@@ -129,27 +157,41 @@ def _regions(cycle: StressCycle) -> tuple[np.ndarray, np.ndarray]:
     return np.array(regions), np.array(warnings)
 
 
-def _gathered(comm: MPI.Comm, n: int, mine: np.ndarray, columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Nodal numbers (n,) on every rank from those of each rank's nodes; collective."""
-    out = {name: np.zeros(n) for name in columns}
-    for index, values in comm.allgather((mine, columns)):
-        for name in columns:
-            out[name][index] = values[name]
+def _largest(n: int, index: np.ndarray, columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Largest utilisations of n nodes, amplitude and mean where that by Goodman is the largest; -1 without values.
+
+    index : (m,) nodes of the values in columns (m,), of which a node may have several
+    """
+    out = {name: np.full(n, -1.0) for name in columns}
+    for name in CRITERIA:
+        np.maximum.at(out[name], index, columns[name])
+    upward = np.argsort(columns["goodman"], kind="stable")  # of several values the last one is kept
+    for name in ("amplitude", "mean"):
+        out[name][index[upward]] = columns[name][upward]
     return out
 
 
 def _history_at(
     comm: MPI.Comm, mine: np.ndarray, stress: np.ndarray, plane: CriticalPlane, node: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Stress (n_phases, 6) MPa and normal (3,) of the critical plane at a node, on every rank; collective."""
-    found = np.flatnonzero(mine == node)
-    part = (stress[:, found[0]], plane.normal[found[0]]) if len(found) else None
-    return next(one for one in comm.allgather(part) if one is not None)
+    """Stress (n_phases, 6) MPa and normal (3,) of the critical plane at a node, on every rank; collective.
+
+    Of several histories at the node it is that with the largest utilisation.
+    """
+    found, part = np.flatnonzero(mine == node), None
+    if len(found):
+        at = found[plane.utilisation[found].argmax()]
+        part = float(plane.utilisation[at]), stress[:, at], plane.normal[at]
+    _, history, normal = max((one for one in comm.allgather(part) if one is not None), key=lambda one: one[0])
+    return history, normal
 
 
 def _change_by_half(values: np.ndarray, cycle: StressCycle, safety: float) -> float | None:
-    """Largest change of Goodman's safety with one or the other half of the angles; None for an odd number of them."""
-    if cycle.model.design.steps.samples % 2:
+    """Largest change of Goodman's safety with one or the other half of the angles.
+
+    None for an odd number of them, and for a load program.
+    """
+    if cycle.model.design.has_program or cycle.model.design.steps.samples % 2:
         return None
     halves = values.reshape(-1, 2)
     high, low = halves.max(axis=0), halves.min(axis=0)

@@ -42,8 +42,10 @@ def draw_haigh(sector: SectorFields, cycle: dict[str, np.ndarray], summary: dict
     axes.set(xlim=(low, 1.05 * tensile), ylim=(0.0, 1.1 * max(limit, float(fields["amplitude"].max()))))
     axes.set_title("Haigh's diagram, on the critical plane of every node", fontsize=10)
     axes.legend(fontsize=7)
-    below.plot(cycle["wg_angle_deg"], cycle["normal_stress_MPa"])
-    below.set(xlabel="angle of the wave generator (degrees)", ylabel="normal stress (MPa)")
+    of_program = "step" in cycle
+    below.plot(cycle["step" if of_program else "wg_angle_deg"], cycle["normal_stress_MPa"], ".-" if of_program else "-")
+    what = "point of the load program (step)" if of_program else "angle of the wave generator (degrees)"
+    below.set(xlabel=what, ylabel="normal stress (MPa)")
     below.set_title(f"cycle where the safety is the least: {worst['region']}", fontsize=10)
     for panel in (axes, below):
         panel.grid(alpha=0.3)

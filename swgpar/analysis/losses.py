@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
+from swgpar.analysis.bearing_loads import ball_contact
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.stress_cycle import StressCycle, elements_of_rank
 from swgpar.design.drive_design import DriveDesign
@@ -23,9 +24,15 @@ CHUNK = 256
 
 
 def cam_force(model: DriveModel) -> float:
-    """Pressure of the wave generator integrated over the inner surface of the whole drive (N); collective."""
-    cam = model.problem.rigid_contacts[0]
-    mine = float((cam.pressure * cam.weight)[cam.owned].sum())
+    """Force (N) of the wave generator on the whole drive; collective.
+
+    It is the pressure integrated over the inner surface of the spline, with a bearing the sum of the ball loads.
+    """
+    if model.design.bearing is not None:
+        mine = float(ball_contact(model).owned_forces().sum())
+    else:
+        cam = model.problem.rigid_contacts[0]
+        mine = float((cam.pressure * cam.weight)[cam.owned].sum())
     return model.copies * model.comm.allreduce(mine, op=MPI.SUM)
 
 
@@ -42,7 +49,7 @@ def evaluate_losses(
     omega = design.load.input_speed * np.pi / 30.0
     sliding = np.array([_flank_torque(design, pairs, increment, model.copies) for increment in increments])
     forces = np.array([cam_forces[increment - 1] for increment in increments])
-    arm = 0.5 * (losses.bearing_diameter or 2.0 * design.inner_radius)
+    arm = 0.5 * (losses.bearing_diameter or _bearing_diameter(design))
     # the outer race turns with the flexible spline
     relative = 1.0 - 1.0 / design.ratio if design.drive.layout == "ring_fixed" else 1.0
     bearing = losses.bearing_friction * forces * arm * relative
@@ -70,6 +77,11 @@ def evaluate_losses(
         "cam_force_N": forces,
     }
     return summary, table
+
+
+def _bearing_diameter(design: DriveDesign) -> float:
+    """Diameter (mm) on which the bearing's friction acts: that of the balls' centres, or without them of the bore."""
+    return 2.0 * design.inner_radius if design.bearing is None else design.bearing_sizes.pitch_diameter
 
 
 def flank_coefficient(design: DriveDesign) -> float:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.load_states import LoadState
+from swgpar.design.load_states import LoadState, Stage
 from swgpar.errors import InputError
 from swgpar.results.history import Row
 
@@ -21,7 +21,12 @@ def of_period(design: DriveDesign, rows: list[Row]) -> list[Row]:
 
 
 def sample_of(design: DriveDesign, state: LoadState) -> int | None:
-    """Number of the sample of the repeated period, from 0, that a load state is; None outside of that period."""
+    """Number of the sample of the repeated period, from 0, that a load state is; None outside of that period.
+
+    In a load program every point is a sample.
+    """
+    if state.stage == Stage.PROGRAM:
+        return state.step - Stage.LOAD
     samples = design.steps.samples
     if not samples or not state.is_periodic:
         return None
@@ -32,7 +37,7 @@ def sample_of(design: DriveDesign, state: LoadState) -> int | None:
 
 def require_samples(design: DriveDesign) -> None:
     """Raise InputError where fatigue or losses are asked for without a sampled period."""
-    if (design.fatigue or design.losses) and not design.steps.samples:
+    if (design.fatigue or design.losses) and not (design.steps.samples or design.has_program):
         section = "fatigue" if design.fatigue else "losses"
         raise InputError(
             f"[{section}] is not available with steps.samples = 0: allowed 1 to 1000, with steps.rotation of at least "

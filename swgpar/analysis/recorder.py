@@ -29,6 +29,7 @@ from swgpar.analysis.root_stress import RootStress
 from swgpar.analysis.stiffness import loop_rows
 from swgpar.analysis.stress_cycle import StressCycle
 from swgpar.analysis.summary import Accuracy
+from swgpar.design.load_program import internal_torque, program_points
 from swgpar.design.load_states import LoadState, Stage
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.meshing import SectorMesh
@@ -155,8 +156,15 @@ class Recorder(ABC):
             if state.is_periodic:
                 for name, value in race.items():
                     self.race_stress[name] = max(value, self.race_stress.get(name, value))
-            if state.stage == Stage.LOAD:
+            if state.stage == Stage.LOAD or self._has_largest_torque(state):
                 self.bearing_shares = bearing_shares(self.model, state)
+
+    def _has_largest_torque(self, state: LoadState) -> bool:
+        """Whether a point of the load program is the first one with its largest torque."""
+        if state.stage != Stage.PROGRAM or state.control != "torque" or self.bearing_shares:
+            return False
+        torques = [abs(point.value) for point in program_points(self.model.design) if point.control == "torque"]
+        return abs(state.torque) >= abs(internal_torque(self.model.design, max(torques))) * (1.0 - 1e-9)
 
     def keep_turns(self, rows: list[Row]) -> None:
         """Keep rows of transmission_error.csv in place of those before."""

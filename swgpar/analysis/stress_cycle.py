@@ -1,8 +1,9 @@
-"""Stress of every point of one sector of the flexible spline over a turn of the wave generator.
+"""Stress of every point of a sector of the flexible spline over a turn of the wave generator, or a load program.
 
 After one pitch of the fixed gear the drive is in the same state with its teeth renumbered by one. So tooth k at the
 angle phi + m pitch has the stress that tooth k - m has at phi. In a sampled period every modelled tooth is at another
-phase: it holds the whole cycle of one sector (docs/theory/fatigue.md).
+phase: it holds the whole cycle of one sector (docs/theory/fatigue.md). In a load program every modelled sector has a
+history of its own, one value at each point.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from mpi4py import MPI
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.period import sample_of
 from swgpar.analysis.places import pressed_nodes
+from swgpar.design.load_program import program_points
 from swgpar.design.load_states import LoadState
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, BodyLayout
 from swgpar.fem.elements import BodyElements
@@ -30,7 +32,7 @@ class StressCycle:
 
     Parameters
     ----------
-    model : the drive, in which a period is sampled
+    model : the drive, in which a period is sampled or which follows a load program
 
     Attributes
     ----------
@@ -61,8 +63,9 @@ class StressCycle:
 
     @property
     def complete(self) -> bool:
-        """Whether all samples of the period are there."""
-        return len(self.samples) == self.model.design.steps.samples
+        """Whether all samples of the period, or of the program, are there."""
+        design = self.model.design
+        return len(self.samples) == (len(program_points(design)) if design.has_program else design.steps.samples)
 
     @property
     def angle(self) -> float:
@@ -89,8 +92,15 @@ class StressCycle:
         self.touched[state["touched"]] = True
 
     def history(self) -> tuple[np.ndarray, np.ndarray]:
-        """Stress over the cycle: `history_by_renaming` of the samples; collective."""
+        """Stress over the cycle; collective.
+
+        Returns what `history_by_renaming` does. With a load program it is the stress (n_points, n, 6) of the owned
+        sectors, at whose nodes `mine` (n,) repeats.
+        """
         samples = [self.samples[number] for number in sorted(self.samples)]
+        if self.model.design.has_program:
+            mine = np.tile(np.arange(len(self.nodes)), len(samples[0]))
+            return mine, np.stack([values.reshape(-1, 6) for values in samples])
         return history_by_renaming(self.model.comm, self.body.layout, self.nodes, samples)
 
 

@@ -177,7 +177,8 @@ def _print_sharing(sharing: Mapping[str, Any]) -> None:
     )
 
 
-def _print_fatigue(found: Mapping[str, Any]) -> None:
+def _print_fatigue(found: Mapping[str, Any], *, windows: bool) -> None:
+    """windows : whether windows could resolve the stress at the teeth"""
     worst, other = found["goodman"], found["crossland"]
     errors = [found[name] for name in ("mesh_error", "sampling_error") if found[name] is not None]
     error = f" ± {float(np.hypot.reduce(errors)):.2g}" if errors else ""
@@ -187,15 +188,24 @@ def _print_fatigue(found: Mapping[str, Any]) -> None:
         f"{worst['mean_MPa']:.0f} MPa); {other['safety']:.3g} by Crossland, {other['region']}; "
         f"{found['yield']['safety']:.3g} against yield"
     )
-    life = found["life_turns"]
+    life, programs = found["life_turns"], found.get("life_programs")
     console.print(
         "life by Basquin: "
-        + (f"{life:.2g} turns of the wave generator, {found['life_hours']:.2g} h" if life else "without end")
+        + (
+            f"{life:.2g} turns of the wave generator, {found['life_hours']:.2g} h"
+            if life
+            else f"{programs:.2g} passages of the load program"
+            if programs
+            else "without end"
+        )
     )
     if found["root_factor"]:
         console.print(f"stresses in the tooth root are scaled by {found['root_factor']:.3f}, from windows")
     else:
-        console.print("stresses in the tooth root are nodal averages, up to 25 % low: set output.root_stress = true")
+        console.print(
+            "stresses in the tooth root are nodal averages, up to 25 % low"
+            + (": set output.root_stress = true" if windows else ": there are no windows in this run")
+        )
     console.print(found["warning"], markup=False)  # a section's name is no markup
 
 
@@ -230,6 +240,7 @@ def _print_bearing(bearing: Mapping[str, Any]) -> None:
             f"{100.0 * share['balls']:.0f} %), {100.0 * radial['bearing']:.0f} % of the radial one (balls "
             f"{100.0 * radial['balls']:.0f} %)"
         )
+    console.print("with the bearing the stress at the teeth is not resolved by windows: it is that of nodal averages")
     if bearing["balls_fixed_to_cam"]:
         console.print("the balls are fixed to the cam: ball passing is left out")
     elif not bearing["covers_ball_passing"]:
@@ -243,6 +254,7 @@ def _print_bearing(bearing: Mapping[str, Any]) -> None:
 
 
 def _print_errors(summary: Mapping[str, Any]) -> None:
+    bearing = summary.get("bearing")
     if root := summary.get("root_stress"):
         console.print(
             f"largest tension at the teeth under load, by windows: s1 {root['s1']:.1f} ± {root['total_error']:.1f} "
@@ -258,10 +270,10 @@ def _print_errors(summary: Mapping[str, Any]) -> None:
     if sharing := summary.get("load_sharing"):
         _print_sharing(sharing)
     if fatigue := summary.get("fatigue"):
-        _print_fatigue(fatigue)
+        _print_fatigue(fatigue, windows=not (bearing or summary["program"]))
     if losses := summary.get("losses"):
         _print_losses(losses)
-    if bearing := summary.get("bearing"):
+    if bearing:
         _print_bearing(bearing)
     asked = summary["accuracy"]
     if summary["means"]:

@@ -24,6 +24,9 @@ def check_bearing(design: DriveDesign) -> None:
             f'{SECTION} is not available with wave_generator.type = "four_roller": allowed with cams whose curve an '
             "inner race can follow"
         )
+    output = design.output
+    if output.root_stress and "root_stress" in output.model_fields_set:
+        raise InputError(f"output.root_stress = true is out of range: allowed only false with {SECTION}")
     room = smallest_curvature_radius(design.cam()) - bearing.race_thickness
     if room <= 0.0:
         allowed = f"above 0 to below {room + bearing.race_thickness:.4g} mm (the cam's smallest radius of curvature)"

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from swgpar.design.deviations import MICRO, Deviations
+from swgpar.design.program_checks import given_program
 from swgpar.design.sections import GEARS
 from swgpar.errors import InputError
 from swgpar.input.quantities import show
@@ -22,10 +23,19 @@ def check_deviations(design: DriveDesign, deviations: Deviations) -> None:
     """Raise InputError for the first deviation that does not fit."""
     if design.load.torque == 0.0:
         raise InputError("load.torque = 0 holds the output: allowed above 0 N·m with [deviations]")
+    if program := given_program(design):
+        raise InputError(f"[deviations] is not available with {program}: allowed under one torque, load.torque")
     if design.contact.friction:
         raise InputError(f"contact.friction = {design.contact.friction:g} is out of range: allowed 0 with [deviations]")
     for gear in GEARS:
         _check_pitch(design, deviations, gear)
+    cam = deviations.wave_generator
+    for key, value in (("eccentricity", cam.eccentricity), ("tilt", cam.tilt)):
+        if value and design.bearing is not None:
+            raise InputError(
+                f"deviations.wave_generator.{key} = {value:g} is out of range: allowed only 0 with "
+                "wave_generator.bearing"
+            )
     module = design.drive.module
     for key, unit in LENGTHS.items():
         section, name = key.split(".")

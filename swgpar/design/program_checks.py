@@ -18,6 +18,11 @@ MOST_ROTATION = 170.0
 """Rotation (deg) of the output up to which it is prescribed: beyond half a turn its angle is ambiguous."""
 
 
+def given_program(design: DriveDesign) -> str | None:
+    """Name of the section that gives the load program; None without one."""
+    return next((name for name, there in _programs(design).items() if there), None)
+
+
 def check_program(design: DriveDesign) -> None:
     """Raise InputError for the first thing that does not fit in a load program."""
     given = [name for name, there in _programs(design).items() if there]
@@ -25,6 +30,12 @@ def check_program(design: DriveDesign) -> None:
         raise InputError(f"{given[0]} and {given[1]} are both given: allowed one of {', '.join(_programs(design))}")
     if given and design.steps.samples:
         raise InputError(f"steps.samples = {design.steps.samples} is out of range: allowed only 0 with {given[0]}")
+    if given and design.losses:
+        raise InputError(f"[losses] is not available with {given[0]}: allowed under one torque, with steps.samples")
+    if design.fatigue and (design.stiffness or design.ratcheting):
+        raise InputError(
+            f"[fatigue] is not available with {given[0]}: allowed with load.program, or with steps.samples"
+        )
     if design.load.program:
         _check_stages(design)
     if design.stiffness:

@@ -195,5 +195,8 @@ class Losses(Section):
     )
     bearing_friction: float = quantity(0.0015, text="friction of the wave generator's bearing", ge=0.0, le=0.1)
     bearing_diameter: float | None = quantity(
-        None, unit="mm", text="diameter at which that friction acts; that of the spline's bore without it", gt=0.0
+        None,
+        unit="mm",
+        text="diameter at which that friction acts; default that of the balls' centres, without a bearing of the bore",
+        gt=0.0,
     )

@@ -77,6 +77,12 @@ FATIGUE = {
 }
 """Quantities of designs with [fatigue]; a life without end is left out."""
 
+PROGRAM_FATIGUE = {
+    **{name: quantity for name, quantity in FATIGUE.items() if "life" not in name},
+    "fatigue.life_programs": Quantity("life by Basquin, passages of the load program", ""),
+}
+"""Quantities of designs with [fatigue] and a load program."""
+
 LOSSES = {
     "losses.torque": Quantity("input torque that the losses take", "N·mm"),
     "losses.flank_friction": Quantity("its part by friction of the flanks", "N·mm"),
@@ -191,7 +197,8 @@ class Drives(System[DriveDesign, DriveResult]):
             return Quantity(f"{MEANINGS.get(column, column)}, {when}", UNITS[column])
 
         if design.has_program:
-            return program_quantities(design)
+            further = PROGRAM_FATIGUE if design.fatigue else {}
+            return program_quantities(design) | further | (BEARING if design.bearing else {})
         known = {f"mean.{name}": quantity(name, "mean over the rotation") for name in MEANS}
         if design.output.root_stress:
             known |= RESOLVED
@@ -300,6 +307,7 @@ def cycle_values(summary: Mapping[str, Any]) -> dict[str, float]:
             "fatigue.mean": worst["mean_MPa"],
             "fatigue.life_turns": fatigue["life_turns"],
             "fatigue.life_hours": fatigue["life_hours"],
+            "fatigue.life_programs": fatigue.get("life_programs"),
         }
     if losses := summary.get("losses"):
         found |= {"losses.torque": losses["loss_torque_Nmm"], "losses.efficiency": losses["efficiency"]}

@@ -23,9 +23,9 @@ from swgpar.fem.body_layout import FLEXIBLE_SPLINE, OUTER_RACE
 NAMES = ("fs_s1", "fs_s3", "fs_vm", "output_angle_deg")
 
 
-def jumped(*overrides: str, comm: MPI.Comm = WORLD) -> LoadStepper:
+def jumped(*overrides: str, model: str = "plane", comm: MPI.Comm = WORLD) -> LoadStepper:
     """The loaded small drive, from the bent shape at once."""
-    design = small("plane", *overrides)
+    design = small(model, *overrides)
     stepper = load_stepper(design, comm)
     bend(stepper.model)
     stepper.jump(from_loaded(list(load_sequence(design)))[0])
@@ -50,6 +50,20 @@ def test_same_on_any_ranks() -> None:
     assert_agree(values, row(alone), [*NAMES, "wg_torque_Nmm"], rel=1e-6)
     parallel_assert(values["torque_balance_Nmm"] < 1e-6 * 200.0)
     alone.model.destroy()
+
+
+@pytest.mark.parallel([1, 2])
+def test_cup() -> None:
+    """The small cup on a bearing: torques balance, all balls carry, loads do not depend on the ranks."""
+    found = []
+    for comm in (WORLD, MPI.COMM_SELF):
+        stepper = jumped(*BEARING, "micro_geometry.wg_slope=0", model="cup", comm=comm)
+        found.append((loads(stepper), row(stepper)))
+        stepper.model.destroy()
+    (several, values), (alone, expected) = found
+    parallel_assert(several.min() > 0.0 and np.abs(several - alone).max() < 1e-5 * alone.max())
+    assert_agree(values, expected, [*NAMES, "wg_torque_Nmm"], rel=1e-5)
+    parallel_assert(values["torque_balance_Nmm"] < 1e-6 * 2000.0)
 
 
 @pytest.mark.parallel([1, 2])

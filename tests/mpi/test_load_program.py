@@ -103,6 +103,16 @@ def test_the_loop_with_friction_is_the_work_of_friction() -> None:
     assert dissipated == pytest.approx(area, rel=0.01)
 
 
+def test_the_cup_with_friction() -> None:
+    """The loop of the small cup with friction has an area, and is wider at zero torque than its backlash."""
+    values = {"stiffness.positions": 1, "stiffness.points": 1, "stiffness.mesh_error": False, "contact.friction": 0.1}
+    found = run(small("cup").with_values(values)).stiffness
+    print(found)
+    assert found["loop_work"] > 0.0
+    assert found["hysteresis"] > found["backlash"] * (1.0 + 1e-6) > 0.0
+    assert found["K1"] > 0.0 and found["K3"] > 0.0
+
+
 def test_lost_motion_of_a_stiff_drive_is_its_clearance() -> None:
     """The output is turned without torque until the flanks, a gap apart so far, would meet on either side.
 

@@ -47,6 +47,23 @@ def test_renaming_teeth_gives_the_turn(layout: str) -> None:
     assert np.abs(np.array(found) - renamed).max() < 1e-6 * np.abs(renamed).max()
 
 
+@pytest.mark.parallel(1)
+def test_renaming_teeth_in_the_cup() -> None:
+    """Stress at all nodes of one sector of the cup while the wave generator passes two pitches."""
+    design = small("cup", "steps.samples=1", "steps.rotation=9.0", *WITH)
+    stepper, _ = loaded(design, MPI.COMM_SELF)
+    cycle, body = StressCycle(stepper.model), stepper.model.elements.bodies[FLEXIBLE_SPLINE]
+    cycle.keep(stepper.load_state, stepper.model.stresses()[1][FLEXIBLE_SPLINE])
+    _, renamed = cycle.history()
+    assert len(renamed) == body.layout.count
+    for pitch in range(1, 3):
+        for half in (0.5, 0.0):
+            rotate(stepper, (pitch - half) * design.period_angle)
+        found = sector_stress(body, stepper.model.stresses()[1][FLEXIBLE_SPLINE])[0, cycle.nodes]
+        assert np.abs(found - renamed[pitch]).max() < 1e-6 * np.abs(renamed).max()
+    assert np.abs(renamed[1] - renamed[0]).max() > 1e-2 * np.abs(renamed).max()
+
+
 @pytest.mark.parametrize("model", ["plane", "cup"])
 @pytest.mark.parallel([1, 2, 3])
 def test_any_number_of_ranks_gives_the_same(model: str) -> None:

@@ -1,0 +1,175 @@
+"""Features of one design file together, on the small plane drive: bearing, deviations, friction, programs, fatigue."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+from pytest_mpi import parallel_assert
+
+import swgpar
+from support.bearing import BEARING
+from support.paths import DESIGN, RECIPE
+from support.small_drive import PLANE
+from support.stepping import WORLD, load_stepper, small
+from swgpar.analysis.deviating_drive import DeviatingDrive, TurnPoint
+from swgpar.analysis.drive_result import DriveResult
+from swgpar.analysis.fatigue import evaluate_fatigue
+from swgpar.analysis.stress_cycle import StressCycle
+from swgpar.analysis.terminal import print_drive
+from swgpar.design.load_states import load_sequence
+from swgpar.errors import InputError
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.log import console
+from swgpar.meshing import load_recipe
+
+SAMPLED = ("steps.samples=2", "steps.rotation=9.0")
+WEAK = (
+    "fatigue.fatigue_limit=50",
+    "fatigue.shear_fatigue_limit=31",
+    "fatigue.basquin_coefficient=400",
+)
+"""Strengths that the small drive exceeds."""
+
+UP, DOWN = '{name="up", torque=0.2}', '{name="down", torque=-0.2}'
+AGAIN = ', {name="up again", torque=0.2}, {name="down again", torque=-0.2}'
+
+
+def run(*overrides: str) -> DriveResult:
+    return swgpar.run(small("plane", *overrides), RECIPE)
+
+
+@pytest.mark.parallel(1)
+def test_fatigue_over_a_program() -> None:
+    """The program twice does twice the damage with the same safety; the stress is that of every sector."""
+    one, two = (run(*WEAK, f"load.program=[{UP}, {DOWN}{more}]").summary["fatigue"] for more in ("", AGAIN))
+    assert (one["phases"], two["phases"]) == (2, 4)
+    for name in ("goodman", "crossland", "yield"):
+        assert two[name]["safety"] == pytest.approx(one[name]["safety"], rel=1e-3), name
+    assert one["damage_per_program"] > 0.0 and one["life_turns"] is None
+    assert two["damage_per_program"] == pytest.approx(2.0 * one["damage_per_program"], rel=0.02)
+    assert two["life_programs"] == pytest.approx(0.5 * one["life_programs"], rel=0.02)
+
+
+@pytest.mark.parallel([1, 2, 3])
+def test_fatigue_over_a_program_on_any_ranks() -> None:
+    """Every rank has the histories of its sectors; the worst of them is that of one rank with all."""
+    design = small("plane", *WEAK, f"load.program=[{UP}, {DOWN}]")
+
+    def found(comm: MPI.Comm) -> dict:
+        stepper = load_stepper(design, comm)
+        cycle = StressCycle(stepper.model)
+        for state in load_sequence(design):
+            stepper.advance(state)
+            cycle.keep(stepper.load_state, stepper.model.stresses()[1][FLEXIBLE_SPLINE])
+        assert cycle.complete
+        values = evaluate_fatigue(cycle, None).summary
+        stepper.model.destroy()
+        return values
+
+    several, alone = found(WORLD), found(MPI.COMM_SELF)
+    for name in ("goodman", "crossland"):
+        for key in ("safety", "radius", "angle_deg"):
+            parallel_assert(several[name][key] == pytest.approx(alone[name][key], rel=1e-6), f"{name} {key}")
+    parallel_assert(several["life_programs"] == pytest.approx(alone["life_programs"], rel=1e-5))
+
+
+@pytest.mark.parallel(1)
+def test_losses_and_fatigue_with_a_bearing() -> None:
+    """The balls' loads act at the circle of their centres; the terminal names both results and what is missing."""
+    result = run(*BEARING, *SAMPLED, "losses.bearing_friction=0.002", "fatigue.size_factor=1.0")
+    losses, loads = result.summary["losses"], result.balls["load_N"].reshape(-1, 20)[-2:]
+    assert losses["cam_force_N"] == pytest.approx(loads.sum(axis=1).mean(), rel=1e-9)
+    centres = 18.6 - 0.5 - 1.0
+    expected = 0.002 * loads.sum(axis=1).mean() * centres * (1.0 + 2.0 / 40.0)
+    assert losses["parts_Nmm"]["bearing"] == pytest.approx(expected, rel=1e-9)
+    assert result.summary["fatigue"]["goodman"]["safety"] > 0.0 and result.summary["bearing"]["balls_fixed_to_cam"]
+    with console.capture() as captured:
+        print_drive(result.history, result.summary)
+    shown = " ".join(captured.get().split())
+    for words in ("largest ball load", "share of the bearing", "is not resolved by windows", "losses take", "L10"):
+        assert words in shown, words
+
+
+@pytest.mark.parallel(1)
+def test_friction_with_a_bearing() -> None:
+    """Friction of the flanks takes input torque; the loads of the balls stay within a twentieth."""
+    turned = ("steps.rotation=2.0", "steps.increment=2.0", "steps.samples=0")
+    rough, smooth = (run(*BEARING, *turned, f"contact.friction={mu}") for mu in (0.1, 0.0))
+    gained = rough.history["wg_torque_Nmm"][-1] - smooth.history["wg_torque_Nmm"][-1]
+    assert 0.0 < gained < 0.2 * smooth.summary["wg_torque_expected_Nmm"]
+    assert rough.summary["balance_error_Nmm"] < 1e-4
+    last = [result.balls["load_N"][-20:] for result in (rough, smooth)]
+    assert np.abs(last[0] - last[1]).max() < 0.05 * last[1].max()
+    assert rough.summary["bearing"]["torsional_share"]["bearing"] > 0.05
+
+
+@pytest.mark.parallel(1)
+def test_stiffness_with_a_bearing() -> None:
+    """The compliance without the bearing's share, found at the largest torque, is still more than that on the cam.
+
+    Between the balls the spline yields where the cam would support it.
+    """
+    values = ("stiffness.positions=1", "stiffness.points=1", "stiffness.mesh_error=false")
+    soft, rigid = run(*BEARING, *values), run(*values)
+    share = soft.summary["bearing"]["torsional_share"]["bearing"]
+    print(share, soft.stiffness["K3"], rigid.stiffness["K3"])
+    assert 0.1 < share < 0.5
+    assert (1.0 - share) / soft.stiffness["K3"] > 1.0 / rigid.stiffness["K3"]
+
+
+def turn_points(*overrides: str, indices: tuple[int, ...] = (0, 1)) -> dict[int, TurnPoint]:
+    design = small("plane", 'deviations.mesh="same"', "deviations.angles_per_pitch=1", *overrides)
+    drive = DeviatingDrive(design, load_recipe(RECIPE), MPI.COMM_SELF)
+    known = set(range(drive.pitches)).difference(indices)
+    found = {point.index: point for point in drive.points(known)}
+    drive.destroy()
+    return found
+
+
+@pytest.mark.parallel(1)
+def test_deviations_with_a_bearing() -> None:
+    """An eccentric ring gear on the bearing: its transmission error is near that on the cam, and not the same."""
+    ring = ("deviations.ring_gear.eccentricity=0.01", "deviations.ring_gear.direction=90")
+    errors = []
+    for bearing in (BEARING, ()):
+        found = turn_points(*bearing, *ring)
+        errors.append(np.degrees(found[1].output_angle - found[0].output_angle) + 360.0 / 42.0 / 20.0)
+    print(errors)
+    assert errors[0] == pytest.approx(errors[1], rel=0.2)
+    assert errors[0] != errors[1]
+
+
+DEVIATIONS = "deviations.ring_gear.eccentricity=0.01"
+PROGRAM = f"load.program=[{UP}]"
+REFUSED = [
+    ((DEVIATIONS, PROGRAM), "[deviations] is not available with load.program"),
+    ((DEVIATIONS, "stiffness.positions=1"), "[deviations] is not available with [stiffness]"),
+    ((DEVIATIONS, "ratcheting.limit=0.2"), "[deviations] is not available with [ratcheting]"),
+    ((DEVIATIONS, "contact.friction=0.1"), "contact.friction = 0.1 is out of range: allowed 0 with [deviations]"),
+    (
+        (*BEARING, "deviations.wave_generator.eccentricity=0.01"),
+        "deviations.wave_generator.eccentricity = 0.01 is out of range: allowed only 0 with wave_generator.bearing",
+    ),
+    ((*BEARING, "output.root_stress=true"), "output.root_stress = true is out of range: allowed only false with"),
+    (("losses.loss_factor=0.001", PROGRAM), "[losses] is not available with load.program"),
+    (("losses.loss_factor=0.001", "stiffness.positions=1"), "[losses] is not available with [stiffness]"),
+    (("fatigue.size_factor=1.0", "stiffness.positions=1"), "[fatigue] is not available with [stiffness]"),
+    (("fatigue.size_factor=1.0", "ratcheting.limit=0.2"), "[fatigue] is not available with [ratcheting]"),
+    (("stiffness.positions=1", PROGRAM), "load.program and [stiffness] are both given"),
+    ((*SAMPLED, PROGRAM), "steps.samples = 2 is out of range: allowed only 0 with load.program"),
+]
+
+
+@pytest.mark.parallel(1)
+@pytest.mark.parametrize(("overrides", "words"), REFUSED, ids=[words[:45] for _, words in REFUSED])
+def test_refused(overrides: tuple[str, ...], words: str) -> None:
+    with pytest.raises(InputError) as caught:
+        swgpar.load_design(DESIGN, [*PLANE, *overrides])
+    assert words in str(caught.value) and "\n" not in str(caught.value)
+
+
+@pytest.mark.parallel(1)
+def test_accuracy_is_refused_with_a_bearing() -> None:
+    with pytest.raises(InputError, match="wave_generator.bearing"):
+        swgpar.run(small("plane", *BEARING), RECIPE, accuracy=0.02)
