@@ -37,7 +37,7 @@ def loads(stepper: LoadStepper) -> np.ndarray:
     return np.array([ball["load_N"] for ball in ball_rows(stepper.model, stepper.load_state, 1, 3)])
 
 
-@pytest.mark.parallel([1, 2, 3])
+@pytest.mark.parallel([1, 2])
 def test_same_on_any_ranks() -> None:
     """Loads and stresses do not depend on the ranks, nor on modelling half of the drive."""
     stepper = jumped(*BEARING, "wave_generator.bearing.first_ball=4.0")

@@ -45,9 +45,8 @@ def assert_same(a: dict[str, float], b: dict[str, float], rel: float) -> None:
     assert_agree(a, b, names, rel)
 
 
-@pytest.mark.parametrize(
-    "model", [pytest.param("cup", marks=pytest.mark.parallel(2)), pytest.param("plane", marks=pytest.mark.parallel(3))]
-)
+@pytest.mark.parallel(2)
+@pytest.mark.parametrize("model", MODELS)
 def test_any_number_of_ranks_gives_the_same(model: str) -> None:
     several, one = (rotate(loaded(0.1, comm, model), 0.3 * PITCH) for comm in (WORLD, MPI.COMM_SELF))
     assert_same(several, one, 1e-8)

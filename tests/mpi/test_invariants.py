@@ -83,8 +83,10 @@ def test_layouts_agree(model: str) -> None:
     assert a["pairs_in_contact"] == b["pairs_in_contact"]
 
 
-@both_models
-@pytest.mark.parallel([2, 3])
+@pytest.mark.parametrize(
+    "model",
+    [pytest.param("cup", marks=pytest.mark.parallel(2)), pytest.param("plane", marks=pytest.mark.parallel([2, 3]))],
+)
 def test_any_number_of_ranks_gives_the_same(model: str) -> None:
     several, parallel = base(model)
     one, alone = loaded(small(model), MPI.COMM_SELF)
