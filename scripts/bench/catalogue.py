@@ -59,7 +59,7 @@ def bearing_bore(name: str) -> float:
 def measure(name: str, on_balls: bool, options: argparse.Namespace) -> dict[str, Any]:
     """One run of the stiffness program at the rated torque."""
     finer = options.mesh == "forces"  # a coarser mesh of it still finds the contacts
-    overrides = ["stiffness.positions=2", f"stiffness.mesh_error={str(finer).lower()}"]
+    overrides = ["stiffness.positions=2", "stiffness.points=1", f"stiffness.mesh_error={str(finer).lower()}"]
     overrides += bearing(name) if on_balls else []
     folder = Path("results/bench/catalogue") / f"{name}{'_bearing' if on_balls else ''}"
     summary = run(folder, DRIVES / f"{name}.toml", overrides, options.ranks, options.mesh, plain=False)

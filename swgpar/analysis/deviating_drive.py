@@ -28,6 +28,7 @@ from swgpar.design.load_states import LoadState, Stage, from_loaded, load_sequen
 from swgpar.design.sections import GEARS
 from swgpar.errors import ConvergenceError
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR
+from swgpar.fem.partition import split
 from swgpar.geometry.rotation import rotated
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.recipe_counts import coarser
@@ -146,8 +147,10 @@ class DeviatingDrive:
         """Release the model."""
         self.model.destroy()
 
-    def points(self, known: Container[int] = ()) -> Iterator[TurnPoint]:
+    def points(self, known: Container[int] = (), share: tuple[int, int] = (0, 1)) -> Iterator[TurnPoint]:
         """States at all angles but those whose indices are `known`; an index counts the angles from 0 on.
+
+        share : number of a share of the states, from 0, and how many shares there are: those of this one are computed
 
         Raises ConvergenceError where a state cannot be reached.
         """
@@ -156,20 +159,17 @@ class DeviatingDrive:
         for phase, (state, ideal) in enumerate(ideals):
             ideal.copy(self.model.problem.x)
             self.model.problem.search(state)  # all states of the phase are near this one
-            seen: dict[tuple[int, ...], tuple[int, TurnPoint]] = {}
-            guess = ideal
+            states: dict[tuple[int, ...], list[int]] = {}
             for pitch in range(self.pitches):
-                index = pitch * len(ideals) + phase
-                if index in known:
-                    continue
-                key = tuple(pitch % period for period in self.periods)
-                if key in seen:
-                    yield self._repeated(*seen[key], pitch, index)
-                else:
-                    found = self._point(index, pitch, state, ideal, guess)
-                    guess = self.model.problem.x.copy()
-                    seen[key] = pitch, found
-                    yield found
+                if pitch * len(ideals) + phase not in known:
+                    states.setdefault(tuple(pitch % period for period in self.periods), []).append(pitch)
+            start, guess = split(len(states), share[1]), ideal
+            for first, *others in list(states.values())[start[share[0]] : start[share[0] + 1]]:
+                found = self._point(first * len(ideals) + phase, first, state, ideal, guess)
+                guess = self.model.problem.x.copy()
+                yield found
+                for pitch in others:
+                    yield self._repeated(first, found, pitch, pitch * len(ideals) + phase)
 
     def _ideal_states(self) -> list[tuple[LoadState, PETSc.Vec]]:
         """Load state and x of the ideal drive at the angles of a pitch."""

@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
-import numpy as np
+from collections.abc import Iterator
+from itertools import islice
 
-from swgpar.analysis.deviating_drive import DeviatingDrive
+import numpy as np
+from mpi4py import MPI
+
+from swgpar.analysis.deviating_drive import DeviatingDrive, TurnPoint
 from swgpar.analysis.recorder import Recorder
 from swgpar.analysis.transmission_error import turn_row
 from swgpar.design.drive_design import DriveDesign
+from swgpar.errors import ConvergenceError
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
 from swgpar.results.history import Row
+
+ROUND = 10
+"""States that a rank computes before the ranks exchange theirs."""
 
 SAVED = 50
 """Angles after which the rows so far are saved."""
@@ -22,12 +30,16 @@ REPORTS = 10
 def follow_turns(design: DriveDesign, recipe: MeshRecipe, recorder: Recorder) -> None:
     """Compute the angles of the turns that the recorder does not know, and let it keep them; collective.
 
+    The states do not depend on each other. In the plane, where every rank has room for the whole drive, the ranks share
+    the states; they share the cup.
+
     recipe : of the run's mesh. Raises ConvergenceError; the rows up to then are kept.
     """
     step = design.period_angle / design.deviations.angles_per_pitch
     known = {_index(row, step): row for row in recorder.known_turns()}
+    comm, shared = recorder.comm, design.drive.model == "plane"
     with recorder.model.phases("turns"):
-        drive = DeviatingDrive(design, recipe, recorder.comm)
+        drive = DeviatingDrive(design, recipe, MPI.COMM_SELF if shared else comm)
         total = drive.pitches * design.deviations.angles_per_pitch
         logger.info(
             "transmission error at %d angles of %d turns: %d unknowns%s",
@@ -36,18 +48,50 @@ def follow_turns(design: DriveDesign, recipe: MeshRecipe, recorder: Recorder) ->
             sum(body["dofs"] for body in drive.model.counts().values()),
             " (half of the drive, by symmetry)" if drive.model.copies == 2 else "",
         )
+        points = drive.points(set(known), (comm.rank, comm.size) if shared else (0, 1))
         try:
-            report, iterations = -(-total // REPORTS), 0
-            for point in drive.points(set(known)):
-                known[point.index] = turn_row(point, design.ratio)
-                iterations += point.iterations
-                if len(known) % SAVED == 0:
+            saved, reported, iterations = len(known), 0, 0
+            for found in _rounds(points, comm):
+                known |= {point.index: turn_row(point, design.ratio) for point in found}
+                iterations += sum(point.iterations for point in found)
+                if len(known) >= saved + SAVED:
+                    saved = len(known)
                     recorder.keep_turns(_sorted(known))
-                if len(known) % report == 0:
+                if len(known) * REPORTS >= (reported + 1) * total:
+                    reported = len(known) * REPORTS // total
                     logger.info("%6d of %d angles, %d Newton iterations", len(known), total, iterations)
         finally:
             recorder.keep_turns(_sorted(known))
             drive.destroy()
+
+
+def _rounds(points: Iterator[TurnPoint], comm: MPI.Comm) -> Iterator[list[TurnPoint]]:
+    """Points of all ranks, on all ranks, as they come; collective.
+
+    Raises the ConvergenceError of any rank on all of them, after the points up to then.
+    """
+    while True:
+        mine, failure = _next(points)
+        parts = comm.allgather((mine, failure))
+        found = list({point.index: point for part, _ in parts for point in part}.values())
+        if found:
+            yield found
+        for _, message in parts:
+            if message:
+                raise ConvergenceError(message)
+        if not found:
+            return
+
+
+def _next(points: Iterator[TurnPoint]) -> tuple[list[TurnPoint], str]:
+    """The next points of this rank, and why there are no more."""
+    found: list[TurnPoint] = []
+    try:
+        for point in islice(points, ROUND):
+            found.append(point)
+    except ConvergenceError as error:
+        return found, str(error)
+    return found, ""
 
 
 def _index(row: Row, step: float) -> int:

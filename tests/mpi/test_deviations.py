@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 import pytest
 from mpi4py import MPI
 from pytest_mpi import parallel_assert
 
+import swgpar
 from support.paths import RECIPE
 from support.stepping import WORLD, load_stepper, rotate, small
 from swgpar.analysis.deviating_drive import DeviatingDrive, TurnPoint, turn_design
@@ -16,10 +17,14 @@ from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.transmission_error import spectrum
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import Stage, load_sequence
+from swgpar.errors import ConvergenceError
 from swgpar.meshing import load_recipe
 
 TEETH_FS, TEETH_RG, RATIO = 40, 42, -20.0
 ONE_ANGLE = "deviations.angles_per_pitch=1"
+TURN_ONLY = ('deviations.mesh="same"', "steps.bent_start=true", "steps.rotation=0")
+"""Overrides of a run that has no more than its turn to compute."""
+
 PITCH = [f"deviations.{gear}.pitch_errors={errors}" for gear, errors in (
     ("ring_gear", np.random.default_rng(1).normal(0.0, 3.0, TEETH_RG).round(2).tolist()),
     ("flexible_spline", np.random.default_rng(2).normal(0.0, 3.0, TEETH_FS).round(2).tolist()),
@@ -155,6 +160,31 @@ def test_ranks_do_not_matter() -> None:
     for k in indices:
         parallel_assert(several[k].output_angle == pytest.approx(one[k].output_angle, rel=1e-6))
         parallel_assert(several[k].wg_torque == pytest.approx(one[k].wg_torque, rel=1e-5))
+
+
+@pytest.mark.parallel([1, 2, 3])
+def test_ranks_share_the_states_of_a_turn() -> None:
+    design = small("plane", "deviations.ring_gear.ovality=0.02", *TURN_ONLY)
+    several, one = (swgpar.run(design, RECIPE, comm=comm, plain=True) for comm in (WORLD, MPI.COMM_SELF))
+    for name, rel in (("output_angle_deg", 1e-6), ("wg_torque_Nmm", 1e-5)):
+        found, expected = several.transmission_error[name], one.transmission_error[name]
+        parallel_assert(len(found) == TEETH_RG and found == pytest.approx(expected, rel=rel), name)
+
+
+@pytest.mark.parallel(2)
+def test_a_state_that_fails_on_one_rank_ends_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The states before it are kept."""
+    points = DeviatingDrive.points
+
+    def failing(drive: DeviatingDrive, *arguments: object) -> Iterator[TurnPoint]:
+        for count, point in enumerate(points(drive, *arguments)):
+            if WORLD.rank == 1 and count == 2:
+                raise ConvergenceError("no state here")
+            yield point
+
+    monkeypatch.setattr(DeviatingDrive, "points", failing)
+    with pytest.raises(ConvergenceError, match="no state here"):
+        swgpar.run(small("plane", "deviations.ring_gear.ovality=0.02", *TURN_ONLY), RECIPE, comm=WORLD, plain=True)
 
 
 def test_only_the_relative_position_of_the_axes_matters() -> None:
