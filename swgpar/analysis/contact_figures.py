@@ -1,0 +1,157 @@
+"""Figures of the contacts of flanks: pairs, how they share the load, and the pressure on them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from swgpar.errors import InputError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+MOST_FLANKS = 24
+"""In the contact pattern, those with the largest forces."""
+
+ANGLE = "angle of the wave generator (degrees)"
+
+Columns = Mapping[str, np.ndarray]
+"""Of a table."""
+
+
+def draw_pairs(pairs: Columns) -> Figure:
+    """Force and largest pressure of the pairs over the tooth's angle. pairs : columns of pairs.csv"""
+    from matplotlib.figure import Figure
+
+    position = (pairs["angle_deg"] + 90.0) % 180.0 - 90.0
+    figure = Figure(figsize=(7.0, 6.0), layout="constrained")
+    panels = list(figure.subplots(2, 1, sharex=True))
+    for axes, name in zip(panels, ("force_N", "pressure_MPa"), strict=True):
+        for side, colour in (("clockwise", "tab:orange"), ("counter-clockwise", "tab:blue")):
+            for edge, fill in ((0, colour), (1, "none")):
+                chosen = (pairs["flank"] == side) & (pairs["edge"] == edge)
+                label = f"{side} flank" + (", on an edge" if edge else "")
+                if chosen.any():
+                    axes.plot(position[chosen], pairs[name][chosen], "o", ms=4, mec=colour, mfc=fill, label=label)
+        axes.set_ylim(bottom=0.0)
+        axes.grid(alpha=0.3)
+    panels[0].set(ylabel="normal force (N)", title="pairs of flanks in contact, at all computed angles")
+    panels[1].set(ylabel="largest pressure (MPa)", xlabel="tooth, from the major axis (degrees)")
+    panels[0].legend(fontsize=8)
+    return figure
+
+
+def draw_load_sharing(pairs: Columns, history: Columns) -> Figure:
+    """Share of every pair in the force, and the number of pairs. pairs, history : columns of these tables"""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7.0, 6.0), layout="constrained")
+    upper, lower = figure.subplots(2, 1)
+    far = np.abs(pairs["angle_deg"]) > 90.0
+    angle, share = (pairs["angle_deg"] + 90.0) % 180.0 - 90.0, 100.0 * pairs["force_share"]
+    for side, colour in (("clockwise", "tab:orange"), ("counter-clockwise", "tab:blue")):
+        for end, mark in ((~far, "o"), (far, "x")):
+            chosen = (pairs["flank"] == side) & end
+            if chosen.any():
+                label = f"{side} flank" + (", other end" if mark == "x" else "")
+                upper.plot(angle[chosen], share[chosen], mark, ms=5, mec=colour, mfc="none", label=label)
+    upper.set(xlabel="pair, from the major axis (degrees)", ylabel="share of the force (%)")
+    upper.set_title("force of a pair over that of all pairs, at all computed angles", fontsize=10)
+    upper.legend(fontsize=8)
+    rows = np.unique(pairs["increment"]).astype(int) - 1
+    lower.step(history["wg_angle_deg"][rows], history["pairs_in_contact"][rows], "o-", where="mid", ms=4)
+    lower.set(xlabel=ANGLE, ylabel="pairs in contact")
+    for axes in (upper, lower):
+        axes.set_ylim(bottom=0.0)
+        axes.grid(alpha=0.3)
+    return figure
+
+
+def draw_contact_pattern(pairs: Columns, lines: Columns, step: int | None, plane: bool) -> Figure:
+    """Pressure on all loaded flanks.
+
+    pairs, lines : columns of pairs.csv and contact_lines.csv
+    step : of the history; None for that with the largest pressure. Raises InputError where no flank touches at it
+    """
+    from matplotlib.figure import Figure
+
+    if step is None:
+        pressure = np.nan_to_num(pairs["pressure_MPa"])
+        off_edge = np.where(pairs["edge"] == 0, pressure, 0.0)
+        step = int(pairs["step"][(off_edge if off_edge.any() else pressure).argmax()])
+    increment = pairs["increment"][pairs["step"] == step].max(initial=0.0)  # the last one of a step
+    chosen = np.flatnonzero((pairs["increment"] == increment) & np.isfinite(pairs["pressure_MPa"]))
+    if not len(chosen):
+        raise InputError(f"step = {step} has no flanks in contact: allowed are steps of result.pairs")
+    chosen = np.sort(chosen[np.argsort(-pairs["force_N"][chosen])][:MOST_FLANKS])
+    flanks = [_Flank(pairs, lines, int(k)) for k in chosen]
+    figure = Figure(figsize=(10.0, 6.0), layout="constrained")
+    angle = pairs["wg_angle_deg"][chosen[0]]
+    figure.suptitle(f"contact of the flanks, wave generator at {angle:.3g} degrees", fontsize=10)
+    (_draw_pressure_lines if plane else _draw_pressure_maps)(figure, flanks)
+    return figure
+
+
+class _Flank:
+    """A flank in contact: half ellipses of pressure at the stations along its face width.
+
+    pairs, lines : columns of the tables;  k : row of the pair
+
+    Attributes
+    ----------
+    name : the flank and what it carries;  z, s, half_width, peak : (n,) of the stations, mm and MPa
+    """
+
+    def __init__(self, pairs: Columns, lines: Columns, k: int) -> None:
+        edge = ", on an edge" if pairs["edge"][k] else ""
+        load = f"{pairs['force_N'][k]:.3g} N, {pairs['pressure_MPa'][k]:.4g} MPa{edge}"
+        self.name = f"tooth {pairs['tooth'][k]:.0f}, {pairs['flank'][k]}\n{load}"
+        here = np.all([lines[name] == pairs[name][k] for name in ("increment", "tooth", "flank", "ring_tooth")], axis=0)
+        self.z, self.s = lines["z_mm"][here], lines["s_mm"][here]
+        self.half_width, self.peak = lines["half_width_mm"][here], lines["pressure_MPa"][here]
+
+    def at(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Middle and half width (n,) mm and largest pressure (n,) MPa at z (n,) mm, linear between stations."""
+        peak = np.interp(z, self.z, self.peak, left=0.0, right=0.0)
+        return np.interp(z, self.z, self.s), np.interp(z, self.z, self.half_width), peak
+
+
+def _half_ellipse(s: np.ndarray, middle: np.ndarray, half_width: np.ndarray, peak: np.ndarray) -> np.ndarray:
+    return peak * np.sqrt(np.clip(1.0 - ((s - middle) / half_width) ** 2, 0.0, None))
+
+
+def _draw_pressure_lines(figure: Figure, flanks: list[_Flank]) -> None:
+    axes = figure.add_subplot()
+    for flank in flanks:
+        s = flank.s[0] + flank.half_width[0] * np.linspace(-1.1, 1.1, 101)
+        axes.plot(s, _half_ellipse(s, flank.s[0], flank.half_width[0], flank.peak[0]), label=flank.name)
+    axes.set(xlabel="arc length from the tip (mm)", ylabel="contact pressure (MPa)", ylim=(0.0, None))
+    axes.grid(alpha=0.3)
+    axes.legend(fontsize=8)
+
+
+def _draw_pressure_maps(figure: Figure, flanks: list[_Flank]) -> None:
+    columns = min(5 if len(flanks) > 8 else 4, len(flanks))
+    rows = -(-len(flanks) // columns)
+    figure.set_size_inches(12.0, max(5.0, 2.2 * rows + 1.0))
+    panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).ravel()
+    width = max(np.abs(flank.z).max() for flank in flanks)
+    low = min((flank.s - flank.half_width).min() for flank in flanks)
+    high = max((flank.s + flank.half_width).max() for flank in flanks)
+    margin = 0.1 * (high - low)
+    z = np.linspace(-1.05 * width, 1.05 * width, 240)
+    s = np.linspace(max(0.0, low - margin), high + margin, 320)[:, None]
+    top = max(flank.peak.max() for flank in flanks)
+    for axes, flank in zip(panels, flanks):
+        pressure = _half_ellipse(s, *flank.at(z))
+        image = axes.pcolormesh(z, s[:, 0], pressure, shading="nearest", vmin=0.0, vmax=top, cmap="magma")
+        axes.set_title(flank.name, fontsize=8 if rows == 1 else 7)
+        axes.tick_params(labelsize=8)
+    panels[0].invert_yaxis()
+    for axes in panels[len(flanks) :]:
+        axes.set_axis_off()
+    figure.supxlabel("z (mm), open end of the cup at negative z", fontsize=9)
+    figure.supylabel("arc length from the tip (mm)", fontsize=9)
+    figure.colorbar(image, ax=list(panels), label="contact pressure (MPa)")
