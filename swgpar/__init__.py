@@ -18,7 +18,14 @@ if TYPE_CHECKING:
     from swgpar.analysis.drive_result import DriveResult
     from swgpar.api import check, load_design, load_mesh, mesh, open_result, run, study
     from swgpar.design.drive_design import DriveDesign
-    from swgpar.errors import ConvergenceError, InputError, OutputError, SwgparError
+    from swgpar.errors import (
+        ConvergenceError,
+        InputError,
+        OutOfMemoryError,
+        OutputError,
+        SwgparError,
+        TimeLimitError,
+    )
     from swgpar.gear_trains.result import TrainResult
     from swgpar.meshing.drive_mesh import DriveMesh
     from swgpar.meshing.recipe import MeshRecipe
@@ -42,6 +49,8 @@ _MODULES = {
     "InputError": "errors",
     "OutputError": "errors",
     "ConvergenceError": "errors",
+    "TimeLimitError": "errors",
+    "OutOfMemoryError": "errors",
 }
 """Public name -> module that it is imported from."""
 
@@ -52,9 +61,11 @@ __all__ = [
     "DriveResult",
     "InputError",
     "MeshRecipe",
+    "OutOfMemoryError",
     "OutputError",
     "SwgparError",
     "StudyResult",
+    "TimeLimitError",
     "TrainResult",
     "__version__",
     "check",

@@ -6,19 +6,24 @@ converges, is refused by one sentence before anything is computed, or fails to c
 stability.csv has a row for every case: Newton iterations (largest number in one increment, and all), cut-backs, the
 unbalanced torque over the output's torque, and the drift: the relative change of stresses and input torque after one
 period (without friction, which needs a period to settle). For other systems of units and for more ranks the drift is
-the difference from the first ones. --page gets the table by group.
+the difference from the first ones. Sensible designs turn so far that their mean input torque is compared with the
+energy balance; a drive that says itself that it may jam is flagged. Silence is the longest time without a line of
+output. --page gets the table by group.
 """
 
 from __future__ import annotations
 
 import argparse
 import csv
+import json
 import subprocess
 import sys
+import time
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from page import markdown, put
 
 from support.commands import environment, on_ranks, run_command
@@ -28,10 +33,11 @@ from support.paths import ROOT
 from support.small_drive import PLANE
 from swgpar.design.load_states import Stage
 from swgpar.results import history
+from swgpar.results.folder import SUMMARY
 
 Row = dict[str, Any]
 COLUMNS = ("group", "case", "status", "newton_max", "newton_all", "cutbacks", "cycles", "unbalanced", "drift", "wall_s")
-COLUMNS += ("reason",)
+COLUMNS += ("flagged", "energy", "silence_s", "reason")
 
 
 def study_text(name: str, group: Group) -> str:
@@ -56,18 +62,30 @@ def run_group(name: str, group: Group, out: Path, ranks: int, restart: bool) -> 
     study.write_text(study_text(name, group), encoding="utf-8")
     command = [sys.executable, "-P", "-m", "swgpar.cli", "study", str(study), "--out", str(result)]
     command.append("--restart" if restart else "--overwrite")
-    with (folder / "log.txt").open("w") as log:
-        subprocess.run([*on_ranks(ranks), *command], stdout=log, stderr=log, env=environment())
+    silence = run_logged([*on_ranks(ranks), *command], folder / "log.txt")
     with (result / "study.csv").open(encoding="utf-8") as file:
         outcomes = list(csv.DictReader(file))
     cases = group.cases()
     rows = [
         {"group": name, "case": o["case"], **verdict(o), **measured(result / "cases" / o["case"], cases[o["case"]])}
+        | {"silence_s": round(silence, 1)}
         for o in outcomes
     ]
     if name == UNITS_GROUP:
         compare_units(result / "cases", rows)
     return rows
+
+
+def run_logged(command: list[str], log: Path) -> float:
+    """Run a command with its output in a file; returns the longest time (s) without a line."""
+    longest, last = 0.0, time.monotonic()
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=environment(), text=True)
+    with log.open("w", buffering=1) as file:
+        for text in process.stdout:
+            file.write(text)
+            longest, last = max(longest, time.monotonic() - last), time.monotonic()
+    process.wait()
+    return max(longest, time.monotonic() - last)
 
 
 def compare_units(folder: Path, rows: list[Row]) -> None:
@@ -107,9 +125,25 @@ def measured(folder: Path, case: dict[str, Any]) -> Row:
     torque = max((abs(r["output_torque_Nmm"]) for r in loaded), default=0.0)
     if torque and case.get("load.torque") != 0.0:  # without a load both are round-off
         out["unbalanced"] = max(r["torque_balance_Nmm"] for r in loaded) / torque
+    out |= energy(found[0].parent / SUMMARY)
     turned = [r for r in rows if int(r["step"]) >= 4]
+    if len(turned) == WHOLE_PERIOD:
+        turned = [turned[0], turned[2], turned[-1]]
     if not case.get("contact.friction") and len(turned) == 3:
         out["drift"] = drift(turned[0], turned[-1])
+    return out
+
+
+def energy(path: Path) -> Row:
+    """From the summary of a run through a whole period: relative difference of its mean input torque, and the flag."""
+    if not path.exists():
+        return {}
+    summary = json.loads(path.read_text(encoding="utf-8"))
+    out: Row = {"flagged": 1} if summary["jammed"] else {}
+    expected, angles = summary["wg_torque_expected_Nmm"], summary["design"]["steps"]
+    if expected and angles["rotation"] > 4.9 * angles["increment"] and not summary["design"]["contact"]["friction"]:
+        rows = history.read_history(path.with_name(history.NAME))[-4:]
+        out["energy"] = abs(sum(row["wg_torque_Nmm"] for row in rows) / len(rows) / expected - 1.0)
     return out
 
 
@@ -147,10 +181,17 @@ def counted(name: str, rows: list[Row]) -> list[str]:
 
     numbers = [sum(r["status"] == status for r in rows) for status in ("converged", "refused", "failed")]
     numbers += [max(values("newton_max"), default=0), sum(values("cutbacks")), sum(values("cycles"))]
-    return [name, *(f"{n:.0f}" for n in numbers), largest("unbalanced"), largest("drift")]
+    silence = f"{max(values('silence_s')):.0f}" if values("silence_s") else ""
+    flagged = f"{sum(values('flagged')):.0f}" if values("energy") else ""
+    balance = f"{np.median(values('energy')):.1e}" if values("energy") else ""
+    return [name, *(f"{n:.0f}" for n in numbers), largest("unbalanced"), largest("drift"), flagged, balance, silence]
 
 
 HEADER = ["group", "converged", "refused", "failed", "Newton", "cut-backs", "cycles", "unbalanced", "drift"]
+HEADER += ["flagged", "energy", "silence"]
+
+WHOLE_PERIOD = 5
+"""Increments of the rotation of sensible designs: the first and the last are one period apart."""
 
 
 def line(cells: list[str]) -> str:
@@ -173,6 +214,7 @@ def main() -> int:
     options.add_argument("--at-once", type=int, default=2, help="cases that are computed at once")
     options.add_argument("--most-ranks", type=int, default=8, help="largest number of ranks on one case")
     options.add_argument("--random", type=int, default=200, help="number of random plane designs")
+    options.add_argument("--sensible", type=int, nargs=2, default=(1000, 200), help="numbers of plane and cup drives")
     options.add_argument("--seed", type=int, default=1)
     options.add_argument("--restart", action="store_true", help="keep the cases that an earlier call has finished")
     options.add_argument("--only", nargs="+", default=None, help="words of the names of the groups to run")
@@ -181,7 +223,7 @@ def main() -> int:
     tables.mkdir(parents=True, exist_ok=True)
     numbers = [n for n in (1, 2, 3, 4, 8) if n <= arguments.most_ranks]
     work = {"elements": element_rows, "ranks": lambda: run_on_ranks(out, numbers)}
-    for name, group in groups(arguments.random, arguments.seed).items():
+    for name, group in groups(arguments.random, arguments.seed, tuple(arguments.sensible)).items():
         work[name] = lambda name=name, group=group: run_group(name, group, out, arguments.at_once, arguments.restart)
     table = tables / "stability.csv"
     rows: list[Row] = []

@@ -6,7 +6,7 @@ Groups serve `tests/stability` and `scripts/bench/stability`. All run on the sma
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -180,12 +180,46 @@ def random_designs(count: int, seed: int, model: str = "plane") -> Cases:
     return cases
 
 
-def _draw(rng: np.random.Generator, model: str) -> Case:
+SENSIBLE, SENSIBLE_CUP = "sensible designs, plane", "sensible designs, cup"
+
+
+def sensible_designs(count: int, seed: int, model: str = "plane") -> Cases:
+    """Drives of 60 to 240 teeth and 8 to 100 mm of radius, with any cam and profile; some of them cannot be built.
+
+    They turn through a pitch and a quarter in increments of a quarter, so that the first and the last end in the same
+    state, and the last four have the mean of a period.
+    """
+    rng, cases = np.random.default_rng(seed), {}
+    for k in range(count):
+        teeth = int(rng.integers(60, 241))
+        radius = float(np.exp(rng.uniform(np.log(8.0), np.log(100.0))))
+        case = _draw(rng, model, teeth, round(2.0 * radius / teeth, 4), CAMS)
+        pitch = 360.0 / (teeth + 2 if case["drive.layout"] == "ring_fixed" else teeth)
+        cases[f"s{k:04d}"] = {**case, "steps.increment": 0.25 * pitch, "steps.rotation": 1.25 * pitch}
+    return cases
+
+
+FIRST_CAMS = ("elliptical", "simplified", "parabolic", "four_roller")
+CAMS = (*FIRST_CAMS, "asymmetric_parabolic")
+
+
+def _draw(
+    rng: np.random.Generator,
+    model: str,
+    teeth: int | None = None,
+    module: float | None = None,
+    cams: Sequence[str] = FIRST_CAMS,
+) -> Case:
+    """A drive at random, without teeth and module also these."""
+
     def number(low: float, high: float) -> float:
         return round(float(rng.uniform(low, high)), 4)
 
-    teeth = 2 * int(rng.integers(10, 60))
-    module = float(rng.choice([0.3, 0.5, 1.0, 2.0]))
+    def side() -> Case:
+        return {"a_p": number(0.4, 0.6) / a, "C_p": number(0.3, 0.55), "r_c": 0.17 * a}
+
+    teeth = 2 * int(rng.integers(10, 60)) if teeth is None else teeth
+    module = float(rng.choice([0.3, 0.5, 1.0, 2.0])) if module is None else module
     kind = rng.choice(["quadruple_arc", "double_arc", "involute"], p=[0.6, 0.2, 0.2])
     profile = {
         "quadruple_arc": lambda: {
@@ -209,10 +243,16 @@ def _draw(rng: np.random.Generator, model: str) -> Case:
     cam = {
         "elliptical": lambda: {"C": number(0.9, 1.0)},
         "simplified": lambda: {"C": number(0.85, 0.98)},
-        "parabolic": lambda: {"C": 1.0, "a_p": number(0.4, 0.6) / a, "C_p": number(0.3, 0.55), "r_c": 0.17 * a},
+        "parabolic": lambda: {"C": 1.0, **side()},
         "four_roller": lambda: {"beta": number(10.0, 25.0), "r_4": number(0.1, 0.16) * a},
+        "asymmetric_parabolic": lambda: {
+            "C": 1.0,
+            "rotational_angle": number(-0.5, 0.5),
+            "right": side(),
+            "left": side(),
+        },
     }
-    cam_kind = str(rng.choice(list(cam)))
+    cam_kind = str(rng.choice(cams))
     wave = {"type": cam_kind, **cam[cam_kind](), "face_width": width}
     c_l = 0.0 if kind == "double_arc" else 0.5
     rim, torque = number(0.5, 1.6) * module * teeth / 120, number(0.0, 4.0) * module**3 * teeth / 120
@@ -270,8 +310,12 @@ FACE_WIDTHS = (0.2, 0.3, 0.5, 1.0, 4.0, 20.0, 60.0, 200.0, 1000.0)
 FRICTION = (0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5)
 
 
-def groups(count: int, seed: int) -> dict[str, Group]:
-    """All groups. count, seed : number of random plane designs, and what they are drawn from."""
+def groups(count: int, seed: int, sensible: tuple[int, int] = (0, 0)) -> dict[str, Group]:
+    """All groups.
+
+    count, seed : number of random plane designs, and what they are drawn from
+    sensible : numbers of plane and of cup drives of sensible sizes
+    """
     flat = dict(override.split("=") for override in SMALL_PLANE)
     flat = {key: parse_value(value) for key, value in flat.items()}
 
@@ -316,4 +360,6 @@ def groups(count: int, seed: int) -> dict[str, Group]:
         "random designs, plane": Group(PLANE, lambda: random_designs(count, seed)),
         ONCE_FAILED: Group(PLANE, lambda: read_toml(DATA / "once_failed.toml")),
         "random designs, cup": Group(PLANE, lambda: random_designs(count // 10, seed, "cup")),
+        SENSIBLE: Group(PLANE, lambda: sensible_designs(sensible[0], seed), steps=True),
+        SENSIBLE_CUP: Group(PLANE, lambda: sensible_designs(sensible[1], seed, "cup"), steps=True),
     }

@@ -1,0 +1,67 @@
+"""Limits of time and iterations: a run ends on all ranks with what was tried, and can be continued."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+import swgpar
+from support.paths import DESIGN, RECIPE
+from support.small_drive import NO_SHORTCUTS, PLANE, SHORT
+from swgpar.errors import ConvergenceError, TimeLimitError
+from swgpar.solve.time_limit import limited, passed
+
+COMM = MPI.COMM_WORLD
+
+
+def design(**solver: float) -> swgpar.DriveDesign:
+    limits = [f"solver.{key}={value}" for key, value in solver.items()]
+    return swgpar.load_design(DESIGN, [*PLANE, *SHORT, *NO_SHORTCUTS, "output.figures=false", *limits])
+
+
+@pytest.mark.parallel([1, 2])
+def test_a_time_limit_ends_a_run() -> None:
+    words = r"time limit of 1e-06 s \(solver.time_limit\) has passed in step 1 .* after \d+ Newton iterations, residual"
+    with pytest.raises(TimeLimitError, match=words):
+        swgpar.run(design(time_limit=1e-6), RECIPE)
+    assert passed(COMM) is None
+
+
+@pytest.mark.parallel([1, 2])
+def test_a_run_continues_with_another_limit(tmp_path: Path) -> None:
+    """The limits do not belong to what is computed. The hardest increment needs an iteration more than it may have."""
+    folder = COMM.bcast(tmp_path)
+    whole = swgpar.run(design(), RECIPE)
+    needed = whole.history["newton_iterations"]
+    hardest = int(np.argmax(needed))
+    limit = int(needed[hardest]) - 1
+    assert hardest > 0
+    words = (
+        rf"cut-backs: {limit} Newton iterations of one increment \(solver.iteration_limit\), .*; {hardest} increments"
+    )
+    with pytest.raises(ConvergenceError, match=words):
+        swgpar.run(design(iteration_limit=limit), RECIPE, folder)
+    found = swgpar.run(design(time_limit=1e6), RECIPE, folder, restart=True)
+    for name in ("fs_s1", "wg_torque_Nmm", "output_angle_deg"):
+        expected = whole.history[name]
+        assert found.history[name] == pytest.approx(expected, abs=1e-8 * np.abs(expected).max())
+
+
+@pytest.mark.parallel([1, 2])
+def test_limits_of_time_end_with_their_block() -> None:
+    with limited(1e6):
+        assert passed(COMM) is None
+        with limited(0.0):
+            assert passed(COMM) == 0.0
+        assert passed(COMM) is None
+    with limited(None):
+        assert passed(COMM) is None
+
+
+def test_the_default_is_far_from_what_drives_need() -> None:
+    assert design().solver.iteration_limit == 600 and design().solver.time_limit is None
+    with pytest.raises(swgpar.InputError, match=r"solver.time_limit = 0(\.0)? is out of range: allowed above 0 to"):
+        design(time_limit=0.0)
