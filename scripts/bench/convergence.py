@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 from page import markdown, write_results
+from scipy.optimize import brentq
 
 from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.analysis.drive_model import DriveModel
@@ -32,6 +33,9 @@ LOADED = ["steps.rotation=0", "steps.bent_start=true", "solver.rtol=1e-6"]
 
 QUANTITIES = ("s1", "s3", "vm")
 
+ORDERS = 0.1, 8.0
+"""Smallest and largest order that is looked for."""
+
 Row = dict[str, Any]
 
 
@@ -50,10 +54,20 @@ def by_region(model: DriveModel) -> dict[tuple[str, str, str], float]:
     return found
 
 
-def order(values: list[float]) -> float | None:
-    """Order observed on the last three meshes; None where their differences do not fall with one sign."""
-    before, last = values[-2] - values[-3], values[-1] - values[-2]
-    return float(np.log(before / last) / np.log(RATIO)) if before * last > 0.0 and abs(last) < abs(before) else None
+def order(values: list[float], sizes: list[float]) -> float | None:
+    """Order observed on the last three meshes; None where their differences do not fall with one sign.
+
+    values : of a stress that converges as size**order;  sizes : of the elements, by their number
+    """
+    (a, b, c), (r, s, t) = values[-3:], sizes[-3:]
+    if (b - a) * (c - b) <= 0.0:
+        return None
+
+    def mismatch(p: float) -> float:
+        return (b - a) / (c - b) - (r**p - s**p) / (s**p - t**p)
+
+    low, high = ORDERS
+    return float(brentq(mismatch, low, high)) if mismatch(low) * mismatch(high) < 0.0 else None
 
 
 def measure(family: str) -> list[Row]:
@@ -69,10 +83,11 @@ def measure(family: str) -> list[Row]:
             print(f"{family}: {elements[-1]:,} elements", flush=True)
     model.destroy()
     rows = []
+    sizes = [count ** (-1.0 / (2 if name.startswith("plane") else 3)) for count in elements]
     for body, region, quantity in levels[0]:
         values = [level[body, region, quantity] for level in levels]
         row = {"model": family, "body": body, "region": region, "quantity": quantity, "elements": elements}
-        rows.append({**row, "values": [round(value, 2) for value in values], "order": order(values)})
+        rows.append({**row, "values": [round(value, 2) for value in values], "order": order(values, sizes)})
     return rows
 
 

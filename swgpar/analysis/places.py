@@ -16,8 +16,8 @@ from swgpar.design.sections import GEARS
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.meshing.sector import SectorMesh
 
-TOOTH_END = "tooth end"
-"""Region of the ends of the teeth."""
+TOOTH_END, UNDER_CONTACT = "tooth end", "flank under contact"
+"""Regions of the ends of the teeth; of the flanks that touch and of what is close below them."""
 
 END = 0.45
 """Share of the face width from its middle beyond which a place belongs to the end of a tooth."""
@@ -78,7 +78,9 @@ def find_places(model: DriveModel, state: LoadState, fields: Sequence[Mapping[st
         apart = np.broadcast_to(~near, touched.shape)
         for stress in ("s1", "s3", "vm"):
             values = -fields[k][stress] if stress == "s3" else fields[k][stress]
-            below = touched & (stress != "s1") if ring else touched
+            # s1 below a contact is compressive or small; of the ring gear any flank may be touched
+            below = near if stress != "s1" else np.zeros_like(touched) if ring else touched
+            below = np.broadcast_to(below, touched.shape)
             found[f"{prefix}_{stress}"] = _largest(model, k, values, below)
             if stress != "s1":
                 found[f"{prefix}_{stress}{APART}"] = _largest(model, k, np.where(apart, values, -np.inf), below & apart)
@@ -130,7 +132,7 @@ def _largest(model: DriveModel, k: int, values: np.ndarray, touched: np.ndarray)
 
 
 def region_of(design: DriveDesign, mesh: SectorMesh, node: int, touched: bool) -> str:
-    """Region of a node of a tooth sector. touched : whether a contact presses on it"""
+    """Region of a node of a tooth sector. touched : whether a contact of flanks presses on it, or close to it"""
     x, y, z = mesh.coords[node]
     radius, half = float(np.hypot(x, y)), 0.5 * design.drive.face_width
     if not mesh.plane and z > half * (1.0 + 1e-9):
@@ -144,10 +146,11 @@ def region_of(design: DriveDesign, mesh: SectorMesh, node: int, touched: bool) -
             return _region_of_the_flank(design, mesh, float(grid.s[rows[0]]), float(z), touched)
     root = mesh.profile.r_root_circle
     near = NEAR * design.drive.module
+    inside = UNDER_CONTACT if touched else "inside the tooth"
     if mesh.body == "ring_gear":
         outer = root + design.ring_gear.rim
         if radius < root - near:
-            return "tip" if radius < mesh.profile.r_tip_circle + near else "inside the tooth"
+            return "tip" if radius < mesh.profile.r_tip_circle + near else inside
         return "housing" if radius > outer - near else "rim" if radius > root + near else "tooth root"
     if not mesh.plane and abs(z - half) < near and radius < root + near:
         return "notch"
@@ -155,7 +158,8 @@ def region_of(design: DriveDesign, mesh: SectorMesh, node: int, touched: bool) -
         return TOOTH_END if abs(z) > END * design.drive.face_width and not mesh.plane else "tooth root"
     if radius > mesh.profile.r_tip_circle - near:
         return "tip"
-    return TOOTH_END if abs(z) > END * design.drive.face_width and not mesh.plane else "inside the tooth"
+    at_end = abs(z) > END * design.drive.face_width and not mesh.plane
+    return TOOTH_END if at_end and not touched else inside
 
 
 def _region_of_the_flank(design: DriveDesign, mesh: SectorMesh, s: float, z: float, touched: bool) -> str:
@@ -163,7 +167,7 @@ def _region_of_the_flank(design: DriveDesign, mesh: SectorMesh, s: float, z: flo
         return TOOTH_END
     if s >= mesh.profile.breaks[-2]:
         return "tooth root"
-    return "flank under contact" if touched else "flank"
+    return UNDER_CONTACT if touched else "flank"
 
 
 def _region_of_the_cup(design: DriveDesign, mesh: SectorMesh, node: int, radius: float, z: float) -> str:
@@ -177,7 +181,7 @@ def _region_of_the_cup(design: DriveDesign, mesh: SectorMesh, node: int, radius:
 
 def warning_of(design: DriveDesign, region: str, point: np.ndarray) -> str:
     """Why a stress at a point (3,) mm of a region has no limit, or depends on the mesh; empty where it converges."""
-    if region == "flank under contact":
+    if region == UNDER_CONTACT:
         return AVERAGE
     if region == "notch":
         return NOTCH
