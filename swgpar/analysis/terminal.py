@@ -127,11 +127,11 @@ def _print_turns(turns: Mapping[str, Any]) -> None:
 def _print_places(places: Mapping[str, Mapping[str, Any]]) -> None:
     """Where the largest stresses under load are, and which of them depend on the mesh."""
     table = Table(
-        title="largest under load (MPa, nodal averages), and where (mm, degrees)",
+        title="largest under load (MPa, nodal averages), error by the mesh, and where (mm, degrees)",
         box=box.SIMPLE_HEAD,
         padding=(0, 1, 0, 0),
     )
-    for heading in ("", "MPa", "± by mesh", "region", "tooth", "radius", "z", "angle"):
+    for heading in ("", "MPa", "error", "region", "tooth", "radius", "z", "angle"):
         table.add_column(heading, justify="left" if heading in ("", "region") else "right", no_wrap=True)
     for name, place in places.items():
         error = "" if place["error"] is None else f"{place['error']:.1f}"
