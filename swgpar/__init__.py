@@ -16,7 +16,7 @@ from swgpar.version import __version__
 
 if TYPE_CHECKING:
     from swgpar.analysis.drive_result import DriveResult
-    from swgpar.api import check, load_design, load_mesh, mesh, open_result, run, study
+    from swgpar.api import check, load_design, load_mesh, mesh, new, open_result, run, study
     from swgpar.design.drive_design import DriveDesign
     from swgpar.errors import ConvergenceError, InputError, OutputError, SwgparError
     from swgpar.gear_trains.result import TrainResult
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from swgpar.studies.study import StudyResult
 
 _MODULES = {
+    "new": "api",
     "load_design": "api",
     "load_mesh": "api",
     "run": "api",
@@ -61,6 +62,7 @@ __all__ = [
     "load_design",
     "load_mesh",
     "mesh",
+    "new",
     "open_result",
     "run",
     "study",

@@ -46,13 +46,45 @@ def _swept(section: CrossSection, z: Floats, relief: Floats, amount: Floats) -> 
     return coords
 
 
-def _check(gear: str, quality: dict[str, float], recipe: ToothRecipe, unit: str) -> None:
-    if not quality["min_jacobian"] > 0.0:
+def _check(
+    design: DriveDesign, gear: GearName, quality: dict[str, float], section: CrossSection, recipe: ToothRecipe
+) -> None:
+    """Refuse elements that are inside out; says whether the rim or the tooth is the cause."""
+    if quality["min_jacobian"] > 0.0:
+        return
+    unit = "mm2" if design.drive.model == "plane" else "mm3"
+    what = f"an element that is inside out (Jacobian {quality['min_jacobian']:.3g} {unit})"
+    if _has_inverted_rim(section):
+        rim, most = getattr(design, gear).rim, _thickest_rim(design, gear, recipe)
         raise InputError(
-            f"{gear}.tip = {recipe.tip}, {gear}.flank = {recipe.flank} of the mesh recipe give an element that "
-            f"is inside out (Jacobian {quality['min_jacobian']:.3g} {unit}): allowed are counts, and a profile, "
-            "that leave all Jacobians above 0"
+            f"{gear}.rim = {rim:g} with {gear}.under = {recipe.under}, {gear}.rim = {recipe.rim} of the mesh recipe "
+            f"gives {what} between root and lower rim: allowed up to {most:.3g} mm with this recipe, or "
+            "more layers of the lower rim"
         )
+    raise InputError(
+        f"{gear}.tip = {recipe.tip}, {gear}.flank = {recipe.flank} of the mesh recipe give {what}: allowed are counts, "
+        "and a profile, that leave all Jacobians above 0"
+    )
+
+
+def _has_inverted_rim(section: CrossSection) -> bool:
+    """Whether a corner of an element between the root and the free surface is inside out."""
+    corners = section.coords[section.quads[section.root_layer | section.rim_layer]]
+    ahead, behind = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
+    return bool(np.any(ahead[..., 0] * behind[..., 1] - ahead[..., 1] * behind[..., 0] <= 0.0))
+
+
+def _thickest_rim(design: DriveDesign, gear: GearName, recipe: ToothRecipe) -> float:
+    """The thickest rim, mm, that the recipe can mesh."""
+    section, profile = getattr(design, gear), design.profile(gear)
+    low, high = 0.0, section.rim
+    while high - low > 0.002 * high:
+        rim = 0.5 * (low + high)
+        thinner = design.model_copy(update={gear: section.model_copy(update={"rim": rim})})
+        interface, free, _ = _radii(thinner, gear, recipe, profile.r_root_circle)
+        bad = _has_inverted_rim(cross_section(profile, recipe, interface, free))
+        low, high = (low, rim) if bad else (rim, high)
+    return low
 
 
 @dataclass(frozen=True)
@@ -139,7 +171,7 @@ def build_sector(design: DriveDesign, recipe: MeshRecipe, gear: GearName) -> Sec
         faces = {"outer": sweep_line(section.free[::-1], rows)}
         node_sets = {"outer": np.unique(rows[:1, section.free] if plane else faces["outer"])}
     quality = quad_quality(sector.coords, sector.hexes[:, :4]) if plane else hex_quality(sector.coords, sector.hexes)
-    _check(gear, quality, counts, "mm2" if plane else "mm3")
+    _check(design, gear, quality, section, counts)
     flanks = tuple(
         FlankGrid(np.ascontiguousarray(rows[:, nodes].T), section.s, z, side)
         for side, nodes in ((1, section.flank), (-1, section.mirror[section.flank]))
