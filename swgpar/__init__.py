@@ -16,7 +16,7 @@ from swgpar.version import __version__
 
 if TYPE_CHECKING:
     from swgpar.analysis.drive_result import DriveResult
-    from swgpar.api import check, load_design, load_mesh, mesh, open_result, run, study
+    from swgpar.api import check, load_design, load_mesh, mesh, new, open_result, run, study
     from swgpar.design.drive_design import DriveDesign
     from swgpar.errors import (
         ConvergenceError,
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from swgpar.studies.study import StudyResult
 
 _MODULES = {
+    "new": "api",
     "load_design": "api",
     "load_mesh": "api",
     "run": "api",
@@ -72,6 +73,7 @@ __all__ = [
     "load_design",
     "load_mesh",
     "mesh",
+    "new",
     "open_result",
     "run",
     "study",

@@ -9,20 +9,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from mpi4py import MPI
 
 from swgpar import log
+from swgpar.analysis.shortcuts import MESHES
 from swgpar.design.drive_design import DriveDesign
-from swgpar.errors import InputError
+from swgpar.design.starter import CamType, Profile, Request, as_toml, starter_design
+from swgpar.errors import InputError, OutputError
 from swgpar.input.design import Design
 from swgpar.input.toml_file import Overrides, apply_overrides, read_toml
 from swgpar.meshing import MeshRecipe, build_sector_meshes
 from swgpar.meshing import load_recipe as _load_recipe
 from swgpar.meshing.drive_mesh import DriveMesh
 from swgpar.meshing.recipe import make_recipe
-from swgpar.results.atomic import agreed, on_all
+from swgpar.results.atomic import agreed, on_all, write_from_root
 from swgpar.results.figure_set import save_figures
 from swgpar.results.folder import given_folder, read_summary
 from swgpar.systems import Result, system_of, system_of_table
@@ -35,6 +37,64 @@ DesignLike = Design | str | Path | Mapping[str, Any]
 
 MeshLike = MeshRecipe | str | Path | Mapping[str, Any]
 """A mesh recipe, its name in the package, the path of its file, or the content of one."""
+
+
+def new(
+    out: str | Path | None = None,
+    *,
+    ratio: float,
+    torque: float,
+    diameter: float | None = None,
+    bore: float | None = None,
+    profile: Profile = "quadruple_arc",
+    cam: CamType = "elliptical",
+    layout: Literal["ring_fixed", "spline_fixed"] = "ring_fixed",
+    model: Literal["cup", "plane"] = "cup",
+    overwrite: bool = False,
+) -> DriveDesign:
+    """A checked design to start from; collective when it is written.
+
+    Parameters
+    ----------
+    out : path
+        Design file to write, with the meaning of every key.
+    ratio : float
+        Speed of the wave generator over that of the output, without its sign; a multiple of 0.5.
+    torque : float, N·m
+        On the output.
+    diameter, bore : float, mm
+        Pitch diameter or inner diameter of the flexible spline; one of both.
+    profile : "quadruple_arc", "double_arc" or "involute"
+    cam : "elliptical", "parabolic", "simplified" or "four_roller"
+    layout, model : as in the section [drive]
+    overwrite : bool
+        Replace a file that exists.
+
+    Raises
+    ------
+    InputError
+        A number that is out of range.
+    OutputError
+        The file exists, or cannot be written.
+
+    Examples
+    --------
+    >>> design = swgpar.new(ratio=100, diameter=50.8, torque=52.0)
+    >>> design.drive.teeth_fs, design.drive.module
+    (200, 0.254)
+    """
+    request = Request(ratio, torque, diameter, bore, profile, cam, layout, model)
+    design, table = starter_design(request)
+    build_sector_meshes(design, _load_recipe(MESHES[model]))
+    if out is not None:
+        path, comm = Path(out), MPI.COMM_WORLD
+        with agreed(comm, path):
+            if comm.rank == 0 and path.exists() and not overwrite:
+                raise OutputError(
+                    f"{path} exists: replace it with overwrite = true (--overwrite), or give another name"
+                )
+        write_from_root(comm, path, as_toml(request, design, table, path.name).encode())
+    return design
 
 
 def load_design(design: DesignLike, overrides: Overrides = ()) -> Design:

@@ -70,6 +70,15 @@ a study file:
 --restart keeps finished cases, continues interrupted ones and tries failed ones again.
 """
 
+NEW = """Write a design file to start from: valid, checked, every key with its meaning. All that is not given follows
+from rules of proportion."""
+
+NEW_EXAMPLES = """examples:
+  swgpar new drive.toml --ratio 100 --diameter 50.8 --torque 52
+  swgpar new drive.toml --ratio 80 --bore 60 --torque 120 --profile involute --cam parabolic
+  swgpar new plane.toml --ratio 50 --diameter 42 --torque 2 --model plane
+"""
+
 REPORT_EXAMPLES = """example:
   swgpar report results/coarse
 """
@@ -96,8 +105,9 @@ def parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     top.add_argument("--version", action="version", version=f"swgpar {__version__}")
-    commands = top.add_subparsers(dest="command", required=True, metavar="run | study | mesh | check | report")
+    commands = top.add_subparsers(dest="command", required=True, metavar="new | check | mesh | run | study | report")
 
+    _add_new(commands)
     _add_run(commands)
     _add_study(commands)
     mesh = _add_command(commands, "mesh", "Write the mesh of the whole drive.", MESH_EXAMPLES)
@@ -141,6 +151,24 @@ def _add_design(command: argparse.ArgumentParser) -> None:
         metavar="section.key=value",
         help="set keys of the design file",
     )
+
+
+def _add_new(commands: _Commands) -> None:
+    new = _add_command(commands, "new", NEW, NEW_EXAMPLES)
+    new.add_argument("design", help="design file to write (TOML)")
+    new.add_argument("--ratio", type=float, required=True, help="speed of the wave generator over that of the output")
+    size = new.add_mutually_exclusive_group(required=True)
+    size.add_argument("--diameter", type=float, metavar="D", help="pitch diameter of the flexible spline, mm")
+    size.add_argument("--bore", type=float, metavar="D", help="inner diameter of the flexible spline, mm")
+    new.add_argument("--torque", type=float, required=True, metavar="T", help="on the output, N·m")
+    for name, choices, text in (
+        ("--profile", ("quadruple_arc", "double_arc", "involute"), "profile of the teeth"),
+        ("--cam", ("elliptical", "parabolic", "simplified", "four_roller"), "cam of the wave generator"),
+        ("--layout", ("ring_fixed", "spline_fixed"), "fixed member"),
+        ("--model", ("cup", "plane"), "the cup drive, or the toothed section in plane stress"),
+    ):
+        new.add_argument(name, choices=choices, default=choices[0], help=f"{text} (default: {choices[0]})")
+    new.add_argument("--overwrite", action="store_true", help="replace a file that exists")
 
 
 def _add_run(commands: _Commands) -> None:
@@ -225,6 +253,22 @@ def _study(arguments: argparse.Namespace) -> None:
     if found.failed:
         reasons = folder / "study.csv"
         raise StudyError(f"{len(found.failed)} of {len(found.results)} runs failed: the reasons are in {reasons}")
+
+
+def _new(arguments: argparse.Namespace) -> None:
+    from swgpar import api
+
+    names = ("ratio", "torque", "diameter", "bore", "profile", "cam", "layout", "model", "overwrite")
+    design = api.new(arguments.design, **{name: getattr(arguments, name) for name in names})
+    drive = design.drive
+    _print(
+        [
+            f"written {arguments.design}",
+            f"{drive.teeth_fs} and {drive.teeth_rg} teeth, module {drive.module:g} mm, bore "
+            f"{2 * design.inner_radius:.4g} mm, backlash {1000 * design.backlash:.3g} µm",
+            f"swgpar check {arguments.design} has all derived sizes",
+        ]
+    )
 
 
 def _mesh(arguments: argparse.Namespace) -> None:
@@ -325,7 +369,7 @@ def _main(arguments: Sequence[str] | None) -> int:
 
         petsc.start(rest)
         watch.rearm()
-        {"run": _run, "study": _study, "mesh": _mesh, "check": _check, "report": _report}[command](known)
+        {"new": _new, "run": _run, "study": _study, "mesh": _mesh, "check": _check, "report": _report}[command](known)
     except SwgparError as error:
         from mpi4py import MPI
 

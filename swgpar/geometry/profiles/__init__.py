@@ -10,6 +10,7 @@ from dataclasses import asdict
 import numpy as np
 
 from swgpar.errors import InputError
+from swgpar.geometry.profiles.advice import advise
 from swgpar.geometry.profiles.double_arc import double_arc
 from swgpar.geometry.profiles.flank import ToothProfile, check_flank
 from swgpar.geometry.profiles.involute import Cutter, involute
@@ -42,6 +43,53 @@ def make_profile(
 
     Raises InputError where the keys give no flank.
     """
+    try:
+        return _build(keys, teeth, c_P, c_l, gear)
+    except InputError as error:
+        reason = str(error)
+    advice = _advice(keys, teeth, c_P, c_l, gear)
+    raise InputError(f"{reason}; {advice}" if advice else reason)
+
+
+def _advice(keys: ExternalProfile | InternalProfile, teeth: Teeth, c_P: float, c_l: float, gear: str) -> str:
+    """What to change in keys that give no flank, as the end of a sentence; empty if the reason says it."""
+
+    def builds(**values: float) -> bool:
+        try:
+            _build(keys.model_copy(update=values), teeth, c_P, c_l, gear)
+        except InputError:
+            return False
+        return True
+
+    name = f"{gear}.profile"
+    if isinstance(keys, DoubleArc) and c_l >= 1.0:
+        return ""
+    lengths = {key: value for key, value in keys if key in LENGTHS}
+    if advice := advise(name, lengths, lambda key, value: builds(**{key: value}), teeth.module):
+        return advice
+    radii = {key: float(f"{value * teeth.module:.4g}") for key, value in RADII[keys.type].items()}
+    if builds(**radii):
+        return f"several keys of {name} do not fit: allowed are for example " + ", ".join(
+            f"{key} = {show(value)}" for key, value in radii.items()
+        )
+    if isinstance(keys, RackInvolute | ShaperInvolute):
+        return ""  # the reason says what is allowed
+    return f"no other {' or '.join(lengths)} is allowed: change c_P, c_l, the pressure angle or the height of the teeth"
+
+
+LENGTHS = ("r_tip", "r_addendum", "straight_l", "r_dedendum", "r_root", "cutter_radius")
+"""Keys of profiles that are lengths, mm."""
+
+RADII: dict[str, dict[str, float]] = {
+    "quadruple_arc": {"r_tip": 0.5, "r_addendum": 1.0, "straight_l": 0.0, "r_dedendum": 20.0, "r_root": 0.6},
+    "double_arc": {"r_addendum": 1.0, "r_dedendum": 0.6},
+    "involute": {"cutter_radius": 0.2},
+}
+"""Lengths that close for most tooth numbers, modules: of the reference drive, Table 6.12, the bottom clearance."""
+
+
+def _build(keys: ExternalProfile | InternalProfile, teeth: Teeth, c_P: float, c_l: float, gear: str) -> ToothProfile:
+    """Flank of a gear; raises InputError with the reason where there is none."""
     name = f"{gear}.profile"
     if isinstance(keys, QuadrupleArc):
         frame = PitchPointFrame(**asdict(teeth), c_P=c_P)
@@ -57,9 +105,8 @@ def make_profile(
         check_flank(profile)
     except InputError as error:
         sizes = ", ".join(f"{key} = {show(value)}" for key, value in keys if isinstance(value, float))
-        raise InputError(
-            f"{name} with {sizes} cannot be built: {error}; allowed are arcs and cutters that stay inside the tooth"
-        ) from None
+        cutters = "; allowed are cutters that stay inside the tooth" if hasattr(keys, "cutter_radius") else ""
+        raise InputError(f"{name} with {sizes} cannot be built: {error}{cutters}") from None
     return profile
 
 

@@ -28,13 +28,7 @@ def straight_length(frame: PitchPointFrame, c_l: float, r_dedendum: float, name:
     square = along**2 - float(center @ center) + target**2
     depth = along - s * np.sqrt(square) if square >= 0.0 and target > 0.0 else -1.0
     if depth < 0.0:
-        # with l = 0 the arc starts at the pitch point: |P + r n| = r_D + s r gives the largest radius
-        pitch, normal = frame.pitch_point, frame.normal(frame.base_angle)
-        limit = 0.5 * (frame.r_root_circle**2 - pitch @ pitch) / (pitch @ normal - s * frame.r_root_circle)
-        raise InputError(
-            f"{name}.r_dedendum = {r_dedendum:g} is out of range: allowed above 0 to {limit:.6g} mm, where no straight "
-            "segment is left"
-        )
+        raise InputError(f"{name}.r_dedendum = {r_dedendum:g} leaves no straight segment between the arcs")
     return float(depth / (1.0 - c_l))
 
 
@@ -53,9 +47,7 @@ def double_arc(
     reach = float(np.hypot(*o_a))
     cosine = (frame.r_tip_circle**2 - reach**2 - r_addendum**2) / (2.0 * reach * r_addendum)
     if abs(cosine) > 1.0:
-        raise InputError(
-            f"{name}.r_addendum = {r_addendum:g} cannot close: allowed are radii whose arc reaches the addendum circle"
-        )
+        raise InputError(f"{name}.r_addendum = {r_addendum:g}: its arc does not reach the addendum circle")
     beta_a = float(np.arctan2(s * o_a[1], o_a[0]))
     beta_t = beta_a - s * float(np.arccos(cosine))
     beta_r = frame.inclination(o_d)
@@ -64,4 +56,4 @@ def double_arc(
         ("straight", top, star, 0.0, length),
         ("dedendum", bottom, star, -1.0 / r_dedendum, r_dedendum * (beta_r - star)),
     ]
-    return frame.profile(pieces, name, "radii and a c_l")
+    return frame.profile(pieces, name)

@@ -73,16 +73,13 @@ class PitchPointFrame(Teeth):
         direction = beta - 0.5 * np.pi if self.external else 0.5 * np.pi - beta
         return Segment(name, (float(start[0]), float(start[1])), direction, -self.sign * convexity, float(length))
 
-    def profile(self, pieces: list[Piece], name: str, allowed: str) -> ToothProfile:
+    def profile(self, pieces: list[Piece], name: str) -> ToothProfile:
         """Flank of `pieces` from tip to root; those of no length are left out, a negative length is refused.
 
-        name : section of the design file;  allowed : what may be changed, for the message
+        name : section of the design file, for the message
         """
         for piece, *_, length in pieces:
             if length < 0.0:
-                raise InputError(
-                    f"{name}.r_{piece}: the {piece} arc would have a negative length ({length:.3g} mm); "
-                    f"allowed are {allowed} for which all arcs run from tip to root"
-                )
+                raise InputError(f"{name}.r_{piece}: the {piece} arc would have a negative length ({length:.3g} mm)")
         segments = tuple(self.segment(*piece) for piece in pieces if piece[-1] > 1e-12 * self.module)
         return ToothProfile(segments, self.external, self.r_tip_circle, self.r_root_circle, self.n_teeth)

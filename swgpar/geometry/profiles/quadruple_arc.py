@@ -28,7 +28,7 @@ def _closing_angle(radius: Callable[[float], float], target: float, refusal: str
     side = np.sign([radius(angle) - target for angle in angles])
     crossed = np.flatnonzero(side[1:] != side[:-1])
     if len(crossed) == 0:
-        raise InputError(f"{refusal}: allowed are radii for which the arcs close on the addendum and dedendum circles")
+        raise InputError(refusal)
     low, high = angles[crossed[0] : crossed[0] + 2]
     return float(brentq(lambda angle: radius(angle) - target, low, high, xtol=1e-15, rtol=1e-15))
 
@@ -58,12 +58,12 @@ def quadruple_arc(
     a_a = _closing_angle(
         lambda t: float(np.hypot(*tip_center(t))) + s * r_tip,
         frame.r_tip_circle,
-        f"{name}.r_tip = {r_tip:g} with r_addendum = {r_addendum:g} cannot close",
+        f"{name}.r_tip = {r_tip:g} with r_addendum = {r_addendum:g} does not meet the addendum circle",
     )
     a_d = _closing_angle(
         lambda t: float(np.hypot(*root_center(t))) - s * r_root,
         frame.r_root_circle,
-        f"{name}.r_root = {r_root:g} with r_dedendum = {r_dedendum:g} cannot close",
+        f"{name}.r_root = {r_root:g} with r_dedendum = {r_dedendum:g} does not meet the dedendum circle",
     )
     o_t, o_r = tip_center(a_a), root_center(a_d)
     beta_t, beta_r = frame.inclination(o_t), frame.inclination(o_r)
@@ -74,4 +74,4 @@ def quadruple_arc(
         ("dedendum", bottom, star, -1.0 / r_dedendum, r_dedendum * a_d),
         ("root", o_r - r_root * n(star + a_d), star + a_d, -1.0 / r_root, r_root * (beta_r - star - a_d)),
     ]
-    return frame.profile(pieces, name, "radii")
+    return frame.profile(pieces, name)

@@ -1,0 +1,98 @@
+"""`swgpar new`: starter designs are valid, checked and commented, and keep what is given."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import get_args
+
+import numpy as np
+import pytest
+
+import swgpar
+from swgpar.cli import main, parser
+from swgpar.design.derived_geometry import derived_geometry, flank_clearance
+from swgpar.design.remarks import remarks
+from swgpar.design.starter import LARGEST_RATIO, LEAST_RATIO, CamType, Profile, Request, as_toml, starter_design
+from swgpar.errors import InputError, OutputError
+from swgpar.geometry.cams import taut_length
+
+RATIOS = (LEAST_RATIO, 30.0, 80.5, 160.0, LARGEST_RATIO)
+
+
+@pytest.mark.parametrize("profile", get_args(Profile))
+@pytest.mark.parametrize("ratio", RATIOS)
+def test_a_starter_design_clears_and_can_be_meshed(ratio: float, profile: Profile) -> None:
+    model = "cup" if profile == "double_arc" else "plane"
+    design = swgpar.new(ratio=ratio, diameter=50.0, torque=10.0, profile=profile, model=model)
+    # other angles and points than those of the search
+    assert flank_clearance(design, 121, 80) > 0.0 and design.backlash > 0.0
+
+
+def test_a_starter_design_needs_no_remarks() -> None:
+    design = swgpar.new(ratio=100.0, diameter=50.8, torque=52.0)
+    assert remarks(design, derived_geometry(design)) == []
+
+
+@pytest.mark.parametrize("cam", get_args(CamType))
+@pytest.mark.parametrize("ratio", RATIOS)
+def test_every_cam_fits_every_ratio(ratio: float, cam: CamType) -> None:
+    design, _ = starter_design(Request(ratio, 10.0, bore=60.0, cam=cam))
+    assert design.wave_generator.type == cam
+    stretch = taut_length(design.cam()) / (2.0 * np.pi * design.inner_radius) - 1.0
+    if cam != "four_roller":  # its rollers leave the spline free in between
+        assert abs(stretch) < 2.0 * (design.deflection / design.inner_radius) ** 2  # an ellipse: 0.047 of it
+    if cam in ("parabolic", "simplified"):
+        assert abs(stretch) < 2e-4  # chosen for it, and rounded
+
+
+@pytest.mark.parametrize("layout, ratio", [("ring_fixed", -75.0), ("spline_fixed", 75.0)])
+def test_what_is_given_is_kept(layout: str, ratio: float) -> None:
+    design, _ = starter_design(Request(75.0, 33.0, bore=61.7, layout=layout))
+    assert design.ratio == ratio and design.load.torque == 33.0
+    assert 2.0 * design.inner_radius == pytest.approx(61.7, rel=1e-5)  # the module is rounded to six digits
+    pitch = starter_design(Request(75.0, 33.0, diameter=61.7))[0].drive
+    assert pitch.module * pitch.teeth_fs == pytest.approx(61.7, rel=1e-5)
+
+
+@pytest.mark.parametrize("profile, cam", [*zip(get_args(Profile), get_args(CamType)), ("involute", "four_roller")])
+def test_every_key_of_the_file_has_its_meaning(profile: Profile, cam: CamType) -> None:
+    request = Request(100.0, 52.0, diameter=50.8, profile=profile, cam=cam)
+    design, table = starter_design(request)
+    text = as_toml(request, design, table, "drive.toml")
+    assert swgpar.load_design(tomllib.loads(text)) == design
+    keys = [line for line in text.splitlines() if line and line[0] not in "#["]
+    assert all(line.partition("#")[2].strip() for line in keys) and len(keys) > 25
+
+
+@pytest.mark.parametrize(
+    "values, words",
+    [
+        ({"ratio": 10.0, "diameter": 50.0}, "ratio = 10 is out of range: allowed 15 to 320"),
+        ({"ratio": 50.2, "diameter": 50.0}, "steps of 0.5"),
+        ({"ratio": 50.0}, "either diameter"),
+        ({"ratio": 50.0, "diameter": 50.0, "bore": 48.0}, "either diameter"),
+        ({"ratio": 50.0, "diameter": -1.0}, "diameter = -1"),
+        ({"ratio": 50.0, "bore": float("nan")}, "bore = nan"),
+    ],
+)
+def test_requests_that_make_no_drive(values: dict[str, float], words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        swgpar.new(torque=10.0, **values)
+
+
+def test_the_command_writes_the_file_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "drive.toml"
+    words = ["new", str(path), "--ratio", "50", "--diameter", "42", "--torque", "5", "--model", "plane"]
+    assert main(words) == 0
+    assert "100 and 102 teeth, module 0.42 mm" in capsys.readouterr().out
+    assert swgpar.load_design(path) == swgpar.new(ratio=50.0, diameter=42.0, torque=5.0, model="plane")
+    assert main(words) == OutputError.exit_code and "exists" in capsys.readouterr().err
+    assert main([*words, "--overwrite"]) == 0
+
+
+def test_the_command_offers_all_profiles_and_cams() -> None:
+    words = ["new", "drive.toml", "--ratio", "50", "--bore", "42", "--torque", "5"]
+    for name, kind in (("--profile", Profile), ("--cam", CamType)):
+        for choice in get_args(kind):
+            assert getattr(parser().parse_args([*words, name, choice]), name.strip("-")) == choice
