@@ -54,16 +54,12 @@ def test_same_on_any_ranks() -> None:
 
 @pytest.mark.parallel([1, 2])
 def test_cup() -> None:
-    """The small cup on a bearing: torques balance, all balls carry, loads do not depend on the ranks."""
-    found = []
-    for comm in (WORLD, MPI.COMM_SELF):
-        stepper = jumped(*BEARING, "micro_geometry.wg_slope=0", model="cup", comm=comm)
-        found.append((loads(stepper), row(stepper)))
-        stepper.model.destroy()
-    (several, values), (alone, expected) = found
-    parallel_assert(several.min() > 0.0 and np.abs(several - alone).max() < 1e-5 * alone.max())
-    assert_agree(values, expected, [*NAMES, "wg_torque_Nmm"], rel=1e-5)
+    """The small cup on a bearing: torques balance, all balls carry, those near the major axis most."""
+    stepper = jumped(*BEARING, "micro_geometry.wg_slope=0", model="cup")
+    found, values = loads(stepper), row(stepper)
+    parallel_assert(found.min() > 0.0 and found.argmax() % 10 in (9, 0, 1))
     parallel_assert(values["torque_balance_Nmm"] < 1e-6 * 2000.0)
+    stepper.model.destroy()
 
 
 @pytest.mark.parallel([1, 2])
