@@ -1,7 +1,7 @@
 """Bad inputs by the thousand: every one is refused in one sentence, or accepted with finite numbers.
 
 As a program, the worker that goes through a batch of them: a file of JSON lines has an input before it is used, and
-then what became of it. An input that ends the process, or takes longer than a minute, is so the last line.
+then what became of it. An input that ends the process, or takes more than a minute of the processor, is so the last line.
 """
 
 from __future__ import annotations
@@ -9,9 +9,11 @@ from __future__ import annotations
 import argparse
 import faulthandler
 import json
+import signal
 import subprocess
 import sys
 import tempfile
+import traceback
 import warnings
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
@@ -24,6 +26,12 @@ from support.commands import environment
 
 BATCH = 500
 """Inputs of one worker."""
+
+WAITING = 1800.0
+"""Seconds after which an input that uses no processor counts as hanging."""
+
+OWN = 3
+"""Exit code of a worker that fails by itself."""
 
 
 def run_batch(number: int, count: int, out: Path) -> list[dict[str, Any]]:
@@ -40,7 +48,7 @@ def run_batch(number: int, count: int, out: Path) -> list[dict[str, Any]]:
         if code == 0:
             break
         begun = lines[-1]
-        if code == 1 or "status" in begun:
+        if code == OWN or "status" in begun:
             raise SystemExit(f"the worker of batch {number} ended with {code}: see {out}")
         lost = {**begun, "status": "ended", "fault": f"ended the process with {code}", "sentence": "", "seconds": 0.0}
         with file.open("a", encoding="utf-8") as more:
@@ -60,7 +68,7 @@ def run_inputs(count: int, number: int, out: Path, at_once: int) -> list[dict[st
 
 def table(outcomes: list[dict[str, Any]]) -> list[list[str]]:
     """Counts by kind of file."""
-    rows = [["file", "inputs", "refused", "accepted", "faults", "slowest, s"]]
+    rows = [["file", "inputs", "refused", "accepted", "faults", "slowest, processor seconds"]]
     for kind in (*KINDS, "all"):
         here = [outcome for outcome in outcomes if kind in (outcome["kind"], "all")]
         status = Counter(outcome["status"] for outcome in here)
@@ -87,8 +95,10 @@ def work(file: Path, number: int, count: int, skipped: int) -> None:
                 return
             lines.write(json.dumps({"kind": bad.kind, "what": bad.what}) + "\n")
             lines.flush()
-            faulthandler.dump_traceback_later(SLOWEST, exit=True)
+            faulthandler.dump_traceback_later(WAITING, exit=True)
+            signal.setitimer(signal.ITIMER_PROF, SLOWEST)  # its signal ends the process, in any library
             outcome = attempt(bad, used)
+            signal.setitimer(signal.ITIMER_PROF, 0.0)
             faulthandler.cancel_dump_traceback_later()
             found = asdict(outcome)
             lines.write(json.dumps(found if outcome.fault else {**found, "content": ""}) + "\n")
@@ -103,7 +113,11 @@ def main() -> None:
     for name in ("number", "count", "skipped"):
         options.add_argument(name, type=int)
     arguments = options.parse_args()
-    work(arguments.file, arguments.number, arguments.count, arguments.skipped)
+    try:
+        work(arguments.file, arguments.number, arguments.count, arguments.skipped)
+    except Exception:
+        traceback.print_exc()
+        sys.exit(OWN)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import os
 import re
 import signal
@@ -51,22 +52,21 @@ class Command:
         return [*on_ranks(self.ranks), *swgpar(first, rest[0], "--out", out, *more, *rest[1:])]
 
 
-def commands(folder: Path) -> dict[str, Command]:
+def commands(folder: Path, ranks: int) -> dict[str, Command]:
     """What is killed, by name. folder : for the study file"""
     small = (str(DESIGN), "--mesh", str(RECIPE))
-    overrides = ", ".join(f'"{override}"' for override in (*PLANE, "steps.rotation=2.0", "steps.increment=2.0"))
+    overrides = ", ".join(f'"{override}"' for override in (*PLANE, *CUP))
     study = folder / "study.toml"
     study.write_text(STUDY.format(design=DESIGN, mesh=RECIPE, overrides=overrides), encoding="utf-8")
     found = {
-        "plane": Command(("run", *small, "--plain", "--set", *PLANE, *ROTATION, *FEW), "--restart", 2),
-        "plane, one rank": Command(("run", *small, "--plain", "--set", *PLANE, *ROTATION, *FEW), "--restart", 1),
-        "small cup": Command(("run", *small, "--plain", "--set", *CUP, *FEW), "--restart", 2),
-        "study": Command(("study", str(study)), "--restart", 2),
-        "accuracy": Command(("run", *small, "--accuracy", "0.2", "--set", *PLANE, *FEW), "--restart", 2),
+        "plane": Command(("run", *small, "--plain", "--set", *PLANE, *ROTATION, *FEW), "--restart", ranks),
+        "small cup": Command(("run", *small, "--plain", "--set", *CUP, *FEW), "--restart", ranks),
+        "study": Command(("study", str(study)), "--restart", ranks),
+        "accuracy": Command(("run", *small, "--accuracy", "0.2", "--set", *PLANE, *FEW), "--restart", ranks),
     }
     for name in ("gear_pair", "planetary"):
         train = ("run", str(DRIVERS / f"{name}.toml"), "--set", *SMALL[name], *FEW)
-        found[f"gear train, {name}"] = Command(train, "--overwrite", 2)
+        found[f"gear train, {name}"] = Command(train, "--overwrite", ranks)
     return found
 
 
@@ -203,7 +203,8 @@ def _of_table(path: Path, other: Path) -> float:
 
 
 def _rows(path: Path) -> list[list[str]]:
-    return [line.split(",") for line in path.read_text(encoding="utf-8").splitlines()]
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.reader(file))
 
 
 def table(kills: Sequence[Kill]) -> list[list[str]]:

@@ -52,7 +52,7 @@ def measure_kills(arguments: argparse.Namespace, out: Path) -> tuple[list[list[s
     rng, kills = np.random.default_rng(arguments.seed), []
     listed = {
         name: command
-        for name, command in commands(out).items()
+        for name, command in commands(out, arguments.ranks).items()
         if not arguments.only or any(word in name for word in arguments.only)
     }
     for number, (name, command) in enumerate(listed.items()):
@@ -82,6 +82,7 @@ def main() -> int:
     options.add_argument("--inputs", type=int, default=5000, help="number of bad inputs")
     options.add_argument("--sample", type=int, default=200, help="number of inputs on one and two ranks")
     options.add_argument("--kills", type=int, default=200, help="number of kills")
+    options.add_argument("--ranks", type=int, default=2, help="number of ranks of commands that are killed")
     options.add_argument("--at-once", type=int, default=2, help="workers on bad inputs at once")
     options.add_argument("--seed", type=int, default=1)
     options.add_argument("--data", type=Path, default=None, help="file for all faults")

@@ -117,14 +117,15 @@ def _free_here() -> float:
 @contextmanager
 def reported_memory(needs: Forecast) -> Iterator[None]:
     """Turn an allocation that fails inside the block, on this rank, into an OutOfMemoryError."""
+    # made before it is needed: then there may be no memory for it
+    failure = OutOfMemoryError(
+        f"not enough memory: {needs.unknowns:,} unknowns need about {needs.memory:.3g} GB on all ranks: "
+        "take a coarser mesh, or more memory"
+    )
+    failure.alone = True
     try:
         yield
     except Exception as error:
         if not is_out_of_memory(error):
             raise
-        failure = OutOfMemoryError(
-            f"not enough memory: {needs.unknowns:,} unknowns need about {needs.memory:.3g} GB on all ranks: "
-            "take a coarser mesh, or more memory"
-        )
-        failure.alone = True
         raise failure from None

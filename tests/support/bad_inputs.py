@@ -36,7 +36,7 @@ from swgpar.studies.spec import load_study
 from swgpar.systems import system_of
 
 SLOWEST = 60.0
-"""Seconds after which an input counts as hanging."""
+"""Processor seconds after which an input counts as hanging: other programs may keep this one waiting."""
 
 MESHED = 2000
 """Elements of a sector up to which an accepted input is meshed."""
@@ -277,7 +277,7 @@ def attempt(bad: BadInput, folder: Path) -> Outcome:
     """Use an input in this process, and judge what comes of it. folder : its files are written there"""
     for name, content in bad.files.items():
         (folder / name).write_bytes(content)
-    begin = time.perf_counter()
+    begin = time.process_time()
     text = next(iter(bad.files.values())).decode(errors="backslashreplace")
     outcome = Outcome(bad.kind, "accepted", what=bad.what, content=text)
     try:
@@ -287,7 +287,7 @@ def attempt(bad: BadInput, folder: Path) -> Outcome:
         outcome.fault = "" if is_sentence(str(error)) else "no printable sentence"
     except Exception as error:
         outcome.status, outcome.fault = "traceback", f"{type(error).__name__}: {error}"
-    outcome.seconds = time.perf_counter() - begin
+    outcome.seconds = time.process_time() - begin
     if outcome.seconds > SLOWEST:
         outcome.fault = outcome.fault or f"takes {outcome.seconds:.0f} s"
     return outcome
