@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.errors import InputError, shortened
+from swgpar.errors import InputError, SwgparError, shortened
 from swgpar.log import logger
 
 if TYPE_CHECKING:
@@ -56,9 +56,15 @@ _warned_of: set[str] = set()
 def start(arguments: Sequence[str] = ()) -> None:
     """Initialise PETSc on all ranks with options of the command line; collective. Without effect when it has been.
 
-    Raises InputError, on all ranks, when an option names a file that cannot be read or PETSC_OPTIONS names one at all.
+    Raises InputError, on all ranks, when an option names a file that cannot be read or PETSC_OPTIONS names one at all,
+    and SwgparError without petsc4py.
     """
-    import petsc4py
+    try:
+        import petsc4py
+    except ModuleNotFoundError:
+        raise SwgparError(
+            "petsc4py is not installed: install the one of your system, or swgpar[wheels] with Python 3.12 or later"
+        ) from None
 
     words = MPI.COMM_WORLD.bcast(_words(arguments) if MPI.COMM_WORLD.rank == 0 else None)
     if isinstance(words, InputError):

@@ -74,9 +74,8 @@ class PlacedFaces:
         """The segments of the faces `chosen` (n,) as faces of their own."""
         face = chosen[segments.parent]
         area = self.size[face, 0] * self.size[face, 1]
-        offset = np.einsum(
-            "fij,fqi,fqj->fq", self.offset[face], lagrange(segments.a), lagrange(segments.b), optimize=True
-        )
+        weights = lagrange(segments.a), lagrange(segments.b)
+        offset = np.einsum("fij,fqi,fqj->fq", self.offset[face], *weights, optimize=True)
         return Faces(
             self.conn[face],
             self.flip[face],
@@ -84,7 +83,7 @@ class PlacedFaces:
             self.normal[face],
             bilinear(segments.a, segments.b),
             area[:, None] * segments.share,
-            offset,
+            np.ascontiguousarray(offset),  # NumPy 2 may return another order
             self.patch[face],
         )
 

@@ -119,7 +119,7 @@ class FieldWriter:
         for index, angle in increments:
             lines.append(
                 f'<Grid Name={quoteattr(increment_name(index))} GridType="Collection" CollectionType="Spatial">'
-                f'<Time Value="{index}"/><Information Name="wg_angle_deg" Value="{angle!r}"/>'
+                f'<Time Value="{index}"/><Information Name="wg_angle_deg" Value="{float(angle)!r}"/>'
             )
             for body, (n_points, n_cells) in self.shapes.items():
                 lines.append(

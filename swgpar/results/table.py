@@ -29,7 +29,7 @@ def format_csv(rows: Sequence[Mapping[str, Any]]) -> bytes:
 def _cell(value: Any) -> Any:
     """A value as a file has it: a text that a spreadsheet would compute begins with an apostrophe."""
     if isinstance(value, float):
-        return repr(value)
+        return repr(float(value))  # NumPy 2 shows the type of its own numbers
     if not isinstance(value, str):
         return value
     value = printable(value)

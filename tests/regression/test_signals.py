@@ -21,7 +21,7 @@ def rank_of(pid: int) -> int | None:
     words = Path(f"/proc/{pid}/cmdline").read_text(encoding="utf-8").split("\0")
     if "swgpar.cli" not in words or words[0].endswith("mpirun"):
         return None
-    found = re.search(r"OMPI_COMM_WORLD_RANK=(\d+)", Path(f"/proc/{pid}/environ").read_text(encoding="utf-8"))
+    found = re.search(r"(?:OMPI_COMM_WORLD|PMI)_RANK=(\d+)", Path(f"/proc/{pid}/environ").read_text(encoding="utf-8"))
     return int(found[1]) if found else 0
 
 

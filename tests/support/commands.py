@@ -17,16 +17,20 @@ from support.small_drive import PLANE, SHORT
 from swgpar.results import history
 
 # a process that has initialised MPI passes these on, and mpirun then takes itself for a rank of that job
-INHERITED = ("OMPI_COMM_", "OMPI_MCA_ess", "OMPI_MCA_orte", "PMIX_")
+INHERITED = ("OMPI_COMM_", "OMPI_MCA_ess", "OMPI_MCA_orte", "PMIX_", "PMI_", "HYDI_", "MPI_LOCAL")
+
+# Open MPI runs more ranks than there are cores, and does not comment on exit codes; MPICH has no such settings
+OPEN_MPI = {"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_orte_execute_quiet": "1"}
 
 
 def environment() -> dict[str, str]:
-    return {name: value for name, value in os.environ.items() if not name.startswith(INHERITED)}
+    """Of a command that is started outside of the job of this process."""
+    return {name: value for name, value in os.environ.items() if not name.startswith(INHERITED)} | OPEN_MPI
 
 
 def on_ranks(ranks: int) -> list[str]:
-    """What goes before a command; one rank runs without mpirun, which is told not to comment on exit codes."""
-    return ["mpirun", "--quiet", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
+    """What goes before a command; one rank runs without mpirun."""
+    return ["mpirun", "-n", str(ranks)] if ranks > 1 else []
 
 
 def swgpar(*arguments: object) -> list[str]:
