@@ -1,7 +1,7 @@
 """Bad inputs by the thousand: every one is refused in one sentence, or accepted with finite numbers.
 
 As a program, the worker that goes through a batch of them: a file of JSON lines has an input before it is used, and
-then what became of it. An input that ends the process, or takes more than a minute of the processor, is so the last line.
+then what became of it. One that ends the process, or takes more than a minute of the processor, is so the last line.
 """
 
 from __future__ import annotations

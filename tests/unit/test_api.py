@@ -7,6 +7,7 @@ import logging
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from support.messages import Messages
 from support.paths import DESIGN, DRIVERS, RECIPE, ROOT
 from support.small_drive import NO_SHORTCUTS, PLANE
 from swgpar import log
+from swgpar.analysis.figures import DriveFigures
 from swgpar.design.drive_design import DriveDesign
 from swgpar.input.toml_file import read_toml
 
@@ -302,3 +304,19 @@ def test_a_study_in_memory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     assert found.table["load.torque"] == [0.1, -1.0] and found.table["status"] == ["finished", "failed"]
     assert found.table["mean.fs_s1"][0] > 0.0 and found.table["mean.fs_s1"][1] is None
     assert found.failed == {"torque=-1 tiny": "load.torque = -1 is out of range: allowed 0 to 1000000000 N·m"}
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["pairs", "load_sharing", "contact_pattern", "haigh", "ball_loads", "torque_against_rotation"]
+    + ["transmission_error_spectrum"],
+)
+def test_figures_of_what_a_run_does_not_have(name: str) -> None:
+    """One sentence that says when there is such a figure."""
+    tables = dict.fromkeys(("pairs", "contact_lines", "balls", "program", "transmission_error", "history"), {})
+    summary = {"bearing": None, "transmission_error": None}
+    result = SimpleNamespace(**tables, fatigue=None, fatigue_cycle={}, summary=summary, is_plane=True, increments=0)
+    plot = DriveFigures(result, MPI.COMM_SELF, gathered=False)
+    with pytest.raises(swgpar.InputError, match=r"^this run has no .*: allowed with "):
+        getattr(plot, name)()
+    assert name not in plot.names
