@@ -42,8 +42,11 @@ def run(*overrides: str) -> DriveResult:
 @pytest.mark.parallel(1)
 def test_fatigue_over_a_program() -> None:
     """The program twice does twice the damage with the same safety; the stress is that of every sector."""
-    one, two = (run(*WEAK, f"load.program=[{UP}, {DOWN}{more}]").summary["fatigue"] for more in ("", AGAIN))
+    results = [run(*WEAK, f"load.program=[{UP}, {DOWN}{more}]") for more in ("", AGAIN)]
+    one, two = (result.summary["fatigue"] for result in results)
     assert (one["phases"], two["phases"]) == (2, 4)
+    assert results[1].fatigue_cycle["step"].tolist() == [3, 4, 5, 6]
+    assert len(results[1].plot.haigh().axes) == 2
     for name in ("goodman", "crossland", "yield"):
         assert two[name]["safety"] == pytest.approx(one[name]["safety"], rel=1e-3), name
     assert one["damage_per_program"] > 0.0 and one["life_turns"] is None
