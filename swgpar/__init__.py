@@ -16,12 +16,13 @@ from swgpar.version import __version__
 
 if TYPE_CHECKING:
     from swgpar.analysis.drive_result import DriveResult
-    from swgpar.api import check, load_design, load_mesh, mesh, open_result, run, study
+    from swgpar.api import check, load_design, load_mesh, mesh, open_result, optimise, run, study
     from swgpar.design.drive_design import DriveDesign
     from swgpar.errors import ConvergenceError, InputError, OutputError, SwgparError
     from swgpar.gear_trains.result import TrainResult
     from swgpar.meshing.drive_mesh import DriveMesh
     from swgpar.meshing.recipe import MeshRecipe
+    from swgpar.optimisation.result import OptimisationResult
     from swgpar.studies.study import StudyResult
 
 _MODULES = {
@@ -30,6 +31,7 @@ _MODULES = {
     "run": "api",
     "open_result": "api",
     "study": "api",
+    "optimise": "api",
     "check": "api",
     "mesh": "api",
     "DriveDesign": "design.drive_design",
@@ -38,6 +40,7 @@ _MODULES = {
     "DriveResult": "analysis.drive_result",
     "TrainResult": "gear_trains.result",
     "StudyResult": "studies.study",
+    "OptimisationResult": "optimisation.result",
     "SwgparError": "errors",
     "InputError": "errors",
     "OutputError": "errors",
@@ -52,6 +55,7 @@ __all__ = [
     "DriveResult",
     "InputError",
     "MeshRecipe",
+    "OptimisationResult",
     "OutputError",
     "SwgparError",
     "StudyResult",
@@ -62,6 +66,7 @@ __all__ = [
     "load_mesh",
     "mesh",
     "open_result",
+    "optimise",
     "run",
     "study",
 ]
