@@ -16,7 +16,7 @@ from swgpar.version import __version__
 
 if TYPE_CHECKING:
     from swgpar.analysis.drive_result import DriveResult
-    from swgpar.api import check, load_design, load_mesh, mesh, new, open_result, run, study
+    from swgpar.api import check, load_design, load_mesh, mesh, new, open_result, optimise, run, study
     from swgpar.design.drive_design import DriveDesign
     from swgpar.errors import (
         ConvergenceError,
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from swgpar.gear_trains.result import TrainResult
     from swgpar.meshing.drive_mesh import DriveMesh
     from swgpar.meshing.recipe import MeshRecipe
+    from swgpar.optimisation.result import OptimisationResult
     from swgpar.studies.study import StudyResult
 
 _MODULES = {
@@ -38,6 +39,7 @@ _MODULES = {
     "run": "api",
     "open_result": "api",
     "study": "api",
+    "optimise": "api",
     "check": "api",
     "mesh": "api",
     "DriveDesign": "design.drive_design",
@@ -46,6 +48,7 @@ _MODULES = {
     "DriveResult": "analysis.drive_result",
     "TrainResult": "gear_trains.result",
     "StudyResult": "studies.study",
+    "OptimisationResult": "optimisation.result",
     "SwgparError": "errors",
     "InputError": "errors",
     "OutputError": "errors",
@@ -62,6 +65,7 @@ __all__ = [
     "DriveResult",
     "InputError",
     "MeshRecipe",
+    "OptimisationResult",
     "OutOfMemoryError",
     "OutputError",
     "SwgparError",
@@ -75,6 +79,7 @@ __all__ = [
     "mesh",
     "new",
     "open_result",
+    "optimise",
     "run",
     "study",
 ]

@@ -30,6 +30,7 @@ from swgpar.results.folder import given_folder, read_summary
 from swgpar.systems import Result, system_of, system_of_table
 
 if TYPE_CHECKING:
+    from swgpar.optimisation import OptimisationResult
     from swgpar.studies import StudyResult
 
 DesignLike = Design | str | Path | Mapping[str, Any]
@@ -324,6 +325,61 @@ def study(
 
     return run_study(
         study,
+        out,
+        restart=restart,
+        overwrite=overwrite,
+        terminal=log.console.is_terminal if progress is None else progress,
+        comm=MPI.COMM_WORLD if comm is None else comm,
+    )
+
+
+def optimise(
+    optimisation: str | Path,
+    out: str | Path,
+    *,
+    restart: bool = False,
+    overwrite: bool = False,
+    progress: bool | None = None,
+    comm: MPI.Comm | None = None,
+) -> OptimisationResult:
+    """Search for the best design; collective.
+
+    Parameters
+    ----------
+    optimisation : path
+        An optimisation file (TOML): variables with bounds, objectives and constraints.
+    out : path
+        Folder: optimise.csv, optimise.html, the storage, and the design files of the best designs in best/.
+    restart : bool
+        Continue the search in `out`.
+    overwrite : bool
+        Replace a search that `out` already holds. A search in a database is never removed.
+    progress : bool
+        Report every evaluation on the terminal. Default: only on a terminal.
+    comm : communicator
+        MPI.COMM_WORLD unless given. Each rank tries designs of its own.
+
+    Returns
+    -------
+    OptimisationResult
+        A design that is refused or fails is infeasible and does not stop the search.
+
+    Raises
+    ------
+    InputError
+        An optimisation file that cannot be used.
+    OutputError
+        The folder or the database cannot be used, or holds another search.
+
+    Examples
+    --------
+    >>> found = swgpar.optimise("drivers/optimise/parabolic_cam.toml", "results/cam")
+    >>> found.evaluations[found.best[0]].values
+    """
+    from swgpar.optimisation import run_optimisation  # a run needs no optimisation
+
+    return run_optimisation(
+        optimisation,
         out,
         restart=restart,
         overwrite=overwrite,

@@ -79,6 +79,17 @@ NEW_EXAMPLES = """examples:
   swgpar new plane.toml --ratio 50 --diameter 42 --torque 2 --model plane
 """
 
+OPTIMISE = """Search for the best design: any keys of the design file as variables within bounds, any quantities that
+studies know as objectives and constraints. Designs that are refused or fail are infeasible. The file is described in
+docs/howto/optimise.md. Unknown options are passed to PETSc."""
+
+OPTIMISE_EXAMPLES = """examples:
+  mpirun -n 2 swgpar optimise drivers/optimise/parabolic_cam.toml --out results/cam
+  mpirun -n 2 swgpar optimise drivers/optimise/parabolic_cam.toml --out results/cam --restart
+
+--restart continues the search, with more evaluations if the file asks for them.
+"""
+
 REPORT_EXAMPLES = """example:
   swgpar report results/coarse
 """
@@ -105,11 +116,14 @@ def parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     top.add_argument("--version", action="version", version=f"swgpar {__version__}")
-    commands = top.add_subparsers(dest="command", required=True, metavar="new | check | mesh | run | study | report")
+    commands = top.add_subparsers(
+        dest="command", required=True, metavar="new | check | mesh | run | study | optimise | report"
+    )
 
     _add_new(commands)
     _add_run(commands)
     _add_study(commands)
+    _add_optimise(commands)
     mesh = _add_command(commands, "mesh", "Write the mesh of the whole drive.", MESH_EXAMPLES)
     _add_design(mesh)
     mesh.add_argument("--mesh", required=True, help=MESH_HELP)
@@ -205,6 +219,14 @@ def _add_study(commands: _Commands) -> None:
     study.add_argument("--overwrite", action="store_true", help="replace a study that --out already holds")
 
 
+def _add_optimise(commands: _Commands) -> None:
+    optimise = _add_command(commands, "optimise", OPTIMISE, OPTIMISE_EXAMPLES)
+    optimise.add_argument("optimisation", help="optimisation file (TOML)")
+    optimise.add_argument("--out", required=True, help="folder of the results")
+    optimise.add_argument("--restart", action="store_true", help="continue the search in --out")
+    optimise.add_argument("--overwrite", action="store_true", help="replace a search that --out already holds")
+
+
 def _run(arguments: argparse.Namespace) -> None:
     from mpi4py import MPI
 
@@ -269,6 +291,26 @@ def _new(arguments: argparse.Namespace) -> None:
             f"swgpar check {arguments.design} has all derived sizes",
         ]
     )
+
+
+def _optimise(arguments: argparse.Namespace) -> None:
+    from mpi4py import MPI
+
+    from swgpar import api
+    from swgpar.log import console
+    from swgpar.optimisation.terminal import print_result
+
+    _begin(arguments, kind="evaluations")
+    found = api.optimise(
+        arguments.optimisation, arguments.out, restart=arguments.restart, overwrite=arguments.overwrite, progress=True
+    )
+    if MPI.COMM_WORLD.rank == 0:
+        print_result(found)
+        folder = Path(arguments.out)
+        for path in sorted([*folder.glob("*.csv"), *folder.glob("*.html"), *folder.glob("best/*.toml")]):
+            console.print(printable(f"written {path}"), markup=False)
+    _warn()
+    MPI.COMM_WORLD.Barrier()  # mpirun ends all ranks when one of them fails
 
 
 def _mesh(arguments: argparse.Namespace) -> None:
@@ -336,15 +378,15 @@ def _check_rest(rest: Sequence[str], petsc: bool) -> None:
         after_option = option
 
 
-def _begin(arguments: argparse.Namespace, system: System[Any, Any] | None = None) -> None:
-    """Say what is saved when a signal ends the command. system : of the design of a run"""
+def _begin(arguments: argparse.Namespace, system: System[Any, Any] | None = None, kind: str = "cases") -> None:
+    """Say what is saved when a signal ends the command. system : of the design of a run;  kind : counted without it"""
     from mpi4py import MPI
 
     from swgpar import watch
     from swgpar.log import console
 
     if MPI.COMM_WORLD.rank == 0:
-        kind = "cases" if system is None else "increments"
+        kind = kind if system is None else "increments"
         restarts = system is None or "restart" in system.options
         watch.begin(kind, arguments.out, restarts=restarts, terminal=console.is_terminal)
 
@@ -362,14 +404,23 @@ def _main(arguments: Sequence[str] | None) -> int:
     try:
         known, rest = parser().parse_known_args(arguments)
         command = known.command
-        solves = command in ("run", "study")
+        solves = command in ("run", "study", "optimise")
         _check_rest(rest, petsc=solves)
         known.overrides = [item for group in getattr(known, "set", []) for item in group]
         from swgpar import petsc, watch
 
         petsc.start(rest)
         watch.rearm()
-        {"new": _new, "run": _run, "study": _study, "mesh": _mesh, "check": _check, "report": _report}[command](known)
+        command_of = {
+            "new": _new,
+            "run": _run,
+            "study": _study,
+            "optimise": _optimise,
+            "mesh": _mesh,
+            "check": _check,
+            "report": _report,
+        }
+        command_of[command](known)
     except SwgparError as error:
         from mpi4py import MPI
 
@@ -384,13 +435,13 @@ def _main(arguments: Sequence[str] | None) -> int:
         return 1
     except MemoryError:
         print("swgpar: error: not enough memory: take a coarser mesh, or more memory", file=sys.stderr, flush=True)
-        if command in ("run", "study"):
+        if command in ("run", "study", "optimise"):
             from mpi4py import MPI
 
             MPI.COMM_WORLD.Abort(OutOfMemoryError.exit_code)
         return OutOfMemoryError.exit_code
     except Exception:
-        if command not in ("run", "study"):
+        if command not in ("run", "study", "optimise"):
             raise
         traceback.print_exc()
         from mpi4py import MPI

@@ -26,6 +26,7 @@ PURPOSE = {
     "analysis": "a run of the drive: model, load stepping, prediction, mesh refinement, figures",
     "systems": "registry of what can be computed, drives and gear trains, for the interfaces and studies",
     "studies": "many runs: cases, schedule, tables, report",
+    "optimisation": "search for the best design: variables, objectives, constraints, report",
     "api": "the Python interface",
     "cli": "the command line",
 }

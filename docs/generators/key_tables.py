@@ -21,6 +21,7 @@ from swgpar.gear_trains.planetary import PlanetaryDesign
 from swgpar.gear_trains.ring import RingDesign
 from swgpar.input.quantities import Section, show, unit_of
 from swgpar.meshing.recipe import MeshRecipe
+from swgpar.optimisation.spec import OptimiseSection
 from swgpar.studies.spec import CaseSection, StudySection
 
 Row = tuple[str, str, str, str, str]
@@ -60,7 +61,8 @@ def allowed_values(field: FieldInfo) -> str:
     if field.annotation is str:
         return "a text"
     if get_origin(field.annotation) is list:
-        return "a list of texts" if options == (str,) else "a list of numbers"
+        kinds = {str: "texts", Any: "values"}
+        return f"a list of {kinds.get(options[0], 'tables' if get_origin(options[0]) is dict else 'numbers')}"
     if get_origin(field.annotation) is dict:
         return "a table"
     limits = {
@@ -175,7 +177,8 @@ def main(folder: Path) -> None:
     """Write all pages."""
     for name, (design, alike) in FILES.items():
         (folder / f"keys_{name}.md").write_text(file_tables(design, alike), encoding="utf-8")
-    for name, section in {"study": StudySection, "study_case": CaseSection}.items():
+    sections = {"study": StudySection, "study_case": CaseSection, "optimise": OptimiseSection}
+    for name, section in sections.items():
         (folder / f"keys_{name}.md").write_text(table(list(plain_rows(section))), encoding="utf-8")
 
 

@@ -14,16 +14,8 @@ from swgpar.analysis.drive_model import DriveModel
 from swgpar.design.drive_design import DriveDesign
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, OUTER_RACE
 from swgpar.fem.vectors import write_field
+from swgpar.geometry.neutral_line import bent_ring
 from swgpar.geometry.rotation import rotated
-
-HARMONICS, POINTS = 16, 1440
-"""Even harmonics of the shape, and points around half of the ring that stay outside of the cam."""
-
-PENALTY = 1e3
-"""Stiffness of the cam at a point, beside the energy 9 a_1² / 2 of the first harmonic."""
-
-ROUNDS, MAX_CHANGES = 4, 50
-"""Rounds in which the points find their places on the cam as they move around; changes of the points that touch."""
 
 NEAR = 0.003
 """Gap below which the inner surface is laid on the cam, over half of the deflection: wider gaps stay open."""
@@ -35,36 +27,6 @@ BALL_APPROACH = 1e-3
 """Approach of the balls, over their diameter, to which an outer race is laid: of the order of that under load."""
 
 
-def bent_ring(design: DriveDesign) -> np.ndarray:
-    """Complex amplitudes c_n (HARMONICS + 1,) mm of the radial displacement Re(c_n exp(2 i n theta)) at mid-width.
-
-    The energy of a harmonic is that of the change of curvature, (4 n² - 1)² a_n². The ring shrinks by what its waves
-    need.
-    """
-    radius = design.inner_radius + 0.5 * design.flexible_spline.rim
-    theta, order = np.linspace(0.0, np.pi, POINTS, endpoint=False), 2.0 * np.arange(1, HARMONICS + 1)
-    outline = design.cam().outline(7200)
-    polar = np.arctan2(-outline[:, 0], outline[:, 1])
-    around = np.argsort(polar)
-    polar, distance = polar[around], np.hypot(*outline[around].T)
-    cosines, sines = np.cos(np.outer(theta, order)), np.sin(np.outer(theta, order))
-    waves, energy = np.hstack([cosines, -sines]), np.tile((order**2 - 1.0) ** 2, 2)
-    found, shrink = np.zeros(2 * HARMONICS), 0.0
-    for _ in range(ROUNDS):
-        place = theta - np.hstack([sines, cosines]) @ (found / np.tile(order, 2)) / radius
-        needed = np.interp(place, polar, distance, period=2.0 * np.pi) - design.inner_radius - shrink
-        touches = np.zeros(POINTS, dtype=bool)
-        for _ in range(MAX_CHANGES):
-            inside = waves @ found < needed
-            if np.array_equal(inside, touches):
-                break
-            touches = inside
-            pressed = PENALTY * waves[touches]
-            found = np.linalg.solve(np.diag(energy) + pressed.T @ waves[touches], pressed.T @ needed[touches])
-        shrink = -float((np.sqrt(energy) * found**2).sum()) / (4.0 * radius)
-    return np.append(shrink, found[:HARMONICS] + 1j * found[HARMONICS:])
-
-
 class BentSpline:
     """The bent flexible spline as a field of displacements.
 
@@ -73,9 +35,9 @@ class BentSpline:
 
     def __init__(self, design: DriveDesign, inset: float | None = None) -> None:
         self.design, self.inset = design, PENETRATION * design.drive.module if inset is None else inset
-        self.amplitudes = bent_ring(design)
-        self.order = 2.0 * np.arange(len(self.amplitudes))
         self.radius = design.inner_radius + 0.5 * design.flexible_spline.rim
+        self.amplitudes = bent_ring(design.cam(), design.inner_radius, self.radius)
+        self.order = 2.0 * np.arange(len(self.amplitudes))
         self.half = 0.5 * design.wave_generator.face_width
         self.end = 0.5 * design.drive.face_width
         if design.cup:  # the middle of the closed end

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
+from swgpar.design.conjugate_checks import check_conjugate
 from swgpar.design.deviations import Deviations
 from swgpar.design.fit_checks import check_fit
 from swgpar.design.program_sections import Ratcheting, Stiffness
@@ -30,9 +32,18 @@ from swgpar.design.sections import (
 from swgpar.geometry.bearing import BearingSizes
 from swgpar.geometry.cams import Bearing, Cam, FourRoller, WaveGenerator, make_cam
 from swgpar.geometry.micro_geometry import WaveGeneratorSurface
-from swgpar.geometry.profiles import RackInvolute, Teeth, ToothProfile, make_profile
+from swgpar.geometry.neutral_line import NeutralLine, neutral_line
+from swgpar.geometry.profiles import Conjugate, RackInvolute, Teeth, ToothMotion, ToothProfile, make_profile
 from swgpar.input.design import Design
 from swgpar.input.toml_file import validate
+
+
+@lru_cache(maxsize=16)
+def _line(
+    keys: WaveGenerator, a: float, b: float | None, inner_radius: float, radius: float, share: float
+) -> NeutralLine:
+    """Neutral line on the cam of these keys; kept, because a design asks for its profiles again and again."""
+    return neutral_line(make_cam(keys, a, b), inner_radius, radius, share)
 
 
 class DriveDesign(Design):
@@ -240,7 +251,23 @@ class DriveDesign(Design):
     def profile(self, gear: GearName) -> ToothProfile:
         """Exact flank of a gear. Raises InputError where its keys give no flank."""
         section: ExternalGear | InternalGear = getattr(self, gear)
-        return make_profile(section.profile, self.teeth(gear), section.c_P, section.c_l, gear)
+        partner = None
+        if isinstance(section.profile, Conjugate):
+            check_conjugate(self, gear)
+            other = GEARS[1 - GEARS.index(gear)]
+            partner = self.profile(other), self.tooth_motion(section.profile.section)
+        return make_profile(section.profile, self.teeth(gear), section.c_P, section.c_l, gear, partner)
+
+    def tooth_motion(self, z: float = 0.0) -> ToothMotion:
+        """Motion of the flexible spline's tooth in its slot at the section z, mm, of the rigid limit."""
+        radius = self.inner_radius + 0.5 * self.flexible_spline.rim
+        share = 1.0
+        if self.cup:
+            # the deflection of a cup grows linearly from the closed end, whose middle stays plane
+            end = 0.5 * self.drive.face_width + self.cup.length - 0.5 * self.cup_thickness
+            share = (end - z) / end
+        line = _line(self.wave_generator, self.major_semi_axis, self.minor_semi_axis, self.inner_radius, radius, share)
+        return ToothMotion(line, self.drive.teeth_fs, self.drive.teeth_rg)
 
     def cam(self) -> Cam:
         """Exact curve of the cam, major axis along +y. Raises InputError where its keys give no closed curve."""

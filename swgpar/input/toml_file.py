@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -114,6 +116,41 @@ def _copy(value: Any) -> Any:
     if isinstance(value, dict):
         return {key: _copy(item) for key, item in value.items()}
     return [_copy(item) for item in value] if isinstance(value, list) else value
+
+
+def to_toml(table: Mapping[str, Any], above: str = "") -> str:
+    """The text of a TOML file with this content: tables in tables, and in lists, of numbers, texts and lists.
+
+    above : names of the tables around it, each with a dot
+    """
+    plain = {key: value for key, value in table.items() if not _is_table(value)}
+    parts = ["".join(f"{_bare(key)} = {_inline(value)}\n" for key, value in plain.items())]
+    for key, value in table.items():
+        name = f"{above}{_bare(key)}"
+        if isinstance(value, Mapping):
+            parts.append(f"[{name}]\n{to_toml(value, f'{name}.')}")
+        elif _is_table(value):
+            parts += [f"[[{name}]]\n{to_toml(entry, f'{name}.')}" for entry in value]
+    return "\n".join(part for part in parts if part)
+
+
+def _is_table(value: Any) -> bool:
+    return isinstance(value, Mapping) or (
+        isinstance(value, list) and bool(value) and all(isinstance(entry, Mapping) for entry in value)
+    )
+
+
+def _bare(key: str) -> str:
+    return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else json.dumps(key, ensure_ascii=False)
+
+
+def _inline(value: Any) -> str:
+    """A value on one line; JSON writes texts, numbers and truth values as TOML does."""
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{_bare(key)} = {_inline(item)}" for key, item in value.items()) + " }"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_inline, value)) + "]"
+    return json.dumps(value, ensure_ascii=False)
 
 
 def validate(model: type[SectionType], table: dict[str, Any]) -> SectionType:

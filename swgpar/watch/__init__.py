@@ -86,7 +86,7 @@ def begin(kind: str, out: str, *, restarts: bool, terminal: bool) -> None:
 
     Parameters
     ----------
-    kind : what is counted by `saved`: "increments" or "cases"
+    kind : what is counted by `saved`: "increments", "cases" or "evaluations"
     out : folder of the results
     restarts : whether --restart continues them
     terminal : whether a progress bar may be on the terminal; without one there are signs of life

@@ -11,10 +11,12 @@ import numpy as np
 
 from swgpar.errors import InputError
 from swgpar.geometry.profiles.advice import advise
+from swgpar.geometry.profiles.conjugate import conjugate
 from swgpar.geometry.profiles.double_arc import double_arc
 from swgpar.geometry.profiles.flank import ToothProfile, check_flank
 from swgpar.geometry.profiles.involute import Cutter, involute
 from swgpar.geometry.profiles.keys import (
+    Conjugate,
     DoubleArc,
     ExternalProfile,
     InternalProfile,
@@ -25,11 +27,17 @@ from swgpar.geometry.profiles.keys import (
 from swgpar.geometry.profiles.pitch_point import PitchPointFrame
 from swgpar.geometry.profiles.quadruple_arc import quadruple_arc
 from swgpar.geometry.profiles.teeth import Teeth
+from swgpar.geometry.profiles.tooth_motion import ToothMotion
 from swgpar.input.quantities import show
 
 
 def make_profile(
-    keys: ExternalProfile | InternalProfile, teeth: Teeth, c_P: float = 1.0, c_l: float = 0.5, gear: str = "gear"
+    keys: ExternalProfile | InternalProfile,
+    teeth: Teeth,
+    c_P: float = 1.0,
+    c_l: float = 0.5,
+    gear: str = "gear",
+    partner: tuple[ToothProfile, ToothMotion] | None = None,
 ) -> ToothProfile:
     """Flank of a gear.
 
@@ -40,12 +48,15 @@ def make_profile(
     c_P : angular tooth thickness reduction (eq. 3.22); 1 for involutes
     c_l : share of the straight segment above the pitch point; 0.5 for involutes
     gear : name of the gear's section, for messages
+    partner : the other gear's flank and the motion of the flexible spline's tooth; conjugate profiles need them
 
     Raises InputError where the keys give no flank.
     """
     try:
-        return _build(keys, teeth, c_P, c_l, gear)
+        return _build(keys, teeth, c_P, c_l, gear, partner)
     except InputError as error:
+        if isinstance(keys, Conjugate):  # no lengths of its own
+            raise
         reason = str(error)
     advice = _advice(keys, teeth, c_P, c_l, gear)
     raise InputError(f"{reason}; {advice}" if advice else reason)
@@ -88,7 +99,14 @@ RADII: dict[str, dict[str, float]] = {
 """Lengths that close for most tooth numbers, modules: of the reference drive, Table 6.12, the bottom clearance."""
 
 
-def _build(keys: ExternalProfile | InternalProfile, teeth: Teeth, c_P: float, c_l: float, gear: str) -> ToothProfile:
+def _build(
+    keys: ExternalProfile | InternalProfile,
+    teeth: Teeth,
+    c_P: float,
+    c_l: float,
+    gear: str,
+    partner: tuple[ToothProfile, ToothMotion] | None = None,
+) -> ToothProfile:
     """Flank of a gear; raises InputError with the reason where there is none."""
     name = f"{gear}.profile"
     if isinstance(keys, QuadrupleArc):
@@ -98,8 +116,13 @@ def _build(keys: ExternalProfile | InternalProfile, teeth: Teeth, c_P: float, c_
         )
     elif isinstance(keys, DoubleArc):
         profile = double_arc(PitchPointFrame(**asdict(teeth), c_P=c_P), c_l, keys.r_addendum, keys.r_dedendum, name)
+    elif isinstance(keys, Conjugate):
+        _refuse_direct_keys(c_P, c_l, gear, f"a conjugate profile, whose tooth thickness follows from {name}.backlash")
+        profile = conjugate(keys, teeth, *partner, name)
     else:
-        _refuse_direct_keys(c_P, c_l, gear)
+        _refuse_direct_keys(
+            c_P, c_l, gear, f"an involute profile, whose tooth thickness follows from {gear}.profile.shift"
+        )
         profile = involute(_cutter(keys, teeth), name)
     try:
         check_flank(profile)
@@ -110,16 +133,13 @@ def _build(keys: ExternalProfile | InternalProfile, teeth: Teeth, c_P: float, c_
     return profile
 
 
-def _refuse_direct_keys(c_P: float, c_l: float, gear: str) -> None:
-    """Refuse values of keys that shape directly defined profiles only."""
+def _refuse_direct_keys(c_P: float, c_l: float, gear: str, other: str) -> None:
+    """Refuse values of keys that shape directly defined profiles only. other : the profile, and what replaces c_P"""
     if c_P != 1.0:
-        raise InputError(
-            f"{gear}.c_P = {c_P:g} is out of range: allowed 1 with an involute profile, whose tooth thickness "
-            f"follows from {gear}.profile.shift"
-        )
+        raise InputError(f"{gear}.c_P = {c_P:g} is out of range: allowed 1 with {other}")
     if c_l != 0.5:
         raise InputError(
-            f"{gear}.c_l = {c_l:g} is out of range: allowed 0.5 with an involute profile (no straight segment)"
+            f"{gear}.c_l = {c_l:g} is out of range: allowed 0.5 with {other.partition(',')[0]} (no straight segment)"
         )
 
 
@@ -133,10 +153,12 @@ def _cutter(keys: RackInvolute | ShaperInvolute, teeth: Teeth) -> Cutter:
 
 
 __all__ = [
+    "Conjugate",
     "ExternalProfile",
     "InternalProfile",
     "RackInvolute",
     "Teeth",
+    "ToothMotion",
     "ToothProfile",
     "make_profile",
 ]

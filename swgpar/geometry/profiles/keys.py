@@ -49,13 +49,31 @@ class ShaperInvolute(_Involute):
     cutter_teeth: int = quantity(text="teeth of the shaper-cutter", ge=8, le=2000)
 
 
+class Conjugate(Section):
+    """The envelope of the other gear's flank in the motion of its tooth (docs/theory/conjugate.md)."""
+
+    type: Literal["conjugate"] = quantity("conjugate", text="kind of profile")
+    r_root: float = quantity(unit="mm", text="radius of the root arc", gt=0.0)
+    r_tip: float = quantity(0.0, unit="mm", text="radius of the rounded tip edge; 0: sharp", ge=0.0)
+    backlash: float = quantity(
+        0.0, unit="mm", text="circumferential backlash at the pitch circle, taken from this gear's teeth", ge=0.0
+    )
+    relief: float = quantity(0.0, unit="mm", text="tip relief, along the addendum circle", ge=0.0)
+    relief_height: float = quantity(
+        0.2, unit="modules", text="height of the relieved part of the flank", gt=0.0, le=2.0
+    )
+    section: float = quantity(
+        0.0, unit="mm", text="axial coordinate of the cup's section whose motion counts; 0: mid-width"
+    )
+
+
 ExternalProfile = Annotated[
-    QuadrupleArc | DoubleArc | RackInvolute,
+    QuadrupleArc | DoubleArc | RackInvolute | Conjugate,
     Field(discriminator="type"),
     BeforeValidator(default_type("quadruple_arc")),
 ]
 InternalProfile = Annotated[
-    QuadrupleArc | DoubleArc | ShaperInvolute,
+    QuadrupleArc | DoubleArc | ShaperInvolute | Conjugate,
     Field(discriminator="type"),
     BeforeValidator(default_type("quadruple_arc")),
 ]

@@ -1,0 +1,71 @@
+"""The mesh of the rigid limit: undeformed teeth on the neutral line that the cam gives."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from swgpar.design.drive_design import DriveDesign
+from swgpar.geometry.profiles.mesh_gap import smallest_gaps
+
+WIDEST = np.radians(60.0)
+"""Angle from the major axis, to both sides, in which teeth can touch."""
+
+STEP = 1e-5
+"""Rotation (rad) from which the rotation that closes a gap is extrapolated."""
+
+NEAR = 1e-3
+"""Gap (mm) below which a pair of flanks counts as in contact: what loads of rated size close."""
+
+
+def flank_clearance(design: DriveDesign, n_angles: int = 721) -> float:
+    """Smallest distance (mm; negative is interference) between the undeformed flanks in the deflected position.
+
+    n_angles : angles of the tooth within a quarter
+    """
+    pair, motion = (design.profile("flexible_spline"), design.profile("ring_gear")), design.tooth_motion()
+    psi = np.linspace(-0.25 * np.pi, 0.25 * np.pi, n_angles)
+    # the other flank of a tooth moves like this one on the mirror image of the cam
+    return min(float(smallest_gaps(*pair, side, psi).min()) for side in {motion, motion.mirror_image()})
+
+
+@dataclass(frozen=True)
+class RigidMesh:
+    """Contact of rigid teeth.
+
+    transmission_error : arc seconds, peak to peak of the output's rotation at which the first pair touches; inf where
+        the teeth do not reach each other
+    teeth_share : share of the flexible spline's teeth whose gap is below `NEAR` then, mean over a pitch
+    """
+
+    transmission_error: float
+    teeth_share: float
+
+
+def rigid_mesh(design: DriveDesign, phases: int = 8, n_points: int = 300) -> RigidMesh:
+    """Contact of rigid teeth over one pitch.
+
+    In every phase the flexible spline's material is rotated until the first pair of one side touches.
+
+    phases : positions of the cam within a pitch of the flexible spline;  n_points : points on a flank
+    """
+    pair, motion = (design.profile("flexible_spline"), design.profile("ring_gear")), design.tooth_motion()
+    pitch = 2.0 * np.pi / design.drive.teeth_fs
+    reach = int(WIDEST / pitch)
+    psi = pitch * (np.arange(-reach, reach + 1) + np.arange(phases)[:, None] / phases)
+
+    def gaps(rotation: np.ndarray) -> np.ndarray:
+        flat = np.broadcast_to(rotation, psi.shape).ravel()
+        return smallest_gaps(*pair, motion, psi.ravel(), n_points, flat).reshape(psi.shape)
+
+    touching = np.zeros((phases, 1))
+    for _ in range(2):  # the second time from where the first pair touches, so that the extrapolation is short
+        before, after = gaps(touching), gaps(touching - STEP)
+        with np.errstate(invalid="ignore"):
+            closing = touching - STEP * before / (before - after)
+        touching = np.where(np.isfinite(before) & (after < before), closing, -np.inf).max(axis=1, keepdims=True)
+        if not np.isfinite(touching).all():
+            return RigidMesh(np.inf, 0.0)
+    share = np.count_nonzero(gaps(touching) < NEAR) / phases * 2.0 / design.drive.teeth_fs
+    return RigidMesh(float(np.degrees(np.ptp(touching))) * 3600.0, share)

@@ -1,0 +1,114 @@
+"""optimise.html: the problem, the best designs with their files, figures and all evaluations, in one file."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Mapping
+from html import escape
+
+from swgpar.optimisation import figures
+from swgpar.optimisation.problem import Problem
+from swgpar.optimisation.result import OptimisationResult
+from swgpar.optimisation.spec import Specification
+from swgpar.results.figure_set import import_matplotlib
+from swgpar.studies.report import STYLE, table
+from swgpar.version import __version__
+
+IMPORTANCE = (
+    "The importance of a variable is the share of it in what sets the best feasible designs apart from the others "
+    "(PED-ANOVA)."
+)
+
+
+def make_report(spec: Specification, problem: Problem, result: OptimisationResult, designs: Mapping[int, str]) -> bytes:
+    """The whole page; call it on one rank. designs : texts of the winning design files by number"""
+    title = escape(spec.title)
+    parts = [f"<h1>{title}</h1>", _introduction(spec, result), "<h2>Problem</h2>", _problem(problem)]
+    parts += ["<h2>Best</h2>", _best(problem, result)]
+    if result.evaluations:
+        try:
+            import_matplotlib()
+            parts += _figures(problem, result)
+        except Exception as error:  # a picture that fails must not cost the report
+            parts.append(f"<p class=bad>Figures could not be drawn: {escape(str(error))}</p>")
+    for number, text in designs.items():
+        parts += [
+            f"<details{' open' if len(designs) == 1 else ''}><summary>Design file of evaluation {number}</summary>",
+            f"<pre>{escape(text)}</pre></details>",
+        ]
+    rows = result.rows
+    header = list(rows[0]) if rows else []
+    parts += ["<h2>Evaluations</h2>"]
+    parts.append(table(header, ((list(row.values()), row["status"] == "failed") for row in rows)) if rows else "none")
+    if spec.section.remarks:
+        parts.append("<h2>Remarks</h2>")
+        parts += [f"<p>{escape(text)}</p>" for text in spec.section.remarks.strip().split("\n\n")]
+    parts += ["<h2>Optimisation file</h2>", f"<pre>{escape(spec.text)}</pre>"]
+    view = '<meta name="viewport" content="width=device-width">'
+    head = f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">{view}<title>{title}</title>'
+    return f"{head}<style>{STYLE}</style></head><body>\n{chr(10).join(parts)}\n</body></html>\n".encode()
+
+
+def _introduction(spec: Specification, result: OptimisationResult) -> str:
+    every = result.evaluations.values()
+    counts = ", ".join(
+        f"{sum(each.status == status for each in every)} {status}" for status in ("feasible", "infeasible", "failed")
+    )
+    seconds = sum(each.wall_s for each in every)
+    return (
+        f"<p>swgpar {__version__}: {len(result.evaluations)} evaluations ({counts}), {seconds:.0f} s of computing. "
+        f"Design: {escape(spec.section.design)}. Sampler: {spec.section.sampler}.</p>"
+    )
+
+
+def _problem(problem: Problem) -> str:
+    section = problem.section
+    variables = [
+        ([", ".join(v.keys), v.low, v.high, ", ".join(map(str, v.choices)) or ("log" if v.log else "")], False)
+        for v in section.variable
+    ]
+    quantities = [
+        ([o.quantity, o.goal, problem.known[o.quantity].meaning, problem.known[o.quantity].unit], False)
+        for o in section.objective
+    ]
+    for c in section.constraint:
+        limits = [
+            f"{word} {limit:g}"
+            for word, limit in (("at most", c.at_most), ("at least", c.at_least))
+            if limit is not None
+        ]
+        known = problem.known[c.quantity]
+        quantities.append(([c.quantity, ", ".join(limits), known.meaning, known.unit], False))
+    return table(["variable", "low", "high", "scale or choices"], variables) + table(
+        ["quantity", "goal or limit", "meaning", "unit"], quantities
+    )
+
+
+def _best(problem: Problem, result: OptimisationResult) -> str:
+    if not result.best:
+        return "<p class=bad>No design keeps all constraints.</p>"
+    wanted = set(result.best)
+    rows = [row for row in result.rows if row["evaluation"] in wanted]
+    first = problem.section.objective[0]
+    rows.sort(key=lambda row: row[first.quantity], reverse=first.goal == "maximise")
+    header = [name for name in rows[0] if name not in ("status", "best", "reason")]
+    units = [
+        f"{name} ({problem.known[name].unit})" if name in problem.known and problem.known[name].unit else name
+        for name in header
+    ]
+    return table(units, (([row[name] for name in header], False) for row in rows))
+
+
+def _figures(problem: Problem, result: OptimisationResult) -> list[str]:
+    parts = ["<h2>Progress</h2>", _image(figures.progress(problem, result), "objectives by evaluation")]
+    pictures = figures.pareto(problem, result)
+    if pictures:
+        parts += ["<h2>Pareto front</h2>", *(_image(png, "objectives against each other") for png in pictures)]
+    if result.importance:
+        parts += ["<h2>Importance of the variables</h2>", f"<p>{IMPORTANCE}</p>"]
+        parts.append(_image(figures.importance(result), "importance of the variables"))
+    return parts
+
+
+def _image(png: bytes, text: str) -> str:
+    return f'<p><img alt="{escape(text)}" src="data:image/png;base64,{base64.b64encode(png).decode()}"></p>'

@@ -1,0 +1,162 @@
+"""The optimisation file: variables with bounds, objectives, constraints, and how they are searched."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from swgpar.errors import InputError
+from swgpar.input.quantities import Section, quantity, show, show_key
+from swgpar.input.toml_file import read_toml, split_override, validate
+from swgpar.studies.spec import flat
+
+
+class Variable(Section):
+    """One `[[optimise.variable]]`: keys of the design file that get one value."""
+
+    keys: list[str] = quantity(text="keys of the design file that take the value", min_length=1)
+    low: float | None = quantity(None, text="lower bound, in the unit of the keys")
+    high: float | None = quantity(None, text="upper bound")
+    log: bool = quantity(False, text="search on a logarithmic scale")
+    integer: bool = quantity(False, text="whole numbers only")
+    choices: list[Any] = quantity([], text="values to choose from, in place of bounds")
+
+    @property
+    def name(self) -> str:
+        """Name in tables: the first key."""
+        return self.keys[0]
+
+
+class Objective(Section):
+    """One `[[optimise.objective]]`."""
+
+    goal: Literal["minimise", "maximise"] = quantity("minimise", text="what is sought")
+    quantity: str = quantity(text="quantity of a run, or of swgpar check")
+
+
+class Constraint(Section):
+    """One `[[optimise.constraint]]`."""
+
+    at_most: float | None = quantity(None, text="largest value allowed, in the unit of the quantity")
+    at_least: float | None = quantity(None, text="least value allowed")
+    quantity: str = quantity(text="quantity of a run, or of swgpar check")
+
+    def violations(self, value: float) -> dict[str, float]:
+        """How far a value is beyond the limits, over their sizes; 0 and less is allowed."""
+        found = {}
+        if self.at_most is not None:
+            found[f"{self.quantity} at most {self.at_most:g}"] = (value - self.at_most) / (abs(self.at_most) or 1.0)
+        if self.at_least is not None:
+            found[f"{self.quantity} at least {self.at_least:g}"] = (self.at_least - value) / (abs(self.at_least) or 1.0)
+        return found
+
+
+class Screen(Section):
+    """`[optimise.screen]`: a search on a cheaper model, whose best designs begin the search proper."""
+
+    set: list[str] = quantity([], text='"section.key=value" that make the model cheaper')
+    mesh: str = quantity("", text="mesh recipe of the cheaper model; else that of the search proper")
+    evaluations: int = quantity(text="runs of the cheaper model", ge=1, le=100_000)
+    best: int = quantity(5, text="its best designs that are tried first in the search proper", ge=1, le=1000)
+
+
+class OptimiseSection(Section):
+    """The `[optimise]` without its lists of tables."""
+
+    title: str = quantity("", text="title of the report")
+    remarks: str = quantity("", text="text for the report; a blank line ends a paragraph")
+    design: str = quantity(text="the design file, relative to this file")
+    mesh: str = quantity("", text="mesh recipe of a drive, relative to this file")
+    set: list[str] = quantity([], text='"section.key=value" for all designs')
+    evaluations: int = quantity(text="designs that are tried, refused and failed ones included", ge=1, le=100_000)
+    sampler: Literal["tpe", "nsga2", "random"] = quantity(
+        "tpe", text="tree-structured Parzen estimator, NSGA-II, or random designs"
+    )
+    seed: int = quantity(1, text="of the random numbers", ge=0, le=2**31)
+    storage: str = quantity("", text="URL of a database; else a file in the folder of the results")
+    parallel: Literal["cases", "ranks"] = quantity(
+        "cases", text="every rank tries designs of its own, or all ranks one design after the other"
+    )
+    first: list[dict[str, Any]] = quantity([], text="designs that are tried first: values by key")
+    screen: Screen | None = None
+    variable: list[Variable] = quantity([], text="the variables")
+    objective: list[Objective] = quantity([], text="the objectives")
+    constraint: list[Constraint] = quantity([], text="the constraints")
+
+
+class _File(Section):
+    optimise: OptimiseSection
+
+
+@dataclass(frozen=True)
+class Specification:
+    """The checked content of an optimisation file. folder : paths are relative to it;  text : for the report"""
+
+    name: str
+    folder: Path
+    text: str
+    section: OptimiseSection
+
+    @property
+    def title(self) -> str:
+        """Title of the report; without one the name of the file."""
+        return self.section.title or Path(self.name).stem
+
+
+def load_specification(path: str | Path) -> Specification:
+    """Read and check an optimisation file; every problem is an `InputError` of one sentence that names the file."""
+    path = Path(path)
+    table = read_toml(path)
+    try:
+        for key, value in table.items():
+            if key != "optimise" or not isinstance(value, dict):
+                raise InputError(f"{show_key(key)} = {show(value)} is no section of this file: allowed [optimise]")
+        section = validate(_File, table).optimise
+        section = section.model_copy(update={"first": [flat(entry) for entry in section.first]})
+        _check(section)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+    return Specification(str(path), path.parent, path.read_text(encoding="utf-8-sig"), section)
+
+
+def _check(section: OptimiseSection) -> None:
+    for kind in ("variable", "objective"):
+        if not getattr(section, kind):
+            raise InputError(f"optimise.{kind} is missing: allowed one [[optimise.{kind}]] or more")
+    for override in section.set:
+        split_override(override)
+    seen: set[str] = set()
+    for variable in section.variable:
+        _check_variable(variable, seen)
+    for constraint in section.constraint:
+        if constraint.at_most is None and constraint.at_least is None:
+            raise InputError(f"optimise.constraint {show(constraint.quantity)} has no limit: give at_most or at_least")
+    for number, first in enumerate(section.first, start=1):
+        for key in first:
+            if key not in seen:
+                raise InputError(f"optimise.first {number}: {show_key(key)} is no variable: allowed {', '.join(seen)}")
+
+
+def _check_variable(variable: Variable, seen: set[str]) -> None:
+    where = f"optimise.variable {show(variable.name)}"
+    for key in variable.keys:
+        if "." not in key:
+            raise InputError(f"{where}: {show_key(key)} is no key: allowed section.key")
+        if key in seen:
+            raise InputError(f"{where}: {show_key(key)} is varied twice: allowed once")
+        seen.add(key)
+    bounds = variable.low, variable.high
+    if bool(variable.choices) == (None not in bounds) or (variable.choices and bounds != (None, None)):
+        raise InputError(f"{where} needs low and high, or choices: allowed is one of both")
+    if variable.choices:
+        if not all(isinstance(choice, (bool, int, float, str)) for choice in variable.choices):
+            raise InputError(f"{where}: choices = {show(variable.choices)}: allowed are numbers and texts")
+        return
+    low, high = float(variable.low), float(variable.high)
+    if not low < high:
+        raise InputError(f"{where}: high = {high:g} is out of range: allowed above {low:g} (low)")
+    if variable.log and low <= 0.0:
+        raise InputError(f"{where}: low = {low:g} is out of range: allowed above 0 with log = true")
+    if variable.integer and not (low.is_integer() and high.is_integer()):
+        raise InputError(f"{where}: low = {low:g}, high = {high:g}: allowed whole numbers with integer = true")

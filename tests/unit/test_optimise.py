@@ -1,0 +1,120 @@
+"""Optimisation on a gear train of milliseconds: search, restart, failed designs, refusals, files."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import swgpar
+from support.paths import DRIVERS
+from swgpar.errors import InputError, OutputError
+from swgpar.input.toml_file import to_toml
+
+pytest.importorskip("optuna")
+
+FREQUENCY = "natural frequency 2 (rad/s)"
+FILE = f"""
+[optimise]
+design = {str(DRIVERS / "gear_pair.toml")!r}
+set = ["monte_carlo.samples=20", "time.end=1e-4", "time.rows=2"]
+evaluations = 12
+first = [{{ "mesh.stiffness" = 2e9 }}]
+
+[[optimise.variable]]
+keys = ["mesh.stiffness"]
+low = 1e9
+high = 1e11
+log = true
+
+[[optimise.variable]]
+keys = ["gear_1.mass", "gear_2.mass"]
+low = -50.0
+high = 200.0
+
+[[optimise.objective]]
+quantity = "{FREQUENCY}"
+goal = "maximise"
+
+[[optimise.constraint]]
+quantity = "damping ratio 1"
+at_most = 0.5
+"""
+
+
+def written(folder: Path, **changes: str) -> Path:
+    text = FILE
+    for old, new in changes.items():
+        assert f"\n{old} = " in text
+        text = "\n".join(f"{old} = {new}" if line.startswith(f"{old} = ") else line for line in text.splitlines())
+    path = folder / "search.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_a_search_goes_on_after_a_restart_and_leaves_its_files(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    begun = swgpar.optimise(written(tmp_path), out)
+    assert begun.evaluations[0].values["mesh.stiffness"] == 2e9
+    with pytest.raises(OutputError, match="--restart"):
+        swgpar.optimise(written(tmp_path), out)
+    found = swgpar.optimise(written(tmp_path, evaluations="30"), out, restart=True)
+    assert len(begun.evaluations) == 12 and len(found.evaluations) == 30
+    assert {number: found.evaluations[number] for number in begun.evaluations} == begun.evaluations
+    for each in found.evaluations.values():
+        # a mass below zero is refused, and the search goes on
+        assert (each.status == "failed") == (each.values["gear_1.mass"] <= 0.0)
+        if each.status == "infeasible":
+            assert each.quantities["damping ratio 1"] > 0.5
+    feasible = {n: each.quantities[FREQUENCY] for n, each in found.evaluations.items() if each.status == "feasible"}
+    (best,) = found.best
+    assert feasible[best] == max(feasible.values())
+    # the design file of the winner gives what was found
+    design = swgpar.load_design(out / "best" / f"evaluation_{best}.toml")
+    assert swgpar.check(design)[FREQUENCY] == pytest.approx(feasible[best], rel=1e-12)
+    page = (out / "optimise.html").read_text(encoding="utf-8")
+    assert page.count("data:image/png") >= 1 and FREQUENCY in page
+    assert len((out / "optimise.csv").read_text(encoding="utf-8").splitlines()) == 31
+    with pytest.raises(InputError, match="another problem"):
+        swgpar.optimise(written(tmp_path, high="1e12"), out, restart=True)
+
+
+def test_two_objectives_give_a_front_in_a_database(tmp_path: Path) -> None:
+    path = written(tmp_path)
+    url = f"sqlite:///{tmp_path / 'search.db'}"
+    text = path.read_text(encoding="utf-8").replace("evaluations = 12", f'evaluations = 16\nstorage = "{url}"')
+    path.write_text(f'{text}\n[[optimise.objective]]\nquantity = "damping ratio 2"\n', encoding="utf-8")
+    found = swgpar.optimise(path, tmp_path / "out")
+    values = {n: found.evaluations[n].quantities for n in found.best}
+    for first in values.values():
+        assert not any(
+            second[FREQUENCY] > first[FREQUENCY] and second["damping ratio 2"] < first["damping ratio 2"]
+            for second in values.values()
+        )
+    assert (tmp_path / "search.db").exists() and not (tmp_path / "out" / "optimise.journal").exists()
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"high": "1e8"}, "above 1e"),
+        ({"quantity": '"no such thing"'}, "no such thing"),
+        ({"keys": '["mesh.stifness"]'}, "stifness"),
+        ({"at_most": "'much'"}, "at_most"),
+        ({"goal": '"maximize"'}, "maximize"),
+    ],
+)
+def test_a_bad_file_is_refused_in_one_sentence(tmp_path: Path, changes: dict[str, str], words: str) -> None:
+    with pytest.raises(InputError, match=words) as refusal:
+        swgpar.optimise(written(tmp_path, **changes), tmp_path / "out")
+    assert "\n" not in str(refusal.value)
+
+
+def test_toml_that_is_written_reads_the_same() -> None:
+    table: dict[str, Any] = {
+        "a": {"x": 1.5e-7, "y": [1, 2], "text": 'quoted "ä"', "on": True, "inner": {"z": -3}},
+        "load": {"program": [{"name": "up", "torque": 2.0}, {"name": "down", "torque": 0.0}]},
+    }
+    assert tomllib.loads(to_toml(table)) == table
