@@ -34,10 +34,8 @@ def arguments_of(bad: BadInput, folder: Path, number: int) -> list[str]:
     if bad.kind == "mesh recipe":
         return ["check", str(REFERENCE), "--mesh", file]
     if bad.kind == "pitch file":
-        pitch = [
-            f"deviations.ring_gear.pitch_file={file}",
-            f"deviations.ring_gear.pitch_column={bad.files['column']!s}",
-        ]
+        section, column = "deviations.ring_gear", bad.files["column"].decode() or '""'
+        pitch = [f"{section}.pitch_file={file}", f"{section}.pitch_column={column}"]
         return ["check", str(DESIGN), "--set", *PLANE, *pitch]
     if bad.kind == "checkpoint":
         run = ["run", str(DESIGN), "--mesh", str(RECIPE), "--plain", "--restart", "--out", str(folder)]
