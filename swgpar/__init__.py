@@ -16,7 +16,7 @@ from swgpar.version import __version__
 
 if TYPE_CHECKING:
     from swgpar.analysis.drive_result import DriveResult
-    from swgpar.api import check, load_design, load_mesh, mesh, new, open_result, run, study
+    from swgpar.api import check, export, load_design, load_mesh, mesh, new, open_result, run, study
     from swgpar.design.drive_design import DriveDesign
     from swgpar.errors import ConvergenceError, InputError, OutputError, SwgparError
     from swgpar.gear_trains.result import TrainResult
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 _MODULES = {
     "new": "api",
+    "export": "api",
     "load_design": "api",
     "load_mesh": "api",
     "run": "api",
@@ -59,6 +60,7 @@ __all__ = [
     "TrainResult",
     "__version__",
     "check",
+    "export",
     "load_design",
     "load_mesh",
     "mesh",

@@ -79,6 +79,18 @@ NEW_EXAMPLES = """examples:
   swgpar new plane.toml --ratio 50 --diameter 42 --torque 2 --model plane
 """
 
+VIEW_EXAMPLES = """example:
+  swgpar view results/coarse
+"""
+
+EXPORT = """Write files of other programs: the geometry of a design (step, dxf), or fields and tables of a finished run
+(vtkhdf, parquet, lookup)."""
+
+EXPORT_EXAMPLES = """examples:
+  swgpar export drivers/cup_45deg.toml --format step dxf --out results/cad
+  swgpar export results/cup --format vtkhdf parquet --out results/cup/export
+"""
+
 REPORT_EXAMPLES = """example:
   swgpar report results/coarse
 """
@@ -105,7 +117,9 @@ def parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     top.add_argument("--version", action="version", version=f"swgpar {__version__}")
-    commands = top.add_subparsers(dest="command", required=True, metavar="new | check | mesh | run | study | report")
+    commands = top.add_subparsers(
+        dest="command", required=True, metavar="new | check | mesh | run | study | report | view | export"
+    )
 
     _add_new(commands)
     _add_run(commands)
@@ -126,8 +140,13 @@ def parser() -> argparse.ArgumentParser:
     )
     _add_design(check)
     check.add_argument("--mesh", help=f"{MESH_HELP}: prints elements, unknowns, memory and time to expect")
-    report = _add_command(commands, "report", "Draw the figures of a finished run again.", REPORT_EXAMPLES)
+    report = _add_command(
+        commands, "report", "Draw the figures of a finished run again, and write its report.html.", REPORT_EXAMPLES
+    )
     report.add_argument("out", help="results folder")
+    _add_export(commands)
+    view = _add_command(commands, "view", "Show the deformed drive of a finished run in a window.", VIEW_EXAMPLES)
+    view.add_argument("out", help="results folder")
     return top
 
 
@@ -169,6 +188,20 @@ def _add_new(commands: _Commands) -> None:
     ):
         new.add_argument(name, choices=choices, default=choices[0], help=f"{text} (default: {choices[0]})")
     new.add_argument("--overwrite", action="store_true", help="replace a file that exists")
+
+
+def _add_export(commands: _Commands) -> None:
+    export = _add_command(commands, "export", EXPORT, EXPORT_EXAMPLES)
+    export.add_argument("source", help="design file (TOML), or results folder")
+    export.add_argument("--out", required=True, help="folder for the files")
+    export.add_argument(
+        "--format",
+        nargs="+",
+        required=True,
+        choices=["step", "dxf", "vtkhdf", "parquet", "lookup"],
+        help="step: solids of gears and cam; dxf: their outlines; vtkhdf: fields for ParaView; parquet: tables; "
+        "lookup: torsional spring and ripple for multibody programs",
+    )
 
 
 def _add_run(commands: _Commands) -> None:
@@ -271,6 +304,12 @@ def _new(arguments: argparse.Namespace) -> None:
     )
 
 
+def _export(arguments: argparse.Namespace) -> None:
+    from swgpar import api
+
+    _print(f"written {path}" for path in api.export(arguments.source, arguments.out, arguments.format))
+
+
 def _mesh(arguments: argparse.Namespace) -> None:
     from mpi4py import MPI
 
@@ -301,8 +340,20 @@ def _check(arguments: argparse.Namespace) -> None:
 def _report(arguments: argparse.Namespace) -> None:
     from swgpar import api
 
-    files = api.open_result(arguments.out).plot.save(arguments.out)
-    _print(f"figure {path}" for path in files)
+    result = api.open_result(arguments.out)
+    files = result.plot.save(arguments.out)
+    api.save_report(result, arguments.out)
+    _print([*(f"figure {path}" for path in files), f"report {Path(arguments.out) / 'report.html'}"])
+
+
+def _view(arguments: argparse.Namespace) -> None:
+    from swgpar import api
+    from swgpar.analysis.drive_result import DriveResult
+
+    result = api.open_result(arguments.out)
+    if not isinstance(result, DriveResult):
+        raise InputError(f"{arguments.out} holds a gear train: view is available for drives")
+    result.view()
 
 
 def _warn() -> None:
@@ -369,7 +420,16 @@ def _main(arguments: Sequence[str] | None) -> int:
 
         petsc.start(rest)
         watch.rearm()
-        {"new": _new, "run": _run, "study": _study, "mesh": _mesh, "check": _check, "report": _report}[command](known)
+        {
+            "new": _new,
+            "run": _run,
+            "study": _study,
+            "mesh": _mesh,
+            "check": _check,
+            "report": _report,
+            "view": _view,
+            "export": _export,
+        }[command](known)
     except SwgparError as error:
         from mpi4py import MPI
 

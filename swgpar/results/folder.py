@@ -49,6 +49,9 @@ BALLS = "balls.csv"
 SUMMARY = "summary.json"
 """Written last: a folder that has it is that of a finished run."""
 
+REPORT = "report.html"
+"""What the run gives, on one page."""
+
 LOG = "run.log"
 """The log of the run."""
 
@@ -73,6 +76,7 @@ RESULTS = (
     INDEX,
     f"{FOLDER}/*.h5",
     "figures/*.png",
+    REPORT,
     LOG,
 )
 """Files that `overwrite` removes."""
