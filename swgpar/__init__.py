@@ -16,7 +16,18 @@ from swgpar.version import __version__
 
 if TYPE_CHECKING:
     from swgpar.analysis.drive_result import DriveResult
-    from swgpar.api import check, load_design, load_mesh, mesh, new, open_result, optimise, run, study
+    from swgpar.api import (
+        check,
+        export,
+        load_design,
+        load_mesh,
+        mesh,
+        new,
+        open_result,
+        optimise,
+        run,
+        study,
+    )
     from swgpar.design.drive_design import DriveDesign
     from swgpar.errors import (
         ConvergenceError,
@@ -34,6 +45,7 @@ if TYPE_CHECKING:
 
 _MODULES = {
     "new": "api",
+    "export": "api",
     "load_design": "api",
     "load_mesh": "api",
     "run": "api",
@@ -74,6 +86,7 @@ __all__ = [
     "TrainResult",
     "__version__",
     "check",
+    "export",
     "load_design",
     "load_mesh",
     "mesh",

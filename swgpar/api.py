@@ -14,19 +14,20 @@ from typing import TYPE_CHECKING, Any, Literal
 from mpi4py import MPI
 
 from swgpar import log
+from swgpar.analysis.drive_result import DriveResult
 from swgpar.analysis.shortcuts import MESHES
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.starter import CamType, Profile, Request, as_toml, starter_design
-from swgpar.errors import InputError, OutputError
+from swgpar.errors import InputError, OutputError, SwgparError
 from swgpar.input.design import Design
 from swgpar.input.toml_file import Overrides, apply_overrides, read_toml
 from swgpar.meshing import MeshRecipe, build_sector_meshes
 from swgpar.meshing import load_recipe as _load_recipe
 from swgpar.meshing.drive_mesh import DriveMesh
 from swgpar.meshing.recipe import make_recipe
-from swgpar.results.atomic import agreed, on_all, write_from_root
+from swgpar.results.atomic import agreed, on_all, raise_first, sentence, write_file, write_from_root
 from swgpar.results.figure_set import save_figures
-from swgpar.results.folder import given_folder, read_summary
+from swgpar.results.folder import REPORT, given_folder, read_summary
 from swgpar.systems import Result, system_of, system_of_table
 
 if TYPE_CHECKING:
@@ -238,9 +239,71 @@ def run(
             terminal=terminal,
             on_increment=lambda: None,
         )
-        if folder is not None and checked.output.figures:
-            save_figures(result.plot, folder)
+        if folder is not None:
+            if checked.output.figures:
+                save_figures(result.plot, folder)
+            try:
+                save_report(result, folder, comm)
+            except SwgparError as error:  # a page that fails must not cost the run
+                log.logger.warning("%s", error)
     return result
+
+
+def save_report(result: Result, folder: str | Path, comm: MPI.Comm | None = None) -> None:
+    """Write report.html of a result into its folder: what the run gives, on one page; collective.
+
+    Raises
+    ------
+    OutputError
+        The page cannot be made or written.
+    """
+    comm, path = MPI.COMM_WORLD if comm is None else comm, Path(folder) / REPORT
+    failure: SwgparError | None = None
+    if comm.rank == 0:
+        try:
+            write_file(path, system_of_table(result.summary["design"]).report(result))
+        except Exception as error:  # whatever a drawing raises
+            failure = OutputError(f"cannot write {path}: {sentence(error)}")
+    raise_first(comm, failure)
+
+
+def export(source: DesignLike | DriveResult, out: str | Path, formats: Sequence[str]) -> list[Path]:
+    """Write files of other programs and return them; collective, rank 0 writes.
+
+    Parameters
+    ----------
+    source : design, or result
+        A design or its file, a result of a drive, or the folder of one.
+    out : path
+        Folder, which is made.
+    formats : sequence of str
+        Of a design "step" (solids) and "dxf" (outlines), of a result "vtkhdf" (fields for ParaView), "parquet" (all
+        tables) and "lookup" (torsional spring and ripple for multibody programs).
+
+    Raises
+    ------
+    InputError
+        A format that the source does not have, a source that is no drive, or a package that is missing.
+    OutputError
+        The folder cannot be written.
+
+    Examples
+    --------
+    >>> swgpar.export("drivers/cup_45deg.toml", "results/cad", ["step"])
+    >>> swgpar.export("results/cup", "results/cup/export", ["vtkhdf", "parquet"])
+    """
+    from swgpar.exchange.export import export_files  # CAD kernels and tables are for this alone
+
+    if isinstance(source, (str, Path)) and Path(source).is_dir():
+        source = open_result(source)  # type: ignore[assignment]
+    found = source if isinstance(source, DriveResult) else load_design(source)
+    if not isinstance(found, DriveDesign | DriveResult):
+        raise InputError("export is available for drives: a gear train has no geometry and no fields")
+    paths: list[Path] = []
+    with agreed(MPI.COMM_WORLD, Path(out)):
+        if MPI.COMM_WORLD.rank == 0:
+            paths = export_files(found, Path(out), formats)
+    return MPI.COMM_WORLD.bcast(paths)
 
 
 def open_result(folder: str | Path, comm: MPI.Comm | None = None) -> Result:

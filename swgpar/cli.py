@@ -90,6 +90,18 @@ OPTIMISE_EXAMPLES = """examples:
 --restart continues the search, with more evaluations if the file asks for them.
 """
 
+VIEW_EXAMPLES = """example:
+  swgpar view results/coarse
+"""
+
+EXPORT = """Write files of other programs: the geometry of a design (step, dxf), or fields and tables of a finished run
+(vtkhdf, parquet, lookup)."""
+
+EXPORT_EXAMPLES = """examples:
+  swgpar export drivers/cup_45deg.toml --format step dxf --out results/cad
+  swgpar export results/cup --format vtkhdf parquet --out results/cup/export
+"""
+
 REPORT_EXAMPLES = """example:
   swgpar report results/coarse
 """
@@ -117,7 +129,9 @@ def parser() -> argparse.ArgumentParser:
     )
     top.add_argument("--version", action="version", version=f"swgpar {__version__}")
     commands = top.add_subparsers(
-        dest="command", required=True, metavar="new | check | mesh | run | study | optimise | report"
+        dest="command",
+        required=True,
+        metavar="new | check | mesh | run | study | optimise | report | view | export",
     )
 
     _add_new(commands)
@@ -140,8 +154,13 @@ def parser() -> argparse.ArgumentParser:
     )
     _add_design(check)
     check.add_argument("--mesh", help=f"{MESH_HELP}: prints elements, unknowns, memory and time to expect")
-    report = _add_command(commands, "report", "Draw the figures of a finished run again.", REPORT_EXAMPLES)
+    report = _add_command(
+        commands, "report", "Draw the figures of a finished run again, and write its report.html.", REPORT_EXAMPLES
+    )
     report.add_argument("out", help="results folder")
+    _add_export(commands)
+    view = _add_command(commands, "view", "Show the deformed drive of a finished run in a window.", VIEW_EXAMPLES)
+    view.add_argument("out", help="results folder")
     return top
 
 
@@ -183,6 +202,20 @@ def _add_new(commands: _Commands) -> None:
     ):
         new.add_argument(name, choices=choices, default=choices[0], help=f"{text} (default: {choices[0]})")
     new.add_argument("--overwrite", action="store_true", help="replace a file that exists")
+
+
+def _add_export(commands: _Commands) -> None:
+    export = _add_command(commands, "export", EXPORT, EXPORT_EXAMPLES)
+    export.add_argument("source", help="design file (TOML), or results folder")
+    export.add_argument("--out", required=True, help="folder for the files")
+    export.add_argument(
+        "--format",
+        nargs="+",
+        required=True,
+        choices=["step", "dxf", "vtkhdf", "parquet", "lookup"],
+        help="step: solids of gears and cam; dxf: their outlines; vtkhdf: fields for ParaView; parquet: tables; "
+        "lookup: torsional spring and ripple for multibody programs",
+    )
 
 
 def _add_run(commands: _Commands) -> None:
@@ -313,6 +346,12 @@ def _optimise(arguments: argparse.Namespace) -> None:
     MPI.COMM_WORLD.Barrier()  # mpirun ends all ranks when one of them fails
 
 
+def _export(arguments: argparse.Namespace) -> None:
+    from swgpar import api
+
+    _print(f"written {path}" for path in api.export(arguments.source, arguments.out, arguments.format))
+
+
 def _mesh(arguments: argparse.Namespace) -> None:
     from mpi4py import MPI
 
@@ -343,8 +382,20 @@ def _check(arguments: argparse.Namespace) -> None:
 def _report(arguments: argparse.Namespace) -> None:
     from swgpar import api
 
-    files = api.open_result(arguments.out).plot.save(arguments.out)
-    _print(f"figure {path}" for path in files)
+    result = api.open_result(arguments.out)
+    files = result.plot.save(arguments.out)
+    api.save_report(result, arguments.out)
+    _print([*(f"figure {path}" for path in files), f"report {Path(arguments.out) / 'report.html'}"])
+
+
+def _view(arguments: argparse.Namespace) -> None:
+    from swgpar import api
+    from swgpar.analysis.drive_result import DriveResult
+
+    result = api.open_result(arguments.out)
+    if not isinstance(result, DriveResult):
+        raise InputError(f"{arguments.out} holds a gear train: view is available for drives")
+    result.view()
 
 
 def _warn() -> None:
@@ -419,6 +470,8 @@ def _main(arguments: Sequence[str] | None) -> int:
             "mesh": _mesh,
             "check": _check,
             "report": _report,
+            "view": _view,
+            "export": _export,
         }
         command_of[command](known)
     except SwgparError as error:

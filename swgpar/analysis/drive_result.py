@@ -114,6 +114,11 @@ class DriveResult:
         return len(self._fields.increments) if self._fields is not None else 0
 
     @property
+    def field_increments(self) -> tuple[int, ...]:
+        """Numbers of the increments with fields: their rows in the history, from 1."""
+        return tuple(self._fields.increments) if self._fields is not None else ()
+
+    @property
     def is_plane(self) -> bool:
         """Whether the drive is a plane model."""
         return self.summary["design"]["drive"]["model"] == "plane"
@@ -252,6 +257,19 @@ class DriveResult:
         numbers = [np.full(len(part[1]), GEARS.index(name)) for name, part in zip(bodies, parts, strict=True)]
         grid.cell_data["body"] = np.concatenate(numbers)
         return grid
+
+    def view(self) -> None:
+        """Open a window that shows the deformed drive; call it on one rank, of a result from a folder.
+
+        Raises
+        ------
+        InputError
+            There is no display, or the run kept no fields.
+        """
+        from swgpar.analysis.view import require_display, view_plotter
+
+        require_display()
+        view_plotter(self).show()
 
     def _part(self, body: GearName, increment: int) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
         points, cells = self.mesh(body)

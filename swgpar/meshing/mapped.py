@@ -8,9 +8,8 @@ from types import ModuleType
 
 import numpy as np
 
-from swgpar import watch
 from swgpar.geometry.arrays import Floats, Ints
-from swgpar.petsc import NO_FILES, hidden_variables
+from swgpar.meshing.gmsh_session import gmsh_model
 
 
 class MeshError(Exception):
@@ -89,29 +88,13 @@ class MappedBlocks:
 
         Raises MeshError where gmsh cannot mesh the blocks.
         """
-        import gmsh  # here, so that runs on an existing mesh need no graphics libraries
-
-        owner = not gmsh.isInitialized()
-        if owner:
-            with hidden_variables():  # Gmsh has a PETSc of its own, which reads files and takes signals as the other
-                arguments = ["gmsh", "-v", "0", NO_FILES]  # without the warning that the option is not one of Gmsh
-                gmsh.initialize(argv=arguments, readConfigFiles=False, interruptible=False)
-            watch.rearm()
-        gmsh.option.setNumber("General.Verbosity", 5)
-        gmsh.option.setNumber("General.Terminal", 0)
-        gmsh.option.setNumber("General.NumThreads", 1)
-        gmsh.model.add("tooth section")
-        try:
-            self._describe(gmsh)
-            gmsh.model.mesh.generate(2)
-            result = self._collect(gmsh)
-        except Exception as error:  # gmsh raises nothing more specific
-            raise MeshError(str(error)) from error
-        finally:
-            gmsh.model.remove()
-            if owner:
-                gmsh.finalize()
-        return result
+        with gmsh_model("tooth section") as gmsh:
+            try:
+                self._describe(gmsh)
+                gmsh.model.mesh.generate(2)
+                return self._collect(gmsh)
+            except Exception as error:  # gmsh raises nothing more specific
+                raise MeshError(str(error)) from error
 
     def _describe(self, gmsh: ModuleType) -> None:
         """Define points, lines and blocks in gmsh."""

@@ -31,6 +31,21 @@ def increment_name(index: int) -> str:
     return f"increment_{index:04d}"
 
 
+TIME_STEP = 1e-3
+"""Degrees between the times of increments at the same angle."""
+
+
+def times(angles: Sequence[float] | np.ndarray) -> np.ndarray:
+    """Times (n,) of increments at these angles of the wave generator (n,), degrees.
+
+    They are the angles, made to increase: the increments that assemble the drive are all at the first one.
+    """
+    found = np.array(angles, dtype=float)
+    for k in range(1, len(found)):
+        found[k] = max(found[k], found[k - 1] + TIME_STEP)
+    return found
+
+
 TENSOR6 = [0, 3, 5, 1, 4, 2]
 """Components xx yy zz xy yz zx in XDMF's order xx xy xz yy yz zz."""
 
@@ -116,10 +131,11 @@ class FieldWriter:
             '<Xdmf Version="3.0"><Domain>',
             '<Grid Name="drive" GridType="Collection" CollectionType="Temporal">',
         ]
-        for index, angle in increments:
+        when = times([angle for _, angle in increments]).tolist()
+        for time, (index, angle) in zip(when, increments, strict=True):
             lines.append(
                 f'<Grid Name={quoteattr(increment_name(index))} GridType="Collection" CollectionType="Spatial">'
-                f'<Time Value="{index}"/><Information Name="wg_angle_deg" Value="{float(angle)!r}"/>'
+                f'<Time Value="{time!r}"/><Information Name="wg_angle_deg" Value="{angle!r}"/>'
             )
             for body, (n_points, n_cells) in self.shapes.items():
                 lines.append(

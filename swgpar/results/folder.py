@@ -52,6 +52,9 @@ START_STATES = "start_*.h5"
 SUMMARY = "summary.json"
 """Written last: a folder that has it is that of a finished run."""
 
+REPORT = "report.html"
+"""What the run gives, on one page."""
+
 LOG = "run.log"
 """The log of the run."""
 
@@ -77,6 +80,7 @@ RESULTS = (
     INDEX,
     f"{FOLDER}/*.h5",
     "figures/*.png",
+    REPORT,
     LOG,
 )
 """Files that `overwrite` removes."""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import base64
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
 from typing import Any
 
 from swgpar.results.figure_set import import_matplotlib
+from swgpar.results.html_page import image, page, table
 from swgpar.studies import figures
 from swgpar.studies.spec import Study
 from swgpar.studies.table import (
@@ -22,18 +22,6 @@ from swgpar.studies.table import (
     study_rows,
 )
 from swgpar.version import __version__
-
-STYLE = """
-body { font: 15px/1.45 sans-serif; margin: 2em auto; max-width: 84em; padding: 0 1em; color: #222; }
-table { border-collapse: collapse; margin: 1em 0; }
-th, td { padding: .25em .8em; border-bottom: 1px solid #ddd; text-align: right; vertical-align: top; }
-th { border-bottom: 2px solid #888; }
-.text { text-align: left; }
-.bad td, .bad { color: #a40000; }
-.scroll { overflow-x: auto; }
-img { max-width: 100%; }
-pre { background: #f4f4f4; padding: .8em; overflow-x: auto; }
-"""
 
 ESTIMATE = (
     "The error estimate is Richardson's extrapolation from the last two meshes of a case: with element sizes "
@@ -82,8 +70,7 @@ def make_report(
         parts.append("<h2>Remarks</h2>")
         parts += [f"<p>{escape(text)}</p>" for text in study.section.remarks.strip().split("\n\n")]
     parts += ["<h2>Study file</h2>", f"<pre>{escape(study.text)}</pre>"]
-    head = f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
-    return f"{head}<style>{STYLE}</style></head><body>\n{chr(10).join(parts)}\n</body></html>\n".encode()
+    return page(title, parts)
 
 
 def _introduction(study: Study, results: Sequence[Result]) -> str:
@@ -91,24 +78,6 @@ def _introduction(study: Study, results: Sequence[Result]) -> str:
     seconds = sum(outcome.wall_s or 0.0 for _, outcome in results)
     text = f"swgpar {__version__}: {len(results)} runs, {failed} failed, {seconds:.0f} s of computing."
     return f"<p>{text} Design: {escape(study.section.design)}.</p>"
-
-
-def table(header: Sequence[str], rows: Iterable[tuple[Sequence[Any], bool]]) -> str:
-    """An HTML table. rows : cells and whether something is wrong; texts stand on the left, numbers on the right."""
-    lines = ["<div class=scroll><table><tr>" + "".join(f"<th>{escape(name)}</th>" for name in header) + "</tr>"]
-    for cells, bad in rows:
-        line = "".join(
-            f"<td{' class=text' if isinstance(cell, str) else ''}>{escape(number(cell))}</td>" for cell in cells
-        )
-        lines.append(f"<tr{' class=bad' if bad else ''}>{line}</tr>")
-    return "\n".join([*lines, "</table></div>"])
-
-
-def number(value: Any) -> str:
-    """A value in a table: five digits, nothing for None."""
-    if value is None:
-        return ""
-    return f"{value:.5g}" if isinstance(value, float) else str(value)
 
 
 def _cases(results: Sequence[Result]) -> str:
@@ -157,16 +126,12 @@ def _failures(results: Sequence[Result], out: Path) -> list[str]:
 
 
 def _figures(study: Study, results: Sequence[Result]) -> list[str]:
-    parts = [_image(png, "stresses against angle") for png in figures.over_angle(results)]
+    parts = [image(png, "stresses against angle") for png in figures.over_angle(results)]
     if parts:
         parts.insert(0, "<h2>Stresses against the angle of the wave generator</h2>")
     for key in dict.fromkeys(key for job, _ in results for key in job.case.varied):
         drawn = figures.over_key(results, key, in_step=study.section.mode == "sweep")
-        images = [_image(png, f"quantities against {key}") for png in drawn]
+        images = [image(png, f"quantities against {key}") for png in drawn]
         if images:
             parts += [f"<h2>Against {escape(key)}</h2>", *images]
     return parts
-
-
-def _image(png: bytes, text: str) -> str:
-    return f'<p><img alt="{escape(text)}" src="data:image/png;base64,{base64.b64encode(png).decode()}"></p>'

@@ -186,6 +186,11 @@ class Drives(System[DriveDesign, DriveResult]):
     def print(self, result: DriveResult) -> None:
         print_drive(result.history, result.summary)
 
+    def report(self, result: DriveResult) -> bytes:
+        from swgpar.analysis.drive_report import drive_report  # only where a report is written
+
+        return drive_report(result)
+
     def without_output(self, table: dict[str, Any]) -> dict[str, Any]:
         # fields fill the disk, and windows take time that few studies need
         return apply_overrides(table, [f"output.{key}=false" for key in ("fields", "figures", "root_stress")])

@@ -60,6 +60,11 @@ class GearTrains(System[TrainDesign, TrainResult]):
     def print(self, result: TrainResult) -> None:
         print_compared(result.compared)
 
+    def report(self, result: TrainResult) -> bytes:
+        from swgpar.gear_trains.report import train_report  # only where a report is written
+
+        return train_report(result)
+
     def without_output(self, table: dict[str, Any]) -> dict[str, Any]:
         # published values of the file belong to its own design, and may name what a varied one does not compute
         table = {key: value for key, value in table.items() if key != "published"}

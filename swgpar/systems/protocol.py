@@ -114,6 +114,10 @@ class System(ABC, Generic[D, R]):
     def print(self, result: R) -> None:
         """Show a result on the terminal; call it on one rank."""
 
+    @abstractmethod
+    def report(self, result: R) -> bytes:
+        """The page report.html of a result that has a folder; call it on one rank."""
+
     # what studies need
 
     @abstractmethod

@@ -1,0 +1,238 @@
+"""Drawings of a drive with its dimensions, as SVG: along the axis, the teeth at the major axis, the section of the cup.
+
+The flexible spline is drawn as the wave generator deflects it before it is loaded: an inextensible ring, whose teeth
+move as rigid bodies. Profiles, cam and walls are the exact curves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from html import escape
+
+import numpy as np
+
+from swgpar.design.drive_design import DriveDesign
+from swgpar.design.sections import GEARS
+from swgpar.geometry.profiles import ToothProfile
+from swgpar.geometry.rotation import rotated
+from swgpar.meshing.cup import meridian
+from swgpar.meshing.recipe import CupRecipe
+
+SIZE = 560.0
+"""Width of a drawing, pixels; it shrinks with the page."""
+
+FLANK_POINTS = 12
+
+FILLS = {"ring_gear": "#c9d6e6", "flexible_spline": "#f0c987", "wave_generator": "#d9d9d9"}
+NAMES = {"ring_gear": "ring gear", "flexible_spline": "flexible spline", "wave_generator": "wave generator"}
+
+
+@dataclass
+class Sheet:
+    """Pixels of a drawing: (x, y) in mm is at (left + scale x, top - scale y). parts : elements of SVG"""
+
+    scale: float
+    left: float
+    top: float
+    height: float
+    parts: list[str] = field(default_factory=list)
+
+    def at(self, x: float, y: float) -> tuple[float, float]:
+        """Pixels of a point in mm."""
+        return self.left + self.scale * x, self.top - self.scale * y
+
+    def outline(self, points: Sequence[np.ndarray], fill: str, name: str) -> None:
+        """Closed curves, each (n, 2) mm, filled between them."""
+        path = " ".join(
+            "M" + "L".join(f"{x:.2f} {y:.2f}" for x, y in (self.at(*p) for p in curve)) + "Z" for curve in points
+        )
+        self.parts.append(
+            f'<path d="{path}" fill="{fill}" fill-rule="evenodd" stroke="#333" stroke-width=".7">'
+            f"<title>{escape(name)}</title></path>"
+        )
+
+    def text(self, x: float, y: float, text: str, anchor: str = "middle") -> None:
+        """A text at pixels."""
+        self.parts.append(f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}">{escape(text)}</text>')
+
+    def line(self, *pixels: float, style: str = "dim") -> None:
+        """A line from x, y to x, y in pixels."""
+        x1, y1, x2, y2 = pixels
+        self.parts.append(f'<line class="{style}" x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}"/>')
+
+    def across(self, x1: float, x2: float, y_from: float, y: float, text: str) -> None:
+        """A horizontal dimension from x1 to x2 mm at the height y (pixels), with lines from y_from mm."""
+        (a, start), (b, _) = self.at(x1, y_from), self.at(x2, y_from)
+        for x in (a, b):
+            self.line(x, start, x, y + (4 if y > start else -4), style="thin")
+        self.line(a, y, b, y)
+        self.text(0.5 * (a + b), y - 4, text)
+
+    def upright(self, y1: float, y2: float, x_from: float, x: float, text: str, anchor: str = "start") -> None:
+        """A vertical dimension from y1 to y2 mm at x (pixels), with lines from x_from mm."""
+        (start, a), (_, b) = self.at(x_from, y1), self.at(x_from, y2)
+        for y in (a, b):
+            self.line(start, y, x + (4 if x > start else -4), y, style="thin")
+        self.line(x, a, x, b)
+        self.text(x + (6 if anchor == "start" else -6), 0.5 * (a + b) + 4, text, anchor)
+
+    def svg(self, caption: str) -> str:
+        """The drawing with its caption."""
+        return (
+            f'<figure><svg class="drawing" viewBox="0 0 {SIZE:.0f} {self.height:.0f}" role="img" '
+            f'aria-label="{escape(caption)}">{ARROWS}{"".join(self.parts)}</svg>'
+            f"<figcaption>{escape(caption)}</figcaption></figure>"
+        )
+
+
+ARROWS = (
+    '<defs><marker id="a" viewBox="0 0 10 6" refX="10" refY="3" markerWidth="9" markerHeight="6" '
+    'orient="auto-start-reverse"><path d="M0 0L10 3L0 6z" fill="#06c"/></marker></defs>'
+)
+
+DRAWING_STYLE = """
+figure { margin: 0 0 1em; } figcaption { font-size: 13px; color: #555; }
+.drawing { width: 100%; background: #fff; font: 14px sans-serif; }
+.drawing .dim { stroke: #06c; stroke-width: 1; marker-start: url(#a); marker-end: url(#a); }
+.drawing .thin { stroke: #06c; stroke-width: .5; } .drawing text { fill: #04a; }
+.drawing .axis { stroke: #888; stroke-width: .8; stroke-dasharray: 14 4 3 4; }
+"""
+
+
+def draw_drive(design: DriveDesign) -> list[str]:
+    """All drawings of a design."""
+    curves = _curves(design)
+    sheets = [_front(design, curves), _teeth(design, curves)]
+    return [*sheets, _meridian(design)] if design.drive.model == "cup" else sheets
+
+
+def _tooth(design: DriveDesign, gear: str) -> np.ndarray:
+    """One tooth (n, 2), mm, centred on +y, from its clockwise to its counter-clockwise root."""
+    profile = design.profile(gear)
+    ends = profile.breaks
+    s = np.concatenate([np.linspace(a, b, FLANK_POINTS // len(ends) + 3)[:-1] for a, b in zip(ends[:-1], ends[1:])])
+    flank = profile.point(np.append(s, ends[-1]))[::-1]
+    return np.concatenate([flank, (flank * [-1.0, 1.0])[::-1]])
+
+
+def _curves(design: DriveDesign) -> dict[str, list[np.ndarray]]:
+    """Closed curves of the gears and the cam, mm, the spline deflected with its major axis along +y."""
+    drive, d = design.drive, design.deflection
+    angle = 2.0 * np.pi / drive.teeth_rg * (np.arange(drive.teeth_rg) + 0.5)
+    ring = rotated(_tooth(design, "ring_gear")[None], angle[:, None]).reshape(-1, 2)
+    outer = design.profile("ring_gear").r_root_circle + design.ring_gear.rim
+    r = design.inner_radius + 0.5 * design.flexible_spline.rim
+
+    def moved(psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Points of the mid-line (n, 2) that were at the angles psi, and the rotation of the ring there."""
+        w, v = 0.5 * d * np.cos(2.0 * psi), -0.25 * d * np.sin(2.0 * psi)
+        place = ((r + w) * np.array([-np.sin(psi + v / r), np.cos(psi + v / r)])).T
+        return place, psi + (v + d * np.sin(2.0 * psi)) / r
+
+    place, turned = moved(2.0 * np.pi / drive.teeth_fs * np.arange(drive.teeth_fs))
+    teeth = place[:, None] + rotated(_tooth(design, "flexible_spline")[None] - [0.0, r], turned[:, None])
+    place, turned = moved(np.linspace(0.0, 2.0 * np.pi, 721)[:-1])
+    inside = place + rotated(np.array([[0.0, -0.5 * design.flexible_spline.rim]]), turned)
+    return {
+        "ring_gear": [_circle(outer), ring],
+        "flexible_spline": [teeth.reshape(-1, 2), inside],
+        "wave_generator": [design.cam().outline(720)],
+    }
+
+
+def _circle(radius: float) -> np.ndarray:
+    angle = np.linspace(0.0, 2.0 * np.pi, 361)[:-1]
+    return radius * np.column_stack([np.cos(angle), np.sin(angle)])
+
+
+def _front(design: DriveDesign, curves: dict[str, list[np.ndarray]]) -> str:
+    outer = float(curves["ring_gear"][0].max())
+    sheet = Sheet(215.0 / outer, 250.0, 265.0, 545.0)
+    for name, closed in curves.items():
+        sheet.outline(closed, FILLS[name], NAMES[name])
+    for x1, y1, x2, y2 in ((-1.04, 0.0, 1.04, 0.0), (0.0, -1.04, 0.0, 1.04)):
+        sheet.line(*sheet.at(x1 * outer, y1 * outer), *sheet.at(x2 * outer, y2 * outer), style="axis")
+    width, height = (float(curves["wave_generator"][0][:, k].max()) for k in (0, 1))
+    sheet.across(-outer, outer, 0.0, 20.0, f"⌀ {2 * outer:.4g}")
+    sheet.across(-width, width, 0.0, 525.0, f"cam {2 * width:.5g}")
+    sheet.upright(-height, height, 0.0, 478.0, f"{2 * height:.5g}")
+    drive = design.drive
+    caption = (
+        f"Along the axis, in mm: {drive.teeth_fs} teeth of the flexible spline (bore {2 * design.inner_radius:.5g}), "
+        f"{drive.teeth_rg} of the ring gear, module {drive.module:g}, deflection {design.deflection:.4g}; "
+        f"{design.wave_generator.type.replace('_', ' ')} cam. Before it is loaded."
+    )
+    return sheet.svg(caption)
+
+
+def _teeth(design: DriveDesign, curves: dict[str, list[np.ndarray]]) -> str:
+    pitch = np.pi * design.drive.module
+    spline, ring = (design.profile(gear) for gear in GEARS)
+    low, high = design.major_semi_axis - 0.3 * pitch, ring.r_root_circle + min(design.ring_gear.rim, 0.5 * pitch)
+    half = max(1.6 * pitch, 0.5 * (high - low))
+    scale = 0.5 * (SIZE - 210.0) / half
+    sheet = Sheet(scale, 0.5 * SIZE, 25.0 + scale * high, 50.0 + scale * (high - low))
+    for name, closed in curves.items():
+        sheet.outline([_cut(curve, half, low, high) for curve in closed], FILLS[name], NAMES[name])
+    a, edge = 0.5 * design.deflection, SIZE - 90.0
+    # dimensions of the spline are drawn where its tooth is deflected to
+    sheet.upright(spline.r_root_circle + a, spline.r_tip_circle + a, 0.0, edge, f"{_height(spline):.4g} spline")
+    sheet.upright(design.major_semi_axis, spline.r_root_circle + a, 0.0, edge, f"{design.flexible_spline.rim:.4g} rim")
+    sheet.upright(ring.r_tip_circle, ring.r_root_circle, -half, 90.0, f"{_height(ring):.4g} ring", "end")
+    caption = (
+        f"Teeth at the major axis, in mm: {design.flexible_spline.profile.type.replace('_', ' ')} on "
+        f"{design.ring_gear.profile.type.replace('_', ' ')}, backlash "
+        f"{max(round(design.backlash, 6), 0.0):.3g} at the pitch circle, face width {design.drive.face_width:g}."
+    )
+    return sheet.svg(caption)
+
+
+def _height(profile: ToothProfile) -> float:
+    return abs(profile.r_tip_circle - profile.r_root_circle)
+
+
+def _cut(curve: np.ndarray, half: float, low: float, high: float) -> np.ndarray:
+    """The part of a closed curve at the top of a drive, closed below the window and clipped to it."""
+    curve = np.roll(curve, -int(curve[:, 1].argmin()), axis=0)
+    near = curve[(np.abs(curve[:, 0]) < 1.3 * half) & (curve[:, 1] > 0.0)]
+    below = np.array([[near[-1, 0], low], [near[0, 0], low]])
+    return np.clip(np.concatenate([near, below]), [-half, low], [half, high])
+
+
+def _meridian(design: DriveDesign) -> str:
+    cup, width = design.cup, design.drive.face_width
+    spline, ring = (design.profile(gear) for gear in GEARS)
+    outer = ring.r_root_circle + design.ring_gear.rim
+    back = 0.5 * width
+    length = width + cup.length
+    scale = min((SIZE - 150.0) / length, 420.0 / outer)
+    sheet = Sheet(scale, 60.0 + scale * back, 55.0 + scale * outer, 100.0 + scale * outer)
+    inner_line, outer_line = meridian(design, CupRecipe(cylinder=1, fillet=24, closed_end=1))
+    tooth = np.array([[spline.r_tip_circle, back], [spline.r_tip_circle, -back], [design.inner_radius, -back]])
+    wall = np.concatenate([inner_line, outer_line[::-1], tooth])
+    half = 0.5 * design.wave_generator.face_width
+    boxes = {
+        "ring_gear": (ring.r_tip_circle, outer, back),
+        "wave_generator": (0.0, design.inner_radius, half),
+    }
+    for name, (r1, r2, reach) in boxes.items():
+        box = np.array([[-reach, r1], [reach, r1], [reach, r2], [-reach, r2]])
+        sheet.outline([box], FILLS[name], NAMES[name])
+    sheet.outline([wall[:, ::-1]], FILLS["flexible_spline"], NAMES["flexible_spline"])
+    sheet.line(*sheet.at(-0.6 * width, 0.0), *sheet.at(back + cup.length + 0.1 * length, 0.0), style="axis")
+    end = back + cup.length
+    sheet.across(-back, back, outer, 22.0, f"{width:g}")
+    sheet.across(back, end, outer_line[0, 0], 44.0, f"{cup.length:g}")
+    bottom = sheet.at(0.0, 0.0)[1]
+    sheet.upright(0.0, cup.inner_radius, end, sheet.at(end, 0.0)[0] + 14.0, f"bore r {cup.inner_radius:g}")
+    sheet.upright(0.0, design.inner_radius, -back, 40.0, f"r {design.inner_radius:.4g}", "start")
+    x, y = sheet.at(back + 0.5 * cup.length, design.inner_radius)
+    sheet.text(x, y + 18.0, f"wall {design.cup_thickness:.3g}, fillet r {cup.fillet_radius:g}")
+    sheet.height = bottom + 20.0
+    micro = design.micro_geometry
+    caption = (
+        "Half section, in mm, undeformed, teeth without their backlash. Micro-geometry: cam crowning "
+        f"{micro.wg_crowning:g}, slope {micro.wg_slope:g}; flank crowning {micro.fs_crowning:g}."
+    )
+    return sheet.svg(caption)

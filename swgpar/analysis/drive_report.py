@@ -1,0 +1,160 @@
+"""report.html: what a run of a drive gives, on one page that needs nothing else."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+from swgpar.analysis import scene
+from swgpar.analysis.drive_drawing import DRAWING_STYLE, draw_drive
+from swgpar.analysis.report_checks import Check, checks
+from swgpar.design.drive_design import DriveDesign
+from swgpar.results.html_page import page
+from swgpar.results.result_page import STYLE as RESULT_STYLE
+from swgpar.results.result_page import cards, figures, inputs, versions
+
+if TYPE_CHECKING:
+    from swgpar.analysis.drive_result import DriveResult
+
+STYLE = (
+    RESULT_STYLE
+    + DRAWING_STYLE
+    + scene.STYLE
+    + """
+.drawings { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 22em), 1fr)); gap: 1em; }
+.ok { color: #176b17; font-weight: bold; } .look { color: #a40000; font-weight: bold; } .none { color: #666; }
+.checks td:nth-child(2) { white-space: nowrap; }
+"""
+)
+
+VERDICTS = {
+    True: '<span class="ok">good</span>',
+    False: '<span class="look">look</span>',
+    None: '<span class="none">not judged</span>',
+}
+
+
+def drive_report(result: DriveResult) -> bytes:
+    """The whole page; reads the figures in the results folder. Call it on one rank."""
+    summary = result.summary
+    design = DriveDesign.model_validate(summary["design"])
+    found = checks(design, summary, result.history)
+    drive = summary["design"]["drive"]
+    title = f"Strain wave gear {drive['teeth_fs']}/{drive['teeth_rg']}, {summary['design']['load']['torque']:g} N·m"
+    parts = [f"<h1>{escape(title)}</h1>", _introduction(summary, found)]
+    parts += ['<h2>The drive</h2><div class="drawings">', *draw_drive(design), "</div>"]
+    parts += [
+        "<h2>Answers</h2>",
+        cards(["", "value", "unit", "error", "where"], ((row, False) for row in answers(summary))),
+    ]
+    if summary["places"]:
+        parts += ["<h3>Largest stresses under load</h3>", _places(summary["places"], summary["mesh_error"])]
+    parts += ["<h2>Checks</h2>", _checks(found)]
+    if drawn := figures(result.folder, result.plot.names):
+        parts += ["<h2>Figures</h2>", drawn]
+    view = scene.scene(result)
+    if view:
+        parts += ["<h2>View</h2>", view]
+    parts += ["<h2>Inputs</h2>", inputs(summary["design"]), "<h2>Program</h2>", versions(summary)]
+    return page(title, parts, STYLE)
+
+
+def _introduction(summary: Mapping[str, Any], found: Iterable[Check]) -> str:
+    drive = summary["design"]["drive"]
+    look = [check.name for check in found if check.good is False]
+    model = "plane model" if drive["model"] == "plane" else "cup drive"
+    fixed = "ring gear fixed" if drive["layout"] == "ring_fixed" else "flexible spline fixed"
+    mesh = f"mesh {summary['recipe']}, " if summary["recipe"] else ""
+    verdict = f"Look at: {', '.join(look)}." if look else "All checks that can be judged are good."
+    return (
+        f"<p>{model}, ratio {summary['ratio']:g}, {fixed}; {escape(mesh)}{summary['elements']} elements, "
+        f"{summary['increments']} increments.</p><p class={'bad' if look else 'ok'}>{escape(verdict)}</p>"
+    )
+
+
+def answers(summary: Mapping[str, Any]) -> list[list[Any]]:
+    """Rows of what, value, unit, error and where, for what the run has."""
+    rows: list[list[Any]] = []
+
+    def add(what: str, value: Any, unit: str = "", error: float | None = None, where: str = "") -> None:
+        if value is not None:
+            rows.append([what, float(value), unit, "" if error is None else f"± {error:.2g}", where])
+
+    if root := summary["root_stress"]:
+        add("largest tension at the teeth, s1", root["s1"], "MPa", root["total_error"], _where(root))
+        if over := root["over_period"]:
+            add("the same, mean over a period", over["mean"], "MPa", over["mean_error"])
+    if contact := summary["contact"]:
+        where = (
+            f"tooth {contact['tooth']}, {contact['flank']} flank, radius {contact['radius_mm']:.2f}, "
+            f"z {contact['z_mm']:.2f} mm{'; on an edge: no property of the drive' if contact['edge'] else ''}"
+        )
+        add("largest contact pressure of the flanks", contact["pressure_MPa"], "MPa", None, where)
+    if sharing := summary["load_sharing"]:
+        pairs = sharing["pairs"]
+        span = f"{pairs['smallest']:.0f} to {pairs['largest']:.0f}"
+        add("pairs of flanks in contact", pairs["mean"], "", None, span)
+        add("teeth in contact", 100.0 * sharing["teeth_share"]["mean"], "%")
+        add("largest share of one tooth in the force", 100.0 * sharing["largest_force_share"], "%")
+        add("largest force of one pair", sharing["largest_force_N"], "N")
+    add("mean input torque", summary["means"].get("wg_torque_Nmm"), "N·mm")
+    if summary["torque_ripple"] is not None:
+        add("input torque, largest less smallest over mean", 100.0 * summary["torque_ripple"], "%")
+    add("transmission error, peak to peak", summary["transmission_error_arcsec"], "arc seconds")
+    if stiffness := summary["stiffness"]:
+        error = stiffness["mesh_error"] or {}
+        for name in ("K1", "K2", "K3"):
+            add(f"torsional stiffness {name}", stiffness[name], "N·m/rad", error.get(name))
+        for name in ("lost_motion", "hysteresis", "backlash"):
+            add(name.replace("_", " "), stiffness[name], "arc minutes", error.get(name))
+    if ratcheting := summary["ratcheting"]:
+        add("largest torque of the output", ratcheting["peak_torque_Nm"], "N·m", None, ratcheting["gave_way"])
+    if fatigue := summary.get("fatigue"):
+        for name in ("goodman", "crossland", "yield"):
+            error = fatigue["mesh_error"] if name == "goodman" else None
+            add(f"least safety, {name}", fatigue[name]["safety"], "", error, fatigue[name]["region"])
+        add("life", fatigue["life_hours"], "h")
+    if losses := summary.get("losses"):
+        add("torque of the losses", losses["loss_torque_Nmm"], "N·mm")
+        if losses["efficiency"]:
+            add("efficiency", 100.0 * losses["efficiency"], "%")
+    if bearing := summary.get("bearing"):
+        where = f"{bearing['cam_angle_deg']:.0f} degrees from the major axis"
+        add("largest ball load", bearing["largest_load_N"], "N", None, where)
+        add("rating life of the bearing, L10", bearing["life"]["L10_hours"], "h")
+    return rows
+
+
+def _where(place: Mapping[str, Any]) -> str:
+    region = place["region"] if place["region"] == "inside the tooth" else f"{place['region']} of tooth"
+    return (
+        f"{region.replace('the tooth', 'tooth')} {place['tooth']}, radius {place['radius']:.2f}, "
+        f"z {place['z']:.2f} mm, {place['angle_deg']:.1f} degrees from +y"
+    )
+
+
+STRESSES = {"s1": "tension s1", "s3": "compression |s3|", "vm": "von Mises"}
+BODIES = {"fs": "flexible spline", "rg": "ring gear"}
+
+
+def _places(places: Mapping[str, Mapping[str, Any]], mesh_error: Mapping[str, float] | None) -> str:
+    rows = []
+    for name, place in places.items():
+        body, stress, *apart = name.split("_")
+        what = f"{BODIES.get(body, body)}, {STRESSES.get(stress, stress)}" + (
+            ", apart from the contact" if apart else ""
+        )
+        error = (mesh_error or {}).get(name)
+        text = "" if error is None else f"± {error:.2g}"
+        rows.append(([what, float(place["value"]), "MPa", text, _where(place), place["warning"]], False))
+    return cards(["nodal average", "value", "unit", "error", "where", "the value depends on the mesh"], rows)
+
+
+def _checks(found: Iterable[Check]) -> str:
+    rows = "".join(
+        f"<tr><td class=text>{escape(check.name)}</td><td class=text>{VERDICTS[check.good]}</td>"
+        f"<td class=text>{escape(check.text)}</td></tr>"
+        for check in found
+    )
+    return f'<div class="scroll cards"><table class="checks">{rows}</table></div>'

@@ -1,0 +1,64 @@
+"""DXF files of the tooth profiles and the cam: one sector of each gear, whole outlines, and the cam, in mm."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from swgpar.design.drive_design import DriveDesign
+from swgpar.design.sections import GEARS
+from swgpar.errors import InputError
+from swgpar.exchange.outlines import Edge, cam_outlines, gear_outline
+
+
+def write_dxf(design: DriveDesign, folder: Path) -> list[Path]:
+    """Write drive.dxf with the layers flexible_spline, ring_gear and wave_generator; call it on one rank.
+
+    Raises InputError without the package ezdxf.
+    """
+    ezdxf = _ezdxf()
+    document = ezdxf.new("R2010", units=4)  # mm
+    space = document.modelspace()
+    for gear in GEARS:
+        document.layers.add(gear)
+        _draw(space, gear_outline(design, gear), gear)
+        rim = design.inner_radius
+        if gear == "ring_gear":
+            rim = design.profile(gear).r_root_circle + design.ring_gear.rim
+        space.add_circle((0.0, 0.0), rim, dxfattribs={"layer": gear})
+    document.layers.add("wave_generator")
+    for points in cam_outlines(design):  # a polyline of this many points is within 0.02 µm of the curve
+        space.add_lwpolyline(points.tolist(), close=True, dxfattribs={"layer": "wave_generator"})
+    path = folder / "drive.dxf"
+    document.saveas(path)
+    return [path]
+
+
+def _ezdxf() -> ModuleType:
+    try:
+        import ezdxf
+    except ImportError:
+        raise InputError("the format dxf needs the package ezdxf: pip install 'swgpar[exchange]'") from None
+    return ezdxf
+
+
+def _draw(space: Any, edges: Iterable[Edge], layer: str) -> None:
+    """Lines, arcs and splines of an outline."""
+    attributes = {"layer": layer}
+    for edge in edges:
+        if edge.center is None and len(edge.points) == 2:
+            space.add_line(*edge.points.tolist(), dxfattribs=attributes)
+        elif edge.center is None:
+            space.add_cad_spline_control_frame(edge.points.tolist(), dxfattribs=attributes)
+        else:
+            arms = edge.points - edge.center
+            angles = np.degrees(np.arctan2(arms[:, 1], arms[:, 0]))
+            # an arc of DXF runs counter-clockwise
+            if arms[0, 0] * arms[1, 1] - arms[0, 1] * arms[1, 0] < 0.0:
+                angles = angles[::-1]
+            radius = float(np.hypot(*arms[0]))
+            space.add_arc(tuple(edge.center), radius, angles[0], angles[1], dxfattribs=attributes)

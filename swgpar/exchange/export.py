@@ -1,0 +1,43 @@
+"""Files of other programs from a design or from a result, by the names of their formats."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from swgpar.analysis.drive_result import DriveResult
+from swgpar.design.drive_design import DriveDesign
+from swgpar.errors import InputError
+from swgpar.exchange.dxf import write_dxf
+from swgpar.exchange.step import write_step
+from swgpar.exchange.tables import write_look_up, write_parquet
+from swgpar.exchange.vtkhdf import write_vtkhdf
+
+OF_DESIGN: Mapping[str, Callable[[DriveDesign, Path], list[Path]]] = {"step": write_step, "dxf": write_dxf}
+"""Formats of a design: its geometry."""
+
+OF_RESULT: Mapping[str, Callable[[DriveResult, Path], list[Path]]] = {
+    "vtkhdf": write_vtkhdf,
+    "parquet": write_parquet,
+    "lookup": write_look_up,
+}
+"""Formats of a result: its fields and tables."""
+
+
+def export_files(source: DriveDesign | DriveResult, folder: Path, formats: Sequence[str]) -> list[Path]:
+    """Write the files of the formats into a folder, which is made; call it on one rank.
+
+    Raises
+    ------
+    InputError
+        A format that the source does not have, or one whose package is missing.
+    """
+    writers: Mapping[str, Callable[[Any, Path], list[Path]]]
+    writers = OF_DESIGN if isinstance(source, DriveDesign) else OF_RESULT
+    noun = "a design" if isinstance(source, DriveDesign) else "a result"
+    for name in formats:
+        if name not in writers:
+            raise InputError(f'format = "{name}" is not available for {noun}: allowed {", ".join(writers)}')
+    folder.mkdir(parents=True, exist_ok=True)
+    return [path for name in formats for path in writers[name](source, folder)]

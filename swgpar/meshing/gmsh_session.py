@@ -1,0 +1,35 @@
+"""Gmsh for a few calls: started when it is not running, without files of settings and without its signals."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import ModuleType
+
+from swgpar import watch
+from swgpar.petsc import NO_FILES, hidden_variables
+
+
+@contextmanager
+def gmsh_model(name: str) -> Iterator[ModuleType]:
+    """The module gmsh with a new model, which is removed at the end."""
+    import gmsh  # here, so that runs on an existing mesh need no graphics libraries
+
+    owner = not gmsh.isInitialized()
+    if owner:
+        with hidden_variables():  # Gmsh has a PETSc of its own, which reads files and takes signals as the other
+            arguments = ["gmsh", "-v", "0", NO_FILES]  # without the warning that the option is not one of Gmsh
+            gmsh.initialize(argv=arguments, readConfigFiles=False, interruptible=False)
+        watch.rearm()
+    try:
+        gmsh.option.setNumber("General.Verbosity", 5)
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.option.setNumber("General.NumThreads", 1)
+        gmsh.model.add(name)
+        try:
+            yield gmsh
+        finally:
+            gmsh.model.remove()
+    finally:
+        if owner:
+            gmsh.finalize()

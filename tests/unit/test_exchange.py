@@ -1,0 +1,200 @@
+"""Files of other programs, opened by others: OpenCASCADE for STEP, ezdxf for DXF, VTK, Arrow."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import swgpar
+from support.paths import DESIGN, RECIPE
+from support.small_drive import PLANE, SHORT
+from swgpar.design.drive_design import DriveDesign
+from swgpar.errors import InputError
+from swgpar.exchange.outlines import FLANK_POINTS, TOLERANCE, cam_outlines, flank_edges, gear_outline
+from swgpar.exchange.tables import spring_table, write_look_up
+from swgpar.meshing.gmsh_session import gmsh_model
+from swgpar.results.fields import TIME_STEP, times
+from swgpar.results.table import read_columns
+
+
+def small(**request: object) -> DriveDesign:
+    return swgpar.new(ratio=15.0, diameter=42.0, torque=5.0, **request)
+
+
+def section_area(design: DriveDesign, gear: str) -> float:
+    """Area within the toothed outline, by Green's theorem on a fine polygon of the exact flank and exact arcs."""
+    profile = design.profile(gear)
+    x, y = profile.point(np.linspace(0.0, profile.length, 20001)).T
+    flank = -0.5 * np.sum(x[:-1] * y[1:] - x[1:] * y[:-1])
+    land = profile.polar_angle(0.0)[0]
+    root = np.pi / profile.n_teeth - profile.polar_angle(profile.length)[0]
+    half = flank + 0.5 * profile.r_tip_circle**2 * land + 0.5 * profile.r_root_circle**2 * root
+    return float(2.0 * profile.n_teeth * half)
+
+
+def wall_volume(design: DriveDesign) -> float:
+    """Volume of the cup's wall, by Pappus's theorem."""
+    cup, t, r = design.cup, design.cup_thickness, design.inner_radius
+    cylinder = np.pi * ((r + t) ** 2 - r**2) * (cup.length - cup.fillet_radius)
+    middle = r + t - cup.fillet_radius
+    end = np.pi * (middle**2 - cup.inner_radius**2) * t
+    outer, inner = cup.fillet_radius, cup.fillet_radius - t
+    quarter = [0.25 * np.pi * x**2 * 2.0 * np.pi * (middle + 4.0 * x / (3.0 * np.pi)) for x in (outer, inner)]
+    return float(cylinder + end + quarter[0] - quarter[1])
+
+
+@pytest.mark.parametrize("profile, cam", [("quadruple_arc", "elliptical"), ("involute", "parabolic")])
+def test_volumes_of_step_files(tmp_path: Path, profile: str, cam: str, capfd: pytest.CaptureFixture[str]) -> None:
+    design = small(profile=profile, cam=cam)
+    paths = swgpar.export(design, tmp_path, ["step"])
+    assert capfd.readouterr().out == ""
+    width = design.drive.face_width
+    outer = design.profile("ring_gear").r_root_circle + design.ring_gear.rim
+    bore = np.pi * design.inner_radius**2
+    x, y = design.cam().outline(100_000).T
+    volumes = {
+        "flexible_spline": (section_area(design, "flexible_spline") - bore) * width + wall_volume(design),
+        "ring_gear": (np.pi * outer**2 - section_area(design, "ring_gear")) * width,
+        "wave_generator": 0.5 * abs(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) * width,
+    }
+    assert [path.stem for path in paths] == list(volumes)
+    for path in paths:
+        with gmsh_model("read") as gmsh:
+            solids = [entity for entity in gmsh.model.occ.importShapes(str(path)) if entity[0] == 3]
+            assert len(solids) == 1
+            assert gmsh.model.occ.getMass(*solids[0]) == pytest.approx(volumes[path.stem], rel=1e-4)  # asked: 1e-3
+
+
+@pytest.mark.parametrize("profile", ["quadruple_arc", "double_arc", "involute"])
+def test_outlines_close_and_follow_the_exact_flank(profile: str) -> None:
+    design = small(profile=profile, model="plane")
+    for gear in ("flexible_spline", "ring_gear"):
+        edges = gear_outline(design, gear)
+        for edge, following in zip(edges, [*edges[1:], edges[0]], strict=True):
+            assert edge.points[-1] == pytest.approx(following.points[0], abs=1e-9)
+        exact = design.profile(gear)
+        for edge in flank_edges(exact):
+            if edge.center is not None:
+                radius = np.hypot(*(edge.points - edge.center).T)
+                assert radius[0] == pytest.approx(radius[1], abs=1e-9)
+            assert np.abs(exact.distance(edge.points)[0]).max() < 1e-9
+
+
+@pytest.mark.parametrize("cam", ["elliptical", "parabolic", "simplified"])
+def test_curves_of_the_kernel_stay_within_their_tolerance(cam: str) -> None:
+    """The B-spline that OpenCASCADE lays through the points, against the exact cam and an exact involute."""
+    design = small(profile="involute", cam=cam, model="plane")
+    (points,) = cam_outlines(design)
+    flank = max(flank_edges(design.profile("flexible_spline")), key=lambda edge: len(edge.points)).points
+    assert len(flank) == FLANK_POINTS
+    with gmsh_model("curves") as gmsh:
+        occ = gmsh.model.occ
+        tags = [occ.addPoint(*p, 0.0) for p in points]
+        closed = occ.addSpline([*tags, tags[0]])
+        side = occ.addSpline([occ.addPoint(*p, 0.0) for p in flank])
+        occ.synchronize()
+        found = []
+        for curve in (closed, side):
+            (low,), (high,) = gmsh.model.getParametrizationBounds(1, curve)
+            between = np.linspace(low, high, 20011)
+            found.append(gmsh.model.getValue(1, curve, between).reshape(-1, 3)[:, :2])
+    assert np.abs(design.cam().evaluate(found[0])[0]).max() < TOLERANCE
+    assert np.abs(design.profile("flexible_spline").distance(found[1])[0]).max() < TOLERANCE
+
+
+@pytest.mark.parametrize("profile, cam", [("quadruple_arc", "elliptical"), ("involute", "four_roller")])
+def test_dxf_passes_the_audit(tmp_path: Path, profile: str, cam: str) -> None:
+    ezdxf = pytest.importorskip("ezdxf")
+    design = small(profile=profile, cam=cam, model="plane")
+    (path,) = swgpar.export(design, tmp_path, ["dxf"])
+    document = ezdxf.readfile(path)
+    assert not document.audit().has_errors and document.units == 4
+    layers = {entity.dxf.layer for entity in document.modelspace()}
+    assert layers == {"flexible_spline", "ring_gear", "wave_generator"}
+    if profile == "quadruple_arc":  # the arcs as DXF has them: their ends are on the exact flank
+        exact = design.profile("flexible_spline")
+        arcs = [e for e in document.modelspace().query("ARC") if e.dxf.layer == "flexible_spline"]
+        ends = np.array([[*e.start_point][:2] for e in arcs] + [[*e.end_point][:2] for e in arcs])
+        near = ends[(np.abs(np.arctan2(*ends.T)) < np.pi / exact.n_teeth) & (ends[:, 0] > 1e-6)]
+        assert len(near) > 4 and np.abs(exact.distance(near)[0]).max() < TOLERANCE
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("exchange") / "run"
+    swgpar.run(swgpar.load_design(DESIGN, [*PLANE, *SHORT, "output.figures=false", "output.fields=true"]), RECIPE, out)
+    return out
+
+
+def test_vtk_reads_the_fields(folder: Path, tmp_path: Path) -> None:
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOHDF import vtkHDFReader
+
+    result = swgpar.open_result(folder)
+    (path,) = swgpar.export(result, tmp_path, ["vtkhdf"])
+    reader = vtkHDFReader()
+    reader.SetFileName(str(path))
+    reader.UpdateInformation()
+    assert reader.GetNumberOfSteps() == result.increments
+    for step in (0, result.increments - 1):
+        reader.SetStep(step)
+        reader.Update()
+        grid, expected = reader.GetOutputDataObject(0), result.grid(step, whole=True)
+        assert grid.GetNumberOfCells() == expected.n_cells
+        assert vtk_to_numpy(grid.GetPoints().GetData()) == pytest.approx(np.asarray(expected.points))
+        for name in ("displacement", "vm", "s1"):
+            values = vtk_to_numpy(grid.GetPointData().GetArray(name))
+            assert values == pytest.approx(np.asarray(expected.point_data[name]), rel=1e-6, abs=1e-9), name
+
+
+def test_times_are_angles_that_increase() -> None:
+    found = times(np.array([0.0, 0.0, 0.0, 2.0, 4.0]))
+    assert found.tolist() == [0.0, TIME_STEP, 2.0 * TIME_STEP, 2.0, 4.0]
+
+
+def test_tables_as_parquet(folder: Path, tmp_path: Path) -> None:
+    parquet = pytest.importorskip("pyarrow.parquet")
+    result = swgpar.open_result(folder)
+    paths = swgpar.export(result, tmp_path, ["parquet"])
+    assert {"history", "pairs"} <= {path.stem for path in paths}
+    table = parquet.read_table(tmp_path / "history.parquet")
+    assert table.column("fs_s1").to_numpy() == pytest.approx(result.history["fs_s1"], rel=0.0, abs=0.0)
+
+
+def test_the_spring_of_a_known_loop() -> None:
+    """A loop of 10 N·m: 0.2 arc minutes per N·m, the falling branch half an arc minute behind."""
+    up, down = np.linspace(-10.0, 10.0, 21), np.linspace(10.0, -10.0, 21)
+    torque = np.concatenate([up, down[1:]])
+    rotation = np.concatenate([0.2 * up, 0.2 * down[1:] + 0.5])
+    table = spring_table({"wg_angle_deg": np.zeros(len(torque)), "torque_Nm": torque, "rotation_arcmin": rotation})
+    arcmin = np.pi / 10800.0
+    inside = slice(2, -2)
+    assert table["windup_rising_rad"][inside] == pytest.approx(0.2 * arcmin * table["torque_Nm"][inside])
+    shift = (table["windup_falling_rad"] - table["windup_rising_rad"])[inside]
+    assert shift == pytest.approx(np.full(len(shift), 0.5 * arcmin))
+
+
+def test_the_ripple_of_a_result(tmp_path: Path) -> None:
+    class Sampled:
+        program: dict[str, np.ndarray] = {}
+        stiffness = None
+        transmission_error = {
+            "wg_angle_deg": np.array([0.0, 90.0, 180.0, 270.0]),
+            "transmission_error_arcsec": np.array([1.0, 3.0, 1.0, -1.0]),
+        }
+
+    (path,) = write_look_up(Sampled(), tmp_path)
+    table = read_columns(path)
+    assert table["wave_generator_angle_rad"][1] == pytest.approx(0.5 * np.pi)
+    assert table["kinematic_error_rad"] * 648000.0 / np.pi == pytest.approx([0.0, 2.0, 0.0, -2.0], abs=1e-12)
+
+
+def test_formats_that_a_source_does_not_have(folder: Path, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match='format = "step" is not available for a result: allowed vtkhdf'):
+        swgpar.export(folder, tmp_path, ["step"])
+    with pytest.raises(InputError, match='format = "vtkhdf" is not available for a design: allowed step, dxf'):
+        swgpar.export(DESIGN, tmp_path, ["vtkhdf"])
+    with pytest.raises(InputError, match="lookup needs a run with"):
+        swgpar.export(folder, tmp_path, ["lookup"])

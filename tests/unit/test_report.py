@@ -1,0 +1,133 @@
+"""report.html: one file with what a run gives, its checks and its drawings; and the surface that its view shows."""
+
+from __future__ import annotations
+
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+import pyvista
+
+import swgpar
+from support.paths import DESIGN, DRIVERS, RECIPE
+from support.small_drive import PLANE, SHORT
+from swgpar.analysis.drive_drawing import draw_drive
+from swgpar.analysis.drive_report import answers
+from swgpar.analysis.report_checks import checks
+from swgpar.analysis.scene import sector_surface
+from swgpar.analysis.view import view_plotter
+from swgpar.errors import InputError
+from swgpar.meshing import build_sector_meshes, load_recipe
+
+VOID = {"meta", "img", "input", "br"}
+
+
+class Page(HTMLParser):
+    """Tags in their order, and that every one is closed; what the page takes from outside."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.tags: list[str] = []
+        self.links: list[str] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        self.links += [value or "" for name, value in attributes if name in ("src", "href")]
+        if tag not in VOID and not self.get_starttag_text().endswith("/>"):
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        if tag not in VOID and self.open and self.open[-1] == tag:
+            self.open.pop()
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("report") / "run"
+    design = swgpar.load_design(DESIGN, [*PLANE, *SHORT, "output.figures=false", "output.fields=true"])
+    swgpar.run(design, RECIPE, out)
+    return out
+
+
+def test_a_run_leaves_one_page_that_needs_nothing_else(folder: Path) -> None:
+    text = (folder / "report.html").read_text(encoding="utf-8")
+    page = Page(text)
+    assert page.open == [] and page.tags.count("svg") == 2 and "canvas" in page.tags
+    assert all(link.startswith("data:") for link in page.links)
+    assert "http" not in re.sub(r"<pre>.*?</pre>", "", text, flags=re.DOTALL)
+    summary = swgpar.open_result(folder).summary
+    for name, value, *_ in answers(summary):
+        assert f"{value:.5g}" in text, name
+    assert "balance of torques" in text and summary["versions"]["petsc"] in text
+    assert f"teeth_fs = {summary['design']['drive']['teeth_fs']}" in text
+
+
+def test_verdicts_follow_the_numbers(folder: Path) -> None:
+    result = swgpar.open_result(folder)
+    design = swgpar.DriveDesign.model_validate(result.summary["design"])
+
+    def verdicts(**changed: object) -> dict[str, bool | None]:
+        return {c.name: c.good for c in checks(design, {**result.summary, **changed}, result.history)}
+
+    assert verdicts()["balance of torques"] and verdicts()["elements"]
+    largest = float(np.abs(result.history["tooth_torque_Nmm"]).max())
+    assert verdicts(balance_error_Nmm=0.01 * largest)["balance of torques"] is False
+    assert verdicts(jammed="the teeth may jam")["energy"] is False
+    contact = dict.fromkeys(("edge",), 1)
+    assert verdicts(contact=contact)["edge contact"] is False
+    assert verdicts(contact=None)["edge contact"] is None
+    root = {"s1": 100.0, "total_error": 20.0}
+    assert verdicts(root_stress=root)["resolution"] is False
+    assert verdicts(root_stress={**root, "total_error": 2.0})["resolution"] is True
+    deep = {**result.history, "max_penetration_mm": 0.0 * result.history["max_penetration_mm"] + design.drive.module}
+    assert {c.name: c.good for c in checks(design, result.summary, deep)}["penetration"] is False
+
+
+@pytest.mark.parametrize("name", ["cup_45deg", "plane_half_turn"])
+def test_drawings_have_the_dimensions(name: str) -> None:
+    design = swgpar.load_design(DRIVERS / f"{name}.toml")
+    drawings = "".join(draw_drive(design))
+    outer = design.profile("ring_gear").r_root_circle + design.ring_gear.rim
+    texts = re.findall(r"<text[^>]*>([^<]*)</text>", drawings)
+    for value in (f"⌀ {2 * outer:.4g}", f"{2 * design.major_semi_axis:.5g}", f"{design.flexible_spline.rim:.4g} rim"):
+        assert value in texts
+    for path in re.findall(r'<path d="([^"]*)" fill="[^"]*" fill-rule', drawings):
+        numbers = [float(number) for number in re.findall(r"-?\d+\.\d\d", path)]
+        assert numbers and min(numbers) > 0.0 and max(numbers) < 700.0  # nothing is drawn outside
+
+
+@pytest.mark.parametrize("gear", ["flexible_spline", "ring_gear"])
+def test_the_surface_of_all_sectors_is_that_of_the_body(gear: str) -> None:
+    mesh = build_sector_meshes(swgpar.load_design(DESIGN), load_recipe(RECIPE))[gear]
+    triangles = sector_surface(mesh.coords, mesh.hexes)
+    a, b, c = (mesh.coords[triangles[:, k]] for k in range(3))
+    area = mesh.n_sectors * 0.5 * float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+    whole = swgpar.mesh(DESIGN, RECIPE).bodies[gear]
+    kinds = np.full(len(whole.cells), pyvista.CellType.HEXAHEDRON)
+    cells = np.hstack([np.full((len(whole.cells), 1), 8), whole.cells]).ravel()
+    grid = pyvista.UnstructuredGrid(cells, kinds, whole.points)
+    assert area == pytest.approx(grid.extract_surface(algorithm="dataset_surface").triangulate().area, rel=1e-3)
+
+
+def test_the_view_of_a_folder(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    result = swgpar.open_result(folder)
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+    with pytest.raises(InputError, match="view needs a display"):
+        result.view()
+    plotter = view_plotter(result, off_screen=True)
+    picture = plotter.screenshot(return_img=True)
+    plotter.close()
+    assert picture.std() > 10.0  # something is drawn
+
+
+def test_the_report_of_a_gear_train(tmp_path: Path) -> None:
+    result = swgpar.run(DRIVERS / "ring_supported.toml", out=tmp_path / "ring")
+    text = (tmp_path / "ring" / "report.html").read_text(encoding="utf-8")
+    assert Page(text).open == []
+    name, value = next((name, float(np.ravel(v)[0])) for name, v in result.quantities.items())
+    assert name in text and f"{value:.5g}" in text
