@@ -103,6 +103,7 @@ def kill(name: str, command: Command, reference: Path, out: Path, way: str, seco
         cwd=DATA,
         env=environment(),
         start_new_session=True,
+        preexec_fn=_hear_all,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
         text=True,
@@ -130,6 +131,11 @@ def kill(name: str, command: Command, reference: Path, out: Path, way: str, seco
     if not fault and not found <= 1e-8:
         fault = f"results differ by {found:.1e}"
     return Kill(name, way, seconds, late, ended, found, fault)
+
+
+def _hear_all() -> None:
+    """Under nohup a command would ignore SIGHUP."""
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
 def _send(leader: int, way: str, ranks: int) -> None:
