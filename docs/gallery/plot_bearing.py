@@ -16,10 +16,15 @@ import matplotlib.pyplot as plt
 import swgpar
 
 DRIVERS = Path(__file__).parents[2] / "drivers"
-design = swgpar.load_design(
-    DRIVERS / "plane_half_turn.toml",
+drive = swgpar.load_design(DRIVERS / "plane_half_turn.toml")
+radius = drive.inner_radius  # mm
+design = drive.with_values(
     {
-        "wave_generator.bearing": {"balls": 24, "ball_diameter": 8.0, "race_thickness": 1.5},
+        "wave_generator.bearing": {
+            "balls": 24,
+            "ball_diameter": round(0.14 * radius, 1),
+            "race_thickness": round(0.026 * radius, 2),
+        },
         "steps.rotation": 4.0,
         "steps.increment": 4.0,
         "output.fields": False,
