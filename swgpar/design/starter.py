@@ -82,6 +82,7 @@ def starter_design(request: Request) -> tuple[DriveDesign, dict[str, Any]]:
     """
     _check(request)
     refusal: InputError | None = None
+    built = False
     for play in PLAY:
         table = _table(request, play)
         try:
@@ -89,14 +90,15 @@ def starter_design(request: Request) -> tuple[DriveDesign, dict[str, Any]]:
         except InputError as error:  # thinner teeth than their arcs allow
             refusal = refusal or error
             continue
+        built = True
         # few angles suffice: a tenth of the clearance is what they change
-        if flank_clearance(design, 91, 60) > LEAST_CLEARANCE * design.drive.module:
+        if flank_clearance(design, 91) > LEAST_CLEARANCE * design.drive.module:
             return design, table
-    if refusal is not None:
+    if refusal is not None and not built:
         raise refusal
     raise InputError(
-        f"ratio = {request.ratio:g} with profile = {request.profile} leaves no clearance between the flanks: allowed "
-        "are larger ratios, or another profile"
+        f"ratio = {request.ratio:g} with profile = {request.profile} and cam = {request.cam} leaves no clearance between "
+        "the flanks: allowed are other ratios, profiles or cams"
     )
 
 

@@ -10,6 +10,7 @@ import os
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from itertools import pairwise
 from pathlib import Path
 from types import ModuleType
 
@@ -85,7 +86,10 @@ def _closed_curve(gmsh: ModuleType, points: np.ndarray, z: float) -> int:
     """A smooth closed curve through points (n, 2)."""
     occ = gmsh.model.occ
     tags = [occ.addPoint(x, y, z) for x, y in points]
-    return occ.addCurveLoop([occ.addSpline([*tags, tags[0]])])
+    tags.append(tags[0])
+    # in quarters: OpenCASCADE integrates the area inside of a single closed curve to 0.3 % only
+    ends = np.linspace(0, len(points), 5).astype(int)
+    return occ.addCurveLoop([occ.addSpline(tags[a : b + 1]) for a, b in pairwise(ends)])
 
 
 def _loop(gmsh: ModuleType, edges: Sequence[Edge], z: float) -> int:

@@ -11,7 +11,7 @@ from swgpar.optimisation.problem import Problem
 from swgpar.optimisation.result import OptimisationResult
 from swgpar.optimisation.spec import Specification
 from swgpar.results.figure_set import import_matplotlib
-from swgpar.studies.report import STYLE, table
+from swgpar.results.html_page import page, table
 from swgpar.version import __version__
 
 IMPORTANCE = (
@@ -44,9 +44,7 @@ def make_report(spec: Specification, problem: Problem, result: OptimisationResul
         parts.append("<h2>Remarks</h2>")
         parts += [f"<p>{escape(text)}</p>" for text in spec.section.remarks.strip().split("\n\n")]
     parts += ["<h2>Optimisation file</h2>", f"<pre>{escape(spec.text)}</pre>"]
-    view = '<meta name="viewport" content="width=device-width">'
-    head = f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">{view}<title>{title}</title>'
-    return f"{head}<style>{STYLE}</style></head><body>\n{chr(10).join(parts)}\n</body></html>\n".encode()
+    return page(spec.title, parts)
 
 
 def _introduction(spec: Specification, result: OptimisationResult) -> str:

@@ -26,7 +26,7 @@ def test_a_starter_design_clears_and_can_be_meshed(ratio: float, profile: Profil
     model = "cup" if profile == "double_arc" else "plane"
     design = swgpar.new(ratio=ratio, diameter=50.0, torque=10.0, profile=profile, model=model)
     # other angles and points than those of the search
-    assert flank_clearance(design, 121, 80) > 0.0 and design.backlash > 0.0
+    assert flank_clearance(design, 121) > 0.0 and design.backlash > 0.0
 
 
 def test_a_starter_design_needs_no_remarks() -> None:
@@ -34,9 +34,17 @@ def test_a_starter_design_needs_no_remarks() -> None:
     assert remarks(design, derived_geometry(design)) == []
 
 
+NO_ROOM = {(15.0, "four_roller"), (320.0, "parabolic")}
+"""Ratios and cams at the ends of the range, with which the flanks of the quadruple arc interfere at any backlash."""
+
+
 @pytest.mark.parametrize("cam", get_args(CamType))
 @pytest.mark.parametrize("ratio", RATIOS)
-def test_every_cam_fits_every_ratio(ratio: float, cam: CamType) -> None:
+def test_a_cam_fits_a_ratio_or_is_refused(ratio: float, cam: CamType) -> None:
+    if (ratio, cam) in NO_ROOM:
+        with pytest.raises(InputError, match="leaves no clearance between the flanks"):
+            starter_design(Request(ratio, 10.0, bore=60.0, cam=cam))
+        return
     design, _ = starter_design(Request(ratio, 10.0, bore=60.0, cam=cam))
     assert design.wave_generator.type == cam
     stretch = taut_length(design.cam()) / (2.0 * np.pi * design.inner_radius) - 1.0
