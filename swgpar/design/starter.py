@@ -97,8 +97,8 @@ def starter_design(request: Request) -> tuple[DriveDesign, dict[str, Any]]:
     if refusal is not None and not built:
         raise refusal
     raise InputError(
-        f"ratio = {request.ratio:g} with profile = {request.profile} and cam = {request.cam} leaves no clearance between "
-        "the flanks: allowed are other ratios, profiles or cams"
+        f"ratio = {request.ratio:g} with profile = {request.profile} and cam = {request.cam} leaves no clearance "
+        "between the flanks: allowed are other ratios, profiles or cams"
     )
 
 
