@@ -57,7 +57,8 @@ def rigid_mesh(design: DriveDesign, phases: int = 8, n_points: int = 300) -> Rig
 
     def gaps(rotation: np.ndarray) -> np.ndarray:
         flat = np.broadcast_to(rotation, psi.shape).ravel()
-        return smallest_gaps(*pair, motion, psi.ravel(), n_points, flat).reshape(psi.shape)
+        found = smallest_gaps(*pair, motion, psi.ravel(), n_points, flat, 0.02 * design.drive.module)
+        return found.reshape(psi.shape)
 
     touching = np.zeros((phases, 1))
     for _ in range(2):  # the second time from where the first pair touches, so that the extrapolation is short

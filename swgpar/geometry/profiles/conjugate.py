@@ -368,7 +368,7 @@ def conjugate(
     profile = ToothProfile(tuple(segments), teeth.external, tip, root, teeth.n_teeth)
     psi = np.linspace(-REACH, REACH, 321)
     pair = (profile, given) if teeth.external else (given, profile)
-    gaps = smallest_gaps(*pair, motion, psi)
+    gaps = smallest_gaps(*pair, motion, psi, exact_below=0.02 * teeth.module)
     deepest = int(np.argmin(gaps))
     if gaps[deepest] < -DEEPEST * teeth.module:
         raise InputError(

@@ -20,6 +20,7 @@ def smallest_gaps(
     psi: Floats,
     n_points: int = 200,
     rotation: Floats | float = 0.0,
+    exact_below: float = np.inf,
 ) -> Floats:
     """Smallest signed distance (n,) mm of the flexible spline's flank from the ring gear's, below 0 where they overlap.
 
@@ -28,6 +29,7 @@ def smallest_gaps(
     psi : (n,) rad, material angles of the tooth
     n_points : points on its flank
     rotation : rad, of the spline's material beyond its place in the slot; scalar or (n,)
+    exact_below : mm; wider gaps are those to the nearest of `SAMPLES` points, which are no smaller
     """
     x, y = spline.point(np.linspace(0.0, spline.length, n_points)).T
     rotation = np.broadcast_to(rotation, psi.shape)
@@ -44,8 +46,8 @@ def smallest_gaps(
     rough[np.abs(w) <= ring.r_tip_circle] = np.inf
     # the exact distance is computed for the nearest points only
     lowest = rough.min(axis=1)
-    near = (rough < lowest[:, None] + 2.0 * samples[1]) & np.isfinite(rough)
-    gaps = np.full(rough.shape, np.inf)
+    near = (rough < lowest[:, None] + 2.0 * samples[1]) & (lowest < exact_below)[:, None] & np.isfinite(rough)
+    gaps = np.where((lowest < exact_below)[:, None], np.inf, rough)
     if near.any():
         gaps[near] = ring.distance(points[near])[0]
     return gaps.min(axis=1)
