@@ -49,7 +49,7 @@ def drive_report(result: DriveResult) -> bytes:
         cards(["", "value", "unit", "error", "where"], ((row, False) for row in answers(summary))),
     ]
     if summary["places"]:
-        parts += ["<h3>Largest stresses under load</h3>", _places(summary["places"], summary["mesh_error"])]
+        parts += ["<h3>Largest stresses under load</h3>", _places(summary["places"])]
     parts += ["<h2>Checks</h2>", _checks(found)]
     if drawn := figures(result.folder, result.plot.names):
         parts += ["<h2>Figures</h2>", drawn]
@@ -138,14 +138,14 @@ STRESSES = {"s1": "tension s1", "s3": "compression |s3|", "vm": "von Mises"}
 BODIES = {"fs": "flexible spline", "rg": "ring gear"}
 
 
-def _places(places: Mapping[str, Mapping[str, Any]], mesh_error: Mapping[str, float] | None) -> str:
+def _places(places: Mapping[str, Mapping[str, Any]]) -> str:
     rows = []
     for name, place in places.items():
         body, stress, *apart = name.split("_")
         what = f"{BODIES.get(body, body)}, {STRESSES.get(stress, stress)}" + (
             ", apart from the contact" if apart else ""
         )
-        error = (mesh_error or {}).get(name)
+        error = place.get("error")
         text = "" if error is None else f"± {error:.2g}"
         rows.append(([what, float(place["value"]), "MPa", text, _where(place), place["warning"]], False))
     return cards(["nodal average", "value", "unit", "error", "where", "the value depends on the mesh"], rows)
