@@ -82,7 +82,10 @@ def _penetration(design: DriveDesign, history: Mapping[str, np.ndarray]) -> Chec
 def _clearance(design: DriveDesign) -> Check:
     clearance = flank_clearance(design, 181)
     least = -design.contact.penetration_tolerance * design.drive.module
-    text = f"smallest distance of the undeformed flanks {1000 * clearance:.3g} µm; good from {1000 * least:.2g} µm, which the contact takes up"
+    text = (
+        f"smallest distance of the undeformed flanks {1000 * clearance:.3g} µm; good from {1000 * least:.2g} µm: the "
+        "contact takes up an overlap of that size"
+    )
     return Check("clearance of the flanks", clearance >= least, text)
 
 
