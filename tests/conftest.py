@@ -2,6 +2,8 @@
 
 A test says by `@pytest.mark.parallel` (plugin mpi-pytest) on how many ranks it runs; without that it runs on one. The
 setting `-m parallel[match]` selects the tests of the number of ranks that pytest itself was started on.
+
+The tests that `slow.txt` names run with `--slow`, or when the command line names them.
 """
 
 from __future__ import annotations
@@ -9,6 +11,7 @@ from __future__ import annotations
 import os
 import sys
 import time
+from pathlib import Path
 
 import pytest
 from mpi4py import MPI
@@ -17,6 +20,24 @@ WAIT = 60.0
 """s that a rank on which a test has failed waits for the other ranks, before it ends all of them."""
 
 ranks = MPI.COMM_WORLD.Dup()  # not the communicator of the tests: their messages must not be taken for these
+
+
+SLOW = Path(__file__).with_name("slow.txt")
+"""Tests that take ten seconds or more, one on a line."""
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--slow", action="store_true", help="run the tests of slow.txt too")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    if config.getoption("--slow") or any("::" in argument for argument in config.args):
+        return
+    slow = set(SLOW.read_text(encoding="utf-8").splitlines())
+    left_out = [item for item in items if item.nodeid in slow]
+    if left_out:
+        config.hook.pytest_deselected(items=left_out)
+        items[:] = [item for item in items if item.nodeid not in slow]
 
 
 @pytest.hookimpl(trylast=True)
