@@ -42,7 +42,7 @@ REFUSED = [
     (CASCADE, "published.static_B_12=1", "published.static_B_12 is not a quantity of this gear train: did you mean"),
     (CASCADE, "published.braked_B=1", "published.braked_B = 1 is not a list of 8 numbers"),
     (CASCADE, "published.overloaded_static=many", 'published.overloaded_static = "many" is not one number'),
-    (GEAR_PAIR, "gear_1.radius=0", "gear_1.radius = 0 is out of range: allowed above 0 to 100000 mm"),
+    (GEAR_PAIR, "gear_1.radius=0", "gear_1.radius = 0 is out of range: allowed above 0 to 1000000 mm"),
     (GEAR_PAIR, "mesh.contact_ratio=2.5", "mesh.contact_ratio = 2.5 is out of range: allowed 1 to 2"),
     (GEAR_PAIR, "load.output=[1.0]", "load.output = [1.0] is out of range: allowed 3 torques (load.input)"),
     (GEAR_PAIR, "load.input=[1.0, -1.0, 1.0]", "load.input = -1 is out of range"),
