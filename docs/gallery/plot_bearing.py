@@ -28,6 +28,7 @@ design = drive.with_values(
         "steps.rotation": 4.0,
         "steps.increment": 4.0,
         "output.fields": False,
+        "output.root_stress": False,  # there are no windows with a bearing
     },
 )
 result = swgpar.run(design, mesh="plane_coarse")

@@ -54,9 +54,9 @@ def checkout(tmp_path: Path) -> Path:
     for path in DRIVERS.glob("*.toml"):
         if path.stem.startswith(("cup_", "plane_")):
             plane = PLANE if path.stem.startswith("plane_") else ()
-            # the example in Python prints the stress at the teeth, in the plane
-            root = () if plane else ("output.root_stress=false",)
-            short = ["steps.rotation=9", "steps.increment=9", "output.fields=true", *root]
+            # the example in Python prints the stress at the teeth
+            root = f"output.root_stress={str(bool(plane)).lower()}"
+            short = ["steps.rotation=9", "steps.increment=9", "output.fields=true", root]
             table = apply_overrides(read_toml(DESIGN), [*short, *plane])
         else:
             table = apply_overrides(read_toml(path), SMALL.get(path.stem, ()))
