@@ -9,6 +9,7 @@ The tests that `slow.txt` names run with `--slow`, or when the command line name
 from __future__ import annotations
 
 import os
+import signal
 import sys
 import time
 from pathlib import Path
@@ -21,6 +22,11 @@ WAIT = 60.0
 
 ranks = MPI.COMM_WORLD.Dup()  # not the communicator of the tests: their messages must not be taken for these
 
+for _number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    if (
+        signal.getsignal(_number) is signal.SIG_IGN
+    ):  # from nohup or a script's background job: children would inherit it
+        signal.signal(_number, signal.default_int_handler if _number == signal.SIGINT else signal.SIG_DFL)
 
 SLOW = Path(__file__).with_name("slow.txt")
 """Tests that take ten seconds or more, one on a line."""

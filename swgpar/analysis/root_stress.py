@@ -139,10 +139,11 @@ def window_recipe(model: str, level: int) -> MeshRecipe:
     return make_recipe(content)
 
 
-def resolve_root_stress(model: DriveModel, state: LoadState, levels: int | None = None) -> RootStress:
+def resolve_root_stress(model: DriveModel, state: LoadState, levels: int | None = None, skipped: int = 0) -> RootStress:
     """Resolve the largest tensile stress at the teeth in the model's equilibrium under `state`; collective.
 
     levels : windows, each finer than the one before; None for those of `LEVELS`
+    skipped : coarsest of these windows that are left out; their stresses are not numbers
 
     Raises ConvergenceError or InputError where a window cannot be computed.
     """
@@ -150,14 +151,14 @@ def resolve_root_stress(model: DriveModel, state: LoadState, levels: int | None 
     parts = (False,) if kind == "plane" else (False, True)  # between the ends of the teeth, and at them
     on_mesh = [_largest_by_tooth(model, ends) for ends in parts]
     places = [(tooth, ends) for tooth in candidates(*on_mesh) for ends in parts]
-    values: dict[tuple[int, bool], list[float]] = {place: [] for place in places}
-    for level in range(levels or LEVELS[kind]):
+    values: dict[tuple[int, bool], list[float]] = {place: [math.nan] * skipped for place in places}
+    for level in range(skipped, levels or LEVELS[kind]):
         found = _solve(model, state, places, window_recipe(kind, level))
         for place, stress in found.items():
             values[place].append(stress.value)
         best = max(places, key=lambda place: found[place].value)
         places = [place for place in places if may_be_largest(found[place], found[best], level)]
-    stresses = ", ".join(f"{value:.1f}" for value in values[best])
+    stresses = ", ".join(f"{value:.1f}" for value in values[best][skipped:])
     logger.info("windows around tooth %d, drive of %d elements: s1 %s MPa", best[0], model.n_elements(), stresses)
     error = error_of(values[best], RATIO[kind])
     return _place(model, found[best], tuple(values[best]), error, float(np.max(on_mesh)))

@@ -248,7 +248,7 @@ class _Run:
         self.recorder.coarse = CoarseStresses(places, size_ratio(recipe, self.recipe))
         if model.design.resolves_root_stress:
             try:
-                self.coarse = recipe, resolve_root_stress(model, loaded, COMPARED_LEVELS).levels
+                self.coarse = recipe, resolve_root_stress(model, loaded, COMPARED_LEVELS, COMPARED_LEVELS - 1).levels
             except (ConvergenceError, InputError) as error:
                 logger.info("the error by the mesh of the drive is not known: %s", error)
 

@@ -16,7 +16,7 @@ from swgpar.fem.local_nodes import LocalNodes
 from swgpar.fem.partition import Partition
 from swgpar.meshing.sector import FlankGrid
 
-LINE_WINDOW = (2, 1)
+LINE_WINDOW = (1, 1)
 """Facets beside that of a foot point, along the profile and along z, whose nodes may couple with the slave face."""
 
 

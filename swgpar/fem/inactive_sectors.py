@@ -11,7 +11,7 @@ import numpy as np
 from swgpar.fem.body_layout import RING_GEAR
 from swgpar.fem.elements import Elements
 
-LEAST, MARGIN = 4, 6
+LEAST, MARGIN = 1, 2
 """Active sectors on each side of those within reach: at least, and when the choice is made anew."""
 
 
@@ -36,6 +36,10 @@ class InactiveSectors:
         mask = np.zeros(len(self.active), dtype=bool)
         mask[(sectors[:, None] + np.arange(-margin, margin + 1)) % len(mask)] = True
         return mask
+
+    def lacks(self, sectors: np.ndarray) -> bool:
+        """Whether any of the sectors (n,) is inactive."""
+        return not bool(self.active[sectors].all())
 
     def update(self, within_reach: np.ndarray, elements: Elements) -> bool:
         """Choose by the sectors (n,) within reach; returns whether the active elements have changed."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,7 +11,7 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.geometry.arrays import Floats, Ints
 from swgpar.meshing.cross_section import CrossSection
 from swgpar.meshing.recipe import CupRecipe
-from swgpar.meshing.sweep import symmetric_steps
+from swgpar.meshing.sweep import sweep_quads, symmetric_steps
 
 
 def meridian(design: DriveDesign, recipe: CupRecipe) -> tuple[Floats, Floats]:
@@ -72,21 +74,134 @@ def depth_fractions(section: CrossSection, attached: NDArray[np.bool_], r_inner:
     return fraction
 
 
-def cup_nodes(
-    design: DriveDesign, recipe: CupRecipe, section: CrossSection, attached: NDArray[np.bool_]
-) -> tuple[Floats, Ints]:
-    """Return the nodes of the cup beyond the back of the teeth.
+@dataclass(frozen=True)
+class CupSlice:
+    """Nodes and elements of the cup behind one tooth.
 
-    Returns
-    -------
-    coords : (n_station - 1, n_column, 3) float64, mm
-    columns : (n_column,) int32
-        Nodes of the cross-section that are continued.
+    coords : (n, 3) mm, of the nodes that are not those of the toothed part;  hexes : (n_elem, 8)
+    cw, ccw : (n_pair,) nodes on the sides of the sector, without those of the toothed part
+    bore : (n_bore,) nodes
     """
+
+    coords: Floats
+    hexes: Ints
+    cw: Ints
+    ccw: Ints
+    bore: Ints
+
+
+def wall_grid(section: CrossSection, attached: NDArray[np.bool_]) -> Ints:
+    """Return the nodes (n_layer + 1, n_column + 1) of the cross-section that the cup continues.
+
+    Rows go from the free surface outwards, columns from the clockwise to the counter-clockwise side.
+    """
+    opposite = {}
+    for quad in section.quads[attached].tolist():
+        for k in range(4):
+            opposite[quad[(k + 1) % 4], quad[k]] = quad[(k + 2) % 4], quad[(k + 3) % 4]
+    rows = [section.free.tolist()]
+    while (rows[-1][0], rows[-1][1]) in opposite:
+        pairs = [opposite[a, b] for a, b in zip(rows[-1][:-1], rows[-1][1:], strict=True)]
+        rows.append([pairs[0][0], *(last for _, last in pairs)])
+    return np.array(rows, dtype=np.int32)
+
+
+def joined_columns(n_column: int) -> list[int]:
+    """Return numbers of columns that become one: threes, and in the middle single ones that are left over."""
+    threes, rest = divmod(n_column // 2, 3)
+    return [*[3] * threes, *[1] * (2 * rest), *[3] * threes]
+
+
+def transition(below: Ints, above: Ints, between: Ints, groups: list[int]) -> Ints:
+    """Return the hexahedra (n, 8) between a station with all columns and one with joined columns.
+
+    Parameters
+    ----------
+    below : (n_layer + 1, n_column + 1) nodes;  above : (n_layer + 1, n_group + 1) nodes
+    between : (n_layer + 1, 2 * n_three) nodes, two for every three columns that become one
+    groups : numbers of columns that become one
+    """
+    quads, column, inside = [], 0, 0
+    for k, width in enumerate(groups):
+        low, left, right = below[:, column : column + width + 1].T, above[:, k], above[:, k + 1]
+        if width == 1:
+            quads.append((low[0], low[1], right, left))
+        else:
+            first, second = between[:, inside], between[:, inside + 1]
+            quads += [
+                (low[0], low[1], first, left),
+                (low[1], low[2], second, first),
+                (low[2], low[3], right, second),
+                (first, second, right, left),
+            ]
+            inside += 2
+        column += width
+    faces = np.array(quads).transpose(2, 0, 1)  # (n_layer + 1, n_quad, 4), counter-clockwise seen from outside
+    return np.concatenate((faces[:-1], faces[1:]), axis=-1).reshape(-1, 8).astype(np.int32)
+
+
+def transition_station(design: DriveDesign, recipe: CupRecipe) -> int:
+    """Station after which columns are joined: of the cylinder, a pitch or more behind the teeth if there is one."""
+    z = meridian(design, recipe)[0][: recipe.cylinder, 1]
+    behind = np.flatnonzero(z - z[0] >= np.pi * design.drive.module)
+    return int(behind[0]) if len(behind) else recipe.cylinder - 1
+
+
+def cup_slice(
+    design: DriveDesign, recipe: CupRecipe, section: CrossSection, root_too: bool, back: Ints, first: int
+) -> CupSlice:
+    """Return the cup beyond the back of the teeth.
+
+    Parameters
+    ----------
+    root_too : whether the cup continues the layers below the root as well
+    back : (n_section,) nodes at the back of the teeth;  first : number that the first new node gets
+    """
+    attached = attached_quads(section, root_too)
+    grid = wall_grid(section, attached)
     inner, outer = meridian(design, recipe)
-    columns = np.unique(section.quads[attached]).astype(np.int32)
-    fraction = depth_fractions(section, attached, design.inner_radius, design.cup_thickness)[columns]
-    angle = np.arctan2(*section.coords[columns].T)
-    rz = inner[1:, None] + fraction[None, :, None] * (outer - inner)[1:, None]
-    coords = np.stack((rz[..., 0] * np.sin(angle), rz[..., 0] * np.cos(angle), rz[..., 1]), axis=-1)
-    return coords, columns
+    fraction = depth_fractions(section, attached, design.inner_radius, design.cup_thickness)
+    angle = np.arctan2(*section.coords.T)
+    if recipe.joined_columns:
+        angle[grid] = angle[grid[0]]  # radial columns, below the root too
+
+    def positions(rz_inner: Floats, rz_outer: Floats, columns: Ints) -> Floats:
+        """Nodes (n_station, n, 3) mm on the lines between points (n_station, 2) of the inner and outer surface."""
+        rz = rz_inner[:, None] + fraction[None, columns, None] * (rz_outer - rz_inner)[:, None]
+        return np.stack((rz[..., 0] * np.sin(angle[columns]), rz[..., 0] * np.cos(angle[columns]), rz[..., 1]), axis=-1)
+
+    number = np.full((len(inner), len(section.coords)), -1, dtype=np.int32)
+    number[0] = back
+    columns = np.unique(grid)
+    last = len(inner) - 1 if not recipe.joined_columns else transition_station(design, recipe)
+    number[1 : last + 1, columns] = first + np.arange(last * len(columns)).reshape(last, -1)
+    coords = [positions(inner[1 : last + 1], outer[1 : last + 1], columns).reshape(-1, 3)]
+    hexes = [sweep_quads(section.quads[attached], number[: last + 1])]
+    if last < len(inner) - 1:
+        first += last * len(columns)
+        groups = joined_columns(grid.shape[1] - 1)
+        ends = np.concatenate(([0], np.cumsum(groups)))
+        coarse = grid[:, ends]
+        dropped = np.setdiff1d(np.arange(grid.shape[1]), ends)
+        kept = np.unique(coarse)
+        between = first + np.arange(grid[:, dropped].size, dtype=np.int32).reshape(len(grid), -1)
+        # as far from the joined columns as a column is wide, where the elements are long
+        length = inner[last + 1, 1] - inner[last, 1]
+        width = 2.0 * np.pi * design.inner_radius / design.drive.teeth_fs / (grid.shape[1] - 1)
+        share = 1.0 - min(0.5, width / length)
+        ring = [line[last : last + 1] + share * (line[last + 1] - line[last]) for line in (inner, outer)]
+        coords.append(positions(*ring, grid[:, dropped].ravel()).reshape(-1, 3))
+        first += between.size
+        number[last + 1 :, kept] = first + np.arange((len(inner) - 1 - last) * len(kept)).reshape(-1, len(kept))
+        coords.append(positions(inner[last + 1 :], outer[last + 1 :], kept).reshape(-1, 3))
+        hexes.append(transition(number[last][grid], number[last + 1][coarse], between, groups))
+        quads = np.stack((coarse[:-1, 1:], coarse[:-1, :-1], coarse[1:, :-1], coarse[1:, 1:]), axis=-1).reshape(-1, 4)
+        hexes.append(sweep_quads(quads, number[last + 1 :]))
+    edge = section.edge[np.isin(section.edge, columns)]
+    return CupSlice(
+        np.concatenate(coords),
+        np.concatenate(hexes),
+        number[1:, edge].ravel(),
+        number[1:, section.mirror[edge]].ravel(),
+        np.sort(number[-1][number[-1] >= 0]),
+    )

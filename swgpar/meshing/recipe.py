@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -54,6 +55,9 @@ class CupRecipe(Section):
         text="length of the middle elements of cylinder and closed end over those at their ends",
         ge=1.0,
         le=20.0,
+    )
+    joined_columns: bool = quantity(
+        False, text="whether three columns of elements become one in the wall, a pitch behind the teeth"
     )
 
 
@@ -113,5 +117,6 @@ def to_toml(recipe: MeshRecipe) -> str:
     """The recipe as `load_recipe` reads it."""
     sections = recipe.model_dump(exclude_none=True).items()
     return "\n".join(
-        f"[{name}]\n" + "".join(f"{key} = {value}\n" for key, value in section.items()) for name, section in sections
+        f"[{name}]\n" + "".join(f"{key} = {json.dumps(value)}\n" for key, value in section.items())
+        for name, section in sections
     )

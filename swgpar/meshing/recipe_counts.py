@@ -20,7 +20,7 @@ def with_counts(recipe: MeshRecipe, count: Callable[[str, str, int], int]) -> Me
     """
 
     def section(title: str, counts: dict[str, int | float]) -> dict[str, int | float]:
-        return {name: count(title, name, value) if isinstance(value, int) else value for name, value in counts.items()}
+        return {name: count(title, name, value) if type(value) is int else value for name, value in counts.items()}
 
     content = {title: section(title, counts) for title, counts in recipe.model_dump(exclude_none=True).items()}
     if recipe.face_width is not None:

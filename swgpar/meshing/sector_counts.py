@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GEARS, GearName
+from swgpar.meshing.cup import joined_columns, transition_station
 from swgpar.meshing.recipe import MeshRecipe, ToothRecipe
 from swgpar.meshing.tooth_sector import continues_root, require_sections
 
@@ -60,7 +61,14 @@ def _counts(design: DriveDesign, recipe: MeshRecipe, gear: GearName) -> SectorCo
         cup = recipe.cup
         stations = cup.cylinder + cup.fillet + cup.closed_end
         depth = teeth.rim + (teeth.under if continues_root(design) else 0)
-        elements += around * depth * stations
-        nodes += (around + 1) * (depth + 1) * stations
+        with_all, joined, threes = stations, around, 0
+        if cup.joined_columns:
+            groups = joined_columns(around)
+            with_all, joined, threes = transition_station(design, cup), len(groups), groups.count(3)
+            elements += (around + threes) * depth  # of the transition
+            nodes += 2 * threes * (depth + 1)
+        behind = stations - with_all
+        elements += (around * with_all + joined * max(behind - 1, 0)) * depth
+        nodes += ((around + 1) * with_all + (joined + 1) * behind) * (depth + 1)
         side += (depth + 1) * stations
     return SectorCounts(n_sectors, elements, nodes, side, 0 if external else around * (layers + 1))

@@ -13,7 +13,7 @@ from swgpar.geometry.arrays import Floats, Ints
 from swgpar.geometry.micro_geometry import crowning
 from swgpar.geometry.profiles import ToothProfile
 from swgpar.meshing.cross_section import CrossSection, cross_section
-from swgpar.meshing.cup import attached_quads, cup_nodes
+from swgpar.meshing.cup import cup_slice
 from swgpar.meshing.mapped import MeshError
 from swgpar.meshing.quality import hex_quality, quad_quality
 from swgpar.meshing.recipe import CupRecipe, MeshRecipe, ToothRecipe
@@ -93,22 +93,15 @@ def _with_cup(
     design: DriveDesign, recipe: CupRecipe, section: CrossSection, teeth: Swept, root_too: bool
 ) -> tuple[Swept, Ints]:
     """The sector with the slice of the cup behind its teeth, and the nodes (n,) of the bore."""
-    attached = attached_quads(section, root_too)
-    cup, columns = cup_nodes(design, recipe, section, attached)
-    column_of = np.full(len(section.coords), -1, dtype=np.int32)
-    column_of[columns] = np.arange(len(columns), dtype=np.int32)
-    new = len(teeth.coords) + np.arange(cup.shape[0] * cup.shape[1], dtype=np.int32).reshape(cup.shape[:2])
-    cup_rows = np.concatenate((teeth.rows[-1:, columns], new))
-    edge = column_of[section.edge[column_of[section.edge] >= 0]]
-    other = column_of[section.mirror[columns[edge]]]
+    cup = cup_slice(design, recipe, section, root_too, teeth.rows[-1], len(teeth.coords))
     whole = Swept(
-        np.concatenate((teeth.coords, cup.reshape(-1, 3))),
-        np.concatenate((teeth.hexes, sweep_quads(column_of[section.quads[attached]], cup_rows))),
-        np.concatenate((teeth.cw, new[:, edge].ravel())),
-        np.concatenate((teeth.ccw, new[:, other].ravel())),
+        np.concatenate((teeth.coords, cup.coords)),
+        np.concatenate((teeth.hexes, cup.hexes)),
+        np.concatenate((teeth.cw, cup.cw)),
+        np.concatenate((teeth.ccw, cup.ccw)),
         teeth.rows,
     )
-    return whole, np.sort(cup_rows[-1])
+    return whole, cup.bore
 
 
 def _relief(

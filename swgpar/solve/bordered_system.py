@@ -13,15 +13,23 @@ from swgpar.log import logger
 from swgpar.petsc import PETSc, accepted_options
 from swgpar.solve.factor_reuse import ReusedFactor
 
-ORDERING = {2: 6, 3: 4}
-"""Of the unknowns for MUMPS (its ICNTL(7)), by dimensions: PORD's nested dissection keeps the factor of a loaded solid
-drive, whose gears the teeth tie together, at half of what minimum degree makes of it; in the plane that is faster."""
+QUASI_DENSE, MINIMUM_DEGREE, NESTED_DISSECTION = 6, 0, 4
+"""Orderings of the unknowns for MUMPS (its ICNTL(7)): in the plane; of solids whose pattern changes with the contact of
+flanks; of other solids. The factor of a loaded drive by minimum degree takes a tenth more operations than by nested
+dissection (PORD), whose analysis takes as long as two factorisations; that of a window takes twice as many."""
 
 
-def mumps_defaults(dims: int) -> dict[str, object]:
+def ordering(dims: int, pattern_changes: bool) -> int:
+    """Ordering for a matrix with so many unknowns per node."""
+    if dims == 2:
+        return QUASI_DENSE
+    return MINIMUM_DEGREE if pattern_changes else NESTED_DISSECTION
+
+
+def mumps_defaults(dims: int, pattern_changes: bool = False) -> dict[str, object]:
     """Options of PETSc for the factor of a matrix with so many unknowns per node."""
     return {
-        "mat_mumps_icntl_7": ORDERING[dims],
+        "mat_mumps_icntl_7": ordering(dims, pattern_changes),
         "mat_mumps_icntl_13": 1,  # no ScaLAPACK root: its Cholesky refuses the indefinite tangents of early iterations
         "mat_mumps_icntl_14": 60,  # per cent of memory above the estimate
     }
@@ -91,6 +99,7 @@ class BorderedSystem:
     options_prefix : of PETSc's options of the linear solver
     symmetric : whether K is
     reuse : use a factor for later tangents too, see `ReusedFactor`
+    pattern_changes : whether contact changes the pattern of K
     """
 
     def __init__(
@@ -102,6 +111,7 @@ class BorderedSystem:
         *,
         symmetric: bool = True,
         reuse: bool = False,
+        pattern_changes: bool = False,
     ) -> None:
         self.partition = partition
         self.ksp = PETSc.KSP().create(comm=partition.comm)
@@ -114,7 +124,7 @@ class BorderedSystem:
             self.ksp.setType(PETSc.KSP.Type.PREONLY)
             pc.setType(PETSc.PC.Type.CHOLESKY if symmetric else PETSc.PC.Type.LU)
             pc.setFactorSolverType("mumps")
-            self.defaults: dict[str, object] = mumps_defaults(partition.dims)
+            self.defaults: dict[str, object] = mumps_defaults(partition.dims, pattern_changes)
         else:
             self.ksp.setType(PETSc.KSP.Type.GMRES)
             pc.setType(PETSc.PC.Type.GAMG)

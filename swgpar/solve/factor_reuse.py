@@ -26,9 +26,9 @@ INTENSITY = 40.0
 """Operations on an entry of the factor, of a factorisation that takes as long as a solve with it: 22 to 54 on meshes of
 60,000 to 920,000 unknowns (docs/verification/data/scaling.csv), the most on large ones."""
 
-ANALYSIS = 1.5
-"""Factorisations that cost as much as the analysis of another pattern by nested dissection: 1 to 2 in the loaded drive
-on full (`-log_view`), more before its gears touch."""
+ANALYSIS = 0.5
+"""Factorisations that cost as much as the analysis of another pattern by minimum degree: 0.3 to 0.6 in the loaded drive
+on forces and full."""
 
 
 def price(operations: float, entries: float, analysed: bool) -> float:

@@ -108,6 +108,7 @@ class NewtonSolver:
             "stiffness_",
             symmetric=problem.symmetric,
             reuse=settings.reuse_factor and settings.linear == "direct" and problem.partition.dims == 3,
+            pattern_changes=problem.flanks is not None,
         )
         self.line_search = LineSearch(self.system, self._trial_residual, problem.x, problem.phases)
         self.snes = self._create_snes()

@@ -17,7 +17,7 @@ from swgpar.design.load_states import LoadState, Stage
 from swgpar.fem.vectors import create_vector
 from swgpar.meshing import load_recipe
 from swgpar.petsc import PETSc
-from swgpar.solve.bordered_system import ORDERING, BorderedSystem
+from swgpar.solve.bordered_system import BorderedSystem, ordering
 
 
 def system(overrides: tuple[str, ...], control: str) -> tuple[DriveModel, PETSc.Vec]:
@@ -93,8 +93,9 @@ def test_options_of_one_model_are_not_those_of_the_next() -> None:
     for overrides, dims in ((PLANE, 2), ((), 3), (PLANE, 2)):
         model, _ = system(overrides, "rotation")
         place = model.problem.positions()[: model.partition.n_own]
-        BorderedSystem(model.partition, "direct", place, "both_")
-        assert options.getInt("mat_mumps_icntl_7") == ORDERING[dims]
+        for changes in (False, True):
+            BorderedSystem(model.partition, "direct", place, "both_", pattern_changes=changes)
+            assert options.getInt("mat_mumps_icntl_7") == ordering(dims, changes)
         assert options.getInt("mat_mumps_icntl_13") == 0
 
 
