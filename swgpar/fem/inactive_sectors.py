@@ -1,7 +1,7 @@
 """Ring-gear sectors that no tooth of the flexible spline can reach are left out of the model.
 
-The frame supports them, and their effect on the loaded teeth decays within a few pitches: their elements are dropped,
-their nodes are fixed, and their rows of the tangent have a diagonal only, which causes no fill.
+The frame supports them, and their effect on the loaded teeth decays within a pitch: their elements are dropped, their
+nodes are fixed, and their rows of the tangent have a diagonal only, which causes no fill.
 """
 
 from __future__ import annotations

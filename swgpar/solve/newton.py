@@ -72,6 +72,9 @@ ROUND_OFF_SHARE = 0.05
 STALL = 0.3
 """Ratio of two residuals above which the iteration has stalled close to the round-off."""
 
+SETTLED = 0.1
+"""Residual over the contact force above which contacts change too much, before the rotation, for an old factor."""
+
 MAX_FRICTION_ROUNDS, FRICTION_AGREEMENT = 20, 1e-3
 """Largest number of problems with given friction bounds, and the relative agreement of the last two."""
 
@@ -168,7 +171,7 @@ class NewtonSolver:
         state.pattern_misses = problem.tangent(u, state.load_state)
         missing = int(len(state.pattern_misses) > 0)
         state.incomplete_pattern = bool(problem.partition.comm.allreduce(missing, op=MPI.MAX))
-        if state.load_state.stage < Stage.ROTATE:  # contacts change too much for an old factor
+        if state.load_state.stage < Stage.ROTATE and state.residuals[-1] > SETTLED:
             self.system.discard_factor()
         p.stateIncrease()
         bound = problem.output_step_bound(state.load_state)

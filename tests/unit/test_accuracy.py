@@ -43,7 +43,7 @@ def test_a_resized_recipe_scales_every_count_and_no_grading() -> None:
     finer = resized(recipe, 2.0)
     for title, section in recipe.model_dump(exclude_none=True).items():
         for name, value in section.items():
-            expected = 2 * value if isinstance(value, int) else value
+            expected = 2 * value if type(value) is int else value
             assert getattr(getattr(finer, title), name) == expected, (title, name)
     assert resized(load_recipe("plane_coarse"), 0.1).flexible_spline.tip == 2
     with pytest.raises(InputError, match="is out of range: allowed"):
@@ -79,6 +79,7 @@ def test_the_error_of_the_drive_s_mesh_follows_from_two_meshes() -> None:
     fine = [260.0 + 9.0 / RATIO**ORDER, 290.0 + 9.0 / RATIO**ORDER, 300.0]
     expected = 9.0 / RATIO**ORDER * fine[-1] / fine[1]
     assert drive_error(coarse, fine, RATIO) == pytest.approx(expected)
+    assert drive_error([float("nan"), coarse[1]], fine, RATIO) == pytest.approx(expected)  # the first was not computed
     # changes that are small by chance
     assert drive_error([270.0, 290.0], [270.0, 290.0, 300.0], RATIO) == pytest.approx(LEAST * 300.0)
     assert drive_error([270.0, 290.0], [270.0, 290.0, 300.0], RATIO, before=9.0) == pytest.approx(9.0 / RATIO**ORDER)
