@@ -38,8 +38,8 @@ from swgpar.solve.solve_state import NewtonSettings
 PRESSURE_LIMIT = 0.02
 """Bound of contact pressures in the tangent's geometric terms, as a share of E: above any real pressure."""
 
-NEAR, REACH, TOUCH, TIP_MARGIN = 0.25, 0.1, 0.01, 0.1
-"""Distances of the contact search over the module: faces that are evaluated, faces that may touch soon, faces with
+NEAR, TOUCH, TIP_MARGIN = 0.25, 0.01, 0.1
+"""Distances of the contact search over the module: faces that are evaluated, faces with
 blocks in the tangent's pattern, radial distance of the tips."""
 
 FOOT_REACH = 0.5
@@ -290,7 +290,7 @@ def contact_search(design: DriveDesign) -> ContactSearch:
     module = design.drive.module
     return ContactSearch(
         tip_margin=TIP_MARGIN * module,
-        distances=SearchRange(near=search_distance(design), touch=TOUCH * module, reach=REACH * module),
+        distances=SearchRange(near=search_distance(design), touch=TOUCH * module),
         outer_radius=0.5 * design.drive.teeth_rg * module + design.deflection,
     )
 

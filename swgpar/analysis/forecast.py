@@ -1,7 +1,7 @@
 """What a run will need: elements, unknowns, memory and time, from design and recipe, before anything is meshed.
 
 Memory and time of a gear's thin bodies grow linearly with the unknowns. The constants are those of runs on two cores
-with 27,000 to 920,000 unknowns (docs/verification/forecast.md); other machines need more or less time.
+with 27,000 to 790,000 unknowns (docs/verification/forecast.md); other machines need more or less time.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Growth:
 
 GROWTH = {
     "plane": Growth(0.18, 0.61, 12.0, 4.3),
-    "cup": Growth(0.54, 1.1, 23.0, 5.0),
+    "cup": Growth(0.53, 0.96, 13.5, 17.0),
 }
 
 

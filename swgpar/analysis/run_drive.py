@@ -127,13 +127,14 @@ def run_drive(
         kept = StartStates(folder, design)
         if not restart:
             kept.remove(comm)
+        elif not resumed:
+            way = "taking over loaded states" if kept.found(comm) else "starting from the beginning"
+            logger.info("no increment was saved: %s", way)
         model, recipe, chosen = _model(design, recipe, accuracy, folder if resumed else None, kept, comm)
         recorder = _recorder(model, folder, identity(design, recipe, accuracy))
         try:
             if chosen is not None:
                 _record_choice(recorder, chosen, accuracy, folder)
-            if restart and not resumed:
-                logger.info("no increment was saved: starting from the beginning")
             run = _Run(model, recipe, recorder, kept, on_increment, begin)
             items = run.resume() if resumed else run.start()
             run.go_through(items, terminal)

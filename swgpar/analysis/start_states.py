@@ -73,6 +73,11 @@ class StartStates:
         logger.info("the loaded state on a mesh of %d elements is taken over", model.n_elements())
         return True
 
+    def found(self, comm: MPI.Comm) -> bool:
+        """Whether there are files, of this design or of another; collective."""
+        names = comm.rank == 0 and self.folder is not None and any(self.folder.glob(START_STATES))
+        return bool(comm.bcast(names))
+
     def remove(self, comm: MPI.Comm) -> None:
         """Remove the files: the checkpoint has all that a restart needs. Collective."""
         if self.folder is None:

@@ -37,12 +37,10 @@ class SearchRange:
 
     near : faces whose middle is closer to the master are evaluated
     touch : for faces closer than that the tangent's pattern has blocks
-    reach : ring-gear teeth that faces are closer to than that are modelled
     """
 
     near: float
     touch: float
-    reach: float
 
 
 @dataclass(frozen=True)

@@ -92,7 +92,6 @@ class FlankContact:
         self.found: FlankPairs | None = None
         self.deviations: FlankDeviations | None = None
         self._near_faces = np.zeros(0, dtype=np.int64)
-        self._reached = np.zeros(0, dtype=np.int64)
         self._friction_start: FrictionStart | None = None
         self._active: ActiveSegments | None = None
         self._cut_at: np.ndarray | None = None  # displacement at which unfrozen segments were cut
@@ -141,7 +140,7 @@ class FlankContact:
         Returns keys row * n_global + column (n,) of the tangent's blocks that may couple.
         """
         self.found = found = FlankPairs(self.partition, self.spline, self.ring, self.slaves, self.masters, pairs, local)
-        self._near_faces = self._reached = np.zeros(0, dtype=np.int64)
+        self._near_faces = np.zeros(0, dtype=np.int64)
         self._friction_start = None
         self.reset()
         self._ring_rotation = self.ring_motion.ring_rotation(u)
@@ -151,7 +150,6 @@ class FlankContact:
             found.deviate(self.deviations)
         gap, foot_point = self._gaps_at_centers(u)
         self._near_faces = np.flatnonzero(gap < distances.near)
-        self._reached = np.unique(found.faces.patch[gap < distances.reach])
         if accepted is not None:
             self._friction_start = FrictionStart(accepted, self._stored_tractions())
         touching = np.flatnonzero(gap < distances.touch)
@@ -175,13 +173,12 @@ class FlankContact:
         return samples.reshape(-1, *samples.shape[2:])
 
     def ring_sectors(self) -> np.ndarray:
-        """Sectors of the ring gear (n,) that faces of the last search are within reach of, or touch."""
-        touching = np.zeros(0, dtype=np.int64) if self._active is None else self._touching_patches()
-        return np.array([self.pairs[k].ring for k in np.union1d(self._reached, touching)], dtype=np.int64)
-
-    def _touching_patches(self) -> np.ndarray:
-        """Indices (n,) of the pairs with pressure."""
-        return np.unique(self._active.faces.patch[(self._active.pressure > 0.0).any(axis=1)])
+        """Sectors of the ring gear (n,) that the faces of the last search may meet."""
+        if self.found is None or self.found.faces is None:
+            return np.zeros(0, dtype=np.int64)
+        return np.array(
+            [self.pairs[k].ring for k in np.unique(self.found.faces.patch[self._near_faces])], dtype=np.int64
+        )
 
     def _gaps_at_centers(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Gap (n_face,) mm at the middle of every face and its foot point (n_face, 2) mm on the master."""
@@ -399,7 +396,8 @@ class FlankContact:
         active = self._active
         if active is None:
             return 0
-        return int(self.found.owned[self._touching_patches()].sum())
+        touching = np.unique(active.faces.patch[(active.pressure > 0.0).any(axis=1)])
+        return int(self.found.owned[touching].sum())
 
     def smallest_gap(self, side: int) -> float:
         """Smallest gap (mm) of the flanks on one side (+1, -1) in the last evaluation on this rank; inf without any."""

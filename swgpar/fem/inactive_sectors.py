@@ -1,7 +1,7 @@
 """Ring-gear sectors that no tooth of the flexible spline can reach are left out of the model.
 
-The frame supports them, and their effect on the loaded teeth decays within a pitch: their elements are dropped, their
-nodes are fixed, and their rows of the tangent have a diagonal only, which causes no fill.
+The frame supports them, and their effect on the loaded teeth decays within a few pitches: their elements are dropped,
+their nodes are fixed, and their rows of the tangent have a diagonal only, which causes no fill.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import numpy as np
 from swgpar.fem.body_layout import RING_GEAR
 from swgpar.fem.elements import Elements
 
-LEAST, MARGIN = 1, 2
+LEAST, MARGIN = 2, 3
 """Active sectors on each side of those within reach: at least, and when the choice is made anew."""
 
 
@@ -36,10 +36,6 @@ class InactiveSectors:
         mask = np.zeros(len(self.active), dtype=bool)
         mask[(sectors[:, None] + np.arange(-margin, margin + 1)) % len(mask)] = True
         return mask
-
-    def lacks(self, sectors: np.ndarray) -> bool:
-        """Whether any of the sectors (n,) is inactive."""
-        return not bool(self.active[sectors].all())
 
     def update(self, within_reach: np.ndarray, elements: Elements) -> bool:
         """Choose by the sectors (n,) within reach; returns whether the active elements have changed."""

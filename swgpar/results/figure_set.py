@@ -40,6 +40,10 @@ def import_matplotlib() -> None:
         os.close(here)
 
 
+PICTURE = 6
+"""Figures over axes that take as long as a picture of the drive."""
+
+
 class FigureSet(ABC):
     """The figures of one result.
 
@@ -79,8 +83,9 @@ class FigureSet(ABC):
                 figures.mkdir(parents=True, exist_ok=True)
         paths = {name: figures / f"{name}.png" for name in self.drawings}
         failure: SwgparError | None = None
-        for number, (name, path) in enumerate(reversed(paths.items())):  # the last ones take the longest
-            writes = comm.rank == (0 if self._gathered else number % comm.size)
+        writer = self._writers()
+        for name, path in paths.items():
+            writes = comm.rank == (0 if self._gathered else writer[name])
             if not writes and not self._gathered:
                 continue
             try:
@@ -91,6 +96,14 @@ class FigureSet(ABC):
                 failure = failure or OutputError(f"cannot draw {path}: {sentence(error)}")
         raise_first(comm, failure)
         return list(paths.values())
+
+    def _writers(self) -> dict[str, int]:
+        """The rank that draws each figure, so that all take about as long."""
+        load, writer = [0] * self._comm.size, {}
+        for name in sorted(self.drawings, key=lambda name: name not in self.exact_size):
+            writer[name] = load.index(min(load))
+            load[writer[name]] += PICTURE if name in self.exact_size else 1
+        return writer
 
     exact_size: tuple[str, ...] = ()
     """Figures that show a picture and are written pixel by pixel."""

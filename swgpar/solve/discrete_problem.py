@@ -218,8 +218,6 @@ class DiscreteProblem:
         with self.phases("search"):
             pairs = self._facing_pairs(state, 0.0)
             found = self.flanks.overlooked(pairs, self.displacement(), state)
-            if self.inactive is not None:
-                found |= self.inactive.lacks(self.flanks.ring_sectors())
         return bool(self.partition.comm.allreduce(int(found), op=MPI.MAX))
 
     def set_pattern(self, pattern: np.ndarray) -> None:

@@ -34,6 +34,7 @@ from swgpar.solve.bordered_system import BorderedSystem
 from swgpar.solve.discrete_problem import DiscreteProblem, ResidualInfo
 from swgpar.solve.line_search import LineSearch
 from swgpar.solve.solve_state import (
+    REASONS,
     AcceptableState,
     CycleBreaker,
     NewtonSettings,
@@ -262,7 +263,7 @@ class NewtonSolver:
         while state.result is None:
             outcome = self._iterate(state)
             if state.time_limit is not None:
-                raise TimeLimitError(_late(state))
+                raise TimeLimitError(state.time_limit_text())
             if outcome is Outcome.FAILED:
                 self._after_failure(state)
             elif outcome is Outcome.INTERRUPTED:
@@ -395,17 +396,3 @@ class NewtonSolver:
 
     def _warn(self, state: SolveState, penetration: float) -> None:
         logger.warning("   penetration of %.2g mm remains after %d augmentations", penetration, state.augmentations)
-
-
-def _late(state: SolveState) -> str:
-    """The sentence for a time limit that has passed."""
-    here = state.load_state
-    return (
-        f"the time limit of {state.time_limit:g} s (solver.time_limit) has passed in step {here.step} "
-        f"({here.stage.label}) at a wave-generator angle of {np.degrees(here.angle):.4g} degrees, after "
-        f"{state.iterations} Newton iterations, residual {state.residual:.1e} of the contact force"
-    )
-
-
-REASONS = {value: name for name, value in vars(PETSc.SNES.ConvergedReason).items() if isinstance(value, int)}
-"""Names of PETSc's reasons."""

@@ -132,3 +132,16 @@ class SolveState:
     def residual(self) -> float:
         """Last residual over the contact force."""
         return self.residuals[-1] if self.residuals else np.inf
+
+    def time_limit_text(self) -> str:
+        """The sentence for a time limit that has passed."""
+        here = self.load_state
+        return (
+            f"the time limit of {self.time_limit:g} s (solver.time_limit) has passed in step {here.step} "
+            f"({here.stage.label}) at a wave-generator angle of {np.degrees(here.angle):.4g} degrees, after "
+            f"{self.iterations} Newton iterations, residual {self.residual:.1e} of the contact force"
+        )
+
+
+REASONS = {value: name for name, value in vars(PETSc.SNES.ConvergedReason).items() if isinstance(value, int)}
+"""Names of PETSc's reasons."""

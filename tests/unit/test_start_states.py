@@ -32,8 +32,9 @@ def test_a_loaded_state_is_taken_over(tmp_path: Path) -> None:
         model.destroy()
         return x, "\n".join(messages.texts)
 
+    assert not kept.found(comm)
     first, words = solve()
-    assert TAKEN_OVER not in words
+    assert TAKEN_OVER not in words and kept.found(comm)
     again, words = solve()
     assert TAKEN_OVER in words and "Newton iterations 0" in words
     assert np.array_equal(first, again)
@@ -46,4 +47,5 @@ def test_a_loaded_state_is_taken_over(tmp_path: Path) -> None:
     assert TAKEN_OVER not in words and "computed again" in words
     assert np.array_equal(first, other)
     kept.remove(comm)
+    assert not kept.found(comm)
     assert not list(tmp_path.iterdir())
