@@ -38,6 +38,9 @@ ROOT, CONTACT = "tooth root", "flank under contact"
 COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "zx")
 CRITERIA = ("goodman", "crossland", "yield")
 
+SAME = 1e-6
+"""Relative difference below which two utilisations are equal."""
+
 
 @dataclass(frozen=True)
 class FatigueResult:
@@ -77,7 +80,7 @@ def evaluate_fatigue(cycle: StressCycle, root_stress: RootStress | None) -> Fati
     joined = {name: np.concatenate([part[name] for part in parts]) for name in own}
     nodal = _largest(len(cycle.nodes), np.tile(np.arange(len(cycle.nodes)), len(parts)), joined)
     sound = warnings == ""
-    least = {name: int(np.where(sound, nodal[name], -1.0).argmax()) for name in CRITERIA}
+    least = {name: _first_largest(np.where(sound, nodal[name], -1.0)) for name in CRITERIA}
     history, normal = _history_at(comm, mine, stress, plane, least["goodman"])
     values = normal_stress(history[:, None], normal[None])[:, 0]
     half = _change_by_half(values, cycle, 1.0 / nodal["goodman"][least["goodman"]])
@@ -157,6 +160,12 @@ def _regions(cycle: StressCycle) -> tuple[np.ndarray, np.ndarray]:
     return np.array(regions), np.array(warnings)
 
 
+def _first_largest(values: np.ndarray) -> int:
+    """Index of the largest of the values (n,), of equal ones the first: round-off must not choose between nodes that
+    both sides of a sector share."""
+    return int(np.flatnonzero(values >= values.max() - SAME * abs(values.max()))[0])
+
+
 def _largest(n: int, index: np.ndarray, columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Largest utilisations of n nodes, amplitude and mean where that by Goodman is the largest; -1 without values.
 
@@ -180,9 +189,10 @@ def _history_at(
     """
     found, part = np.flatnonzero(mine == node), None
     if len(found):
-        at = found[plane.utilisation[found].argmax()]
+        at = found[_first_largest(plane.utilisation[found])]
         part = float(plane.utilisation[at]), stress[:, at], plane.normal[at]
-    _, history, normal = max((one for one in comm.allgather(part) if one is not None), key=lambda one: one[0])
+    parts = [one for one in comm.allgather(part) if one is not None]
+    _, history, normal = parts[_first_largest(np.array([utilisation for utilisation, *_ in parts]))]
     return history, normal
 
 
@@ -225,7 +235,7 @@ def _by_region(nodal: dict[str, np.ndarray], regions: np.ndarray, warnings: np.n
     found = {}
     for region in dict.fromkeys(regions.tolist()):
         here = np.flatnonzero(regions == region)
-        at = here[nodal["goodman"][here].argmax()]
+        at = here[_first_largest(nodal["goodman"][here])]
         found[region] = {
             **{name: _safety(nodal[name][here].max()) for name in CRITERIA},
             "amplitude_MPa": float(nodal["amplitude"][at]),
