@@ -23,9 +23,8 @@ WAIT = 60.0
 ranks = MPI.COMM_WORLD.Dup()  # not the communicator of the tests: their messages must not be taken for these
 
 for _number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-    if (
-        signal.getsignal(_number) is signal.SIG_IGN
-    ):  # from nohup or a script's background job: children would inherit it
+    # nohup, or a script's background job, ignores them: child processes would inherit that
+    if signal.getsignal(_number) is signal.SIG_IGN:
         signal.signal(_number, signal.default_int_handler if _number == signal.SIGINT else signal.SIG_DFL)
 
 SLOW = Path(__file__).with_name("slow.txt")

@@ -39,8 +39,8 @@ PRESSURE_LIMIT = 0.02
 """Bound of contact pressures in the tangent's geometric terms, as a share of E: above any real pressure."""
 
 NEAR, TOUCH, TIP_MARGIN = 0.25, 0.01, 0.1
-"""Distances of the contact search over the module: faces that are evaluated, faces with
-blocks in the tangent's pattern, radial distance of the tips."""
+"""Distances of the contact search over the module: faces that are evaluated, faces with blocks in the tangent's
+pattern, radial distance of the tips."""
 
 FOOT_REACH = 0.5
 """Largest gap over the module at which a foot point is looked for."""

@@ -161,8 +161,10 @@ def _regions(cycle: StressCycle) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _first_largest(values: np.ndarray) -> int:
-    """Index of the largest of the values (n,), of equal ones the first: round-off must not choose between nodes that
-    both sides of a sector share."""
+    """Index of the largest of the values (n,), of equal ones the first.
+
+    Both sides of a sector have the same nodes: round-off must not choose between them.
+    """
     return int(np.flatnonzero(values >= values.max() - SAME * abs(values.max()))[0])
 
 

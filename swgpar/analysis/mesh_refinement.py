@@ -109,6 +109,11 @@ def resized(recipe: MeshRecipe, ratio: float) -> MeshRecipe:
     return with_counts(recipe, lambda _, name, count: max(SMALLEST.get(name, 1), round(ratio * count)))
 
 
+def compared_stresses(model: DriveModel, state: LoadState) -> tuple[float, ...]:
+    """Stresses (MPa) in windows on a coarser mesh of the drive, for `drive_error`: only the last one is computed."""
+    return resolve_root_stress(model, state, COMPARED_LEVELS, COMPARED_LEVELS - 1).levels
+
+
 def drive_error(coarse: Sequence[float], fine: Sequence[float], ratio: float, before: float | None = None) -> float:
     """Error (MPa) of the finer of two meshes of the drive by the stresses in the windows that both drive.
 
@@ -158,7 +163,7 @@ class Refinement:
         self.recipe, self.ratio = recipe, size_ratio(coarse, recipe)
         self.model = solve_to_load(design, coarse, load_states, comm, kept=kept)
         try:
-            self.coarse = resolve_root_stress(self.model, self.loaded, COMPARED_LEVELS, COMPARED_LEVELS - 1).levels
+            self.coarse = compared_stresses(self.model, self.loaded)
             self.coarse_places = self._places()
             self._load(recipe)
             self.found = self._resolve()

@@ -23,11 +23,11 @@ from swgpar.analysis.identity import identity
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.losses import evaluate_losses
 from swgpar.analysis.mesh_refinement import (
-    COMPARED_LEVELS,
     RATIO,
     ChosenMesh,
     CoarseStresses,
     choose_mesh,
+    compared_stresses,
     drive_error,
     resized,
     size_ratio,
@@ -249,7 +249,7 @@ class _Run:
         self.recorder.coarse = CoarseStresses(places, size_ratio(recipe, self.recipe))
         if model.design.resolves_root_stress:
             try:
-                self.coarse = recipe, resolve_root_stress(model, loaded, COMPARED_LEVELS, COMPARED_LEVELS - 1).levels
+                self.coarse = recipe, compared_stresses(model, loaded)
             except (ConvergenceError, InputError) as error:
                 logger.info("the error by the mesh of the drive is not known: %s", error)
 

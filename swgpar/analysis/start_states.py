@@ -75,8 +75,8 @@ class StartStates:
 
     def found(self, comm: MPI.Comm) -> bool:
         """Whether there are files, of this design or of another; collective."""
-        names = comm.rank == 0 and self.folder is not None and any(self.folder.glob(START_STATES))
-        return bool(comm.bcast(names))
+        here = comm.rank == 0 and self.folder is not None and any(self.folder.glob(START_STATES))
+        return bool(comm.bcast(here))
 
     def remove(self, comm: MPI.Comm) -> None:
         """Remove the files: the checkpoint has all that a restart needs. Collective."""

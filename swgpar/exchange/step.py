@@ -10,6 +10,7 @@ import os
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from itertools import pairwise
 from pathlib import Path
 from types import ModuleType
 
@@ -93,14 +94,14 @@ def closed_curve(gmsh: ModuleType, points: np.ndarray, normals: np.ndarray, z: f
     """
     occ = gmsh.model.occ
     tangents = np.column_stack([-normals[:, 1], normals[:, 0], np.zeros(len(normals))])
-    if np.einsum("i,i->", tangents[0, :2], points[1] - points[0]) < 0.0:  # run through clockwise
+    if tangents[0, :2] @ (points[1] - points[0]) < 0.0:  # run through clockwise
         tangents = -tangents
     tags = [occ.addPoint(x, y, z) for x, y in points]
     ends = np.linspace(0, len(points), PIECES + 1).astype(int)
     tags, directions = [*tags, tags[0]], [*tangents.tolist(), tangents[0].tolist()]
     return [
         occ.addSpline(tags[first : last + 1], tangents=[*directions[first], *directions[last]])
-        for first, last in zip(ends[:-1], ends[1:], strict=True)
+        for first, last in pairwise(ends)
     ]
 
 

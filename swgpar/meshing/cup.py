@@ -47,30 +47,19 @@ def attached_quads(section: CrossSection, root_too: bool) -> NDArray[np.bool_]:
     return section.rim_layer | section.root_layer if root_too else section.rim_layer
 
 
-def depth_fractions(section: CrossSection, attached: NDArray[np.bool_], r_inner: float, thickness: float) -> Floats:
-    """Return the fraction (n_node,) of the wall at the attached nodes: 0 at the inner, 1 at the outer surface.
+def depth_fractions(section: CrossSection, grid: Ints, r_inner: float, thickness: float) -> Floats:
+    """Return the fraction (n_node,) of the wall at the nodes of a `wall_grid`: 0 at its inner, 1 at its outer surface.
 
     Where the layers below the root are attached, their top follows the root and the teeth; the fraction then
     counts layers instead of radius, and the cup's outer surface is level from its first station on.
     """
-    nodes = np.unique(section.quads[attached])
     fraction = np.zeros(len(section.coords))
-    fraction[nodes] = (np.hypot(*section.coords[nodes].T) - r_inner) / thickness
-    extra = attached & section.root_layer
-    if extra.any():
-        layer = np.where(section.below_root, 0, -1)
-        quads = section.quads[extra]
-        # away from the interface circle, one layer at a time: a quadrilateral with exactly two numbered nodes
-        # carries the next layer on its other two
-        while np.any(layer[quads] < 0):
-            edge = layer[quads]
-            ready = np.count_nonzero(edge >= 0, axis=1) == 2
-            ready &= np.all((edge < 0) | (edge == edge.max(axis=1, keepdims=True)), axis=1)
-            following = quads[ready][edge[ready] < 0]
-            layer[following] = edge[ready].max() + 1
-        interface = fraction[nodes][layer[nodes] == 0].max()
-        upper = nodes[layer[nodes] > 0]
-        fraction[upper] = interface + (1.0 - interface) * layer[upper] / layer.max()
+    fraction[grid] = (np.hypot(*section.coords[grid].transpose(2, 0, 1)) - r_inner) / thickness
+    rim = section.below_root[grid[:, 0]]
+    interface = fraction[grid[rim]].max()
+    extra = grid[~rim]
+    layer = np.arange(1, len(extra) + 1)[:, None]
+    fraction[extra] = interface + (1.0 - interface) * layer / max(len(extra), 1)
     return fraction
 
 
@@ -160,7 +149,7 @@ def cup_slice(
     attached = attached_quads(section, root_too)
     grid = wall_grid(section, attached)
     inner, outer = meridian(design, recipe)
-    fraction = depth_fractions(section, attached, design.inner_radius, design.cup_thickness)
+    fraction = depth_fractions(section, grid, design.inner_radius, design.cup_thickness)
     angle = np.arctan2(*section.coords.T)
     if recipe.joined_columns:
         angle[grid] = angle[grid[0]]  # radial columns, below the root too

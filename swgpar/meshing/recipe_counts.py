@@ -20,6 +20,7 @@ def with_counts(recipe: MeshRecipe, count: Callable[[str, str, int], int]) -> Me
     """
 
     def section(title: str, counts: dict[str, int | float]) -> dict[str, int | float]:
+        # a flag is an int too
         return {name: count(title, name, value) if type(value) is int else value for name, value in counts.items()}
 
     content = {title: section(title, counts) for title, counts in recipe.model_dump(exclude_none=True).items()}
