@@ -48,7 +48,7 @@ def measure(mesh: str, linear: str) -> None:
     u = problem.displacement()
     tangent = timed(lambda: problem.tangent(u, state))
     border, rows = problem.supports.border(u, state)
-    system.set_system(problem.matrix, problem.supports.ground_vectors, border, rows)
+    system.set_system(problem.matrix, problem.matrix_rows.active, problem.supports.ground_vectors, border, rows)
     row = {
         "mesh": mesh,
         "solver": linear,

@@ -36,7 +36,8 @@ def bearing_shares(model: DriveModel, state: LoadState) -> dict[str, ComplianceS
     u, balls = problem.displacement(), ball_contact(model)
     problem.tangent(u, state)
     border, rows = problem.supports.border(u, state)
-    system.set_system(problem.matrix, problem.supports.ground_vectors, border, rows, bound=np.inf)
+    grounding, active = problem.supports.ground_vectors, problem.matrix_rows.active
+    system.set_system(problem.matrix, active, grounding, border, rows, bound=np.inf)
     system.factorise()
 
     def race_forces(u: np.ndarray) -> np.ndarray:

@@ -125,7 +125,9 @@ class DeviatingDrive:
         self.model: DriveModel = solve_to_load(self.design, mesh, items, comm)
         problem = self.model.problem
         near = NEAR * design.drive.module + design.backlash
-        problem.contact_search = replace(problem.contact_search, distances=SearchRange(near=near, touch=near))
+        problem.contact_search = replace(
+            problem.contact_search, distances=SearchRange(near=near, reach=near, touch=near)
+        )
         self.stepper = LoadStepper(self.model)
         self.loaded = from_loaded(items)[0]
         self.stepper.resume_at(self.loaded)

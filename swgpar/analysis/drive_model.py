@@ -23,10 +23,10 @@ from swgpar.contact.flanks import FlankContact
 from swgpar.contact.rigid_surface import RigidContact, cam_pose, pin_pose
 from swgpar.design.drive_design import DriveDesign
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR, BodyLayout
-from swgpar.fem.condensed_sectors import condense, relative_end_rotation
+from swgpar.fem.condensed_parts import condense_sector, condense_tooth, relative_end_rotation
 from swgpar.fem.elements import Elements
-from swgpar.fem.inactive_sectors import InactiveSectors
 from swgpar.fem.partition import Partition
+from swgpar.fem.sectors_in_reach import RingSectors, WholeTeeth
 from swgpar.fem.stress import body_fields, maxima
 from swgpar.kernel import ReferenceElements, reference_elements
 from swgpar.log import PhaseTimes
@@ -38,9 +38,9 @@ from swgpar.solve.solve_state import NewtonSettings
 PRESSURE_LIMIT = 0.02
 """Bound of contact pressures in the tangent's geometric terms, as a share of E: above any real pressure."""
 
-NEAR, TOUCH, TIP_MARGIN = 0.25, 0.01, 0.1
-"""Distances of the contact search over the module: faces that are evaluated, faces with blocks in the tangent's
-pattern, radial distance of the tips."""
+NEAR, REACH, TOUCH, TIP_MARGIN = 0.25, 0.1, 0.01, 0.1
+"""Distances of the contact search over the module: faces that are evaluated, those of a flank one of which is closer
+than the second distance; faces with blocks in the tangent's pattern; radial distance of the tips."""
 
 FOOT_REACH = 0.5
 """Largest gap over the module at which a foot point is looked for."""
@@ -174,7 +174,8 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
         contact_search=contact_search(design),
         module=design.drive.module,
         inner_radius=design.inner_radius,
-        inactive=InactiveSectors(layouts[RING_GEAR].count) if _leaves_out_sectors(design) else None,
+        ring_sectors=RingSectors(layouts[RING_GEAR].count) if _leaves_out_sectors(design) else None,
+        whole_teeth=[WholeTeeth(layout.count, k) for k, layout in enumerate(layouts) if layout.tooth is not None],
         coupling_keys=coupling_keys,
         phases=phases,
     )
@@ -202,14 +203,22 @@ def build_layout(design: DriveDesign, mesh: SectorMesh, reference: ReferenceElem
     clamped = mesh.body == "ring_gear" and design.drive.layout == "ring_fixed"
     fixed = mesh.node_sets["outer"] if clamped else np.zeros(0, dtype=np.int32)
     count = mesh.n_sectors // 2 if halved else mesh.n_sectors
-    condensed = condense(mesh, reference) if design.solver.condensed_sectors and reference is not None else None
+    condensed = tooth = None
+    if reference is not None and design.solver.condensed_sectors:
+        condensed = condense_sector(mesh, reference)
+    elif reference is not None and len(mesh.tooth) and _condenses_teeth(design):
+        tooth = condense_tooth(mesh, reference)
     return BodyLayout(
-        mesh=mesh, first_tooth=0, count=count, closed=True, images=halved, fixed=fixed, condensed=condensed
+        mesh=mesh, first_tooth=0, count=count, closed=True, images=halved, fixed=fixed, condensed=condensed, tooth=tooth
     )
 
 
 def _leaves_out_sectors(design: DriveDesign) -> bool:
     return design.solver.far_teeth == "left_out" and design.drive.layout == "ring_fixed"
+
+
+def _condenses_teeth(design: DriveDesign) -> bool:
+    return design.solver.far_teeth == "left_out" and design.drive.model == "cup"
 
 
 def build_supports(design: DriveDesign, *, partition: Partition, elements: Elements) -> Supports:
@@ -290,7 +299,7 @@ def contact_search(design: DriveDesign) -> ContactSearch:
     module = design.drive.module
     return ContactSearch(
         tip_margin=TIP_MARGIN * module,
-        distances=SearchRange(near=search_distance(design), touch=TOUCH * module),
+        distances=SearchRange(near=search_distance(design), reach=REACH * module, touch=TOUCH * module),
         outer_radius=0.5 * design.drive.teeth_rg * module + design.deflection,
     )
 

@@ -36,10 +36,12 @@ class SearchRange:
     """Distances (mm) of a search.
 
     near : faces whose middle is closer to the master are evaluated
+    reach : the same of a whole flank, without which none of its faces is
     touch : for faces closer than that the tangent's pattern has blocks
     """
 
     near: float
+    reach: float
     touch: float
 
 

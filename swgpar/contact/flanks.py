@@ -91,7 +91,7 @@ class FlankContact:
         self.frozen = False
         self.found: FlankPairs | None = None
         self.deviations: FlankDeviations | None = None
-        self._near_faces = np.zeros(0, dtype=np.int64)
+        self._near_faces, self._near_pairs = np.zeros((2, 0), dtype=np.int64)
         self._friction_start: FrictionStart | None = None
         self._active: ActiveSegments | None = None
         self._cut_at: np.ndarray | None = None  # displacement at which unfrozen segments were cut
@@ -140,7 +140,7 @@ class FlankContact:
         Returns keys row * n_global + column (n,) of the tangent's blocks that may couple.
         """
         self.found = found = FlankPairs(self.partition, self.spline, self.ring, self.slaves, self.masters, pairs, local)
-        self._near_faces = np.zeros(0, dtype=np.int64)
+        self._near_faces, self._near_pairs = np.zeros((2, 0), dtype=np.int64)
         self._friction_start = None
         self.reset()
         self._ring_rotation = self.ring_motion.ring_rotation(u)
@@ -149,7 +149,11 @@ class FlankContact:
         if self.deviations is not None:
             found.deviate(self.deviations)
         gap, foot_point = self._gaps_at_centers(u)
-        self._near_faces = np.flatnonzero(gap < distances.near)
+        near = np.flatnonzero(gap < distances.near)
+        closest = np.full(len(pairs), np.inf)
+        np.minimum.at(closest, found.faces.patch, gap)
+        self._near_faces = near[closest[found.faces.patch[near]] < distances.reach]
+        self._near_pairs = np.unique(found.faces.patch[near])
         if accepted is not None:
             self._friction_start = FrictionStart(accepted, self._stored_tractions())
         touching = np.flatnonzero(gap < distances.touch)
@@ -172,12 +176,15 @@ class FlankContact:
             samples[k] = self.tractions.get(pair.key, 0.0)
         return samples.reshape(-1, *samples.shape[2:])
 
-    def ring_sectors(self) -> np.ndarray:
-        """Sectors of the ring gear (n,) that the faces of the last search may meet."""
+    def sectors_in_reach(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Sectors (n,) by the last search: of both gears with evaluated faces, of the ring gear with near ones."""
         if self.found is None or self.found.faces is None:
-            return np.zeros(0, dtype=np.int64)
-        return np.array(
-            [self.pairs[k].ring for k in np.unique(self.found.faces.patch[self._near_faces])], dtype=np.int64
+            return tuple(np.zeros((3, 0), dtype=np.int64))
+        evaluated = [self.pairs[k] for k in np.unique(self.found.faces.patch[self._near_faces])]
+        return (
+            np.array([pair.sector for pair in evaluated], dtype=np.int64),
+            np.array([pair.ring for pair in evaluated], dtype=np.int64),
+            np.array([self.pairs[k].ring for k in self._near_pairs], dtype=np.int64),
         )
 
     def _gaps_at_centers(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from swgpar.fem.condensed_sectors import CondensedSector
+from swgpar.fem.condensed_parts import CondensedPart
 from swgpar.meshing.sector import SectorMesh
 
 FLEXIBLE_SPLINE, RING_GEAR, OUTER_RACE = 0, 1, 2
@@ -59,6 +59,7 @@ class BodyLayout:
     images : True when the model holds half a turn
     fixed : (n_fixed,) local nodes that do not move
     condensed : the sector as one element, whose inner nodes have no unknowns; None where they have
+    tooth : the tooth as one element, for sectors whose flanks nothing touches; None where it is not used
     """
 
     mesh: SectorMesh
@@ -67,7 +68,8 @@ class BodyLayout:
     closed: bool
     images: bool
     fixed: np.ndarray
-    condensed: CondensedSector | None = None
+    condensed: CondensedPart | None = None
+    tooth: CondensedPart | None = None
 
     @cached_property
     def numbering(self) -> SectorNumbering:

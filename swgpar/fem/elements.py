@@ -20,14 +20,15 @@ from swgpar.kernel import ReferenceElements, assemble_elements, recover_stress
 
 @dataclass(frozen=True)
 class AssembledElements:
-    """The n elements of one body that a rank assembles, of m nodes each.
+    """The n elements of one kind and body that a rank assembles, of m nodes each.
 
-    reference : (n,) int32, index of the congruent element
+    matrices : of the congruent elements;  reference : (n,) int32, index in them
     rotation : (n, 2) cosine and sine of the angle of the element's sector
     conn : (n, m) int32 local nodes, -1 where there are no unknowns
     flip : (n, m) uint8, 1 for nodes that are images under the half turn
     """
 
+    matrices: ReferenceElements
     reference: np.ndarray
     rotation: np.ndarray
     conn: np.ndarray
@@ -62,14 +63,18 @@ class BodyElements:
     number, flip, local : (n_sectors, n_node) global numbers, image flags and local indices of the nodes
     sector_rotation : (n_sectors, 2) cosine and sine of the angles of the sectors
     active : (n_sectors,) bool, sectors whose elements count
-    assembled : elements of the active sectors that this rank assembles
+    whole_teeth : (n_sectors,) bool, sectors whose tooth is not one element
+    assembled : elements of the active sectors that this rank assembles, of every kind
     """
 
     def __init__(self, partition: Partition, body: int, reference: ReferenceElements, local: LocalNodes) -> None:
         layout = partition.layouts[body]
         self.layout, self.reference, condensed = layout, reference, layout.condensed
-        self.assembled_reference = reference if condensed is None else condensed.reference
-        self.element_nodes = layout.mesh.elements if condensed is None else condensed.outer[None]
+        self._kinds = [(reference, layout.mesh.elements)]
+        if condensed is not None:
+            self._kinds = [(condensed.reference, condensed.outer[None])]
+        elif layout.tooth is not None:
+            self._kinds.append((layout.tooth.reference, layout.tooth.outer[None]))
         first, end = partition.owned_sectors(body)
         sectors = sectors_seen(partition, body)
         self.sectors = sectors
@@ -87,10 +92,11 @@ class BodyElements:
         counted[self.owned] = True
         owned = (self.number >= partition.row_start) & (self.number < partition.row_start + partition.n_own)
         owned &= counted[:, None]
-        self._touching = np.zeros((0, len(self.element_nodes)), dtype=bool)
-        if len(sectors):
-            self._touching = owned[:, self.element_nodes].any(axis=2)
-        self.active = np.ones(len(sectors), dtype=bool)
+        self._touching = [
+            owned[:, nodes].any(axis=2) if len(sectors) else np.zeros((0, len(nodes)), dtype=bool)
+            for _, nodes in self._kinds
+        ]
+        self.active, self.whole_teeth = np.ones((2, len(sectors)), dtype=bool)
         self.assembled = self._assembled()
 
     def activate(self, active: np.ndarray) -> None:
@@ -98,44 +104,65 @@ class BodyElements:
         self.active = active
         self.assembled = self._assembled()
 
-    def _assembled(self) -> AssembledElements:
+    def condense_teeth(self, condensed: np.ndarray) -> None:
+        """Let the teeth of the sectors (n_sectors,) bool be one element each, and no others."""
+        self.whole_teeth = ~condensed
+        self.assembled = self._assembled()
+
+    def _assembled(self) -> list[AssembledElements]:
         """Elements of active sectors that have an owned node."""
-        sector, element = (v.astype(np.int32) for v in np.nonzero(self._touching))
-        counted = self.active[sector]
-        sector, element = sector[counted], element[counted]
-        nodes = self.element_nodes[element]
+        chosen = [touching & self.active[:, None] for touching in self._touching]
+        if self.layout.tooth is not None:
+            chosen[0][np.ix_(~self.whole_teeth, self.layout.mesh.tooth)] = False
+            chosen[1] &= ~self.whole_teeth[:, None]
+        return [self._of_kind(*kind, mask) for kind, mask in zip(self._kinds, chosen)]
+
+    def _of_kind(self, matrices: ReferenceElements, nodes: np.ndarray, chosen: np.ndarray) -> AssembledElements:
+        sector, element = (v.astype(np.int32) for v in np.nonzero(chosen))
+        nodes = nodes[element]
         return AssembledElements(
+            matrices,
             element,
             np.ascontiguousarray(self.sector_rotation[sector]),
             np.ascontiguousarray(self.local[sector[:, None], nodes]),
             np.ascontiguousarray(self.flip[sector[:, None], nodes]),
         )
 
+    def inside_of_teeth(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Own nodes (n,) inside of condensed teeth and their displacement (n, 3) mm, from u (n_local, 3) outside."""
+        rows = np.flatnonzero(~self.whole_teeth)
+        rows = rows[(rows >= self.owned.start) & (rows < self.owned.stop)]
+        if not len(rows):
+            return np.zeros(0, dtype=np.int64), np.zeros((0, 3))
+        tooth, angle = self.layout.tooth, np.arctan2(self.sector_rotation[rows, 1], self.sector_rotation[rows, 0])
+        inner = tooth.inner_displacement(angle, u[self.local[np.ix_(rows, tooth.outer)]])
+        return self.local[np.ix_(rows, tooth.inner)].ravel(), inner.reshape(-1, 3)
+
     def assemble(
         self,
         u: np.ndarray,
         residual: np.ndarray | None,
-        positions: np.ndarray | None = None,
+        positions: list[np.ndarray] | None = None,
         values: np.ndarray | None = None,
     ) -> None:
         """Add the body's internal forces to `residual` (n_local, 3) N and tangent blocks (N/mm) to `values`.
 
-        u : (n_local, 3) mm;  positions : of the element blocks in `values`
+        u : (n_local, 3) mm;  positions : of the blocks of the elements of every kind in `values`
         Raises FloatingPointError where an element has collapsed.
         """
-        elements = self.assembled
-        if len(elements.conn):
-            assemble_elements(
-                self.assembled_reference,
-                elements.reference,
-                elements.rotation,
-                elements.conn,
-                elements.flip,
-                u,
-                residual,
-                positions,
-                values,
-            )
+        for k, elements in enumerate(self.assembled):
+            if len(elements.conn):
+                assemble_elements(
+                    elements.matrices,
+                    elements.reference,
+                    elements.rotation,
+                    elements.conn,
+                    elements.flip,
+                    u,
+                    residual,
+                    None if positions is None else positions[k],
+                    values,
+                )
 
     def displacement(self, u: np.ndarray) -> np.ndarray:
         """Displacement of all nodes of the sectors seen, images rotated; (n_sectors, n_node, 3) mm."""
@@ -186,12 +213,12 @@ class TangentPattern:
     """Blocks of the tangent's owned rows that elements, multipliers and the diagonal need.
 
     keys : sorted row * n_global + column of the blocks
-    positions : of each body's (n, m * m) element blocks among the keys, -1 for blocks of other ranks
-    nodes_without_elements : (n,) owned local nodes
+    positions : of each body's and kind's (n, m * m) element blocks among the keys, -1 for blocks of other ranks
+    nodes_without_elements : (n,) owned local nodes, which have no blocks
     """
 
     keys: np.ndarray
-    positions: list[np.ndarray]
+    positions: list[list[np.ndarray]]
     nodes_without_elements: np.ndarray
 
 
@@ -220,28 +247,27 @@ class Elements:
         self.bodies = [BodyElements(partition, k, r, self.local) for k, r in enumerate(references)]
         self.pattern = self._pattern()
 
-    def activate(self, body: int, active: np.ndarray) -> None:
-        """Let the elements of the sectors (n_sectors,) bool of a body count, and no others of it."""
-        self.bodies[body].activate(active)
+    def renew_pattern(self) -> None:
+        """Take over what was chosen of the bodies' elements."""
         self.pattern = self._pattern()
 
     def _pattern(self) -> TangentPattern:
         partition, local = self.partition, self.local
         touched = np.zeros(local.n_own, dtype=bool)
-        for body in self.bodies:
-            conn = body.assembled.conn
+        for elements in (part for body in self.bodies for part in body.assembled):
+            conn = elements.conn
             touched[conn[(conn >= 0) & (conn < local.n_own)]] = True
         multipliers = partition.multiplier_nodes
         own = multipliers - local.row_start
         touched[own[(own >= 0) & (own < local.n_own)]] = True
-        blocks = [self.block_keys(body.assembled.conn) for body in self.bodies]
-        diagonal = np.arange(local.row_start, local.row_start + local.n_own)
-        keys = [*(block.ravel() for block in blocks), diagonal * partition.n_global + diagonal]
+        blocks = [[self.block_keys(part.conn) for part in body.assembled] for body in self.bodies]
+        diagonal = local.row_start + np.flatnonzero(touched)
+        keys = [*(block.ravel() for body in blocks for block in body), diagonal * partition.n_global + diagonal]
         if local.n_own and local.row_start + local.n_own == partition.n_global:
             keys.append(multipliers * partition.n_global + multipliers)
         keys = np.unique(np.concatenate(keys))
         keys = keys[keys >= 0]
-        positions = [np.where(block >= 0, np.searchsorted(keys, block), -1) for block in blocks]
+        positions = [[np.where(block >= 0, np.searchsorted(keys, block), -1) for block in body] for body in blocks]
         return TangentPattern(keys, positions, np.flatnonzero(~touched))
 
     def block_keys(self, conn: np.ndarray) -> np.ndarray:
@@ -253,8 +279,8 @@ class Elements:
         keys = np.where(owned & (col >= (row if self.symmetric else 0)), row * self.partition.n_global + col, -1)
         return keys.reshape(len(conn), conn.shape[1] ** 2)
 
-    def rows(self, extra: np.ndarray, number: np.ndarray) -> tuple[BlockRows, list[np.ndarray]]:
-        """Rows of the tangent for the elements and further blocks, and the positions of each body's element blocks.
+    def rows(self, extra: np.ndarray, number: np.ndarray) -> tuple[BlockRows, list[list[np.ndarray]]]:
+        """Rows of the tangent for the elements and further blocks, and the positions of element blocks.
 
         extra : keys row * n_global + column of contact blocks;  number : (n_local,) int32 global numbers
         """
@@ -273,10 +299,14 @@ class Elements:
             keys,
             self.symmetric,
         )
-        return rows, [np.where(own >= 0, position[own], -1) for own in self.pattern.positions]
+        return rows, [[np.where(own >= 0, position[own], -1) for own in body] for body in self.pattern.positions]
 
     def assemble(
-        self, u: np.ndarray, residual: np.ndarray | None, rows: BlockRows | None, positions: list[np.ndarray] | None
+        self,
+        u: np.ndarray,
+        residual: np.ndarray | None,
+        rows: BlockRows | None,
+        positions: list[list[np.ndarray]] | None,
     ) -> None:
         """Add internal forces to `residual` (n_local, 3) N and tangent blocks (N/mm) to `rows.values`.
 

@@ -40,7 +40,7 @@ class ReferenceElements(NamedTuple):
 
     stiffness : (n, 3 m, 3 m) N/mm;  recovery : (n, 6 m, 3 m) MPa/mm, row 6 * node + component
     gradient : (n, m, 3) 1/mm, at the centre;  coords : (n, m, 3) mm;  volume : (n,) mm^3
-    Condensed sectors have more nodes, no rows of `recovery`, and the least-squares gradient of their nodes.
+    Condensed parts have more nodes, no rows of `recovery`, and the least-squares gradient of their nodes.
     """
 
     stiffness: np.ndarray

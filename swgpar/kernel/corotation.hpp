@@ -46,8 +46,8 @@ inline Eigen::Matrix3d plane_rotation(const Eigen::Matrix3d& f) {
   return r;
 }
 
-// N: 8 for hexahedra; 4 for plane elements, whose nodes have no displacement along z; Dynamic for condensed sectors,
-// which are plane too.
+// N: 8 for hexahedra; 4 for plane elements, whose nodes have no displacement along z; Dynamic for condensed parts, which
+// are plane where their gradient has no z.
 template <int N>
 struct CorotatedElement {
   static constexpr int D = N == Eigen::Dynamic ? Eigen::Dynamic : 3 * N;
@@ -70,12 +70,13 @@ struct CorotatedElement {
     const Nodes x = rotated + (u.rowwise() - mean);
     const int m = static_cast<int>(g.rows());
     Eigen::Matrix3d f = x.transpose() * g;
-    if (N != 8) f(2, 2) = 1.0;
+    const bool plane = N == 4 || (N == Eigen::Dynamic && (g.col(2).array() == 0.0).all());
+    if (plane) f(2, 2) = 1.0;
     if (!(f.determinant() > 0)) {
       valid = false;
       return;
     }
-    rotation = N != 8 ? plane_rotation(f) : polar_rotation(f);
+    rotation = plane ? plane_rotation(f) : polar_rotation(f);
     stretch = rotation.transpose() * f;
     stretch = (0.5 * (stretch + stretch.transpose())).eval();
     y = x * rotation;

@@ -9,7 +9,7 @@
 
 namespace swgpar {
 
-struct ElementBatch {  // N nodes each: 8; 4 in the plane; those of a plane condensed sector
+struct ElementBatch {  // N nodes each: 8; 4 in the plane; those of a condensed part
   std::int64_t n, nodes;
   const double* stiffness;     // (n_ref, 3 N, 3 N)
   const double* gradient;      // (n_ref, N, 3)

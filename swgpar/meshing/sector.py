@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+import numpy as np
 
 from swgpar.geometry.arrays import Floats, Ints
 from swgpar.geometry.profiles.flank import ToothProfile
@@ -58,6 +60,8 @@ class SectorMesh:
     quality : dict of float
         ``min_scaled_jacobian``, ``min_jacobian`` and ``max_jacobian`` (mm³, determinants at the 2x2x2 Gauss
         points), ``max_aspect_ratio``; of the quadrilaterals (mm², 2x2 points) in the plane model.
+    tooth : (n,) int32
+        Elements of the tooth above its rim; none on a plain ring.
     lower_nodes : (n_node,) int32 or None
         Plane model: the node of the lower layer that each node moves with; None for a solid.
     """
@@ -74,6 +78,7 @@ class SectorMesh:
     flanks: tuple[FlankGrid, ...]
     profile: ToothProfile | None
     quality: dict[str, float]
+    tooth: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int32))
     lower_nodes: Ints | None = None
 
     @property

@@ -115,6 +115,12 @@ def _relief(
     return np.asarray(amount), relief_field(section, profile)
 
 
+def _tooth(section: CrossSection, layers: int) -> Ints:
+    """Return the elements (n,) of the tooth above its rim, in all layers along the face width."""
+    above = np.flatnonzero(~(section.rim_layer | section.root_layer))
+    return (above + len(section.quads) * np.arange(layers)[:, None]).ravel().astype(np.int32)
+
+
 def build_sector(design: DriveDesign, recipe: MeshRecipe, gear: GearName) -> SectorMesh:
     """Mesh the tooth sector of a gear; one layer of it for the plane model.
 
@@ -165,6 +171,7 @@ def build_sector(design: DriveDesign, recipe: MeshRecipe, gear: GearName) -> Sec
         flanks=flanks,
         profile=profile,
         quality=quality,
+        tooth=_tooth(section, len(z) - 1),
         lower_nodes=np.tile(rows[0], 2) if plane else None,
     )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
+from mpi4py import MPI
 
 from swgpar.errors import OutOfMemoryError
 from swgpar.fem.partition import Partition
@@ -13,23 +14,15 @@ from swgpar.log import logger
 from swgpar.petsc import PETSc, accepted_options
 from swgpar.solve.factor_reuse import ReusedFactor
 
-QUASI_DENSE, MINIMUM_DEGREE, NESTED_DISSECTION = 6, 0, 4
-"""Orderings of the unknowns for MUMPS (its ICNTL(7)): in the plane; of solids whose pattern changes with the contact of
-flanks; of other solids. The factor of a loaded drive by minimum degree takes a tenth more operations than by nested
-dissection (PORD), whose analysis takes as long as two factorisations; that of a window takes twice as many."""
+QUASI_DENSE, NESTED_DISSECTION = 6, 4
+"""Orderings of the unknowns for MUMPS (its ICNTL(7)) in the plane and of solids: with nested dissection (PORD) a
+factorisation of the reference drive takes a fifth less time than by minimum degree, and a solve a quarter."""
 
 
-def ordering(dims: int, pattern_changes: bool) -> int:
-    """Ordering for a matrix with so many unknowns per node."""
-    if dims == 2:
-        return QUASI_DENSE
-    return MINIMUM_DEGREE if pattern_changes else NESTED_DISSECTION
-
-
-def mumps_defaults(dims: int, pattern_changes: bool = False) -> dict[str, object]:
+def mumps_defaults(dims: int) -> dict[str, object]:
     """Options of PETSc for the factor of a matrix with so many unknowns per node."""
     return {
-        "mat_mumps_icntl_7": ordering(dims, pattern_changes),
+        "mat_mumps_icntl_7": QUASI_DENSE if dims == 2 else NESTED_DISSECTION,
         "mat_mumps_icntl_13": 1,  # no ScaLAPACK root: its Cholesky refuses the indefinite tangents of early iterations
         "mat_mumps_icntl_14": 60,  # per cent of memory above the estimate
     }
@@ -99,7 +92,8 @@ class BorderedSystem:
     options_prefix : of PETSc's options of the linear solver
     symmetric : whether K is
     reuse : use a factor for later tangents too, see `ReusedFactor`
-    pattern_changes : whether contact changes the pattern of K
+
+    K has no rows of nodes that nothing acts on. Their part of every solution is zero.
     """
 
     def __init__(
@@ -111,30 +105,17 @@ class BorderedSystem:
         *,
         symmetric: bool = True,
         reuse: bool = False,
-        pattern_changes: bool = False,
     ) -> None:
         self.partition = partition
-        self.ksp = PETSc.KSP().create(comm=partition.comm)
-        self.ksp.setOptionsPrefix(options_prefix)
-        pc = self.ksp.getPC()
-        self.modes: PETSc.NullSpace | None = None
+        self.iterative, self.symmetric, self.options_prefix = linear != "direct", symmetric, options_prefix
+        self.defaults = GAMG_DEFAULTS if self.iterative else mumps_defaults(partition.dims)
+        self.positions = positions[:, : partition.dims]
+        self.ksp = self._create_ksp()
         self.unblocked: PETSc.Mat | None = None
         self.factored: PETSc.Mat | None = None
-        if linear == "direct":
-            self.ksp.setType(PETSc.KSP.Type.PREONLY)
-            pc.setType(PETSc.PC.Type.CHOLESKY if symmetric else PETSc.PC.Type.LU)
-            pc.setFactorSolverType("mumps")
-            self.defaults: dict[str, object] = mumps_defaults(partition.dims, pattern_changes)
-        else:
-            self.ksp.setType(PETSc.KSP.Type.GMRES)
-            pc.setType(PETSc.PC.Type.GAMG)
-            self.defaults = GAMG_DEFAULTS
-            coords = positions[:, : partition.dims].ravel()
-            coords = PETSc.Vec().createWithArray(coords, bsize=partition.dims, comm=partition.comm)
-            self.modes = PETSc.NullSpace().createRigidBody(coords)
-        option_defaults.set(options_prefix, self.defaults)
-        with accepted_options(partition.comm):
-            self.ksp.setFromOptions()
+        self.active = np.zeros(0, dtype=np.int64)
+        self.into: PETSc.Vec | None = None
+        self.out: PETSc.Vec | None = None
         self.grounding: list[PETSc.Vec] = []
         self.border: list[PETSc.Vec] = []
         self.rows: list[int] = []
@@ -146,9 +127,25 @@ class BorderedSystem:
         self.failed = False
         self.reused = ReusedFactor(create_vector(partition), self.multiply, self.solve_with_factor) if reuse else None
 
+    def _create_ksp(self) -> PETSc.KSP:
+        ksp = PETSc.KSP().create(comm=self.partition.comm)
+        ksp.setOptionsPrefix(self.options_prefix)
+        pc = ksp.getPC()
+        if self.iterative:
+            ksp.setType(PETSc.KSP.Type.GMRES)
+            pc.setType(PETSc.PC.Type.GAMG)
+        else:
+            ksp.setType(PETSc.KSP.Type.PREONLY)
+            pc.setType(PETSc.PC.Type.CHOLESKY if self.symmetric else PETSc.PC.Type.LU)
+            pc.setFactorSolverType("mumps")
+        option_defaults.set(self.options_prefix, self.defaults)
+        with accepted_options(self.partition.comm):
+            ksp.setFromOptions()
+        return ksp
+
     def destroy(self) -> None:
         """Release the solvers and their matrices; collective."""
-        for owned in (self.ksp, self.unblocked, self.reused):
+        for owned in (self.ksp, self.unblocked, self.reused, self.into, self.out):
             if owned is not None:
                 owned.destroy()
 
@@ -162,22 +159,28 @@ class BorderedSystem:
         if self.reused is not None:
             self.reused.goal = norm
 
-    def solve_grounded(self, right: PETSc.Vec, x: PETSc.Vec) -> None:
-        """x = K'^-1 right; in the plane the matrix has no z, and x gets a zero there."""
+    def _restricted(self, vector: PETSc.Vec) -> np.ndarray:
+        """Values of a vector in the rows of the matrix."""
+        return vector.array_r.reshape(-1, 3)[self.active, : self.partition.dims].ravel()
+
+    def _extend(self, values: np.ndarray, vector: PETSc.Vec) -> None:
+        """Set a vector from its values in the rows of the matrix, and to zero elsewhere."""
+        vector.set(0.0)
         dims = self.partition.dims
-        if dims == 3:
-            self.ksp.solve(right, x)
-            return
-        into, out = self.ksp.getOperators()[0].createVecs()
-        for vector, flat in ((right, into), (x, out)):
-            flat.array.reshape(-1, dims)[:] = vector.array_r.reshape(-1, 3)[:, :dims]
-        self.ksp.solve(into, out)
-        x.array.reshape(-1, 3)[:, :dims] = out.array_r.reshape(-1, dims)
-        x.array.reshape(-1, 3)[:, dims:] = 0.0
+        vector.array.reshape(-1, 3)[self.active, :dims] = values.reshape(-1, dims)
+
+    def solve_grounded(self, right: PETSc.Vec, x: PETSc.Vec) -> None:
+        """x = K'^-1 right in the rows of the matrix, zero elsewhere."""
+        self.into.array[:] = self._restricted(right)
+        if self.ksp.getInitialGuessNonzero():
+            self.out.array[:] = self._restricted(x)
+        self.ksp.solve(self.into, self.out)
+        self._extend(self.out.array_r, x)
 
     def set_system(
         self,
         matrix: PETSc.Mat,
+        active: np.ndarray,
         grounding: list[PETSc.Vec],
         border: list[PETSc.Vec],
         rows: list[int],
@@ -185,9 +188,19 @@ class BorderedSystem:
     ) -> None:
         """K', vectors B and C^T (full length, zero in the multiplier rows), multiplier rows of C.
 
+        active : (n,) own nodes that K' has rows of
         bound : of C x in the last row when that is loaded instead of prescribed
         """
         self.matrix, self.grounding, self.border, self.rows, self.bound = matrix, grounding, border, rows, bound
+        other = int(self.into is None or self.into.getSizes() != matrix.getSizes()[0])
+        if self.partition.comm.allreduce(other, op=MPI.MAX):
+            for owned in (self.into, self.out, self.ksp):
+                if owned is not None:
+                    owned.destroy()
+            self.into, self.out = matrix.createVecs()
+            self.ksp, self.factored = self._create_ksp(), None
+            self.discard_factor()
+        self.active = active
         self.n_loaded = 0 if bound is None else 1
 
     def setUp(self, pc: PETSc.PC) -> None:
@@ -207,17 +220,20 @@ class BorderedSystem:
         """Factor, or the set-up of the multigrid, of the present matrix."""
         matrix = self.matrix
         option_defaults.set(self.ksp.getOptionsPrefix(), self.defaults)  # another model may have set its own since
-        if self.modes is not None:  # GAMG has no triangular storage
+        if self.iterative:  # GAMG has no triangular storage
             if self.unblocked is not None:
                 self.unblocked.destroy()
             self.unblocked = matrix.convert("aij", out=PETSc.Mat())
-            self.unblocked.setNearNullSpace(self.modes)
+            coords = self.positions[self.active].ravel()
+            coords = PETSc.Vec().createWithArray(coords, bsize=self.partition.dims, comm=self.partition.comm)
+            modes = PETSc.NullSpace().createRigidBody(coords)
+            self.unblocked.setNearNullSpace(modes)
             matrix = self.unblocked
         self.ksp.setOperators(matrix)
         self.ksp.getPC().setReusePreconditioner(False)
         with accepted_options(self.partition.comm):
             self.ksp.setUp()
-        if self.modes is None:
+        if not self.iterative:
             self._retry_with_memory(matrix)
         self.ksp.getPC().setReusePreconditioner(self.reused is not None)  # the matrix changes, the factor does not
 
@@ -278,23 +294,22 @@ class BorderedSystem:
         self.failed = False
         if not sides:
             return
-        if self.modes is None and self.ksp.getConvergedReason() >= 0:
+        if not self.iterative and self.ksp.getConvergedReason() >= 0:
             # all at once: a solve is bound by reading the factor
-            dims, (n, rows) = self.partition.dims, self.matrix.getSizes()[0]
+            n, rows = self.matrix.getSizes()[0]
             into = PETSc.Mat().createDense([[n, rows], [None, len(sides)]], comm=self.partition.comm)
             into.setUp()
             for k, vector in enumerate(sides):
-                into.getDenseArray()[:, k] = vector.array_r.reshape(-1, 3)[:, :dims].ravel()
+                into.getDenseArray()[:, k] = self._restricted(vector)
             into.assemble()
             out = into.duplicate()
             self.ksp.getPC().getFactorMatrix().matSolve(into, out)
             for k, solution in enumerate(self.columns):
-                solution.set(0.0)
-                solution.array.reshape(-1, 3)[:, :dims] = out.getDenseArray()[:, k].reshape(-1, dims)
+                self._extend(out.getDenseArray()[:, k], solution)
             into.destroy()
             out.destroy()
             return
-        self.ksp.setInitialGuessNonzero(self.modes is not None)  # those of the last tangent
+        self.ksp.setInitialGuessNonzero(self.iterative)  # those of the last tangent
         for vector, solution in zip(sides, self.columns):
             self.solve_grounded(vector, solution)
             if self.ksp.getConvergedReason() < 0:
@@ -321,7 +336,9 @@ class BorderedSystem:
         moved = x.copy()
         if last:
             moved.array[-n:] = 0.0
-        self.matrix.mult(moved, y)
+        self.into.array[:] = self._restricted(moved)
+        self.matrix.mult(self.into, self.out)
+        self._extend(self.out.array_r, y)
         for vector in self.grounding:
             y.axpy(-vector.dot(moved), vector)
         tail = multipliers.copy()

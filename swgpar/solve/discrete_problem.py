@@ -21,9 +21,9 @@ from swgpar.contact.search import FlankPair, facing_flanks
 from swgpar.design.load_states import LoadState
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.fem.elements import Elements
-from swgpar.fem.inactive_sectors import InactiveSectors
 from swgpar.fem.partition import Partition
-from swgpar.fem.sparse import BlockRows, add_unit_diagonal, create_matrix, fill_matrix
+from swgpar.fem.sectors_in_reach import RingSectors, WholeTeeth
+from swgpar.fem.sparse import BlockRows, MatrixRows, add_unit_diagonal, create_matrix, fill_matrix, matrix_rows
 from swgpar.fem.vectors import Exchange, create_vector, read_multipliers
 from swgpar.geometry.rotation import HALF_TURN
 from swgpar.log import PhaseTimes
@@ -70,14 +70,15 @@ class DiscreteProblem:
     rigid_contacts : contacts with rigid surfaces, and those of a bearing
     flanks, contact_search : contact of the tooth flanks and its search; None for a body without teeth
     module : mm, length that bounds and floors refer to;  inner_radius : mm, size of the body
-    inactive : ring-gear sectors that are left out; None where all are modelled
+    ring_sectors : ring-gear sectors that are modelled; None where all are
+    whole_teeth : teeth of the flexible spline and of the ring gear that are not one element; none where all are
     coupling_keys : (n,) of blocks that contacts of two bodies need, row * n_global + column, sorted
     phases : wall seconds
 
     Attributes
     ----------
     x : state vector: displacements (mm) and multipliers;  accepted : the last state found in equilibrium
-    matrix : the tangent of the last `tangent`;  rows : its blocks on this rank
+    matrix : the tangent of the last `tangent`;  rows : its blocks on this rank;  matrix_rows : which of them it has
     round_off : N, largest force that a last-digit error of the positions makes, of the last `tangent`
     """
 
@@ -92,7 +93,8 @@ class DiscreteProblem:
         contact_search: ContactSearch | None = None,
         module: float,
         inner_radius: float,
-        inactive: InactiveSectors | None = None,
+        ring_sectors: RingSectors | None = None,
+        whole_teeth: Sequence[WholeTeeth] = (),
         coupling_keys: np.ndarray = NO_KEYS,
         phases: PhaseTimes,
     ) -> None:
@@ -105,14 +107,16 @@ class DiscreteProblem:
             if self.flanks is None
             else FlankClearance(self.flanks, partition.comm, module=module, outer_radius=contact_search.outer_radius)
         )
-        self.module, self.inner_radius, self.inactive = module, inner_radius, inactive
+        self.module, self.inner_radius = module, inner_radius
+        self.ring_sectors, self.whole_teeth = ring_sectors, whole_teeth
         self.scale, self.coupling_keys = supports.scale, coupling_keys
         self.x, self.accepted = create_vector(partition), create_vector(partition)
         self.local = elements.local
         self.exchange = Exchange(partition, self.local.number)
         self.pattern: np.ndarray | None = None
         self.rows: BlockRows | None = None
-        self.slots: list[np.ndarray] = []
+        self.matrix_rows: MatrixRows | None = None
+        self.slots: list[list[np.ndarray]] = []
         self.matrix: PETSc.Mat | None = None
         self.round_off = 0.0
         self._searched = self.x.array_r.copy()
@@ -160,9 +164,14 @@ class DiscreteProblem:
 
     # -- contact search --------------------------------------------------------------------------------
 
-    def search(self, state: LoadState) -> None:
-        """Find the flanks and faces that can meet at the present x; make room for them in the tangent; collective."""
+    def search(self, state: LoadState) -> bool:
+        """Find the flanks and faces that can meet at the present x; make room for them in the tangent; collective.
+
+        Returns whether the sectors and teeth that are modelled are other ones than before.
+        """
+        changed = False
         with self.phases("search"):
+            self.complete()
             self._searched = self.x.array_r.copy()
             pairs = self._facing_pairs(state, self.contact_search.tip_margin) if self.flanks is not None else []
             further = self.flanks.node_numbers(pairs) if self.flanks is not None else np.zeros(0, dtype=np.int64)
@@ -177,10 +186,19 @@ class DiscreteProblem:
                 u = self.displacement()
                 found = self.flanks.search(pairs, self.local, u, self.contact_search.distances, accepted)
                 pattern = np.union1d(found, self.coupling_keys)
-                self._choose_modelled_sectors()
+                changed = self._choose_modelled_sectors()
         for contact in self.rigid_contacts:
             contact.reset()
         self.set_pattern(pattern)
+        return changed
+
+    def complete(self) -> None:
+        """Let the inside of condensed teeth follow their rims; collective."""
+        if self.whole_teeth:
+            u, x = self.displacement(), self.x.array.reshape(-1, 3)
+            for teeth in self.whole_teeth:
+                nodes, values = self.elements.bodies[teeth.body].inside_of_teeth(u)
+                x[nodes] = values
 
     def reset_contacts(self) -> None:
         """Begin all contacts anew with the pairs and faces of the last search."""
@@ -203,19 +221,28 @@ class DiscreteProblem:
         pairs = facing_flanks(self.partition, self.elements.bodies[FLEXIBLE_SPLINE], u, rotation, margin)
         return [pair for pair in pairs if self.flanks.takes_part(pair)]
 
-    def _choose_modelled_sectors(self) -> None:
-        if self.inactive is None:
-            return
-        near = np.concatenate(self.partition.comm.allgather(self.flanks.ring_sectors()))
-        if self.inactive.update(near, self.elements):
+    def _choose_modelled_sectors(self) -> bool:
+        """Leave out sectors of the ring gear, and condense teeth, out of reach; returns whether others; collective."""
+        spline, ring, near = (
+            np.concatenate(part) for part in zip(*self.partition.comm.allgather(self.flanks.sectors_in_reach()))
+        )
+        changed = [teeth.update((spline, ring)[teeth.body], self.elements) for teeth in self.whole_teeth]
+        if self.ring_sectors is not None:
+            changed.append(self.ring_sectors.update(near, self.elements))
+        if any(changed):
+            self.elements.renew_pattern()
             self.pattern = None
-        self.x.array.reshape(-1, 3)[self.elements.pattern.nodes_without_elements] = 0.0
+        if changed:
+            self.x.array.reshape(-1, 3)[self.elements.pattern.nodes_without_elements] = 0.0
+            self.complete()
+        return any(changed)
 
     def overlooked(self, state: LoadState) -> bool:
         """Whether flanks that the search left out have come into contact; collective."""
         if self.flanks is None or not self.flanks.is_active(state):
             return False
         with self.phases("search"):
+            self.complete()
             pairs = self._facing_pairs(state, 0.0)
             found = self.flanks.overlooked(pairs, self.displacement(), state)
         return bool(self.partition.comm.allreduce(int(found), op=MPI.MAX))
@@ -231,7 +258,10 @@ class DiscreteProblem:
             self.rows, self.slots = self.elements.rows(pattern, self.local.number)
             if self.matrix is not None:
                 self.matrix.destroy()
-            self.matrix = create_matrix(self.partition, self.rows)
+            work = self.x.duplicate()
+            self.matrix_rows = matrix_rows(self.rows, self.local, self.exchange, work)
+            work.destroy()
+            self.matrix = create_matrix(self.partition, self.rows, self.matrix_rows)
 
     def extend_pattern(self, missing: np.ndarray) -> None:
         """Make room for further contact blocks, keys (n,) that `tangent` returned; collective."""
@@ -277,10 +307,10 @@ class DiscreteProblem:
             self.elements.assemble(u, None, self.rows, self.slots)
             missing = self._evaluate_contacts(u, state, None, self.rows)
             self.supports.add_blocks(u, self.rows)
-            add_unit_diagonal(self.rows, self.partition, self.elements.pattern.nodes_without_elements, self.scale)
+            add_unit_diagonal(self.rows, self.partition, self.scale)
         self.round_off = self._round_off()
         with self.phases("insert"):
-            fill_matrix(self.matrix, self.rows)
+            fill_matrix(self.matrix, self.rows, self.matrix_rows)
         return missing
 
     def _round_off(self) -> float:
@@ -368,7 +398,8 @@ class DiscreteProblem:
         return int(self.partition.comm.allreduce(pairs, op=MPI.SUM))
 
     def accept(self) -> None:
-        """Take x as the state from which friction counts the slip of the next solve."""
+        """Take x as the state from which friction counts the slip of the next solve; collective."""
+        self.complete()
         self.x.copy(self.accepted)
         if self.flanks is not None:
             self.flanks.accept()

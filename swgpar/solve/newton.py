@@ -112,7 +112,6 @@ class NewtonSolver:
             "stiffness_",
             symmetric=problem.symmetric,
             reuse=settings.reuse_factor and settings.linear == "direct" and problem.partition.dims == 3,
-            pattern_changes=problem.flanks is not None,
         )
         self.line_search = LineSearch(self.system, self._trial_residual, problem.x, problem.phases)
         self.snes = self._create_snes()
@@ -177,7 +176,8 @@ class NewtonSolver:
         p.stateIncrease()
         bound = problem.output_step_bound(state.load_state)
         border, rows = problem.supports.border(u, state.load_state)
-        self.system.set_system(problem.matrix, problem.supports.ground_vectors, border, rows, bound)
+        grounding, active = problem.supports.ground_vectors, problem.matrix_rows.active
+        self.system.set_system(problem.matrix, active, grounding, border, rows, bound)
 
     def _test_convergence(self, snes: PETSc.SNES, its: int, norms: tuple[float, float, float]) -> int | None:
         """Convergence test of SNES: its reason, or None to go on."""
@@ -285,11 +285,15 @@ class NewtonSolver:
         bounded = problem.flanks is not None and problem.flanks.is_active(load_state)
         self.line_search.max_node_step = MAX_NODE_STEP * problem.module if bounded else np.inf
         if search:
-            problem.search(load_state)
+            self._search(load_state)
         else:
             problem.reset_contacts()
         softenings = list(SOFT_PENALTIES) if establish_contact else []
         return SolveState(load_state, softenings, MAX_ITERATIONS_FACTOR * self.settings.max_iterations)
+
+    def _search(self, load_state: LoadState) -> None:
+        if self.problem.search(load_state):
+            self.system.discard_factor()
 
     def _iterate(self, state: SolveState) -> Outcome:
         """One run of Newton's iteration in the present phase."""
@@ -313,7 +317,7 @@ class NewtonSolver:
             state.repeated_searches += 1
             # a search releases the segments and forgets the multipliers
             state.breaker, state.before_augmentation = CycleBreaker(), None
-            self.problem.search(state.load_state)
+            self._search(state.load_state)
         else:
             self.problem.extend_pattern(state.pattern_misses)
 
@@ -362,7 +366,7 @@ class NewtonSolver:
                 reason = f"contact outside of {MAX_FURTHER_SEARCHES + 1} searches"
                 state.result = SolveResult(False, state.iterations, state.residual, reason)
                 return
-            problem.search(state.load_state)
+            self._search(state.load_state)
             state.searches += 1
             state.before_augmentation = None
             return

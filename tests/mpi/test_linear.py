@@ -17,7 +17,7 @@ from swgpar.design.load_states import LoadState, Stage
 from swgpar.fem.vectors import create_vector
 from swgpar.meshing import load_recipe
 from swgpar.petsc import PETSc
-from swgpar.solve.bordered_system import BorderedSystem, ordering
+from swgpar.solve.bordered_system import BorderedSystem, mumps_defaults
 
 
 def system(overrides: tuple[str, ...], control: str) -> tuple[DriveModel, PETSc.Vec]:
@@ -35,13 +35,15 @@ def system(overrides: tuple[str, ...], control: str) -> tuple[DriveModel, PETSc.
     problem.residual(problem.x, create_vector(partition), state)
     problem.tangent(u, state)
     border, rows = problem.supports.border(u, state)
+    bound = problem.output_step_bound(state)
     model.solver.system.set_system(
-        problem.matrix, problem.supports.ground_vectors, border, rows, problem.output_step_bound(state)
+        problem.matrix, problem.matrix_rows.active, problem.supports.ground_vectors, border, rows, bound
     )
     right, size = create_vector(partition), (partition.n_global, 3)
     values = np.random.default_rng(1).standard_normal(size)
     values[: partition.multiplier_nodes[0], partition.dims :] = 0.0
-    right.array[:] = values[partition.row_start : partition.row_start + partition.n_own].ravel()
+    rows = problem.matrix_rows.active
+    right.array.reshape(-1, 3)[rows] = values[partition.row_start + rows]
     return model, right
 
 
@@ -57,7 +59,9 @@ def test_iterative_equals_direct(overrides: tuple[str, ...]) -> None:
     for linear in ("direct", "iterative"):
         border = BorderedSystem(partition, linear, positions, f"test_{linear}_")
         solved = solver.system
-        border.set_system(problem.matrix, problem.supports.ground_vectors, solved.border, solved.rows)
+        border.set_system(
+            problem.matrix, problem.matrix_rows.active, problem.supports.ground_vectors, solved.border, solved.rows
+        )
         pc = solver.snes.getKSP().getPC()
         border.setUp(pc)
         solutions.append(create_vector(partition))
@@ -77,7 +81,9 @@ def test_mumps_out_of_memory(option: str, value: int, word: str) -> None:
     PETSc.Options()[f"short_{option}_mat_mumps_icntl_{option}"] = value
     border = BorderedSystem(partition, "direct", problem.positions()[: partition.n_own], f"short_{option}_")
     solved, pc = solver.system, solver.snes.getKSP().getPC()
-    border.set_system(problem.matrix, problem.supports.ground_vectors, solved.border, solved.rows)
+    border.set_system(
+        problem.matrix, problem.matrix_rows.active, problem.supports.ground_vectors, solved.border, solved.rows
+    )
     x = create_vector(partition)
     with Messages() as said:
         border.setUp(pc)
@@ -93,9 +99,8 @@ def test_options_of_one_model_are_not_those_of_the_next() -> None:
     for overrides, dims in ((PLANE, 2), ((), 3), (PLANE, 2)):
         model, _ = system(overrides, "rotation")
         place = model.problem.positions()[: model.partition.n_own]
-        for changes in (False, True):
-            BorderedSystem(model.partition, "direct", place, "both_", pattern_changes=changes)
-            assert options.getInt("mat_mumps_icntl_7") == ordering(dims, changes)
+        BorderedSystem(model.partition, "direct", place, "both_")
+        assert options.getInt("mat_mumps_icntl_7") == mumps_defaults(dims)["mat_mumps_icntl_7"]
         assert options.getInt("mat_mumps_icntl_13") == 0
 
 
@@ -110,7 +115,9 @@ def test_the_loaded_motion_is_bounded(overrides: tuple[str, ...]) -> None:
 
     def step(border: list[PETSc.Vec], rows: list[int], bound: float | None) -> PETSc.Vec:
         test = BorderedSystem(partition, "direct", problem.positions()[: partition.n_own], "test_")
-        test.set_system(problem.matrix, problem.supports.ground_vectors, border, rows, bound)
+        test.set_system(
+            problem.matrix, problem.matrix_rows.active, problem.supports.ground_vectors, border, rows, bound
+        )
         test.setUp(pc)
         x = create_vector(partition)
         test.apply(pc, right, x)

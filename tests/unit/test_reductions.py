@@ -15,7 +15,7 @@ from swgpar.design.design_file import load_design
 from swgpar.design.load_states import load_sequence, rotation_angles
 from swgpar.errors import InputError
 from swgpar.fem.body_layout import RING_GEAR
-from swgpar.fem.inactive_sectors import LEAST, MARGIN, InactiveSectors
+from swgpar.fem.sectors_in_reach import RingSectors
 from swgpar.meshing import build_sector_meshes, load_recipe
 from swgpar.meshing.interpolation import interpolation
 from swgpar.meshing.recipe import FaceWidthRecipe
@@ -115,24 +115,25 @@ class _Elements:
     """Counts how often it was laid out anew."""
 
     def __init__(self, count: int) -> None:
-        ring = type("Body", (), {"sectors": np.arange(-1, count + 1)})()
-        self.bodies, self.active, self.count = [None, ring], np.zeros(0, dtype=bool), 0
+        self.sectors, self.active, self.count = np.arange(-1, count + 1), np.zeros(0, dtype=bool), 0
+        self.bodies = {RING_GEAR: self}
 
-    def activate(self, body: int, active: np.ndarray) -> None:
-        assert body == RING_GEAR and len(active) == len(self.bodies[body].sectors)
+    def activate(self, active: np.ndarray) -> None:
+        assert len(active) == len(self.sectors)
         self.active, self.count = active, self.count + 1
 
 
 def test_far_teeth_follow_the_near_ones_with_hysteresis() -> None:
-    far, elements = InactiveSectors(61), _Elements(61)
+    far, elements = RingSectors(61), _Elements(61)
+    least, margin = far.LEAST, far.MARGIN
 
     def near(*sectors: int) -> bool:
         return far.update(np.array(sectors, dtype=np.int64), elements)
 
     assert near(0, 1, 60)
-    assert set(np.flatnonzero(far.active)) == {k % 61 for k in range(60 - MARGIN, 62 + MARGIN + 1)}
+    assert set(np.flatnonzero(far.active)) == {k % 61 for k in range(60 - margin, 62 + margin + 1)}
     assert not near(0, 1, 2)  # still with the least margin inside
-    assert near(2 + MARGIN - LEAST)
+    assert near(2 + margin - least)
     assert elements.active.sum() == pytest.approx(far.active.sum(), abs=2)
     assert near() and not far.active.any()  # before the teeth meet the ring gear is not there at all
     assert elements.count == 3

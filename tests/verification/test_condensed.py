@@ -8,13 +8,13 @@ import pytest
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar.design.design_file import load_design
-from swgpar.fem.condensed_sectors import CondensedSector, condense, relative_end_rotation
+from swgpar.fem.condensed_parts import CondensedPart, condense_sector, relative_end_rotation
 from swgpar.kernel import ReferenceElements, assemble_elements, reference_elements
 from swgpar.meshing import build_sector_meshes, load_recipe
 from swgpar.meshing.sector import SectorMesh
 
 ANGLE = np.array([0.7])
-Sector = tuple[SectorMesh, ReferenceElements, CondensedSector]
+Sector = tuple[SectorMesh, ReferenceElements, CondensedPart]
 
 
 @pytest.fixture(scope="module", params=["flexible_spline", "ring_gear"])
@@ -24,7 +24,7 @@ def sector(request) -> Sector:
     elements = reference_elements(
         mesh.coords[mesh.elements], design.material.E, design.material.nu, design.drive.face_width
     )
-    return mesh, elements, condense(mesh, elements)
+    return mesh, elements, condense_sector(mesh, elements)
 
 
 def forces(

@@ -1,9 +1,12 @@
-"""Plane tooth sectors whose inside is eliminated: congruent sectors share one stiffness of their outer nodes.
+"""Parts of a sector whose inside is eliminated: congruent parts share one stiffness of their outer nodes.
 
-A sector is then one element (a superelement, by static condensation) of the nodes that neighbours, contact, cam and
-couplings need. Its inside is linear in a frame that rotates with the outer nodes, as every element is in a frame of its
-own (`kernel/corotation.hpp`). The rotation of a sector's ends relative to each other (`relative_end_rotation`) is not
-seen: strains of an eighth of the square of that angle are left out.
+A part is then one element (a superelement, by static condensation) of the nodes that others act on. Its inside is
+linear in a frame that rotates with the outer nodes, as every element is in a frame of its own
+(`kernel/corotation.hpp`). Two kinds of parts are condensed:
+
+- whole sectors of the plane model. The rotation of a sector's ends relative to each other (`relative_end_rotation`) is
+  not seen: strains of an eighth of the square of that angle are left out.
+- teeth of a solid flexible spline above their rims, while no flank is within reach. They hardly bend.
 """
 
 from __future__ import annotations
@@ -20,11 +23,11 @@ from swgpar.meshing.sector import SectorMesh
 
 
 @dataclass(frozen=True)
-class CondensedSector:
-    """The elements of a sector as one.
+class CondensedPart:
+    """Elements of a sector as one.
 
     outer : (m,) nodes that keep their unknowns;  inner : (k,) nodes that are eliminated;  inner_coords : (k, 3) mm
-    reference : the sector as an element of m nodes, without recovery of stress
+    reference : the part as an element of m nodes, without recovery of stress
     modes : (3 k, 3 m) constraint modes: displacement of the inner nodes by that of the outer ones, in that frame
     """
 
@@ -46,8 +49,12 @@ class CondensedSector:
         mean = u.mean(axis=1, keepdims=True)
         position = outer @ rotation + u - mean
         stretch = position.transpose(0, 2, 1) @ gradient
-        frame = _about_z(np.arctan2(stretch[:, 1, 0] - stretch[:, 0, 1], stretch[:, 0, 0] + stretch[:, 1, 1]))
-        deformed = (position @ frame.transpose(0, 2, 1) - outer).reshape(len(u), outer.size) @ self.modes.T
+        if not gradient[:, 2].any():  # plane
+            stretch[:, 2, 2] = 1.0
+        left, _, right = np.linalg.svd(stretch)
+        frame = left @ right
+        deformed = (position @ frame - outer).reshape(len(u), outer.size) @ self.modes.T
+        frame = frame.transpose(0, 2, 1)
         return (inner + deformed.reshape(len(u), *inner.shape)) @ frame - inner @ rotation + mean
 
 
@@ -78,32 +85,51 @@ def outer_nodes(mesh: SectorMesh) -> np.ndarray:
     return np.intersect1d(np.concatenate([part.ravel() for part in parts]), mesh.elements)
 
 
-def condense(mesh: SectorMesh, elements: ReferenceElements) -> CondensedSector:
-    """Eliminate the inside of a sector of the plane model from the stiffness of its elements."""
-    outer = outer_nodes(mesh)
-    inner = np.setdiff1d(mesh.elements, outer)
+def condense_sector(mesh: SectorMesh, elements: ReferenceElements) -> CondensedPart:
+    """A sector of the plane model as one element."""
+    return _condense(mesh, elements, np.arange(len(mesh.elements)), outer_nodes(mesh))
+
+
+def condense_tooth(mesh: SectorMesh, elements: ReferenceElements) -> CondensedPart:
+    """The tooth of a solid sector as one element of the nodes on its rim, and of those where its flanks begin.
+
+    The latter give the frame: those on the rim lie close to a plane.
+    """
+    above = np.zeros(len(mesh.elements), dtype=bool)
+    above[mesh.tooth] = True
+    base = np.intersect1d(mesh.elements[above], mesh.elements[~above])
+    ends = np.concatenate([grid.nodes[0, [0, -1]] for grid in mesh.flanks])
+    return _condense(mesh, elements, mesh.tooth, np.union1d(base, ends))
+
+
+def _condense(mesh: SectorMesh, elements: ReferenceElements, part: np.ndarray, outer: np.ndarray) -> CondensedPart:
+    """Eliminate all nodes but the `outer` ones from the stiffness of the elements `part` of a sector."""
+    conn, dims = mesh.elements[part], 2 if mesh.plane else 3
+    inner = np.setdiff1d(conn, outer)
     n, m, k = len(mesh.coords), len(outer), len(inner)
-    entry = (3 * mesh.elements[..., None] + np.arange(3)).reshape(len(mesh.elements), -1)
+    entry = (3 * conn[..., None] + np.arange(3)).reshape(len(conn), -1)
     row, column = np.broadcast_arrays(entry[:, :, None], entry[:, None, :])
-    stiffness = coo_matrix((elements.stiffness.ravel(), (row.ravel(), column.ravel())), shape=(3 * n, 3 * n)).tocsr()
-    at_outer, at_inner = ((3 * nodes[:, None] + np.arange(2)).ravel() for nodes in (outer, inner))
+    entries = elements.stiffness[part].ravel(), (row.ravel(), column.ravel())
+    stiffness = coo_matrix(entries, shape=(3 * n, 3 * n)).tocsr()
+    at_outer, at_inner = ((3 * nodes[:, None] + np.arange(dims)).ravel() for nodes in (outer, inner))
     coupling = stiffness[at_inner][:, at_outer].toarray()
     modes = np.zeros((k, 3, m, 3))
     reduced = np.zeros((m, 3, m, 3))
-    solved = -splu(stiffness[at_inner][:, at_inner].tocsc()).solve(coupling)
+    factor = splu(stiffness[at_inner][:, at_inner].tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+    solved = -factor.solve(coupling)
     condensed = stiffness[at_outer][:, at_outer].toarray() + coupling.T @ solved
-    modes[:, :2, :, :2] = solved.reshape(k, 2, m, 2)
-    reduced[:, :2, :, :2] = (0.5 * (condensed + condensed.T)).reshape(m, 2, m, 2)
+    modes[:, :dims, :, :dims] = solved.reshape(k, dims, m, dims)
+    reduced[:, :dims, :, :dims] = (0.5 * (condensed + condensed.T)).reshape(m, dims, m, dims)
     coords = mesh.coords[outer]
     # the frame follows the least-squares gradient of the outer nodes' motion
-    about = (coords - coords.mean(axis=0))[:, :2]
+    about = (coords - coords.mean(axis=0))[:, :dims]
     gradient = np.zeros((m, 3))
-    gradient[:, :2] = about @ np.linalg.inv(about.T @ about)
+    gradient[:, :dims] = about @ np.linalg.inv(about.T @ about)
     reference = ReferenceElements(
         reduced.reshape(1, 3 * m, 3 * m),
         np.zeros((1, 0, 3 * m)),
         gradient[None],
         coords[None],
-        elements.volume.sum(keepdims=True),
+        elements.volume[part].sum(keepdims=True),
     )
-    return CondensedSector(outer, inner, mesh.coords[inner], reference, modes.reshape(3 * k, 3 * m))
+    return CondensedPart(outer, inner, mesh.coords[inner], reference, modes.reshape(3 * k, 3 * m))
