@@ -17,7 +17,7 @@ from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.forecast import fits, forecast
 from swgpar.analysis.places import Place, find_places
-from swgpar.analysis.root_stress import LEVELS, MOST_LEVELS, RootStress, resolve_root_stress
+from swgpar.analysis.root_stress import FEWEST_LEVELS, LEVELS, MOST_LEVELS, RootStress, resolve_root_stress
 from swgpar.analysis.shortcuts import finds_contacts
 from swgpar.analysis.start_states import StartStates
 from swgpar.design.drive_design import DriveDesign
@@ -30,7 +30,10 @@ from swgpar.meshing.recipe_counts import SMALLEST, with_counts
 LOWEST, HIGHEST = 1e-3, 0.2
 """Accuracies that may be asked for."""
 
-SAMPLES = ((0.04, 2), (0.02, 4), (0.005, 8), (0.0, 16))
+ROUGH = 0.04
+"""Accuracy from which an answer may be rough: the first windows are few."""
+
+SAMPLES = ((ROUGH, 2), (0.02, 4), (0.005, 8), (0.0, 16))
 """Smallest accuracy and number of angles in a period. Four instead of eight change the means of the plane half
 turn by 0.3 %, those of the cup drive by 0.5 %. Two instead of four change s1 of the cup drive by 0.7 %, its input
 torque by 0.2 %. The summary of a run has the change by half of its own angles."""
@@ -143,6 +146,7 @@ class Refinement:
     recipe : the first mesh, compared with a coarser one, or where that would not find the contacts with a finer one
     largest : elements of the whole drive beyond which no mesh is taken
     kept : loaded states of an earlier run, to which those of this one are added
+    levels : windows on the first mesh; None for the usual ones
     """
 
     def __init__(
@@ -153,10 +157,11 @@ class Refinement:
         comm: MPI.Comm,
         largest: int,
         kept: StartStates | None = None,
+        levels: int | None = None,
     ) -> None:
         self.design, self.load_states, self.comm, self.largest = design, load_states, comm, largest
         self.kind, self.kept = design.drive.model, kept
-        self.levels = LEVELS[self.kind]
+        self.levels = levels or LEVELS[self.kind]
         coarse = resized(recipe, 1.0 / RATIO)
         if not finds_contacts(coarse):
             coarse, recipe = recipe, resized(recipe, RATIO)
@@ -264,7 +269,8 @@ def choose_mesh(
     a run on one of the first two meshes.
     """
     largest = LARGEST[design.drive.model] if largest is None else largest
-    drive = Refinement(design, recipe, load_states, comm, largest, kept)
+    levels = FEWEST_LEVELS[design.drive.model] if accuracy >= ROUGH else None
+    drive = Refinement(design, recipe, load_states, comm, largest, kept, levels)
     refine = {"windows": drive.refine_windows, "mesh": drive.refine_drive}
     while relative_error(drive.found) > accuracy:
         errors = {"windows": drive.found.error, "mesh": drive.found.drive_error}

@@ -61,11 +61,15 @@ END_RATIO = 3.0
 LEVELS = {"plane": 4, "cup": 3}
 """Windows in the loaded state."""
 
+FEWEST_LEVELS = {"plane": 4, "cup": 2}
+"""The same for a rough answer."""
+
 PERIOD_LEVEL = {"plane": 1, "cup": 1}
 """Index of the window with which the further angles of a period are computed."""
 
-LOWEST_ORDER, HIGHEST_ORDER = 1.0, 2.0
-"""Bounds of the observed order: a higher one, which is seen in the plane, would rest on two differences only."""
+LOWEST_ORDER, ASSUMED_ORDER, HIGHEST_ORDER = 1.0, 1.5, 2.0
+"""Bounds of the observed order: a higher one, which is seen in the plane, would rest on two differences only. The order
+that two windows are judged by: in roots 2 and more is seen, at the ends of teeth about 1."""
 
 CLOSE = 0.85
 """Share of the largest stress on the drive's own mesh from which a tooth outside of the first window is looked at."""
@@ -205,12 +209,14 @@ def with_angle(known: RootStress, model: DriveModel, state: LoadState) -> RootSt
 def error_of(levels: list[float], ratio: float) -> float:
     """Error of the last value on meshes whose element sizes have this ratio, by the order observed on the last three.
 
-    Infinite where there are fewer.
+    Two values are judged by `ASSUMED_ORDER`; a single one has no bound.
     """
-    if len(levels) < 3:
+    if len(levels) < 2:
         return np.inf
-    before, last = levels[-2] - levels[-3], levels[-1] - levels[-2]
-    order = LOWEST_ORDER
+    last, order = levels[-1] - levels[-2], ASSUMED_ORDER
+    if len(levels) == 2:
+        return abs(last) / (ratio**order - 1.0)
+    before, order = levels[-2] - levels[-3], LOWEST_ORDER
     if before * last > 0.0:
         order = float(np.clip(np.log(before / last) / np.log(ratio), LOWEST_ORDER, HIGHEST_ORDER))
     # a last change that is small by chance is no convergence

@@ -26,9 +26,9 @@ INTENSITY = 40.0
 """Operations on an entry of the factor, of a factorisation that takes as long as a solve with it: 22 to 54 on meshes of
 60,000 to 920,000 unknowns (docs/verification/data/scaling.csv), the most on large ones."""
 
-ANALYSIS = 0.5
-"""Factorisations that cost as much as the analysis of another pattern by minimum degree: 0.3 to 0.6 in the loaded drive
-on forces and full."""
+ANALYSIS = 1.0
+"""Factorisations that cost as much as the analysis of another pattern: 0.8 to 1.4 in the loaded drive on full and
+forces."""
 
 
 def price(operations: float, entries: float, analysed: bool) -> float:

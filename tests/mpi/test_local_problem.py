@@ -98,3 +98,8 @@ def test_errors_of_a_known_order_are_found(order: float, ratio: float) -> None:
 def test_a_change_that_is_small_by_chance_is_no_convergence() -> None:
     assert error_of([300.0, 310.0, 310.0], 2.0) == pytest.approx(2.5)
     assert error_of([300.0, 310.0, 309.0], 2.0) == pytest.approx(2.5)
+
+
+def test_two_windows_are_judged_by_an_assumed_order() -> None:
+    assert error_of([300.0, 310.0], 2.0) == pytest.approx(10.0 / (2.0**1.5 - 1.0))
+    assert error_of([300.0], 2.0) == np.inf

@@ -172,7 +172,7 @@ def test_condensed_teeth_change_little(overrides: tuple[str, ...]) -> None:
     for fields, others in zip(stepper.model.stresses()[1], plain_stepper.model.stresses()[1]):
         assert np.abs(fields["displacement"] - others["displacement"]).max() < 1e-4 * stepper.design.deflection
         if "s1" in fields and not overrides:
-            assert np.abs(fields["s1"] - others["s1"]).max() < 2e-3 * plain["fs_vm"]
+            assert np.abs(fields["s1"] - others["s1"]).max() < 4e-3 * plain["fs_vm"]
 
 
 @pytest.mark.parallel([2, 3])
