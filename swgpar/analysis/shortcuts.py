@@ -22,8 +22,8 @@ MESHES = {"plane": "plane_coarse", "cup": "forces"}
 meshes drive (docs/verification/windows.md)."""
 
 SAMPLES = {"plane": 6, "cup": 4}
-"""Angles in a period. Eight in the plane change the means by 0.1 %, the range of the input torque by a twentieth; six in
-the cup change s1 by 0.1 %, that range by a tenth."""
+"""Angles in a period. In the plane eight change the means by 0.1 %, the range of the input torque by a twentieth. In
+the cup six change the mean of s1 by 0.1 %, that range by a tenth."""
 
 RTOL = {"plane": 1e-6, "cup": 1e-5}
 """Newton's tolerance. The stresses of the reference drives keep all digits that are printed, the input torque of the

@@ -89,10 +89,11 @@ class BodyLayout:
         row[owned_nodes] = np.arange(len(owned_nodes))
         if mesh.lower_nodes is not None:
             row = row[mesh.lower_nodes]
-        end_nodes = np.sort(mesh.cw_nodes[row[mesh.cw_nodes] >= 0])
+        end_nodes = np.intersect1d(mesh.cw_nodes, owned_nodes)
         end_row = np.full(n, -1, dtype=np.int64)
         end_row[end_nodes] = np.arange(len(end_nodes))
         if mesh.lower_nodes is not None:
+            end_row = end_row[mesh.lower_nodes]
             without_unknowns = without_unknowns[mesh.lower_nodes]
         n_end = 0 if self.closed else len(end_nodes)
         return SectorNumbering(previous, owned_nodes, row, end_row, n_end, without_unknowns)

@@ -21,7 +21,7 @@ PERIOD = 360.0 / 42.0
 def test_a_design_without_the_keys_takes_all() -> None:
     found = with_shortcuts(load_design(REFERENCE), load_recipe("full"))
     steps = found.design.steps
-    assert (steps.samples, steps.bent_start, steps.start_levels) == (SAMPLES, True, 2)
+    assert (steps.samples, steps.bent_start, steps.start_levels) == (SAMPLES["cup"], True, 2)
     assert steps.rotation == 45.0 and found.design.solver.rtol == RTOL["cup"] and len(found.left_out) == 4
     assert "42.05 of 45 degrees" in found.left_out[0]
 
@@ -65,17 +65,18 @@ def test_friction_and_short_rotations() -> None:
 
 def test_a_run_with_shortcuts_ends_in_the_same_states() -> None:
     """The angles of one period are among those of the plain run; the line says what is left out."""
-    steps = [f"steps.rotation={1.5 * PERIOD}", f"steps.increment={PERIOD / SAMPLES}", "solver.rtol=1e-9"]
+    samples = SAMPLES["plane"]
+    steps = [f"steps.rotation={1.5 * PERIOD}", f"steps.increment={PERIOD / samples}", "solver.rtol=1e-9"]
     design = load_design(DESIGN, [*PLANE, *steps])
     plain = swgpar.run(design, RECIPE, plain=True).history
     with Messages() as messages:
         fast = swgpar.run(design, RECIPE)
     assert any("left out: " in text and "step by step" in text for text in messages.texts)
-    assert len(fast.history["step"]) == 1 + 3 * SAMPLES // 2 and fast.summary["increments"] == SAMPLES
+    assert len(fast.history["step"]) == 1 + 3 * samples // 2 and fast.summary["increments"] == samples
     for name in ("fs_s1", "wg_torque_Nmm", "output_angle_deg"):
         assert np.allclose(fast.history[name], plain[name][2:], rtol=1e-6)
     curves = fast.curves()
-    assert np.allclose(curves.values["fs_s1"], plain["fs_s1"][2 : 2 + SAMPLES], rtol=1e-6)
+    assert np.allclose(curves.values["fs_s1"], plain["fs_s1"][2 : 2 + samples], rtol=1e-6)
     assert curves.fine["fs_s1"][0] == pytest.approx(curves.fine["fs_s1"][-1])
     # the curve passes through the points
     at_points = np.interp(curves.angle, curves.fine_angle, curves.fine["fs_s1"])
@@ -84,7 +85,7 @@ def test_a_run_with_shortcuts_ends_in_the_same_states() -> None:
 
 @pytest.mark.parametrize("model", [PLANE, ()], ids=["plane", "cup"])
 def test_the_tolerance_keeps_the_digits_that_are_printed(model: tuple[str, ...]) -> None:
-    steps = [*model, f"steps.rotation={1.5 * PERIOD}", f"steps.increment={PERIOD / SAMPLES}"]
+    steps = [*model, f"steps.rotation={1.5 * PERIOD}", f"steps.increment={PERIOD / SAMPLES['plane']}"]
     tight = swgpar.run(load_design(DESIGN, [*steps, "solver.rtol=1e-11"]), RECIPE).history
     fast = swgpar.run(load_design(DESIGN, steps), RECIPE).history
     for name in ("fs_s1", "fs_vm", "wg_torque_Nmm"):
