@@ -46,8 +46,8 @@ inline Eigen::Matrix3d plane_rotation(const Eigen::Matrix3d& f) {
   return r;
 }
 
-// N: 8 for hexahedra; 4 for plane elements, whose nodes have no displacement along z; Dynamic for condensed parts, which
-// are plane where their gradient has no z.
+// N: 8 for hexahedra; 4 for plane elements, whose nodes have no displacement along z; Dynamic for condensed parts,
+// which are plane where their gradient has no z.
 template <int N>
 struct CorotatedElement {
   static constexpr int D = N == Eigen::Dynamic ? Eigen::Dynamic : 3 * N;
