@@ -36,7 +36,7 @@ class Growth:
 
 GROWTH = {
     "plane": Growth(0.18, 0.61, 12.0, 4.3),
-    "cup": Growth(0.53, 0.96, 13.5, 17.0),
+    "cup": Growth(0.34, 1.31, 8.4, 17.4),
 }
 
 
