@@ -61,9 +61,12 @@ def is_halved(design: DriveDesign) -> bool:
     return design.solver.twofold_symmetry and even
 
 
-def search_distance(design: DriveDesign) -> float:
-    """Distance (mm) within which flanks are followed: under torque all those that the backlash may bring together."""
-    return max(NEAR * design.drive.module, TOUCH * design.drive.module + design.backlash)
+def search_distance(design: DriveDesign, share: float = NEAR) -> float:
+    """Distance (mm) within which flanks are followed: under torque all those that the backlash may bring together.
+
+    share : of the module, at least
+    """
+    return max(share * design.drive.module, TOUCH * design.drive.module + design.backlash)
 
 
 @dataclass(eq=False, kw_only=True)
@@ -297,9 +300,10 @@ def build_flank_contact(
 def contact_search(design: DriveDesign) -> ContactSearch:
     """Distances of the contact search."""
     module = design.drive.module
+    reach = search_distance(design, REACH if _condenses_teeth(design) else NEAR)
     return ContactSearch(
         tip_margin=TIP_MARGIN * module,
-        distances=SearchRange(near=search_distance(design), reach=REACH * module, touch=TOUCH * module),
+        distances=SearchRange(near=search_distance(design), reach=reach, touch=TOUCH * module),
         outer_radius=0.5 * design.drive.teeth_rg * module + design.deflection,
     )
 
