@@ -74,9 +74,12 @@ class RingSectors(SectorsInReach):
 
 
 class WholeTeeth(SectorsInReach):
-    """Teeth of a body that are not one element; no flank of the others may touch. `body` : its index"""
+    """Teeth of a body that are not one element; no flank of the others may touch. `body` : its index
 
-    LEAST, MARGIN, MOST = 0, 1, 3
+    The choice follows from the state alone, so that a state that repeats after a period has the same teeth.
+    """
+
+    LEAST, MARGIN, MOST = 1, 1, 1
 
     def __init__(self, count: int, body: int) -> None:
         super().__init__(count)
