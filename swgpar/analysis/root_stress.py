@@ -165,6 +165,8 @@ def resolve_root_stress(model: DriveModel, state: LoadState, levels: int | None 
     stresses = ", ".join(f"{value:.1f}" for value in values[best][skipped:])
     logger.info("windows around tooth %d, drive of %d elements: s1 %s MPa", best[0], model.n_elements(), stresses)
     error = error_of(values[best], RATIO[kind])
+    if best[1] and len(values[best]) < LEVELS[kind]:
+        error = math.inf  # the second window gives the most at the ends of teeth
     return _place(model, found[best], tuple(values[best]), error, float(np.max(on_mesh)))
 
 
@@ -209,9 +211,9 @@ def with_angle(known: RootStress, model: DriveModel, state: LoadState) -> RootSt
 def error_of(levels: list[float], ratio: float) -> float:
     """Error of the last value on meshes whose element sizes have this ratio, by the order observed on the last three.
 
-    Two values are judged by `ASSUMED_ORDER`; a single one has no bound.
+    Two values are judged by `ASSUMED_ORDER`; a single one, the others being left out, has no bound.
     """
-    if len(levels) < 2:
+    if len(levels) < 2 or math.isnan(levels[-2]):
         return np.inf
     last, order = levels[-1] - levels[-2], ASSUMED_ORDER
     if len(levels) == 2:

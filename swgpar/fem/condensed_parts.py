@@ -6,7 +6,7 @@ linear in a frame that rotates with the outer nodes, as every element is in a fr
 
 - whole sectors of the plane model. The rotation of a sector's ends relative to each other (`relative_end_rotation`) is
   not seen: strains of an eighth of the square of that angle are left out.
-- teeth of a solid flexible spline above their rims, while no flank is within reach. They hardly bend.
+- teeth of solid gears above their rims, while no flank is within reach. They hardly bend.
 """
 
 from __future__ import annotations

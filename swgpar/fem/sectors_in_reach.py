@@ -1,11 +1,11 @@
 """What flanks cannot reach is modelled with less.
 
 Ring-gear sectors that no tooth of the flexible spline can reach are left out: the frame supports them, and their effect
-on the loaded teeth decays within a few pitches. Their elements are dropped, their nodes are fixed, and their rows of
-the tangent have a diagonal only, which causes no fill.
+on the loaded teeth decays within a few pitches. Their elements are dropped and their nodes are fixed: the tangent has
+no rows of them.
 
-Teeth of solid gears that reach no flank are one element each (`condensed_parts.py`). The rows of the nodes inside of
-them have a diagonal only as well; their displacement follows from that of the tooth's rim.
+Teeth of solid gears that reach no flank are one element each (`condensed_parts.py`). The tangent has no rows of the
+nodes inside of them either; their displacement follows from that of the tooth's rim.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ class RingSectors(SectorsInReach):
 class WholeTeeth(SectorsInReach):
     """Teeth of a body that are not one element; no flank of the others may touch. `body` : its index
 
-    The choice follows from the state alone, so that a state that repeats after a period has the same teeth.
+    The choice follows from the shape at the search alone, so that one that repeats after a period has the same teeth.
     """
 
     LEAST, MARGIN, MOST = 1, 1, 1

@@ -192,7 +192,7 @@ class BorderedSystem:
         bound : of C x in the last row when that is loaded instead of prescribed
         """
         self.matrix, self.grounding, self.border, self.rows, self.bound = matrix, grounding, border, rows, bound
-        other = int(self.into is None or self.into.getSizes() != matrix.getSizes()[0])
+        other = int(self.into is None or not np.array_equal(active, self.active))
         if self.partition.comm.allreduce(other, op=MPI.MAX):
             for owned in (self.into, self.out, self.ksp):
                 if owned is not None:

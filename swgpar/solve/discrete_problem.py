@@ -164,12 +164,8 @@ class DiscreteProblem:
 
     # -- contact search --------------------------------------------------------------------------------
 
-    def search(self, state: LoadState) -> bool:
-        """Find the flanks and faces that can meet at the present x; make room for them in the tangent; collective.
-
-        Returns whether the sectors and teeth that are modelled are other ones than before.
-        """
-        changed = False
+    def search(self, state: LoadState) -> None:
+        """Find the flanks and faces that can meet at the present x; make room for them in the tangent; collective."""
         with self.phases("search"):
             self.complete()
             self._searched = self.x.array_r.copy()
@@ -186,11 +182,10 @@ class DiscreteProblem:
                 u = self.displacement()
                 found = self.flanks.search(pairs, self.local, u, self.contact_search.distances, accepted)
                 pattern = np.union1d(found, self.coupling_keys)
-                changed = self._choose_modelled_sectors()
+                self._choose_modelled_sectors()
         for contact in self.rigid_contacts:
             contact.reset()
         self.set_pattern(pattern)
-        return changed
 
     def complete(self) -> None:
         """Let the inside of condensed teeth follow their rims; collective."""
@@ -221,8 +216,8 @@ class DiscreteProblem:
         pairs = facing_flanks(self.partition, self.elements.bodies[FLEXIBLE_SPLINE], u, rotation, margin)
         return [pair for pair in pairs if self.flanks.takes_part(pair)]
 
-    def _choose_modelled_sectors(self) -> bool:
-        """Leave out sectors of the ring gear, and condense teeth, out of reach; returns whether others; collective."""
+    def _choose_modelled_sectors(self) -> None:
+        """Leave out sectors of the ring gear, and condense teeth, that are out of reach; collective."""
         spline, ring, near = (
             np.concatenate(part) for part in zip(*self.partition.comm.allgather(self.flanks.sectors_in_reach()))
         )
@@ -235,7 +230,6 @@ class DiscreteProblem:
         if changed:
             self.x.array.reshape(-1, 3)[self.elements.pattern.nodes_without_elements] = 0.0
             self.complete()
-        return any(changed)
 
     def overlooked(self, state: LoadState) -> bool:
         """Whether flanks that the search left out have come into contact; collective."""

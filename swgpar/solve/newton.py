@@ -285,15 +285,11 @@ class NewtonSolver:
         bounded = problem.flanks is not None and problem.flanks.is_active(load_state)
         self.line_search.max_node_step = MAX_NODE_STEP * problem.module if bounded else np.inf
         if search:
-            self._search(load_state)
+            problem.search(load_state)
         else:
             problem.reset_contacts()
         softenings = list(SOFT_PENALTIES) if establish_contact else []
         return SolveState(load_state, softenings, MAX_ITERATIONS_FACTOR * self.settings.max_iterations)
-
-    def _search(self, load_state: LoadState) -> None:
-        if self.problem.search(load_state):
-            self.system.discard_factor()
 
     def _iterate(self, state: SolveState) -> Outcome:
         """One run of Newton's iteration in the present phase."""
@@ -317,7 +313,7 @@ class NewtonSolver:
             state.repeated_searches += 1
             # a search releases the segments and forgets the multipliers
             state.breaker, state.before_augmentation = CycleBreaker(), None
-            self._search(state.load_state)
+            self.problem.search(state.load_state)
         else:
             self.problem.extend_pattern(state.pattern_misses)
 
@@ -366,7 +362,7 @@ class NewtonSolver:
                 reason = f"contact outside of {MAX_FURTHER_SEARCHES + 1} searches"
                 state.result = SolveResult(False, state.iterations, state.residual, reason)
                 return
-            self._search(state.load_state)
+            problem.search(state.load_state)
             state.searches += 1
             state.before_augmentation = None
             return
