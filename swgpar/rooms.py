@@ -17,7 +17,7 @@ PURPOSE = {
     "design": "design file of the drive: sections, derived quantities, checks of fit, load states",
     "kernel": "C++ kernels of elements, contact and friction, and their Cython layer",
     "meshing": "mesh recipes, tooth sectors, quality, interpolation between meshes, export",
-    "fem": "distribution over ranks, element assembly, condensed parts, inactive sectors, stress",
+    "fem": "distribution over ranks, element assembly, condensed parts, sectors in reach, stress",
     "contact": "contact of cam, pins and flanks: search, enforcement, friction",
     "constraints": "supports and distributing couplings",
     "solve": "residual and tangent, Newton's method, linear systems",

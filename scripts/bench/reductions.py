@@ -25,7 +25,7 @@ OFF = {
 }
 ON = {
     "twofold symmetry": {"solver.twofold_symmetry": "true"},
-    "inactive sectors": {"solver.far_teeth": "left_out"},
+    "teeth out of reach": {"solver.far_teeth": "left_out"},
     "factorisation reused": {"solver.keep_factor": "true"},
     "start on a coarser mesh": {"steps.start_levels": "1"},
     "no pins": {"steps.pins": "false"},

@@ -1,1 +1,1 @@
-"""Finite elements: partition, assembly, condensed parts, inactive sectors, stress."""
+"""Finite elements: partition, assembly, condensed parts, sectors in reach, stress."""

@@ -178,7 +178,8 @@ class BodyElements:
     def nodal_stress(self, u: np.ndarray) -> np.ndarray:
         """Stress at the nodes of the owned sectors: extrapolated per element, averaged over the body's elements.
 
-        Returns (n_owned, n_node, 6) MPa; components xx, yy, zz, xy, yz, zx in global axes; zero in inactive sectors.
+        Returns (n_owned, n_node, 6) MPa; components xx, yy, zz, xy, yz, zx in global axes.
+        It is zero in sectors without elements.
         """
         mesh = self.layout.mesh
         elements, lower = np.ascontiguousarray(mesh.elements), mesh.lower_nodes

@@ -10,13 +10,15 @@ nodes inside of them either; their displacement follows from that of the tooth's
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+
 import numpy as np
 
 from swgpar.fem.body_layout import RING_GEAR
 from swgpar.fem.elements import BodyElements, Elements
 
 
-class SectorsInReach:
+class SectorsInReach(ABC):
     """Which sectors of a closed chain are within reach, or near one that is; the same choice on every rank.
 
     Parameters
@@ -54,9 +56,9 @@ class SectorsInReach:
         self._apply(elements)
         return True
 
+    @abstractmethod
     def _apply(self, elements: Elements) -> None:
         """Change the elements."""
-        raise NotImplementedError
 
     def _seen(self, body: BodyElements) -> np.ndarray:
         """The choice (n_sectors,) for the sectors of a body that a rank sees."""

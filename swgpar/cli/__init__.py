@@ -1,0 +1,80 @@
+"""The command `swgpar`."""
+
+from __future__ import annotations
+
+import difflib
+import sys
+import traceback
+from collections.abc import Sequence
+
+from swgpar.cli.commands import COMMANDS
+from swgpar.cli.parser import parser
+from swgpar.errors import InputError, OutOfMemoryError, SwgparError, shortened
+
+__all__ = ["main", "parser"]
+
+SOLVING = ("run", "study", "optimise")
+"""Commands that compute on all ranks, with options of PETSc."""
+
+OPTIONS = tuple("--set --mesh --accuracy --plain --out --restart --overwrite --format --help --version".split())
+
+
+def _check_rest(rest: Sequence[str], petsc: bool) -> None:
+    """Refuse what is neither an option of swgpar nor one of PETSc (-name, -name value)."""
+    after_option = False
+    for word in rest:
+        option = petsc and len(word) > 1 and word[0] == "-" and (word[1].isalpha())
+        if not option and not after_option:
+            near = difflib.get_close_matches(word, OPTIONS, n=1)
+            hint = f": did you mean {near[0]}?" if near else "; options of PETSc begin with one dash" if petsc else ""
+            raise InputError(f"unknown argument {shortened(word)}{hint}")
+        after_option = option
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Entry point; returns the exit code: 0, that of the error, 130 or 143 after a signal."""
+    from swgpar import watch
+
+    with watch.armed():
+        return _main(arguments)
+
+
+def _main(arguments: Sequence[str] | None) -> int:
+    command = None
+    try:
+        known, rest = parser().parse_known_args(arguments)
+        command = known.command
+        _check_rest(rest, petsc=command in SOLVING)
+        known.overrides = [item for group in getattr(known, "set", []) for item in group]
+        from swgpar import petsc, watch
+
+        petsc.start(rest)
+        watch.rearm()
+        COMMANDS[command](known)
+    except SwgparError as error:
+        from mpi4py import MPI
+
+        alone = getattr(error, "alone", False) and MPI.COMM_WORLD.size > 1
+        if MPI.COMM_WORLD.rank == 0 or alone:
+            print(f"swgpar: error: {error}", file=sys.stderr, flush=True)
+        if alone:  # the other ranks wait for this one
+            MPI.COMM_WORLD.Abort(error.exit_code)
+        return error.exit_code
+    except BrokenPipeError:  # the reader of our output has gone
+        sys.stderr.close()
+        return 1
+    except MemoryError:
+        print("swgpar: error: not enough memory: take a coarser mesh, or more memory", file=sys.stderr, flush=True)
+        if command in SOLVING:
+            from mpi4py import MPI
+
+            MPI.COMM_WORLD.Abort(OutOfMemoryError.exit_code)
+        return OutOfMemoryError.exit_code
+    except Exception:
+        if command not in SOLVING:
+            raise
+        traceback.print_exc()
+        from mpi4py import MPI
+
+        MPI.COMM_WORLD.Abort(1)
+    return 0
