@@ -50,6 +50,7 @@ def solve(case: dict[str, Any]) -> dict[str, Any]:
         "error": found.error,
         "drive_error": found.drive_error,
         "levels": found.levels,
+        "by_part": found.by_part,
         "region": found.region,
         "pressure": max((pair.pressure_MPa for pair in pairs if not pair.edge), default=0.0),
         "edge": any(pair.edge for pair in pairs),

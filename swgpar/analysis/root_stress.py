@@ -8,6 +8,7 @@ leaves. The error of the drive's displacements and forces is another part (docs/
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -74,10 +75,13 @@ that two windows are judged by: in roots 2 and more is seen, at the ends of teet
 CLOSE = 0.85
 """Share of the largest stress on the drive's own mesh from which a tooth outside of the first window is looked at."""
 
-SAME_REGION, OTHER_REGION = 0.995, (0.9, 1.0)
-"""Shares of the largest stress from which another is followed on finer windows: in the same region; in another one
-after the first window, and after later ones. At the ends of the teeth the second window gives the most, up to 12 % too
-much."""
+SAME_REGION, AT_ENDS, BETWEEN_ENDS = 0.995, (0.9, 1.0), 0.88
+"""Shares of the largest stress from which another is followed on finer windows: in the same region; at the ends of
+teeth after the first window, and after later ones; between them while an end has the largest. At the ends the second
+window gives the most, up to 12 % too much."""
+
+PARTS = BETWEEN, ENDS = "between the ends", "ends"
+"""Of teeth, in which stresses converge differently; a flag `ends` is the index."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +93,8 @@ class RootStress:
     region : as of a `Place`;  warning : why there is no limit to converge to; empty where there is one
     tooth : number, counter-clockwise from +y in the undeformed drive
     radius, z : mm;  angle_deg : from +y, counter-clockwise
-    levels : s1 (MPa) on the windows, coarse to fine;  elements : of the finest window
+    part : of the tooth;  by_part : largest s1 (MPa) of every part on the windows, coarse to fine, while it was followed
+    elements : of the finest window
     drive_error : MPa, estimated, of the drive's mesh; None where it is not known
     period : angles of the wave generator (degrees) and s1 (MPa) there, of one sampled period
     """
@@ -103,10 +108,16 @@ class RootStress:
     radius: float
     z: float
     angle_deg: float
-    levels: tuple[float, ...]
+    part: str
+    by_part: Mapping[str, Sequence[float]]
     elements: int
     drive_error: float | None = None
     period: tuple[tuple[float, float], ...] = ()
+
+    @property
+    def levels(self) -> Sequence[float]:
+        """s1 (MPa) on the windows, coarse to fine."""
+        return self.by_part[self.part]
 
     @property
     def total_error(self) -> float:
@@ -164,10 +175,16 @@ def resolve_root_stress(model: DriveModel, state: LoadState, levels: int | None 
         places = [place for place in places if may_be_largest(found[place], found[best], level)]
     stresses = ", ".join(f"{value:.1f}" for value in values[best][skipped:])
     logger.info("windows around tooth %d, drive of %d elements: s1 %s MPa", best[0], model.n_elements(), stresses)
+    by_part = {PARTS[ends]: max((v for at, v in values.items() if at[1] == ends), key=_reached) for ends in parts}
     error = error_of(values[best], RATIO[kind])
-    if best[1] and len(values[best]) < LEVELS[kind]:
-        error = math.inf  # the second window gives the most at the ends of teeth
-    return _place(model, found[best], tuple(values[best]), error, float(np.max(on_mesh)))
+    if best[1]:
+        error = error_at_ends(by_part, RATIO[kind]) if len(values[best]) >= LEVELS[kind] else math.inf
+    return _place(model, found[best], PARTS[best[1]], by_part, error, float(np.max(on_mesh)))
+
+
+def _reached(levels: list[float]) -> tuple[int, float]:
+    """Number of windows, and s1 on the finest one."""
+    return len(levels), levels[-1]
 
 
 def candidates(between: np.ndarray, at_ends: np.ndarray | None = None) -> list[int]:
@@ -188,7 +205,9 @@ def candidates(between: np.ndarray, at_ends: np.ndarray | None = None) -> list[i
 
 def may_be_largest(one: WindowStress, best: WindowStress, level: int) -> bool:
     """Whether a stress may overtake the largest one on windows finer than `level`; one region converges alike."""
-    share = SAME_REGION if one.region == best.region else OTHER_REGION[min(level, 1)]
+    share = SAME_REGION
+    if one.region != best.region:
+        share = BETWEEN_ENDS if best.region == TOOTH_END else AT_ENDS[min(level, 1)]
     return one is best or one.value > share * best.value
 
 
@@ -200,7 +219,7 @@ def with_angle(known: RootStress, model: DriveModel, state: LoadState) -> RootSt
     """
     kind = model.design.drive.model
     level = PERIOD_LEVEL[kind]
-    ends = known.region == TOOTH_END
+    ends = known.part == ENDS
     tooth = int(_largest_by_tooth(model, ends).argmax())
     found = _solve(model, state, [(tooth, ends)], window_recipe(kind, level))[tooth, ends]
     value = found.value * known.s1 / known.levels[level]
@@ -208,7 +227,7 @@ def with_angle(known: RootStress, model: DriveModel, state: LoadState) -> RootSt
     return replace(known, period=(*period, (float(np.degrees(state.angle)), value)))
 
 
-def error_of(levels: list[float], ratio: float) -> float:
+def error_of(levels: Sequence[float], ratio: float) -> float:
     """Error of the last value on meshes whose element sizes have this ratio, by the order observed on the last three.
 
     Two values are judged by `ASSUMED_ORDER`; a single one, the others being left out, has no bound.
@@ -224,6 +243,18 @@ def error_of(levels: list[float], ratio: float) -> float:
     # a last change that is small by chance is no convergence
     change = max(abs(last), abs(before) / ratio**HIGHEST_ORDER)
     return change / (ratio**order - 1.0)
+
+
+def error_at_ends(by_part: Mapping[str, Sequence[float]], ratio: float) -> float:
+    """Error of the last value of `by_part` at the ends of the teeth, which is the largest one.
+
+    Where it falls from window to window, the largest stress is not above it, and not below the one between the ends.
+    """
+    ends, between = by_part[ENDS], by_part[BETWEEN]
+    error = error_of(ends, ratio)
+    if len(between) == len(ends) > 1 and ends[-1] < ends[-2]:
+        error = min(error, ends[-1] - between[-1] + error_of(between, ratio))
+    return error
 
 
 def _near(tooth: int, count: int) -> np.ndarray:
@@ -257,7 +288,12 @@ def _solve(
 
 
 def _place(
-    model: DriveModel, found: WindowStress, levels: tuple[float, ...], error: float, on_mesh: float
+    model: DriveModel,
+    found: WindowStress,
+    part: str,
+    by_part: Mapping[str, Sequence[float]],
+    error: float,
+    on_mesh: float,
 ) -> RootStress:
     x, y, z = found.position
     layout = model.partition.layouts[FLEXIBLE_SPLINE]
@@ -272,6 +308,7 @@ def _place(
         radius=float(np.hypot(x, y)),
         z=0.0 if layout.mesh.plane else float(z),
         angle_deg=float(np.degrees(angle)) % 360.0,
-        levels=levels,
+        part=part,
+        by_part=by_part,
         elements=found.elements,
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -29,6 +29,7 @@ from swgpar.analysis.mesh_refinement import (
     choose_mesh,
     compared_stresses,
     drive_error,
+    least_error,
     resized,
     size_ratio,
     with_accuracy,
@@ -208,7 +209,7 @@ class _Run:
         self.model, self.recipe, self.recorder, self.stepper = model, recipe, recorder, LoadStepper(model)
         self.on_increment, self.begin = on_increment, begin
         self.earlier_seconds, self.ended_early = 0.0, False
-        self.coarse: tuple[MeshRecipe, tuple[float, ...]] | None = None
+        self.coarse: tuple[MeshRecipe, Mapping[str, Sequence[float]]] | None = None
         counts = model.counts()
         logger.info(
             "%d elements, %d nodes in the whole drive; %d unknowns modelled%s; %d ranks",
@@ -312,7 +313,8 @@ class _Run:
         if self.coarse is None:
             return found
         coarse, levels = self.coarse
-        return replace(found, drive_error=drive_error(levels, found.levels, size_ratio(coarse, self.recipe)))
+        least = least_error(self.model, state)
+        return replace(found, drive_error=drive_error(levels, found, size_ratio(coarse, self.recipe), least))
 
     def _bearing(self) -> dict[str, Any] | None:
         """Entry of the summary for the bearing: over the increments under load."""

@@ -159,7 +159,12 @@ def summarise(
 
 
 def _resolved(found: RootStress) -> dict[str, Any]:
-    return {**asdict(found), "total_error": found.total_error, "over_period": found.over_period()}
+    return {
+        **asdict(found),
+        "levels": found.levels,
+        "total_error": found.total_error,
+        "over_period": found.over_period(),
+    }
 
 
 def _sizes(model: DriveModel) -> dict[str, Any]:

@@ -7,21 +7,25 @@ from pathlib import Path
 import pytest
 from mpi4py import MPI
 
+from support.drive_groups import PLANE as PLANE_DRIVE
 from support.messages import Messages
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.analysis.mesh_refinement import (
     LEAST,
+    LEAST_WITH_EDGES,
     ORDER,
     RATIO,
     ChosenMesh,
     choose_mesh,
     drive_error,
+    least_error,
     resized,
     with_accuracy,
 )
-from swgpar.analysis.root_stress import LEVELS, resolve_root_stress
+from swgpar.analysis.root_stress import BETWEEN, ENDS, LEVELS, RootStress, resolve_root_stress
+from swgpar.analysis.shortcuts import with_shortcuts
 from swgpar.design.design_file import load_design
 from swgpar.design.load_states import from_loaded, load_sequence
 from swgpar.errors import InputError
@@ -73,16 +77,42 @@ def test_accuracies_that_cannot_be_had() -> None:
             with_accuracy(load_design(DESIGN, PLANE), accuracy)
 
 
+def windows(levels: list[float], part: str = BETWEEN) -> RootStress:
+    """The largest stress, on these windows."""
+    place = {"region": "", "warning": "", "tooth": 0, "radius": 0.0, "z": 0.0, "angle_deg": 0.0, "elements": 1}
+    return RootStress(s1=levels[-1], error=0.0, on_mesh=0.0, part=part, by_part={part: levels}, **place)
+
+
 def test_the_error_of_the_drive_s_mesh_follows_from_two_meshes() -> None:
     """Errors of the displacements' order are found; the windows' own, which both share, cancel."""
     coarse = [260.0 + 9.0, 290.0 + 9.0]
-    fine = [260.0 + 9.0 / RATIO**ORDER, 290.0 + 9.0 / RATIO**ORDER, 300.0]
-    expected = 9.0 / RATIO**ORDER * fine[-1] / fine[1]
-    assert drive_error(coarse, fine, RATIO) == pytest.approx(expected)
-    assert drive_error([float("nan"), coarse[1]], fine, RATIO) == pytest.approx(expected)  # the first was not computed
+    fine = windows([260.0 + 9.0 / RATIO**ORDER, 290.0 + 9.0 / RATIO**ORDER, 300.0])
+    expected = 9.0 / RATIO**ORDER * fine.s1 / fine.levels[1]
+    assert drive_error({BETWEEN: coarse}, fine, RATIO, LEAST) == pytest.approx(expected)
+    # the first was not computed
+    assert drive_error({BETWEEN: [float("nan"), coarse[1]]}, fine, RATIO, LEAST) == pytest.approx(expected)
     # changes that are small by chance
-    assert drive_error([270.0, 290.0], [270.0, 290.0, 300.0], RATIO) == pytest.approx(LEAST * 300.0)
-    assert drive_error([270.0, 290.0], [270.0, 290.0, 300.0], RATIO, before=9.0) == pytest.approx(9.0 / RATIO**ORDER)
+    same, fine = {BETWEEN: [270.0, 290.0]}, windows([270.0, 290.0, 300.0])
+    assert drive_error(same, fine, RATIO, LEAST) == pytest.approx(LEAST * 300.0)
+    assert drive_error(same, fine, RATIO, LEAST, before=9.0) == pytest.approx(9.0 / RATIO**ORDER)
+
+
+def test_the_same_part_of_the_teeth_is_compared_between_two_meshes() -> None:
+    """At the ends the second window gives too much, on either mesh."""
+    coarse = {BETWEEN: [260.0, 280.0], ENDS: [265.0, 295.0]}
+    assert drive_error(coarse, windows([262.0, 281.25]), RATIO, 0.0) == pytest.approx(1.0)
+    assert drive_error(coarse, windows([267.0, 297.5], ENDS), RATIO, 0.0) == pytest.approx(2.0)
+
+
+def test_contacts_on_edges_leave_more_of_an_error() -> None:
+    involute = {"type": "involute", "pressure_angle": 20.0, "cutter_radius": 0.2}
+    profiles = {"flexible_spline.profile": involute, "ring_gear.profile": {**involute, "cutter_teeth": 80}}
+    recipe = load_recipe("plane_coarse")
+    for values, least in ((profiles, LEAST_WITH_EDGES), ({}, LEAST)):
+        design = with_shortcuts(load_design(PLANE_DRIVE, values), recipe, levels=False).design
+        states = list(load_sequence(design))
+        model = solve_to_load(design, recipe, states, MPI.COMM_SELF)
+        assert least_error(model, from_loaded(states)[0]) == least
 
 
 def test_the_error_holds() -> None:

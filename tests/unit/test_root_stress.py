@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from swgpar.analysis.local_problem import WindowStress
-from swgpar.analysis.root_stress import candidates, may_be_largest
+from swgpar.analysis.root_stress import BETWEEN, ENDS, candidates, error_at_ends, error_of, may_be_largest
 
 
 def teeth(**values: float) -> np.ndarray:
@@ -50,3 +50,20 @@ def test_stresses_of_one_region_converge_alike(region: str, value: float, level:
     best = WindowStress(100.0, 0, np.zeros(3), "tooth root", "", 1)
     assert may_be_largest(WindowStress(value, 5, np.zeros(3), region, "", 1), best, level) == followed
     assert may_be_largest(best, best, level)
+
+
+@pytest.mark.parametrize(("value", "level", "followed"), [(89.0, 0, True), (89.0, 2, True), (87.0, 1, False)])
+def test_a_root_is_followed_while_the_end_of_a_tooth_gives_more(value: float, level: int, followed: bool) -> None:
+    """Stresses at the ends fall from the second window on."""
+    end = WindowStress(100.0, 0, np.zeros(3), "tooth end", "", 1)
+    assert may_be_largest(WindowStress(value, 0, np.zeros(3), "tooth root", "", 1), end, level) == followed
+
+
+def test_a_stress_at_the_ends_that_falls_is_bounded_by_the_one_between_them() -> None:
+    falling, rising = [270.0, 292.0, 284.0], [270.0, 278.0, 284.0]
+    between = [270.0, 278.0, 282.0]
+    alone = error_of(falling, 1.5)
+    assert error_at_ends({BETWEEN: between[:1], ENDS: falling}, 1.5) == alone
+    assert error_at_ends({BETWEEN: between, ENDS: falling}, 1.5) == pytest.approx(2.0 + error_of(between, 1.5))
+    assert 2.0 + error_of(between, 1.5) < alone
+    assert error_at_ends({BETWEEN: between, ENDS: rising}, 1.5) == error_of(rising, 1.5)
