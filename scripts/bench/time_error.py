@@ -64,7 +64,7 @@ HEAD = ["drive", "way", "run", "s", "s1 under load", "stated error", "true error
 def references() -> dict[str, float]:
     """True s1 (MPa) by model."""
     lines = Path("results/bench/effectivity.jsonl").read_text(encoding="utf-8").splitlines()
-    found = {one["drive"]: one["reference"]["s1"] for one in map(json.loads, lines)}
+    found = {one["drive"]: one["references"][0]["s1"] for one in map(json.loads, lines)}
     return {model: found[name] for model, name in REFERENCES.items()}
 
 
