@@ -69,9 +69,9 @@ PERIOD_LEVEL = {"plane": 1, "cup": 1}
 """Index of the window with which the further angles of a period are computed."""
 
 LOWEST_ORDER, ASSUMED_ORDER, HIGHEST_ORDER = 1.0, 1.5, 2.5
-"""Bounds of the observed order, and the order that two windows are judged by. In roots 2 to 3.4 is seen, but it rests on
-two differences only, at the ends of teeth about 1. With the highest one the error of most windows is 0.5 to 3 times the
-true one (docs/verification/effectivity.md)."""
+"""Bounds of the observed order, and the order that two windows are judged by. In roots 2 to 3.4 is seen, but it rests
+on two differences only, at the ends of teeth about 1. With the highest one the error of most windows is 0.5 to 3 times
+the true one (docs/verification/effectivity.md)."""
 
 CLOSE = 0.85
 """Share of the largest stress on the drive's own mesh from which a tooth outside of the first window is looked at."""
