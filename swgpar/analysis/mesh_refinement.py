@@ -49,7 +49,7 @@ NODAL_ORDER = 1
 COMPARED_LEVELS = 2
 """Windows of which the last one shows what the mesh of the drive changes."""
 
-LEAST = {"plane": 0.004, "cup": 0.008}
+LEAST = {"plane": 0.004, "cup": 0.01}
 """Least error by the mesh of the drive that two meshes can show, as a share of the stress: on plane_coarse that error
 is 0 to 0.6 %, on forces 0.2 to 1.1 % (docs/verification/effectivity.md)."""
 

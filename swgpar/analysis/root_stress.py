@@ -235,14 +235,15 @@ def error_of(levels: Sequence[float], ratio: float) -> float:
     """
     if len(levels) < 2 or math.isnan(levels[-2]):
         return np.inf
-    last, order = levels[-1] - levels[-2], ASSUMED_ORDER
+    last = levels[-1] - levels[-2]
     if len(levels) == 2:
-        return abs(last) / (ratio**order - 1.0)
-    before, order = levels[-2] - levels[-3], LOWEST_ORDER
-    if before * last > 0.0:
-        order = float(np.clip(np.log(before / last) / np.log(ratio), LOWEST_ORDER, HIGHEST_ORDER))
+        return abs(last) / (ratio**ASSUMED_ORDER - 1.0)
+    before = levels[-2] - levels[-3]
     # a last change that is small by chance is no convergence
     change = max(abs(last), abs(before) / ratio**HIGHEST_ORDER)
+    if before * last <= 0.0:
+        return change  # the limit lies between the last two
+    order = float(np.clip(np.log(before / last) / np.log(ratio), LOWEST_ORDER, HIGHEST_ORDER))
     return change / (ratio**order - 1.0)
 
 

@@ -101,6 +101,11 @@ def test_a_change_that_is_small_by_chance_is_no_convergence() -> None:
     assert error_of([300.0, 310.0, 309.0], 2.0) == pytest.approx(least)
 
 
+@pytest.mark.parametrize("ratio", [1.5, 2.0])
+def test_a_limit_lies_between_values_that_rise_and_fall(ratio: float) -> None:
+    assert error_of([300.0, 310.0, 304.0], ratio) == pytest.approx(6.0)
+
+
 def test_two_windows_are_judged_by_an_assumed_order() -> None:
     assert error_of([300.0, 310.0], 2.0) == pytest.approx(10.0 / (2.0**1.5 - 1.0))
     assert error_of([300.0], 2.0) == np.inf
