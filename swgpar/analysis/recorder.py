@@ -302,6 +302,7 @@ class FolderRecorder(Recorder):
         write_from_root(self.comm, self.out / history.NAME, history.format_rows(self.rows))
         if self.pairs:
             write_from_root(self.comm, self.out / PAIRS, format_csv(self.pairs))
+        if self.contact_lines:  # none where all contacts lie on edges
             write_from_root(self.comm, self.out / CONTACT_LINES, format_csv(self.contact_lines))
         if program := self.program_rows():
             write_from_root(self.comm, self.out / PROGRAM, format_csv(program))
