@@ -63,12 +63,15 @@ def succeed(
     return done
 
 
-def assert_same_history(folder: Path, other: Path, rel: float = 1e-8, *, iterations: bool = True) -> None:
+def assert_same_history(folder: Path, other: Path, rel: float | None = None, *, iterations: bool = True) -> None:
     """Rows agree within `rel` of the largest value of their column: entries that vanish are round-off.
 
+    rel : default 1e-8, and 1e-7 with other iterations: these end anywhere below a residual of 1e-9 of the contact
+    force, of which the torque on the wave generator is a small difference
     iterations : compare Newton iterations too; on other numbers of ranks round-off may cost or save one, and a restart
     predicts its first states from one alone
     """
+    rel = rel or (1e-8 if iterations else 1e-7)
     a, b = (history.read_history(path / history.NAME) for path in (folder, other))
     assert [r["step"] for r in a] == [r["step"] for r in b]
     for name in history.COLUMNS:
