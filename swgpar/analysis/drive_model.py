@@ -176,7 +176,6 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
         flanks=build_flank_contact(design, partition=partition, elements=elements, supports=supports),
         contact_search=contact_search(design),
         module=design.drive.module,
-        inner_radius=design.inner_radius,
         ring_sectors=RingSectors(layouts[RING_GEAR].count) if _leaves_out_sectors(design) else None,
         whole_teeth=[WholeTeeth(layout.count, k) for k, layout in enumerate(layouts) if layout.tooth is not None],
         coupling_keys=coupling_keys,

@@ -131,7 +131,6 @@ class LocalProblem:
                 self._cuts(displacement),
             ],
             module=design.drive.module,
-            inner_radius=design.inner_radius,
             phases=PhaseTimes(),
         )
         self.solver = NewtonSolver(

@@ -130,7 +130,6 @@ class RingBody:
             supports=Supports(self.partition, couplings, scale=scale, share=share),
             rigid_contacts=[contact],
             module=REFERENCE_LENGTH,
-            inner_radius=design.inner_radius,
             phases=PhaseTimes(),
         )
         settings = NewtonSettings(

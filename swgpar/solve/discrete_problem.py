@@ -69,7 +69,7 @@ class DiscreteProblem:
     supports : couplings, housing, grounding and load
     rigid_contacts : contacts with rigid surfaces, and those of a bearing
     flanks, contact_search : contact of the tooth flanks and its search; None for a body without teeth
-    module : mm, length that bounds and floors refer to;  inner_radius : mm, size of the body
+    module : mm, length that bounds and floors refer to
     ring_sectors : ring-gear sectors that are modelled; None where all are
     whole_teeth : teeth of the flexible spline and of the ring gear that are not one element; none where all are
     coupling_keys : (n,) of blocks that contacts of two bodies need, row * n_global + column, sorted
@@ -92,7 +92,6 @@ class DiscreteProblem:
         flanks: FlankContact | None = None,
         contact_search: ContactSearch | None = None,
         module: float,
-        inner_radius: float,
         ring_sectors: RingSectors | None = None,
         whole_teeth: Sequence[WholeTeeth] = (),
         coupling_keys: np.ndarray = NO_KEYS,
@@ -107,7 +106,7 @@ class DiscreteProblem:
             if self.flanks is None
             else FlankClearance(self.flanks, partition.comm, module=module, outer_radius=contact_search.outer_radius)
         )
-        self.module, self.inner_radius = module, inner_radius
+        self.module = module
         self.ring_sectors, self.whole_teeth = ring_sectors, whole_teeth
         self.scale, self.coupling_keys = supports.scale, coupling_keys
         self.x, self.accepted = create_vector(partition), create_vector(partition)
@@ -118,6 +117,7 @@ class DiscreteProblem:
         self.matrix_rows: MatrixRows | None = None
         self.slots: list[list[np.ndarray]] = []
         self.matrix: PETSc.Mat | None = None
+        self._extent = largest(partition.comm, float(np.abs(self.positions()).max(initial=0.0)))
         self.round_off = 0.0
         self._searched = self.x.array_r.copy()
 
@@ -314,7 +314,7 @@ class DiscreteProblem:
         diagonal = self.rows.values[np.searchsorted(self.rows.keys, keys)]
         squares = float(np.einsum("nkk,nkk->", diagonal, diagonal))
         squares = self.partition.comm.allreduce(squares, op=MPI.SUM)
-        return float(np.finfo(float).eps * self.inner_radius * np.sqrt(squares))
+        return float(np.finfo(float).eps * self._extent * np.sqrt(squares))
 
     def output_step_bound(self, state: LoadState) -> float | None:
         """Bound of the output's motion in a Newton step, in units of the last border; None where it is prescribed."""
