@@ -22,6 +22,9 @@ SMALLEST_MINOR_AXIS = 0.4
 THINNEST_RIM, THICKEST_RIM = 0.01, 100.0
 """Thickness of a rim in modules: thinner and thicker ones are slips."""
 
+LARGEST_SHEAR = 0.01
+"""Nominal shear strain under the output torque; steel yields at half of it, and far above the teeth find no contact."""
+
 OUTLINE_POINTS = 2000
 """Points of the cam's outline at which its largest radius is measured."""
 
@@ -31,6 +34,7 @@ def check_fit(design: DriveDesign) -> None:
     _check_teeth(design)
     _check_wave_generator(design)
     _check_steps(design)
+    _check_torque(design)
     _check_fatigue(design)
     check_program(design)
     if design.wave_generator.face_width > design.drive.face_width:
@@ -96,6 +100,20 @@ def _check_steps(design: DriveDesign) -> None:
     if steps.samples and steps.rotation < 0.999999 * least:
         allowed = f"{least:.6g} deg (periods: {design.periods}) and more with steps.samples"
         _refuse("steps.rotation", steps.rotation, allowed)
+
+
+def _check_torque(design: DriveDesign) -> None:
+    """Torques that a cylinder with the cup's thickness, or the rim's in the plane model, cannot carry."""
+    shear_modulus = 0.5 * design.material.E / (1.0 + design.material.nu)
+    most = 0.001 * LARGEST_SHEAR * shear_modulus * 2.0 * np.pi * design.inner_radius**2 * design.cup_thickness
+    torques = {"load.torque": design.load.torque}
+    torques |= {f"load.program.{k}.torque": stage.torque or 0.0 for k, stage in enumerate(design.load.program, 1)}
+    if design.stiffness is not None:
+        torques["stiffness.torque"] = design.stiffness.torque or 0.0
+    for key, torque in torques.items():
+        if abs(torque) > most:
+            of = "rim" if design.drive.model == "plane" else "cup's wall"
+            _refuse(key, torque, f"up to {most:.4g} N·m (nominal shear strain of the {of}: {LARGEST_SHEAR:g})")
 
 
 def _check_fatigue(design: DriveDesign) -> None:

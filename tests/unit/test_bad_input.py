@@ -68,6 +68,8 @@ OVERRIDES = [
     ("material.nu=0.5", "material.nu", "0.499"),
     ("material.nu=-0.1", "material.nu", "0"),
     ("load.torque=-3", "load.torque", "0"),
+    ("load.torque=20000", "load.torque", "up to"),  # meant in N·mm
+    ('load.program=[{name="a", torque=-20000}]', "load.program.1.torque", "up to"),
     ("steps.increment=0", "steps.increment", "0.01 to 45 deg"),
     ("steps.rotation=-45", "steps.rotation", "0"),
     ("contact.quadrature=0", "contact.quadrature", "1"),
