@@ -173,7 +173,7 @@ def resolve_root_stress(model: DriveModel, state: LoadState, levels: int | None 
         for place, stress in found.items():
             values[place].append(stress.value)
         best = max(places, key=lambda place: found[place].value)
-        places = [place for place in places if may_be_largest(found[place], found[best], level)]
+        places = followed(found, level)
     stresses = ", ".join(f"{value:.1f}" for value in values[best][skipped:])
     logger.info("windows around tooth %d, drive of %d elements: s1 %s MPa", best[0], model.n_elements(), stresses)
     by_part = {PARTS[ends]: max((v for at, v in values.items() if at[1] == ends), key=_reached) for ends in parts}
@@ -210,6 +210,19 @@ def may_be_largest(one: WindowStress, best: WindowStress, level: int) -> bool:
     if one.region != best.region:
         share = BETWEEN_ENDS if best.region == TOOTH_END else AT_ENDS[min(level, 1)]
     return one is best or one.value > share * best.value
+
+
+def followed(found: Mapping[tuple[int, bool], WindowStress], level: int) -> list[tuple[int, bool]]:
+    """Places that may have the largest stress on windows finer than `level`: each may overtake the first of both parts.
+
+    found : by tooth and whether at its ends
+    """
+    firsts: dict[bool, WindowStress] = {}
+    for (_, ends), stress in found.items():
+        firsts[ends] = max(firsts.get(ends, stress), stress, key=lambda s: s.value)
+    return [
+        place for place, stress in found.items() if all(may_be_largest(stress, f, level) for f in firsts.values())
+    ]
 
 
 def with_angle(known: RootStress, model: DriveModel, state: LoadState) -> RootStress:
