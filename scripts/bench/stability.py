@@ -27,7 +27,18 @@ import numpy as np
 from page import markdown, put
 
 from support.commands import environment, on_ranks, run_command
-from support.drive_groups import MESH, REPEATED, UNITS, UNITS_GROUP, Group, drift, groups, toml_value
+from support.drive_groups import (
+    MESH,
+    REPEATED,
+    SENSIBLE,
+    SENSIBLE_CUP,
+    UNITS,
+    UNITS_GROUP,
+    Group,
+    drift,
+    groups,
+    toml_value,
+)
 from support.element_limits import element_rows
 from support.paths import ROOT
 from support.small_drive import PLANE
@@ -199,10 +210,17 @@ def line(cells: list[str]) -> str:
 
 
 def write_page(page: Path, rows: list[Row]) -> None:
-    """Put the table of groups, and the cases that did not converge, between the page's marks."""
+    """Put the table of groups, and the cases that did not converge, between the page's marks.
+
+    Of designs that are drawn at random many are refused: their reasons are in the table of all cases.
+    """
     names = list(dict.fromkeys(row["group"] for row in rows))
     text = markdown([HEADER, *(counted(n, [r for r in rows if r["group"] == n]) for n in names)])
-    others = [f"- {r['group']}, {r['case']}: {r['status']}: {r['reason']}" for r in rows if r["status"] != "converged"]
+    others = [
+        f"- {r['group']}, {r['case']}: {r['status']}: {r['reason']}"
+        for r in rows
+        if r["status"] == "failed" or (r["status"] == "refused" and r["group"] not in (SENSIBLE, SENSIBLE_CUP))
+    ]
     put(page, "table", text + ("\n" + "\n".join(others) + "\n" if others else ""))
 
 

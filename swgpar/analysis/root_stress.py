@@ -220,9 +220,7 @@ def followed(found: Mapping[tuple[int, bool], WindowStress], level: int) -> list
     firsts: dict[bool, WindowStress] = {}
     for (_, ends), stress in found.items():
         firsts[ends] = max(firsts.get(ends, stress), stress, key=lambda s: s.value)
-    return [
-        place for place, stress in found.items() if all(may_be_largest(stress, f, level) for f in firsts.values())
-    ]
+    return [place for place, stress in found.items() if all(may_be_largest(stress, f, level) for f in firsts.values())]
 
 
 def with_angle(known: RootStress, model: DriveModel, state: LoadState) -> RootStress:

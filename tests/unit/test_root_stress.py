@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from swgpar.analysis.local_problem import WindowStress
-from swgpar.analysis.root_stress import BETWEEN, ENDS, candidates, error_at_ends, error_of, may_be_largest
+from swgpar.analysis.root_stress import BETWEEN, ENDS, candidates, error_at_ends, error_of, followed, may_be_largest
 
 
 def teeth(**values: float) -> np.ndarray:
@@ -36,7 +36,7 @@ def test_candidates(ends: dict[str, float], between: dict[str, float], expected:
 
 
 @pytest.mark.parametrize(
-    ("region", "value", "level", "followed"),
+    ("region", "value", "level", "expected"),
     [
         ("tooth root", 99.6, 0, True),
         ("tooth root", 99.0, 1, False),
@@ -46,17 +46,28 @@ def test_candidates(ends: dict[str, float], between: dict[str, float], expected:
         ("tooth end", 100.1, 1, True),
     ],
 )
-def test_stresses_of_one_region_converge_alike(region: str, value: float, level: int, followed: bool) -> None:
+def test_stresses_of_one_region_converge_alike(region: str, value: float, level: int, expected: bool) -> None:
     best = WindowStress(100.0, 0, np.zeros(3), "tooth root", "", 1)
-    assert may_be_largest(WindowStress(value, 5, np.zeros(3), region, "", 1), best, level) == followed
+    assert may_be_largest(WindowStress(value, 5, np.zeros(3), region, "", 1), best, level) == expected
     assert may_be_largest(best, best, level)
 
 
-@pytest.mark.parametrize(("value", "level", "followed"), [(89.0, 0, True), (89.0, 2, True), (87.0, 1, False)])
-def test_a_root_is_followed_while_the_end_of_a_tooth_gives_more(value: float, level: int, followed: bool) -> None:
+@pytest.mark.parametrize(("value", "level", "expected"), [(89.0, 0, True), (89.0, 2, True), (87.0, 1, False)])
+def test_a_root_is_followed_while_the_end_of_a_tooth_gives_more(value: float, level: int, expected: bool) -> None:
     """Stresses at the ends fall from the second window on."""
     end = WindowStress(100.0, 0, np.zeros(3), "tooth end", "", 1)
-    assert may_be_largest(WindowStress(value, 0, np.zeros(3), "tooth root", "", 1), end, level) == followed
+    assert may_be_largest(WindowStress(value, 0, np.zeros(3), "tooth root", "", 1), end, level) == expected
+
+
+def test_the_first_of_each_part_is_followed_and_others_only_where_they_may_overtake_it() -> None:
+    found = {
+        (0, False): WindowStress(280.0, 0, np.zeros(3), "tooth root", "", 1),
+        (5, False): WindowStress(276.0, 5, np.zeros(3), "tooth root", "", 1),
+        (9, False): WindowStress(279.5, 9, np.zeros(3), "tooth root", "", 1),
+        (0, True): WindowStress(265.0, 0, np.zeros(3), "tooth end", "", 1),
+        (5, True): WindowStress(293.0, 5, np.zeros(3), "tooth end", "", 1),
+    }
+    assert followed(found, 1) == [(0, False), (9, False), (5, True)]
 
 
 def test_a_stress_at_the_ends_that_falls_is_bounded_by_the_one_between_them() -> None:
