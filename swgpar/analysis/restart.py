@@ -54,6 +54,7 @@ def write_state(
         "names": recorder.names,
         "load_state": stepper.load_state.to_dict(),
         "multipliers": problem.multipliers().tolist(),
+        "modelled_sectors": problem.modelled_sectors(),
         "wall_s": elapsed,
         "phases_s": model.phases.slowest(model.comm),
         "starts_loaded": recorder.starts_loaded,
@@ -136,6 +137,7 @@ def _restore_vector(recorder: FolderRecorder, state: dict[str, Any]) -> None:
         write_field(model.partition, k, np.arange(first, end), arrays[body.layout.name], x)
     if model.comm.rank == model.comm.size - 1:
         x.array[-model.partition.n_multipliers :] = state["multipliers"]
+    model.problem.resume_sectors(state["modelled_sectors"])
     if model.design.contact.friction:
         # a rank needs the flanks that its ring teeth face too
         indices = (0, model.partition.layouts[FLEXIBLE_SPLINE].count)

@@ -47,7 +47,7 @@ class StartStates:
             first, end = model.partition.owned_sectors(k)
             field = read_field(model.partition, k, np.arange(first, end), problem.x)
             blocks[layout.name] = field, first, layout.count
-        state = {"multipliers": problem.multipliers().tolist()}
+        state = {"multipliers": problem.multipliers().tolist(), "modelled_sectors": problem.modelled_sectors()}
         write_checkpoint(self.folder, model.comm, blocks, state, name=self._name(recipe))
 
     def restore(self, model: DriveModel, recipe: MeshRecipe) -> bool:
@@ -70,6 +70,7 @@ class StartStates:
             write_field(partition, k, np.arange(*owned[k]), arrays[layout.name], x)
         if model.comm.rank == model.comm.size - 1:
             x.array[-partition.n_multipliers :] = state["multipliers"]
+        model.problem.resume_sectors(state["modelled_sectors"])
         logger.info("the loaded state on a mesh of %d elements is taken over", model.n_elements())
         return True
 

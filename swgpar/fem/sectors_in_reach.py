@@ -56,6 +56,15 @@ class SectorsInReach(ABC):
         self._apply(elements)
         return True
 
+    def resume(self, active: list[int], elements: Elements) -> None:
+        """Take a choice as it was made before: the sectors that are active."""
+        self.active = np.isin(np.arange(len(self.active)), active)
+        self._apply(elements)
+
+    def chosen(self) -> list[int]:
+        """The sectors that are active, for `resume`."""
+        return np.flatnonzero(self.active).tolist()
+
     @abstractmethod
     def _apply(self, elements: Elements) -> None:
         """Change the elements."""

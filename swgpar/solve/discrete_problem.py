@@ -22,7 +22,7 @@ from swgpar.design.load_states import LoadState
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
-from swgpar.fem.sectors_in_reach import RingSectors, WholeTeeth
+from swgpar.fem.sectors_in_reach import RingSectors, SectorsInReach, WholeTeeth
 from swgpar.fem.sparse import BlockRows, MatrixRows, add_unit_diagonal, create_matrix, fill_matrix, matrix_rows
 from swgpar.fem.vectors import Exchange, create_vector, read_multipliers
 from swgpar.geometry.rotation import HALF_TURN
@@ -397,6 +397,21 @@ class DiscreteProblem:
         self.x.copy(self.accepted)
         if self.flanks is not None:
             self.flanks.accept()
+
+    @property
+    def _in_reach(self) -> list[SectorsInReach]:
+        return [*self.whole_teeth, *([] if self.ring_sectors is None else [self.ring_sectors])]
+
+    def modelled_sectors(self) -> list[list[int]]:
+        """Which teeth and sectors are modelled in full, for `resume_sectors`."""
+        return [choice.chosen() for choice in self._in_reach]
+
+    def resume_sectors(self, chosen: list[list[int]]) -> None:
+        """Model these in full, as a run did that is continued; before the search. Collective."""
+        for choice, active in zip(self._in_reach, chosen):
+            choice.resume(active, self.elements)
+        self.elements.renew_pattern()
+        self.pattern = None
 
     def resume(self, tractions: dict[PairKey, np.ndarray]) -> None:
         """Take x and these tractions of the flanks as an accepted state."""
