@@ -18,8 +18,9 @@ from mpi4py import MPI
 
 import swgpar
 from swgpar.analysis.coarse_start import solve_to_load
-from swgpar.analysis.mesh_refinement import CoarseStresses, Refinement, resized
+from swgpar.analysis.mesh_refinement import Refinement, resized
 from swgpar.analysis.pair_contact import pair_contacts
+from swgpar.analysis.place_errors import CoarseStresses, with_errors
 from swgpar.analysis.places import find_places
 from swgpar.analysis.root_stress import LEVELS, resolve_root_stress
 from swgpar.analysis.shortcuts import with_shortcuts
@@ -44,7 +45,10 @@ def solve(case: dict[str, Any]) -> dict[str, Any]:
         model = solve_to_load(design, recipe, states, MPI.COMM_WORLD)
         found = resolve_root_stress(model, loaded, LEVELS[design.drive.model] + case["further"])
     pairs = pair_contacts(model, loaded)
-    places = find_places(model, loaded, model.stresses()[1])
+    edge = any(pair.edge for pair in pairs)
+    places = find_places(model, loaded, model.stresses()[1], on_edge=edge)
+    if coarse is not None:
+        places = with_errors(places, coarse.errors(places), found)
     result = {
         "s1": found.s1,
         "error": found.error,
@@ -53,9 +57,10 @@ def solve(case: dict[str, Any]) -> dict[str, Any]:
         "by_part": found.by_part,
         "region": found.region,
         "pressure": max((pair.pressure_MPa for pair in pairs if not pair.edge), default=0.0),
-        "edge": any(pair.edge for pair in pairs),
+        "edge": edge,
         "nodal": {name: place.value for name, place in places.items() if not place.warning},
-        "nodal_errors": coarse and {name: share * places[name].value for name, share in coarse.errors(places).items()},
+        "nodal_errors": {name: place.error for name, place in places.items() if place.error is not None},
+        "regions": {name: place.region for name, place in places.items()},
         "elements": model.n_elements(),
         "wall_s": time.perf_counter() - begin,
     }

@@ -17,6 +17,7 @@ from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.forecast import fits, forecast
 from swgpar.analysis.pair_contact import pair_contacts
+from swgpar.analysis.place_errors import CoarseStresses
 from swgpar.analysis.places import Place, find_places
 from swgpar.analysis.root_stress import FEWEST_LEVELS, LEVELS, MOST_LEVELS, RootStress, resolve_root_stress
 from swgpar.analysis.shortcuts import finds_contacts
@@ -43,9 +44,6 @@ RATIO, ORDER = 1.5, 2
 """Elements in every direction of a mesh of the drive over those of the one before, but for rounding, and the order of
 its displacements."""
 
-NODAL_ORDER = 1
-"""Order of the largest nodal averages of stress (docs/verification/convergence.md)."""
-
 COMPARED_LEVELS = 2
 """Windows of which the last one shows what the mesh of the drive changes."""
 
@@ -62,25 +60,6 @@ SMALLEST_RATIO = 1.05
 
 LARGEST = {"plane": 1_500_000, "cup": 700_000}
 """Elements of the whole drive beyond which no finer mesh is taken; they need about 7 and 12 GB."""
-
-
-@dataclass(frozen=True)
-class CoarseStresses:
-    """Largest stresses on a coarser mesh under load, of which finer ones have their errors.
-
-    places : by column of the history;  ratio : of the element sizes, coarse over fine
-    """
-
-    places: Mapping[str, Place]
-    ratio: float
-
-    def errors(self, fine: Mapping[str, Place]) -> dict[str, float]:
-        """Errors of the stresses on the finer mesh as shares of them; none of those that depend on the mesh."""
-        return {
-            name: abs(place.value - self.places[name].value) / (self.ratio**NODAL_ORDER - 1.0) / place.value
-            for name, place in fine.items()
-            if not place.warning and place.value > 0.0
-        }
 
 
 @dataclass(frozen=True)

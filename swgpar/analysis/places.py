@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -16,8 +16,8 @@ from swgpar.design.sections import GEARS
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.meshing.sector import SectorMesh
 
-TOOTH_END, UNDER_CONTACT = "tooth end", "flank under contact"
-"""Regions of the ends of the teeth; of the flanks that touch and of what is close below them."""
+TOOTH_ROOT, TOOTH_END, UNDER_CONTACT = "tooth root", "tooth end", "flank under contact"
+"""Regions of the roots and of the ends of the teeth; of the flanks that touch and of what is close below them."""
 
 END = 0.45
 """Share of the face width from its middle beyond which a place belongs to the end of a tooth."""
@@ -34,6 +34,8 @@ APART, APART_DISTANCE = "_apart", 0.25
 AVERAGE = "below the contact of teeth: an average over elements, larger on a finer mesh"
 NOTCH = "in the notch behind the teeth, a corner without fillet: no limit to converge to"
 EDGE = "at the edge of the wave generator: edge contact, no limit to converge to"
+ROLLER = "below a roller: an average over elements, larger on a finer mesh"
+CORNER = "a contact lies on the edge of a tooth: larger on a finer mesh"
 
 
 @dataclass(frozen=True)
@@ -46,6 +48,7 @@ class Place:
     tooth : number, counter-clockwise from +y in the undeformed drive
     radius, z : mm;  angle_deg : from +y, counter-clockwise
     warning : why the value depends on the mesh; empty where it converges
+    in_root : largest value, MPa, in the roots of the flexible spline's teeth; None for the ring gear
     error : MPa, estimated, by the drive's mesh; None where it is not known
     """
 
@@ -57,34 +60,67 @@ class Place:
     z: float
     angle_deg: float
     warning: str
+    in_root: float | None = None
     error: float | None = None
 
 
-def find_places(model: DriveModel, state: LoadState, fields: Sequence[Mapping[str, np.ndarray]]) -> dict[str, Place]:
+def find_places(
+    model: DriveModel, state: LoadState, fields: Sequence[Mapping[str, np.ndarray]], *, on_edge: bool = False
+) -> dict[str, Place]:
     """Places of the largest s1, |s3| and von Mises stress of both bodies, by column of the history; collective.
 
-    |s3| and von Mises are looked for apart from the contact of flanks as well, with names that end with `APART`.
+    |s3| and von Mises are looked for apart from the contact of flanks as well, with names that end with `APART`: on
+    surfaces and in the rim. Inside of a tooth they decrease with the distance from the contact, wherever it is cut off.
 
     fields : nodal fields of both bodies as `DriveModel.stresses` gives them
+    on_edge : whether a contact of flanks lies on the edge of a tooth
     """
     pressed = pressed_nodes(model, state)  # those of the spline; any flank of the ring gear may be touched
-    found, distance = {}, APART_DISTANCE * model.design.drive.module
+    found, design = {}, model.design
+    distance, on_rollers = APART_DISTANCE * design.drive.module, design.wave_generator.type == "four_roller"
     for k, prefix in enumerate(("fs", "rg")):
         body = model.elements.bodies[k]
         ring = k != FLEXIBLE_SPLINE
         touched = np.ones(fields[k]["s3"].shape, dtype=bool) if ring else pressed
         # every sector of the ring gear is alike: one stands for all
         near = near_contact(body.layout.mesh, touched[:1] if ring else touched, distance)
-        apart = np.broadcast_to(~near, touched.shape)
+        apart = np.broadcast_to(~(near | inside_teeth(design, body.layout.mesh)), touched.shape)
         for stress in ("s1", "s3", "vm"):
             values = -fields[k][stress] if stress == "s3" else fields[k][stress]
             # s1 below a contact is compressive or small; of the ring gear any flank may be touched
             below = near if stress != "s1" else np.zeros_like(touched) if ring else touched
             below = np.broadcast_to(below, touched.shape)
-            found[f"{prefix}_{stress}"] = _largest(model, k, values, below)
+            names = {f"{prefix}_{stress}": (values, below)}
             if stress != "s1":
-                found[f"{prefix}_{stress}{APART}"] = _largest(model, k, np.where(apart, values, -np.inf), below & apart)
+                names[f"{prefix}_{stress}{APART}"] = np.where(apart, values, -np.inf), np.zeros_like(touched)
+            for name, of in names.items():
+                place = _largest(model, k, *of)
+                if on_rollers and stress != "s1" and place.region == "rim inside":
+                    place = replace(place, warning=ROLLER)
+                if on_edge and ring and not place.warning:
+                    place = replace(place, warning=CORNER)
+                found[name] = place
     return found
+
+
+def inside_teeth(design: DriveDesign, mesh: SectorMesh) -> np.ndarray:
+    """Whether a node (n_node,) of a sector lies inside of its tooth: neither on a surface nor in the rim."""
+    radius, z = np.hypot(mesh.coords[:, 0], mesh.coords[:, 1]), mesh.coords[:, 2]
+    low, high = sorted((mesh.profile.r_root_circle, mesh.profile.r_tip_circle))
+    near = NEAR * design.drive.module
+    inside = (radius > low + near) & (radius < high - near)
+    if not mesh.plane:
+        inside &= np.abs(z) < 0.5 * design.drive.face_width - near
+    for grid in mesh.flanks:
+        inside[grid.nodes.ravel()] = False
+    return inside
+
+
+def root_nodes(design: DriveDesign, mesh: SectorMesh) -> np.ndarray:
+    """Nodes (n,) on the roots of a sector's tooth, between its ends."""
+    nodes = [grid.nodes[grid.s >= mesh.profile.breaks[-2]].ravel() for grid in mesh.flanks]
+    found = np.unique(np.concatenate(nodes))
+    return found if mesh.plane else found[np.abs(mesh.coords[found, 2]) <= END * design.drive.face_width]
 
 
 def pressed_nodes(model: DriveModel, state: LoadState) -> np.ndarray:
@@ -114,6 +150,10 @@ def _largest(model: DriveModel, k: int, values: np.ndarray, touched: np.ndarray)
         sector, node = np.unravel_index(values.argmax(), values.shape)
         first, _ = model.partition.owned_sectors(k)
         best = (float(values[sector, node]), first + int(sector), int(node), bool(touched[sector, node]))
+    in_root = None
+    if k == FLEXIBLE_SPLINE:
+        mine = float(values[:, root_nodes(model.design, body.layout.mesh)].max(initial=-np.inf))
+        in_root = max(model.comm.allgather(mine))
     value, sector, node, pressed = max(model.comm.allgather(best), key=lambda one: one[0])
     x, y, z = point = body.layout.mesh.coords[node]
     region = region_of(model.design, body.layout.mesh, node, pressed)
@@ -128,6 +168,7 @@ def _largest(model: DriveModel, k: int, values: np.ndarray, touched: np.ndarray)
         z=0.0 if body.layout.mesh.plane else float(z),
         angle_deg=float(np.degrees(angle)) % 360.0,
         warning=warning_of(model.design, region, point),
+        in_root=in_root,
     )
 
 
@@ -151,11 +192,11 @@ def region_of(design: DriveDesign, mesh: SectorMesh, node: int, touched: bool) -
         outer = root + design.ring_gear.rim
         if radius < root - near:
             return "tip" if radius < mesh.profile.r_tip_circle + near else inside
-        return "housing" if radius > outer - near else "rim" if radius > root + near else "tooth root"
+        return "housing" if radius > outer - near else "rim" if radius > root + near else TOOTH_ROOT
     if not mesh.plane and abs(z - half) < near and radius < root + near:
         return "notch"
     if radius < root + near:
-        return TOOTH_END if abs(z) > END * design.drive.face_width and not mesh.plane else "tooth root"
+        return TOOTH_END if abs(z) > END * design.drive.face_width and not mesh.plane else TOOTH_ROOT
     if radius > mesh.profile.r_tip_circle - near:
         return "tip"
     at_end = abs(z) > END * design.drive.face_width and not mesh.plane
@@ -166,7 +207,7 @@ def _region_of_the_flank(design: DriveDesign, mesh: SectorMesh, s: float, z: flo
     if abs(z) > END * design.drive.face_width and not mesh.plane and not touched:
         return TOOTH_END
     if s >= mesh.profile.breaks[-2]:
-        return "tooth root"
+        return TOOTH_ROOT
     return UNDER_CONTACT if touched else "flank"
 
 

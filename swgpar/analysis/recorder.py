@@ -19,8 +19,8 @@ from swgpar.analysis.drive_result import DriveResult, open_fields
 from swgpar.analysis.drive_tables import DriveTables
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.losses import cam_force
-from swgpar.analysis.mesh_refinement import CoarseStresses
-from swgpar.analysis.pair_contact import pair_contacts
+from swgpar.analysis.pair_contact import PairContact, pair_contacts
+from swgpar.analysis.place_errors import CoarseStresses, with_errors
 from swgpar.analysis.places import Place, find_places
 from swgpar.analysis.program_results import PointRow, point_rows
 from swgpar.analysis.ratcheting import tooth_rotation
@@ -109,8 +109,8 @@ class Recorder(ABC):
         if model.design.ratcheting:
             self.tooth_rotations.append(tooth_rotation(model))
         with model.phases("stress"):
-            self._keep_places(stepper.load_state, body_fields)
-            self._keep_pairs(stepper.load_state)
+            on_edge = self._keep_pairs(stepper.load_state)
+            self._keep_places(stepper.load_state, body_fields, on_edge)
             self._keep_balls(stepper.load_state, race)
         with model.phases("fatigue and losses"):
             if self.cycle is not None:
@@ -124,31 +124,29 @@ class Recorder(ABC):
                 fields[spline.layout.name]["pressure"] = nodal_pressure(model.problem, stepper.load_state, spline)
             self._keep(stepper, fields, elapsed)
 
-    def _keep_places(self, state: LoadState, fields: Sequence[Mapping[str, np.ndarray]]) -> None:
+    def _keep_places(self, state: LoadState, fields: Sequence[Mapping[str, np.ndarray]], on_edge: bool) -> None:
         """Find the places of stresses that are the largest under load so far."""
         if state.is_periodic:
-            for name, place in find_places(self.model, state, fields).items():
+            for name, place in find_places(self.model, state, fields, on_edge=on_edge).items():
                 if name not in self.places or place.value > self.places[name].value:
                     self.places[name] = place
             if self.coarse is not None:
                 self.stress_errors, self.coarse = self.coarse.errors(self.places), None
 
     def places_with_errors(self) -> dict[str, Place]:
-        """The places with the errors of their stresses where they are known: in proportion to those under load."""
-        return {
-            name: replace(place, error=self.stress_errors[name] * place.value)
-            if name in self.stress_errors and not place.warning
-            else place
-            for name, place in self.places.items()
-        }
+        """The places with the errors of their stresses where they are known."""
+        return with_errors(self.places, self.stress_errors, self.root_stress)
 
-    def _keep_pairs(self, state: LoadState) -> None:
+    def _keep_pairs(self, state: LoadState) -> bool:
+        """Keep the contacts of flanks under load; returns whether one of them lies on the edge of a tooth."""
+        contacts: list[PairContact] = []
         if state.is_periodic and not self.model.design.stiffness:
             row = self.rows[-1]
             when = {"increment": len(self.rows), "step": int(row["step"]), "wg_angle_deg": row["wg_angle_deg"]}
             contacts = pair_contacts(self.model, state)
             self.pairs += [{**when, **contact.row()} for contact in contacts]
             self.contact_lines += [{**when, **row} for contact in contacts for row in contact.station_rows()]
+        return any(contact.edge for contact in contacts)
 
     def _keep_balls(self, state: LoadState, race: Mapping[str, float]) -> None:
         if self.model.design.bearing is not None:

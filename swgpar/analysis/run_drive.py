@@ -25,7 +25,6 @@ from swgpar.analysis.losses import evaluate_losses
 from swgpar.analysis.mesh_refinement import (
     RATIO,
     ChosenMesh,
-    CoarseStresses,
     choose_mesh,
     compared_stresses,
     drive_error,
@@ -35,6 +34,7 @@ from swgpar.analysis.mesh_refinement import (
     with_accuracy,
 )
 from swgpar.analysis.period import continued, require_samples
+from swgpar.analysis.place_errors import CoarseStresses
 from swgpar.analysis.places import find_places
 from swgpar.analysis.ratcheting import has_fallen
 from swgpar.analysis.recorder import FolderRecorder, MemoryRecorder, Recorder

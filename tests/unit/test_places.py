@@ -10,8 +10,9 @@ import pytest
 import swgpar
 from support.paths import DESIGN, RECIPE, REFERENCE
 from support.small_drive import PLANE
-from swgpar.analysis.mesh_refinement import CoarseStresses
-from swgpar.analysis.places import APART, AVERAGE, Place, region_of
+from swgpar.analysis.place_errors import CoarseStresses, with_errors
+from swgpar.analysis.places import APART, AVERAGE, Place, inside_teeth, region_of, root_nodes
+from swgpar.analysis.root_stress import BETWEEN, RootStress
 from swgpar.analysis.summary import STRESSES
 from swgpar.design.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
@@ -89,6 +90,45 @@ def test_the_error_of_a_stress_follows_from_two_meshes() -> None:
     coarse = CoarseStresses({"fs_s1": replace(place, value=300.0 - 15.0), "fs_s3": under}, 1.5)
     found = coarse.errors({"fs_s1": replace(place, value=300.0 - 10.0), "fs_s3": under})
     assert found == {"fs_s1": pytest.approx(10.0 / 290.0)}
+
+
+def resolved(s1: float, on_mesh: float, region: str = "tooth root") -> RootStress:
+    return RootStress(s1, 3.0, on_mesh, region, "", 0, 59.0, 0.0, 0.0, BETWEEN, {BETWEEN: (s1,)}, 1, drive_error=4.0)
+
+
+def test_errors_in_roots_are_those_of_the_tension_there() -> None:
+    """What nodal averages lose in the roots by the windows is lost by all stresses there."""
+    root = Place(100.0, "flexible_spline", "tooth root", 0, 59.0, 0.0, 0.0, "", in_root=100.0)
+    inside = replace(root, value=110.0, region="rim inside")
+    ring = replace(root, body="ring_gear", in_root=None)
+    places = {"fs_s1": root, "fs_s3_apart": inside, "rg_s1": ring, "fs_vm": replace(root, warning=AVERAGE)}
+    shares = dict.fromkeys(places, 0.02)
+    lost = (250.0 - 200.0 + 5.0) / 200.0
+    found = {name: place.error for name, place in with_errors(places, shares, resolved(250.0, 200.0)).items()}
+    assert found["fs_s1"] == pytest.approx(100.0 * lost)
+    assert found["fs_s3_apart"] == pytest.approx(100.0 * (1.0 + lost) - 110.0)  # the root may have the largest one
+    assert found["rg_s1"] == pytest.approx(2.0)
+    assert found["fs_vm"] is None
+    close = {name: place.error for name, place in with_errors(places, shares, resolved(201.0, 200.0)).items()}
+    assert close["fs_s3_apart"] == pytest.approx(2.2)
+    for root_stress in (None, resolved(250.0, 200.0, "rim inside")):
+        assert with_errors(places, shares, root_stress)["fs_s1"].error == pytest.approx(2.0)
+    assert with_errors(places, {}, None)["fs_s1"].error is None
+
+
+@pytest.mark.parametrize("body", ["flexible_spline", "ring_gear"])
+def test_nodes_inside_of_teeth_are_on_no_surface(cup: tuple[DriveDesign, SectorMesh], body: str) -> None:
+    design = cup[0]
+    mesh = build_sector(design, load_recipe("coarse"), body)
+    inside = np.flatnonzero(inside_teeth(design, mesh))
+    assert len(inside) > 50
+    faces = {node for name in mesh.faces for node in np.unique(mesh.faces[name])}
+    assert not faces & set(inside.tolist())
+    assert {region_of(design, mesh, int(node), False) for node in inside} <= {"inside the tooth", "tooth end"}
+
+
+def test_roots_are_where_the_region_says_it(cup: tuple[DriveDesign, SectorMesh]) -> None:
+    assert regions(cup, root_nodes(*cup)) == {"tooth root"}
 
 
 def test_a_start_on_a_coarser_mesh_gives_errors() -> None:

@@ -1,0 +1,59 @@
+"""Errors of the largest nodal stresses by the mesh of the drive (docs/theory/meshes.md)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from swgpar.analysis.places import TOOTH_END, TOOTH_ROOT, Place
+from swgpar.analysis.root_stress import RootStress
+
+NODAL_ORDER = 1
+"""Order of the largest nodal averages of stress (docs/verification/convergence.md)."""
+
+
+@dataclass(frozen=True)
+class CoarseStresses:
+    """Largest stresses on a coarser mesh under load, of which finer ones have their errors.
+
+    places : by column of the history;  ratio : of the element sizes, coarse over fine
+    """
+
+    places: Mapping[str, Place]
+    ratio: float
+
+    def errors(self, fine: Mapping[str, Place]) -> dict[str, float]:
+        """Errors of the stresses on the finer mesh as shares of them; none of those that depend on the mesh."""
+        return {
+            name: abs(place.value - self.places[name].value) / (self.ratio**NODAL_ORDER - 1.0) / place.value
+            for name, place in fine.items()
+            if not place.warning and place.value > 0.0
+        }
+
+
+def with_errors(
+    places: Mapping[str, Place], shares: Mapping[str, float], root_stress: RootStress | None
+) -> dict[str, Place]:
+    """The places with the errors (MPa) of their stresses where they are known.
+
+    shares : errors by a coarser mesh over the stresses, by column of the history
+    root_stress : of the loaded state, where it is known. What nodal averages lose in the roots of the flexible spline
+    is the same share of every stress there, and the root may have the largest stress on a finer mesh.
+    """
+    lost = None
+    if root_stress is not None and root_stress.region in (TOOTH_ROOT, TOOTH_END):
+        lost = (abs(root_stress.s1 - root_stress.on_mesh) + root_stress.total_error) / root_stress.on_mesh
+    return {name: replace(place, error=_error(place, shares.get(name), lost)) for name, place in places.items()}
+
+
+def _error(place: Place, share: float | None, lost: float | None) -> float | None:
+    """Error (MPa) of a stress. share : by a coarser mesh;  lost : share that is lost in the roots"""
+    if place.warning:
+        return None
+    in_root = place.in_root if lost is not None else None
+    if in_root is not None and place.region == TOOTH_ROOT:
+        share = lost
+    if share is None:
+        return None
+    error = share * place.value
+    return error if in_root is None else max(error, (1.0 + lost) * in_root - place.value)
