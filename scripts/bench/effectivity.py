@@ -185,21 +185,27 @@ def ratio_range(one: dict[str, Any]) -> tuple[float, float]:
 
 def nodal_table(done: dict[str, dict[str, Any]]) -> str:
     """The page's table of nodal averages: estimated over true errors of all drives, by column of the history."""
-    cells = [["stress", "drives", "true error, %: middle", "largest", "ratio: middle", "0.5 to 3", "below", "above"]]
+    head = ["stress", "drives", "true error, %: middle", "largest", "ratio: middle"]
+    cells = [[*head, "0.5 to 3", "below", "above", "0.5 to 3 as far as the references tell"]]
     names = dict.fromkeys(name for one in done.values() for name in one["usual"]["nodal_errors"])
     for name in names:
-        ratios, errors = [], []
+        ratios, errors, told = [], [], 0
         for one in done.values():
             usual, reference = one["usual"], one["references"][0]["nodal"]
             if name not in usual["nodal_errors"] or name not in reference:
                 continue
             true = abs(usual["nodal"][name] - reference[name])
             ratios.append(usual["nodal_errors"][name] / true)
+            other = one["references"][1]["nodal"].get(name, reference[name])
+            low, high = ratio_range(
+                {"estimate": usual["nodal_errors"][name], "true": true, "uncertain": abs(reference[name] - other)}
+            )
+            told += high >= LEAST and low <= MOST
             errors.append(100.0 * true / reference[name])
         if ratios:
             counts = [sum(0.5 <= r <= 3.0 for r in ratios), sum(r < 0.5 for r in ratios), sum(r > 3.0 for r in ratios)]
             numbers = [f"{median(errors):.1f}", f"{max(errors):.1f}", f"{median(ratios):.2f}"]
-            cells.append([name.replace("_", " "), str(len(ratios)), *numbers, *map(str, counts)])
+            cells.append([name.replace("_", " "), str(len(ratios)), *numbers, *map(str, (*counts, told))])
     return markdown(cells)
 
 

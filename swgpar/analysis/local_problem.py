@@ -83,10 +83,15 @@ def window_mesh(design: DriveDesign, recipe: MeshRecipe) -> SectorMesh:
     return trimmed(mesh, mesh.coords[mesh.hexes, 2].min(axis=1) < end)
 
 
-def tooth_nodes(mesh: SectorMesh, face_width: float, ends: bool) -> np.ndarray:
-    """Nodes (n,) of the toothed part at the ends of the face width (mm), or between them. The plane has no ends."""
-    z = np.zeros(len(mesh.coords)) if mesh.plane else np.abs(mesh.coords[:, 2])
-    return np.flatnonzero((z > END * face_width) & (z <= TOOTHED * face_width) if ends else z <= END * face_width)
+def tooth_nodes(mesh: SectorMesh, design: DriveDesign, ends: bool) -> np.ndarray:
+    """Nodes (n,) of the toothed part at the ends of its face width, or between them. The plane has no ends.
+
+    The fillet at the back of the teeth belongs to their end.
+    """
+    z, face_width = np.zeros(len(mesh.coords)) if mesh.plane else np.abs(mesh.coords[:, 2]), design.drive.face_width
+    if not ends:
+        return np.flatnonzero(z <= END * face_width)
+    return np.flatnonzero((z > END * face_width) & (z <= TOOTHED * face_width + design.cup.back_fillet))
 
 
 class LocalProblem:
@@ -224,7 +229,7 @@ class LocalProblem:
         """Largest s1 of the teeth at their ends or between them, one pitch or more inside of the cuts; collective."""
         mesh = self.layout.mesh
         stress, sectors = self.stress()
-        toothed = tooth_nodes(mesh, self.model.design.drive.face_width, ends)
+        toothed = tooth_nodes(mesh, self.model.design, ends)
         best = (-np.inf, 0, 0)
         if len(sectors):
             s1 = principal(stress[:, toothed])[0]

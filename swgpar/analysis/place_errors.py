@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 
 from swgpar.analysis.places import TOOTH_END, TOOTH_ROOT, Place
 from swgpar.analysis.root_stress import RootStress
+from swgpar.design.sections import GEARS
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 
 NODAL_ORDER = 1
 """Order of the largest nodal averages of stress (docs/verification/convergence.md)."""
@@ -38,22 +40,31 @@ def with_errors(
 
     shares : errors by a coarser mesh over the stresses, by column of the history
     root_stress : of the loaded state, where it is known. What nodal averages lose in the roots of the flexible spline
-    is the same share of every stress there, and the root may have the largest stress on a finer mesh.
+    is the same share of every stress there, in the ring gear in proportion to the element's length. The root may have
+    the largest stress on a finer mesh.
     """
-    lost = None
+    lost: dict[str, float] = {}
     if root_stress is not None and root_stress.region in (TOOTH_ROOT, TOOTH_END):
-        lost = (abs(root_stress.s1 - root_stress.on_mesh) + root_stress.total_error) / root_stress.on_mesh
-    return {name: replace(place, error=_error(place, shares.get(name), lost)) for name, place in places.items()}
+        error = abs(root_stress.s1 - root_stress.on_mesh) + root_stress.total_error
+        spacing = {place.body: place.root_spacing for place in places.values()}
+        lost = {
+            body: error / root_stress.on_mesh * (length / spacing[GEARS[FLEXIBLE_SPLINE]]) ** NODAL_ORDER
+            for body, length in spacing.items()
+        }
+    return {
+        name: replace(place, error=_error(place, shares.get(name), lost.get(place.body)))
+        for name, place in places.items()
+    }
 
 
 def _error(place: Place, share: float | None, lost: float | None) -> float | None:
     """Error (MPa) of a stress. share : by a coarser mesh;  lost : share that is lost in the roots"""
     if place.warning:
         return None
-    in_root = place.in_root if lost is not None else None
-    if in_root is not None and place.region == TOOTH_ROOT:
+    in_root = lost is not None and place.region == TOOTH_ROOT
+    if in_root and (share is None or place.body == GEARS[FLEXIBLE_SPLINE]):
         share = lost
     if share is None:
         return None
     error = share * place.value
-    return error if in_root is None else max(error, (1.0 + lost) * in_root - place.value)
+    return error if lost is None else max(error, (1.0 + lost) * place.in_root - place.value)

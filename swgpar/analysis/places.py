@@ -16,6 +16,9 @@ from swgpar.design.sections import GEARS
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.meshing.sector import SectorMesh
 
+BACK = "fillet at the back"
+"""Region of the fillet between the back of the teeth and the wall of the cup."""
+
 TOOTH_ROOT, TOOTH_END, UNDER_CONTACT = "tooth root", "tooth end", "flank under contact"
 """Regions of the roots and of the ends of the teeth; of the flanks that touch and of what is close below them."""
 
@@ -44,11 +47,12 @@ class Place:
 
     value : MPa;  body : name
     region : "tooth root", "tooth end", "flank under contact", "flank", "tip", "rim inside", "rim", "notch", "cup wall",
-    "fillet", "closed end", "bore", "housing" or "inside the tooth"
+    "fillet at the back", "fillet", "closed end", "bore", "housing" or "inside the tooth"
     tooth : number, counter-clockwise from +y in the undeformed drive
     radius, z : mm;  angle_deg : from +y, counter-clockwise
     warning : why the value depends on the mesh; empty where it converges
-    in_root : largest value, MPa, in the roots of the flexible spline's teeth; None for the ring gear
+    in_root : largest value, MPa, in the roots of the body's teeth; at least 0
+    root_spacing : mm, length of an element along the root
     error : MPa, estimated, by the drive's mesh; None where it is not known
     """
 
@@ -60,7 +64,8 @@ class Place:
     z: float
     angle_deg: float
     warning: str
-    in_root: float | None = None
+    in_root: float = 0.0
+    root_spacing: float = 0.0
     error: float | None = None
 
 
@@ -84,7 +89,8 @@ def find_places(
         touched = np.ones(fields[k]["s3"].shape, dtype=bool) if ring else pressed
         # every sector of the ring gear is alike: one stands for all
         near = near_contact(body.layout.mesh, touched[:1] if ring else touched, distance)
-        apart = np.broadcast_to(~(near | inside_teeth(design, body.layout.mesh)), touched.shape)
+        near |= inside_teeth(design, body.layout.mesh)
+        apart = np.broadcast_to(~near, touched.shape)
         for stress in ("s1", "s3", "vm"):
             values = -fields[k][stress] if stress == "s3" else fields[k][stress]
             # s1 below a contact is compressive or small; of the ring gear any flank may be touched
@@ -142,6 +148,13 @@ def near_contact(mesh: SectorMesh, touched: np.ndarray, distance: float) -> np.n
     return near
 
 
+def root_spacing(mesh: SectorMesh) -> float:
+    """Mean length (mm) of the elements along the root of a tooth, on the flank's side."""
+    s = mesh.flanks[0].s
+    begin = mesh.profile.breaks[-2]
+    return float((s[-1] - begin) / max(np.count_nonzero(s > begin + 1e-9 * s[-1]), 1))
+
+
 def _largest(model: DriveModel, k: int, values: np.ndarray, touched: np.ndarray) -> Place:
     """Place of the largest of values (n_sectors, n_node) MPa of body k; collective. touched : nodes under contact"""
     body = model.elements.bodies[k]
@@ -150,10 +163,8 @@ def _largest(model: DriveModel, k: int, values: np.ndarray, touched: np.ndarray)
         sector, node = np.unravel_index(values.argmax(), values.shape)
         first, _ = model.partition.owned_sectors(k)
         best = (float(values[sector, node]), first + int(sector), int(node), bool(touched[sector, node]))
-    in_root = None
-    if k == FLEXIBLE_SPLINE:
-        mine = float(values[:, root_nodes(model.design, body.layout.mesh)].max(initial=-np.inf))
-        in_root = max(model.comm.allgather(mine))
+    mine = float(values[:, root_nodes(model.design, body.layout.mesh)].max(initial=0.0))
+    in_root = max(model.comm.allgather(mine))
     value, sector, node, pressed = max(model.comm.allgather(best), key=lambda one: one[0])
     x, y, z = point = body.layout.mesh.coords[node]
     region = region_of(model.design, body.layout.mesh, node, pressed)
@@ -169,6 +180,7 @@ def _largest(model: DriveModel, k: int, values: np.ndarray, touched: np.ndarray)
         angle_deg=float(np.degrees(angle)) % 360.0,
         warning=warning_of(model.design, region, point),
         in_root=in_root,
+        root_spacing=root_spacing(body.layout.mesh),
     )
 
 
@@ -176,6 +188,8 @@ def region_of(design: DriveDesign, mesh: SectorMesh, node: int, touched: bool) -
     """Region of a node of a tooth sector. touched : whether a contact of flanks presses on it, or close to it"""
     x, y, z = mesh.coords[node]
     radius, half = float(np.hypot(x, y)), 0.5 * design.drive.face_width
+    if not mesh.plane and _at_the_back(design, mesh, radius, float(z)):
+        return BACK
     if not mesh.plane and z > half * (1.0 + 1e-9):
         return _region_of_the_cup(design, mesh, node, radius, float(z))
     inner = mesh.body == "flexible_spline" and radius < design.inner_radius + 0.5 * design.flexible_spline.rim
@@ -201,6 +215,15 @@ def region_of(design: DriveDesign, mesh: SectorMesh, node: int, touched: bool) -
         return "tip"
     at_end = abs(z) > END * design.drive.face_width and not mesh.plane
     return TOOTH_END if at_end and not touched else inside
+
+
+def _at_the_back(design: DriveDesign, mesh: SectorMesh, radius: float, z: float) -> bool:
+    """Whether a point (mm) lies on the fillet at the back of the teeth, or close below it."""
+    fillet, wall, near = design.cup.back_fillet, design.inner_radius + design.cup_thickness, NEAR * design.drive.module
+    if mesh.body != "flexible_spline" or fillet == 0.0:
+        return False
+    back = 0.5 * design.drive.face_width
+    return back - near < z < back + fillet + near and wall - near < radius < mesh.profile.r_root_circle + near
 
 
 def _region_of_the_flank(design: DriveDesign, mesh: SectorMesh, s: float, z: float, touched: bool) -> str:

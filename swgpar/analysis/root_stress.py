@@ -279,7 +279,7 @@ def _near(tooth: int, count: int) -> np.ndarray:
 def _largest_by_tooth(model: DriveModel, ends: bool) -> np.ndarray:
     """Largest s1 (n_modelled,) MPa of the teeth of all modelled sectors, at their ends or between them; collective."""
     body = model.elements.bodies[FLEXIBLE_SPLINE]
-    nodes = tooth_nodes(body.layout.mesh, model.design.drive.face_width, ends)
+    nodes = tooth_nodes(body.layout.mesh, model.design, ends)
     stress = body.nodal_stress(model.problem.displacement())
     mine = principal(stress[:, nodes])[0].max(axis=1) if len(stress) else np.zeros(0)
     return np.concatenate(model.comm.allgather(mine))

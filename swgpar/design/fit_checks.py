@@ -22,6 +22,9 @@ SMALLEST_MINOR_AXIS = 0.4
 THINNEST_RIM, THICKEST_RIM = 0.01, 100.0
 """Thickness of a rim in modules: thinner and thicker ones are slips."""
 
+THICK_CUP = 0.85
+"""Cup thickness over rim thickness above which the cup continues the layers below the root as well."""
+
 LARGEST_SHEAR = 0.01
 """Nominal shear strain under the output torque; steel yields at half of it, and far above the teeth find no contact."""
 
@@ -163,6 +166,11 @@ def _check_cup(design: DriveDesign) -> None:
     if design.drive.face_width < narrowest:
         allowed = f"{narrowest:.4g} mm (axial travel of the teeth, half of the rim) to inf mm"
         _refuse("drive.face_width", design.drive.face_width, allowed)
+    step = design.flexible_spline.rim - design.cup_thickness if cup.thickness_coef <= THICK_CUP else 0.0
+    most = min(step, cup.length - cup.fillet_radius)
+    if cup.back_fillet > most * (1.0 + 1e-9):
+        allowed = f"0 to {most:.4g} mm (rim less wall; only 0 with cup.thickness_coef above {THICK_CUP:g})"
+        _refuse("cup.back_fillet", cup.back_fillet, allowed)
     closed_end = design.inner_radius + design.cup_thickness - cup.fillet_radius
     if cup.inner_radius >= closed_end:
         allowed = f"above 0 to below {closed_end:g} mm (the closed end inside cup.fillet_radius)"

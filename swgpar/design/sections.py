@@ -61,6 +61,7 @@ class Cup(Section):
     thickness_coef: float = quantity(0.8, text="cup thickness over rim thickness", ge=0.1, le=0.95)
     fillet_radius: float = quantity(unit="mm", text="outer fillet radius", gt=0.0)
     inner_radius: float = quantity(unit="mm", text="bore radius of the closed end", gt=0.0)
+    back_fillet: float = quantity(0.0, unit="mm", text="fillet radius between back of teeth and wall", ge=0.0)
 
 
 class MicroGeometry(Section):
@@ -156,9 +157,7 @@ class Solver(Section):
         text="teeth out of reach: sectors of a fixed ring gear are left out, in the cup drive teeth are one element",
     )
     condensed_sectors: bool = quantity(False, text="plane model: eliminate the inside of tooth sectors")
-    keep_factor: bool = quantity(
-        True, text="cup drive in rotation: use factors for later tangents while GMRES converges with them"
-    )
+    keep_factor: bool = quantity(True, text="use factors for later tangents while GMRES converges with them")
 
 
 class Output(Section):

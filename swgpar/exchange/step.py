@@ -130,7 +130,8 @@ def _wall(gmsh: ModuleType, design: DriveDesign) -> tuple[int, int]:
         return occ.addPoint(r, 0.0, z)
 
     center = point(r_mid, z_mid)
-    outer = [point(inner + thickness, back), point(inner + thickness, z_mid), point(r_mid, end)]
+    wall, fillet = inner + thickness, cup.back_fillet
+    outer = [point(wall, back + fillet), point(wall, z_mid), point(r_mid, end)]
     bore = [point(cup.inner_radius, end), point(cup.inner_radius, end - thickness)]
     curves = [occ.addLine(outer[0], outer[1]), occ.addCircleArc(outer[1], center, outer[2])]
     curves += [occ.addLine(outer[2], bore[0]), occ.addLine(bore[0], bore[1])]
@@ -142,7 +143,10 @@ def _wall(gmsh: ModuleType, design: DriveDesign) -> tuple[int, int]:
         last = center
         curves.append(occ.addLine(bore[1], center))
     first = point(inner, back)
-    curves += [occ.addLine(last, first), occ.addLine(first, outer[0])]
+    start = outer[0] if fillet == 0.0 else point(wall + fillet, back)
+    curves += [occ.addLine(last, first), occ.addLine(first, start)]
+    if fillet:
+        curves.append(occ.addCircleArc(start, point(wall + fillet, back + fillet), outer[0]))
     section = occ.addPlaneSurface([occ.addCurveLoop(curves)])
     solid = occ.revolve([(2, section)], 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 2.0 * np.pi)
     return next(entity for entity in solid if entity[0] == 3)

@@ -13,9 +13,41 @@ from swgpar.meshing.cross_section import CrossSection
 from swgpar.meshing.recipe import CupRecipe
 from swgpar.meshing.sweep import sweep_quads, symmetric_steps
 
+GROWTH = 1.6
+"""Ratio of the lengths of successive elements between the fillet at the back of the teeth and the other ones."""
 
-def meridian(design: DriveDesign, recipe: CupRecipe) -> tuple[Floats, Floats]:
+
+def cylinder_stations(length: float, recipe: CupRecipe, fillet: float, layers: int) -> Floats:
+    """Distances (n,), mm, of the stations along the cylinder from the back of the teeth, the last one at `length`.
+
+    fillet : its radius, mm;  layers : elements along it, from which those behind it grow to the recipe's
+    """
+    usual = length * symmetric_steps(recipe.cylinder, recipe.end_ratio)
+    if fillet == 0.0:
+        return usual
+    step = fillet / layers
+    stations = list(step * np.arange(layers + 1))
+    while True:
+        step *= GROWTH
+        behind = usual[usual > stations[-1] + 0.5 * step]
+        if len(behind) < 2 or step > behind[1] - behind[0] or stations[-1] + 1.5 * step > length:
+            return np.array([*stations, *behind]) if len(behind) else np.array([*stations[:-1], length])
+        stations.append(stations[-1] + step)
+
+
+def fillet_points(share: Floats, radius: float) -> tuple[Floats, Floats]:
+    """Points of the fillet at the back of the teeth: height above the wall and distance from the back, mm.
+
+    share : (n,) of the fillet, -1 at its end on the wall, 0 in its middle, 1 at its end at the back of the teeth
+    """
+    angle = 0.25 * np.pi * (1.0 + share)
+    return radius * (1.0 - np.cos(angle)), radius * (1.0 - np.sin(angle))
+
+
+def meridian(design: DriveDesign, recipe: CupRecipe, layers: int = 1) -> tuple[Floats, Floats]:
     """Return the inner and the outer line of the cup in the meridian plane.
+
+    layers : elements along the half of the fillet at the back of the teeth that belongs to the wall
 
     Returns
     -------
@@ -29,12 +61,16 @@ def meridian(design: DriveDesign, recipe: CupRecipe) -> tuple[Floats, Floats]:
     # centre of the fillet's arcs
     r_centre = design.inner_radius + thickness - cup.fillet_radius
     z_centre = back + cup.length - cup.fillet_radius
-    z = back + (z_centre - back) * symmetric_steps(recipe.cylinder, recipe.end_ratio)
+    s = cylinder_stations(z_centre - back, recipe, cup.back_fillet, layers)
     angle = np.linspace(0.0, 0.5 * np.pi, recipe.fillet + 1)[1:]
     r = r_centre - (r_centre - cup.inner_radius) * symmetric_steps(recipe.closed_end, recipe.end_ratio)[1:]
     lines = []
     for offset in (0.0, thickness):
-        cylinder = np.stack((np.full_like(z, design.inner_radius + offset), z), axis=-1)
+        cylinder = np.stack((np.full_like(s, design.inner_radius + offset), back + s), axis=-1)
+        if offset and cup.back_fillet:
+            on = s <= cup.back_fillet * (1.0 + 1e-9)
+            up, along = fillet_points(-s[on] / cup.back_fillet, cup.back_fillet)
+            cylinder[on] = np.stack((design.inner_radius + offset + up, back + along), axis=-1)
         radius = cup.fillet_radius - thickness + offset
         fillet = np.stack((r_centre + radius * np.cos(angle), z_centre + radius * np.sin(angle)), axis=-1)
         end = np.stack((r, np.full_like(r, back + cup.length - thickness + offset)), axis=-1)
@@ -95,6 +131,36 @@ def wall_grid(section: CrossSection, attached: NDArray[np.bool_]) -> Ints:
     return np.array(rows, dtype=np.int32)
 
 
+def rounded_back(design: DriveDesign, section: CrossSection, back: Floats) -> Floats:
+    """Nodes (n_section, 3), mm, of the back of the teeth, those near the corner with the wall moved onto its fillet.
+
+    The layer of nodes below the root that is nearest to the end of the fillet becomes its end. Without such a layer the
+    fillet has a node in its middle only.
+    """
+    cup, thickness = design.cup, design.cup_thickness
+    if cup.back_fillet == 0.0:
+        return back
+    rows = wall_grid(section, attached_quads(section, root_too=True))
+    rim = len(wall_grid(section, attached_quads(section, root_too=False))) - 1  # the row of the corner
+    step, under = design.flexible_spline.rim - thickness, len(rows) - 1 - rim
+    last = under
+    if cup.back_fillet < step * (1.0 - 1e-9):
+        last = min(max(1, round(under * cup.back_fillet / step)), under - 1)
+    # the last row of all is the surface of the root, which stays
+    up, along = fillet_points(np.arange(min(last, under - 1) + 1) / max(last, 1), cup.back_fillet)
+    radius = np.hypot(back[rows, 0], back[rows, 1])
+    moved, z = radius.copy(), back[rows, 2]
+    moved[rim : rim + len(up)] = (design.inner_radius + thickness + up)[:, None]
+    z[rim : rim + len(up)] += along[:, None]
+    inside = (radius[:rim] - design.inner_radius) / thickness  # in the rim in proportion to the distance from inside
+    moved[:rim] += inside * up[0]
+    z[:rim] += inside * along[0]
+    new = back.copy()
+    new[rows, :2] *= (moved / radius)[..., None]
+    new[rows, 2] = z
+    return new
+
+
 def joined_columns(n_column: int) -> list[int]:
     """Return numbers of columns that become one: threes, and in the middle single ones that are left over."""
     threes, rest = divmod(n_column // 2, 3)
@@ -129,15 +195,15 @@ def transition(below: Ints, above: Ints, between: Ints, groups: list[int]) -> In
     return np.concatenate((faces[:-1], faces[1:]), axis=-1).reshape(-1, 8).astype(np.int32)
 
 
-def transition_station(design: DriveDesign, recipe: CupRecipe) -> int:
+def transition_station(design: DriveDesign, recipe: CupRecipe, layers: int) -> int:
     """Station after which columns are joined: of the cylinder, a pitch or more behind the teeth if there is one."""
-    z = meridian(design, recipe)[0][: recipe.cylinder, 1]
+    z = meridian(design, recipe, layers)[0][: -recipe.fillet - recipe.closed_end - 1, 1]
     behind = np.flatnonzero(z - z[0] >= np.pi * design.drive.module)
-    return int(behind[0]) if len(behind) else recipe.cylinder - 1
+    return int(behind[0]) if len(behind) else len(z) - 1
 
 
 def cup_slice(
-    design: DriveDesign, recipe: CupRecipe, section: CrossSection, root_too: bool, back: Ints, first: int
+    design: DriveDesign, recipe: CupRecipe, section: CrossSection, root_too: bool, back: Ints, first: int, layers: int
 ) -> CupSlice:
     """Return the cup beyond the back of the teeth.
 
@@ -145,10 +211,11 @@ def cup_slice(
     ----------
     root_too : whether the cup continues the layers below the root as well
     back : (n_section,) nodes at the back of the teeth;  first : number that the first new node gets
+    layers : elements along the half of the fillet at the back of the teeth that belongs to the wall
     """
     attached = attached_quads(section, root_too)
     grid = wall_grid(section, attached)
-    inner, outer = meridian(design, recipe)
+    inner, outer = meridian(design, recipe, layers)
     fraction = depth_fractions(section, grid, design.inner_radius, design.cup_thickness)
     angle = np.arctan2(*section.coords.T)
     if recipe.joined_columns:
@@ -162,7 +229,7 @@ def cup_slice(
     number = np.full((len(inner), len(section.coords)), -1, dtype=np.int32)
     number[0] = back
     columns = np.unique(grid)
-    last = len(inner) - 1 if not recipe.joined_columns else transition_station(design, recipe)
+    last = len(inner) - 1 if not recipe.joined_columns else transition_station(design, recipe, layers)
     number[1 : last + 1, columns] = first + np.arange(last * len(columns)).reshape(last, -1)
     coords = [positions(inner[1 : last + 1], outer[1 : last + 1], columns).reshape(-1, 3)]
     hexes = [sweep_quads(section.quads[attached], number[: last + 1])]

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GEARS, GearName
-from swgpar.meshing.cup import joined_columns, transition_station
+from swgpar.meshing.cup import joined_columns, meridian, transition_station
 from swgpar.meshing.recipe import MeshRecipe, ToothRecipe
 from swgpar.meshing.tooth_sector import continues_root, require_sections
 
@@ -59,12 +59,12 @@ def _counts(design: DriveDesign, recipe: MeshRecipe, gear: GearName) -> SectorCo
     elements, nodes, side = quads * layers, nodes * (layers + 1), side * (layers + 1)
     if external:
         cup = recipe.cup
-        stations = cup.cylinder + cup.fillet + cup.closed_end
+        stations = len(meridian(design, cup, teeth.under)[0]) - 1
         depth = teeth.rim + (teeth.under if continues_root(design) else 0)
         with_all, joined, threes = stations, around, 0
         if cup.joined_columns:
             groups = joined_columns(around)
-            with_all, joined, threes = transition_station(design, cup), len(groups), groups.count(3)
+            with_all, joined, threes = transition_station(design, cup, teeth.under), len(groups), groups.count(3)
             elements += (around + threes) * depth  # of the transition
             nodes += 2 * threes * (depth + 1)
         behind = stations - with_all

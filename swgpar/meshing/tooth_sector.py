@@ -7,27 +7,25 @@ from dataclasses import dataclass
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.fit_checks import THICK_CUP
 from swgpar.design.sections import GEARS, GearName
 from swgpar.errors import InputError
 from swgpar.geometry.arrays import Floats, Ints
 from swgpar.geometry.micro_geometry import crowning
 from swgpar.geometry.profiles import ToothProfile
 from swgpar.meshing.cross_section import CrossSection, cross_section
-from swgpar.meshing.cup import cup_slice
+from swgpar.meshing.cup import cup_slice, rounded_back
 from swgpar.meshing.mapped import MeshError
 from swgpar.meshing.quality import hex_quality, quad_quality
-from swgpar.meshing.recipe import CupRecipe, MeshRecipe, ToothRecipe
+from swgpar.meshing.recipe import MeshRecipe, ToothRecipe
 from swgpar.meshing.relief import relief_field
 from swgpar.meshing.sector import FlankGrid, SectorMesh
 from swgpar.meshing.sweep import axial_stations, sweep_line, sweep_quads
 
-THICK_CUP = 0.85
-"""Cup thickness over rim thickness above which the cup continues the layers below the root as well."""
-
 
 def continues_root(design: DriveDesign) -> bool:
     """Whether the cup of the flexible spline continues the layers below the root as well."""
-    return design.drive.model == "cup" and design.cup_thickness > THICK_CUP * design.flexible_spline.rim
+    return design.drive.model == "cup" and design.cup.thickness_coef > THICK_CUP
 
 
 def _radii(design: DriveDesign, gear: GearName, recipe: ToothRecipe, r_root: float) -> tuple[float, float, bool]:
@@ -90,12 +88,16 @@ def _toothed_part(section: CrossSection, z: Floats, relief: Floats, amount: Floa
 
 
 def _with_cup(
-    design: DriveDesign, recipe: CupRecipe, section: CrossSection, teeth: Swept, root_too: bool
+    design: DriveDesign, recipe: MeshRecipe, section: CrossSection, teeth: Swept, root_too: bool
 ) -> tuple[Swept, Ints]:
     """The sector with the slice of the cup behind its teeth, and the nodes (n,) of the bore."""
-    cup = cup_slice(design, recipe, section, root_too, teeth.rows[-1], len(teeth.coords))
+    back = teeth.rows[-1]
+    layers = recipe.flexible_spline.under
+    cup = cup_slice(design, recipe.cup, section, root_too, back, len(teeth.coords), layers)
+    toothed = teeth.coords.copy()
+    toothed[back] = rounded_back(design, section, toothed[back])
     whole = Swept(
-        np.concatenate((teeth.coords, cup.coords)),
+        np.concatenate((toothed, cup.coords)),
         np.concatenate((teeth.hexes, cup.hexes)),
         np.concatenate((teeth.cw, cup.cw)),
         np.concatenate((teeth.ccw, cup.ccw)),
@@ -148,7 +150,7 @@ def build_sector(design: DriveDesign, recipe: MeshRecipe, gear: GearName) -> Sec
         # in the plane the torque acts on the inner surface, of which the lower layer stands for both
         node_sets = {"bore": np.sort(rows[0, section.free])}
         if not plane:
-            sector, node_sets["bore"] = _with_cup(design, recipe.cup, section, sector, root_too)
+            sector, node_sets["bore"] = _with_cup(design, recipe, section, sector, root_too)
     else:
         faces = {"outer": sweep_line(section.free[::-1], rows)}
         node_sets = {"outer": np.unique(rows[:1, section.free] if plane else faces["outer"])}

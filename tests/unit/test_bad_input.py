@@ -56,6 +56,7 @@ OVERRIDES = [
     ("cup.fillet_radius=0.5", "cup.fillet_radius", "0.8"),
     ("cup.fillet_radius=50", "cup.fillet_radius", "allowed"),
     ("cup.inner_radius=80", "cup.inner_radius", "allowed"),
+    ("cup.back_fillet=0.5", "cup.back_fillet", "rim less wall"),
     ("cup.inner_radius=-2", "cup.inner_radius", "above 0"),
     ("cup.thickness_coef=1.4", "cup.thickness_coef", "0.95"),
     ("micro_geometry.wg_crowning=-0.1", "micro_geometry.wg_crowning", "0"),

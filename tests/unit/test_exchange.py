@@ -42,13 +42,20 @@ def wall_volume(design: DriveDesign) -> float:
     middle = r + t - cup.fillet_radius
     end = np.pi * (middle**2 - cup.inner_radius**2) * t
     outer, inner = cup.fillet_radius, cup.fillet_radius - t
+    a = cup.back_fillet  # the corner less a quarter of a disc: area and radius of its centroid
+    corner = (1.0 - 0.25 * np.pi) * a**2 * 2.0 * np.pi * (r + t + a * (1.0 - (1.0 / 6.0) / (1.0 - 0.25 * np.pi)))
     quarter = [0.25 * np.pi * x**2 * 2.0 * np.pi * (middle + 4.0 * x / (3.0 * np.pi)) for x in (outer, inner)]
-    return float(cylinder + end + quarter[0] - quarter[1])
+    return float(cylinder + end + corner + quarter[0] - quarter[1])
 
 
-@pytest.mark.parametrize("profile, cam", [("quadruple_arc", "elliptical"), ("involute", "parabolic")])
-def test_volumes_of_step_files(tmp_path: Path, profile: str, cam: str, capfd: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize(
+    "profile, cam, fillet", [("quadruple_arc", "elliptical", 0.08), ("involute", "parabolic", 0.0)]
+)
+def test_volumes_of_step_files(
+    tmp_path: Path, profile: str, cam: str, fillet: float, capfd: pytest.CaptureFixture[str]
+) -> None:
     design = small(profile=profile, cam=cam)
+    design = design.model_copy(update={"cup": design.cup.model_copy(update={"back_fillet": fillet})})
     paths = swgpar.export(design, tmp_path, ["step"])
     assert capfd.readouterr().out == ""
     width = design.drive.face_width

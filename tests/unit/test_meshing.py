@@ -21,6 +21,7 @@ from swgpar.meshing.export import mesh_report, whole_body, whole_drive, write_me
 from swgpar.meshing.quality import hex_quality, hex_volumes, quad_quality
 from swgpar.meshing.recipe import make_recipe
 from swgpar.meshing.sweep import axial_stations
+from swgpar.meshing.tooth_sector import build_sector
 
 CUP_RECIPES = ("coarse", "forces", "medium", "full")
 GEARS = ("flexible_spline", "ring_gear")
@@ -120,6 +121,27 @@ def cup_volume(case: DriveDesign) -> float:
     cylinder = np.pi * ((case.inner_radius + t) ** 2 - case.inner_radius**2) * (cup.length - outer)
     fillet = 2.0 * np.pi * (r_centre * np.pi / 4.0 * (outer**2 - inner**2) + (outer**3 - inner**3) / 3.0)
     return cylinder + fillet + np.pi * (r_centre**2 - cup.inner_radius**2) * t
+
+
+@pytest.mark.parametrize("recipe", ["coarse", "medium", "full"])
+@pytest.mark.parametrize("radius", [0.1, 0.2])
+def test_fillet_at_the_back_of_the_teeth(recipe: str, radius: float) -> None:
+    """Its nodes lie on an arc that is tangent to the back and to the wall; it adds its volume."""
+    case = load_design(REFERENCE, [f"cup.back_fillet={radius}"])
+    mesh = build_sector(case, load_recipe(recipe), "flexible_spline")
+    plain = build_sector(load_design(REFERENCE), load_recipe(recipe), "flexible_spline")
+    assert mesh.quality["min_scaled_jacobian"] > 0.3
+    back, wall = 0.5 * case.drive.face_width, case.inner_radius + case.cup_thickness
+    r, z = np.hypot(*mesh.coords[:, :2].T), mesh.coords[:, 2]
+    on = (r > wall - 1e-9) & (r < wall + radius + 1e-9) & (z > back - 1e-9) & (z < back + radius + 1e-9)
+    assert np.count_nonzero(on) >= (20 if recipe == "full" else 3)
+    assert np.hypot(r[on] - wall - radius, z[on] - back - radius) == pytest.approx(radius, rel=1e-9)
+    if recipe == "full":  # others have no layer of nodes between the corner and the root
+        area, centroid = (1.0 - 0.25 * np.pi) * radius**2, wall + 0.2234 * radius
+        added = [float(hex_volumes(m.coords, m.hexes).sum()) for m in (mesh, plain)]
+        exact = area * 2.0 * np.pi * centroid / mesh.n_sectors
+        # chords of the hollow arc lie outside of it: three straight elements have a fifth more
+        assert exact < added[0] - added[1] < 1.3 * exact
 
 
 @pytest.mark.parametrize(("recipe", "overrides"), CASES)

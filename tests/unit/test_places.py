@@ -10,8 +10,9 @@ import pytest
 import swgpar
 from support.paths import DESIGN, RECIPE, REFERENCE
 from support.small_drive import PLANE
+from swgpar.analysis.local_problem import tooth_nodes
 from swgpar.analysis.place_errors import CoarseStresses, with_errors
-from swgpar.analysis.places import APART, AVERAGE, Place, inside_teeth, region_of, root_nodes
+from swgpar.analysis.places import APART, AVERAGE, BACK, Place, inside_teeth, region_of, root_nodes
 from swgpar.analysis.root_stress import BETWEEN, RootStress
 from swgpar.analysis.summary import STRESSES
 from swgpar.design.design_file import load_design
@@ -58,6 +59,18 @@ def test_regions_of_a_tooth(cup: tuple[DriveDesign, SectorMesh]) -> None:
     assert "notch" in regions(cup, np.flatnonzero(on_back & at_root))
 
 
+def test_a_fillet_takes_the_place_of_the_notch() -> None:
+    design = load_design(REFERENCE, ["cup.back_fillet=0.2"])
+    mesh = build_sector(design, load_recipe("full"), "flexible_spline")
+    r, z = np.hypot(*mesh.coords[:, :2].T), mesh.coords[:, 2]
+    wall = design.inner_radius + design.cup_thickness
+    on = np.flatnonzero((np.abs(np.hypot(r - wall - 0.2, z - 5.2) - 0.2) < 1e-9) & (r <= wall + 0.2) & (z <= 5.2))
+    assert len(on) > 10
+    assert regions((design, mesh), on) == {BACK}
+    assert set(on) <= set(tooth_nodes(mesh, design, ends=True))
+    assert "notch" not in regions((design, mesh), np.arange(len(z)))
+
+
 def test_regions_of_the_ring_gear() -> None:
     design = load_design(REFERENCE)
     mesh = build_sector(design, load_recipe("coarse"), "ring_gear")
@@ -98,16 +111,24 @@ def resolved(s1: float, on_mesh: float, region: str = "tooth root") -> RootStres
 
 def test_errors_in_roots_are_those_of_the_tension_there() -> None:
     """What nodal averages lose in the roots by the windows is lost by all stresses there."""
-    root = Place(100.0, "flexible_spline", "tooth root", 0, 59.0, 0.0, 0.0, "", in_root=100.0)
+    root = Place(100.0, "flexible_spline", "tooth root", 0, 59.0, 0.0, 0.0, "", in_root=100.0, root_spacing=0.1)
     inside = replace(root, value=110.0, region="rim inside")
-    ring = replace(root, body="ring_gear", in_root=None)
-    places = {"fs_s1": root, "fs_s3_apart": inside, "rg_s1": ring, "fs_vm": replace(root, warning=AVERAGE)}
+    ring = replace(root, body="ring_gear", root_spacing=0.2)
+    flank = replace(ring, region="flank", in_root=10.0)
+    places = {
+        "fs_s1": root,
+        "fs_s3_apart": inside,
+        "rg_s1": ring,
+        "rg_vm": flank,
+        "fs_vm": replace(root, warning=AVERAGE),
+    }
     shares = dict.fromkeys(places, 0.02)
     lost = (250.0 - 200.0 + 5.0) / 200.0
     found = {name: place.error for name, place in with_errors(places, shares, resolved(250.0, 200.0)).items()}
     assert found["fs_s1"] == pytest.approx(100.0 * lost)
     assert found["fs_s3_apart"] == pytest.approx(100.0 * (1.0 + lost) - 110.0)  # the root may have the largest one
-    assert found["rg_s1"] == pytest.approx(2.0)
+    assert found["rg_s1"] == pytest.approx(100.0 * 2.0 * lost)  # twice as long elements
+    assert found["rg_vm"] == pytest.approx(2.0)
     assert found["fs_vm"] is None
     close = {name: place.error for name, place in with_errors(places, shares, resolved(201.0, 200.0)).items()}
     assert close["fs_s3_apart"] == pytest.approx(2.2)
