@@ -111,7 +111,7 @@ class NewtonSolver:
             positions,
             "stiffness_",
             symmetric=problem.symmetric,
-            reuse=settings.reuse_factor and settings.linear == "direct" and problem.partition.dims == 3,
+            reuse=settings.reuse_factor and settings.linear == "direct",
         )
         self.line_search = LineSearch(self.system, self._trial_residual, problem.x, problem.phases)
         self.snes = self._create_snes()

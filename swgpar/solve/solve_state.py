@@ -48,7 +48,7 @@ class NewtonSettings:
     max_iterations : before a solve fails, unless the residual still decreases
     max_augmentations : in one solve;  penetration_tolerance : mm
     linear : "direct" (MUMPS) or "iterative" (GMRES with GAMG)
-    reuse_factor : for later tangents, in space with the direct solver
+    reuse_factor : for later tangents, with the direct solver
     """
 
     rtol: float

@@ -74,6 +74,14 @@ def test_a_kept_factor_changes_nothing(plain: dict[str, float]) -> None:
     assert_same(row, plain, 1e-6)
 
 
+@pytest.mark.parallel([1, 2])
+def test_a_kept_factor_changes_nothing_in_the_plane() -> None:
+    stepper, row = rotated(*PLANE, "solver.far_teeth=modelled")
+    counts = stepper.solver.system.reused.iterations
+    assert len(counts) > 3 and np.mean(np.array(counts) < MAX_ITERATIONS) > 0.8
+    assert_same(row, rotated(*PLAIN, *PLANE)[1], 1e-6)
+
+
 @pytest.mark.parametrize("cost", [0.0, 1e9])
 def test_a_factor_renewed_after_every_solve_or_never_changes_nothing(cost: float, plain: dict[str, float]) -> None:
     def set_price(stepper: LoadStepper) -> None:
