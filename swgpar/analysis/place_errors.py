@@ -44,13 +44,11 @@ def with_errors(
     the largest stress on a finer mesh.
     """
     lost: dict[str, float] = {}
-    if root_stress is not None and root_stress.region in (TOOTH_ROOT, TOOTH_END):
-        error = abs(root_stress.s1 - root_stress.on_mesh) + root_stress.total_error
-        spacing = {place.body: place.root_spacing for place in places.values()}
-        lost = {
-            body: error / root_stress.on_mesh * (length / spacing[GEARS[FLEXIBLE_SPLINE]]) ** NODAL_ORDER
-            for body, length in spacing.items()
-        }
+    spacing = {place.body: place.root_spacing for place in places.values()}
+    of_spline = spacing.get(GEARS[FLEXIBLE_SPLINE])  # 0 in a checkpoint of an earlier version
+    if of_spline and root_stress is not None and root_stress.region in (TOOTH_ROOT, TOOTH_END):
+        share = (abs(root_stress.s1 - root_stress.on_mesh) + root_stress.total_error) / root_stress.on_mesh
+        lost = {body: share * (length / of_spline) ** NODAL_ORDER for body, length in spacing.items()}
     return {
         name: replace(place, error=_error(place, shares.get(name), lost.get(place.body)))
         for name, place in places.items()

@@ -167,7 +167,7 @@ def _check_cup(design: DriveDesign) -> None:
         allowed = f"{narrowest:.4g} mm (axial travel of the teeth, half of the rim) to inf mm"
         _refuse("drive.face_width", design.drive.face_width, allowed)
     step = design.flexible_spline.rim - design.cup_thickness if cup.thickness_coef <= THICK_CUP else 0.0
-    most = min(step, cup.length - cup.fillet_radius)
+    most = min(step, 0.5 * (cup.length - cup.fillet_radius))
     if cup.back_fillet > most * (1.0 + 1e-9):
         allowed = f"0 to {most:.4g} mm (rim less wall; only 0 with cup.thickness_coef above {THICK_CUP:g})"
         _refuse("cup.back_fillet", cup.back_fillet, allowed)
