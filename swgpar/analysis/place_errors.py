@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from swgpar.analysis.places import TOOTH_END, TOOTH_ROOT, Place
+from swgpar.analysis.places import TOOTH_ROOT, Place
 from swgpar.analysis.root_stress import RootStress
 from swgpar.design.sections import GEARS
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
@@ -25,11 +25,11 @@ class CoarseStresses:
     ratio: float
 
     def errors(self, fine: Mapping[str, Place]) -> dict[str, float]:
-        """Errors of the stresses on the finer mesh as shares of them; none of those that depend on the mesh."""
+        """Errors of the stresses on the finer mesh as shares of them; none of those that depend on either mesh."""
         return {
             name: abs(place.value - self.places[name].value) / (self.ratio**NODAL_ORDER - 1.0) / place.value
             for name, place in fine.items()
-            if not place.warning and place.value > 0.0
+            if not place.warning and not self.places[name].warning and place.value > 0.0
         }
 
 
@@ -45,9 +45,9 @@ def with_errors(
     """
     lost: dict[str, float] = {}
     spacing = {place.body: place.root_spacing for place in places.values()}
-    of_spline = spacing.get(GEARS[FLEXIBLE_SPLINE])  # 0 in a checkpoint of an earlier version
-    if of_spline and root_stress is not None and root_stress.region in (TOOTH_ROOT, TOOTH_END):
-        share = (abs(root_stress.s1 - root_stress.on_mesh) + root_stress.total_error) / root_stress.on_mesh
+    share = root_stress.lost_in_root if root_stress is not None else None
+    if share is not None and places:
+        of_spline = spacing[GEARS[FLEXIBLE_SPLINE]]
         lost = {body: share * (length / of_spline) ** NODAL_ORDER for body, length in spacing.items()}
     return {
         name: replace(place, error=_error(place, shares.get(name), lost.get(place.body)))

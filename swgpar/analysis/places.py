@@ -25,6 +25,9 @@ TOOTH_ROOT, TOOTH_END, UNDER_CONTACT = "tooth root", "tooth end", "flank under c
 END = 0.45
 """Share of the face width from its middle beyond which a place belongs to the end of a tooth."""
 
+AT_ENDS = (TOOTH_END, BACK, "notch")
+"""Regions of the ends of the teeth."""
+
 NEAR = 0.02
 """Distance over the module within which a place lies on an edge."""
 

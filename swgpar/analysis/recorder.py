@@ -30,7 +30,7 @@ from swgpar.analysis.stiffness import loop_rows
 from swgpar.analysis.stress_cycle import StressCycle
 from swgpar.analysis.summary import Accuracy
 from swgpar.design.load_program import internal_torque, program_points
-from swgpar.design.load_states import LoadState, Stage
+from swgpar.design.load_states import LoadState, Stage, from_loaded, load_sequence
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.meshing import SectorMesh
 from swgpar.results import history
@@ -88,6 +88,7 @@ class Recorder(ABC):
         self.pairs: list[Row] = []
         self.contact_lines: list[Row] = []
         design = model.design
+        self._loaded = from_loaded(list(load_sequence(design)))[0]  # which coarser meshes are compared in
         self.cycle = StressCycle(model) if design.fatigue or design.losses else None
         self.cam_forces: list[float] = []
         self.tooth_rotations: list[float] = []
@@ -130,7 +131,7 @@ class Recorder(ABC):
             for name, place in find_places(self.model, state, fields, on_edge=on_edge).items():
                 if name not in self.places or place.value > self.places[name].value:
                     self.places[name] = place
-            if self.coarse is not None:
+            if self.coarse is not None and state == self._loaded:
                 self.stress_errors, self.coarse = self.coarse.errors(self.places), None
 
     def places_with_errors(self) -> dict[str, Place]:

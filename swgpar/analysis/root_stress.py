@@ -16,7 +16,8 @@ import numpy as np
 
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.local_problem import SECTORS, LocalProblem, WindowStress, tooth_nodes
-from swgpar.analysis.places import TOOTH_END
+from swgpar.analysis.places import AT_ENDS as END_REGIONS
+from swgpar.analysis.places import TOOTH_END, TOOTH_ROOT, root_nodes
 from swgpar.design.load_states import LoadState
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.fem.stress import principal
@@ -96,6 +97,7 @@ class RootStress:
     radius, z : mm;  angle_deg : from +y, counter-clockwise
     part : of the tooth;  by_part : largest s1 (MPa) of every part on the windows, coarse to fine, while it was followed
     elements : of the finest window
+    in_root : MPa, largest nodal average in the roots on the drive's mesh, between the ends of the teeth
     drive_error : MPa, estimated, of the drive's mesh; None where it is not known
     period : angles of the wave generator (degrees) and s1 (MPa) there, of one sampled period
     """
@@ -112,6 +114,7 @@ class RootStress:
     part: str
     by_part: Mapping[str, Sequence[float]]
     elements: int
+    in_root: float = 0.0
     drive_error: float | None = None
     period: tuple[tuple[float, float], ...] = ()
 
@@ -124,6 +127,14 @@ class RootStress:
     def total_error(self) -> float:
         """Error (MPa) of the window's and, where it is known, of the drive's mesh; they are independent."""
         return math.hypot(self.error, self.drive_error or 0.0)
+
+    @property
+    def lost_in_root(self) -> float | None:
+        """Share of the root's tension that nodal averages on the drive's mesh lose, with its error; None if unknown."""
+        if self.in_root <= 0.0 or self.region not in (TOOTH_ROOT, TOOTH_END) or not math.isfinite(self.total_error):
+            return None
+        s1 = self.s1 if self.region == TOOTH_ROOT else self.by_part[BETWEEN][-1]
+        return (abs(s1 - self.in_root) + self.total_error) / self.in_root
 
     def over_period(self) -> dict[str, float | None]:
         """Mean and maximum of s1 (MPa) over the sampled period, and errors of the mean; empty where it is not sampled.
@@ -180,7 +191,9 @@ def resolve_root_stress(model: DriveModel, state: LoadState, levels: int | None 
     error = error_of(values[best], RATIO[kind])
     if best[1]:
         error = error_at_ends(by_part, RATIO[kind]) if len(values[best]) >= LEVELS[kind] else math.inf
-    return _place(model, found[best], PARTS[best[1]], by_part, error, float(np.max(on_mesh)))
+    in_root = _largest_nodal(model, root_nodes(model.design, model.partition.layouts[FLEXIBLE_SPLINE].mesh))
+    known = _place(model, found[best], PARTS[best[1]], by_part, error, float(np.max(on_mesh)))
+    return replace(known, in_root=float(in_root.max()))
 
 
 def _reached(levels: list[float]) -> tuple[int, float]:
@@ -208,7 +221,7 @@ def may_be_largest(one: WindowStress, best: WindowStress, level: int) -> bool:
     """Whether a stress may overtake the largest one on windows finer than `level`; one region converges alike."""
     share = SAME_REGION
     if one.region != best.region:
-        share = BETWEEN_ENDS if best.region == TOOTH_END else AT_ENDS[min(level, 1)]
+        share = BETWEEN_ENDS if best.region in END_REGIONS else AT_ENDS[min(level, 1)]
     return one is best or one.value > share * best.value
 
 
@@ -278,8 +291,12 @@ def _near(tooth: int, count: int) -> np.ndarray:
 
 def _largest_by_tooth(model: DriveModel, ends: bool) -> np.ndarray:
     """Largest s1 (n_modelled,) MPa of the teeth of all modelled sectors, at their ends or between them; collective."""
+    return _largest_nodal(model, tooth_nodes(model.partition.layouts[FLEXIBLE_SPLINE].mesh, model.design, ends))
+
+
+def _largest_nodal(model: DriveModel, nodes: np.ndarray) -> np.ndarray:
+    """Largest s1 (n_modelled,) MPa at these nodes (n,) of all modelled sectors of the flexible spline; collective."""
     body = model.elements.bodies[FLEXIBLE_SPLINE]
-    nodes = tooth_nodes(body.layout.mesh, model.design, ends)
     stress = body.nodal_stress(model.problem.displacement())
     mine = principal(stress[:, nodes])[0].max(axis=1) if len(stress) else np.zeros(0)
     return np.concatenate(model.comm.allgather(mine))

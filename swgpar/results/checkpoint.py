@@ -24,7 +24,7 @@ from swgpar.results.parallel_hdf5 import Block
 
 NAME = "checkpoint.h5"
 
-VERSION = 5
+VERSION = 6
 """Of the content, the attributes of a run included."""
 
 _ATTRS, _VERSION, _DIGEST = "attrs_json", "version", "attrs_sha256"

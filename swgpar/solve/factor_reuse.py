@@ -1,6 +1,6 @@
 """A factor that is reused for later systems: GMRES on the present system, preconditioned by the old factor.
 
-One factorisation costs as much as some 4 solves with it in the plane, 5 (coarse) to 12 (full) in the cup drive, the
+One factorisation costs as much as some 4 solves with it in the plane, 5 (coarse) to 15 (full) in the cup drive, the
 analysis of another pattern once or twice that, and from one Newton iteration to the next, or one increment to
 the next, the tangent changes by the rotation of the elements and by some contact points.
 """

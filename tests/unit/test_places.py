@@ -106,7 +106,9 @@ def test_the_error_of_a_stress_follows_from_two_meshes() -> None:
 
 
 def resolved(s1: float, on_mesh: float, region: str = "tooth root") -> RootStress:
-    return RootStress(s1, 3.0, on_mesh, region, "", 0, 59.0, 0.0, 0.0, BETWEEN, {BETWEEN: (s1,)}, 1, drive_error=4.0)
+    return RootStress(
+        s1, 3.0, 0.0, region, "", 0, 59.0, 0.0, 0.0, BETWEEN, {BETWEEN: (s1,)}, 1, in_root=on_mesh, drive_error=4.0
+    )
 
 
 def test_errors_in_roots_are_those_of_the_tension_there() -> None:
@@ -132,7 +134,8 @@ def test_errors_in_roots_are_those_of_the_tension_there() -> None:
     assert found["fs_vm"] is None
     close = {name: place.error for name, place in with_errors(places, shares, resolved(201.0, 200.0)).items()}
     assert close["fs_s3_apart"] == pytest.approx(2.2)
-    for root_stress in (None, resolved(250.0, 200.0, "rim inside")):
+    unknown = replace(resolved(250.0, 200.0), error=np.inf)  # a single window
+    for root_stress in (None, resolved(250.0, 200.0, "rim inside"), unknown):
         assert with_errors(places, shares, root_stress)["fs_s1"].error == pytest.approx(2.0)
     assert with_errors(places, {}, None)["fs_s1"].error is None
 

@@ -55,8 +55,9 @@ def test_stresses_of_one_region_converge_alike(region: str, value: float, level:
 @pytest.mark.parametrize(("value", "level", "expected"), [(89.0, 0, True), (89.0, 2, True), (87.0, 1, False)])
 def test_a_root_is_followed_while_the_end_of_a_tooth_gives_more(value: float, level: int, expected: bool) -> None:
     """Stresses at the ends fall from the second window on."""
-    end = WindowStress(100.0, 0, np.zeros(3), "tooth end", "", 1)
-    assert may_be_largest(WindowStress(value, 0, np.zeros(3), "tooth root", "", 1), end, level) == expected
+    for region in ("tooth end", "notch", "fillet at the back"):
+        end = WindowStress(100.0, 0, np.zeros(3), region, "", 1)
+        assert may_be_largest(WindowStress(value, 0, np.zeros(3), "tooth root", "", 1), end, level) == expected
 
 
 def test_the_first_of_each_part_is_followed_and_others_only_where_they_may_overtake_it() -> None:
