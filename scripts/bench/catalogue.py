@@ -17,7 +17,8 @@ from swgpar.design.design_file import load_design
 
 DRIVES = Path("drivers/catalogue")
 
-RATED, READ = "Schaeffler TPI 275 (RT1-H), quoted by others", "Harmonic Drive product pages (CSF)"
+RATED = "Schaeffler TPI 275 (RT1-H), quoted by others"
+READ = "Harmonic Drive LLC, catalogue CSF and CSG, table 42; K3: product pages"
 
 PUBLISHED: dict[str, tuple[str, dict[str, float]]] = {
     "size_14_ratio_100": (RATED, {"K1": 4.7e3, "K3": 7.1e3, "no_load": 35.0, "efficiency": 0.67}),
@@ -25,7 +26,7 @@ PUBLISHED: dict[str, tuple[str, dict[str, float]]] = {
     "size_20_ratio_100": (RATED, {"K1": 16e3, "K3": 29e3, "no_load": 105.0, "efficiency": 0.77}),
     "size_25_ratio_100": (RATED, {"K1": 31e3, "K3": 57e3, "no_load": 195.0, "efficiency": 0.77}),
     "size_17_ratio_50": (READ, {"K1": 0.81e4, "K2": 1.1e4, "K3": 1.3e4}),
-    "size_25_ratio_50": (READ, {"K3": 4.4e4}),
+    "size_25_ratio_50": (READ, {"K1": 2.5e4, "K2": 3.4e4, "K3": 4.4e4}),
 }
 """Source, stiffness (N·m/rad), no-load running torque (N·mm) and efficiency by design."""
 
