@@ -140,7 +140,7 @@ def _hear_all() -> None:
 
 def _send(leader: int, way: str, ranks: int) -> None:
     """Signals to a command whose session has this leader."""
-    members = [pid for pid in of_session(leader) if _is_rank(pid)]
+    members = [pid for pid in of_session(leader) if is_rank(pid)]
     if way == "kill all":
         targets, number = of_session(leader), signal.SIGKILL
     elif way == "kill one rank":
@@ -156,7 +156,8 @@ def _send(leader: int, way: str, ranks: int) -> None:
             pass
 
 
-def _is_rank(pid: int) -> bool:
+def is_rank(pid: int) -> bool:
+    """Whether this process is a rank of a command."""
     try:
         words = Path(f"/proc/{pid}/cmdline").read_text(encoding="utf-8").split("\0")
     except (OSError, UnicodeDecodeError):

@@ -1,8 +1,9 @@
-"""Faults: bad inputs, refusals on several ranks, kills at random moments.
+"""Faults: bad inputs, refusals on several ranks, kills at random moments, memory of a long study.
 
 - inputs: bad inputs of all kinds of files. Each is refused in one printable sentence, or accepted with finite numbers.
 - ranks: the sentence and the exit code of a sample on one rank and on two.
 - kills: commands that are killed at a random moment and continued, against those that were not.
+- memory: resident memory and open files of a study of many small drives.
 
 The tables go into the page, and with --data all faults into a JSON file.
 """
@@ -22,10 +23,15 @@ from fault_inputs import run_inputs
 from fault_inputs import table as table_of_inputs
 from fault_kills import WAYS, Kill, commands, complete, kill
 from fault_kills import table as table_of_kills
+from fault_memory import draw, growth, long_study
+from fault_memory import table as table_of_memory
 from fault_ranks import endings, fault, sample
-from page import markdown, put
+from page import DATA, markdown, put
 
-PARTS = ("inputs", "ranks", "kills")
+PARTS = ("inputs", "ranks", "kills", "memory")
+
+GROWTH = 1.0
+"""Memory (MB) per 1000 cases and rank that counts as none: that of the lists of the cases themselves."""
 
 
 def measure_inputs(arguments: argparse.Namespace, out: Path) -> tuple[list[list[str]], list[Any]]:
@@ -73,6 +79,15 @@ def measure_kills(arguments: argparse.Namespace, out: Path) -> tuple[list[list[s
     return table_of_kills(kills), [vars(k) for k in kills if isinstance(k, Kill) and k.fault]
 
 
+def measure_memory(arguments: argparse.Namespace, out: Path) -> tuple[list[list[str]], list[Any]]:
+    """Table, and the growth where it is a fault; writes the figure."""
+    samples = long_study(arguments.cases, arguments.ranks, out)
+    draw(samples, DATA / "study_memory.png")
+    grows = growth(samples)
+    print(f"{grows:.2f} MB per 1000 cases and rank in the second half", flush=True)
+    return table_of_memory(samples), [{"growth_MB_per_1000_cases": grows}] if grows > GROWTH else []
+
+
 def main() -> int:
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("--out", default="results/bench/faults")
@@ -82,12 +97,13 @@ def main() -> int:
     options.add_argument("--inputs", type=int, default=5000, help="number of bad inputs")
     options.add_argument("--sample", type=int, default=200, help="number of inputs on one and two ranks")
     options.add_argument("--kills", type=int, default=200, help="number of kills")
-    options.add_argument("--ranks", type=int, default=2, help="number of ranks of commands that are killed")
+    options.add_argument("--cases", type=int, default=2000, help="number of cases of the long study")
+    options.add_argument("--ranks", type=int, default=2, help="number of ranks of commands that are killed, and of it")
     options.add_argument("--at-once", type=int, default=2, help="workers on bad inputs at once")
     options.add_argument("--seed", type=int, default=1)
     options.add_argument("--data", type=Path, default=None, help="file for all faults")
     arguments = options.parse_args()
-    work = {"inputs": measure_inputs, "ranks": measure_ranks, "kills": measure_kills}
+    work = {"inputs": measure_inputs, "ranks": measure_ranks, "kills": measure_kills, "memory": measure_memory}
     faults: list[Any] = []
     for part in arguments.parts:
         out = Path(arguments.out).resolve() / part
