@@ -23,7 +23,11 @@ using Mat2 = Eigen::Matrix2d;
 using Mat3 = Eigen::Matrix3d;
 
 // Limits of the projection onto a flank; eta and zeta are counted in facets.
-constexpr double kOverlap = 0.02;     // a facet's parameters may exceed it by this before the next one is taken
+// A foot point belongs to the facet in which it lies. Where the flank has a convex edge between two facets it may lie
+// in neither: after some changes from one to the other a facet's parameters may exceed it a little.
+constexpr double kBorder = 1e-9;
+constexpr double kOverlap = 0.02;
+constexpr int kMostChanges = 6;
 constexpr double kLastStep = 1e-10;   // of Newton's iteration: round-off of positions far from the axis allows 1e-13
 constexpr double kLongestStep = 1.0;  // of Newton's iteration: one facet, after which the next facet is taken
 constexpr int kMostSteps = 40;        // some 5 within a facet, the rest walk over the flank
@@ -179,18 +183,18 @@ inline FootPoint nearest_node(const Patch& p, const double* u, const Vec3& xs) {
   return f;
 }
 
-// Moves to the neighbouring facet when a parameter exceeds the facet by more than the overlap; false when none does.
-inline bool change_facet(const Patch& p, FootPoint& f) {
-  if (f.eta > 1 + kOverlap && f.i < p.n_s - 1) {
+// Moves to the neighbouring facet when a parameter exceeds the facet by more than `overlap`; false when none does.
+inline bool change_facet(const Patch& p, FootPoint& f, double overlap) {
+  if (f.eta > 1 + overlap && f.i < p.n_s - 1) {
     f.eta = std::min(1.0, (f.eta - 1) * (p.s[f.i + 1] - p.s[f.i]) / (p.s[f.i + 2] - p.s[f.i + 1]));
     ++f.i;
-  } else if (f.eta < -kOverlap && f.i > 0) {
+  } else if (f.eta < -overlap && f.i > 0) {
     f.eta = std::max(0.0, 1 + f.eta * (p.s[f.i + 1] - p.s[f.i]) / (p.s[f.i] - p.s[f.i - 1]));
     --f.i;
-  } else if (f.zeta > 1 + kOverlap && f.j < p.n_z - 1) {
+  } else if (f.zeta > 1 + overlap && f.j < p.n_z - 1) {
     f.zeta = std::min(1.0, (f.zeta - 1) * (p.z[f.j + 1] - p.z[f.j]) / (p.z[f.j + 2] - p.z[f.j + 1]));
     ++f.j;
-  } else if (f.zeta < -kOverlap && f.j > 0) {
+  } else if (f.zeta < -overlap && f.j > 0) {
     f.zeta = std::max(0.0, 1 + f.zeta * (p.z[f.j + 1] - p.z[f.j]) / (p.z[f.j] - p.z[f.j - 1]));
     --f.j;
   } else {
@@ -205,6 +209,7 @@ inline FootPoint project(const Patch& p, const double* u, const Vec3& xs, double
   const auto lost = [&](double t) { return t < -kGivenUp - beyond || t > 1 + kGivenUp + beyond; };
   FootPoint f = nearest_node(p, u, xs);
   if (lost(f.zeta)) return f;
+  int changes = 0;
   for (int it = 0; it < kMostSteps; ++it) {
     evaluate(p, u, f);
     const Vec3 dist = xs - f.x;
@@ -221,7 +226,9 @@ inline FootPoint project(const Patch& p, const double* u, const Vec3& xs, double
     if (big > kLongestStep) step /= big;
     f.eta += step[0];
     f.zeta += step[1];
-    if (!change_facet(p, f) && big < kLastStep) {
+    if (change_facet(p, f, changes < kMostChanges ? kBorder : kOverlap)) {
+      ++changes;
+    } else if (big < kLastStep) {
       f.found = true;
       break;
     }

@@ -84,16 +84,21 @@ def assert_same_history(folder: Path, other: Path, rel: float | None = None, *, 
 
 
 def of_session(leader: int) -> list[int]:
-    """Processes of a session; mpirun gives its ranks process groups of their own, but not sessions."""
-    found = []
+    """Processes of a session, and their descendants: the mpirun of MPICH gives its ranks a session of their own."""
+    parents, found = {}, set()
     for entry in Path("/proc").iterdir():
         if entry.name.isdigit():
             try:
-                if os.getsid(int(entry.name)) == leader:
-                    found.append(int(entry.name))
-            except ProcessLookupError:  # ended meanwhile
-                pass
-    return found
+                session = os.getsid(int(entry.name))
+                status = (entry / "stat").read_text(encoding="utf-8", errors="replace")
+            except (ProcessLookupError, FileNotFoundError):  # ended meanwhile
+                continue
+            parents[int(entry.name)] = int(status.rpartition(")")[2].split()[1])
+            if session == leader:
+                found.add(int(entry.name))
+    while more := {pid for pid, parent in parents.items() if parent in found} - found:
+        found |= more
+    return sorted(found)
 
 
 def kill_after(command: list[str], out: Path, rows: int) -> None:

@@ -172,7 +172,8 @@ def test_a_sharp_trapezoidal_tooth_can_be_meshed(external: bool) -> None:
     section = cross_section(profile, recipe, float(np.hypot(*r)) - 0.6 * side, float(np.hypot(*r)) - side)
     x = section.coords[section.quads]
     after, before = np.roll(x, -1, axis=1) - x, np.roll(x, 1, axis=1) - x
-    sine = np.cross(after, before) / np.linalg.norm(after, axis=-1) / np.linalg.norm(before, axis=-1)
+    area = after[..., 0] * before[..., 1] - after[..., 1] * before[..., 0]
+    sine = area / np.linalg.norm(after, axis=-1) / np.linalg.norm(before, axis=-1)
     assert sine.min() > 0.2
     assert (section.s[0], section.s[-1]) == (0.0, pytest.approx(profile.length))
 
