@@ -116,6 +116,22 @@ def accepted_options(comm: MPI.Comm) -> Iterator[None]:
         raise InputError(f"options of PETSc: {reason}")
 
 
+@contextmanager
+def errors_of_callbacks() -> Iterator[None]:
+    """Raise errors that Python callbacks of PETSc raise as what they are: newer releases wrap them in their own."""
+    from petsc4py import PETSc
+
+    try:
+        yield
+    except PETSc.Error as error:
+        found: BaseException | None = error
+        while found is not None and not isinstance(found, SwgparError) and not is_out_of_memory(found):
+            found = found.__cause__ or found.__context__
+        if found is None or found is error:
+            raise
+        raise found from None
+
+
 def is_out_of_memory(error: BaseException) -> bool:
     """Whether an allocation of this process, or of PETSc in it, has failed."""
     return isinstance(error, MemoryError) or getattr(error, "ierr", 0) == NO_MEMORY

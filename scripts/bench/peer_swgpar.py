@@ -42,7 +42,7 @@ def pinched(design: RingDesign, counts: RingCounts, force: float, halved: bool) 
     # the search is made for contact: in bending without it a full step, which stretches the ring, is the way out
     LineSearch.TRIALS = 0
     solver = ring.solver(DeadLoad(np.concatenate(local), np.concatenate(forces)))
-    solved = solver.solve(LoadState(Stage.ROTATE, 4, cam_clearance=0.0))  # a stage that keeps a factor
+    solved = solver.solve(LoadState(Stage.LOAD, 3, cam_clearance=0.0))  # keeps a factor once the residual is small
     if not solved.converged:
         raise SystemExit(f"not converged: {solved}")
     return ring.body, solver.problem.displacement(), solved.iterations

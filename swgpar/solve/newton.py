@@ -20,7 +20,7 @@ from swgpar.design.load_states import LoadState, Stage
 from swgpar.errors import TimeLimitError
 from swgpar.fem.vectors import create_vector
 from swgpar.log import logger
-from swgpar.petsc import PETSc, accepted_options
+from swgpar.petsc import PETSc, accepted_options, errors_of_callbacks
 from swgpar.solve.active_set_cycles import (
     MAX_ITERATIONS_FACTOR,
     MIN_DECREASE,
@@ -298,7 +298,8 @@ class NewtonSolver:
         state.visited, self.line_search.descending = self.visited_sets(), state.breaker.active
         self._set_penalty_share(state, state.softenings.pop(0) if state.softenings else 1.0)
         self.snes.setTolerances(max_it=max(1, state.max_iterations - state.iterations))
-        self.snes.solve(None, self.problem.x)
+        with errors_of_callbacks():
+            self.snes.solve(None, self.problem.x)
         state.iterations += self.snes.getIterationNumber()
         reason = self.snes.getConvergedReason()
         if reason < 0:
