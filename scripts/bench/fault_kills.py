@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from support.commands import environment, of_session, on_ranks, swgpar
+from support.commands import environment, is_rank, of_session, on_ranks, swgpar
 from support.paths import DATA, DESIGN, DRIVERS, RECIPE
 from support.small_drive import PLANE
 from support.small_trains import SMALL
@@ -34,7 +34,7 @@ design = "{design}"
 meshes = ["{mesh}"]
 set = [{overrides}]
 [study.vary]
-"load.torque" = [0.1, 0.2, 0.3, 0.4]
+"load.torque" = {torques}
 """
 
 
@@ -57,7 +57,9 @@ def commands(folder: Path, ranks: int) -> dict[str, Command]:
     small = (str(DESIGN), "--mesh", str(RECIPE))
     overrides = ", ".join(f'"{override}"' for override in (*PLANE, *CUP))
     study = folder / "study.toml"
-    study.write_text(STUDY.format(design=DESIGN, mesh=RECIPE, overrides=overrides), encoding="utf-8")
+    study.write_text(
+        STUDY.format(design=DESIGN, mesh=RECIPE, overrides=overrides, torques=[0.1, 0.2, 0.3, 0.4]), encoding="utf-8"
+    )
     found = {
         "plane": Command(("run", *small, "--plain", "--set", *PLANE, *ROTATION, *FEW), "--restart", ranks),
         "small cup": Command(("run", *small, "--plain", "--set", *CUP, *FEW), "--restart", ranks),
@@ -154,15 +156,6 @@ def _send(leader: int, way: str, ranks: int) -> None:
             os.kill(pid, number)
         except ProcessLookupError:  # ended meanwhile
             pass
-
-
-def is_rank(pid: int) -> bool:
-    """Whether this process is a rank of a command."""
-    try:
-        words = Path(f"/proc/{pid}/cmdline").read_text(encoding="utf-8").split("\0")
-    except (OSError, UnicodeDecodeError):
-        return False
-    return "swgpar.cli" in words and not words[0].endswith("mpirun")
 
 
 def _end_rest(leader: int) -> None:

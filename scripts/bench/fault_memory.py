@@ -1,4 +1,4 @@
-"""Memory and open files of the processes of a long study, over the cases that have ended."""
+"""Memory and open files of the processes of a long study, over the cases that have begun."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from fault_kills import CUP, STUDY, is_rank
+from fault_kills import CUP, STUDY
 
-from support.commands import environment, of_session, on_ranks, swgpar
+from support.commands import environment, is_rank, of_session, on_ranks, swgpar
 from support.paths import DATA, DESIGN, RECIPE
 from support.small_drive import PLANE
 
@@ -40,8 +40,8 @@ def long_study(cases: int, ranks: int, out: Path) -> list[Sample]:
     study = out / "study.toml"
     overrides = ", ".join(f'"{override}"' for override in (*PLANE, *CUP, "output.figures=false"))
     torques = np.linspace(0.1, 0.4, cases).round(9).tolist()
-    text = STUDY.format(design=DESIGN, mesh=RECIPE, overrides=overrides)
-    study.write_text(text.replace("[0.1, 0.2, 0.3, 0.4]", str(torques)), encoding="utf-8")
+    text = STUDY.format(design=DESIGN, mesh=RECIPE, overrides=overrides, torques=torques)
+    study.write_text(text, encoding="utf-8")
     folder, begin, found = out / "results", time.monotonic(), []
     with (out / "log").open("w") as log:
         command = [*on_ranks(ranks), *swgpar("study", study, "--out", folder)]

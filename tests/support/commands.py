@@ -101,6 +101,15 @@ def of_session(leader: int) -> list[int]:
     return sorted(found)
 
 
+def is_rank(pid: int) -> bool:
+    """Whether this process is a rank of a command, and not its mpirun."""
+    try:
+        words = Path(f"/proc/{pid}/cmdline").read_text(encoding="utf-8").split("\0")
+    except (OSError, UnicodeDecodeError):  # ended meanwhile, or another program
+        return False
+    return "swgpar.cli" in words and not words[0].endswith("mpirun")
+
+
 def kill_after(command: list[str], out: Path, rows: int) -> None:
     """Start a run and kill all its processes once its history has `rows` rows."""
     process = subprocess.Popen(command, cwd=DATA, env=environment(), start_new_session=True)
