@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.rigid_mesh import flank_clearance, rigid_mesh
+from swgpar.design.rigid_mesh import RigidMesh, flank_clearance, rigid_mesh
 from swgpar.geometry.cams import pin_travel, taut_length
 
 
@@ -13,7 +13,6 @@ def derived_geometry(design: DriveDesign) -> dict[str, float]:
     """Quantities that follow from a design: names with units, and values. `swgpar check` prints them."""
     spline, ring = design.profile("flexible_spline"), design.profile("ring_gear")
     cam, half = design.cam(), 0.5 * design.deflection
-    rigid = rigid_mesh(design)
     return {
         "ratio (wave generator / output)": design.ratio,
         "d, diametral deflection (mm)": design.deflection,
@@ -35,6 +34,15 @@ def derived_geometry(design: DriveDesign) -> dict[str, float]:
         "tip of ring to root of spline, major axis (mm)": ring.r_tip_circle - spline.r_root_circle - half,
         "tips at the minor axis (mm)": ring.r_tip_circle - spline.r_tip_circle + half,
         "smallest flank clearance, kinematic (mm)": flank_clearance(design),
+        **_rigid_contact(rigid_mesh(design)),
+    }
+
+
+def _rigid_contact(rigid: RigidMesh) -> dict[str, float]:
+    """Quantities of rigid teeth; none where their first contact is not defined."""
+    if not np.isfinite(rigid.transmission_error):
+        return {}
+    return {
         "transmission error of rigid teeth (arcsec)": rigid.transmission_error,
         "share of rigid teeth within 1 µm of contact": rigid.teeth_share,
     }

@@ -35,7 +35,7 @@ class RigidMesh:
     """Contact of rigid teeth.
 
     transmission_error : arc seconds, peak to peak of the output's rotation at which the first pair touches; inf where
-        the teeth do not reach each other
+        the teeth do not reach each other, or overlap at every rotation
     teeth_share : share of the flexible spline's teeth whose gap is below `NEAR` then, mean over a pitch
     """
 
@@ -66,7 +66,10 @@ def rigid_mesh(design: DriveDesign, phases: int = 8, n_points: int = 300) -> Rig
         with np.errstate(invalid="ignore"):
             closing = touching - STEP * before / (before - after)
         touching = np.where(np.isfinite(before) & (after < before), closing, -np.inf).max(axis=1, keepdims=True)
-        if not np.isfinite(touching).all():
+        if not (np.abs(touching) < 0.5 * pitch).all():
             return RigidMesh(np.inf, 0.0)
-    share = np.count_nonzero(gaps(touching) < NEAR) / phases * 2.0 / design.drive.teeth_fs
+    found = gaps(touching)
+    if np.abs(found.min(axis=1)).max() > NEAR:
+        return RigidMesh(np.inf, 0.0)
+    share = np.count_nonzero(found < NEAR) / phases * 2.0 / design.drive.teeth_fs
     return RigidMesh(float(np.degrees(np.ptp(touching))) * 3600.0, share)

@@ -76,6 +76,14 @@ def is_recipe_name(mesh: str | Path) -> bool:
     return path.name == str(path) and not path.suffix
 
 
+def _is_file(path: Path) -> bool:
+    """Whether there is such a file; names that no file system takes are none."""
+    try:
+        return path.is_file()
+    except OSError:
+        return False
+
+
 def recipe_path(mesh: str | Path) -> Path:
     """The file of a recipe that is given by its name in the package ("coarse") or by its path.
 
@@ -84,7 +92,7 @@ def recipe_path(mesh: str | Path) -> Path:
     path = Path(mesh)
     if str(path) in RECIPES:  # whatever the working directory holds
         return Path(__file__).with_name("recipes") / f"{path}.toml"
-    if is_recipe_name(path) and not path.is_file():
+    if is_recipe_name(path) and not _is_file(path):
         raise InputError(
             f"mesh = {show(str(path))} is not available: allowed {', '.join(RECIPES)} or the path of a mesh recipe"
         )

@@ -9,6 +9,7 @@ import pytest
 
 import swgpar
 from support.drive_groups import PLANE
+from swgpar.design.derived_geometry import derived_geometry
 from swgpar.design.rigid_mesh import flank_clearance, rigid_mesh
 from swgpar.errors import InputError
 
@@ -56,6 +57,17 @@ def test_rigid_teeth_transmit_without_error(gear: str) -> None:
 def test_the_quadruple_arc_has_a_transmission_error() -> None:
     """The same measure sees the error of teeth that are not conjugate."""
     assert rigid_mesh(swgpar.load_design(PLANE), phases=5, n_points=200).transmission_error > 0.3
+
+
+def test_teeth_that_overlap_at_every_rotation_have_no_transmission_error() -> None:
+    """Rollers press the rigid teeth 0.3 mm into each other; `check` then leaves its lines out."""
+    rollers = {"type": "four_roller", "beta": 25.0, "r_4": 15.0, "face_width": 10.0}
+    drive = swgpar.load_design(PLANE, {"wave_generator": rollers})
+    assert flank_clearance(drive, 181) < -0.1
+    assert rigid_mesh(drive, phases=5, n_points=200).transmission_error == np.inf
+    values = derived_geometry(drive)
+    assert np.isfinite(list(values.values())).all() and not any("rigid" in name for name in values)
+    assert any("rigid" in name for name in derived_geometry(swgpar.load_design(PLANE)))
 
 
 def test_the_curvature_is_that_of_the_tangents() -> None:

@@ -51,6 +51,13 @@ def test_commands_print_no_control_characters(arguments: tuple[object, ...]) -> 
     assert done.returncode == 2 and done.stderr.removesuffix("\n").isprintable() and not done.stdout
 
 
+def test_names_longer_than_a_file_system_takes_are_no_recipes() -> None:
+    with pytest.raises(InputError, match="mesh = .* is not available"):
+        load_recipe(5000 * "x")
+    with pytest.raises(InputError, match="cannot be read"):
+        load_recipe(5000 * "x" + ".toml")
+
+
 def test_long_keys_are_shortened() -> None:
     key = "drive." + 5000 * "k"
     with pytest.raises(InputError) as caught:
