@@ -224,6 +224,11 @@ def write_page(page: Path, rows: list[Row]) -> None:
     put(page, "table", text + ("\n" + "\n".join(others) + "\n" if others else ""))
 
 
+def _is_earlier(row: Row, first: int) -> bool:
+    """Whether the case is a sensible design before the first one of this call."""
+    return row["group"] in (SENSIBLE, SENSIBLE_CUP) and int(row["case"].removeprefix("s")) < first
+
+
 def main() -> int:
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--out", default="results/bench/stability")
@@ -233,6 +238,7 @@ def main() -> int:
     options.add_argument("--most-ranks", type=int, default=8, help="largest number of ranks on one case")
     options.add_argument("--random", type=int, default=200, help="number of random plane designs")
     options.add_argument("--sensible", type=int, nargs=2, default=(1000, 200), help="numbers of plane and cup drives")
+    options.add_argument("--first", type=int, default=0, help="number of the first one; earlier ones keep their rows")
     options.add_argument("--seed", type=int, default=1)
     options.add_argument("--restart", action="store_true", help="keep the cases that an earlier call has finished")
     options.add_argument("--only", nargs="+", default=None, help="words of the names of the groups to run")
@@ -241,7 +247,7 @@ def main() -> int:
     tables.mkdir(parents=True, exist_ok=True)
     numbers = [n for n in (1, 2, 3, 4, 8) if n <= arguments.most_ranks]
     work = {"elements": element_rows, "ranks": lambda: run_on_ranks(out, numbers)}
-    for name, group in groups(arguments.random, arguments.seed, tuple(arguments.sensible)).items():
+    for name, group in groups(arguments.random, arguments.seed, tuple(arguments.sensible), arguments.first).items():
         work[name] = lambda name=name, group=group: run_group(name, group, out, arguments.at_once, arguments.restart)
     table = tables / "stability.csv"
     rows: list[Row] = []
@@ -253,7 +259,9 @@ def main() -> int:
         if arguments.only and not any(word in name for word in arguments.only):
             continue
         found = run()
-        rows = sorted([r for r in rows if r["group"] != name] + found, key=lambda r: list(work).index(r["group"]))
+        rows = [r for r in rows if r["group"] != name or _is_earlier(r, arguments.first)] + found
+        rows.sort(key=lambda r: list(work).index(r["group"]))
+        found = [r for r in rows if r["group"] == name]
         print(line(counted(name, found)), flush=True)
         with table.open("w", newline="", encoding="utf-8") as file:
             writer = csv.DictWriter(file, COLUMNS, restval="", lineterminator="\n")

@@ -187,7 +187,8 @@ def sensible_designs(count: int, seed: int, model: str = "plane") -> Cases:
     """Drives of 60 to 240 teeth and 8 to 100 mm of radius, with any cam and profile; some of them cannot be built.
 
     They turn through a pitch and a quarter in increments of a quarter, so that the first and the last end in the same
-    state, and the last four have the mean of a period.
+    state, and the last four have the mean of a period. Without friction they start from the bent shape, as `swgpar run`
+    does.
     """
     rng, cases = np.random.default_rng(seed), {}
     for k in range(count):
@@ -195,8 +196,14 @@ def sensible_designs(count: int, seed: int, model: str = "plane") -> Cases:
         radius = float(np.exp(rng.uniform(np.log(8.0), np.log(100.0))))
         case = _draw(rng, model, teeth, round(2.0 * radius / teeth, 4), CAMS)
         pitch = 360.0 / (teeth + 2 if case["drive.layout"] == "ring_fixed" else teeth)
-        cases[f"s{k:04d}"] = {**case, "steps.increment": 0.25 * pitch, "steps.rotation": 1.25 * pitch}
+        case |= {"steps.increment": 0.25 * pitch, "steps.rotation": 1.25 * pitch}
+        cases[f"s{k:04d}"] = {**case, "steps.bent_start": case["contact.friction"] == 0.0}
     return cases
+
+
+def from_number(first: int, cases: Cases) -> Cases:
+    """The cases behind the first ones."""
+    return dict(list(cases.items())[first:])
 
 
 FIRST_CAMS = ("elliptical", "simplified", "parabolic", "four_roller")
@@ -310,11 +317,11 @@ FACE_WIDTHS = (0.2, 0.3, 0.5, 1.0, 4.0, 20.0, 60.0, 200.0, 1000.0)
 FRICTION = (0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5)
 
 
-def groups(count: int, seed: int, sensible: tuple[int, int] = (0, 0)) -> dict[str, Group]:
+def groups(count: int, seed: int, sensible: tuple[int, int] = (0, 0), first: int = 0) -> dict[str, Group]:
     """All groups.
 
     count, seed : number of random plane designs, and what they are drawn from
-    sensible : numbers of plane and of cup drives of sensible sizes
+    sensible : numbers of plane and of cup drives of sensible sizes;  first : number of the first of them in the group
     """
     flat = dict(override.split("=") for override in SMALL_PLANE)
     flat = {key: parse_value(value) for key, value in flat.items()}
@@ -360,6 +367,6 @@ def groups(count: int, seed: int, sensible: tuple[int, int] = (0, 0)) -> dict[st
         "random designs, plane": Group(PLANE, lambda: random_designs(count, seed)),
         ONCE_FAILED: Group(PLANE, lambda: read_toml(DATA / "once_failed.toml")),
         "random designs, cup": Group(PLANE, lambda: random_designs(count // 10, seed, "cup")),
-        SENSIBLE: Group(PLANE, lambda: sensible_designs(sensible[0], seed), steps=True),
-        SENSIBLE_CUP: Group(PLANE, lambda: sensible_designs(sensible[1], seed, "cup"), steps=True),
+        SENSIBLE: Group(PLANE, lambda: from_number(first, sensible_designs(sensible[0], seed)), steps=True),
+        SENSIBLE_CUP: Group(PLANE, lambda: from_number(first, sensible_designs(sensible[1], seed, "cup")), steps=True),
     }
