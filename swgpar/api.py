@@ -267,7 +267,13 @@ def save_report(result: Result, folder: str | Path, comm: MPI.Comm | None = None
     raise_first(comm, failure)
 
 
-def export(source: DesignLike | DriveResult, out: str | Path, formats: Sequence[str]) -> list[Path]:
+def export(
+    source: DesignLike | DriveResult,
+    out: str | Path,
+    formats: Sequence[str],
+    *,
+    ripple: str | Path | DriveResult | None = None,
+) -> list[Path]:
     """Write files of other programs and return them; collective, rank 0 writes.
 
     Parameters
@@ -278,7 +284,9 @@ def export(source: DesignLike | DriveResult, out: str | Path, formats: Sequence[
         Folder, which is made.
     formats : sequence of str
         Of a design "step" (solids) and "dxf" (outlines), of a result "vtkhdf" (fields for ParaView), "parquet" (all
-        tables) and "lookup" (torsional spring and ripple for multibody programs).
+        tables), "lookup" (torsional spring and ripple for multibody programs) and "fmu" (the same as an FMU).
+    ripple : result of a drive, or the folder of one
+        For "fmu": run with steps.samples or [deviations] of the same drive. Without it there is no kinematic error.
 
     Raises
     ------
@@ -297,12 +305,14 @@ def export(source: DesignLike | DriveResult, out: str | Path, formats: Sequence[
     if isinstance(source, (str, Path)) and Path(source).is_dir():
         source = open_result(source)  # type: ignore[assignment]
     found = source if isinstance(source, DriveResult) else load_design(source)
-    if not isinstance(found, DriveDesign | DriveResult):
+    if isinstance(ripple, (str, Path)):
+        ripple = open_result(ripple)  # type: ignore[assignment]
+    if not isinstance(found, DriveDesign | DriveResult) or not isinstance(ripple, DriveResult | None):
         raise InputError("export is available for drives: a gear train has no geometry and no fields")
     paths: list[Path] = []
     with agreed(MPI.COMM_WORLD, Path(out)):
         if MPI.COMM_WORLD.rank == 0:
-            paths = export_files(found, Path(out), formats)
+            paths = export_files(found, Path(out), formats, ripple)
     return MPI.COMM_WORLD.bcast(paths)
 
 

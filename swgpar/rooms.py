@@ -24,7 +24,7 @@ PURPOSE = {
     "results": "history, fields and checkpoints in a results folder",
     "gear_trains": "lumped models of gear trains around strain wave gears",
     "analysis": "a run of the drive: model, load stepping, prediction, mesh refinement, figures",
-    "exchange": "files of other programs: STEP, DXF, VTKHDF, tables of histories, look-up tables",
+    "exchange": "files of other programs: STEP, DXF, VTKHDF, tables of histories, look-up tables, FMU",
     "systems": "registry of what can be computed, drives and gear trains, for the interfaces and studies",
     "studies": "many runs: cases, schedule, tables, report",
     "optimisation": "search for the best design: variables, objectives, constraints, report",

@@ -85,25 +85,49 @@ class Branch:
         return float(np.interp(torque, self.torque, self.rotation))
 
 
+class Loop:
+    """The loop at one angle of the wave generator; what the program has left out is made of its image.
+
+    Attributes
+    ----------
+    unloading, loading : branches with positive and with negative torques
+    work : N mm, area of the loop; 0 where one way of it stands for both
+    """
+
+    def __init__(self, rows: Sequence[PointRow]) -> None:
+        """rows : at that angle, in the order of the program"""
+        found: dict[str, list[PointRow]] = {name: [] for name in (FIRST_LOADING, *BRANCHES)}
+        before: list[PointRow] = []
+        for row in rows:
+            branch = found.get(row["stage"], [])
+            if not branch and row["stage"] in (POSITIVE_UNLOADING, NEGATIVE_UNLOADING):
+                branch += before  # it begins where the one before has ended
+            branch.append(row)
+            before = [row]
+        branches = {
+            name: Branch(found[name] or found[WAY_BACK[name]], 1.0 if name in POSITIVE else -1.0)
+            for name in BRANCHES
+            if found[name] or found[WAY_BACK[name]]
+        }
+        # a side that is left out is the image of the other one
+        one = next(iter(branches.values()))
+        self.unloading = [branches.get(name, one) for name in (POSITIVE_UNLOADING, NEGATIVE_UNLOADING)]
+        self.loading = [branches.get(name, one) for name in (POSITIVE_LOADING, NEGATIVE_LOADING)]
+        self.work = _loop_work([found[name] for name in BRANCHES])
+
+    def falling(self, torque: float) -> float:
+        """Rotation (rad) at a torque (N·m, not 0) on the way from the largest to the least."""
+        return self.unloading[0].at(torque) if torque > 0.0 else -self.loading[1].at(-torque)
+
+    def rising(self, torque: float) -> float:
+        """Rotation (rad) at a torque (N·m, not 0) on the way back."""
+        return self.loading[0].at(torque) if torque > 0.0 else -self.unloading[1].at(-torque)
+
+
 def at_position(design: DriveDesign, rows: Sequence[PointRow]) -> Stiffness:
     """The stiffness from the rows of the loop at one angle of the wave generator, in the order of the program."""
-    found: dict[str, list[PointRow]] = {name: [] for name in (FIRST_LOADING, *BRANCHES)}
-    before: list[PointRow] = []
-    for row in rows:
-        branch = found.get(row["stage"], [])
-        if not branch and row["stage"] in (POSITIVE_UNLOADING, NEGATIVE_UNLOADING):
-            branch += before  # it begins where the one before has ended
-        branch.append(row)
-        before = [row]
-    branches = {
-        name: Branch(found[name] or found[WAY_BACK[name]], 1.0 if name in POSITIVE else -1.0)
-        for name in BRANCHES
-        if found[name] or found[WAY_BACK[name]]
-    }
-    # a side that is left out is the image of the other one
-    one = next(iter(branches.values()))
-    unloading = [branches.get(name, one) for name in (POSITIVE_UNLOADING, NEGATIVE_UNLOADING)]
-    loading = [branches.get(name, one) for name in (POSITIVE_LOADING, NEGATIVE_LOADING)]
+    loop = Loop(rows)
+    unloading, loading = loop.unloading, loop.loading
 
     def middle(side: int, torque: float) -> float:
         return 0.5 * (unloading[side].at(torque) + loading[side].at(torque))
@@ -117,7 +141,7 @@ def at_position(design: DriveDesign, rows: Sequence[PointRow]) -> Stiffness:
         lost_motion=(middle(0, share) + middle(1, share)) / ARC_MINUTE,
         hysteresis=(unloading[0].at(0.0) + unloading[1].at(0.0)) / ARC_MINUTE,
         backlash=0.5 * sum(a.at(0.0) + b.at(0.0) for a, b in zip(loading, unloading[::-1])) / ARC_MINUTE,
-        loop_work=_loop_work([found[name] for name in BRANCHES]),
+        loop_work=loop.work,
     )
 
 
@@ -144,10 +168,16 @@ def _loop_work(branches: Sequence[Sequence[PointRow]]) -> float:
 
 def by_position(design: DriveDesign, rows: Sequence[PointRow]) -> dict[float, Stiffness]:
     """The stiffness at every angle (deg) of the wave generator, from all rows of program.csv."""
+    return {angle: at_position(design, here) for angle, here in rows_by_position(design, rows).items()}
+
+
+def rows_by_position(design: DriveDesign, rows: Sequence[PointRow]) -> dict[float, list[PointRow]]:
+    """Rows of the loop that stands for every angle (deg) of the wave generator, from all rows of program.csv."""
+    angles = stiffness_angles(design)
     found = {}
-    for k, angle in enumerate(stiffness_angles(design)):
-        computed = stiffness_angles(design)[computed_position(design, k)]
-        found[angle] = at_position(design, [row for row in rows if abs(row["wg_angle_deg"] - computed) < SAME_ANGLE])
+    for k, angle in enumerate(angles):
+        computed = angles[computed_position(design, k)]
+        found[angle] = [row for row in rows if abs(row["wg_angle_deg"] - computed) < SAME_ANGLE]
     return found
 
 

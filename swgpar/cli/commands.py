@@ -102,7 +102,8 @@ def _optimise(arguments: argparse.Namespace) -> None:
 def _export(arguments: argparse.Namespace) -> None:
     from swgpar import api
 
-    _print(f"written {path}" for path in api.export(arguments.source, arguments.out, arguments.format))
+    paths = api.export(arguments.source, arguments.out, arguments.format, ripple=arguments.ripple)
+    _print(f"written {path}" for path in paths)
 
 
 def _mesh(arguments: argparse.Namespace) -> None:

@@ -7,6 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from swgpar.analysis.stiffness import Loop, rows_by_position
+from swgpar.design.drive_design import DriveDesign
+from swgpar.design.load_program import stiffness_torques
 from swgpar.errors import InputError
 from swgpar.results.table import format_columns
 
@@ -25,8 +28,7 @@ TABLES = (
 )
 """Attributes of a `DriveResult` that are tables."""
 
-ARCMIN = np.pi / 10800.0
-ARCSEC = ARCMIN / 60.0
+ARCSEC = np.pi / 648000.0
 
 SPRING, RIPPLE = "spring.csv", "ripple.csv"
 
@@ -62,13 +64,10 @@ def write_look_up(result: DriveResult, folder: Path) -> list[Path]:
     paths = []
     if result.program and result.stiffness:
         paths.append(folder / SPRING)
-        paths[-1].write_bytes(format_columns(spring_table(result.program)))
+        paths[-1].write_bytes(format_columns(spring_table(result)))
     if result.transmission_error:
-        rows = result.transmission_error
-        error = (rows["transmission_error_arcsec"] - rows["transmission_error_arcsec"].mean()) * ARCSEC
-        columns = {"wave_generator_angle_rad": np.radians(rows["wg_angle_deg"]), "kinematic_error_rad": error}
         paths.append(folder / RIPPLE)
-        paths[-1].write_bytes(format_columns(columns))
+        paths[-1].write_bytes(format_columns(ripple_table(result.transmission_error)))
     if not paths:
         raise InputError(
             "the format lookup needs a run with [stiffness], steps.samples or [deviations]: this one has neither a "
@@ -77,27 +76,27 @@ def write_look_up(result: DriveResult, folder: Path) -> list[Path]:
     return paths
 
 
-def spring_table(program: dict[str, np.ndarray], count: int = 41) -> dict[str, np.ndarray]:
-    """Wind-up at `count` torques between the ends of the loops: columns of spring.csv.
-
-    program : columns of program.csv of a run with [stiffness]
-    """
-    angles, torque = program["wg_angle_deg"], program["torque_Nm"]
-    levels = np.linspace(torque.min(), torque.max(), count)
-    up, down = [], []
-    for angle in np.unique(angles):
-        here = angles == angle
-        t, rotation = torque[here], program["rotation_arcmin"][here] * ARCMIN
-        change = np.gradient(t)
-        for branch, sign in ((up, 1.0), (down, -1.0)):
-            chosen = sign * change > 0.0
-            if np.count_nonzero(chosen) > 1:
-                order = np.argsort(t[chosen])
-                branch.append(np.interp(levels, t[chosen][order], rotation[chosen][order]))
-    rising, falling = np.mean(up or down, axis=0), np.mean(down or up, axis=0)
+def spring_table(result: DriveResult) -> dict[str, np.ndarray]:
+    """Columns of spring.csv of a run with [stiffness]: wind-up at the torques of its loops, mean over the positions."""
+    design = DriveDesign.model_validate(result.summary["design"])
+    rows = [dict(zip(result.program, values, strict=True)) for values in zip(*result.program.values(), strict=True)]
+    loops = [Loop(here) for here in rows_by_position(design, rows).values()]
+    torques = np.array(stiffness_torques(design))
+    levels = np.concatenate([-torques[::-1], torques])
+    rising = np.mean([[loop.rising(torque) for torque in levels] for loop in loops], axis=0)
+    falling = np.mean([[loop.falling(torque) for torque in levels] for loop in loops], axis=0)
     return {
         "torque_Nm": levels,
         "windup_rad": 0.5 * (rising + falling),
         "windup_rising_rad": rising,
         "windup_falling_rad": falling,
+    }
+
+
+def ripple_table(transmission_error: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Columns of ripple.csv from those of transmission_error.csv: the error less its mean."""
+    error = transmission_error["transmission_error_arcsec"]
+    return {
+        "wave_generator_angle_rad": np.radians(transmission_error["wg_angle_deg"]),
+        "kinematic_error_rad": (error - error.mean()) * ARCSEC,
     }

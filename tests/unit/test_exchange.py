@@ -14,7 +14,7 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.exchange.outlines import FLANK_POINTS, TOLERANCE, cam_outlines, flank_edges, gear_outline
 from swgpar.exchange.step import closed_curve
-from swgpar.exchange.tables import spring_table, write_look_up
+from swgpar.exchange.tables import write_look_up
 from swgpar.meshing.gmsh_session import gmsh_model
 from swgpar.results.fields import TIME_STEP, times
 from swgpar.results.table import read_columns
@@ -168,19 +168,6 @@ def test_tables_as_parquet(folder: Path, tmp_path: Path) -> None:
     assert {"history", "pairs"} <= {path.stem for path in paths}
     table = parquet.read_table(tmp_path / "history.parquet")
     assert table.column("fs_s1").to_numpy() == pytest.approx(result.history["fs_s1"], rel=0.0, abs=0.0)
-
-
-def test_the_spring_of_a_known_loop() -> None:
-    """A loop of 10 N·m: 0.2 arc minutes per N·m, the falling branch half an arc minute behind."""
-    up, down = np.linspace(-10.0, 10.0, 21), np.linspace(10.0, -10.0, 21)
-    torque = np.concatenate([up, down[1:]])
-    rotation = np.concatenate([0.2 * up, 0.2 * down[1:] + 0.5])
-    table = spring_table({"wg_angle_deg": np.zeros(len(torque)), "torque_Nm": torque, "rotation_arcmin": rotation})
-    arcmin = np.pi / 10800.0
-    inside = slice(2, -2)
-    assert table["windup_rising_rad"][inside] == pytest.approx(0.2 * arcmin * table["torque_Nm"][inside])
-    shift = (table["windup_falling_rad"] - table["windup_rising_rad"])[inside]
-    assert shift == pytest.approx(np.full(len(shift), 0.5 * arcmin))
 
 
 def test_the_ripple_of_a_result(tmp_path: Path) -> None:

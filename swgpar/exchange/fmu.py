@@ -1,0 +1,204 @@
+"""strain_wave_spring.fmu: the spring model of a drive for multibody programs, after FMI 2.0.
+
+The FMU is one C file and a header with the numbers of the drive. It has no states, so that it serves co-simulation and
+model exchange alike. Its sources are in it; where a C compiler is found, the binary for Linux on x86-64 as well.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import platform
+import shlex
+import shutil
+import subprocess
+import sys
+from collections.abc import Sequence
+from importlib.resources import files
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, NamedTuple
+from xml.etree import ElementTree
+from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
+
+import numpy as np
+
+from swgpar.errors import OutputError
+from swgpar.exchange.spring_model import SpringModel, spring_model
+from swgpar.log import logger
+from swgpar.version import __version__
+
+if TYPE_CHECKING:
+    from swgpar.analysis.drive_result import DriveResult
+
+NAME = "strain_wave_spring"
+"""Of the FMU, its C file and its binary."""
+
+
+class Variable(NamedTuple):
+    """A variable of the FMU: its name, causality, unit and meaning; the number in VARIABLES is its reference."""
+
+    name: str
+    causality: str
+    unit: str
+    text: str
+
+
+VARIABLES = (
+    Variable("wave_generator_angle", "input", "rad", "angle of the wave generator"),
+    Variable("wave_generator_speed", "input", "rad/s", "speed of the wave generator"),
+    Variable("output_angle", "input", "rad", "angle of the output"),
+    Variable("output_speed", "input", "rad/s", "speed of the output"),
+    Variable("friction_torque", "parameter", "N.m", "friction against the speed of the wind-up"),
+    Variable("friction_speed", "parameter", "rad/s", "speed of the wind-up at which 76 % of its friction act, above 0"),
+    Variable("loss_torque", "parameter", "N.m", "friction against the speed of the wave generator"),
+    Variable("loss_speed", "parameter", "rad/s", "speed of the wave generator at which 76 % of it act, above 0"),
+    Variable("damping", "parameter", "N.m.s/rad", "viscous damping of the wind-up"),
+    Variable("wave_generator_start_angle", "parameter", "rad", "wave_generator_angle with the major axis on +y"),
+    Variable("output_start_angle", "parameter", "rad", "output_angle that belongs to it without torque and error"),
+    Variable("wave_generator_torque", "output", "N.m", "torque of the drive on the wave generator"),
+    Variable("output_torque", "output", "N.m", "torque of the drive on the output"),
+    Variable("windup", "output", "rad", "angle of the output beyond ratio and kinematic error"),
+    Variable("kinematic_error", "output", "rad", "kinematic error of the output"),
+)
+"""In the order of the C file."""
+
+UNITS: dict[str, dict[str, str]] = {
+    "rad": {"rad": "1"},
+    "rad/s": {"rad": "1", "s": "-1"},
+    "N.m": {"kg": "1", "m": "2", "s": "-2"},
+    "N.m.s/rad": {"kg": "1", "m": "2", "s": "-1", "rad": "-1"},
+}
+"""Exponents of SI units."""
+
+
+def write_fmu(result: DriveResult, folder: Path, periodic: DriveResult | None = None) -> list[Path]:
+    """Write strain_wave_spring.fmu; call it on one rank.
+
+    result : with [stiffness];  periodic : see `spring_model`
+
+    Raises
+    ------
+    InputError
+        See `spring_model`.
+    OutputError
+        The C compiler fails.
+    """
+    model = spring_model(result, periodic)
+    source = files("swgpar.exchange").joinpath(f"{NAME}.c").read_text(encoding="utf-8")
+    starts, body = start_values(model), header(model)
+    guid = "{" + hashlib.sha256((body + source).encode()).hexdigest()[:32] + "}"
+    body += f'#define GUID "{guid}"\n'
+    parts = {
+        "modelDescription.xml": model_description(guid, starts),
+        f"sources/{NAME}.c": source.encode(),
+        "sources/drive.h": body.encode(),
+    }
+    binary = compiled(source, body)
+    if binary is not None:
+        parts[f"binaries/linux64/{NAME}.so"] = binary
+    path = folder / f"{NAME}.fmu"
+    with ZipFile(path, "w") as archive:
+        for name, data in parts.items():
+            entry = ZipInfo(name)  # without the time: the same results give the same file
+            entry.compress_type, entry.external_attr = ZIP_DEFLATED, 0o644 << 16
+            archive.writestr(entry, data)
+    return [path]
+
+
+def start_values(model: SpringModel) -> dict[str, float]:
+    """Start values of all variables that are set from outside; zero but for friction and losses."""
+    return {
+        one.name: float(getattr(model, one.name, 0.0)) for one in VARIABLES if one.causality in ("input", "parameter")
+    }
+
+
+def header(model: SpringModel) -> str:
+    """Text of drive.h without its GUID."""
+    starts = ", ".join(repr(value) for value in start_values(model).values())
+    return (
+        f"/* Numbers of a drive, written by swgpar {__version__} */\n"
+        f"#define RATIO {model.ratio!r}\n#define PERIOD {model.period!r}\n"
+        f"static const double START[] = {{{starts}}};\n"
+        + _knots("SPRING", model.spring)
+        + _knots("RIPPLE", model.ripple)
+    )
+
+
+def _knots(name: str, knots: np.ndarray) -> str:
+    rows = ",\n".join("  {" + ", ".join(repr(float(value)) for value in knot) + "}" for knot in knots)
+    return f"#define N_{name} {len(knots)}\nstatic const double {name}[N_{name}][3] = {{\n{rows}}};\n"
+
+
+def model_description(guid: str, starts: dict[str, float]) -> bytes:
+    """Text of modelDescription.xml."""
+    root = ElementTree.Element(
+        "fmiModelDescription",
+        fmiVersion="2.0",
+        modelName=NAME,
+        guid=guid,
+        description="strain wave gear: torsional spring with kinematic error and friction",
+        license="BSD-3-Clause",
+        generationTool=f"swgpar {__version__}",
+        variableNamingConvention="flat",
+        numberOfEventIndicators="0",
+    )
+    common = {"modelIdentifier": NAME, "canNotUseMemoryManagementFunctions": "true"}
+    for kind, further in (("ModelExchange", {}), ("CoSimulation", {"canHandleVariableCommunicationStepSize": "true"})):
+        sources = ElementTree.SubElement(ElementTree.SubElement(root, kind, common | further), "SourceFiles")
+        ElementTree.SubElement(sources, "File", name=f"{NAME}.c")
+    units = ElementTree.SubElement(root, "UnitDefinitions")
+    for unit, exponents in UNITS.items():
+        ElementTree.SubElement(ElementTree.SubElement(units, "Unit", name=unit), "BaseUnit", exponents)
+    variables = ElementTree.SubElement(root, "ModelVariables")
+    for number, one in enumerate(VARIABLES):
+        entry = ElementTree.SubElement(
+            variables,
+            "ScalarVariable",
+            name=one.name,
+            valueReference=str(number),
+            description=one.text,
+            causality=one.causality,
+            variability="tunable" if one.causality == "parameter" else "continuous",
+        )
+        real = ElementTree.SubElement(entry, "Real", unit=one.unit)
+        if one.name in starts:
+            real.set("start", repr(starts[one.name]))
+    structure = ElementTree.SubElement(root, "ModelStructure")
+    outputs = [str(k) for k, one in enumerate(VARIABLES, 1) if one.causality == "output"]
+    for kind in ("Outputs", "InitialUnknowns"):
+        unknowns = ElementTree.SubElement(structure, kind)
+        for index in outputs:
+            ElementTree.SubElement(unknowns, "Unknown", index=index)
+    ElementTree.indent(root)
+    return ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
+
+
+def compiled(source: str, body: str) -> bytes | None:
+    """The binary for Linux on x86-64; None with a warning elsewhere and where no C compiler is found."""
+    missing = "the FMU has sources only: it is built by the program that imports it, or with fmpy compile"
+    if sys.platform != "linux" or platform.machine() != "x86_64":
+        logger.warning(f"{missing}; binaries are made on Linux on x86-64 alone")
+        return None
+    compiler = c_compiler()
+    if not compiler:
+        logger.warning(f"{missing}; a binary needs a C compiler here: cc, gcc or clang, or one named in CC")
+        return None
+    with TemporaryDirectory() as folder:
+        code, binary = Path(folder) / f"{NAME}.c", Path(folder) / f"{NAME}.so"
+        code.write_text(source, encoding="utf-8")
+        (Path(folder) / "drive.h").write_text(body, encoding="utf-8")
+        flags = ["-std=c99", "-O2", "-fPIC", "-shared", "-fvisibility=hidden"]
+        run = subprocess.run(
+            [*compiler, *flags, str(code), "-o", str(binary), "-lm"], capture_output=True, text=True, errors="replace"
+        )
+        if run.returncode:
+            reason = (run.stderr.strip().splitlines() or [f"exit code {run.returncode}"])[0]
+            raise OutputError(f"the C compiler {compiler[0]} cannot build the FMU: {reason}")
+        return binary.read_bytes()
+
+
+def c_compiler() -> Sequence[str]:
+    """Command of a C compiler: that in CC, else the first of cc, gcc and clang; empty without any."""
+    names = shlex.split(os.environ.get("CC", "")) or [name for name in ("cc", "gcc", "clang") if shutil.which(name)][:1]
+    return names if names and shutil.which(names[0]) else []
