@@ -283,8 +283,9 @@ def export(
     out : path
         Folder, which is made.
     formats : sequence of str
-        Of a design "step" (solids) and "dxf" (outlines), of a result "vtkhdf" (fields for ParaView), "parquet" (all
-        tables), "lookup" (torsional spring and ripple for multibody programs) and "fmu" (the same as an FMU).
+        Of a design "step" (solids) and "dxf" (outlines), of a result "vtkhdf" and "xdmf" (fields with all teeth),
+        "parquet" (all tables), "lookup" (torsional spring and ripple for multibody programs) and "fmu" (the same as an
+        FMU).
     ripple : result of a drive, or the folder of one
         For "fmu": run with steps.samples or [deviations] of the same drive. Without it there is no kinematic error.
 

@@ -85,7 +85,7 @@ VIEW_EXAMPLES = """example:
 """
 
 EXPORT = """Write files of other programs: the geometry of a design (step, dxf), or fields and tables of a finished run
-(vtkhdf, parquet, lookup, fmu)."""
+(vtkhdf, xdmf, parquet, lookup, fmu)."""
 
 EXPORT_EXAMPLES = """examples:
   swgpar export drivers/cup_45deg.toml --format step dxf --out results/cad
@@ -203,9 +203,9 @@ def _add_export(commands: _Commands) -> None:
         "--format",
         nargs="+",
         required=True,
-        choices=["step", "dxf", "vtkhdf", "parquet", "lookup", "fmu"],
-        help="step: solids of gears and cam; dxf: their outlines; vtkhdf: fields for ParaView; parquet: tables; "
-        "lookup: torsional spring and ripple for multibody programs; fmu: the same as an FMU (FMI 2.0)",
+        choices=["step", "dxf", "vtkhdf", "xdmf", "parquet", "lookup", "fmu"],
+        help="step: solids of gears and cam; dxf: their outlines; vtkhdf, xdmf: fields with all teeth; parquet: "
+        "tables; lookup: torsional spring and ripple for multibody programs; fmu: the same as an FMU (FMI 2.0)",
     )
     export.add_argument(
         "--ripple", metavar="FOLDER", help="for fmu: results of the same drive with steps.samples or [deviations]"

@@ -15,12 +15,14 @@ from swgpar.exchange.fmu import write_fmu
 from swgpar.exchange.step import write_step
 from swgpar.exchange.tables import write_look_up, write_parquet
 from swgpar.exchange.vtkhdf import write_vtkhdf
+from swgpar.exchange.xdmf import write_xdmf
 
 OF_DESIGN: Mapping[str, Callable[[DriveDesign, Path], list[Path]]] = {"step": write_step, "dxf": write_dxf}
 """Formats of a design: its geometry."""
 
 OF_RESULT: Mapping[str, Callable[[DriveResult, Path], list[Path]]] = {
     "vtkhdf": write_vtkhdf,
+    "xdmf": write_xdmf,
     "parquet": write_parquet,
     "lookup": write_look_up,
     "fmu": write_fmu,

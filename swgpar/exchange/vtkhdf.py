@@ -27,10 +27,20 @@ TENSOR = [0, 3, 5, 1, 4, 2]
 NAME = "fields.vtkhdf"
 
 
+def require_fields(result: DriveResult, name: str) -> None:
+    """Raise InputError where a run kept no fields for the format with this name."""
+    if not result.increments:
+        raise InputError(f"the format {name} needs fields, and this run kept none: allowed with output.fields = true")
+
+
+def step_times(result: DriveResult) -> np.ndarray:
+    """Times (n,), degrees, of the increments with fields."""
+    return times(result.history["wg_angle_deg"][np.asarray(result.field_increments) - 1])
+
+
 def write_vtkhdf(result: DriveResult, folder: Path) -> list[Path]:
     """Write all increments with fields, with all teeth; call it on one rank of a result from a folder."""
-    if not result.increments:
-        raise InputError("the format vtkhdf needs fields, and this run kept none: allowed with output.fields = true")
+    require_fields(result, "vtkhdf")
     whole = result.grid(0, whole=True)
     points, cells = np.asarray(whole.points, dtype=float), whole.cells.reshape(-1, 9)[:, 1:]
     n, m = len(points), len(cells)
@@ -47,8 +57,7 @@ def write_vtkhdf(result: DriveResult, folder: Path) -> list[Path]:
         root["CellData/body"] = whole.cell_data["body"].astype(np.int32)
         group = root.create_group("Steps")
         group.attrs["NSteps"] = steps
-        increments = np.asarray(result.field_increments) - 1
-        group["Values"] = times(result.history["wg_angle_deg"][increments])
+        group["Values"] = step_times(result)
         group["NumberOfParts"] = np.ones(steps, dtype=np.int64)
         for name in ("PartOffsets", "PointOffsets"):
             group[name] = np.zeros(steps, dtype=np.int64)

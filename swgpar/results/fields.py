@@ -126,20 +126,16 @@ class FieldWriter:
 
     def _xdmf(self, increments: Sequence[tuple[int, float]], names: Mapping[str, Mapping[str, int]]) -> str:
         kinds = {1: "Scalar", 3: "Vector", 6: "Tensor6"}
-        lines = [
-            '<?xml version="1.0"?>',
-            '<Xdmf Version="3.0"><Domain>',
-            '<Grid Name="drive" GridType="Collection" CollectionType="Temporal">',
-        ]
+        lines = ['<?xml version="1.0"?>', '<Xdmf Version="3.0"><Domain>']
         when = times([angle for _, angle in increments]).tolist()
-        for time, (index, angle) in zip(when, increments, strict=True):
-            lines.append(
-                f'<Grid Name={quoteattr(increment_name(index))} GridType="Collection" CollectionType="Spatial">'
-                f'<Time Value="{time!r}"/><Information Name="wg_angle_deg" Value="{angle!r}"/>'
-            )
-            for body, (n_points, n_cells) in self.shapes.items():
+        # a series for each body: VTK adds [1], [2] ... to names that return
+        for body, (n_points, n_cells) in self.shapes.items():
+            lines.append(f'<Grid Name={quoteattr(body)} GridType="Collection" CollectionType="Temporal">')
+            for time, (index, angle) in zip(when, increments, strict=True):
                 lines.append(
-                    f'<Grid Name={quoteattr(body)}><Topology TopologyType="Hexahedron" NumberOfElements="{n_cells}">'
+                    f"<Grid Name={quoteattr(f'{body}_{index:04d}')}>"
+                    f'<Time Value="{time!r}"/><Information Name="wg_angle_deg" Value="{angle!r}"/>'
+                    f'<Topology TopologyType="Hexahedron" NumberOfElements="{n_cells}">'
                     f'<DataItem Format="HDF" NumberType="Int" Precision="8" Dimensions="{n_cells} 8">'
                     f"{FOLDER}/{MESH}.h5:/{body}/cells</DataItem></Topology>"
                     f'<Geometry GeometryType="XYZ"><DataItem Format="HDF" NumberType="Float" Precision="8" '
@@ -155,5 +151,5 @@ class FieldWriter:
                     )
                 lines.append("</Grid>")
             lines.append("</Grid>")
-        lines.append("</Grid></Domain></Xdmf>")
+        lines.append("</Domain></Xdmf>")
         return "\n".join(lines) + "\n"
