@@ -55,7 +55,7 @@ def test_sdist_has_all_sources(sdist: Path) -> None:
     with tarfile.open(sdist) as archive:
         names = {name.partition("/")[2] for name in archive.getnames()}
     assert {*PARTS, *BUILD} <= names
-    assert sources(".py", ".pyx", ".hpp", ".toml", ".typed") <= names
+    assert sources(".py", ".pyx", ".hpp", ".c", ".toml", ".typed") <= names
     assert not [name for name in names if name.endswith((".so", ".pyc"))]
 
 

@@ -145,7 +145,9 @@ def test_curves_of_the_kernel_stay_within_their_tolerance(cam: str) -> None:
     assert np.abs(design.profile("flexible_spline").distance(found[-1])[0]).max() < TOLERANCE
 
 
-@pytest.mark.parametrize("profile, cam", [("quadruple_arc", "elliptical"), ("involute", "four_roller")])
+@pytest.mark.parametrize(
+    "profile, cam", [("quadruple_arc", "elliptical"), ("involute", "four_roller"), ("double_arc", "simplified")]
+)
 def test_dxf_passes_the_audit(tmp_path: Path, profile: str, cam: str) -> None:
     ezdxf = pytest.importorskip("ezdxf")
     design = small(profile=profile, cam=cam, model="plane")

@@ -13,6 +13,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+import swgpar
+from support.paths import DESIGN, RECIPE
+from support.small_drive import PLANE
 from support.stepping import small
 from swgpar.analysis.stiffness import summarise_stiffness
 from swgpar.design.load_program import program_points
@@ -303,3 +306,49 @@ def test_what_the_results_must_have(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     monkeypatch.setenv("CC", "false")
     with pytest.raises(OutputError, match="the C compiler false cannot build the FMU"):
         write_fmu(StiffnessRun(), tmp_path)
+
+
+@pytest.mark.parametrize("layout", ["ring_fixed", "spline_fixed"])
+def test_the_drive_of_two_runs(layout: str, tmp_path: Path) -> None:
+    """Without friction a run computes one side of the loop; the FMU has both, with the stiffness of the summary."""
+    shared = [*PLANE, f"drive.layout={layout}"]
+    loop = {"stiffness.positions": 1, "stiffness.mesh_error": False}
+    swgpar.run(swgpar.load_design(DESIGN, shared).with_values(loop), RECIPE, tmp_path / "stiffness")
+    period = {"steps.samples": 6, "steps.rotation": 20.0, "losses.bearing_friction": 0.0015}
+    swgpar.run(swgpar.load_design(DESIGN, shared).with_values(period), RECIPE, tmp_path / "period")
+    (path,) = swgpar.export(tmp_path / "stiffness", tmp_path, ["fmu"], ripple=tmp_path / "period")
+    found, losses = (
+        swgpar.open_result(tmp_path / name).summary[entry]
+        for name, entry in (("stiffness", "stiffness"), ("period", "losses"))
+    )
+    with instance(path, tmp_path / "unit") as unit:
+        assert unit.get("friction_torque", "loss_torque") == [0.0, losses["loss_torque_Nmm"] / 1000.0]
+
+        def windup_under(torque: float) -> float:
+            def left(angle: float) -> float:
+                unit.set(output_angle=angle)
+                return unit.get("output_torque")[0] + torque
+
+            return brentq(left, -0.1, 0.1, xtol=1e-15)
+
+        top, last = found["torque_Nm"], found["break_points"][-1] * found["torque_Nm"]
+        for sign in (1.0, -1.0):
+            chord = sign * (top - last) / (windup_under(sign * top) - windup_under(sign * last))
+            assert chord == pytest.approx(found["K3"], rel=1e-5)
+        both = (windup_under(top) - windup_under(-top)) / ARCMIN
+        assert both > found["backlash"] > 1.0
+
+
+def test_the_table_of_a_given_loop() -> None:
+    """Both branches, their mean, and the image where the program leaves out one side."""
+    run = StiffnessRun()
+    table = spring_table(run)
+    lag = 0.5 * 0.5 * ARCMIN * (1.0 - np.abs(table["torque_Nm"]) / TOP)
+    assert table["windup_rising_rad"] == pytest.approx(windup(table["torque_Nm"]) - lag, abs=1e-15)
+    assert table["windup_falling_rad"] == pytest.approx(windup(table["torque_Nm"]) + lag, abs=1e-15)
+    assert np.array_equal(table["torque_Nm"], np.sort(table["torque_Nm"])) and table["torque_Nm"][0] == -TOP
+    chosen = run.program["stage"] == "positive loading"
+    run.program = {name: values[chosen] for name, values in run.program.items()}
+    image = spring_table(run)
+    assert image["windup_rad"] == pytest.approx(-image["windup_rad"][::-1], abs=1e-15)
+    assert image["windup_rising_rad"] == pytest.approx(image["windup_falling_rad"], abs=1e-15)
