@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from swgpar.analysis.off_screen import off_screen_plotter
 from swgpar.results.sector_fields import SectorFields
 
 if TYPE_CHECKING:
@@ -59,8 +60,7 @@ def sector_picture(sector: SectorFields, plane: bool) -> np.ndarray:
     cells = np.hstack([np.full((len(sector.cells), 1), 8), sector.cells]).ravel()
     grid = pyvista.UnstructuredGrid(cells, np.full(len(sector.cells), pyvista.CellType.HEXAHEDRON), sector.points)
     grid.point_data["safety"] = np.clip(sector.fields["safety_goodman"], *SHOWN)
-    pyvista.OFF_SCREEN = True
-    plotter = pyvista.Plotter(off_screen=True, window_size=(1200, 900))
+    plotter = off_screen_plotter(1200, 900)
     plotter.add_mesh(
         grid.extract_surface(algorithm="dataset_surface"),
         scalars="safety",

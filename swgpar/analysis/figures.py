@@ -8,13 +8,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 from mpi4py import MPI
 
+from swgpar.analysis.circumference_figure import FIELDS, draw_circumference
 from swgpar.analysis.contact_figures import ANGLE, draw_contact_pattern, draw_load_sharing, draw_pairs
+from swgpar.analysis.deformed_figures import draw_cup_section, draw_deformed, draw_loaded_teeth
 from swgpar.analysis.fatigue_figures import draw_haigh, sector_picture
 from swgpar.analysis.program_figures import torque_against_rotation
 from swgpar.analysis.transmission_error import orders
+from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import Stage
 from swgpar.design.sections import GEARS
 from swgpar.errors import InputError
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.results.figure_set import Drawings, FigureSet
 from swgpar.results.sector_fields import SectorFields
 
@@ -25,9 +29,6 @@ if TYPE_CHECKING:
 
     from swgpar.analysis.drive_result import DriveResult
 
-MAGNIFICATION = 5.0
-"""Of displacements in the picture of the deformed cup drive; that of the plane model is true to scale."""
-
 STRESSES = {
     "fs_s1": "flexible spline, tensile s1",
     "fs_s3": "flexible spline, compressive |s3|",
@@ -36,8 +37,6 @@ STRESSES = {
 }
 """Columns of the history in the figure of stresses."""
 
-VON_MISES = "von Mises stress (MPa)"
-
 
 class DriveFigures(FigureSet):
     """Figures of a drive: each method draws one and returns a matplotlib figure.
@@ -45,7 +44,7 @@ class DriveFigures(FigureSet):
     `save` writes all of them. Every rank calls it, and the methods whose figures show fields.
     """
 
-    exact_size = ("deformed_drive", "safety")
+    exact_size = ("deformed_drive", "loaded_teeth", "cup_section", "safety")
 
     def __init__(self, result: DriveResult, comm: MPI.Comm, *, gathered: bool) -> None:
         super().__init__(comm, gathered=gathered)
@@ -69,7 +68,10 @@ class DriveFigures(FigureSet):
         if self._result.balls:
             found["ball_loads"] = self.ball_loads
         if self._result.increments:
-            found["deformed_drive"] = self.deformed
+            found |= {"deformed_drive": self.deformed, "loaded_teeth": self.loaded_teeth}
+            if not self._result.is_plane:
+                found["cup_section"] = self.cup_section
+            found["stress_around"] = self.stress_around
         return found
 
     def stress(self) -> Figure:
@@ -230,44 +232,80 @@ class DriveFigures(FigureSet):
         """
         return draw_contact_pattern(self._pairs(), self._result.contact_lines, step, self._result.is_plane)
 
-    def deformed(self, increment: int = -1, magnification: float | None = None) -> Figure:
+    def deformed(self, increment: int = -1, magnification: float = 1.0) -> Figure:
         """The deformed drive, coloured by von Mises stress: seen from its open end, a plane model along its axis.
 
         Parameters
         ----------
         increment : among those with fields, as in `DriveResult.field`
-        magnification : of the displacements; 5 for the cup drive, 1 for the plane model
+        magnification : of the displacements; above 1 bodies may seem to cross
         """
-        import pyvista
+        return draw_deformed(
+            self._grids(increment), magnification, plane=self._result.is_plane, title=self._when(increment)
+        )
 
-        plane = self._result.is_plane
-        factor = magnification if magnification is not None else 1.0 if plane else MAGNIFICATION
-        limit = float(np.percentile(self._result.field("vm", increment), 99.9))
-        grids = [self._result.grid(increment, body, whole=True) for body in GEARS]
-        pyvista.OFF_SCREEN = True  # from here on nothing is gathered: a rank may fail alone
-        plotter = pyvista.Plotter(off_screen=True, window_size=(1400, 1100))
-        for grid in grids:
-            grid.points = grid.points + factor * grid.point_data["displacement"]
-            grid.point_data[VON_MISES] = grid.point_data["vm"]
-            plotter.add_mesh(
-                grid.extract_surface(algorithm="dataset_surface"),
-                scalars=VON_MISES,
-                cmap="turbo",
-                clim=(0.0, limit),
-                smooth_shading=False,
-                scalar_bar_args={
-                    "title": "von Mises, MPa",
-                    "vertical": True,
-                    "position_x": 0.9,
-                    "position_y": 0.25,
-                    "height": 0.5,
-                },
-            )
-        plotter.add_text("true to scale" if factor == 1.0 else f"displacements x {factor:g}", font_size=12)
-        _set_camera(plotter, plane)
-        picture = plotter.screenshot(return_img=True)
-        plotter.close()
-        return _as_figure(picture)
+    def loaded_teeth(self, increment: int = -1) -> Figure:
+        """Close-up of the pair of flanks with the largest force and the cam below it, by von Mises stress.
+
+        A cup drive is cut across its axis where the pressure of this pair is the largest. Without a pair in contact
+        the teeth at the major axis are shown. increment : as in `DriveResult.field`
+        """
+        result, row = self._result, self._row(increment)
+        wg_angle = np.radians(result.history["wg_angle_deg"][row])
+        angle, z, pairs = wg_angle, 0.0, result.pairs
+        here = np.flatnonzero(pairs["increment"] == row + 1) if pairs else []
+        if len(here):
+            largest = here[np.argmax(pairs["force_N"][here])]
+            angle = wg_angle + np.radians(pairs["angle_deg"][largest])
+            z = float(np.nan_to_num(pairs["z_mm"][largest]))
+        return draw_loaded_teeth(
+            self._grids(increment), self._design, float(wg_angle), float(angle), z, self._when(increment)
+        )
+
+    def cup_section(self, increment: int = -1) -> Figure:
+        """Sections of the deformed cup along its axis, through the major and the minor axis, by von Mises stress.
+
+        increment : as in `DriveResult.field`
+        """
+        if self._result.is_plane:
+            raise InputError('drive.model = "plane" has no cup: allowed with "cup"')
+        wg_angle = np.radians(self._result.history["wg_angle_deg"][self._row(increment)])
+        return draw_cup_section(self._grids(increment), self._design, float(wg_angle), self._when(increment))
+
+    def stress_around(self, increment: int = -1) -> Figure:
+        """Largest s1 and von Mises stress (MPa) of every tooth's sector of the flexible spline, around it.
+
+        increment : as in `DriveResult.field`
+        """
+        result, body = self._result, GEARS[FLEXIBLE_SPLINE]
+        counts, design = result.summary["bodies"][body], self._design
+        return draw_circumference(
+            design,
+            result.mesh(body).points,
+            {name: result.field(name, increment, body) for name in FIELDS},
+            counts["elements"] // (counts["elements_whole"] // design.drive.teeth_fs),
+            float(np.radians(result.history["wg_angle_deg"][self._row(increment)])),
+            self._when(increment),
+        )
+
+    @property
+    def _design(self) -> DriveDesign:
+        return DriveDesign.model_validate(self._result.summary["design"])
+
+    def _grids(self, increment: int) -> list[pyvista.UnstructuredGrid]:
+        """Both whole bodies with their fields; collective where these are gathered. What follows is not."""
+        return [self._result.grid(increment, body, whole=True) for body in GEARS]
+
+    def _row(self, increment: int) -> int:
+        """Row of the history, from 0, of an increment with fields."""
+        known = self._result.field_increments
+        if not -len(known) <= increment < len(known):
+            raise InputError(f"increment = {increment} has no fields: allowed from {-len(known)} to {len(known) - 1}")
+        return known[increment] - 1
+
+    def _when(self, increment: int) -> str:
+        row = self._row(increment)
+        return f"increment {row + 1}, wave generator at {self._result.history['wg_angle_deg'][row]:.3g} degrees"
 
 
 def _panels(count: int) -> tuple[Figure, list[Axes]]:
@@ -280,16 +318,6 @@ def _panels(count: int) -> tuple[Figure, list[Axes]]:
         axes.grid(alpha=0.3)
     panels[-1].set_xlabel(ANGLE)
     return figure, panels
-
-
-def _set_camera(plotter: pyvista.Plotter, plane: bool) -> None:
-    if plane:
-        plotter.enable_parallel_projection()
-        plotter.view_xy()
-        plotter.camera.tight(padding=0.03, adjust_render_window=False)
-    else:
-        plotter.camera_position = [(60.0, 60.0, -170.0), (0.0, 0.0, 10.0), (0.0, 1.0, 0.0)]
-        plotter.reset_camera()
 
 
 def _as_figure(picture: np.ndarray) -> Figure:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import os
-import sys
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from swgpar.analysis.off_screen import errors_only, has_display
 from swgpar.design.sections import GEARS
 from swgpar.errors import InputError
 
@@ -27,10 +27,11 @@ PERCENTILE = 99.9
 
 def require_display() -> None:
     """Raise InputError where no window can be opened."""
-    if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+    if not has_display():
+        shown = os.environ.get("DISPLAY")
+        reason = f"DISPLAY = {shown} cannot be reached" if shown else "DISPLAY is not set"
         raise InputError(
-            "view needs a display, and neither DISPLAY nor WAYLAND_DISPLAY is set: report.html of the results folder "
-            "shows the same drive in a browser"
+            f"view needs a display, and {reason}: report.html of the results folder shows the same drive in a browser"
         )
 
 
@@ -49,7 +50,8 @@ def view_plotter(result: DriveResult, *, off_screen: bool = False) -> pyvista.Pl
 
     if not result.increments:
         raise InputError("this run kept no fields: allowed with output.fields = true")
-    plotter = pyvista.Plotter(off_screen=off_screen, title="swgpar", window_size=(1300, 950))
+    with errors_only():
+        plotter = pyvista.Plotter(off_screen=off_screen, title="swgpar", window_size=(1300, 950))
     shown = {"increment": result.increments - 1, "factor": 1.0, "field": "vm"}
     surfaces: dict[str, pyvista.PolyData] = {}
     places: dict[str, np.ndarray] = {}

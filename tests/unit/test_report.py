@@ -13,12 +13,16 @@ import pyvista
 import swgpar
 from support.paths import DESIGN, DRIVERS, RECIPE
 from support.small_drive import PLANE, SHORT
+from swgpar.analysis.deformed_figures import deformed
 from swgpar.analysis.drive_drawing import draw_drive
 from swgpar.analysis.drive_report import answers
+from swgpar.analysis.off_screen import off_screen_plotter
 from swgpar.analysis.report_checks import checks
 from swgpar.analysis.scene import sector_surface
 from swgpar.analysis.view import view_plotter
+from swgpar.design.sections import GEARS
 from swgpar.errors import InputError
+from swgpar.geometry.rotation import rotated
 from swgpar.meshing import build_sector_meshes, load_recipe
 
 VOID = {"meta", "img", "input", "br"}
@@ -123,6 +127,35 @@ def test_the_view_of_a_folder(folder: Path, monkeypatch: pytest.MonkeyPatch) -> 
     picture = plotter.screenshot(return_img=True)
     plotter.close()
     assert picture.std() > 10.0  # something is drawn
+
+
+def test_pictures_say_nothing_of_displays(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+    plotter = off_screen_plotter(40, 30)
+    assert plotter.screenshot(return_img=True).shape[:2] == (30, 40)
+    plotter.close()
+    captured = capfd.readouterr()
+    assert captured.err == "" and captured.out == ""
+
+
+def test_the_stress_around_the_spline_is_that_of_the_history(folder: Path) -> None:
+    result = swgpar.open_result(folder)
+    upper, lower = result.plot.stress_around().axes
+    for axes, name in ((upper, "fs_s1"), (lower, "fs_vm")):
+        largest = max(np.max(line.get_ydata()) for line in axes.lines)
+        assert largest == pytest.approx(result.history[name][result.field_increments[-1] - 1], rel=1e-5)
+
+
+def test_the_close_up_shows_a_spline_that_lies_on_the_cam(folder: Path) -> None:
+    result = swgpar.open_result(folder)
+    design = swgpar.DriveDesign.model_validate(result.summary["design"])
+    wg_angle = np.radians(result.history["wg_angle_deg"][-1])
+    spline, _ = deformed([result.grid(-1, body, whole=True) for body in GEARS], 1.0)
+    distance = design.cam_surface().evaluate(rotated(np.asarray(spline.points), -wg_angle))[0]
+    # nodes of a coarse mesh lie up to the sagitta of its facets inside of the cam
+    assert -0.02 * design.drive.module < distance.min() < 0.02 * design.drive.module
+    assert result.plot.loaded_teeth().axes[0].get_ylabel() == "radius (mm)"
 
 
 def test_the_report_of_a_gear_train(tmp_path: Path) -> None:

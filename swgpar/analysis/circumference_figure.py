@@ -1,0 +1,59 @@
+"""Stress of the flexible spline around its circumference: the largest of every tooth's sector, by part."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from swgpar.design.drive_design import DriveDesign
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+FIELDS = {"s1": "tension s1 (MPa)", "vm": "von Mises stress (MPa)"}
+
+
+def parts(design: DriveDesign, points: np.ndarray) -> dict[str, np.ndarray]:
+    """Whether nodes of the undeformed flexible spline at points (n, 3) mm belong to a part, by the name of the part."""
+    radius, z = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
+    toothed = np.abs(z) <= 0.5 * design.drive.face_width * (1.0 + 1e-9)
+    inner = radius < design.inner_radius + 0.5 * design.flexible_spline.rim
+    found = {"teeth": toothed & ~inner, "inside of the rim": toothed & inner}
+    return found if toothed.all() else found | {"cup behind the teeth": ~toothed}
+
+
+def largest_by_tooth(values: np.ndarray, chosen: np.ndarray, teeth: int) -> np.ndarray:
+    """Largest of the chosen nodes of every sector (teeth,). values, chosen : (n,), nodes sector by sector"""
+    return np.where(chosen, values, -np.inf).reshape(teeth, -1).max(axis=1)
+
+
+def draw_circumference(
+    design: DriveDesign, points: np.ndarray, fields: Mapping[str, np.ndarray], teeth: int, wg_angle: float, title: str
+) -> Figure:
+    """Largest s1 and von Mises stress of every modelled tooth, over its angle from the major axis.
+
+    points : (n, 3) mm, undeformed, sector by sector;  fields : name -> (n,) MPa;  teeth : that are modelled
+    wg_angle : rad, of the wave generator;  title : where in the run this is
+    """
+    from matplotlib.figure import Figure
+
+    middle = points.reshape(teeth, -1, 3).mean(axis=1)
+    angle = np.degrees(np.arctan2(-middle[:, 0], middle[:, 1]) - wg_angle)
+    copies = design.drive.teeth_fs // teeth  # the other half of a symmetric drive is alike
+    angle = np.concatenate([angle + 360.0 * k / copies for k in range(copies)])
+    angle = (angle + 180.0) % 360.0 - 180.0
+    order = np.argsort(angle)
+    figure = Figure(figsize=(7.0, 6.0), layout="constrained")
+    panels = list(figure.subplots(len(FIELDS), 1, sharex=True))
+    for axes, (name, label) in zip(panels, FIELDS.items()):
+        for part, chosen in parts(design, points).items():
+            values = np.tile(largest_by_tooth(fields[name], chosen, teeth), copies)
+            axes.plot(angle[order], values[order], lw=1.2, label=part)
+        axes.set(ylabel=label, xlim=(-180.0, 180.0), xticks=range(-180, 181, 45))
+        axes.grid(alpha=0.3)
+    panels[0].set_title(f"flexible spline, largest of every tooth's sector; {title}", fontsize=10)
+    panels[0].legend(fontsize=8)
+    panels[-1].set_xlabel("tooth, from the major axis (degrees)")
+    return figure
