@@ -84,6 +84,16 @@ def unit_of(field: FieldInfo) -> str:
     return str(extra.get("unit", "")) if isinstance(extra, dict) else ""
 
 
+def unit_of_key(design: BaseModel, key: str) -> str:
+    """Return the unit of a dotted key of a design; empty for a pure number and for a section that the design lacks."""
+    *sections, name = key.split(".")
+    section: Any = design
+    for part in sections:
+        section = getattr(section, part, None)
+    field = type(section).model_fields.get(name) if isinstance(section, BaseModel) else None
+    return unit_of(field) if field is not None else ""
+
+
 def allowed(field: FieldInfo, *, smallest: bool = False) -> str:
     """Return the allowed range of a field as words, for example ``allowed above 0 to 100000 mm``.
 

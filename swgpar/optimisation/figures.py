@@ -10,9 +10,16 @@ import numpy as np
 
 from swgpar.optimisation.problem import Problem
 from swgpar.optimisation.result import OptimisationResult
+from swgpar.results.html_page import with_unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+ENOUGH = 5
+"""Feasible designs from which the axis of an objective is theirs."""
+
+SHOWN = {"minimise": (0.0, 75.0), "maximise": (25.0, 100.0)}
+"""Percentiles of the values that the axis of an objective covers: a few bad designs are far away."""
 
 COLOURS = {"feasible": "#2f7fd0", "infeasible": "#c9c9c9"}
 
@@ -27,8 +34,7 @@ def _png(figure: Figure) -> bytes:
 
 
 def _label(problem: Problem, name: str) -> str:
-    unit = problem.known[name].unit
-    return f"{name} ({unit})" if unit else name
+    return with_unit(name, problem.known[name].unit)
 
 
 def _values(result: OptimisationResult, name: str, status: str) -> tuple[list[int], list[float]]:
@@ -45,7 +51,7 @@ def progress(problem: Problem, result: OptimisationResult) -> bytes:
     """Every objective against the number of the evaluation, with the best value so far."""
     import matplotlib.pyplot as plt
 
-    objectives = problem.section.objective
+    objectives, last = problem.section.objective, max(result.evaluations)
     figure, axes = plt.subplots(1, len(objectives), figsize=(6.0 * len(objectives), 3.6), squeeze=False)
     for objective, panel in zip(objectives, axes[0]):
         for status, colour in reversed(COLOURS.items()):
@@ -53,9 +59,14 @@ def progress(problem: Problem, result: OptimisationResult) -> bytes:
         numbers, values = _values(result, objective.quantity, "feasible")
         if values:
             best = (np.minimum if objective.goal == "minimise" else np.maximum).accumulate(values)
-            panel.step(numbers, best, where="post", color="#d07a20", label="best so far")
-            span = max(np.ptp(values), 1e-3 * abs(best[-1]))
-            panel.set_ylim(min(values) - 0.05 * span, np.percentile(values, 95) + 0.1 * span)
+            panel.step([*numbers, last], [*best, best[-1]], where="post", color="#d07a20", label="best so far")
+        known = values if len(values) >= ENOUGH else values + _values(result, objective.quantity, "infeasible")[1]
+        if known:
+            low, high = np.percentile(known, SHOWN[objective.goal])
+            span = max(high - low, 1e-3 * abs(high))
+            panel.set_ylim(low - 0.05 * span, high + 0.1 * span)
+        panel.xaxis.get_major_locator().set_params(integer=True)
+        panel.grid(alpha=0.3)
         panel.set_xlabel("evaluation")
         panel.set_ylabel(_label(problem, objective.quantity))
         panel.legend(fontsize=8)

@@ -13,6 +13,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.errors import InputError
+from swgpar.input.quantities import unit_of_key
 from swgpar.input.toml_file import apply_overrides, read_toml, with_value
 from swgpar.meshing import MeshRecipe, load_recipe
 from swgpar.meshing.recipe import is_recipe_name
@@ -52,6 +53,7 @@ class Problem:
 
     table, run_table : content of the design file with `set`, and the same as it is run, without output
     mesh, recipe : of a drive
+    units : of the variables, by name
     known : quantities by name, derived ones included;  derived : names of those that follow without a run
     """
 
@@ -61,6 +63,7 @@ class Problem:
     run_table: dict[str, Any]
     mesh: Path | None
     recipe: MeshRecipe | None
+    units: dict[str, str]
     known: dict[str, Quantity]
     derived: frozenset[str]
 
@@ -160,7 +163,8 @@ def _make(section: OptimiseSection, folder: Path, screen: bool) -> Problem:
             known[entry.quantity] = Quantity("by swgpar check", "")
         if entry.quantity not in system.quantities(design):
             derived.add(entry.quantity)
-    problem = Problem(section, system, table, quiet, mesh, recipe, known, frozenset(derived))
+    units = {variable.name: unit_of_key(design, variable.name) for variable in section.variable}
+    problem = Problem(section, system, table, quiet, mesh, recipe, units, known, frozenset(derived))
     for variable in section.variable:
         value = variable.choices[0] if variable.choices else variable.low
         _require_key(problem, variable.name, int(value) if variable.integer else value)

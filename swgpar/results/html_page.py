@@ -16,8 +16,30 @@ th { border-bottom: 2px solid #888; }
 .bad td, .bad { color: #a40000; }
 .scroll { overflow-x: auto; }
 img { max-width: 100%; }
+.long { min-width: 16em; }
+.ranked th { cursor: pointer; text-decoration: underline dotted; }
 pre { background: #f4f4f4; padding: .8em; overflow-x: auto; }
 """
+
+RANK = """<script>
+"use strict";
+document.querySelectorAll(".ranked").forEach(table => table.querySelectorAll("th").forEach((head, column) => {
+  let sign = -1;
+  head.addEventListener("click", () => {
+    sign = -sign;
+    const value = row => row.cells[column].dataset.value ?? row.cells[column].textContent;
+    const compare = (a, b) => (a === "") - (b === "") || sign * (a - b || (isNaN(a - b) ? a.localeCompare(b) : 0));
+    const rows = [...table.rows].slice(1).sort((a, b) => compare(value(a), value(b)));
+    rows.forEach(row => row.parentNode.append(row));
+  });
+}));
+</script>"""
+"""Puts the rows of ranked tables in the order of the column whose heading is clicked."""
+
+RANKING = "<p>A click on a heading puts the rows in the order of its column, a second one reverses it.</p>"
+
+LONG = 30
+"""Letters from which a cell keeps a width at which it can be read."""
 
 
 def page(title: str, parts: Iterable[str], style: str = STYLE) -> bytes:
@@ -29,19 +51,35 @@ def page(title: str, parts: Iterable[str], style: str = STYLE) -> bytes:
     return f"{head}<style>{style}</style></head><body>\n{chr(10).join(parts)}\n</body></html>\n".encode()
 
 
-def table(header: Sequence[str], rows: Iterable[tuple[Sequence[Any], bool]]) -> str:
-    """An HTML table. rows : cells and whether something is wrong; texts stand on the left, numbers on the right."""
+def table(header: Sequence[str], rows: Iterable[tuple[Sequence[Any], bool]], *, ranked: bool = False) -> str:
+    """An HTML table in a container that scrolls; texts stand on the left, numbers on the right.
+
+    rows : cells and whether something is wrong;  ranked : whether headings order the rows, by `RANK` on the page
+    """
     body, texts = [], [True] * len(header)
     for cells, bad in rows:
-        line = "".join(
-            f"<td{' class=text' if isinstance(cell, str) else ''}>{escape(number(cell))}</td>" for cell in cells
-        )
+        line = "".join(map(_cell, cells))
         body.append(f"<tr{' class=bad' if bad else ''}>{line}</tr>")
         texts = [text and isinstance(cell, str) for text, cell in zip(texts, cells, strict=True)]
     heads = (
         f"<th{' class=text' if text else ''}>{escape(name)}</th>" for name, text in zip(header, texts, strict=True)
     )
-    return "\n".join(["<div class=scroll><table><tr>" + "".join(heads) + "</tr>", *body, "</table></div>"])
+    kind = " class=ranked" if ranked else ""
+    return "\n".join([f"<div class=scroll><table{kind}><tr>" + "".join(heads) + "</tr>", *body, "</table></div>"])
+
+
+def _cell(value: Any) -> str:
+    text = escape(number(value))
+    if isinstance(value, str):
+        kind = '"text long"' if len(value) > LONG else "text"
+        return f"<td class={kind}>{text}</td>"
+    exact = f' data-value="{value!r}"' if isinstance(value, float) else ""
+    return f"<td{exact}>{text}</td>"
+
+
+def with_unit(name: str, unit: str) -> str:
+    """A heading: the name and, where there is one, the unit."""
+    return f"{name} ({unit})" if unit else name
 
 
 def number(value: Any) -> str:

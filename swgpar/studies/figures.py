@@ -8,9 +8,9 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from swgpar.results.history import UNITS, loaded_increments
+from swgpar.results.html_page import with_unit
 from swgpar.studies.case import Case, Outcome
-from swgpar.studies.table import by_case, shown, shown_quantities
-from swgpar.systems import Quantity
+from swgpar.studies.table import by_case, shown, shown_quantities, units_of_keys
 from swgpar.systems.drive import MEANINGS
 
 if TYPE_CHECKING:
@@ -72,6 +72,7 @@ def over_key(results: Sequence[Result], key: str, *, in_step: bool) -> Iterator[
     if not any(len(points) > 1 for _, points in drawn):
         return
     values = [x for _, points in drawn for x, _ in points]
+    unit = units_of_keys(results).get(key, "")
     scale = "log" if min(values) > 0.0 and max(values) >= DECADES * min(values) else "linear"
     for panels in _parts(list(shown_quantities(results).items()), PANELS):
         for part in _parts(drawn):
@@ -80,7 +81,7 @@ def over_key(results: Sequence[Result], key: str, *, in_step: bool) -> Iterator[
                 for k, (label, points) in enumerate(part):
                     known = [(x, o.values[name]) for x, o in points if name in o.values]
                     panel.plot([x for x, _ in known], [y for _, y in known], label=label, **_style(k))
-                _name(panel, quantity.meaning, _label(name, quantity), key)
+                _name(panel, quantity.meaning, with_unit(name, quantity.unit), with_unit(key, unit))
                 panel.set_xscale(scale)
             yield _png(figure, axes)
 
@@ -90,10 +91,6 @@ def single(value: Any) -> float | None:
     if isinstance(value, list) and len(value) == 1:
         value = value[0]
     return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else None
-
-
-def _label(name: str, quantity: Quantity) -> str:
-    return f"{name} ({quantity.unit})" if quantity.unit else name
 
 
 def _rest(case: Case, key: str, in_step: bool) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from swgpar.results.figure_set import import_matplotlib
-from swgpar.results.html_page import image, page, table
+from swgpar.results.html_page import RANK, RANKING, image, page, table, with_unit
 from swgpar.studies import figures
 from swgpar.studies.spec import Study
 from swgpar.studies.table import (
@@ -20,6 +20,7 @@ from swgpar.studies.table import (
     published_rows,
     shown_quantities,
     study_rows,
+    units_of_keys,
 )
 from swgpar.version import __version__
 
@@ -30,6 +31,15 @@ ESTIMATE = (
     "holds when both meshes resolve the stress and all directions were refined alike. Under edge contact (no "
     "micro-geometry) and for |s3| below the tooth contact it means nothing: the stress then grows with the mesh."
 )
+HEADINGS = {
+    "newton_mean": "Newton iterations, mean",
+    "wall_s": "time (s)",
+    "difference_percent": "difference (%)",
+    "tolerance_percent": "tolerance (%)",
+    "error_estimate": "error estimate",
+}
+"""Of columns of study.csv and published.csv whose names are not those of keys or quantities."""
+
 LOG_LINES = 12
 """Of a failed run, in the report."""
 
@@ -52,10 +62,13 @@ def make_report(
         parts += ["<h2>Published values</h2>", _comparisons(comparisons)]
     parts += [
         "<h2>Cases</h2>",
+        RANKING,
         _cases(results),
         "<h2>Quantities</h2>",
         _meanings(results),
     ]
+    if ranked := _extremes(results):
+        parts += ["<h2>Smallest and largest</h2>", ranked]
     estimates = _estimates(complete(results))
     if estimates or any(c.estimate for c in comparisons):
         parts += ["<h2>Error estimates from meshes</h2>", f"<p>{ESTIMATE}</p>", estimates]
@@ -69,7 +82,7 @@ def make_report(
     if study.section.remarks:
         parts.append("<h2>Remarks</h2>")
         parts += [f"<p>{escape(text)}</p>" for text in study.section.remarks.strip().split("\n\n")]
-    parts += ["<h2>Study file</h2>", f"<pre>{escape(study.text)}</pre>"]
+    parts += ["<h2>Study file</h2>", f"<pre>{escape(study.text)}</pre>", RANK]
     return page(title, parts)
 
 
@@ -87,12 +100,27 @@ def _cases(results: Sequence[Result]) -> str:
     if any(notes.values()):
         header.append("note")
         rows = [{**row, "note": notes[row["case"]]} for row in rows]
-    return table(header, (([row[name] for name in header], row["status"] == "failed") for row in rows))
+    units = units_of_keys(results) | {name: quantity.unit for name, quantity in shown_quantities(results).items()}
+    heads = [HEADINGS.get(name) or with_unit(name, units.get(name, "")) for name in header]
+    return table(heads, (([row[name] for name in header], row["status"] == "failed") for row in rows), ranked=True)
+
+
+def _extremes(results: Sequence[Result]) -> str:
+    """Which case has the smallest and the largest value of every quantity, each case on its finest mesh."""
+    found = [(case.name, outcomes[-1].values) for case, outcomes in by_case(results)]
+    rows: list[tuple[list[Any], bool]] = []
+    for name, quantity in shown_quantities(results).items():
+        values = sorted((values[name], case) for case, values in found if name in values)
+        if len(values) > 1:
+            (low, of_low), (high, of_high) = values[0], values[-1]
+            rows.append(([with_unit(name, quantity.unit), low, of_low, high, of_high], False))
+    return table(["quantity", "smallest", "of case", "largest", "of case"], rows) if rows else ""
 
 
 def _comparisons(comparisons: Sequence[Comparison]) -> str:
     rows = published_rows(comparisons)
-    return table(list(rows[0]), ((list(row.values()), row["verdict"] == "MISS") for row in rows))
+    heads = [HEADINGS.get(name, name) for name in rows[0]]
+    return table(heads, ((list(row.values()), row["verdict"] == "MISS") for row in rows))
 
 
 def _meanings(results: Sequence[Result]) -> str:
@@ -108,8 +136,9 @@ def _estimates(results: Sequence[Result]) -> str:
             if found:
                 values = [outcome.values[name] for outcome in outcomes[-2:]]
                 percent = 100.0 * found.error / abs(values[1]) if values[1] else None
-                rows.append(([case.name, name, *values, found.converged, found.error, percent], False))
-    header = ["case", "quantity", "coarser mesh", "finest mesh", "converged", "error estimate", "%"]
+                unit = case.known[name].unit if name in case.known else ""
+                rows.append(([case.name, with_unit(name, unit), *values, found.converged, found.error, percent], False))
+    header = ["case", "quantity", "coarser mesh", "finest mesh", "converged", "error estimate", "error estimate (%)"]
     return table(header, rows) if rows else ""
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from swgpar.analysis.error_estimate import Estimate, estimate
+from swgpar.input.quantities import unit_of_key
 from swgpar.studies.case import Case, Job, Outcome
 from swgpar.systems import Quantity
 
@@ -55,6 +56,16 @@ def complete(results: Sequence[Result]) -> list[Result]:
 def shown_quantities(results: Sequence[Result]) -> dict[str, Quantity]:
     """The quantities in tables and figures, of all cases."""
     return {name: job.case.known[name] for job, _ in results for name in job.case.shown if name in job.case.known}
+
+
+def units_of_keys(results: Sequence[Result]) -> dict[str, str]:
+    """Units of the varied keys, by the first case whose design has them."""
+    units: dict[str, str] = {}
+    for job, _ in results:
+        for key in job.case.varied:
+            if job.case.design is not None and not units.get(key):
+                units[key] = unit_of_key(job.case.design, key)
+    return units
 
 
 def estimate_of(case: Case, outcomes: Sequence[Outcome], name: str) -> Estimate | None:

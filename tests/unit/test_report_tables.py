@@ -1,0 +1,108 @@
+"""Tables of the reports of studies and optimisations: they scroll, headings have units, the best comes first."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+import swgpar
+from support.html_text import Page, assert_needs_nothing_else
+from support.paths import DESIGN, DRIVERS, RECIPE
+from support.study_files import jobs_of
+from swgpar.optimisation.problem import make_problem
+from swgpar.optimisation.spec import load_specification
+from swgpar.results.html_page import table
+from swgpar.studies.case import Outcome
+from swgpar.studies.report import make_report
+from swgpar.studies.spec import load_study
+from swgpar.studies.table import compare, shown_quantities
+
+STUDY = f"""
+[study]
+design = "{DESIGN}"
+meshes = ["{RECIPE}", "coarse"]
+quantities = ["mean.fs_s1", "mean.wg_torque_Nmm", "sharing.pairs"]
+[study.vary]
+load.torque = [1.0, 2.0]
+wave_generator.C = [0.9, 1.0]
+[[study.case]]
+name = "a"
+published = {{ mean.fs_s1 = 300.0 }}
+tolerance = {{ mean.fs_s1 = 5.0 }}
+"""
+
+OPTIMISATION = f"""
+[optimise]
+design = {str(DRIVERS / "gear_pair.toml")!r}
+set = ["monte_carlo.samples=20", "time.end=1e-4", "time.rows=2"]
+evaluations = 12
+first = [{{ "mesh.stiffness" = 2e9 }}]
+[[optimise.variable]]
+keys = ["mesh.stiffness"]
+low = 1e9
+high = 1e11
+log = true
+[[optimise.objective]]
+quantity = "natural frequency 2 (rad/s)"
+goal = "maximise"
+[[optimise.constraint]]
+quantity = "damping ratio 1"
+at_most = 0.5
+"""
+
+
+def rows_of(text: str, number: int) -> list[list[str]]:
+    """Cells of the rows of a table of a page."""
+    body = re.findall(r"<table.*?</table>", text, flags=re.DOTALL)[number]
+    return [re.findall(r"<td[^>]*>(.*?)</td>", row) for row in re.findall(r"<tr.*?</tr>", body, flags=re.DOTALL)[1:]]
+
+
+def test_tables_of_a_study(tmp_path: Path) -> None:
+    path = tmp_path / "study.toml"
+    path.write_text(STUDY, encoding="utf-8")
+    jobs = jobs_of(path)
+    results = [
+        (job, Outcome("finished", values={name: 100.0 + k for name in job.case.shown}, elements=100 * 8**n, wall_s=1.0))
+        for k, job in enumerate(jobs)
+        for n in [0 if job.finer else 1]
+    ]
+    text = make_report(load_study(path), results, compare(results), tmp_path).decode()
+    page = assert_needs_nothing_else(text)
+    headings = [heads for heads, _ in page.tables]
+    cases = next(heads for heads in headings if "case" in heads and "status" in heads)
+    assert "load.torque (N·m)" in cases and "wave_generator.C" in cases and "time (s)" in cases
+    for name, quantity in shown_quantities(results).items():
+        assert (f"{name} ({quantity.unit})" if quantity.unit else name) in cases
+    assert not any("_percent" in head or head.endswith("_s") for heads in headings for head in heads)
+    # which case is the smallest and which the largest, of the finer mesh
+    found = rows_of(text, next(k for k, heads in enumerate(headings) if heads[1:2] == ["smallest"]))
+    finest = [(outcome.values["mean.fs_s1"], job.case.name) for job, outcome in results if not job.finer]
+    row = next(cells for cells in found if cells[0] == "mean.fs_s1 (MPa)")
+    assert (float(row[1]), row[2]) == min(finest) and (float(row[3]), row[4]) == max(finest)
+
+
+def test_tables_of_an_optimisation(tmp_path: Path) -> None:
+    pytest.importorskip("optuna")
+    path = tmp_path / "search.toml"
+    path.write_text(OPTIMISATION, encoding="utf-8")
+    found = swgpar.optimise(path, tmp_path / "out")
+    text = (tmp_path / "out" / "optimise.html").read_text(encoding="utf-8")
+    page = assert_needs_nothing_else(text)
+    unit = make_problem(load_specification(path)).units["mesh.stiffness"]
+    number, (heads, _) = next((k, entry) for k, entry in enumerate(page.tables) if "status" in entry[0])
+    assert unit and f"mesh.stiffness ({unit})" in heads and "time (s)" in heads
+    cells = [dict(zip(heads, row)) for row in rows_of(text, number)]
+    feasible = [row for row in cells if row["status"] == "feasible"]
+    assert [row["rank"] for row in feasible] == [str(k + 1) for k in range(len(feasible))]
+    assert int(feasible[0]["evaluation"]) == found.best[0]
+    name = "natural frequency 2 (rad/s)"
+    frequencies = [float(row[name]) for row in feasible]
+    assert frequencies == sorted(frequencies, reverse=True) and len(set(frequencies)) > 1
+
+
+def test_a_table_that_does_not_scroll_is_found() -> None:
+    text = table(["load (N)"], [([1.0], False)])
+    assert Page(text).tables == [(["load (N)"], True)]
+    assert Page(text.replace("scroll", "still")).tables == [(["load (N)"], False)]
