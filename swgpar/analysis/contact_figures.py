@@ -39,7 +39,7 @@ def draw_pairs(pairs: Columns) -> Figure:
         axes.grid(alpha=0.3)
     panels[0].set(ylabel="normal force (N)", title="pairs of flanks in contact, at all computed angles")
     panels[1].set(ylabel="largest pressure (MPa)", xlabel="tooth, from the major axis (degrees)")
-    panels[0].legend(fontsize=8)
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, fontsize=8)
     return figure
 
 
@@ -59,7 +59,7 @@ def draw_load_sharing(pairs: Columns, history: Columns) -> Figure:
                 upper.plot(angle[chosen], share[chosen], mark, ms=5, mec=colour, mfc="none", label=label)
     upper.set(xlabel="pair, from the major axis (degrees)", ylabel="share of the force (%)")
     upper.set_title("force of a pair over that of all pairs, at all computed angles", fontsize=10)
-    upper.legend(fontsize=8)
+    figure.legend(loc="outside lower center", ncols=3, fontsize=8)
     rows = np.unique(pairs["increment"]).astype(int) - 1
     lower.step(history["wg_angle_deg"][rows], history["pairs_in_contact"][rows], "o-", where="mid", ms=4)
     lower.set(xlabel=ANGLE, ylabel="pairs in contact")

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from html import escape
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from swgpar.analysis import scene
 from swgpar.analysis.drive_drawing import DRAWING_STYLE, draw_drive
+from swgpar.analysis.places import OF_REGION
 from swgpar.analysis.report_checks import Check, checks
 from swgpar.design.drive_design import DriveDesign
-from swgpar.results.html_page import page
+from swgpar.results.html_page import page, table
 from swgpar.results.result_page import STYLE as RESULT_STYLE
 from swgpar.results.result_page import cards, figures, inputs, versions
 
@@ -27,6 +31,19 @@ STYLE = (
 .checks td:nth-child(2) { white-space: nowrap; }
 """
 )
+
+WIDE = ("contact_pattern", "deformed_drive", "loaded_teeth", "cup_section", "safety")
+"""Figures that take the width of the page."""
+
+SECTIONS = {
+    "stiffness": "torsional stiffness, lost motion, hysteresis ([stiffness])",
+    "ratcheting": "ratcheting torque ([ratcheting])",
+    "fatigue": "safety and life ([fatigue])",
+    "losses": "losses and efficiency ([losses])",
+    "bearing": "ball loads and life of the bearing ([wave_generator.bearing])",
+    "root_stress": "tension at the teeth with its error (output.root_stress)",
+}
+"""What a run computes when the design asks for it: entry of the summary -> what it is, and its key."""
 
 VERDICTS = {
     True: '<span class="ok">good</span>',
@@ -47,11 +64,14 @@ def drive_report(result: DriveResult) -> bytes:
     parts += [
         "<h2>Answers</h2>",
         cards(["", "value", "unit", "error", "where"], ((row, False) for row in answers(summary))),
+        *_not_asked(summary),
     ]
     if summary["places"]:
-        parts += ["<h3>Largest stresses under load</h3>", _places(summary["places"])]
+        parts += ["<h3>Largest stresses under load</h3>", f"<p>{NODAL}</p>", _places(summary["places"])]
+    if summary.get("regions"):  # results of earlier versions have none
+        parts += ["<h3>Largest stresses by region</h3>", _regions(summary["regions"])]
     parts += ["<h2>Checks</h2>", _checks(found)]
-    if drawn := figures(result.folder, result.plot.names):
+    if drawn := figures(result.folder, result.plot.names, WIDE):
         parts += ["<h2>Figures</h2>", drawn]
     view = scene.scene(result)
     if view:
@@ -65,7 +85,7 @@ def _introduction(summary: Mapping[str, Any], found: Iterable[Check]) -> str:
     look = [check.name for check in found if check.good is False]
     model = "plane model" if drive["model"] == "plane" else "cup drive"
     fixed = "ring gear fixed" if drive["layout"] == "ring_fixed" else "flexible spline fixed"
-    mesh = f"mesh {summary['recipe']}, " if summary["recipe"] else ""
+    mesh = f"mesh {Path(summary['recipe']).stem}, " if summary["recipe"] else ""
     verdict = f"Look at: {', '.join(look)}." if look else "All checks that can be judged are good."
     return (
         f"<p>{model}, ratio {summary['ratio']:g}, {fixed}; {escape(mesh)}{summary['elements']} elements, "
@@ -79,7 +99,7 @@ def answers(summary: Mapping[str, Any]) -> list[list[Any]]:
 
     def add(what: str, value: Any, unit: str = "", error: float | None = None, where: str = "") -> None:
         if value is not None:
-            rows.append([what, float(value), unit, "" if error is None else f"± {error:.2g}", where])
+            rows.append([what, float(value), unit, _error(error), where])
 
     if root := summary["root_stress"]:
         add("largest tension at the teeth, s1", root["s1"], "MPa", root["total_error"], _where(root))
@@ -87,7 +107,7 @@ def answers(summary: Mapping[str, Any]) -> list[list[Any]]:
             add("the same, mean over a period", over["mean"], "MPa", over["mean_error"])
     if contact := summary["contact"]:
         where = (
-            f"tooth {contact['tooth']}, {contact['flank']} flank, radius {contact['radius_mm']:.2f}, "
+            f"tooth {contact['tooth']}, {contact['flank']} flank, radius {contact['radius_mm']:.2f} mm, "
             f"z {contact['z_mm']:.2f} mm{'; on an edge: no property of the drive' if contact['edge'] else ''}"
         )
         add("largest contact pressure of the flanks", contact["pressure_MPa"], "MPa", None, where)
@@ -126,13 +146,25 @@ def answers(summary: Mapping[str, Any]) -> list[list[Any]]:
     return rows
 
 
+def _not_asked(summary: Mapping[str, Any]) -> list[str]:
+    """What the design does not ask for, with the key that does."""
+    missing = [text for name, text in SECTIONS.items() if not summary.get(name)]
+    return [f"<p>Not asked for: {escape('; '.join(missing))}.</p>"] if missing else []
+
+
 def _where(place: Mapping[str, Any]) -> str:
     region = place["region"] if place["region"] == "inside the tooth" else f"{place['region']} of tooth"
     return (
-        f"{region.replace('the tooth', 'tooth')} {place['tooth']}, radius {place['radius']:.2f}, "
+        f"{region.replace('the tooth', 'tooth')} {place['tooth']}, radius {place['radius']:.2f} mm, "
         f"z {place['z']:.2f} mm, {place['angle_deg']:.1f} degrees from +y"
     )
 
+
+NODAL = (
+    "Averages over elements on the mesh of the drive, the largest of all increments under load. Errors are those by "
+    "this mesh. The tension at the teeth above is resolved on finer meshes of a few teeth."
+)
+NO_ERROR = "no estimate of the error on this mesh"
 
 STRESSES = {"s1": "tension s1", "s3": "compression |s3|", "vm": "von Mises"}
 BODIES = {"fs": "flexible spline", "rg": "ring gear"}
@@ -145,10 +177,36 @@ def _places(places: Mapping[str, Mapping[str, Any]]) -> str:
         what = f"{BODIES.get(body, body)}, {STRESSES.get(stress, stress)}" + (
             ", apart from the contact" if apart else ""
         )
-        error = place.get("error")
-        text = "" if error is None else f"± {error:.2g}"
-        rows.append(([what, float(place["value"]), "MPa", text, _where(place), place["warning"]], False))
-    return cards(["nodal average", "value", "unit", "error", "where", "the value depends on the mesh"], rows)
+        remark = place["warning"] or ("" if place.get("error") is not None else NO_ERROR)
+        cells = [what, float(place["value"]), "MPa", _error(place.get("error")), _where(place), remark]
+        rows.append((cells, False))
+    return cards(["nodal average", "value", "unit", "error", "where", "remark"], rows)
+
+
+def _regions(regions: Mapping[str, Mapping[str, Any]]) -> str:
+    found: dict[tuple[str, str], dict[str, Mapping[str, Any]]] = {}
+    for name, place in regions.items():
+        stress, region = name.split(OF_REGION)
+        body, stress = stress.split("_")
+        found.setdefault((body, region), {})[stress] = place
+    rows = []
+    for (body, region), places in found.items():
+        cells: list[Any] = [f"{BODIES[body]}, {region}"]
+        for stress in ("s1", "vm"):
+            place = places.get(stress)
+            cells += [float(place["value"]), _error(place["error"])] if place else [None, ""]
+        shown = places.get("vm") or places["s1"]
+        rows.append(([*cells, _where(shown), shown["warning"]], False))
+    heads = ["region", "s1 (MPa)", "error", "von Mises (MPa)", "error", "where von Mises is", "depends on the mesh"]
+    return table(heads, rows)
+
+
+def _error(value: float | None) -> str:
+    """An error with two digits, without a power of ten and without a break of the line."""
+    if value is None:
+        return ""
+    digits = 1 - int(np.floor(np.log10(value))) if value > 0.0 else 0
+    return f"±\u00a0{round(value, digits):.{max(digits, 0)}f}"
 
 
 def _checks(found: Iterable[Check]) -> str:
@@ -157,4 +215,5 @@ def _checks(found: Iterable[Check]) -> str:
         f"<td class=text>{escape(check.text)}</td></tr>"
         for check in found
     )
-    return f'<div class="scroll cards"><table class="checks">{rows}</table></div>'
+    head = "<tr><th class=text>check</th><th class=text>verdict</th><th class=text>numbers</th></tr>"
+    return f'<div class="scroll cards"><table class="checks">{head}{rows}</table></div>'

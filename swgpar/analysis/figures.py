@@ -85,7 +85,7 @@ class DriveFigures(FigureSet):
             axes.plot(angle, value, "k^--", ms=4, lw=0.8, label="flexible spline, s1 at the teeth by windows")
         axes.set(ylabel="stress (MPa)", title="largest stresses (nodal averages)" + self._over_period())
         axes.set_ylim(bottom=0.0)
-        axes.legend(fontsize=8)
+        figure.legend(loc="outside lower center", ncols=2, fontsize=8)
         return figure
 
     def torque(self) -> Figure:

@@ -37,6 +37,9 @@ TOUCHED = 0.02
 APART, APART_DISTANCE = "_apart", 0.25
 """Ending of the names of stresses apart from the contact of flanks; distance (modules) from a touched node."""
 
+OF_REGION = " in "
+"""Between a stress and a region in the names of the largest stresses of regions: "fs_vm in cup wall"."""
+
 AVERAGE = "below the contact of teeth: an average over elements, larger on a finer mesh"
 NOTCH = "in the notch behind the teeth, a corner without fillet: no limit to converge to"
 EDGE = "at the edge of the wave generator: edge contact, no limit to converge to"
@@ -79,6 +82,7 @@ def find_places(
 
     |s3| and von Mises are looked for apart from the contact of flanks as well, with names that end with `APART`: on
     surfaces and in the rim. Inside of a tooth they decrease with the distance from the contact, wherever it is cut off.
+    s1 and von Mises are looked for in every region as well, with names that have `OF_REGION`; only values above 0.
 
     fields : nodal fields of both bodies as `DriveModel.stresses` gives them
     on_edge : whether a contact of flanks lies on the edge of a tooth
@@ -94,6 +98,7 @@ def find_places(
         near = near_contact(body.layout.mesh, touched[:1] if ring else touched, distance)
         near |= inside_teeth(design, body.layout.mesh)
         apart = np.broadcast_to(~near, touched.shape)
+        regions = _regions(design, body.layout.mesh)
         for stress in ("s1", "s3", "vm"):
             values = -fields[k][stress] if stress == "s3" else fields[k][stress]
             # s1 below a contact is compressive or small; of the ring gear any flank may be touched
@@ -102,14 +107,37 @@ def find_places(
             names = {f"{prefix}_{stress}": (values, below)}
             if stress != "s1":
                 names[f"{prefix}_{stress}{APART}"] = np.where(apart, values, -np.inf), np.zeros_like(touched)
+            if stress != "s3":
+                names |= _by_region(f"{prefix}_{stress}", regions, values, below)
             for name, of in names.items():
                 place = _largest(model, k, *of)
+                if OF_REGION in name and place.value <= 0.0:
+                    continue
                 if on_rollers and stress != "s1" and place.region == "rim inside":
                     place = replace(place, warning=ROLLER)
                 if on_edge and ring and not place.warning:
                     place = replace(place, warning=CORNER)
                 found[name] = place
     return found
+
+
+def _regions(design: DriveDesign, mesh: SectorMesh) -> dict[bool, np.ndarray]:
+    """Regions (n_node,) of the nodes of a sector, by whether a contact of flanks presses on them."""
+    nodes = range(len(mesh.coords))
+    return {touched: np.array([region_of(design, mesh, node, touched) for node in nodes]) for touched in (False, True)}
+
+
+def _by_region(
+    stress: str, regions: Mapping[bool, np.ndarray], values: np.ndarray, below: np.ndarray
+) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Values (n_sectors, n_node) of every region, -inf elsewhere, by name; the same names on all ranks."""
+    return {
+        f"{stress}{OF_REGION}{region}": (
+            np.where(np.where(below, regions[True] == region, regions[False] == region), values, -np.inf),
+            below,
+        )
+        for region in np.unique(np.concatenate(list(regions.values())))
+    }
 
 
 def inside_teeth(design: DriveDesign, mesh: SectorMesh) -> np.ndarray:

@@ -14,7 +14,7 @@ from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.jamming import jamming_remark
 from swgpar.analysis.load_sharing import load_sharing
 from swgpar.analysis.period import of_period, sampling_error
-from swgpar.analysis.places import Place
+from swgpar.analysis.places import OF_REGION, Place
 from swgpar.analysis.program_results import point_rows, summarise_program
 from swgpar.analysis.ratcheting import summarise_ratcheting
 from swgpar.analysis.root_stress import RootStress
@@ -105,7 +105,7 @@ def summarise(
     recipe_name : the mesh recipe as the user named it
     accuracy : what was asked for and reached
     root_stress : largest tensile stress at the teeth, by windows
-    places : of the largest stresses under load
+    places : of the largest stresses under load, those of regions included
     pairs : contacts of the flanks under load;  bearing : loads of its balls, None without one
     turns : transmission error over the sampled period, or over whole turns with deviations
     seconds : wall time of the run, restarts included
@@ -127,7 +127,8 @@ def summarise(
         **values,
         "transmission_error": summarise_turns(design, turns),
         "accuracy": accuracy and asdict(accuracy),
-        "places": {name: asdict(place) for name, place in places.items()},
+        "places": {name: asdict(place) for name, place in places.items() if OF_REGION not in name},
+        "regions": {name: asdict(place) for name, place in places.items() if OF_REGION in name},
         "root_stress": root_stress and _resolved(root_stress),
         "contact": max(
             (pair for pair in pairs if np.isfinite(pair["pressure_MPa"])),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -17,6 +17,7 @@ STYLE = (
     + """
 h1 { font-size: 1.5em; } h2 { margin-top: 1.6em; border-bottom: 1px solid #bbb; }
 .figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 30em), 1fr)); gap: 0 1.5em; }
+.wide { grid-column: 1 / -1; text-align: center; }
 @media (max-width: 40em) {
   body { margin: 1em auto; }
   .cards th { display: none; } .cards tr { display: block; padding: .4em 0; border-bottom: 1px solid #ddd; }
@@ -28,10 +29,15 @@ h1 { font-size: 1.5em; } h2 { margin-top: 1.6em; border-bottom: 1px solid #bbb; 
 )
 
 
-def figures(folder: Path | None, names: Iterable[str]) -> str:
-    """The figures that the folder has, of those with these names."""
+def figures(folder: Path | None, names: Iterable[str], wide: Collection[str] = ()) -> str:
+    """The figures that the folder has, of those with these names. wide : those that take the width of the page"""
     paths = [folder / FOLDER / f"{name}.png" for name in names] if folder is not None else []
-    images = [image(path.read_bytes(), path.stem.replace("_", " ")) for path in paths if path.exists()]
+    images = [
+        f"<div{' class=wide' if path.stem in wide else ''}>"
+        f"{image(path.read_bytes(), path.stem.replace('_', ' '))}</div>"
+        for path in paths
+        if path.exists()
+    ]
     return f'<div class="figures">{"".join(images)}</div>' if images else ""
 
 

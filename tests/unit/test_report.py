@@ -45,6 +45,18 @@ def test_a_run_leaves_one_page_that_needs_nothing_else(folder: Path) -> None:
     assert f"teeth_fs = {summary['design']['drive']['teeth_fs']}" in text
 
 
+def test_the_largest_of_the_regions_is_the_largest_of_the_body(folder: Path) -> None:
+    summary = swgpar.open_result(folder).summary
+    for stress in ("fs_s1", "fs_vm", "rg_vm"):
+        regions = {name: place for name, place in summary["regions"].items() if name.startswith(f"{stress} in ")}
+        name, place = max(regions.items(), key=lambda item: item[1]["value"])
+        largest = summary["places"][stress]
+        assert place == largest | {"in_root": place["in_root"]} and name.endswith(f" in {largest['region']}")
+        assert len(regions) > 3 and all(place["region"] == name.split(" in ", 1)[1] for name, place in regions.items())
+    text = (folder / "report.html").read_text(encoding="utf-8")
+    assert "ring gear, housing" in text and "Not asked for: torsional stiffness" in text
+
+
 def test_verdicts_follow_the_numbers(folder: Path) -> None:
     result = swgpar.open_result(folder)
     design = swgpar.DriveDesign.model_validate(result.summary["design"])
