@@ -272,6 +272,7 @@ def export(
     out: str | Path,
     formats: Sequence[str],
     *,
+    mesh: MeshLike | None = None,
     ripple: str | Path | DriveResult | None = None,
 ) -> list[Path]:
     """Write files of other programs and return them; collective, rank 0 writes.
@@ -283,22 +284,26 @@ def export(
     out : path
         Folder, which is made.
     formats : sequence of str
-        Of a design "step" (solids) and "dxf" (outlines), of a result "vtkhdf" and "xdmf" (fields with all teeth),
-        "parquet" (all tables), "lookup" (torsional spring and ripple for multibody programs) and "fmu" (the same as an
-        FMU).
+        Of a design "step" (solids), "dxf" (outlines) and "inp" (job of CalculiX up to the loaded state), of a result
+        "vtkhdf" and "xdmf" (fields with all teeth), "parquet" (all tables), "lookup" (torsional spring and ripple for
+        multibody programs) and "fmu" (the same as an FMU).
+    mesh : str, path or MeshRecipe
+        Mesh of the format "inp".
     ripple : result of a drive, or the folder of one
         For "fmu": run with steps.samples or [deviations] of the same drive. Without it there is no kinematic error.
 
     Raises
     ------
     InputError
-        A format that the source does not have, a source that is no drive, or a package that is missing.
+        A format that the source does not have, a source that is no drive, a package that is missing, or what a format
+        does not carry.
     OutputError
         The folder cannot be written.
 
     Examples
     --------
     >>> swgpar.export("drivers/cup_45deg.toml", "results/cad", ["step"])
+    >>> swgpar.export("drivers/plane_half_turn.toml", "results/calculix", ["inp"], mesh="plane_coarse")
     >>> swgpar.export("results/cup", "results/cup/export", ["vtkhdf", "parquet"])
     """
     from swgpar.exchange.export import export_files  # CAD kernels and tables are for this alone
@@ -310,10 +315,11 @@ def export(
         ripple = open_result(ripple)  # type: ignore[assignment]
     if not isinstance(found, DriveDesign | DriveResult) or not isinstance(ripple, DriveResult | None):
         raise InputError("export is available for drives: a gear train has no geometry and no fields")
+    recipe = None if mesh is None else load_mesh(mesh)
     paths: list[Path] = []
     with agreed(MPI.COMM_WORLD, Path(out)):
         if MPI.COMM_WORLD.rank == 0:
-            paths = export_files(found, Path(out), formats, ripple)
+            paths = export_files(found, Path(out), formats, recipe=recipe, ripple=ripple)
     return MPI.COMM_WORLD.bcast(paths)
 
 

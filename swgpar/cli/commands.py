@@ -100,9 +100,17 @@ def _optimise(arguments: argparse.Namespace) -> None:
 
 
 def _export(arguments: argparse.Namespace) -> None:
-    from swgpar import api
+    from mpi4py import MPI
 
-    paths = api.export(arguments.source, arguments.out, arguments.format, ripple=arguments.ripple)
+    from swgpar import api
+    from swgpar.results.atomic import on_all
+
+    source = arguments.source
+    if arguments.overrides:
+        if Path(source).is_dir():
+            raise InputError(f"--set is of no use with the results folder {source}: allowed with a design file")
+        source = on_all(MPI.COMM_WORLD, lambda: api.load_design(source, arguments.overrides))
+    paths = api.export(source, arguments.out, arguments.format, mesh=arguments.mesh, ripple=arguments.ripple)
     _print(f"written {path}" for path in paths)
 
 

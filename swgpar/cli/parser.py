@@ -84,11 +84,12 @@ VIEW_EXAMPLES = """example:
   swgpar view results/coarse
 """
 
-EXPORT = """Write files of other programs: the geometry of a design (step, dxf), or fields and tables of a finished run
-(vtkhdf, xdmf, parquet, lookup, fmu)."""
+EXPORT = """Write files of other programs: the geometry of a design (step, dxf), a job up to its loaded state (inp), or
+fields and tables of a finished run (vtkhdf, xdmf, parquet, lookup, fmu)."""
 
 EXPORT_EXAMPLES = """examples:
   swgpar export drivers/cup_45deg.toml --format step dxf --out results/cad
+  swgpar export drivers/plane_half_turn.toml --format inp --mesh plane_coarse --out results/calculix
   swgpar export results/cup --format vtkhdf parquet --out results/cup/export
   swgpar export results/stiffness --ripple results/period --format fmu --out results/fmu
 """
@@ -167,6 +168,10 @@ def _add_command(commands: _Commands, name: str, text: str, examples: str) -> ar
 
 def _add_design(command: argparse.ArgumentParser) -> None:
     command.add_argument("design", help="design file (TOML)")
+    _add_set(command)
+
+
+def _add_set(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--set",
         action="append",
@@ -198,18 +203,21 @@ def _add_new(commands: _Commands) -> None:
 def _add_export(commands: _Commands) -> None:
     export = _add_command(commands, "export", EXPORT, EXPORT_EXAMPLES)
     export.add_argument("source", help="design file (TOML), or results folder")
+    _add_set(export)
     export.add_argument("--out", required=True, help="folder for the files")
     export.add_argument(
         "--format",
         nargs="+",
         required=True,
-        choices=["step", "dxf", "vtkhdf", "xdmf", "parquet", "lookup", "fmu"],
-        help="step: solids of gears and cam; dxf: their outlines; vtkhdf, xdmf: fields with all teeth; parquet: "
-        "tables; lookup: torsional spring and ripple for multibody programs; fmu: the same as an FMU (FMI 2.0)",
+        choices=["step", "dxf", "inp", "vtkhdf", "xdmf", "parquet", "lookup", "fmu"],
+        help="step: solids of gears and cam; dxf: their outlines; inp: job of CalculiX; vtkhdf, xdmf: fields with all "
+        "teeth; parquet: tables; lookup: torsional spring and ripple for multibody programs; fmu: the same as an FMU "
+        "(FMI 2.0)",
     )
     export.add_argument(
         "--ripple", metavar="FOLDER", help="for fmu: results of the same drive with steps.samples or [deviations]"
     )
+    export.add_argument("--mesh", help=f"of the format inp; {MESH_HELP}")
 
 
 def _add_run(commands: _Commands) -> None:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.geometry.profiles import ToothProfile
 from swgpar.geometry.profiles.mesh_gap import smallest_gaps
 
 WIDEST = np.radians(60.0)
@@ -30,6 +32,9 @@ def flank_clearance(design: DriveDesign, n_angles: int = 721) -> float:
     return min(float(smallest_gaps(*pair, side, psi).min()) for side in {motion, motion.mirror_image()})
 
 
+Flanks = tuple[ToothProfile, ToothProfile]
+
+
 @dataclass(frozen=True)
 class RigidMesh:
     """Contact of rigid teeth.
@@ -50,14 +55,40 @@ def rigid_mesh(design: DriveDesign, phases: int = 8, n_points: int = 300) -> Rig
 
     phases : positions of the cam within a pitch of the flexible spline;  n_points : points on a flank
     """
-    pair, motion = (design.profile("flexible_spline"), design.profile("ring_gear")), design.tooth_motion()
+    flanks = design.profile("flexible_spline"), design.profile("ring_gear")
+    touching, gaps = _touching(design, flanks, phases, n_points)
+    if not np.isfinite(touching).all():
+        return RigidMesh(np.inf, 0.0)
+    share = np.count_nonzero(gaps(touching) < NEAR) / phases * 2.0 / design.drive.teeth_fs
+    return RigidMesh(float(np.degrees(np.ptp(touching))) * 3600.0, share)
+
+
+def touching_rotation(design: DriveDesign, flanks: Flanks, n_points: int = 300) -> float:
+    """Rotation (rad) of the flexible spline's material at which the first pair of one side touches, cam at angle zero.
+
+    -inf where the teeth do not reach each other, or overlap at every rotation.
+
+    flanks : of the spline and of the ring gear;  n_points : points on a flank
+    """
+    touching, _ = _touching(design, flanks, 1, n_points)
+    return float(touching.item())
+
+
+def _touching(
+    design: DriveDesign, flanks: Flanks, phases: int, n_points: int
+) -> tuple[np.ndarray, Callable[[np.ndarray], np.ndarray]]:
+    """Rotations (phases, 1) rad at which the first pair touches, and the gaps (mm) of all teeth at such rotations.
+
+    -inf where the teeth do not reach each other, or overlap at every rotation.
+    """
+    motion = design.tooth_motion()
     pitch = 2.0 * np.pi / design.drive.teeth_fs
     reach = int(WIDEST / pitch)
     psi = pitch * (np.arange(-reach, reach + 1) + np.arange(phases)[:, None] / phases)
 
     def gaps(rotation: np.ndarray) -> np.ndarray:
         flat = np.broadcast_to(rotation, psi.shape).ravel()
-        found = smallest_gaps(*pair, motion, psi.ravel(), n_points, flat, 0.02 * design.drive.module)
+        found = smallest_gaps(*flanks, motion, psi.ravel(), n_points, flat, 0.02 * design.drive.module)
         return found.reshape(psi.shape)
 
     touching = np.zeros((phases, 1))
@@ -67,9 +98,7 @@ def rigid_mesh(design: DriveDesign, phases: int = 8, n_points: int = 300) -> Rig
             closing = touching - STEP * before / (before - after)
         touching = np.where(np.isfinite(before) & (after < before), closing, -np.inf).max(axis=1, keepdims=True)
         if not (np.abs(touching) < 0.5 * pitch).all():
-            return RigidMesh(np.inf, 0.0)
-    found = gaps(touching)
-    if np.abs(found.min(axis=1)).max() > NEAR:
-        return RigidMesh(np.inf, 0.0)
-    share = np.count_nonzero(found < NEAR) / phases * 2.0 / design.drive.teeth_fs
-    return RigidMesh(float(np.degrees(np.ptp(touching))) * 3600.0, share)
+            return np.full_like(touching, -np.inf), gaps
+    if np.abs(gaps(touching).min(axis=1)).max() > NEAR:
+        touching = np.full_like(touching, -np.inf)
+    return touching, gaps

@@ -10,15 +10,20 @@ from typing import Any
 from swgpar.analysis.drive_result import DriveResult
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
+from swgpar.exchange.calculix import write_calculix
 from swgpar.exchange.dxf import write_dxf
 from swgpar.exchange.fmu import write_fmu
 from swgpar.exchange.step import write_step
 from swgpar.exchange.tables import write_look_up, write_parquet
 from swgpar.exchange.vtkhdf import write_vtkhdf
 from swgpar.exchange.xdmf import write_xdmf
+from swgpar.meshing import MeshRecipe
 
 OF_DESIGN: Mapping[str, Callable[[DriveDesign, Path], list[Path]]] = {"step": write_step, "dxf": write_dxf}
 """Formats of a design: its geometry."""
+
+ON_MESH: Mapping[str, Callable[[DriveDesign, MeshRecipe, Path], list[Path]]] = {"inp": write_calculix}
+"""Formats of a design on a mesh: a job of another program."""
 
 OF_RESULT: Mapping[str, Callable[[DriveResult, Path], list[Path]]] = {
     "vtkhdf": write_vtkhdf,
@@ -31,26 +36,44 @@ OF_RESULT: Mapping[str, Callable[[DriveResult, Path], list[Path]]] = {
 
 
 def export_files(
-    source: DriveDesign | DriveResult, folder: Path, formats: Sequence[str], ripple: DriveResult | None = None
+    source: DriveDesign | DriveResult,
+    folder: Path,
+    formats: Sequence[str],
+    *,
+    recipe: MeshRecipe | None = None,
+    ripple: DriveResult | None = None,
 ) -> list[Path]:
     """Write the files of the formats into a folder, which is made; call it on one rank.
 
-    ripple : result over a period, for the format fmu
+    recipe : mesh of the formats that have one;  ripple : result over a period, for the format fmu
 
     Raises
     ------
     InputError
-        A format that the source does not have, or one whose package is missing.
+        A format that the source does not have, one whose package or mesh is missing, or a mesh that no format has.
     """
     writers: dict[str, Callable[[Any, Path], list[Path]]]
-    writers = dict(OF_DESIGN if isinstance(source, DriveDesign) else OF_RESULT)
-    noun = "a design" if isinstance(source, DriveDesign) else "a result"
+    if isinstance(source, DriveDesign):
+        noun = "a design"
+        writers = {**OF_DESIGN, **{name: _on(recipe, write) for name, write in ON_MESH.items()}}
+    else:
+        noun, writers = "a result", dict(OF_RESULT)
     for name in formats:
         if name not in writers:
             raise InputError(f'format = "{name}" is not available for {noun}: allowed {", ".join(writers)}')
+        if name in ON_MESH and recipe is None:
+            raise InputError(f'format = "{name}" needs a mesh recipe: --mesh, or mesh= in Python')
+    if recipe is not None and not set(formats) & set(ON_MESH):
+        raise InputError(f"a mesh recipe is of no use without one of the formats {', '.join(ON_MESH)}")
     if ripple is not None:
         if "fmu" not in formats:
             raise InputError(f"--ripple is not available for the format {', '.join(formats)}: allowed with fmu")
         writers["fmu"] = partial(write_fmu, periodic=ripple)
     folder.mkdir(parents=True, exist_ok=True)
     return [path for name in formats for path in writers[name](source, folder)]
+
+
+def _on(
+    recipe: MeshRecipe | None, write: Callable[[DriveDesign, MeshRecipe, Path], list[Path]]
+) -> Callable[[DriveDesign, Path], list[Path]]:
+    return lambda design, folder: write(design, recipe, folder)

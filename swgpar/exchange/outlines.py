@@ -79,6 +79,11 @@ def gear_outline(design: DriveDesign, gear: GearName) -> list[Edge]:
 
 def cam_outlines(design: DriveDesign) -> list[np.ndarray]:
     """Closed curves of the cam, each (n, 2) mm without the first point again: one, or one for each roller."""
-    points = design.cam().outline(CAM_POINTS)
+    return cam_parts(design, CAM_POINTS)
+
+
+def cam_parts(design: DriveDesign, count: int) -> list[np.ndarray]:
+    """Closed curves of the cam of about `count` points in all."""
+    points = design.cam().outline(count)
     parts = 4 if isinstance(design.wave_generator, FourRoller) else 1
     return list(points.reshape(parts, -1, 2))

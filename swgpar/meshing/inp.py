@@ -44,7 +44,14 @@ def _lines(numbers: Ints) -> Iterator[str]:
         yield ", ".join(str(n) for n in numbers[start : start + 16] + 1)
 
 
-def write_inp(path: Path, drive: meshio.Mesh, surfaces: dict[str, Ints], material: Material, thickness: float) -> None:
+def write_inp(
+    path: Path,
+    drive: meshio.Mesh,
+    surfaces: dict[str, Ints],
+    material: Material,
+    thickness: float,
+    plane_stress: bool = False,
+) -> None:
     """Write bodies that are the cell sets of `drive`: C3D8I elements, or CPS4 in the plane.
 
     Parameters
@@ -57,6 +64,9 @@ def write_inp(path: Path, drive: meshio.Mesh, surfaces: dict[str, Ints], materia
     material : Material
     thickness : float, mm
         Of the plane model.
+    plane_stress : bool
+        Gives hexahedra a material without transverse contraction along z. With no displacement along z they are then
+        in plane stress.
 
     meshio's own writer of this format has neither these element types nor surfaces.
     """
@@ -81,7 +91,14 @@ def write_inp(path: Path, drive: meshio.Mesh, surfaces: dict[str, Ints], materia
         for name, faces in surfaces.items():
             file.write(f"*SURFACE, NAME={name.upper()}, TYPE=ELEMENT\n")
             np.savetxt(file, faces + 1, fmt="%d, S%d")
-        file.write(f"*MATERIAL, NAME={MATERIAL}\n*ELASTIC\n{material.E:.12g}, {material.nu:.12g}\n")
+        file.write(f"*MATERIAL, NAME={MATERIAL}\n")
+        e, nu = material.E, material.nu
+        if plane_stress:
+            g = f"{0.5 * e / (1.0 + nu):.12g}"
+            file.write("*ELASTIC, TYPE=ENGINEERING CONSTANTS\n")
+            file.write(f"{e:.12g}, {e:.12g}, {e:.12g}, {nu:.12g}, 0., 0., {g}, {g}\n{g}\n")
+        else:
+            file.write(f"*ELASTIC\n{e:.12g}, {nu:.12g}\n")
         for body in drive.cell_sets:
             file.write(f"*SOLID SECTION, ELSET={body.upper()}, MATERIAL={MATERIAL}\n")
             if not solid:

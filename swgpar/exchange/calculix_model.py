@@ -1,0 +1,200 @@
+"""What a job of CalculiX consists of: numbered nodes, surfaces and constraints of the whole drive.
+
+The plane model is one layer of C3D8I elements. Their incompatible modes are those of the project's quadrilaterals;
+CPS4 of CalculiX has none. A material without transverse contraction along z, no displacement along z and layers tied
+to each other give exact plane stress at any thickness.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import meshio
+import numpy as np
+
+from swgpar.analysis.drive_model import flank_crowning
+from swgpar.constraints.distributing_coupling import node_weights
+from swgpar.contact.segments import flank_faces
+from swgpar.design.drive_design import DriveDesign
+from swgpar.geometry.arrays import Floats, Ints
+from swgpar.geometry.profiles import ToothProfile
+from swgpar.geometry.profiles.flank import Segment
+from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes
+from swgpar.meshing.export import sector_numbers, whole_body, whole_drive
+from swgpar.meshing.inp import element_faces
+
+SIDES = {1: "clockwise", -1: "counter_clockwise"}
+"""Of the flanks of a tooth."""
+
+MEAN_NODES = 8
+"""Least number of nodes of a mean motion; the mean of this many nodes at equal angles is free of the waves of the
+bent flexible spline up to this order."""
+
+Term = tuple[int, int, float]
+"""Node from 0, degree of freedom from 1, coefficient."""
+
+
+@dataclass(frozen=True)
+class Surface:
+    """Nodes of a surface that is coupled or loaded.
+
+    nodes : (n,) from 0, and their weight (n,), tributary areas with the sum 1
+    mean : nodes at equal angles, of which the mean motion is taken
+    """
+
+    nodes: Ints
+    weight: Floats
+    mean: Ints
+
+
+class JobModel:
+    """The whole drive of a design on the mesh of a recipe.
+
+    Attributes
+    ----------
+    meshes : one sector of the flexible spline and of the ring gear, as solids
+    drive : both bodies as one mesh, the spline's nodes and elements first
+    """
+
+    def __init__(self, design: DriveDesign, recipe: MeshRecipe) -> None:
+        self.design, self.plane = design, design.drive.model == "plane"
+        self.flat = build_sector_meshes(design, recipe)
+        self.meshes = {name: replace(mesh, lower_nodes=None) for name, mesh in self.flat.items()}
+        self.drive: meshio.Mesh = whole_drive(self.meshes)
+        self.n_spline = len(whole_body(self.spline)[0])
+
+    @property
+    def spline(self) -> SectorMesh:
+        return self.meshes["flexible_spline"]
+
+    @property
+    def ring(self) -> SectorMesh:
+        return self.meshes["ring_gear"]
+
+    @property
+    def points(self) -> Floats:
+        """(n, 3) mm, of all nodes of the gears."""
+        return self.drive.points
+
+    @property
+    def n_elements(self) -> int:
+        return sum(len(mesh.elements) * mesh.n_sectors for mesh in self.meshes.values())
+
+    def numbers(self, mesh: SectorMesh, nodes: Ints) -> Ints:
+        """Numbers (n_sectors, n), from 0, of nodes of a sector."""
+        return sector_numbers(mesh)[:, nodes] + (0 if mesh is self.spline else self.n_spline)
+
+    @cached_property
+    def surfaces(self) -> dict[str, Ints]:
+        """Element and face (n, 2), both from 0, of the surfaces in contact: each side of the flanks is one."""
+        found, first = {}, 0
+        for mesh in self.meshes.values():
+            quads = {f"{mesh.body}_{SIDES[grid.side]}": _quads(grid.nodes) for grid in mesh.flanks}
+            if mesh is self.spline:
+                quads[f"{mesh.body}_inner"] = mesh.faces["inner"]
+            for name, corners in quads.items():
+                copies = np.repeat(element_faces(mesh, corners)[None], mesh.n_sectors, axis=0)
+                copies[..., 0] += first + len(mesh.elements) * np.arange(mesh.n_sectors, dtype=np.int32)[:, None]
+                found[name] = copies.reshape(-1, 2)
+            first += len(mesh.elements) * mesh.n_sectors
+        return found
+
+    def surface(self, mesh: SectorMesh, name: str) -> Surface:
+        """The nodes of a node set of a body."""
+        nodes = mesh.node_sets[name]
+        weight = node_weights(mesh.coords, nodes, mesh.ccw_nodes)
+        nodes, weight = nodes[weight > 0.0], weight[weight > 0.0]
+        x, _, z = mesh.coords[nodes].T
+        middle = nodes[np.lexsort((np.abs(z - z.mean()).round(9), np.abs(x).round(9)))[0]]
+        count = next(k for k in range(MEAN_NODES, mesh.n_sectors + 1) if mesh.n_sectors % k == 0)
+        shares = np.tile(weight, mesh.n_sectors)
+        return Surface(
+            nodes=self.numbers(mesh, nodes).ravel(),
+            weight=shares / shares.sum(),
+            mean=self.numbers(mesh, np.array([middle]))[:: mesh.n_sectors // count, 0],
+        )
+
+    def inner_nodes(self) -> Ints:
+        """Nodes (n,), from 0, of the inner surface that the cam can touch; of the plane model those of one layer."""
+        nodes = np.unique(self.spline.faces["inner"])
+        nodes = np.intersect1d(nodes, self.spline.node_sets["bore"]) if self.plane else nodes
+        return np.unique(self.numbers(self.spline, nodes))
+
+    def inner_gap(self) -> float:
+        """Mean distance (mm) of the inner surface's facets from the exact cylinder."""
+        corners = self.spline.coords[self.spline.faces["inner"]]
+        length = np.hypot(*np.ptp(corners[..., :2], axis=1).T)
+        height = self.design.inner_radius - np.hypot(*corners[..., :2].mean(axis=1).T)
+        return float(2.0 / 3.0 * np.sum(length * height) / length.sum())
+
+    def flank_gap(self) -> float:
+        """Largest distance (mm) between a facet and the exact, crowned flank of a gear."""
+        crowning, gap = flank_crowning(self.design), 0.0
+        for mesh in self.meshes.values():
+            removed = crowning.amount if mesh is self.spline else 0.0
+            faces = flank_faces(mesh, mesh.flanks[0], removed, crowning.width, crowning.shape)
+            gap = max(gap, float(np.abs(faces.offset).max()))
+        return gap
+
+    def faceted_flanks(self) -> tuple[ToothProfile, ToothProfile]:
+        """Flanks of both gears at mid-width as polygons."""
+        return _polygon(self.spline), _polygon(self.ring)
+
+    def ties(self) -> Iterator[list[Term]]:
+        """Plane model: the upper layer of nodes moves with the lower one."""
+        for name, mesh in self.flat.items():
+            upper = np.flatnonzero(mesh.lower_nodes != np.arange(len(mesh.coords)))
+            solid = self.meshes[name]
+            pairs = np.stack([self.numbers(solid, upper), self.numbers(solid, mesh.lower_nodes[upper])], axis=-1)
+            for above, below in np.unique(pairs.reshape(-1, 2), axis=0).tolist():
+                for axis in (1, 2):
+                    yield [(above, axis, 1.0), (below, axis, -1.0)]
+
+    def mean_motion(self, surface: Surface, reference: int, lateral: bool) -> Iterator[list[Term]]:
+        """Mean displacements, tilts and rotation about z of a surface, linear: the degrees of freedom 1 to 3 of the
+        node `reference`, and those of the next one.
+
+        lateral : whether mean displacements along x and y are among them
+        """
+        x = self.points[surface.mean]
+        arm, n = x - x.mean(axis=0), len(x)
+        radius2 = float((arm[:, :2] ** 2).sum())
+        top, left, bottom, right = (int(k) for k in (arm[:, 1].argmax(), arm[:, 0].argmin(), arm[:, 1].argmin(),
+                                                      arm[:, 0].argmax()))  # fmt: skip
+        one, none = np.full(n, 1.0 / n), np.zeros(n)
+        # of the displacements along x, y and z; the node that depends on the others, and its axis
+        rows = [((reference + 1, 3), (-arm[:, 1] / radius2, arm[:, 0] / radius2, none), (bottom, 0))]
+        if lateral:
+            rows += [((reference, 1), (one, none, none), (top, 0)), ((reference, 2), (none, one, none), (right, 1))]
+        if not self.plane:
+            rows += [
+                ((reference, 3), (none, none, one), (left, 2)),
+                ((reference + 1, 1), (none, none, 2.0 / radius2 * arm[:, 1]), (top, 2)),
+                ((reference + 1, 2), (none, none, -2.0 / radius2 * arm[:, 0]), (right, 2)),
+            ]
+        factors = np.array([np.stack(factor, axis=-1).ravel() for _, factor, _ in rows])
+        dependent = [3 * k + axis for *_, (k, axis) in rows]
+        # none of the dependent displacements is left in the equations of the others
+        inverse = np.linalg.inv(factors[:, dependent])
+        solved = inverse @ factors
+        for i, first in enumerate(dependent):
+            columns = [first, *np.setdiff1d(np.flatnonzero(np.abs(solved[i]) > 1e-12 * np.abs(solved[i]).max()),
+                                            dependent)]  # fmt: skip
+            terms = [(int(surface.mean[c // 3]), c % 3 + 1, float(solved[i, c])) for c in columns]
+            yield terms + [(*rows[j][0], -float(f)) for j, f in enumerate(inverse[i]) if f]
+
+
+def _quads(grid: Ints) -> Ints:
+    corners = np.stack([grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]], axis=-1)
+    return corners.reshape(-1, 4)
+
+
+def _polygon(mesh: SectorMesh) -> ToothProfile:
+    flank = mesh.flanks[0]
+    points = mesh.coords[flank.nodes[:, int(np.abs(flank.z).argmin())], :2]
+    lines = np.diff(points, axis=0)
+    angle, length = np.arctan2(lines[:, 1], lines[:, 0]), np.hypot(*lines.T)
+    segments = [Segment("facet", tuple(p), a, 0.0, s) for p, a, s in zip(points, angle, length, strict=False)]
+    return replace(mesh.profile, segments=tuple(segments))
