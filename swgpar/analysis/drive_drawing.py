@@ -24,8 +24,13 @@ SIZE = 560.0
 
 FLANK_POINTS = 12
 
-FILLS = {"ring_gear": "#c9d6e6", "flexible_spline": "#f0c987", "wave_generator": "#d9d9d9"}
-NAMES = {"ring_gear": "ring gear", "flexible_spline": "flexible spline", "wave_generator": "wave generator"}
+FILLS = {"housing": "#e3e3da", "ring_gear": "#c9d6e6", "flexible_spline": "#f0c987", "wave_generator": "#d9d9d9"}
+NAMES = {
+    "housing": "housing",
+    "ring_gear": "ring gear",
+    "flexible_spline": "flexible spline",
+    "wave_generator": "wave generator",
+}
 
 
 @dataclass
@@ -121,7 +126,7 @@ def _curves(design: DriveDesign) -> dict[str, list[np.ndarray]]:
     drive, d = design.drive, design.deflection
     angle = 2.0 * np.pi / drive.teeth_rg * (np.arange(drive.teeth_rg) + 0.5)
     ring = rotated(_tooth(design, "ring_gear")[None], angle[:, None]).reshape(-1, 2)
-    outer = design.profile("ring_gear").r_root_circle + design.ring_gear.rim
+    outer = design.ring_outer_radius
     r = design.inner_radius + 0.5 * design.flexible_spline.rim
 
     def moved(psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -134,7 +139,9 @@ def _curves(design: DriveDesign) -> dict[str, list[np.ndarray]]:
     teeth = place[:, None] + rotated(_tooth(design, "flexible_spline")[None] - [0.0, r], turned[:, None])
     place, turned = moved(np.linspace(0.0, 2.0 * np.pi, 721)[:-1])
     inside = place + rotated(np.array([[0.0, -0.5 * design.flexible_spline.rim]]), turned)
+    housing = {"housing": [_circle(design.outer_radius), _circle(outer)]} if design.housing else {}
     return {
+        **housing,
         "ring_gear": [_circle(outer), ring],
         "flexible_spline": [teeth.reshape(-1, 2), inside],
         "wave_generator": [design.cam().outline(720)],
@@ -147,7 +154,7 @@ def _circle(radius: float) -> np.ndarray:
 
 
 def _front(design: DriveDesign, curves: dict[str, list[np.ndarray]]) -> str:
-    outer = float(curves["ring_gear"][0].max())
+    outer = design.outer_radius
     sheet = Sheet(215.0 / outer, 250.0, 265.0, 545.0)
     for name, closed in curves.items():
         sheet.outline(closed, FILLS[name], NAMES[name])
@@ -174,6 +181,8 @@ def _teeth(design: DriveDesign, curves: dict[str, list[np.ndarray]]) -> str:
     scale = 0.5 * (SIZE - 210.0) / half
     sheet = Sheet(scale, 0.5 * SIZE, 25.0 + scale * high, 50.0 + scale * (high - low))
     for name, closed in curves.items():
+        if name == "housing":  # beyond the window
+            continue
         sheet.outline([_cut(curve, half, low, high) for curve in closed], FILLS[name], NAMES[name])
     a, edge = 0.5 * design.deflection, SIZE - 90.0
     # dimensions of the spline are drawn where its tooth is deflected to
@@ -203,7 +212,7 @@ def _cut(curve: np.ndarray, half: float, low: float, high: float) -> np.ndarray:
 def _meridian(design: DriveDesign) -> str:
     cup, width = design.cup, design.drive.face_width
     spline, ring = (design.profile(gear) for gear in GEARS)
-    outer = ring.r_root_circle + design.ring_gear.rim
+    outer = design.outer_radius
     back = 0.5 * width
     length = width + cup.length
     scale = min((SIZE - 150.0) / length, 420.0 / outer)
@@ -213,7 +222,8 @@ def _meridian(design: DriveDesign) -> str:
     wall = np.concatenate([inner_line, outer_line[::-1], tooth])
     half = 0.5 * design.wave_generator.face_width
     boxes = {
-        "ring_gear": (ring.r_tip_circle, outer, back),
+        **({"housing": (design.ring_outer_radius, outer, back)} if design.housing else {}),
+        "ring_gear": (ring.r_tip_circle, design.ring_outer_radius, back),
         "wave_generator": (0.0, design.inner_radius, half),
     }
     for name, (r1, r2, reach) in boxes.items():

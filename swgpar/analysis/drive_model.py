@@ -15,7 +15,7 @@ from swgpar.analysis.bearing_model import (
     race_coupling,
     race_reference,
 )
-from swgpar.constraints.distributing_coupling import DistributingCoupling, Housing
+from swgpar.constraints.distributing_coupling import DistributingCoupling, RadialGuide
 from swgpar.constraints.supports import Supports
 from swgpar.contact.contact import NO_KEYS, Contact, largest
 from swgpar.contact.flank_state import Crowning, SearchRange
@@ -27,7 +27,7 @@ from swgpar.fem.condensed_parts import condense_sector, condense_tooth, relative
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
 from swgpar.fem.sectors_in_reach import RingSectors, WholeTeeth
-from swgpar.fem.stress import body_fields, maxima
+from swgpar.fem.stress import body_fields, part_maxima
 from swgpar.kernel import ReferenceElements, reference_elements
 from swgpar.log import PhaseTimes
 from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes
@@ -45,8 +45,8 @@ than the second distance; faces with blocks in the tangent's pattern; radial dis
 FOOT_REACH = 0.5
 """Largest gap over the module at which a foot point is looked for."""
 
-PREFIXES = ("fs", "rg", "race")
-"""Of the names of stresses, by body."""
+PREFIXES = (("fs",), ("rg", "housing"), ("race",))
+"""Of the names of stresses, by body and part."""
 
 EDGE = 1.0 + 1e-9
 """Factor on the width of a rigid surface: points on its edge belong to it."""
@@ -126,10 +126,11 @@ class DriveModel:
         """Largest stresses (MPa) by body and kind ("fs_s1", "race_vm", …), and the nodal fields of all bodies."""
         u = self.problem.displacement()
         values, fields = {}, []
-        for prefix, body in zip(PREFIXES, self.elements.bodies):
+        for prefixes, body in zip(PREFIXES, self.elements.bodies):
             field = body_fields(body, u)
             fields.append(field)
-            values.update({f"{prefix}_{k}": v for k, v in maxima(self.comm, field).items()})
+            for prefix, largest_of in zip(prefixes, part_maxima(self.comm, body, u, field)):
+                values.update({f"{prefix}_{k}": v for k, v in largest_of.items()})
         return values, fields
 
 
@@ -156,7 +157,7 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
     with phases("mesh"):
         meshes = build_sector_meshes(design, recipe)
     with phases("elements"):
-        references = {name: _reference(design, mesh) for name, mesh in meshes.items()}
+        references = {name: sector_elements(design, mesh) for name, mesh in meshes.items()}
         layouts = [build_layout(design, mesh, references[name]) for name, mesh in meshes.items()]
         if design.bearing is not None:
             race = build_race_mesh(design, meshes["flexible_spline"])
@@ -194,15 +195,22 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
     )
 
 
-def _reference(design: DriveDesign, mesh: SectorMesh) -> ReferenceElements:
-    material = design.material
-    return reference_elements(mesh.coords[mesh.elements], material.E, material.nu, design.drive.face_width)
+def sector_elements(design: DriveDesign, mesh: SectorMesh) -> ReferenceElements:
+    """Matrices of the elements of a sector of a gear, those of its housing of the housing's material."""
+    material, width = design.material, design.drive.face_width
+    coords = mesh.coords[mesh.elements]
+    elements = reference_elements(coords, material.E, material.nu, width)
+    if len(mesh.housing):
+        of_housing = reference_elements(coords[mesh.housing], *design.housing_material, width)
+        for matrices, other in zip(elements, of_housing):
+            matrices[mesh.housing] = other
+    return elements
 
 
 def build_layout(design: DriveDesign, mesh: SectorMesh, reference: ReferenceElements | None = None) -> BodyLayout:
     """Modelled sectors of a body. reference : elements of one sector, needed where sectors are condensed"""
     halved = is_halved(design)
-    clamped = mesh.body == "ring_gear" and design.drive.layout == "ring_fixed"
+    clamped = mesh.body == "ring_gear" and design.drive.layout == "ring_fixed" and design.frame_is_rigid
     fixed = mesh.node_sets["outer"] if clamped else np.zeros(0, dtype=np.int32)
     count = mesh.n_sectors // 2 if halved else mesh.n_sectors
     condensed = tooth = None
@@ -216,7 +224,8 @@ def build_layout(design: DriveDesign, mesh: SectorMesh, reference: ReferenceElem
 
 
 def _leaves_out_sectors(design: DriveDesign) -> bool:
-    return design.solver.far_teeth == "left_out" and design.drive.layout == "ring_fixed"
+    # an elastic housing gives way all round
+    return design.solver.far_teeth == "left_out" and design.drive.layout == "ring_fixed" and design.housing is None
 
 
 def _condenses_teeth(design: DriveDesign) -> bool:
@@ -224,20 +233,30 @@ def _condenses_teeth(design: DriveDesign) -> bool:
 
 
 def build_supports(design: DriveDesign, *, partition: Partition, elements: Elements) -> Supports:
-    """Coupling of the bore; with the spline fixed also that of the ring gear, and the housing; that of a bearing."""
+    """Couplings of the bore, of a ring gear that is not clamped and of a bearing; the guide of a rotating ring gear."""
     spline, ring = elements.bodies[:2]
     halved = is_halved(design)
     # a plane section with deviations is centred by its cam alone: the wall of the cup gives way
     centred = design.drive.model == "cup" or design.deviations is None
-    couplings, housing = [DistributingCoupling(partition, spline, "bore", halved, centred)], None
-    if design.drive.layout == "spline_fixed":
+    rotates, guide = design.drive.layout == "spline_fixed", None
+    couplings = [DistributingCoupling(partition, spline, "bore", halved, centred)]
+    if rotates or not design.frame_is_rigid:
         couplings.append(DistributingCoupling(partition, ring, "outer", halved))
+    if rotates and design.frame_is_rigid:
         outer = float(np.hypot(*couplings[-1].reference[:, :2].T).max(initial=0.0))
         area = 2.0 * np.pi * outer * design.drive.face_width / (2.0 if halved else 1.0)
-        housing = Housing(couplings[-1], area, design.penalty)
+        guide = RadialGuide(couplings[-1], area, design.penalty)
     scale = design.material.E * design.drive.module
     race = None if design.bearing is None else race_coupling(partition, elements, couplings[0], halved)
-    return Supports(partition, couplings, housing=housing, scale=scale, share=0.5 if halved else 1.0, race=race)
+    return Supports(
+        partition,
+        couplings,
+        output=RING_GEAR if rotates else FLEXIBLE_SPLINE,
+        guide=guide,
+        scale=scale,
+        share=0.5 if halved else 1.0,
+        race=race,
+    )
 
 
 def build_wave_generator_contacts(design: DriveDesign, *, elements: Elements) -> tuple[list[Contact], np.ndarray]:

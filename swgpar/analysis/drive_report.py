@@ -143,6 +143,9 @@ def answers(summary: Mapping[str, Any]) -> list[list[Any]]:
         where = f"{bearing['cam_angle_deg']:.0f} degrees from the major axis"
         add("largest ball load", bearing["largest_load_N"], "N", None, where)
         add("rating life of the bearing, L10", bearing["life"]["L10_hours"], "h")
+    if housing := summary.get("housing"):
+        add("largest von Mises stress in the housing", housing["vm_MPa"], "MPa")
+        add("largest radial displacement of the ring gear's outer surface", housing["bulge_um"], "µm")
     return rows
 
 

@@ -112,7 +112,8 @@ class LoadStepper:
         if here.control == target.control:
             return here
         if target.control == "torque":
-            return replace(here, torque=float(problem.supports.reactions(problem.multipliers())[-1]))
+            supports = problem.supports
+            return replace(here, torque=float(supports.reactions(problem.multipliers())[supports.output_gear]))
         return replace(here, output_rotation=problem.output_rotation())
 
     def _takes_up_torque(self, state: LoadState) -> bool:

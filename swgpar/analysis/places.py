@@ -99,8 +99,11 @@ def find_places(
         near |= inside_teeth(design, body.layout.mesh)
         apart = np.broadcast_to(~near, touched.shape)
         regions = _regions(design, body.layout.mesh)
+        beyond = np.ones(touched.shape[1], dtype=bool)  # nodes of the housing
+        beyond[body.layout.mesh.nodes_of(0)] = False
         for stress in ("s1", "s3", "vm"):
             values = -fields[k][stress] if stress == "s3" else fields[k][stress]
+            values = np.where(beyond, -np.inf, values)
             # s1 below a contact is compressive or small; of the ring gear any flank may be touched
             below = near if stress != "s1" else np.zeros_like(touched) if ring else touched
             below = np.broadcast_to(below, touched.shape)
@@ -234,7 +237,7 @@ def region_of(design: DriveDesign, mesh: SectorMesh, node: int, touched: bool) -
     near = NEAR * design.drive.module
     inside = UNDER_CONTACT if touched else "inside the tooth"
     if mesh.body == "ring_gear":
-        outer = root + design.ring_gear.rim
+        outer = design.ring_outer_radius
         if radius < root - near:
             return "tip" if radius < mesh.profile.r_tip_circle + near else inside
         return "housing" if radius > outer - near else "rim" if radius > root + near else TOOTH_ROOT

@@ -17,6 +17,7 @@ from swgpar.analysis.contact_pressure import nodal_pressure
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.drive_result import DriveResult, open_fields
 from swgpar.analysis.drive_tables import DriveTables
+from swgpar.analysis.housing_values import housing_values, keep_largest
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.losses import cam_force
 from swgpar.analysis.pair_contact import PairContact, pair_contacts
@@ -73,6 +74,7 @@ class Recorder(ABC):
     turns : rows of transmission_error.csv
     balls : rows of balls.csv, the loads of a bearing's balls
     race_stress : largest stresses of the outer race under load, MPa
+    housing : largest stresses and radial displacement of the housing under load, by the names of the summary
     bearing_shares : of the bearing in the compliance of the loaded state
     """
 
@@ -95,6 +97,7 @@ class Recorder(ABC):
         self.turns: list[Row] = []
         self.balls: list[Row] = []
         self.race_stress: dict[str, float] = {}
+        self.housing: dict[str, float] = {}
         self.bearing_shares: dict[str, ComplianceShares] = {}
 
     def record(self, stepper: LoadStepper, seconds: float, elapsed: float) -> None:
@@ -105,7 +108,9 @@ class Recorder(ABC):
         model = self.model
         with model.phases("stress"):
             values, body_fields = model.stresses()
-        race = {name: values.pop(name) for name in list(values) if name.startswith("race_")}
+        race, housing = (
+            {name: values.pop(name) for name in list(values) if name.startswith(part)} for part in ("race_", "housing_")
+        )
         self.rows.append(history.plain_row({**stepper.row(), **values, "wall_s": seconds}))
         if model.design.ratcheting:
             self.tooth_rotations.append(tooth_rotation(model))
@@ -113,6 +118,8 @@ class Recorder(ABC):
             on_edge = self._keep_pairs(stepper.load_state)
             self._keep_places(stepper.load_state, body_fields, on_edge)
             self._keep_balls(stepper.load_state, race)
+            if model.design.housing is not None and stepper.load_state.is_periodic:
+                keep_largest(self.housing, housing_values(model, housing))
         with model.phases("fatigue and losses"):
             if self.cycle is not None:
                 self.cycle.keep(stepper.load_state, body_fields[FLEXIBLE_SPLINE])
@@ -153,8 +160,7 @@ class Recorder(ABC):
         if self.model.design.bearing is not None:
             self.balls += ball_rows(self.model, state, len(self.rows), int(self.rows[-1]["step"]))
             if state.is_periodic:
-                for name, value in race.items():
-                    self.race_stress[name] = max(value, self.race_stress.get(name, value))
+                keep_largest(self.race_stress, race)
             if state.stage == Stage.LOAD or self._has_largest_torque(state):
                 self.bearing_shares = bearing_shares(self.model, state)
 

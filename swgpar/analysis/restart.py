@@ -65,6 +65,7 @@ def write_state(
         "tooth_rotations": recorder.tooth_rotations,
         "balls": recorder.balls,
         "race_stress": recorder.race_stress,
+        "housing": recorder.housing,
         "bearing_shares": {name: asdict(share) for name, share in recorder.bearing_shares.items()},
         "stress_errors": recorder.stress_errors,
         "places": {name: asdict(place) for name, place in recorder.places.items()},
@@ -113,6 +114,7 @@ def resume(recorder: FolderRecorder, stepper: LoadStepper, items: list[LoadState
     recorder.pairs, recorder.contact_lines = state.get("pairs", []), state.get("contact_lines", [])
     recorder.tooth_rotations = state.get("tooth_rotations", [])
     recorder.balls, recorder.race_stress = state.get("balls", []), state.get("race_stress", {})
+    recorder.housing = state.get("housing", {})
     shares = state.get("bearing_shares", {})
     recorder.bearing_shares = {name: ComplianceShares(**share) for name, share in shares.items()}
     recorder.root_stress = state.get("root_stress") and RootStress(**state["root_stress"])

@@ -347,6 +347,7 @@ class _Run:
             recorder.pairs,
             recorder.turns,
             self._bearing(),
+            recorder.housing,
             self.seconds,
             tooth_rotations=recorder.tooth_rotations,
             stiffness_error=error,

@@ -91,6 +91,7 @@ def summarise(
     pairs: Sequence[Row],
     turns: Sequence[Row],
     bearing: dict[str, Any] | None,
+    housing: Mapping[str, float],
     seconds: float,
     *,
     tooth_rotations: Sequence[float] = (),
@@ -107,6 +108,7 @@ def summarise(
     root_stress : largest tensile stress at the teeth, by windows
     places : of the largest stresses under load, those of regions included
     pairs : contacts of the flanks under load;  bearing : loads of its balls, None without one
+    housing : largest stresses and radial displacement under load, empty without one
     turns : transmission error over the sampled period, or over whole turns with deviations
     seconds : wall time of the run, restarts included
     tooth_rotations : (n,) deg, of the flexible spline's teeth, with [ratcheting]
@@ -144,6 +146,7 @@ def summarise(
             model.copies,
         ),
         "bearing": bearing,
+        "housing": dict(housing) or None,
         "mesh_error": mesh_error(root_stress, values["means"], places),
         "condensed_MPa": model.omitted_bending_stress() if design.solver.condensed_sectors else None,
         "sampling_error": sampling_error(design, rows, MEANS) if sampled_period else None,

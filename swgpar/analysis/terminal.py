@@ -253,6 +253,14 @@ def _print_bearing(bearing: Mapping[str, Any]) -> None:
         )
 
 
+def _print_housing(housing: Mapping[str, float]) -> None:
+    console.print(
+        f"housing under load: s1 {housing['s1_MPa']:.1f}, |s3| {housing['s3_MPa']:.1f}, von Mises "
+        f"{housing['vm_MPa']:.1f} MPa; the outer surface of the ring gear moves outwards by up to "
+        f"{housing['bulge_um']:.3g} µm"
+    )
+
+
 def _print_errors(summary: Mapping[str, Any]) -> None:
     bearing = summary.get("bearing")
     if root := summary.get("root_stress"):
@@ -275,6 +283,8 @@ def _print_errors(summary: Mapping[str, Any]) -> None:
         _print_losses(losses)
     if bearing:
         _print_bearing(bearing)
+    if housing := summary.get("housing"):
+        _print_housing(housing)
     asked = summary["accuracy"]
     if summary["means"]:
         _print_mesh_error(summary["mesh_error"])

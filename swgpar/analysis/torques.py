@@ -8,7 +8,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.design.load_states import LoadState
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE, OUTER_RACE
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE, OUTER_RACE, RING_GEAR
 from swgpar.solve.discrete_problem import DiscreteProblem
 
 
@@ -48,10 +48,10 @@ def torques(problem: DiscreteProblem, state: LoadState) -> Torques:
         return comm.allreduce(local, op=MPI.SUM) / supports.share
 
     reactions = supports.reactions(problem.multipliers())
-    output = state.torque if state.control == "torque" else float(reactions[-1])
-    wave_generator, tooth = moment(rigid), moment(teeth)
-    if len(reactions) == 1:
-        balance = abs(wave_generator + tooth + output)
-    else:
-        balance = max(abs(wave_generator + tooth + float(reactions[0])), abs(output - tooth))
+    if state.control == "torque":
+        reactions[supports.output_gear] = state.torque
+    wave_generator, tooth, output = moment(rigid), moment(teeth), float(reactions[supports.output_gear])
+    balance = abs(wave_generator + tooth + float(reactions[FLEXIBLE_SPLINE]))
+    if supports.ring_floats:
+        balance = max(balance, abs(float(reactions[RING_GEAR]) - tooth))
     return Torques(wave_generator, tooth, output, balance)

@@ -167,7 +167,7 @@ class DistributingCoupling:
         return np.array(directions)
 
 
-class Housing:
+class RadialGuide:
     """Rigid ring in which the ring gear rotates as the output: its outer nodes stay on their circle (section 5.8).
 
     Stiff radial springs, as hard as contact; the nodes are free along the circle and the axis.

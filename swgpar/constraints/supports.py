@@ -1,13 +1,14 @@
-"""Supports and load of the drive: couplings, housing, and the grounding that a factorisation needs."""
+"""Supports and load of the drive: couplings, guide, and the grounding that a factorisation needs."""
 
 from __future__ import annotations
 
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.constraints.distributing_coupling import N_COUPLED, ROTATION, Coupling, DistributingCoupling, Housing
+from swgpar.constraints.distributing_coupling import N_COUPLED, ROTATION, Coupling, DistributingCoupling, RadialGuide
 from swgpar.constraints.race_coupling import RaceCoupling
 from swgpar.design.load_states import LoadState
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.partition import Partition
 from swgpar.fem.sparse import BlockRows, add_diagonal
 from swgpar.fem.vectors import create_vector
@@ -18,13 +19,15 @@ GROUNDING = 0.1
 
 
 class Supports:
-    """The couplings of all bodies that float: of the gears, the output's last, then of a bearing's outer race.
+    """The couplings of all bodies that float: of the gears by their indices, then of a bearing's outer race.
 
     Parameters
     ----------
     partition : ownership
-    couplings : six multipliers each, in this order at the end of the vector; none where contacts hold the body
-    housing : around the ring gear, or None
+    couplings : six multipliers each, in this order at the end of the vector; none where contacts hold the body, no
+        second one where the ring gear is clamped
+    output : index of the gear that is the output
+    guide : around the ring gear, or None
     scale : unit of the multipliers and of the grounding: E times the module, N/mm
     share : modelled share of the drive, 1 or 0.5
     race : coupling of the outer race, without a bearing None
@@ -40,14 +43,15 @@ class Supports:
         partition: Partition,
         couplings: list[DistributingCoupling],
         *,
-        housing: Housing | None = None,
+        output: int = FLEXIBLE_SPLINE,
+        guide: RadialGuide | None = None,
         scale: float,
         share: float,
         race: RaceCoupling | None = None,
     ) -> None:
-        self.partition, self.housing = partition, housing
+        self.partition, self.guide = partition, guide
         self.couplings: list[Coupling] = [*couplings] if race is None else [*couplings, race]
-        self._output, self.floats = len(couplings) - 1, len(couplings) > 1
+        self.output_gear, self._gears = output, len(couplings)
         self.scale, self.share = scale, share
         self.offsets = np.zeros((len(self.couplings), N_COUPLED))
         self.ground_vectors: list[PETSc.Vec] = []
@@ -69,13 +73,18 @@ class Supports:
     @property
     def output(self) -> Coupling:
         """Coupling of the output."""
-        return self.couplings[self._output]
+        return self.couplings[self.output_gear]
+
+    @property
+    def ring_floats(self) -> bool:
+        """Whether the ring gear has a coupling, and is not clamped."""
+        return self._gears > RING_GEAR
 
     def prescribed(self, state: LoadState) -> list[tuple[int, int]]:
         """Pairs (coupling, coupled quantity) that the load state prescribes."""
         active = [(i, int(k)) for i, c in enumerate(self.couplings) for k in np.flatnonzero(c.active)]
         if state.control == "torque":
-            active.remove((self._output, ROTATION))
+            active.remove((self.output_gear, ROTATION))
         return active
 
     def unused_multipliers(self, state: LoadState) -> np.ndarray:
@@ -89,48 +98,48 @@ class Supports:
         return float(self.output.evaluate(u).value[ROTATION])
 
     def ring_rotation(self, u: np.ndarray) -> float:
-        """Rotation (rad) of the ring gear at displacement u (n_local, 3) mm, zero when it is fixed; collective."""
-        return self.output_rotation(u) if self.floats else 0.0
+        """Rotation (rad) of the ring gear at displacement u (n_local, 3) mm, zero when it is clamped; collective."""
+        return float(self.couplings[RING_GEAR].evaluate(u).value[ROTATION]) if self.ring_floats else 0.0
 
     def add_ring_moment(self, u: np.ndarray, moment: float, residual: np.ndarray) -> None:
-        """Add this rank's part of a moment (N mm) on a ring gear that is not fixed to residual (n_local, 3) N."""
-        if self.floats:
-            ring, moment = self.output, self.partition.comm.allreduce(moment, op=MPI.SUM)
+        """Add this rank's part of a moment (N mm) on a ring gear that is not clamped to residual (n_local, 3) N."""
+        if self.ring_floats:
+            ring, moment = self.couplings[RING_GEAR], self.partition.comm.allreduce(moment, op=MPI.SUM)
             residual[ring.nodes] += moment * ring.evaluate(u).gradient[ROTATION]
 
     def add_forces(self, u: np.ndarray, state: LoadState, multiplier: np.ndarray, residual: np.ndarray) -> np.ndarray:
-        """Add forces of multipliers, load and housing to residual (n_local, 3) N.
+        """Add forces of multipliers, load and guide to residual (n_local, 3) N.
 
         Returns the residual's rows (n_multipliers,) of the multipliers, N.
         """
-        if self.housing is not None:
-            self.housing.add_forces(u, residual)
+        if self.guide is not None:
+            self.guide.add_forces(u, residual)
         motion = [coupling.evaluate(u) for coupling in self.couplings]
         rows = self.scale * multiplier  # unused ones are zero; used ones are overwritten below
         if not motion:
             return rows
         target = self.offsets.copy()
-        target[self._output, ROTATION] += state.output_rotation
+        target[self.output_gear, ROTATION] += state.output_rotation
         for i, k in self.prescribed(state):
             gradient = motion[i].gradient[k]
             residual[self.couplings[i].nodes] += self.scale * multiplier[N_COUPLED * i + k] * gradient
             rows[N_COUPLED * i + k] = self.scale * (motion[i].value[k] - target[i, k])
         if state.control == "torque":
-            residual[self.output.nodes] -= self.share * state.torque * motion[self._output].gradient[ROTATION]
+            residual[self.output.nodes] -= self.share * state.torque * motion[self.output_gear].gradient[ROTATION]
         return rows
 
     def add_blocks(self, u: np.ndarray, rows: BlockRows) -> None:
-        """Add the stiffness of grounding and housing to the tangent's diagonal."""
+        """Add the stiffness of grounding and guide to the tangent's diagonal."""
         for node, direction in self._grounded_nodes:
             add_diagonal(rows, self.partition, np.array([node]), np.outer(direction, direction))
-        if self.housing is not None:
-            add_diagonal(rows, self.partition, self.housing.nodes, self.housing.blocks(u))
+        if self.guide is not None:
+            add_diagonal(rows, self.partition, self.guide.nodes, self.guide.blocks(u))
 
     def border(self, u: np.ndarray, state: LoadState) -> tuple[list[PETSc.Vec], list[int]]:
-        """Gradients of all prescribed quantities, with the rows of their multipliers; the output's rotation is last."""
+        """Gradients of all prescribed quantities, with the rows of their multipliers; a loaded rotation is last."""
         prescribed = self.prescribed(state)
         if state.control == "torque":
-            prescribed.append((self._output, ROTATION))
+            prescribed.append((self.output_gear, ROTATION))
         motion, border = [coupling.evaluate(u) for coupling in self.couplings], []
         for i, k in prescribed:
             vector = create_vector(self.partition)
@@ -139,5 +148,5 @@ class Supports:
         return border, [N_COUPLED * i + k for i, k in prescribed]
 
     def reactions(self, multiplier: np.ndarray) -> np.ndarray:
-        """Torques (N mm) about z of the whole drive that support the floating gears, from the multipliers."""
-        return -self.scale * multiplier[ROTATION::N_COUPLED][: self._output + 1] / self.share
+        """Torques (N mm) about z of the whole drive that support the coupled gears, from the multipliers."""
+        return -self.scale * multiplier[ROTATION::N_COUPLED][: self._gears] / self.share

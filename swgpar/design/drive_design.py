@@ -20,6 +20,7 @@ from swgpar.design.sections import (
     ExternalGear,
     Fatigue,
     GearName,
+    Housing,
     InternalGear,
     Load,
     Losses,
@@ -157,6 +158,32 @@ class DriveDesign(Design):
         """Modulus of elasticity (MPa) and Poisson's ratio of the bearing."""
         bearing, material = self.bearing, self.material
         return (bearing.E or material.E, material.nu if bearing.nu is None else bearing.nu)
+
+    @property
+    def housing(self) -> Housing | None:
+        """Section [ring_gear.housing]; None where the frame around the ring gear is rigid."""
+        return self.ring_gear.housing
+
+    @property
+    def housing_material(self) -> tuple[float, float]:
+        """Modulus of elasticity (MPa) and Poisson's ratio of the housing, which the design must have."""
+        housing, material = self.housing, self.material
+        return (housing.E or material.E, material.nu if housing.nu is None else housing.nu)
+
+    @property
+    def ring_outer_radius(self) -> float:
+        """Outer radius of the ring gear, mm, without a housing."""
+        return self.profile("ring_gear").r_root_circle + self.ring_gear.rim
+
+    @property
+    def outer_radius(self) -> float:
+        """Outer radius of the drive, mm: that of the ring gear, or of its housing."""
+        return self.ring_outer_radius + (self.housing.thickness if self.housing else 0.0)
+
+    @property
+    def frame_is_rigid(self) -> bool:
+        """Whether a rigid frame surrounds the ring gear, or its housing."""
+        return self.housing is None or self.housing.outside == "held"
 
     @property
     def cage_speed(self) -> float:

@@ -20,7 +20,7 @@ SMALLEST_MINOR_AXIS = 0.4
 """Smallest minor semi-axis of a cam over the inner radius of the flexible spline."""
 
 THINNEST_RIM, THICKEST_RIM = 0.01, 100.0
-"""Thickness of a rim in modules: thinner and thicker ones are slips."""
+"""Thickness of a rim, or of a housing, in modules: thinner and thicker ones are slips."""
 
 THICK_CUP = 0.85
 """Cup thickness over rim thickness above which the cup continues the layers below the root as well."""
@@ -78,11 +78,13 @@ def _check_teeth(design: DriveDesign) -> None:
     if drive.dedendum_coef <= drive.addendum_coef:
         allowed = f"above {drive.addendum_coef:g} (the addendum) to 2 modules"
         _refuse("drive.dedendum_coef", drive.dedendum_coef, allowed)
-    for gear in GEARS:
-        rim, least, most = getattr(design, gear).rim, THINNEST_RIM * drive.module, THICKEST_RIM * drive.module
-        if not least <= rim <= most:
-            allowed = f"{least:g} to {most:g} mm ({THINNEST_RIM:g} to {THICKEST_RIM:g} modules)"
-            _refuse(f"{gear}.rim", rim, allowed)
+    walls = {f"{gear}.rim": getattr(design, gear).rim for gear in GEARS}
+    if design.housing is not None:
+        walls["ring_gear.housing.thickness"] = design.housing.thickness
+    least, most = THINNEST_RIM * drive.module, THICKEST_RIM * drive.module
+    for key, thickness in walls.items():
+        if not least <= thickness <= most:
+            _refuse(key, thickness, f"{least:g} to {most:g} mm ({THINNEST_RIM:g} to {THICKEST_RIM:g} modules)")
     if design.inner_radius <= design.deflection:
         allowed = "a rim that leaves an inner radius above the deflection"
         _refuse("flexible_spline.rim", design.flexible_spline.rim, allowed)

@@ -48,10 +48,24 @@ class ExternalGear(Gear):
     profile: ExternalProfile
 
 
+class Housing(Section):
+    """Section [ring_gear.housing]: an elastic ring around the ring gear and bonded to it, as wide as the gear."""
+
+    thickness: float = quantity(unit="mm", text="radial thickness", gt=0.0)
+    E: float | None = quantity(
+        None, unit="MPa", text="modulus of elasticity; default material.E, aluminium has 70e3", gt=0.0
+    )
+    nu: float | None = quantity(None, text="Poisson's ratio; default material.nu", ge=0.0, le=0.499)
+    outside: Literal["free", "held"] = quantity(
+        "free", text="outer surface: free, with its mean motion held, or held by a rigid frame"
+    )
+
+
 class InternalGear(Gear):
     """Section [ring_gear]."""
 
     profile: InternalProfile
+    housing: Housing | None = None
 
 
 class Cup(Section):
@@ -154,7 +168,8 @@ class Solver(Section):
     twofold_symmetry: bool = quantity(True, text="model half of the drive when tooth numbers allow it")
     far_teeth: Literal["left_out", "modelled"] = quantity(
         "left_out",
-        text="teeth out of reach: sectors of a fixed ring gear are left out, in the cup drive teeth are one element",
+        text="teeth out of reach: sectors of a fixed ring gear without housing are left out; in the cup drive teeth are "
+        "one element",
     )
     condensed_sectors: bool = quantity(False, text="plane model: eliminate the inside of tooth sectors")
     keep_factor: bool = quantity(True, text="use factors for later tangents while GMRES converges with them")

@@ -79,6 +79,7 @@ def _check(design: DriveDesign) -> None:
         refuse(f'drive.layout = "{design.drive.layout}"', '"ring_fixed"')
     sections = {
         "[wave_generator.bearing]": design.bearing,
+        "[ring_gear.housing]": design.ring_gear.housing,
         "[deviations]": design.deviations,
         "[stiffness]": design.stiffness,
         "[ratcheting]": design.ratcheting,

@@ -16,7 +16,9 @@ from swgpar.exchange.outlines import Edge, cam_outlines, gear_outline
 
 
 def write_dxf(design: DriveDesign, folder: Path) -> list[Path]:
-    """Write drive.dxf with the layers flexible_spline, ring_gear and wave_generator; call it on one rank.
+    """Write drive.dxf with the layers flexible_spline, ring_gear, wave_generator and, if there is one, housing.
+
+    Call it on one rank.
 
     Raises InputError without the package ezdxf.
     """
@@ -26,10 +28,11 @@ def write_dxf(design: DriveDesign, folder: Path) -> list[Path]:
     for gear in GEARS:
         document.layers.add(gear)
         _draw(space, gear_outline(design, gear), gear)
-        rim = design.inner_radius
-        if gear == "ring_gear":
-            rim = design.profile(gear).r_root_circle + design.ring_gear.rim
+        rim = design.ring_outer_radius if gear == "ring_gear" else design.inner_radius
         space.add_circle((0.0, 0.0), rim, dxfattribs={"layer": gear})
+    if design.housing is not None:
+        document.layers.add("housing")
+        space.add_circle((0.0, 0.0), design.outer_radius, dxfattribs={"layer": "housing"})
     document.layers.add("wave_generator")
     for points in cam_outlines(design):  # a polyline of this many points is within 0.02 µm of the curve
         space.add_lwpolyline(points.tolist(), close=True, dxfattribs={"layer": "wave_generator"})

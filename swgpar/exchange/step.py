@@ -1,4 +1,4 @@
-"""STEP files of the flexible spline, the ring gear and the cam, by gmsh's OpenCASCADE kernel.
+"""STEP files of the flexible spline, the ring gear, its housing and the cam, by gmsh's OpenCASCADE kernel.
 
 The bodies are undeformed and without crowning and slope, which are below the accuracy of many CAD programs. The axis is
 z, the mid-plane of the face width z = 0, the closed end of the cup at z > 0. Units are mm.
@@ -29,9 +29,12 @@ SAME = 1e-7
 
 
 def write_step(design: DriveDesign, folder: Path) -> list[Path]:
-    """Write flexible_spline.step, ring_gear.step and wave_generator.step; call it on one rank."""
+    """Write flexible_spline.step, ring_gear.step, wave_generator.step and of a drive with one housing.step.
+
+    Call it on one rank.
+    """
     paths = []
-    for name in (*GEARS, "wave_generator"):
+    for name in (*GEARS, "wave_generator", *(["housing"] if design.housing else [])):
         path = folder / f"{name}.step"
         with gmsh_model(name) as gmsh:
             _build(gmsh, design, name)
@@ -66,10 +69,14 @@ def _build(gmsh: ModuleType, design: DriveDesign, name: str) -> None:
             _extrude(gmsh, [gmsh.model.occ.addCurveLoop(curves)], 2.0 * half)
         return
     back = -0.5 * width
+    if name == "housing":
+        _extrude(
+            gmsh, [_circle(gmsh, radius, back) for radius in (design.outer_radius, design.ring_outer_radius)], width
+        )
+        return
     teeth = _loop(gmsh, gear_outline(design, name), back)
     if name == "ring_gear":
-        outer = design.profile(name).r_root_circle + design.ring_gear.rim
-        _extrude(gmsh, [_circle(gmsh, outer, back), teeth], width)
+        _extrude(gmsh, [_circle(gmsh, design.ring_outer_radius, back), teeth], width)
         return
     toothed = _extrude(gmsh, [teeth, _circle(gmsh, design.inner_radius, back)], width)
     if design.drive.model == "cup":

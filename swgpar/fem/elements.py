@@ -175,17 +175,20 @@ class BodyElements:
         c, s = self.sector_rotation[:, :1], self.sector_rotation[:, 1:]
         return np.stack([c * x - s * y, s * x + c * y, np.broadcast_to(z, (len(c), len(z)))], axis=-1)
 
-    def nodal_stress(self, u: np.ndarray) -> np.ndarray:
-        """Stress at the nodes of the owned sectors: extrapolated per element, averaged over the body's elements.
+    def nodal_stress(self, u: np.ndarray, part: int = 0) -> np.ndarray:
+        """Stress at the nodes of the owned sectors: extrapolated per element, averaged over the elements of a part.
 
         Returns (n_owned, n_node, 6) MPa; components xx, yy, zz, xy, yz, zx in global axes.
-        It is zero in sectors without elements.
+        It is zero in sectors without elements, and at nodes that the part has not.
+
+        part : of the mesh, see `SectorMesh.parts`: stress jumps where the material changes
         """
         mesh = self.layout.mesh
-        elements, lower = np.ascontiguousarray(mesh.elements), mesh.lower_nodes
+        indices = np.ascontiguousarray(mesh.parts[part])
+        elements, lower = np.ascontiguousarray(mesh.elements[indices]), mesh.lower_nodes
         n_sectors, n_node, n_elem = len(self.sectors), len(mesh.coords), len(elements)
         sums, field = np.zeros((n_sectors, n_node, 6)), self.displacement(u)
-        indices, no_image = np.arange(n_elem, dtype=np.int32), np.zeros(elements.shape, dtype=np.uint8)
+        no_image = np.zeros(elements.shape, dtype=np.uint8)
         for k in np.flatnonzero(self.active):
             stress = recover_stress(
                 self.reference,

@@ -19,10 +19,31 @@ def principal(stress: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def body_fields(body: BodyElements, u: np.ndarray) -> dict[str, np.ndarray]:
-    """Displacement, stress tensor, s1, s3 and von Mises stress at the nodes of the owned sectors."""
-    tensor = body.nodal_stress(u)
+    """Displacement, stress tensor, s1, s3 and von Mises stress at the nodes of the owned sectors.
+
+    Nodes between a gear and its housing have the stress of the gear.
+    """
+    mesh, tensor = body.layout.mesh, body.nodal_stress(u)
+    for part in range(1, len(mesh.parts)):
+        nodes = np.setdiff1d(mesh.nodes_of(part), mesh.nodes_of(0))
+        tensor[:, nodes] = body.nodal_stress(u, part)[:, nodes]
     s1, s3, mises = principal(tensor)
     return {"displacement": body.displacement(u)[body.owned], "stress": tensor, "s1": s1, "s3": s3, "vm": mises}
+
+
+def part_maxima(
+    comm: MPI.Comm, body: BodyElements, u: np.ndarray, fields: dict[str, np.ndarray]
+) -> list[dict[str, float]]:
+    """Maxima (MPa) over each part of a body: s1, s3 (positive in compression) and vm; collective.
+
+    fields : of the body at displacement u (n_local, 3) mm, as `body_fields` gives them
+    """
+    mesh = body.layout.mesh
+    if len(mesh.parts) == 1:
+        return [maxima(comm, fields)]
+    gear = {name: fields[name][:, mesh.nodes_of(0)] for name in ("s1", "s3", "vm")}
+    housing = dict(zip(("s1", "s3", "vm"), principal(body.nodal_stress(u, 1)[:, mesh.nodes_of(1)])))
+    return [maxima(comm, gear), maxima(comm, housing)]
 
 
 def maxima(comm: MPI.Comm, fields: dict[str, np.ndarray]) -> dict[str, float]:

@@ -41,6 +41,8 @@ class CrossSection:
         Nodes of the rim: on the interface circle or beyond.
     root_layer, rim_layer : (n_quad,) bool
         Quadrilaterals between root and interface circle, and of the lower rim.
+    housing : (n_quad,) bool
+        Quadrilaterals of the rim that belong to a housing.
     """
 
     coords: Floats
@@ -53,6 +55,7 @@ class CrossSection:
     below_root: NDArray[np.bool_]
     root_layer: NDArray[np.bool_]
     rim_layer: NDArray[np.bool_]
+    housing: NDArray[np.bool_]
 
 
 def cross_section(profile: ToothProfile, recipe: ToothRecipe, interface: float, free: float) -> CrossSection:
@@ -86,6 +89,7 @@ def cross_section(profile: ToothProfile, recipe: ToothRecipe, interface: float, 
         below_root=below_root,
         root_layer=root_layer,
         rim_layer=rim_layer,
+        housing=np.zeros(len(full.quads), dtype=bool),
     )
 
 

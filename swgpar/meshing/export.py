@@ -20,6 +20,9 @@ from swgpar.meshing.sector import SectorMesh
 
 FORMATS = ("vtu", "msh", "inp")
 
+HOUSING = "housing"
+"""Name of the housing among the bodies of the files."""
+
 
 def sector_numbers(mesh: SectorMesh) -> Ints:
     """Return the number (n_sectors, n_node) of every sector's nodes in the body; shared nodes have one."""
@@ -65,31 +68,48 @@ def named_surfaces(meshes: dict[str, SectorMesh]) -> dict[str, Ints]:
             grids = [flank.nodes for flank in mesh.flanks]
             corners = [np.stack([g[:-1, :-1], g[1:, :-1], g[1:, 1:], g[:-1, 1:]], axis=-1) for g in grids]
             quads["flanks"] = np.concatenate([corner.reshape(-1, 4) for corner in corners])
-        n = len(mesh.elements)
+        number = first + element_numbers(mesh)
         for name, facets in quads.items():
-            faces = element_faces(mesh, facets)
-            copies = np.repeat(faces[None], mesh.n_sectors, axis=0)
-            copies[..., 0] += first + n * np.arange(mesh.n_sectors, dtype=np.int32)[:, None]
-            surfaces[f"{mesh.body}_{name}"] = copies.reshape(-1, 2)
-        first += n * mesh.n_sectors
+            element, face = element_faces(mesh, facets).T
+            faces = np.broadcast_to(face, (mesh.n_sectors, len(face)))
+            surfaces[f"{mesh.body}_{name}"] = np.stack((number[:, element], faces), axis=-1).reshape(-1, 2)
+        first += number.size
     return surfaces
 
 
+def element_numbers(mesh: SectorMesh) -> Ints:
+    """Numbers (n_sectors, n_elem), from 0, of the elements of a whole body: one part after the other, by sectors."""
+    number, first = np.empty((mesh.n_sectors, len(mesh.elements)), dtype=np.int32), 0
+    for part in mesh.parts:
+        count = mesh.n_sectors * len(part)
+        number[:, part] = first + np.arange(count, dtype=np.int32).reshape(mesh.n_sectors, -1)
+        first += count
+    return number
+
+
 def whole_drive(meshes: dict[str, SectorMesh]) -> meshio.Mesh:
-    """Return all bodies as one mesh; they are its cell sets and numbered by the cell data ``body``."""
-    points, cells, body, point_sets = [], [], [], {}
+    """Return all bodies as one mesh; they are its cell sets and numbered by the cell data ``body``.
+
+    A housing counts as a body here, the last one.
+    """
+    points, cells, names, point_sets = [], [], [], {}
     offset = 0
-    for number, mesh in enumerate(meshes.values()):
+    for mesh in meshes.values():
         coords, elements = whole_body(mesh)
         points.append(coords)
-        cells.append(("hexahedron" if not mesh.plane else "quad", elements + offset))
-        body.append(np.full(len(elements), number, dtype=np.int32))
+        by_sector = elements.reshape(mesh.n_sectors, -1, elements.shape[1]) + offset
+        for name, part in zip((mesh.body, HOUSING), mesh.parts):
+            cells.append(
+                ("hexahedron" if not mesh.plane else "quad", by_sector[:, part].reshape(-1, elements.shape[1]))
+            )
+            names.append(name)
         point_sets |= {name: nodes + offset for name, nodes in named_nodes(mesh).items()}
         offset += len(coords)
+    body = [np.full(len(elements), number, dtype=np.int32) for number, (_, elements) in enumerate(cells)]
     empty = np.empty(0, dtype=np.int64)
     cell_sets = {
-        mesh.body: [np.arange(len(block)) if k == number else empty for k, block in enumerate(body)]
-        for number, mesh in enumerate(meshes.values())
+        name: [np.arange(len(block)) if k == number else empty for k, block in enumerate(body)]
+        for number, name in enumerate(names)
     }
     return meshio.Mesh(
         np.concatenate(points), cells, cell_data={"body": body}, point_sets=point_sets, cell_sets=cell_sets
@@ -152,7 +172,10 @@ def write_mesh(
             elif name == "msh":
                 meshio.gmsh.write(path, _as_msh(drive), fmt_version="2.2", binary=True)
             else:
-                write_inp(path, drive, named_surfaces(meshes), design.material, design.drive.face_width)
+                materials = {HOUSING: design.housing_material} if design.housing else {}
+                write_inp(
+                    path, drive, named_surfaces(meshes), design.material, design.drive.face_width, others=materials
+                )
             written.append(path)
     except OSError as error:
         raise OutputError(f"the mesh cannot be written to {folder}: {error.strerror or error}") from None

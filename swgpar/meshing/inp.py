@@ -6,7 +6,7 @@ Nodes, elements, node sets, element-face surfaces for contact, the material and 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import meshio
@@ -17,7 +17,7 @@ from swgpar.geometry.arrays import Ints
 from swgpar.meshing.sector import SectorMesh
 
 MATERIAL = "GEAR_MATERIAL"
-"""Name of the one material in the file."""
+"""Name of the material of the gears in the file."""
 
 HEX_FACES = np.array([[0, 1, 2, 3], [4, 7, 6, 5], [0, 4, 5, 1], [1, 5, 6, 2], [2, 6, 7, 3], [3, 7, 4, 0]])
 QUAD_FACES = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
@@ -50,7 +50,9 @@ def write_inp(
     surfaces: dict[str, Ints],
     material: Material,
     thickness: float,
+    *,
     plane_stress: bool = False,
+    others: Mapping[str, tuple[float, float]] | None = None,
 ) -> None:
     """Write bodies that are the cell sets of `drive`: C3D8I elements, or CPS4 in the plane.
 
@@ -67,6 +69,8 @@ def write_inp(
     plane_stress : bool
         Gives hexahedra a material without transverse contraction along z. With no displacement along z they are then
         in plane stress.
+    others : dict of (E, nu), MPa
+        Bodies of another material.
 
     meshio's own writer of this format has neither these element types nor surfaces.
     """
@@ -91,15 +95,19 @@ def write_inp(
         for name, faces in surfaces.items():
             file.write(f"*SURFACE, NAME={name.upper()}, TYPE=ELEMENT\n")
             np.savetxt(file, faces + 1, fmt="%d, S%d")
-        file.write(f"*MATERIAL, NAME={MATERIAL}\n")
-        e, nu = material.E, material.nu
-        if plane_stress:
-            g = f"{0.5 * e / (1.0 + nu):.12g}"
-            file.write("*ELASTIC, TYPE=ENGINEERING CONSTANTS\n")
-            file.write(f"{e:.12g}, {e:.12g}, {e:.12g}, {nu:.12g}, 0., 0., {g}, {g}\n{g}\n")
-        else:
-            file.write(f"*ELASTIC\n{e:.12g}, {nu:.12g}\n")
+        names = {body: f"{body.upper()}_MATERIAL" for body in others or {}}
+        constants = {MATERIAL: (material.E, material.nu)} | {
+            names[body]: found for body, found in (others or {}).items()
+        }
+        for name, (e, nu) in constants.items():
+            file.write(f"*MATERIAL, NAME={name}\n")
+            if plane_stress:
+                g = f"{0.5 * e / (1.0 + nu):.12g}"
+                file.write("*ELASTIC, TYPE=ENGINEERING CONSTANTS\n")
+                file.write(f"{e:.12g}, {e:.12g}, {e:.12g}, {nu:.12g}, 0., 0., {g}, {g}\n{g}\n")
+            else:
+                file.write(f"*ELASTIC\n{e:.12g}, {nu:.12g}\n")
         for body in drive.cell_sets:
-            file.write(f"*SOLID SECTION, ELSET={body.upper()}, MATERIAL={MATERIAL}\n")
+            file.write(f"*SOLID SECTION, ELSET={body.upper()}, MATERIAL={names.get(body, MATERIAL)}\n")
             if not solid:
                 file.write(f"{thickness:.12g}\n")

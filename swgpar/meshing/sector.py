@@ -51,9 +51,9 @@ class SectorMesh:
         second of sector k + 1, in this order.
     faces : dict of (n_face, 4) int32
         Quadrilaterals whose right-hand normal points out of the material: ``inner`` (flexible spline, the
-        cylinder of the inner radius within the face width) or ``outer`` (ring gear).
+        cylinder of the inner radius within the face width) or ``outer`` (ring gear, with its housing if it has one).
     node_sets : dict of (n,) int32
-        ``bore`` (flexible spline) or ``outer`` (ring gear).
+        ``bore`` (flexible spline) or ``outer`` (ring gear, as above).
     flanks : tuple of FlankGrid
         Side +1, then side -1; none on a plain ring, which has no profile either.
     profile : ToothProfile or None
@@ -62,6 +62,8 @@ class SectorMesh:
         points), ``max_aspect_ratio``; of the quadrilaterals (mm², 2x2 points) in the plane model.
     tooth : (n,) int32
         Elements of the tooth above its rim; none on a plain ring.
+    housing : (n,) int32
+        Elements of the housing around a ring gear.
     lower_nodes : (n_node,) int32 or None
         Plane model: the node of the lower layer that each node moves with; None for a solid.
     """
@@ -79,6 +81,7 @@ class SectorMesh:
     profile: ToothProfile | None
     quality: dict[str, float]
     tooth: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int32))
+    housing: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int32))
     lower_nodes: Ints | None = None
 
     @property
@@ -90,3 +93,13 @@ class SectorMesh:
     def elements(self) -> Ints:
         """Nodes of the finite elements: the hexahedra, or their lower faces in the plane model; (n_elem, 8 or 4)."""
         return self.hexes if not self.plane else self.hexes[:, :4]
+
+    @property
+    def parts(self) -> tuple[Ints, ...]:
+        """Elements of each material: those of the gear, then those of its housing if there is one."""
+        every = np.arange(len(self.hexes), dtype=np.int32)
+        return (np.setdiff1d(every, self.housing), self.housing) if len(self.housing) else (every,)
+
+    def nodes_of(self, part: int) -> Ints:
+        """Nodes (n,) of a part, those on its boundary with the other one included; in the plane of both layers."""
+        return np.unique(self.hexes[self.parts[part]])

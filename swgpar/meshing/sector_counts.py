@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GEARS, GearName
 from swgpar.meshing.cup import joined_columns, meridian, transition_station
+from swgpar.meshing.housing import housing_radii
 from swgpar.meshing.recipe import MeshRecipe, ToothRecipe
 from swgpar.meshing.tooth_sector import continues_root, require_sections
 
@@ -21,7 +22,7 @@ class SectorCounts:
     n_sectors : teeth of the gear
     elements, nodes : of the sector; in the plane those of one layer
     shared : nodes on one of its sides, which belong to the next sector as well
-    outer : nodes of a ring gear's outer surface, without those shared ones; 0 for a flexible spline
+    outer : nodes of the outer surface of a ring gear or its housing, without those shared ones; 0 for a flexible spline
     """
 
     n_sectors: int
@@ -53,6 +54,9 @@ def _counts(design: DriveDesign, recipe: MeshRecipe, gear: GearName) -> SectorCo
     quads, nodes, side = section_counts(teeth)
     around = 2 * (teeth.tip + teeth.layers + teeth.root)
     n_sectors = design.drive.teeth_fs if external else design.drive.teeth_rg
+    if not external:
+        housing = len(housing_radii(design, teeth)) - 1
+        quads, nodes, side = quads + housing * around, nodes + housing * (around + 1), side + housing
     if design.drive.model == "plane":
         return SectorCounts(n_sectors, quads, nodes, side, 0 if external else around)
     layers = recipe.face_width.elements

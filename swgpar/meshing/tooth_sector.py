@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.fit_checks import THICK_CUP
@@ -15,6 +16,7 @@ from swgpar.geometry.micro_geometry import crowning
 from swgpar.geometry.profiles import ToothProfile
 from swgpar.meshing.cross_section import CrossSection, cross_section
 from swgpar.meshing.cup import cup_slice, rounded_back
+from swgpar.meshing.housing import housing_radii, with_housing
 from swgpar.meshing.mapped import MeshError
 from swgpar.meshing.quality import hex_quality, quad_quality
 from swgpar.meshing.recipe import MeshRecipe, ToothRecipe
@@ -117,10 +119,9 @@ def _relief(
     return np.asarray(amount), relief_field(section, profile)
 
 
-def _tooth(section: CrossSection, layers: int) -> Ints:
-    """Return the elements (n,) of the tooth above its rim, in all layers along the face width."""
-    above = np.flatnonzero(~(section.rim_layer | section.root_layer))
-    return (above + len(section.quads) * np.arange(layers)[:, None]).ravel().astype(np.int32)
+def _elements(quads: NDArray[np.bool_], layers: int) -> Ints:
+    """Return the elements (n,) of the quadrilaterals of a mask (n_quad,), in all layers along the face width."""
+    return (np.flatnonzero(quads) + len(quads) * np.arange(layers)[:, None]).ravel().astype(np.int32)
 
 
 def build_sector(design: DriveDesign, recipe: MeshRecipe, gear: GearName) -> SectorMesh:
@@ -135,6 +136,8 @@ def build_sector(design: DriveDesign, recipe: MeshRecipe, gear: GearName) -> Sec
         section = cross_section(profile, counts, interface, free)
     except MeshError:
         raise InputError(_no_mesh(gear, counts, "cannot be meshed")) from None
+    if gear == "ring_gear":
+        section = with_housing(section, housing_radii(design, counts))
     width = design.drive.face_width
     plane = design.drive.model == "plane"
     if plane:
@@ -173,7 +176,8 @@ def build_sector(design: DriveDesign, recipe: MeshRecipe, gear: GearName) -> Sec
         flanks=flanks,
         profile=profile,
         quality=quality,
-        tooth=_tooth(section, len(z) - 1),
+        tooth=_elements(~(section.rim_layer | section.root_layer), len(z) - 1),
+        housing=_elements(section.housing, len(z) - 1),
         lower_nodes=np.tile(rows[0], 2) if plane else None,
     )
 

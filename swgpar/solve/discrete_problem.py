@@ -66,7 +66,7 @@ class DiscreteProblem:
     Parameters
     ----------
     partition, elements : ownership and elements, bound to their local nodes
-    supports : couplings, housing, grounding and load
+    supports : couplings, guide, grounding and load
     rigid_contacts : contacts with rigid surfaces, and those of a bearing
     flanks, contact_search : contact of the tooth flanks and its search; None for a body without teeth
     module : mm, length that bounds and floors refer to
@@ -333,7 +333,7 @@ class DiscreteProblem:
 
     def _loaded_side(self, state: LoadState) -> int:
         """Side of the flanks that carry the torque of `state`, on the flexible spline or on the ring gear."""
-        counter_clockwise = (state.torque >= 0.0) == (not self.supports.floats)
+        counter_clockwise = (state.torque >= 0.0) == (self.supports.output_gear == FLEXIBLE_SPLINE)
         return LOADED_SIDE if counter_clockwise else -LOADED_SIDE
 
     # -- segments of the flanks ------------------------------------------------------------------------

@@ -132,6 +132,13 @@ BEARING = {
 }
 """Quantities of drives with a bearing."""
 
+HOUSING = {
+    "housing.s1": Quantity("largest tension in the housing under load", "MPa"),
+    "housing.vm": Quantity("largest von Mises stress in the housing under load", "MPa"),
+    "housing.bulge": Quantity("largest radial displacement of the ring gear's outer surface under load", "µm"),
+}
+"""Quantities of drives with an elastic housing."""
+
 
 class Drives(System[DriveDesign, DriveResult]):
     """The drive's adapter: analysis, results and quantities under the names that all systems share."""
@@ -202,8 +209,8 @@ class Drives(System[DriveDesign, DriveResult]):
             return Quantity(f"{MEANINGS.get(column, column)}, {when}", UNITS[column])
 
         if design.has_program:
-            further = PROGRAM_FATIGUE if design.fatigue else {}
-            return program_quantities(design) | further | (BEARING if design.bearing else {})
+            further = (PROGRAM_FATIGUE if design.fatigue else {}) | (BEARING if design.bearing else {})
+            return program_quantities(design) | further | (HOUSING if design.housing else {})
         known = {f"mean.{name}": quantity(name, "mean over the rotation") for name in MEANS}
         if design.output.root_stress:
             known |= RESOLVED
@@ -211,8 +218,8 @@ class Drives(System[DriveDesign, DriveResult]):
         for section, names in ((design.fatigue, FATIGUE), (design.losses, LOSSES)):
             known |= names if section else {}
         known |= TRANSMISSION
-        if design.bearing is not None:
-            known |= BEARING
+        for section, names in ((design.bearing, BEARING), (design.housing, HOUSING)):
+            known |= names if section else {}
         return known | {f"step{k}.{name}": quantity(name, f"end of step {k}") for k in GROUPS for name in COLUMNS}
 
     def main_quantities(self, known: Mapping[str, Quantity]) -> tuple[str, ...]:
@@ -229,7 +236,8 @@ class Drives(System[DriveDesign, DriveResult]):
         names = f"mean. with {', '.join(MEANS)}, or step1. to step{GROUPS[-1]}. with a column of history.csv"
         names = f"{names}; {', '.join(SHARING)}; with [fatigue] {', '.join(FATIGUE)}; with [losses] {', '.join(LOSSES)}"
         names += f", or {', '.join(TRANSMISSION)}"
-        return f"{names}; with output.root_stress = true {', '.join(RESOLVED)}; with a bearing {', '.join(BEARING)}"
+        names += f"; with output.root_stress = true {', '.join(RESOLVED)}; with a bearing {', '.join(BEARING)}"
+        return f"{names}; with a housing {', '.join(HOUSING)}"
 
     def check_published(self, design: DriveDesign, names: Iterable[str]) -> None:
         for name in names:
@@ -260,6 +268,7 @@ class Drives(System[DriveDesign, DriveResult]):
                 **cycle_values(summary),
                 **of_program(summary),
                 **of_bearing(summary),
+                **of_housing(summary),
                 **transmission(summary),
             },
             wall_s=summary["wall_s"],
@@ -356,6 +365,14 @@ def transmission(summary: Mapping[str, Any]) -> dict[str, float]:
         return {}
     torque = {f"transmission_error.torque_{name}": found["torque"][name] for name in ("mean", "peak_to_peak")}
     return {f"transmission_error.{name}": found[name] for name in ("peak_to_peak", "amplitude")} | torque
+
+
+def of_housing(summary: Mapping[str, Any]) -> dict[str, float]:
+    """The quantities of `HOUSING`; none of a run without one, or without a load."""
+    found = summary.get("housing")
+    if not found:
+        return {}
+    return {"housing.s1": found["s1_MPa"], "housing.vm": found["vm_MPa"], "housing.bulge": found["bulge_um"]}
 
 
 def of_bearing(summary: Mapping[str, Any]) -> dict[str, float]:

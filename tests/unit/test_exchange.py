@@ -15,6 +15,7 @@ from support import drive_groups
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE, SHORT
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.sections import Housing
 from swgpar.errors import InputError
 from swgpar.exchange.outlines import FLANK_POINTS, TOLERANCE, cam_outlines, flank_edges, gear_outline
 from swgpar.exchange.step import closed_curve
@@ -82,7 +83,7 @@ def test_volumes_of_step_files(
     tmp_path: Path, profile: str, cam: str, model: str, fillet: float, capfd: pytest.CaptureFixture[str]
 ) -> None:
     """Of all profiles and cams: OpenCASCADE's volumes of the bodies it reads, against integrals of the exact curves."""
-    design = drive_with(profile, cam, model)
+    design = drive_with(profile, cam, model).with_values({"ring_gear.housing.thickness": 5.0})
     if fillet:
         design = design.with_values({"cup.back_fillet": fillet})
     paths = swgpar.export(design, tmp_path, ["step"])
@@ -95,6 +96,7 @@ def test_volumes_of_step_files(
         "flexible_spline": (section_area(design, "flexible_spline") - bore) * width,
         "ring_gear": (np.pi * outer**2 - section_area(design, "ring_gear")) * width,
         "wave_generator": 0.5 * abs(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) * width,
+        "housing": np.pi * ((outer + 5.0) ** 2 - outer**2) * width,
     }
     if model == "cup":
         volumes["flexible_spline"] += wall_volume(design)
@@ -151,11 +153,13 @@ def test_curves_of_the_kernel_stay_within_their_tolerance(cam: str) -> None:
 def test_dxf_passes_the_audit(tmp_path: Path, profile: str, cam: str) -> None:
     ezdxf = pytest.importorskip("ezdxf")
     design = small(profile=profile, cam=cam, model="plane")
+    housing = {"housing": Housing(thickness=5.0)} if cam == "elliptical" else {}
+    design = design.model_copy(update={"ring_gear": design.ring_gear.model_copy(update=housing)})
     (path,) = swgpar.export(design, tmp_path, ["dxf"])
     document = ezdxf.readfile(path)
     assert not document.audit().has_errors and document.units == 4
     layers = {entity.dxf.layer for entity in document.modelspace()}
-    assert layers == {"flexible_spline", "ring_gear", "wave_generator"}
+    assert layers == {"flexible_spline", "ring_gear", "wave_generator", *housing}
     if profile == "quadruple_arc":  # the arcs as DXF has them: their ends are on the exact flank
         exact = design.profile("flexible_spline")
         arcs = [e for e in document.modelspace().query("ARC") if e.dxf.layer == "flexible_spline"]

@@ -19,10 +19,24 @@ from swgpar.petsc import PETSc
 
 THICK_CUP = ("cup.thickness_coef=0.9", "cup.fillet_radius=2.0")
 BACK_FILLET = ("cup.back_fillet=0.1",)
+HOUSING = ("ring_gear.housing.thickness=4",)
+HELD = (*HOUSING, "ring_gear.housing.outside=held")
 
 
 @pytest.mark.parametrize(
-    "overrides", [(), ("drive.layout=spline_fixed",), ("solver.twofold_symmetry=false",), THICK_CUP, BACK_FILLET, PLANE]
+    "overrides",
+    [
+        (),
+        ("drive.layout=spline_fixed",),
+        ("solver.twofold_symmetry=false",),
+        THICK_CUP,
+        BACK_FILLET,
+        PLANE,
+        HOUSING,
+        (*PLANE, *HOUSING),
+        (*PLANE, *HELD),
+        (*PLANE, *HELD, "drive.layout=spline_fixed"),
+    ],
 )
 def test_counts_are_those_of_the_model(overrides: tuple[str, ...]) -> None:
     design, recipe = load_design(DESIGN, overrides), load_recipe(RECIPE)

@@ -21,9 +21,12 @@ from swgpar.meshing.inp import HEX_FACES, QUAD_FACES
 needs_calculix = pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX (ccx) is not installed")
 
 
-def small(model: str, directory: Path) -> tuple[dict[str, SectorMesh], Path]:
+HOUSING = ("ring_gear.housing.thickness=3", "ring_gear.housing.E=70e3", "ring_gear.housing.nu=0.33")
+
+
+def small(model: str, directory: Path, housing: tuple[str, ...] = ()) -> tuple[dict[str, SectorMesh], Path]:
     """Meshes of the small drive, and its file as `swgpar mesh` writes it."""
-    design = load_design(DESIGN, PLANE if model == "plane" else ())
+    design = load_design(DESIGN, [*(PLANE if model == "plane" else ()), *housing])
     meshes = build_sector_meshes(design, load_recipe(RECIPE))
     return meshes, write_mesh(design, meshes, directory, ("inp",))[0]
 
@@ -38,9 +41,10 @@ def solved(path: Path, lines: list[str]) -> dict[int, np.ndarray]:
     return {int(row[0]) - 1: np.array(row[1:], dtype=float) for row in rows if len(row) == 4 and row[0].isdigit()}
 
 
+@pytest.mark.parametrize("housing", [(), HOUSING])
 @pytest.mark.parametrize("model", ["cup", "plane"])
-def test_surfaces_are_faces_of_one_element_each(model: str, tmp_path: Path) -> None:
-    meshes, path = small(model, tmp_path)
+def test_surfaces_are_faces_of_one_element_each(model: str, housing: tuple[str, ...], tmp_path: Path) -> None:
+    meshes, path = small(model, tmp_path, housing)
     drive, surfaces = whole_drive(meshes), named_surfaces(meshes)
     assert set(surfaces) == {"flexible_spline_inner", "flexible_spline_flanks", "ring_gear_outer", "ring_gear_flanks"}
     table = HEX_FACES if model == "cup" else QUAD_FACES
@@ -55,6 +59,8 @@ def test_surfaces_are_faces_of_one_element_each(model: str, tmp_path: Path) -> N
         nodes = drive.point_sets.get(name, drive.point_sets.get(name.replace("inner", "bore")))
         assert np.array_equal(np.unique(faces[tuple(pairs.T)]), nodes)
         assert f"*SURFACE, NAME={name.upper()}, TYPE=ELEMENT\n{pairs[0, 0] + 1}, S{pairs[0, 1] + 1}\n" in text
+    assert ("NAME=HOUSING_MATERIAL\n*ELASTIC\n70000, 0.33\n" in text) == bool(housing)
+    assert ("ELSET=HOUSING, MATERIAL=HOUSING_MATERIAL" in text) == bool(housing)
 
 
 @needs_calculix
