@@ -168,8 +168,8 @@ class Solver(Section):
     twofold_symmetry: bool = quantity(True, text="model half of the drive when tooth numbers allow it")
     far_teeth: Literal["left_out", "modelled"] = quantity(
         "left_out",
-        text="teeth out of reach: sectors of a fixed ring gear without housing are left out; in the cup drive teeth are "
-        "one element",
+        text="teeth out of reach: sectors of a fixed ring gear without housing are left out, in the cup drive teeth "
+        "are one element",
     )
     condensed_sectors: bool = quantity(False, text="plane model: eliminate the inside of tooth sectors")
     keep_factor: bool = quantity(True, text="use factors for later tangents while GMRES converges with them")
