@@ -36,7 +36,7 @@ def ball_contact(model: DriveModel) -> BallContact:
 
 def ball_rows(model: DriveModel, state: LoadState, increment: int, step: int) -> list[Row]:
     """Rows of balls.csv of the present state, a ball each, on all ranks; collective."""
-    contact = ball_contact(model)
+    contact, design = ball_contact(model), model.design
     contact.evaluate(model.problem.displacement(), state, None, None)
     found = dict(pair for part in model.comm.allgather(list(zip(*contact.owned_loads()))) for pair in part)
     balls, half = contact.balls, contact.balls.number // 2
@@ -52,7 +52,8 @@ def ball_rows(model: DriveModel, state: LoadState, increment: int, step: int) ->
                 "step": step,
                 "wg_angle_deg": float(np.degrees(state.angle)),
                 "ball": ball,
-                "angle_deg": float(np.degrees(angle)) % 360.0,
+                "angle_deg": design.in_frame_of_result(float(np.degrees(angle)), float(np.degrees(state.angle)))
+                % 360.0,
                 "cam_angle_deg": float(np.degrees(angle - state.angle) + 180.0) % 360.0 - 180.0,
                 "load_N": force,
                 "approach_um": MICROMETRES * approach,
@@ -121,7 +122,7 @@ def bearing_life(design: DriveDesign, loads: np.ndarray) -> dict[str, Any]:
     rating = bearing.load_rating or series.load_rating()
     million = million_turns(series, rating, loads)
     # the races turn relative to each other a little faster or slower than the wave generator
-    outer = 1.0 / design.ratio if design.drive.layout == "ring_fixed" else 0.0
+    outer = 0.0 if design.output_gear == "ring_gear" else 1.0 / design.ratio
     turns = 1e6 * million / abs(1.0 - outer)
     finite = np.isfinite(turns)
     return {

@@ -16,6 +16,7 @@ MOST_FLANKS = 24
 """In the contact pattern, those with the largest forces."""
 
 ANGLE = "angle of the wave generator (degrees)"
+ANGLE_AGAINST_RING = "angle of the wave generator against the ring gear (degrees)"
 
 Columns = Mapping[str, np.ndarray]
 """Of a table."""
@@ -43,8 +44,11 @@ def draw_pairs(pairs: Columns) -> Figure:
     return figure
 
 
-def draw_load_sharing(pairs: Columns, history: Columns) -> Figure:
-    """Share of every pair in the force, and the number of pairs. pairs, history : columns of these tables"""
+def draw_load_sharing(pairs: Columns, history: Columns, title: str) -> Figure:
+    """Share of every pair in the force, and the number of pairs.
+
+    pairs, history : columns of these tables;  title : of the axis with the angle of the wave generator
+    """
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(7.0, 6.0), layout="constrained")
@@ -62,7 +66,7 @@ def draw_load_sharing(pairs: Columns, history: Columns) -> Figure:
     figure.legend(loc="outside lower center", ncols=3, fontsize=8)
     rows = np.unique(pairs["increment"]).astype(int) - 1
     lower.step(history["wg_angle_deg"][rows], history["pairs_in_contact"][rows], "o-", where="mid", ms=4)
-    lower.set(xlabel=ANGLE, ylabel="pairs in contact")
+    lower.set(xlabel=title, ylabel="pairs in contact")
     for axes in (upper, lower):
         axes.set_ylim(bottom=0.0)
         axes.grid(alpha=0.3)
@@ -89,7 +93,7 @@ def draw_contact_pattern(pairs: Columns, lines: Columns, step: int | None, plane
     flanks = [_Flank(pairs, lines, int(k)) for k in chosen]
     figure = Figure(figsize=(10.0, 6.0), layout="constrained")
     angle = pairs["wg_angle_deg"][chosen[0]]
-    figure.suptitle(f"contact of the flanks, wave generator at {angle:.3g} degrees", fontsize=10)
+    figure.suptitle(f"contact of the flanks, wg_angle_deg = {angle:.3g}", fontsize=10)
     (_draw_pressure_lines if plane else _draw_pressure_maps)(figure, flanks)
     return figure
 

@@ -202,7 +202,7 @@ class DeviatingDrive:
         part = self.deviations.cup
         offsets = self.model.problem.supports.offsets
         turn = -2.0 * np.pi * pitch / self.design.drive.teeth_fs
-        if self.design.drive.layout == "ring_fixed":
+        if self.design.output_gear == "flexible_spline":
             turn += state.angle / self.design.ratio
         lean = share * rotated(part.lean, turn)
         offsets[FLEXIBLE_SPLINE, [X, Y]] = share * rotated(part.shift, turn) + self.bore_z * lean

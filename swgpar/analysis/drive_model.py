@@ -22,6 +22,7 @@ from swgpar.contact.flank_state import Crowning, SearchRange
 from swgpar.contact.flanks import FlankContact
 from swgpar.contact.rigid_surface import RigidContact, cam_pose, pin_pose
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.sections import GEARS
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR, BodyLayout
 from swgpar.fem.condensed_parts import condense_sector, condense_tooth, relative_end_rotation
 from swgpar.fem.elements import Elements
@@ -100,8 +101,8 @@ class DriveModel:
 
     @property
     def fixed_body(self) -> int:
-        """Index of the gear that does not rotate."""
-        return RING_GEAR if self.design.drive.layout == "ring_fixed" else FLEXIBLE_SPLINE
+        """Index of the gear that does not rotate in the frame in which the drive is computed."""
+        return GEARS.index(self.design.standing_gear)
 
     def omitted_bending_stress(self) -> float:
         """Stress (MPa) that condensed sectors leave out in the present state: E theta^2 / 8 where they bend most."""
@@ -210,7 +211,7 @@ def sector_elements(design: DriveDesign, mesh: SectorMesh) -> ReferenceElements:
 def build_layout(design: DriveDesign, mesh: SectorMesh, reference: ReferenceElements | None = None) -> BodyLayout:
     """Modelled sectors of a body. reference : elements of one sector, needed where sectors are condensed"""
     halved = is_halved(design)
-    clamped = mesh.body == "ring_gear" and design.drive.layout == "ring_fixed" and design.frame_is_rigid
+    clamped = mesh.body == design.standing_gear == "ring_gear" and design.frame_is_rigid
     fixed = mesh.node_sets["outer"] if clamped else np.zeros(0, dtype=np.int32)
     count = mesh.n_sectors // 2 if halved else mesh.n_sectors
     condensed = tooth = None
@@ -225,7 +226,8 @@ def build_layout(design: DriveDesign, mesh: SectorMesh, reference: ReferenceElem
 
 def _leaves_out_sectors(design: DriveDesign) -> bool:
     # an elastic housing gives way all round
-    return design.solver.far_teeth == "left_out" and design.drive.layout == "ring_fixed" and design.housing is None
+    clamped = design.standing_gear == "ring_gear" and design.housing is None
+    return design.solver.far_teeth == "left_out" and clamped
 
 
 def _condenses_teeth(design: DriveDesign) -> bool:
@@ -238,7 +240,7 @@ def build_supports(design: DriveDesign, *, partition: Partition, elements: Eleme
     halved = is_halved(design)
     # a plane section with deviations is centred by its cam alone: the wall of the cup gives way
     centred = design.drive.model == "cup" or design.deviations is None
-    rotates, guide = design.drive.layout == "spline_fixed", None
+    rotates, guide = design.output_gear == "ring_gear", None
     couplings = [DistributingCoupling(partition, spline, "bore", halved, centred)]
     if rotates or not design.frame_is_rigid:
         couplings.append(DistributingCoupling(partition, ring, "outer", halved))

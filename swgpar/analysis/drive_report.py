@@ -52,6 +52,13 @@ VERDICTS = {
 }
 
 
+FIXED = {
+    "ring_fixed": "ring gear fixed",
+    "spline_fixed": "flexible spline fixed",
+    "wave_generator_fixed": "wave generator fixed, ring gear driven",
+}
+
+
 def drive_report(result: DriveResult) -> bytes:
     """The whole page; reads the figures in the results folder. Call it on one rank."""
     summary = result.summary
@@ -84,7 +91,7 @@ def _introduction(summary: Mapping[str, Any], found: Iterable[Check]) -> str:
     drive = summary["design"]["drive"]
     look = [check.name for check in found if check.good is False]
     model = "plane model" if drive["model"] == "plane" else "cup drive"
-    fixed = "ring gear fixed" if drive["layout"] == "ring_fixed" else "flexible spline fixed"
+    fixed = FIXED[drive["layout"]]
     mesh = f"mesh {Path(summary['recipe']).stem}, " if summary["recipe"] else ""
     verdict = f"Look at: {', '.join(look)}." if look else "All checks that can be judged are good."
     return (
@@ -118,7 +125,10 @@ def answers(summary: Mapping[str, Any]) -> list[list[Any]]:
         add("teeth in contact", 100.0 * sharing["teeth_share"]["mean"], "%")
         add("largest share of one tooth in the force", 100.0 * sharing["largest_force_share"], "%")
         add("largest force of one pair", sharing["largest_force_N"], "N")
-    add("mean input torque", summary["means"].get("wg_torque_Nmm"), "N·mm")
+    driven = summary.get("input") or {}
+    if driven:
+        add("mean torque on the wave generator, which stands", summary["means"].get("wg_torque_Nmm"), "N·mm")
+    add("mean input torque", driven.get("torque_Nmm", summary["means"].get("wg_torque_Nmm")), "N·mm")
     if summary["torque_ripple"] is not None:
         add("input torque, largest less smallest over mean", 100.0 * summary["torque_ripple"], "%")
     add("transmission error, peak to peak", summary["transmission_error_arcsec"], "arc seconds")

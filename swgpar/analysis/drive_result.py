@@ -143,9 +143,11 @@ class DriveResult:
         """Columns of the history under load, over one period where the rotation was sampled."""
         design = self.summary["design"]
         drive = design["drive"]
-        fixed = drive["teeth_rg"] if drive["layout"] == "ring_fixed" else drive["teeth_fs"]
+        standing = drive["teeth_fs"] if drive["layout"] == "spline_fixed" else drive["teeth_rg"]
+        # the wave generator turns against the ring gear as the ring gear turns against it, the other way round
+        ratio = self.summary["ratio"] * (-1.0 if drive["layout"] == "wave_generator_fixed" else 1.0)
         return history.curves(
-            self.history, design["steps"]["samples"], self.summary["increments"], 360.0 / fixed, self.summary["ratio"]
+            self.history, design["steps"]["samples"], self.summary["increments"], 360.0 / standing, ratio
         )
 
     @property

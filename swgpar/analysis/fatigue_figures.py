@@ -16,10 +16,10 @@ SHOWN = (0.5, 20.0)
 """Safety factors at the ends of the colour scale, which is logarithmic."""
 
 
-def draw_haigh(sector: SectorFields, cycle: dict[str, np.ndarray], summary: dict[str, Any]) -> Figure:
+def draw_haigh(sector: SectorFields, cycle: dict[str, np.ndarray], summary: dict[str, Any], angle: str) -> Figure:
     """Amplitude over mean (MPa) of all nodes by region with the lines of Goodman and of yield, above the worst cycle.
 
-    summary : of the run
+    summary : of the run;  angle : title of the axis with the angle of the wave generator
     """
     from matplotlib.figure import Figure
 
@@ -45,7 +45,7 @@ def draw_haigh(sector: SectorFields, cycle: dict[str, np.ndarray], summary: dict
     axes.legend(fontsize=7)
     of_program = "step" in cycle
     below.plot(cycle["step" if of_program else "wg_angle_deg"], cycle["normal_stress_MPa"], ".-" if of_program else "-")
-    what = "point of the load program (step)" if of_program else "angle of the wave generator (degrees)"
+    what = "point of the load program (step)" if of_program else angle
     below.set(xlabel=what, ylabel="normal stress (MPa)")
     below.set_title(f"cycle where the safety is the least: {worst['region']}", fontsize=10)
     for panel in (axes, below):

@@ -9,7 +9,13 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.analysis.circumference_figure import FIELDS, draw_circumference
-from swgpar.analysis.contact_figures import ANGLE, draw_contact_pattern, draw_load_sharing, draw_pairs
+from swgpar.analysis.contact_figures import (
+    ANGLE,
+    ANGLE_AGAINST_RING,
+    draw_contact_pattern,
+    draw_load_sharing,
+    draw_pairs,
+)
 from swgpar.analysis.deformed_figures import draw_cup_section, draw_deformed, draw_loaded_teeth
 from swgpar.analysis.fatigue_figures import draw_haigh, sector_picture
 from swgpar.analysis.program_figures import torque_against_rotation
@@ -76,7 +82,7 @@ class DriveFigures(FigureSet):
 
     def stress(self) -> Figure:
         """Largest stresses of both bodies (MPa) against the angle of the wave generator, under load."""
-        figure, (axes,) = _panels(1)
+        figure, (axes,) = self._panels(1)
         for name, label in STRESSES.items():
             self._draw(axes, name, label)
         root = self._result.summary.get("root_stress")
@@ -90,19 +96,19 @@ class DriveFigures(FigureSet):
 
     def torque(self) -> Figure:
         """Input torque (N·mm) against the angle of the wave generator, beside that of the energy balance."""
-        figure, (axes,) = _panels(1)
+        figure, (axes,) = self._panels(1)
         self._draw_torque(axes)
         return figure
 
     def transmission_error(self) -> Figure:
         """Angle of the output less its kinematic value (arc seconds) against the angle of the wave generator."""
-        figure, (axes,) = _panels(1)
+        figure, (axes,) = self._panels(1)
         self._draw_transmission_error(axes)
         return figure
 
     def torque_and_transmission_error(self) -> Figure:
         """Input torque and transmission error in one figure."""
-        figure, (upper, lower) = _panels(2)
+        figure, (upper, lower) = self._panels(2)
         self._draw_torque(upper)
         self._draw_transmission_error(lower)
         return figure
@@ -121,7 +127,7 @@ class DriveFigures(FigureSet):
         upper, lower = figure.subplots(2, 1)
         error = rows["transmission_error_arcsec"]
         upper.plot(rows["wg_angle_deg"], error - error.mean(), lw=1.0, marker="o" if len(error) < 40 else None, ms=3)
-        upper.set(xlabel=ANGLE, ylabel="arc seconds", title="transmission error less its mean")
+        upper.set(xlabel=self._angle, ylabel="arc seconds", title="transmission error less its mean")
         order, amplitude, _ = orders(summary, rows)
         lower.vlines(order, 0.0, amplitude, lw=1.2)
         named = summary["spectrum"][:4]
@@ -135,8 +141,12 @@ class DriveFigures(FigureSet):
         return figure
 
     def _draw_torque(self, axes: Axes) -> None:
-        self._draw(axes, "wg_torque_Nmm", "wave generator")
-        expected = self._result.summary["wg_torque_expected_Nmm"]
+        driven = self._result.summary.get("input")
+        if driven:
+            self._draw(axes, "input_torque_Nmm", "ring gear")
+        else:
+            self._draw(axes, "wg_torque_Nmm", "wave generator")
+        expected = driven["torque_expected_Nmm"] if driven else self._result.summary["wg_torque_expected_Nmm"]
         axes.axhline(expected, color="0.4", ls="--", label="energy balance, T / ratio")
         axes.set(ylabel="torque (N·mm)", title="input torque" + self._over_period())
         axes.legend(fontsize=8)
@@ -164,14 +174,14 @@ class DriveFigures(FigureSet):
 
         All computed increments under load are drawn, and below the number of pairs at these angles.
         """
-        return draw_load_sharing(self._pairs(), self._result.history)
+        return draw_load_sharing(self._pairs(), self._result.history, self._angle)
 
     def haigh(self) -> Figure:
         """Haigh's diagram of all nodes of a sector, and the normal stress over the cycle where the safety is the least.
 
         Runs with the section [fatigue] have it.
         """
-        return draw_haigh(self._fatigue(), self._result.fatigue_cycle, self._result.summary)
+        return draw_haigh(self._fatigue(), self._result.fatigue_cycle, self._result.summary, self._angle)
 
     def safety(self) -> Figure:
         """One sector of the flexible spline, coloured by Goodman's safety factor."""
@@ -192,6 +202,23 @@ class DriveFigures(FigureSet):
         curves = self._result.curves()
         (line,) = axes.plot(curves.fine_angle, curves.fine[name], label=label)
         axes.plot(curves.angle, curves.values[name], "o", ms=3, color=line.get_color())
+
+    @property
+    def _angle(self) -> str:
+        """Title of the axis with the column `wg_angle_deg`."""
+        fixed = self._result.summary["design"]["drive"]["layout"] == "wave_generator_fixed"
+        return ANGLE_AGAINST_RING if fixed else ANGLE
+
+    def _panels(self, count: int) -> tuple[Figure, list[Axes]]:
+        """A figure with panels above one another, over the angle of the wave generator."""
+        from matplotlib.figure import Figure
+
+        figure = Figure(figsize=(7.0, 4.2 if count == 1 else 3.0 * count), layout="constrained")
+        panels = list(figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0])
+        for axes in panels:
+            axes.grid(alpha=0.3)
+        panels[-1].set_xlabel(self._angle)
+        return figure, panels
 
     def _over_period(self) -> str:
         return ", over one period" if self._result.summary["design"]["steps"]["samples"] else ""
@@ -219,7 +246,7 @@ class DriveFigures(FigureSet):
         peaks = shown["load_N"].reshape(len(increments), -1).max(axis=1)
         lower.plot(angles, peaks, "o-", ms=4)
         fixed = ", balls fixed to the cam" if bearing["balls_fixed_to_cam"] else ""
-        lower.set(xlabel=ANGLE, ylabel="largest ball load (N)" + fixed)
+        lower.set(xlabel=self._angle, ylabel="largest ball load (N)" + fixed)
         for axes in (upper, lower):
             axes.set_ylim(bottom=0.0)
             axes.grid(alpha=0.3)
@@ -251,16 +278,14 @@ class DriveFigures(FigureSet):
         the teeth at the major axis are shown. increment : as in `DriveResult.field`
         """
         result, row = self._result, self._row(increment)
-        wg_angle = np.radians(result.history["wg_angle_deg"][row])
-        angle, z, pairs = wg_angle, 0.0, result.pairs
+        cam_angle = self._cam_angle(row)
+        angle, z, pairs = cam_angle, 0.0, result.pairs
         here = np.flatnonzero(pairs["increment"] == row + 1) if pairs else []
         if len(here):
             largest = here[np.argmax(pairs["force_N"][here])]
-            angle = wg_angle + np.radians(pairs["angle_deg"][largest])
+            angle = cam_angle + float(np.radians(pairs["angle_deg"][largest]))
             z = float(np.nan_to_num(pairs["z_mm"][largest]))
-        return draw_loaded_teeth(
-            self._grids(increment), self._design, float(wg_angle), float(angle), z, self._when(increment)
-        )
+        return draw_loaded_teeth(self._grids(increment), self._design, cam_angle, angle, z, self._when(increment))
 
     def cup_section(self, increment: int = -1) -> Figure:
         """Sections of the deformed cup along its axis, through the major and the minor axis, by von Mises stress.
@@ -269,8 +294,8 @@ class DriveFigures(FigureSet):
         """
         if self._result.is_plane:
             raise InputError('drive.model = "plane" has no cup: allowed with "cup"')
-        wg_angle = np.radians(self._result.history["wg_angle_deg"][self._row(increment)])
-        return draw_cup_section(self._grids(increment), self._design, float(wg_angle), self._when(increment))
+        cam_angle = self._cam_angle(self._row(increment))
+        return draw_cup_section(self._grids(increment), self._design, cam_angle, self._when(increment))
 
     def stress_around(self, increment: int = -1) -> Figure:
         """Largest s1 and von Mises stress (MPa) of every tooth's sector of the flexible spline, around it.
@@ -303,21 +328,15 @@ class DriveFigures(FigureSet):
             raise InputError(f"increment = {increment} has no fields: allowed from {-len(known)} to {len(known) - 1}")
         return known[increment] - 1
 
+    def _cam_angle(self, row: int) -> float:
+        """Angle (rad) of the cam in the fields of a row of the history; 0 where the wave generator is fixed."""
+        if self._design.drive.layout == "wave_generator_fixed":
+            return 0.0
+        return float(np.radians(self._result.history["wg_angle_deg"][row]))
+
     def _when(self, increment: int) -> str:
         row = self._row(increment)
         return f"increment {row + 1}, wave generator at {self._result.history['wg_angle_deg'][row]:.3g} degrees"
-
-
-def _panels(count: int) -> tuple[Figure, list[Axes]]:
-    """A figure with panels above one another, over the angle of the wave generator."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(7.0, 4.2 if count == 1 else 3.0 * count), layout="constrained")
-    panels = list(figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0])
-    for axes in panels:
-        axes.grid(alpha=0.3)
-    panels[-1].set_xlabel(ANGLE)
-    return figure, panels
 
 
 def _as_figure(picture: np.ndarray) -> Figure:

@@ -52,7 +52,7 @@ def follow_turns(design: DriveDesign, recipe: MeshRecipe, recorder: Recorder) ->
         try:
             saved, reported, iterations = len(known), 0, 0
             for found in _rounds(points, comm):
-                known |= {point.index: turn_row(point, design.ratio) for point in found}
+                known |= {point.index: turn_row(point, design) for point in found}
                 iterations += sum(point.iterations for point in found)
                 if len(known) >= saved + SAVED:
                     saved = len(known)

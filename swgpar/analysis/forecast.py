@@ -58,7 +58,7 @@ def forecast(design: DriveDesign, recipe: MeshRecipe) -> Forecast:
     plane, halved = design.drive.model == "plane", is_halved(design)
     elements = unknowns = 0
     for counts in sector_counts(design, recipe).values():
-        fixed = counts.outer if design.drive.layout == "ring_fixed" and design.frame_is_rigid else 0
+        fixed = counts.outer if design.standing_gear == "ring_gear" and design.frame_is_rigid else 0
         free = counts.nodes - counts.shared - fixed
         elements += counts.elements * counts.n_sectors
         unknowns += (2 if plane else 3) * free * (counts.n_sectors // 2 if halved else counts.n_sectors)

@@ -51,7 +51,7 @@ def evaluate_losses(
     forces = np.array([cam_forces[increment - 1] for increment in increments])
     arm = 0.5 * (losses.bearing_diameter or _bearing_diameter(design))
     # the outer race turns with the flexible spline
-    relative = 1.0 - 1.0 / design.ratio if design.drive.layout == "ring_fixed" else 1.0
+    relative = 1.0 if design.output_gear == "ring_gear" else 1.0 - 1.0 / design.ratio
     bearing = losses.bearing_friction * forces * arm * relative
     hysteresis = losses.loss_factor * hysteresis_work(cycle) / (2.0 * np.pi)
     parts = {
@@ -59,7 +59,7 @@ def evaluate_losses(
         "hysteresis": hysteresis,
         "bearing": float(bearing.mean()),
     }
-    total, useful = sum(parts.values()), 1000.0 * design.load.torque / abs(design.ratio)
+    total, useful = sum(parts.values()), 1000.0 * design.load.torque / abs(design.input_ratio)
     summary = {
         "loss_torque_Nmm": total,
         "parts_Nmm": parts,

@@ -26,6 +26,7 @@ from swgpar.analysis.places import Place, find_places
 from swgpar.analysis.program_results import PointRow, point_rows
 from swgpar.analysis.ratcheting import tooth_rotation
 from swgpar.analysis.restart import write_state
+from swgpar.analysis.result_frame import history_rows, nodal_fields
 from swgpar.analysis.root_stress import RootStress
 from swgpar.analysis.stiffness import loop_rows
 from swgpar.analysis.stress_cycle import StressCycle
@@ -132,6 +133,10 @@ class Recorder(ABC):
                 fields[spline.layout.name]["pressure"] = nodal_pressure(model.problem, stepper.load_state, spline)
             self._keep(stepper, fields, elapsed)
 
+    def _in_frame(self, stepper: LoadStepper, fields: NodalFields) -> NodalFields:
+        """The fields as they are shown: in the frame of the fixed member."""
+        return nodal_fields(self.model, stepper.load_state.angle, fields)
+
     def _keep_places(self, state: LoadState, fields: Sequence[Mapping[str, np.ndarray]], on_edge: bool) -> None:
         """Find the places of stresses that are the largest under load so far."""
         if state.is_periodic:
@@ -183,6 +188,7 @@ class Recorder(ABC):
         self, rows: list[Row], summary: dict[str, Any], tables: DriveTables
     ) -> tuple[list[Row], dict[str, Any], DriveTables]:
         """History, summary and tables of rank 0 on every rank, as files hold them; collective."""
+        rows = history_rows(self.model.design, rows)
         tables = replace(
             tables,
             pairs=as_columns(self.pairs),
@@ -234,7 +240,7 @@ class MemoryRecorder(Recorder):
 
     def _keep(self, stepper: LoadStepper, fields: NodalFields, elapsed: float) -> None:
         if self._parts is not None:
-            self._parts.keep(len(self.rows), fields)
+            self._parts.keep(len(self.rows), self._in_frame(stepper, fields))
 
     def finish(self, rows: list[Row], summary: dict[str, Any], tables: DriveTables) -> DriveResult:
         return DriveResult(*self._shared(rows, summary, tables), self._parts, self.comm)
@@ -280,7 +286,8 @@ class FolderRecorder(Recorder):
                 for k, body in enumerate(self.model.elements.bodies)
             }
             self._writer.write_increment(
-                len(self.rows), {name: (values, *ranges[name]) for name, values in fields.items()}
+                len(self.rows),
+                {name: (values, *ranges[name]) for name, values in self._in_frame(stepper, fields).items()},
             )
         self.write_index()
         write_state(self, stepper, {body: values["displacement"] for body, values in fields.items()}, elapsed)
@@ -289,6 +296,10 @@ class FolderRecorder(Recorder):
         super().keep_turns(rows)
         if rows:
             write_from_root(self.comm, self.out / TRANSMISSION_ERROR, format_csv(rows))
+
+    def _write_history(self, rows: list[Row]) -> None:
+        shown = history_rows(self.model.design, rows)
+        write_from_root(self.comm, self.out / history.NAME, history.format_rows(shown))
 
     def known_turns(self) -> list[Row]:
         path = self.out / TRANSMISSION_ERROR
@@ -304,7 +315,7 @@ class FolderRecorder(Recorder):
             # increments computed with output.fields = false have no fields, and a restart may ask for them
             written = [(i, row["wg_angle_deg"]) for i, row in enumerate(self.rows, start=1) if self._writer.has(i)]
             self._writer.write_index(self.comm.bcast(written), self.names)
-        write_from_root(self.comm, self.out / history.NAME, history.format_rows(self.rows))
+        self._write_history(self.rows)
         if self.pairs:
             write_from_root(self.comm, self.out / PAIRS, format_csv(self.pairs))
         if self.contact_lines:  # none where all contacts lie on edges
@@ -318,7 +329,7 @@ class FolderRecorder(Recorder):
 
     def finish(self, rows: list[Row], summary: dict[str, Any], tables: DriveTables) -> DriveResult:
         if len(rows) > len(self.rows):
-            write_from_root(self.comm, self.out / history.NAME, history.format_rows(rows))
+            self._write_history(rows)
         tables.write(self.out, self.comm)
         write_from_root(self.comm, self.out / SUMMARY, to_json(summary))
         folder = self.out.absolute()  # the fields are read later

@@ -17,6 +17,7 @@ from swgpar.analysis.period import of_period, sampling_error
 from swgpar.analysis.places import OF_REGION, Place
 from swgpar.analysis.program_results import point_rows, summarise_program
 from swgpar.analysis.ratcheting import summarise_ratcheting
+from swgpar.analysis.result_frame import summarise_input
 from swgpar.analysis.root_stress import RootStress
 from swgpar.analysis.stiffness import summarise_stiffness
 from swgpar.analysis.transmission_error import summarise_turns
@@ -119,7 +120,9 @@ def summarise(
     program = point_rows(design, rows)
     rotation = [] if program else [row for row in rows if int(row["step"]) >= Stage.ROTATE]
     sampled = of_period(design, rows) if design.steps.samples else rotation
-    values = over_rotation(sampled, design.ratio)
+    values, driven = over_rotation(sampled, design.ratio), summarise_input(design, sampled)
+    if driven:
+        values["torque_ripple"] = driven.pop("torque_ripple")
     sampled_period = design.steps.samples and values["means"]
     return {
         "recipe": recipe_name,
@@ -155,9 +158,10 @@ def summarise(
         "program": summarise_program(program),
         "stiffness": summarise_stiffness(design, program, stiffness_error),
         "ratcheting": summarise_ratcheting(design, program, tooth_rotations, ended_early=ended_early),
+        "input": driven,
         "wg_torque_expected_Nmm": 1000.0 * design.load.torque / abs(design.ratio),
         "jammed": jamming_remark(design, sampled, values["means"]),
-        "ratio": design.ratio,
+        "ratio": design.input_ratio,
         "design": design.model_dump(),
     }
 

@@ -57,21 +57,30 @@ def print_drive(history: Mapping[str, np.ndarray], summary: Mapping[str, Any]) -
 
 
 def _print_history(history: Mapping[str, np.ndarray]) -> None:
+    driven = {"wg_angle_deg": "input_angle_deg", "wg_torque_Nmm": "input_torque_Nmm"}
+    names = [driven.get(name, name) if driven.get(name) in history else name for name in COLUMNS]
     title = "largest stresses over the bodies (MPa, nodal averages); torque in N·mm, angles in degrees"
     table = Table(title=title, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))  # fits into 80 columns
     for heading, _ in COLUMNS.values():
         table.add_column(heading, justify="right", no_wrap=True)
-    for values in zip(*(history[name] for name in COLUMNS), strict=True):
+    for values in zip(*(history[name] for name in names), strict=True):
         table.add_row(*(format(value, spec) for value, (_, spec) in zip(values, COLUMNS.values(), strict=True)))
     console.print(table)
 
 
 def _print_means(summary: Mapping[str, Any]) -> None:
-    means = summary["means"]
+    means, driven = summary["means"], summary.get("input")
+    of_wave_generator = f"{means['wg_torque_Nmm']:.2f} N·mm (energy balance {summary['wg_torque_expected_Nmm']:.2f})"
+    torque = f"input torque {of_wave_generator}"
+    if driven:
+        torque = (
+            f"input torque on the ring gear {driven['torque_Nmm']:.2f} N·mm (energy balance "
+            f"{driven['torque_expected_Nmm']:.2f}), on the wave generator, which stands, {of_wave_generator}"
+        )
     console.print(
         f"means over the rotation: flexible spline s1 {means['fs_s1']:.1f}, |s3| {means['fs_s3']:.1f}, von Mises "
-        f"{means['fs_vm']:.1f} MPa; ring gear von Mises {means['rg_vm']:.1f} MPa; input torque "
-        f"{means['wg_torque_Nmm']:.2f} N·mm (energy balance {summary['wg_torque_expected_Nmm']:.2f})"
+        f"{means['fs_vm']:.1f} MPa; ring gear von Mises {means['rg_vm']:.1f} MPa; "
+        f"{torque}"
     )
     if (ripple := summary["torque_ripple"]) is not None:
         console.print(
@@ -117,8 +126,9 @@ def _print_turns(turns: Mapping[str, Any]) -> None:
     """Transmission error over whole turns, or over the period of the ideal drive."""
     where = f"{turns['turns']:.0f} turns with deviations" if turns["turns"] >= 1.0 else "one period of the ideal drive"
     console.print(
-        f"transmission error over {where}: {turns['peak_to_peak']:.4g} arc seconds peak to peak; input torque "
-        f"{turns['torque']['mean']:.2f} N·mm, {turns['torque']['peak_to_peak']:.4g} peak to peak"
+        f"transmission error over {where}: {turns['peak_to_peak']:.4g} arc seconds peak to peak; "
+        f"torque of the wave generator {turns['torque']['mean']:.2f} N·mm, {turns['torque']['peak_to_peak']:.4g} peak "
+        "to peak"
     )
     for line in turns["spectrum"][:ORDERS]:
         console.print(f"  order {line['order']:8.3f}: {line['amplitude']:.3g} arc seconds, {line['cause']}")

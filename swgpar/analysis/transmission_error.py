@@ -9,6 +9,7 @@ import numpy as np
 
 from swgpar.analysis.deviating_drive import TurnPoint
 from swgpar.analysis.period import of_period
+from swgpar.analysis.result_frame import shown_output
 from swgpar.design.deviations import TiltedOffset
 from swgpar.design.drive_design import DriveDesign
 from swgpar.results.history import Row, column, transmission_error
@@ -29,10 +30,11 @@ NEGLIGIBLE = 1e-9
 """Amplitudes below this share of the largest one are round-off."""
 
 
-def turn_row(point: TurnPoint, ratio: float) -> Row:
+def turn_row(point: TurnPoint, design: DriveDesign) -> Row:
     """Row of transmission_error.csv; the output's angle lies between -180 and 180 degrees."""
     wg_angle, output = float(np.degrees(point.wg_angle)), float(np.degrees(point.output_angle))
-    error = transmission_error(np.array([wg_angle]), np.array([output]), ratio)[0]
+    error = transmission_error(np.array([wg_angle]), np.array([output]), design.ratio)[0]
+    output = design.in_frame_of_result(output, wg_angle)
     shown = output - 360.0 * np.round(output / 360.0)
     values = (wg_angle, float(shown), float(error), point.wg_torque, point.iterations)
     return dict(zip(COLUMNS, values, strict=True))
@@ -46,8 +48,19 @@ def period_rows(design: DriveDesign, rows: Sequence[Row]) -> list[Row]:
     angle, output = column(period, "wg_angle_deg"), column(period, "output_angle_deg")
     error = transmission_error(angle, output, design.ratio)
     return [
-        dict(zip(COLUMNS, (row["wg_angle_deg"], row["output_angle_deg"], float(e), row["wg_torque_Nmm"], n)))
-        for row, e, n in zip(period, error, (row["newton_iterations"] for row in period))
+        dict(
+            zip(
+                COLUMNS,
+                (
+                    row["wg_angle_deg"],
+                    shown_output(design, row),
+                    float(e),
+                    row["wg_torque_Nmm"],
+                    row["newton_iterations"],
+                ),
+            )
+        )
+        for row, e in zip(period, error)
     ]
 
 
@@ -64,9 +77,9 @@ def spectrum(values: np.ndarray, turns: float) -> tuple[np.ndarray, np.ndarray]:
 class Causes:
     """Names of the orders of the input's turn.
 
-    A gear that is fixed is passed by both waves in every turn: its deviations have whole orders. The other gear turns
+    A gear that stands is passed by both waves in every turn: its deviations have whole orders. The other gear turns
     with the output, against which the wave generator turns 1 - 1 / ratio times. The teeth mesh once per pitch of the
-    fixed gear, with odd numbers of teeth twice.
+    standing gear, with odd numbers of teeth twice.
 
     Parameters
     ----------
@@ -75,11 +88,10 @@ class Causes:
 
     def __init__(self, design: DriveDesign, turns: float) -> None:
         self.design, self.turns = design, turns
-        fixed = round(2.0 * np.pi / design.period_angle)
+        fixed = design.teeth(design.standing_gear).n_teeth
         self.mesh = fixed if fixed % 2 == 0 else 2 * fixed
-        ring_fixed = design.drive.layout == "ring_fixed"
         parts = {"ring gear": _kinds(design, "ring_gear"), "flexible spline": _kinds(design, "flexible_spline")}
-        moving = "flexible spline" if ring_fixed else "ring gear"
+        moving = design.output_gear.replace("_", " ")
         passes = 1.0 - 1.0 / design.ratio
         self.gears = [(name, kinds, passes if name == moving else 1.0) for name, kinds in parts.items() if kinds]
 
@@ -97,7 +109,8 @@ class Causes:
         output = 1.0 / abs(self.design.ratio)
         times = round(order / output)
         if not found and times and abs(order - times * output) < half and self.turns >= abs(self.design.ratio):
-            found.append(f"output, {times} per turn")
+            against = " against the ring gear" if self.design.wave_generator_is_fixed else ""
+            found.append(f"output, {times} per turn{against}")
         if round(order) == 1 and (kinds := _kinds(self.design, "wave_generator")):
             found.append(f"wave generator ({', '.join(kinds)})")
         return " or ".join(found) or "combined"

@@ -14,7 +14,7 @@ def derived_geometry(design: DriveDesign) -> dict[str, float]:
     spline, ring = design.profile("flexible_spline"), design.profile("ring_gear")
     cam, half = design.cam(), 0.5 * design.deflection
     return {
-        "ratio (wave generator / output)": design.ratio,
+        f"ratio ({'ring gear' if design.wave_generator_is_fixed else 'wave generator'} / output)": design.input_ratio,
         "d, diametral deflection (mm)": design.deflection,
         "a, major semi-axis (mm)": design.major_semi_axis,
         "b, half width of the cam (mm)": float(cam.outline(7200)[:, 0].max()),

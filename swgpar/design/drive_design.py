@@ -99,15 +99,42 @@ class DriveDesign(Design):
         return None if isinstance(wave, FourRoller) else wave.C * (self.inner_radius - 0.5 * self.deflection)
 
     @property
+    def wave_generator_is_fixed(self) -> bool:
+        """Whether the ring gear is the input. Everything is then computed in the frame of the ring gear."""
+        return self.drive.layout == "wave_generator_fixed"
+
+    @property
+    def output_gear(self) -> GearName:
+        """The gear that is the output; the other one stands in the frame in which the drive is computed."""
+        return "ring_gear" if self.drive.layout == "spline_fixed" else "flexible_spline"
+
+    @property
+    def standing_gear(self) -> GearName:
+        """The gear that stands in the frame in which the drive is computed: the fixed one, or the driven ring gear."""
+        return GEARS[1 - GEARS.index(self.output_gear)]
+
+    @property
     def ratio(self) -> float:
-        """Speed ratio, wave generator over output."""
+        """Speed ratio, wave generator over output, both against the standing gear."""
         g = self.drive
-        return (-g.teeth_fs if g.layout == "ring_fixed" else g.teeth_rg) / (g.teeth_rg - g.teeth_fs)
+        return (g.teeth_rg if self.output_gear == "ring_gear" else -g.teeth_fs) / (g.teeth_rg - g.teeth_fs)
+
+    @property
+    def input_ratio(self) -> float:
+        """Speed ratio of the drive, input over output."""
+        return self.drive.teeth_fs / self.drive.teeth_rg if self.wave_generator_is_fixed else self.ratio
+
+    def in_frame_of_result(self, angle: float, wave_generator: float) -> float:
+        """Angle in the frame of the fixed member, from that in the frame in which the drive is computed.
+
+        wave_generator : its angle against the standing gear, in the unit of the angle
+        """
+        return angle - wave_generator if self.wave_generator_is_fixed else angle
 
     @property
     def period_angle(self) -> float:
-        """Period of the motion, rad of the wave generator: one pitch angle of the fixed gear."""
-        return 2.0 * np.pi / (self.drive.teeth_rg if self.drive.layout == "ring_fixed" else self.drive.teeth_fs)
+        """Period of the motion, rad of the wave generator against the standing gear: one pitch angle of that gear."""
+        return 2.0 * np.pi / self.teeth(self.standing_gear).n_teeth
 
     @property
     def has_program(self) -> bool:
@@ -196,7 +223,7 @@ class DriveDesign(Design):
             return 1.0
         if self.bearing.cage_speed is not None:
             return self.bearing.cage_speed
-        return self.bearing_sizes.rolling_speed(1.0 / self.ratio if self.drive.layout == "ring_fixed" else 0.0)
+        return self.bearing_sizes.rolling_speed(0.0 if self.output_gear == "ring_gear" else 1.0 / self.ratio)
 
     @property
     def ball_passing_angle(self) -> float:

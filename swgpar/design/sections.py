@@ -21,8 +21,9 @@ OMITTED_BENDING = 0.01
 class Drive(Section):
     """Section [drive]: layout, tooth numbers and sizes both gears share."""
 
-    layout: Literal["ring_fixed", "spline_fixed"] = quantity(
-        "ring_fixed", text="fixed member; the other gear is the output"
+    layout: Literal["ring_fixed", "spline_fixed", "wave_generator_fixed"] = quantity(
+        "ring_fixed",
+        text="fixed member; the wave generator drives the other gear, or where it is fixed the ring gear the spline",
     )
     model: Literal["cup", "plane"] = quantity("cup", text="the cup drive, or the toothed section in plane stress")
     teeth_fs: int = quantity(text="teeth of the flexible spline", ge=8, le=2000)
@@ -100,9 +101,7 @@ class Load(Section):
     """Section [load]."""
 
     torque: float = quantity(0.0, unit="N·m", text="output torque, against the output's motion", ge=0.0)
-    input_speed: float = quantity(
-        2000.0, unit="1/min", text="speed of the wave generator, for sliding speeds", gt=0.0, le=1e6
-    )
+    input_speed: float = quantity(2000.0, unit="1/min", text="speed of the input, for sliding speeds", gt=0.0, le=1e6)
     program: list[ProgramStage] = quantity(
         [], text="stages of a load program, which takes the place of torque and rotation"
     )
@@ -125,7 +124,7 @@ class Contact(Section):
 class Steps(Section):
     """Section [steps]: the load sequence and its increments."""
 
-    rotation: float = quantity(45.0, unit="deg", text="rotation of the wave generator", ge=0.0, le=36000.0)
+    rotation: float = quantity(45.0, unit="deg", text="rotation of the input", ge=0.0, le=36000.0)
     increment: float = quantity(5.0, unit="deg", text="increment of that rotation", ge=0.01, le=45.0)
     pins: bool = quantity(
         True, text="deflect the spline by pins before the cam acts; false, or with a bearing: by the growing cam"

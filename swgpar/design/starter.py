@@ -72,6 +72,10 @@ class Request:
     model: Literal["cup", "plane"] = "cup"
 
 
+LAYOUTS = ("ring_fixed", "spline_fixed")
+"""Layouts of which the ratio gives the numbers of teeth."""
+
+
 def starter_design(request: Request) -> tuple[DriveDesign, dict[str, Any]]:
     """The checked design of a request, and the content of its file.
 
@@ -112,6 +116,8 @@ def _check(request: Request) -> None:
         raise InputError(
             "give either diameter (pitch diameter of the flexible spline, mm) or bore (its inner diameter)"
         )
+    if request.layout not in LAYOUTS:  # from Python, where no parser has refused it
+        raise InputError(f'layout = "{request.layout}" is not available for a start: allowed {" or ".join(LAYOUTS)}')
     if not LEAST_RATIO <= request.ratio <= LARGEST_RATIO or (2.0 * request.ratio) % 1.0:
         raise InputError(
             f"ratio = {request.ratio:g} is out of range: allowed {LEAST_RATIO:g} to {LARGEST_RATIO:g} in steps of 0.5"

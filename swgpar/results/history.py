@@ -41,7 +41,21 @@ UNITS = {
 s3 as a positive number; torques act on the flexible spline, that of the output on the output."""
 
 COLUMNS = tuple(UNITS)
-PERIODIC = ("fs_s1", "fs_s3", "fs_vm", "rg_s1", "rg_s3", "rg_vm", "wg_torque_Nmm", "transmission_error")
+
+INPUT_UNITS = {"input_angle_deg": "deg", "input_torque_Nmm": "N·mm"}
+"""Further columns, with their units, of a drive whose wave generator is fixed: of the ring gear, which is driven."""
+
+PERIODIC = (
+    "fs_s1",
+    "fs_s3",
+    "fs_vm",
+    "rg_s1",
+    "rg_s3",
+    "rg_vm",
+    "wg_torque_Nmm",
+    "input_torque_Nmm",
+    "transmission_error",
+)
 """Columns that are the same after one period and smooth between, the transmission error among them."""
 
 FINE = 201
@@ -53,16 +67,22 @@ _WHOLE = {"pairs_in_contact", "newton_iterations"}
 
 def plain_row(row: Mapping[str, Any]) -> dict[str, Any]:
     """A row with Python's own types, in the order of the columns; ValueError when columns are wrong."""
-    if set(row) != set(COLUMNS):
-        wrong = sorted(set(row) ^ set(COLUMNS))
+    names = columns_of(row)
+    if set(row) != set(names):
+        wrong = sorted(set(row) ^ set(names))
         raise ValueError(f"history row: missing or unknown columns {', '.join(wrong)}")
-    return {c: str(row[c]) if c in _TEXT else int(row[c]) if c in _WHOLE else float(row[c]) for c in COLUMNS}
+    return {c: str(row[c]) if c in _TEXT else int(row[c]) if c in _WHOLE else float(row[c]) for c in names}
+
+
+def columns_of(row: Mapping[str, Any]) -> tuple[str, ...]:
+    """The columns that a row has to have: those of the input too where it has one of them."""
+    return (*COLUMNS, *INPUT_UNITS) if any(name in row for name in INPUT_UNITS) else COLUMNS
 
 
 def format_rows(rows: Iterable[Mapping[str, Any]]) -> bytes:
     """The text of the whole file; floats as the shortest text that reads back the same."""
-    text = io.StringIO()
-    writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
+    text, rows = io.StringIO(), list(rows)
+    writer = csv.DictWriter(text, columns_of(rows[0]) if rows else COLUMNS, lineterminator="\n")
     writer.writeheader()
     for row in rows:
         writer.writerow({c: repr(v) if isinstance(v, float) else v for c, v in plain_row(row).items()})
@@ -71,8 +91,8 @@ def format_rows(rows: Iterable[Mapping[str, Any]]) -> bytes:
 
 def columns(rows: Sequence[Mapping[str, Any]]) -> dict[str, np.ndarray]:
     """The history by columns, each (n,): int64 for `step` and for counts, else float64."""
-    whole = _WHOLE | _TEXT
-    return {name: np.array([row[name] for row in rows], dtype=np.int64 if name in whole else float) for name in COLUMNS}
+    whole, names = _WHOLE | _TEXT, columns_of(rows[0]) if rows else COLUMNS
+    return {name: np.array([row[name] for row in rows], dtype=np.int64 if name in whole else float) for name in names}
 
 
 def read_history(path: Path) -> list[dict[str, Any]]:
@@ -134,9 +154,9 @@ def curves(history: Mapping[str, np.ndarray], samples: int, increments: int, per
     Parameters
     ----------
     samples : angles in a period, 0 where every increment was computed;  increments : that were computed
-    period : degrees;  ratio : speed of the wave generator over that of the output
+    period : degrees;  ratio : change of `wg_angle_deg` over that of `output_angle_deg`, on average
     """
-    shown = {name: history[name] for name in COLUMNS} | {
+    shown = dict(history) | {
         "transmission_error": transmission_error(history["wg_angle_deg"], history["output_angle_deg"], ratio)
     }
     if not samples or increments < samples:

@@ -23,7 +23,7 @@ from swgpar.design.remarks import remarks
 from swgpar.errors import InputError
 from swgpar.input.toml_file import apply_overrides
 from swgpar.meshing import MeshRecipe, load_recipe
-from swgpar.results.history import UNITS
+from swgpar.results.history import INPUT_UNITS, UNITS
 from swgpar.systems.protocol import Measured, Quantity, System
 
 MAIN = ("fs_s1", "fs_s3", "fs_vm", "rg_vm", "wg_torque_Nmm")
@@ -41,7 +41,7 @@ MEANINGS = {
 """Of columns of the history; the names of the others say it themselves."""
 
 COLUMNS = tuple(name for name in UNITS if name not in ("step", "wall_s"))
-"""Columns of the history that are quantities."""
+"""Columns of the history that are quantities; with the wave generator fixed also those of `INPUT_UNITS`."""
 
 GROUPS = range(Stage.DEFLECT, Stage.ROTATE + 1)
 """Steps with quantities of their own; all increments of the rotation count as the last one."""
@@ -114,8 +114,10 @@ RATCHETING = {
 TRANSMISSION = {
     "transmission_error.peak_to_peak": Quantity("transmission error, peak to peak", "arcsec"),
     "transmission_error.amplitude": Quantity("transmission error, half of peak to peak", "arcsec"),
-    "transmission_error.torque_mean": Quantity("input torque over the same angles, mean", "N·mm"),
-    "transmission_error.torque_peak_to_peak": Quantity("input torque over the same angles, peak to peak", "N·mm"),
+    "transmission_error.torque_mean": Quantity("torque of the wave generator over the same angles, mean", "N·mm"),
+    "transmission_error.torque_peak_to_peak": Quantity(
+        "torque of the wave generator over the same angles, peak to peak", "N·mm"
+    ),
 }
 """Quantities of runs with `steps.samples`, over their period, and of those with [deviations], over whole turns."""
 
@@ -206,7 +208,7 @@ class Drives(System[DriveDesign, DriveResult]):
         """ "mean.fs_s1" over the rotation and so on, "step1.fs_s1" at the last increment of a step."""
 
         def quantity(column: str, when: str) -> Quantity:
-            return Quantity(f"{MEANINGS.get(column, column)}, {when}", UNITS[column])
+            return Quantity(f"{MEANINGS.get(column, column)}, {when}", (UNITS | INPUT_UNITS)[column])
 
         if design.has_program:
             further = (PROGRAM_FATIGUE if design.fatigue else {}) | (BEARING if design.bearing else {})
@@ -220,7 +222,11 @@ class Drives(System[DriveDesign, DriveResult]):
         known |= TRANSMISSION
         for section, names in ((design.bearing, BEARING), (design.housing, HOUSING)):
             known |= names if section else {}
-        return known | {f"step{k}.{name}": quantity(name, f"end of step {k}") for k in GROUPS for name in COLUMNS}
+        columns = COLUMNS
+        if design.wave_generator_is_fixed:
+            known["input.torque"] = Quantity("torque of the driven ring gear, mean over the rotation", "N·mm")
+            columns = (*COLUMNS, *INPUT_UNITS)
+        return known | {f"step{k}.{name}": quantity(name, f"end of step {k}") for k in GROUPS for name in columns}
 
     def main_quantities(self, known: Mapping[str, Quantity]) -> tuple[str, ...]:
         for group in (STIFFNESS, RATCHETING):
@@ -270,6 +276,7 @@ class Drives(System[DriveDesign, DriveResult]):
                 **of_bearing(summary),
                 **of_housing(summary),
                 **transmission(summary),
+                **({"input.torque": summary["input"]["torque_Nmm"]} if summary.get("input") else {}),
             },
             wall_s=summary["wall_s"],
             elements=summary["elements"],
@@ -399,7 +406,8 @@ def values(means: Mapping[str, float], history: Mapping[str, np.ndarray]) -> dic
     group = np.minimum(history["step"], GROUPS[-1])
     for k in GROUPS:
         for last in np.flatnonzero(group == k)[-1:]:
-            found |= {f"step{k}.{name}": float(history[name][last]) for name in COLUMNS if name in history}
+            columns = [name for name in (*COLUMNS, *INPUT_UNITS) if name in history]
+            found |= {f"step{k}.{name}": float(history[name][last]) for name in columns}
     return found
 
 

@@ -32,7 +32,7 @@ OVERRIDES = [
     ("drive.dedendum_coef=9", "drive.dedendum_coef", "2"),
     ("drive.face_width=0", "drive.face_width", "above 0"),
     ("drive.face_width=-10", "drive.face_width", "-10"),
-    ('drive.layout="sideways"', "drive.layout", '"ring_fixed" or "spline_fixed"'),
+    ('drive.layout="sideways"', "drive.layout", '"spline_fixed" or "wave_generator_fixed"'),
     ('drive.model="solid"', "drive.model", '"cup" or "plane"'),
     ("drive.model=plane", "micro_geometry.wg_crowning", 'only 0 with drive.model = "plane"'),
     ("drive.tooth_count=3", "drive.tooth_count", "not a key"),
