@@ -298,13 +298,14 @@ def export(
         A format that the source does not have, a source that is no drive, a package that is missing, or what a format
         does not carry.
     OutputError
-        The folder cannot be written.
+        The folder cannot be written, or a C compiler fails with the FMU.
 
     Examples
     --------
     >>> swgpar.export("drivers/cup_45deg.toml", "results/cad", ["step"])
     >>> swgpar.export("drivers/plane_half_turn.toml", "results/calculix", ["inp"], mesh="plane_coarse")
     >>> swgpar.export("results/cup", "results/cup/export", ["vtkhdf", "parquet"])
+    >>> swgpar.export("results/stiffness", "results/fmu", ["fmu"], ripple="results/period")
     """
     from swgpar.exchange.export import export_files  # CAD kernels and tables are for this alone
 

@@ -66,7 +66,7 @@ def test_wheel_runs_in_an_empty_environment(sdist: Path, tmp_path: Path) -> None
     wheel = build("wheel", unpacked, tmp_path / "dist")
     with zipfile.ZipFile(wheel) as archive:
         names = set(archive.namelist())
-    assert sources(".py", ".toml", ".typed") <= names
+    assert sources(".py", ".c", ".toml", ".typed") <= names
     assert len([name for name in names if name.endswith(".so")]) == len(sources(".pyx"))
 
     venv.create(tmp_path / "empty", symlinks=True)
