@@ -36,8 +36,8 @@ class BentSpline:
     def __init__(self, design: DriveDesign, inset: float | None = None) -> None:
         self.design, self.inset = design, PENETRATION * design.drive.module if inset is None else inset
         self.radius = design.inner_radius + 0.5 * design.flexible_spline.rim
-        self.amplitudes = bent_ring(design.cam(), design.inner_radius, self.radius)
-        self.order = 2.0 * np.arange(len(self.amplitudes))
+        self.amplitudes = bent_ring(design.cam(), design.inner_radius, self.radius, design.lobes)
+        self.order = float(design.lobes) * np.arange(len(self.amplitudes))
         self.half = 0.5 * design.wave_generator.face_width
         self.end = 0.5 * design.drive.face_width
         if design.cup:  # the middle of the closed end

@@ -59,7 +59,7 @@ def is_halved(design: DriveDesign) -> bool:
     if design.bearing is not None:
         counts.append(design.bearing.balls)
     even = all(count % 2 == 0 for count in counts)
-    return design.solver.twofold_symmetry and even
+    return design.solver.twofold_symmetry and even and design.lobes == 2
 
 
 def search_distance(design: DriveDesign, share: float = NEAR) -> float:
@@ -286,6 +286,7 @@ def build_rigid_contacts(design: DriveDesign, *, elements: Elements) -> list[Rig
             n_quadrature=design.contact.wg_quadrature,
             penalty=design.wg_penalty,
             pin_half_angle=float(np.radians(design.wave_generator.pin_half_angle)),
+            lobes=design.lobes,
             pressure_limit=PRESSURE_LIMIT * design.material.E,
         )
         for pose in (cam_pose, pin_pose)

@@ -18,7 +18,7 @@ from swgpar.contact.face_quadrature import FaceQuadrature
 from swgpar.design.load_states import LoadState
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.sparse import BlockRows
-from swgpar.geometry.rotation import HALF_TURN
+from swgpar.geometry.rotation import HALF_TURN, image_rotation
 from swgpar.kernel import add_face_blocks
 
 
@@ -33,7 +33,7 @@ class Surface(Protocol):
 class SurfacePose:
     """Position of the rigid surface: rotated by `angle` (rad), every gap opened by `clearance` (mm).
 
-    inset : None for the cam; for the pins, the distance (mm) by which each is drawn in along the major axis
+    inset : None for the cam; for the pins, the distance (mm) by which each is drawn in towards the axis
     shift : mm, of the surface's axis, in the cam's frame;  lean : displacement of that axis per mm along z
     """
 
@@ -72,6 +72,11 @@ def pin_pose(state: LoadState) -> SurfacePose | None:
     return None if state.pin_inset is None else SurfacePose(state.angle, inset=state.pin_inset)
 
 
+def pin_directions(lobes: int) -> np.ndarray:
+    """Outward unit vectors (lobes, 2) of the pins, in the cam's frame."""
+    return np.array([image_rotation(lobes, turns)[:2, 1] for turns in range(lobes)])
+
+
 class RigidContact:
     """Face quadrature of the inner surface against a rigid surface; meets the protocol `Contact`.
 
@@ -85,6 +90,7 @@ class RigidContact:
     n_quadrature : Gauss points per direction
     penalty : MPa / mm
     pin_half_angle : rad, half of the angle that a pin covers
+    lobes : of the surface; each has a pin
     pressure_limit : MPa, bound of the pressure in the tangent's geometric term
     """
 
@@ -99,6 +105,7 @@ class RigidContact:
         n_quadrature: int,
         penalty: float,
         pin_half_angle: float,
+        lobes: int = 2,
         pressure_limit: float,
     ) -> None:
         self.surface, self.pose = surface, pose
@@ -109,7 +116,10 @@ class RigidContact:
         self.shape, self.weight, self.offset = points.shape, points.weight, points.offset
         x = points.position
         self.inside = np.abs(x[..., 2]) <= half_width
-        self.cosine = np.abs(x[..., 1]) / np.hypot(x[..., 0], x[..., 1])
+        # of the pin nearest to a point: its outward direction, and the cosine of the angle to it
+        along = x[..., :2] @ pin_directions(lobes).T
+        self.pin = pin_directions(lobes)[along.argmax(axis=-1)].reshape(-1, 2)
+        self.cosine = along.max(axis=-1) / np.hypot(x[..., 0], x[..., 1])
         self.angle_limit = np.cos(pin_half_angle)
         self.multiplier = np.zeros_like(self.weight)
         self.gap = np.full_like(self.weight, np.inf)
@@ -174,7 +184,7 @@ class RigidContact:
             points[:, :2] -= pose.shift
         reachable = self.inside
         if pose.inset is not None:
-            points[:, 1] += pose.inset * np.sign(points[:, 1])
+            points[:, :2] += pose.inset * self.pin
             reachable = reachable & (self.cosine >= self.angle_limit)
         level, gradient, hessian = self.surface.evaluate(points)
         shape = self.weight.shape

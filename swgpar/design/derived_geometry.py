@@ -19,7 +19,7 @@ def derived_geometry(design: DriveDesign) -> dict[str, float]:
         "a, major semi-axis (mm)": design.major_semi_axis,
         "b, half width of the cam (mm)": float(cam.outline(7200)[:, 0].max()),
         "taut length of cam / inner perimeter - 1": taut_length(cam) / (2.0 * np.pi * design.inner_radius) - 1.0,
-        "travel of the pins (mm)": pin_travel(cam, design.inner_radius),
+        "travel of the pins (mm)": pin_travel(cam, design.inner_radius, design.lobes),
         "r_fs, inner radius of the spline (mm)": design.inner_radius,
         "backlash at the pitch circle (mm)": design.backlash,
         "gamma, rotation that closes it (deg)": float(np.degrees(design.backlash_angle)),

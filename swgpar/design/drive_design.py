@@ -44,7 +44,7 @@ def _line(
     keys: WaveGenerator, a: float, b: float | None, inner_radius: float, radius: float, share: float
 ) -> NeutralLine:
     """Neutral line on the cam of these keys; kept, because a design asks for its profiles again and again."""
-    return neutral_line(make_cam(keys, a, b), inner_radius, radius, share)
+    return neutral_line(make_cam(keys, a, b), inner_radius, radius, share, keys.lobes)
 
 
 class DriveDesign(Design):
@@ -77,8 +77,13 @@ class DriveDesign(Design):
 
     @property
     def deflection(self) -> float:
-        """Diametral deflection d, mm."""
+        """Diametral deflection d, mm: twice the radial one at a lobe, for any number of lobes."""
         return self.drive.module * (self.drive.teeth_rg - self.drive.teeth_fs)
+
+    @property
+    def lobes(self) -> int:
+        """Lobes of the wave generator, 2 or 3."""
+        return self.wave_generator.lobes
 
     @property
     def inner_radius(self) -> float:
@@ -248,25 +253,25 @@ class DriveDesign(Design):
     def axial_travel(self) -> float:
         """Axial displacement (mm) of a tooth at the major axis towards the closed end; 0 in the plane model.
 
-        The cup is taken as a wall that bends without extension, with a radial deflection d / 2 cos 2 phi that grows
-        linearly from the closed end. Such a wall moves axially by r d / (8 L) (Love's inextensional mode), and the
-        tooth leans by d / (2 L).
+        The cup is taken as a wall that bends without extension, with a radial deflection d / 2 cos n phi that grows
+        linearly from the closed end, n lobes. Such a wall moves axially by r d / (2 n² L) (Love's inextensional mode),
+        and the tooth leans by d / (2 L).
         """
         middle = self.inner_radius + 0.5 * self.flexible_spline.rim
         height = 0.5 * self.drive.teeth_fs * self.drive.module - middle
-        return 0.5 * self.deflection / self.cup.length * (0.25 * middle + height) if self.cup else 0.0
+        return 0.5 * self.deflection / self.cup.length * (middle / self.lobes**2 + height) if self.cup else 0.0
 
     @property
     def omitted_bending(self) -> float:
         """Share of the bending strain that the plane model's condensed sectors leave out, at most.
 
         The change of the rim's curvature rotates the ends of a sector, a pitch apart, by theta relative to each other.
-        The strain left out is theta^2 / 8, here divided by the bending strain. On an elliptical cam the curvature
-        changes by 3 d / (2 r^2). A ring that touches at its major axis only bends 1.4 times as much there, on rollers
-        70 degrees apart 2.9 times: 3 covers both.
+        The strain left out is theta^2 / 8, here divided by the bending strain. With n lobes the curvature changes by
+        (n^2 - 1) d / (2 r^2) on a cam that the rim follows all around, as an ellipse. A ring that touches at its major
+        axis only bends 1.4 times as much there, on rollers 70 degrees apart 2.9 times: 3 covers both.
         """
         factor = 1.0 if self.wave_generator.type == "elliptical" else 3.0
-        curvature = factor * 1.5 * self.deflection / self.inner_radius**2
+        curvature = factor * 0.5 * (self.lobes**2 - 1) * self.deflection / self.inner_radius**2
         pitch = 2.0 * np.pi * self.inner_radius / self.drive.teeth_fs
         return (curvature * pitch) ** 2 / 8.0 / (0.5 * self.flexible_spline.rim * curvature)
 
@@ -331,5 +336,10 @@ class DriveDesign(Design):
         """Surface of the cam with crowning and slope."""
         micro = self.micro_geometry
         return WaveGeneratorSurface(
-            self.cam(), self.wave_generator.face_width, micro.wg_crowning, micro.wg_slope, micro.crowning_shape
+            self.cam(),
+            self.wave_generator.face_width,
+            micro.wg_crowning,
+            micro.wg_slope,
+            micro.crowning_shape,
+            self.lobes,
         )

@@ -12,6 +12,7 @@ from swgpar.design.program_checks import check_program
 from swgpar.design.sections import GEARS, OMITTED_BENDING
 from swgpar.errors import InputError
 from swgpar.geometry.cams import FourRoller
+from swgpar.geometry.cams.keys import Harmonic
 
 if TYPE_CHECKING:  # a design checks itself
     from swgpar.design.drive_design import DriveDesign
@@ -34,8 +35,8 @@ OUTLINE_POINTS = 2000
 
 def check_fit(design: DriveDesign) -> None:
     """Raise InputError for the first size that does not fit the others."""
-    _check_teeth(design)
     _check_wave_generator(design)
+    _check_teeth(design)
     _check_steps(design)
     _check_torque(design)
     _check_fatigue(design)
@@ -70,10 +71,11 @@ def _refuse(key: str, value: float, allowed: str) -> None:
 
 def _check_teeth(design: DriveDesign) -> None:
     drive = design.drive
-    difference = drive.teeth_rg - drive.teeth_fs
-    if difference <= 0 or difference % 2:
+    difference, lobes = drive.teeth_rg - drive.teeth_fs, design.lobes
+    if difference <= 0 or difference % lobes:
+        multiple = "two" if lobes == 2 else f"wave_generator.lobes = {lobes}"
         raise InputError(
-            f"drive.teeth_rg - drive.teeth_fs = {difference} is out of range: allowed a positive multiple of two"
+            f"drive.teeth_rg - drive.teeth_fs = {difference} is out of range: allowed a positive multiple of {multiple}"
         )
     if drive.dedendum_coef <= drive.addendum_coef:
         allowed = f"above {drive.addendum_coef:g} (the addendum) to 2 modules"
@@ -92,6 +94,11 @@ def _check_teeth(design: DriveDesign) -> None:
 
 def _check_wave_generator(design: DriveDesign) -> None:
     wave = design.wave_generator
+    if wave.lobes != 2 and not isinstance(wave, Harmonic):
+        raise InputError(
+            f'wave_generator.lobes = {wave.lobes} is not available with wave_generator.type = "{wave.type}": '
+            'allowed with "harmonic"'
+        )
     if isinstance(wave, FourRoller):
         if wave.beta >= wave.pin_half_angle:
             _refuse("wave_generator.beta", wave.beta, f"above 0 to below {wave.pin_half_angle:g} deg (pin_half_angle)")
@@ -208,6 +215,6 @@ def _check_outline(design: DriveDesign) -> None:
 
 def _shape_keys(design: DriveDesign) -> str:
     """The keys that determine the curve of the cam; a smaller C, where there is one, makes it slimmer."""
-    others = ("type", "face_width", "pin_half_angle", "bearing")
+    others = ("type", "lobes", "face_width", "pin_half_angle", "bearing")
     keys = sorted(set(type(design.wave_generator).model_fields).difference(others))
     return ", ".join(f"wave_generator.{key}{' (smaller is slimmer)' if key == 'C' else ''}" for key in keys)

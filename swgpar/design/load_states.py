@@ -2,7 +2,7 @@
 
 The stages follow each other:
 
-1. DEFLECT: the pins, the two halves of the cam, push the flexible spline outward by d / 2 each. A cam that bulges
+1. DEFLECT: the pins, the lobes of the cam, push the flexible spline outward by d / 2 each. A cam that bulges
    beside its tips pushes farther. With `steps.pins = false`, and with a bearing, the cam grows
    out of the circle instead.
 2. ENGAGE: the wave generator grows into place, the pins are drawn back, and the flanks may touch.
@@ -68,7 +68,7 @@ class LoadState:
     step : number in the history's column `step`; increments of the rotation count on from 4
     angle : rad, of the wave generator
     cam_clearance, flank_clearance : mm, added to every gap of the cam or the flanks; None while they are switched off
-    pin_inset : mm, by which each pin is drawn in along the major axis; None when the pins are out
+    pin_inset : mm, by which each pin is drawn in towards the axis; None when the pins are out
     control : "rotation" (output held at `output_rotation`, rad) or "torque" (`torque`, N mm, against the output's
     motion)
     """
@@ -148,7 +148,7 @@ class LoadState:
 
 def start_state(design: DriveDesign) -> LoadState:
     """Undeformed drive; the pins, or the shrunk cam, touch the inner surface."""
-    travel = pin_travel(design.cam(), design.inner_radius)
+    travel = pin_travel(design.cam(), design.inner_radius, design.lobes)
     if design.uses_pins:
         return LoadState(Stage.START, 0, pin_inset=travel)
     return LoadState(Stage.START, 0, cam_clearance=travel)

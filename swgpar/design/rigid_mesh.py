@@ -11,8 +11,8 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.geometry.profiles import ToothProfile
 from swgpar.geometry.profiles.mesh_gap import smallest_gaps
 
-WIDEST = np.radians(60.0)
-"""Angle from the major axis, to both sides, in which teeth can touch."""
+WIDEST = np.radians(120.0)
+"""Angle from the tip of a lobe, to both sides, in which teeth can touch, times the number of lobes."""
 
 STEP = 1e-5
 """Rotation (rad) from which the rotation that closes a gap is extrapolated."""
@@ -24,10 +24,11 @@ NEAR = 1e-3
 def flank_clearance(design: DriveDesign, n_angles: int = 721) -> float:
     """Smallest distance (mm; negative is interference) between the undeformed flanks in the deflected position.
 
-    n_angles : angles of the tooth within a quarter
+    n_angles : angles of the tooth within half of a lobe
     """
     pair, motion = (design.profile("flexible_spline"), design.profile("ring_gear")), design.tooth_motion()
-    psi = np.linspace(-0.25 * np.pi, 0.25 * np.pi, n_angles)
+    widest = 0.5 * np.pi / design.lobes
+    psi = np.linspace(-widest, widest, n_angles)
     # the other flank of a tooth moves like this one on the mirror image of the cam
     return min(float(smallest_gaps(*pair, side, psi).min()) for side in {motion, motion.mirror_image()})
 
@@ -59,7 +60,7 @@ def rigid_mesh(design: DriveDesign, phases: int = 8, n_points: int = 300) -> Rig
     touching, gaps = _touching(design, flanks, phases, n_points)
     if not np.isfinite(touching).all():
         return RigidMesh(np.inf, 0.0)
-    share = np.count_nonzero(gaps(touching) < NEAR) / phases * 2.0 / design.drive.teeth_fs
+    share = np.count_nonzero(gaps(touching) < NEAR) / phases * design.lobes / design.drive.teeth_fs
     return RigidMesh(float(np.degrees(np.ptp(touching))) * 3600.0, share)
 
 
@@ -83,7 +84,7 @@ def _touching(
     """
     motion = design.tooth_motion()
     pitch = 2.0 * np.pi / design.drive.teeth_fs
-    reach = int(WIDEST / pitch)
+    reach = int(WIDEST / design.lobes / pitch)
     psi = pitch * (np.arange(-reach, reach + 1) + np.arange(phases)[:, None] / phases)
 
     def gaps(rotation: np.ndarray) -> np.ndarray:

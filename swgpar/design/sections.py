@@ -84,7 +84,7 @@ class MicroGeometry(Section):
 
     wg_crowning: float = quantity(0.0, unit="mm", text="crowning of the cam at its edges", ge=0.0)
     wg_slope: float = quantity(
-        0.0, unit="mm", text="slope of the cam: radial -s (2z/F_w) cos 2 theta; s > 0 follows the cone of the cup"
+        0.0, unit="mm", text="slope of the cam: radial -s (2z/F_w) cos(lobes theta); s > 0 follows the cone of the cup"
     )
     fs_crowning: float = quantity(0.0, unit="mm", text="crowning of the flexible spline's flanks at their ends", ge=0.0)
     crowning_shape: Literal["parabolic", "circular"] = quantity("parabolic", text="curve of the crowning")

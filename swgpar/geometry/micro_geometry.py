@@ -1,8 +1,8 @@
 """Crowning and slope: microns taken from the cam and from the flanks (section 7.12).
 
 Sign of the slope, with theta from the major axis and z towards the closed end: the cam's surface is moved
-radially by -s (2 z / F_w) cos(2 theta). s > 0 raises the edge under the open end at the major axis, so that the
-surface follows the cone of the deflected cup (section 7.12); s < 0 is the sense of the words of section 7.13.3.
+radially by -s (2 z / F_w) cos(n theta), n lobes. s > 0 raises the edge under the open end at the major axis, so that
+the surface follows the cone of the deflected cup (section 7.12); s < 0 is the sense of the words of section 7.13.3.
 """
 
 from __future__ import annotations
@@ -28,6 +28,39 @@ def crowning(amount: float, z: np.ndarray, width: float, shape: str) -> tuple[np
     return radius - root, z / root, radius**2 / root**3
 
 
+Waves = tuple[np.ndarray, tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]]
+"""A function of x and y, (n,), its derivatives by x and y, and those by xx, xy and yy."""
+
+
+def _two_waves(x: np.ndarray, y: np.ndarray) -> Waves:
+    """cos 2 theta = (y^2 - x^2) / r^2."""
+    r2 = x * x + y * y
+    q = (y * y - x * x) / r2
+    qx, qy = -2.0 * x * (1.0 + q) / r2, 2.0 * y * (1.0 - q) / r2
+    qxx = (-2.0 * (1.0 + q) - 4.0 * x * qx) / r2
+    qyy = (2.0 * (1.0 - q) - 4.0 * y * qy) / r2
+    qxy = (-2.0 * x * qy - 2.0 * y * qx) / r2
+    return q, (qx, qy), (qxx, qxy, qyy)
+
+
+def _three_waves(x: np.ndarray, y: np.ndarray) -> Waves:
+    """cos 3 theta = cos theta (2 cos 2 theta - 1), cos theta = y / r."""
+    q, (qx, qy), (qxx, qxy, qyy) = _two_waves(x, y)
+    r = np.hypot(x, y)
+    p, px, py = y / r, -x * y / r**3, x * x / r**3
+    pxx, pxy, pyy = y * (2.0 * x * x - y * y) / r**5, x * (2.0 * y * y - x * x) / r**5, -3.0 * x * x * y / r**5
+    f = 2.0 * q - 1.0
+    return (
+        p * f,
+        (px * f + 2.0 * p * qx, py * f + 2.0 * p * qy),
+        (
+            pxx * f + 4.0 * px * qx + 2.0 * p * qxx,
+            pxy * f + 2.0 * (px * qy + py * qx + p * qxy),
+            pyy * f + 4.0 * py * qy + 2.0 * p * qyy,
+        ),
+    )
+
+
 class WaveGeneratorSurface:
     """Level function of the cam with crowning and slope: exact in-plane distance less the radial modification.
 
@@ -39,12 +72,19 @@ class WaveGeneratorSurface:
     width : mm, face width of the cam
     crowning, slope : mm, at |z| = width / 2 (section 7.12; the sign of the slope is explained above)
     shape : "parabolic" or "circular", of the crowning
+    lobes : 2 or 3, of the cam
     """
 
     def __init__(
-        self, cam: Cam, width: float, crowning: float = 0.0, slope: float = 0.0, shape: str = "parabolic"
+        self,
+        cam: Cam,
+        width: float,
+        crowning: float = 0.0,
+        slope: float = 0.0,
+        shape: str = "parabolic",
+        lobes: int = 2,
     ) -> None:
-        self.cam, self.width = cam, width
+        self.cam, self.width, self.lobes = cam, width, lobes
         self.crowning, self.slope, self.shape = crowning, slope, shape
 
     def evaluate(self, xyz: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -61,13 +101,7 @@ class WaveGeneratorSurface:
         gradient[:, 2] += dc
         hessian[:, 2, 2] += ddc
         if self.slope:
-            # q = cos 2 theta = (y^2 - x^2) / r^2
-            r2 = x * x + y * y
-            q = (y * y - x * x) / r2
-            qx, qy = -2.0 * x * (1.0 + q) / r2, 2.0 * y * (1.0 - q) / r2
-            qxx = (-2.0 * (1.0 + q) - 4.0 * x * qx) / r2
-            qyy = (2.0 * (1.0 - q) - 4.0 * y * qy) / r2
-            qxy = (-2.0 * x * qy - 2.0 * y * qx) / r2
+            q, (qx, qy), (qxx, qxy, qyy) = (_two_waves if self.lobes == 2 else _three_waves)(x, y)
             rate = 2.0 * self.slope / self.width
             level = level + rate * z * q
             gradient[:, 0] += rate * z * qx

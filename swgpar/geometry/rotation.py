@@ -7,6 +7,27 @@ import numpy as np
 HALF_TURN = np.array([-1.0, -1.0, 1.0])
 """Factors of a vector's components (x, y, z) under a rotation by 180 degrees about z."""
 
+SIXTHS = np.array(
+    [
+        [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]
+        for c, s in (
+            (1.0, 0.0),
+            (0.5, np.sqrt(0.75)),
+            (-0.5, np.sqrt(0.75)),
+            (-1.0, 0.0),
+            (-0.5, -np.sqrt(0.75)),
+            (0.5, -np.sqrt(0.75)),
+        )
+    ]
+)
+"""Rotations (6, 3, 3) about z by multiples of 60 degrees: half a turn is exact."""
+
+
+def image_rotation(lobes: int, turns: int) -> np.ndarray:
+    """Rotation (3, 3) about z by so many of `lobes` parts of a turn; lobes : 2, 3 or 6."""
+    return SIXTHS[turns * (6 // lobes) % 6]
+
+
 MIRROR = np.array([-1.0, 1.0])
 """Factors of the components (x, y) of a vector of one flank of the tooth at +y that give those of the other flank."""
 

@@ -12,15 +12,17 @@ from scipy.optimize import brentq
 from scipy.special import ellipe
 
 from support.paths import REFERENCE
+from swgpar.contact.rigid_surface import pin_directions
 from swgpar.design.design_file import load_design
 from swgpar.design.load_states import Stage, load_sequence, start_state
 from swgpar.errors import InputError
-from swgpar.geometry.cams import EllipticalCam, pin_travel, taut_length
+from swgpar.geometry.cams import EllipticalCam, HarmonicCam, pin_travel, taut_length
 from swgpar.geometry.cams.four_roller import four_roller
 from swgpar.geometry.cams.parabolic import Side, parabolic
 from swgpar.geometry.cams.piecewise import Parabola, PiecewiseCam
 from swgpar.geometry.cams.simplified import simplified
-from swgpar.geometry.micro_geometry import crowning
+from swgpar.geometry.micro_geometry import WaveGeneratorSurface, crowning
+from swgpar.geometry.rotation import rotated
 
 A, B, R_FS = 59.2, 57.2, 58.2
 
@@ -63,6 +65,25 @@ def ellipse(a: float, b: float) -> list[Curve]:
         lambda t: columns(-b * np.cos(t), -a * np.sin(t)),
     )
     return [whole]
+
+
+def harmonic(a: float, b: float, lobes: int) -> list[Curve]:
+    """x = r (cos t, sin t) with r = m + w cos(lobes (t - pi / 2)), by the product rule."""
+    m, w = 0.5 * (a + b), 0.5 * (a - b)
+
+    def wave(t):
+        phase = lobes * (t - 0.5 * np.pi)
+        return m + w * np.cos(phase), -lobes * w * np.sin(phase), -(lobes**2) * w * np.cos(phase)
+
+    def first(t):
+        (r, dr, _), c, s = wave(t), np.cos(t), np.sin(t)
+        return columns(dr * c - r * s, dr * s + r * c)
+
+    def second(t):
+        (r, dr, ddr), c, s = wave(t), np.cos(t), np.sin(t)
+        return columns((ddr - r) * c - 2.0 * dr * s, (ddr - r) * s + 2.0 * dr * c)
+
+    return [Curve(0.0, 2.0 * np.pi, lambda t: columns(wave(t)[0] * np.cos(t), wave(t)[0] * np.sin(t)), first, second)]
 
 
 def stadium(a: float, r: float) -> list[Curve]:
@@ -122,6 +143,9 @@ BETA = np.radians(10.0)
 CAMS = {
     "elliptical": (EllipticalCam(A, B), ellipse(A, B)),
     "elliptical-0.5": (EllipticalCam(A, 0.5 * B), ellipse(A, 0.5 * B)),
+    "harmonic": (HarmonicCam(A, B, 2), harmonic(A, B, 2)),
+    "harmonic-three": (HarmonicCam(A + 0.5, B - 0.5, 3), harmonic(A + 0.5, B - 0.5, 3)),
+    "harmonic-three-deep": (HarmonicCam(A, 0.85 * A, 3), harmonic(A, 0.85 * A, 3)),
     "simplified": (simplified(A, 0.97 * B), stadium(A, 0.97 * B)),
     "simplified-0.5": (simplified(A, 0.5 * B), stadium(A, 0.5 * B)),
     "parabolic": (parabolic(A, B, Side(*IMPROVED), Side(*IMPROVED)), parabola(A, B, IMPROVED, IMPROVED, 0.0)),
@@ -154,6 +178,7 @@ def keys(cam: str, **more) -> dict:
 
 SECTIONS = {
     "elliptical": keys("elliptical"),
+    "harmonic": keys("harmonic"),
     "simplified": keys("simplified", C=0.97),
     "parabolic": keys("parabolic", **SIDE),
     "angle-based": keys("asymmetric_parabolic", rotational_angle=0.5, right=SIDE, left=SIDE),
@@ -228,12 +253,13 @@ def test_chains_are_closed_and_smooth(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", CAMS)
-def test_half_a_turn_changes_nothing(name: str) -> None:
+def test_a_turn_by_a_lobe_changes_nothing(name: str) -> None:
     cam = CAMS[name][0]
     x = 1.01 * cam.outline(400)
     x = x[np.abs(x[:, 1]) > 1e-9]  # on the minor axis the curvature may jump
-    here, there = cam.evaluate(x), cam.evaluate(-x)
-    assert np.allclose(here[0], there[0], atol=1e-12) and np.allclose(here[1], -there[1], atol=1e-12)
+    turn = 2.0 * np.pi / (3 if "three" in name else 2)
+    here, there = cam.evaluate(x), cam.evaluate(rotated(x, turn))
+    assert np.allclose(here[0], there[0], atol=1e-12) and np.allclose(rotated(here[1], turn), there[1], atol=1e-12)
     assert np.allclose(here[2], there[2], atol=1e-12)
 
 
@@ -292,7 +318,7 @@ def test_pins_fit_into_the_spline_and_end_at_the_cam(name: str, design_file: Cal
     gap = cam.evaluate(inner)[0]
     assert abs(gap.min()) < 1e-5
     assert travel >= 0.5 * design.deflection - 1e-12
-    if name in ("elliptical", "simplified", "parabolic", "bilateral"):
+    if name in ("elliptical", "harmonic", "simplified", "parabolic", "bilateral"):
         assert travel == pytest.approx(0.5 * design.deflection, abs=1e-12)
     if name == "four_roller":
         x, y = cam.center
@@ -318,6 +344,35 @@ def test_derivatives_of_the_modified_surface(shape: str, name: str, design_file:
         up, down = surface.evaluate(x + step), surface.evaluate(x - step)
         assert np.allclose((up[0] - down[0]) / (2 * h), gradient[:, k], atol=1e-8)
         assert np.allclose((up[1] - down[1]) / (2 * h), hessian[:, :, k], atol=1e-7)
+
+
+def test_derivatives_of_the_slope_on_three_lobes() -> None:
+    surface = WaveGeneratorSurface(HarmonicCam(59.9, 56.7, 3), 10.0, 0.1, 0.09, lobes=3)
+    rng = np.random.default_rng(3)
+    angle, radius = rng.uniform(0, 2 * np.pi, 50), rng.uniform(57.0, 60.0, 50)
+    x = np.column_stack([-radius * np.sin(angle), radius * np.cos(angle), rng.uniform(-5, 5, 50)])
+    level, gradient, hessian = surface.evaluate(x)
+    expected = HarmonicCam(59.9, 56.7, 3).evaluate(x[:, :2])[0]
+    expected += 0.1 * (x[:, 2] / 5.0) ** 2 + 0.09 * x[:, 2] / 5.0 * np.cos(3.0 * angle)
+    assert np.allclose(level, expected, atol=1e-13)
+    h = 1e-5
+    for k in range(3):
+        step = np.zeros(3)
+        step[k] = h
+        up, down = surface.evaluate(x + step), surface.evaluate(x - step)
+        assert np.allclose((up[0] - down[0]) / (2 * h), gradient[:, k], atol=1e-8)
+        assert np.allclose((up[1] - down[1]) / (2 * h), hessian[:, :, k], atol=1e-7)
+
+
+def test_each_lobe_has_a_pin() -> None:
+    """Three circles of the spline's inner radius, each drawn out by the travel, touch the cam at its tips."""
+    cam = HarmonicCam(59.9, 56.7, 3)
+    travel = pin_travel(cam, 58.4, 3)
+    assert travel == pytest.approx(1.5, abs=1e-12)
+    for out in pin_directions(3):
+        around = np.arctan2(-out[0], out[1]) + np.radians(np.linspace(-59.0, 59.0, 201))
+        inner = 58.4 * np.column_stack([-np.sin(around), np.cos(around)]) + travel * out
+        assert cam.evaluate(inner)[0].min() == pytest.approx(0.0, abs=1e-12)
 
 
 def test_slope_raises_the_open_end_at_the_major_axis() -> None:
@@ -352,6 +407,10 @@ def test_crowning_is_the_amount_at_the_edges_and_nothing_in_the_middle(shape: st
         (keys("four_roller", beta=10.0, r_4=8.0, C=1.0), "wave_generator.C = 1"),
         (keys("four_roller", beta=70.0, r_4=8.0), "wave_generator.beta = 70"),
         (keys("simplified", C=0.2), "wave_generator.C = 0.2"),
+        (keys("elliptical", lobes=3), "wave_generator.lobes = 3"),
+        (keys("four_roller", lobes=3, beta=10.0, r_4=8.0), "wave_generator.lobes = 3"),
+        (keys("harmonic", lobes=3), "drive.teeth_rg - drive.teeth_fs = 2"),
+        (keys("harmonic", lobes=4), "wave_generator.lobes = 4"),
         (keys("round"), 'wave_generator.type = "round"'),
     ],
 )

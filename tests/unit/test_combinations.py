@@ -21,6 +21,7 @@ PROFILES = {
 SIDE = {"a_p": 0.0097, "C_p": 0.51, "r_c": 10.0}
 CAMS = {
     "elliptical": {},
+    "harmonic": {},
     "simplified": {"C": 0.97},
     "parabolic": SIDE,
     "asymmetric_parabolic": {"rotational_angle": 0.5, "right": SIDE, "left": {**SIDE, "r_c": 12.0}},

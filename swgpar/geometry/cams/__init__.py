@@ -13,10 +13,12 @@ from scipy.spatial import ConvexHull
 from swgpar.geometry.cams.bearing_keys import Bearing
 from swgpar.geometry.cams.elliptical import EllipticalCam
 from swgpar.geometry.cams.four_roller import four_roller
+from swgpar.geometry.cams.harmonic import HarmonicCam
 from swgpar.geometry.cams.keys import (
     AsymmetricParabolic,
     Elliptical,
     FourRoller,
+    Harmonic,
     Parabolic,
     Simplified,
     WaveGenerator,
@@ -26,7 +28,10 @@ from swgpar.geometry.cams.simplified import simplified
 
 
 class Cam(Protocol):
-    """A closed curve with two lobes, major axis along +y; all lengths in mm. Half a turn leaves it as it is."""
+    """A closed curve with two lobes or three, major axis along +y; all lengths in mm.
+
+    A turn by one lobe leaves it as it is.
+    """
 
     def evaluate(self, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Signed distance (n,), outward unit normal (n, 2) and k (n,), Hessian = k t t^T, at points (n, 2)."""
@@ -55,6 +60,8 @@ def make_cam(keys: WaveGenerator, a: float, b: float | None = None, name: str = 
         return four_roller(a, float(np.radians(keys.beta)), keys.r_4, f"{name}.r_4")
     if isinstance(keys, Elliptical):
         return EllipticalCam(a, b)
+    if isinstance(keys, Harmonic):
+        return HarmonicCam(a, b, keys.lobes)
     if isinstance(keys, Simplified):
         return simplified(a, b)
     if isinstance(keys, Parabolic):
@@ -72,15 +79,25 @@ def taut_length(cam: Cam, n: int = 7200) -> float:
     return float(ConvexHull(cam.outline(n)).area)
 
 
-def pin_travel(cam: Cam, radius: float, n: int = 7200) -> float:
-    """How far the pins, the two halves of the cam, are drawn in along the major axis to fit into the circle `radius`.
+def pin_travel(cam: Cam, radius: float, lobes: int = 2, n: int = 7200) -> float:
+    """How far the pins, each a lobe of the cam, are drawn in towards the axis to fit into the circle `radius`.
 
     In mm; half the deflection for a cam that first touches at its tips, more when it bulges beside them (the pins
     of section 3.2 are the halves of the cam).
     """
     x, y = cam.outline(n).T
-    upper = (y > 0.0) & (np.abs(x) < radius)
+    upper = (np.abs(np.arctan2(x, y)) < np.pi / lobes) & (np.abs(x) < radius)
     return float(np.max(y[upper] - np.sqrt(radius**2 - x[upper] ** 2)))
 
 
-__all__ = ["Bearing", "Cam", "EllipticalCam", "FourRoller", "WaveGenerator", "make_cam", "pin_travel", "taut_length"]
+__all__ = [
+    "Bearing",
+    "Cam",
+    "EllipticalCam",
+    "FourRoller",
+    "HarmonicCam",
+    "WaveGenerator",
+    "make_cam",
+    "pin_travel",
+    "taut_length",
+]

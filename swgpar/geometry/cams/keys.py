@@ -15,6 +15,7 @@ def _pins(default: float) -> float:
 
 
 class _WaveGenerator(Section):
+    lobes: int = quantity(2, text="lobes of the cam, places around it where teeth mesh", ge=2, le=3)
     face_width: float = quantity(unit="mm", text="width of the cam", gt=0.0)
     # Pins begin where they first touch. Flat or rotated parabolas touch beside the major axis, as far as 30 degrees
     # from it, and rollers wherever they are: the pins have to reach that far.
@@ -34,6 +35,13 @@ class Elliptical(_Reduced):
     type: Literal["elliptical"] = quantity("elliptical", text="kind of cam")
     # An ellipse first touches at its tips, so narrow pins suffice. On drivers/plane_half_turn.toml (plane_coarse) the
     # stage DEFLECT takes 14 Newton iterations with 15 degrees, 18 with 60.
+    pin_half_angle: float = _pins(15.0)
+
+
+class Harmonic(_Reduced):
+    """The radius is a cosine of the polar angle, with two lobes or three."""
+
+    type: Literal["harmonic"] = quantity("harmonic", text="kind of cam")
     pin_half_angle: float = _pins(15.0)
 
 
@@ -77,7 +85,7 @@ class FourRoller(_WaveGenerator):
 
 
 WaveGenerator = Annotated[
-    Elliptical | Simplified | Parabolic | AsymmetricParabolic | FourRoller,
+    Elliptical | Harmonic | Simplified | Parabolic | AsymmetricParabolic | FourRoller,
     Field(discriminator="type"),
     BeforeValidator(default_type("elliptical")),
 ]

@@ -36,8 +36,8 @@ STATIONS = 401
 PIECE_STATIONS = 65
 """Stations on a segment of the other flank between which the angle of contact is interpolated."""
 
-REACH = np.radians(80.0)
-"""Angle from the major axis, to both sides, in which contact is looked for."""
+REACH = np.radians(160.0)
+"""Angle from the major axis, to both sides, in which contact is looked for, times the number of lobes."""
 
 DEEPEST = 1e-6
 """Overlap of the flanks over the module that counts as interference."""
@@ -139,7 +139,8 @@ class Envelope:
         middle never touches.
         """
         s, middle = np.linspace(0.0, self.given.length, STATIONS), STATIONS // 2
-        psi = np.linspace(-REACH, REACH, 1601)
+        reach = REACH / self.motion.line.lobes
+        psi = np.linspace(-reach, reach, 1601)
         index = int(np.clip(np.searchsorted(self.given.breaks, s[middle]) - 1, 0, len(self.given.segments) - 1))
         local = np.full_like(psi, s[middle] - self.given.breaks[index])
         value = self.contacts(self.given.segments[index], local, psi).value
@@ -366,7 +367,8 @@ def conjugate(
         maker.undercut()
     segments = maker.build(max(low, float(known[0])), float(known[-1]))
     profile = ToothProfile(tuple(segments), teeth.external, tip, root, teeth.n_teeth)
-    psi = np.linspace(-REACH, REACH, 321)
+    reach = REACH / motion.line.lobes
+    psi = np.linspace(-reach, reach, 321)
     pair = (profile, given) if teeth.external else (given, profile)
     gaps = smallest_gaps(*pair, motion, psi, exact_below=0.02 * teeth.module)
     deepest = int(np.argmin(gaps))
