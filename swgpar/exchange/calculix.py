@@ -39,9 +39,6 @@ PAIRS = {
 
 CAM, *FLANKS = PAIRS.values()
 
-INCREMENT = 0.25
-"""First increment of a step, as a share of it; CalculiX chooses the others."""
-
 CAM_OVERHANG = 0.1
 """Of the plane model's cam over either end, as a share of the face width."""
 
@@ -75,8 +72,6 @@ def _check(design: DriveDesign) -> None:
 
     if design.contact.friction:
         refuse(f"contact.friction = {design.contact.friction:g}", "0")
-    if design.drive.layout != "ring_fixed":
-        refuse(f'drive.layout = "{design.drive.layout}"', '"ring_fixed"')
     sections = {
         "[wave_generator.bearing]": design.bearing,
         "[ring_gear.housing]": design.ring_gear.housing,
@@ -104,14 +99,29 @@ def _equation(terms: list[Term]) -> Iterator[str]:
 
 
 def _job(model: JobModel, cam: CamFacets) -> Iterator[str]:
-    design, n = model.design, len(model.points)
-    reference = n + len(cam.points)
-    bore = model.surface(model.spline, "bore")
+    design, ring_fixed = model.design, model.design.drive.layout == "ring_fixed"
+    output = len(model.points) + len(cam.points)
+    bore, outer = model.surface(model.spline, "bore"), model.surface(model.ring, "outer")
+    planar = ("ALL_NODES, 3, 3",) if model.plane else ()
+    fixed = ["CAM, 1, 3", *planar]
+    bore_held: list[str] = []
+    if ring_fixed:
+        fixed.append(f"RING_GEAR_OUTER, 1, {2 if model.plane else 3}")
+        equations = [*model.mean_motion(bore, output)]
+    else:
+        equations = [*model.mean_motion(outer, output, in_housing=True), *model.housing(outer)]
+        equations += model.mean_motion(bore, output + 2)
+        bore_held = [f"{output + 3}, 1, 3", f"{output + 4}, 1, 3"]
+    held, rotation = [f"{output + 1}, 1, 3", f"{output + 2}, 1, 2", *bore_held], f"{output + 2}, 3, 3"
+    dependent = {terms[0][0] for terms in equations}
+    equations += model.ties() if model.plane else ()
+
     yield from _heading(model, cam)
     yield f"*INCLUDE, INPUT={MESH}"
     yield from _cam(model, cam)
-    yield from ("*NODE, NSET=OUTPUT", f"{reference + 1}, 0., 0., 0.", f"{reference + 2}, 0., 0., 0.")
-    equations = [*model.mean_motion(bore, reference, lateral=True), *(model.ties() if model.plane else ())]
+    yield from ("*NODE, NSET=OUTPUT", f"{output + 1}, 0., 0., 0.", f"{output + 2}, 0., 0., 0.")
+    if bore_held:
+        yield from ("*NODE, NSET=HELD", f"{output + 3}, 0., 0., 0.", f"{output + 4}, 0., 0., 0.")
     for terms in equations:
         yield from _equation(terms)
     for name, penalty in (("ON_CAM", design.wg_penalty), ("ON_FLANKS", design.penalty)):
@@ -120,20 +130,16 @@ def _job(model: JobModel, cam: CamFacets) -> Iterator[str]:
     for pair in PAIRS.values():
         name = "ON_CAM" if pair == CAM else "ON_FLANKS"
         yield from (f"*CONTACT PAIR, INTERACTION={name}, TYPE=SURFACE TO SURFACE", pair)
-    fixed = ["CAM, 1, 3", "RING_GEAR_OUTER, 1, 3"]
-    if model.plane:
-        fixed[1:] = ["RING_GEAR_OUTER, 1, 2", "ALL_NODES, 3, 3"]
     yield from ("*BOUNDARY", *fixed)
-    held = [f"{reference + 1}, 1, 3", f"{reference + 2}, 1, 2"]
-    dependent = {terms[0][0] for terms in equations} if model.plane else set()
-    yield from _bend(model, dependent)
-    yield from _step("2: on the cam", "*BOUNDARY, OP=NEW", *fixed, *held, f"{reference + 2}, 3, 3", add=[CAM])
-    closing = _closing_rotation(model)
-    rotate = ("*BOUNDARY", f"{reference + 2}, 3, 3, {closing:.12e}")
+
+    ring_held = [line for line in [*held, rotation] if not ring_fixed and line not in bore_held]
+    yield from _bend(model, dependent, ring_held)
+    yield from _step("2: on the cam", "*BOUNDARY, OP=NEW", *fixed, *held, rotation, add=[CAM])
+    rotate = ("*BOUNDARY", f"{rotation}, {_closing_rotation(model):.12e}")
     yield from _step("3: the loaded flanks meet", *rotate, add=FLANKS, acting=[CAM, *FLANKS])
-    load = ["*BOUNDARY, OP=NEW", *fixed, *held, *_torque(model, bore)]
+    load = ["*BOUNDARY, OP=NEW", *fixed, *held, *_torque(model, bore if ring_fixed else outer)]
     yield from _step("4: torque", *load, acting=[CAM, *FLANKS], parameters=", AMPLITUDE=STEP")
-    yield from _step("5: at rest", acting=[CAM, *FLANKS], parameters=", AMPLITUDE=STEP", increment=1.0)
+    yield from _step("5: at rest", acting=[CAM, *FLANKS], parameters=", AMPLITUDE=STEP")
 
 
 def _heading(model: JobModel, cam: CamFacets) -> Iterator[str]:
@@ -159,11 +165,11 @@ def _cam(model: JobModel, cam: CamFacets) -> Iterator[str]:
     yield f"CAM, S{OUTER_FACE + 1}"
 
 
-def _bend(model: JobModel, dependent: set[int]) -> Iterator[str]:
-    """Step 1. dependent : nodes whose displacement an equation gives"""
+def _bend(model: JobModel, dependent: set[int], held: Iterable[str]) -> Iterator[str]:
+    """Step 1. dependent : nodes whose displacement an equation gives;  held : further boundary conditions"""
     nodes = np.array([k for k in model.inner_nodes() if k not in dependent])
     u = BentSpline(model.design).displacement(model.points[nodes])
-    lines = ["*BOUNDARY"]
+    lines = ["*BOUNDARY", *held]
     for node, values in zip(nodes + 1, u, strict=True):
         lines += [f"{node}, {k}, {k}, {values[k - 1]:.12e}" for k in ((1, 2) if model.plane else (1, 2, 3))]
     yield from _step("1: bent without contact", *lines, remove=list(PAIRS.values()))
@@ -194,10 +200,12 @@ def _step(
     remove: Iterable[str] = (),
     acting: Iterable[str] = (),
     parameters: str = "",
-    increment: float = INCREMENT,
 ) -> Iterator[str]:
-    """A step. add, remove, acting : contact pairs that are switched on, off, or whose forces are printed"""
-    yield from (f"** step {name}", f"*STEP, NLGEOM, INC=1000{parameters}", "*STATIC", f"{increment:g}, 1., 1e-6")
+    """A step of one increment, which CalculiX divides where it has to.
+
+    add, remove, acting : contact pairs that are switched on, off, or whose forces are printed
+    """
+    yield from (f"** step {name}", f"*STEP, NLGEOM, INC=1000{parameters}", "*STATIC", "1., 1., 1e-6")
     for action, pairs in (("REMOVE", remove), ("ADD", add)):
         for pair in pairs:
             yield from (f"*MODEL CHANGE, TYPE=CONTACT PAIR, {action}", pair)

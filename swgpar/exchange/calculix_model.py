@@ -152,11 +152,21 @@ class JobModel:
                 for axis in (1, 2):
                     yield [(above, axis, 1.0), (below, axis, -1.0)]
 
-    def mean_motion(self, surface: Surface, reference: int, lateral: bool) -> Iterator[list[Term]]:
+    def housing(self, surface: Surface) -> Iterator[list[Term]]:
+        """The nodes of a surface move along their circle and the axis; linear."""
+        for node, axes in zip(surface.nodes.tolist(), self._radial_axes(surface.nodes), strict=True):
+            yield [(node, int(axis) + 1, float(self.points[node, axis])) for axis in axes]
+
+    def _radial_axes(self, nodes: Ints) -> Ints:
+        """Axes (n, 2) of the displacement in the plane that follows from the other one on a circle, and of that one."""
+        first = np.abs(self.points[nodes, :2]).argmax(axis=1)
+        return np.column_stack([first, 1 - first])
+
+    def mean_motion(self, surface: Surface, reference: int, in_housing: bool = False) -> Iterator[list[Term]]:
         """Mean displacements, tilts and rotation about z of a surface, linear: the degrees of freedom 1 to 3 of the
         node `reference`, and those of the next one.
 
-        lateral : whether mean displacements along x and y are among them
+        in_housing : the nodes move along their circle; there is no mean displacement along x and y then
         """
         x = self.points[surface.mean]
         arm, n = x - x.mean(axis=0), len(x)
@@ -166,7 +176,7 @@ class JobModel:
         one, none = np.full(n, 1.0 / n), np.zeros(n)
         # of the displacements along x, y and z; the node that depends on the others, and its axis
         rows = [((reference + 1, 3), (-arm[:, 1] / radius2, arm[:, 0] / radius2, none), (bottom, 0))]
-        if lateral:
+        if not in_housing:
             rows += [((reference, 1), (one, none, none), (top, 0)), ((reference, 2), (none, one, none), (right, 1))]
         if not self.plane:
             rows += [
@@ -175,6 +185,11 @@ class JobModel:
                 ((reference + 1, 2), (none, none, -2.0 / radius2 * arm[:, 0]), (right, 2)),
             ]
         factors = np.array([np.stack(factor, axis=-1).ravel() for _, factor, _ in rows])
+        if in_housing:
+            for k, (first, second) in enumerate(self._radial_axes(surface.mean)):
+                slope = -self.points[surface.mean[k], second] / self.points[surface.mean[k], first]
+                factors[:, 3 * k + second] += slope * factors[:, 3 * k + first]
+                factors[:, 3 * k + first] = 0.0
         dependent = [3 * k + axis for *_, (k, axis) in rows]
         # none of the dependent displacements is left in the equations of the others
         inverse = np.linalg.inv(factors[:, dependent])

@@ -1,0 +1,165 @@
+"""The loaded state of a whole drive by this program and by CalculiX on the job of `swgpar export --format inp`.
+
+Both programs have the same mesh and load. CalculiX has facets in place of the exact cam and flanks: more facets on the
+flanks show what they change.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from page import markdown, write_results
+from peer import timed
+from peer_ccx import read_fields
+from scipy.spatial import cKDTree
+
+import swgpar
+from swgpar.design.drive_design import DriveDesign
+from swgpar.exchange.calculix_model import JobModel
+from swgpar.meshing import MeshRecipe, load_recipe
+
+DESIGN, RECIPE = "tests/data/small.toml", "tests/data/tiny.toml"
+
+LOADED = ("steps.rotation=0", "output.fields=true", "output.figures=false", "output.root_stress=false")
+"""Of the runs that are compared: all increments of the rotation are left out."""
+
+PLANE = ("drive.model=plane", "load.torque=0.2", *(f"micro_geometry.{k}=0" for k in ("wg_crowning", "wg_slope")))
+PLANE += ("micro_geometry.fs_crowning=0",)
+
+
+@dataclass(frozen=True)
+class Case:
+    """overrides : of the design;  flank : elements along a flank"""
+
+    overrides: tuple[str, ...]
+    flank: int
+
+
+CASES = {
+    "plane_2": Case(PLANE, 2),
+    "plane_6": Case(PLANE, 6),
+    "plane_12": Case(PLANE, 12),
+    "cup_2": Case((), 2),
+    "cup_6": Case((), 6),
+}
+
+BOTH = ("rotation_deg", "cam_torque_Nmm", "flank_torque_Nmm", "fs_s1_MPa", "fs_vm_MPa")
+"""Columns of both programs: the torques are those on the flexible spline."""
+
+COLUMNS = ("case", "elements", *(f"{program}_{name}" for name in BOTH for program in ("swgpar", "ccx")))
+COLUMNS += ("displacement_difference_mm", "vm_rms_difference", "ccx_increments", "ccx_iterations", "ccx_seconds")
+
+HEAD = ("case", "elements", "rotation, deg: swgpar", "CalculiX", "cam torque, N·mm: swgpar", "CalculiX")
+HEAD += ("flank torque, N·mm: swgpar", "CalculiX", "s1, MPa: swgpar", "CalculiX", "vm, MPa: swgpar", "CalculiX")
+HEAD += ("largest difference of displacement, mm", "mean difference of vm", "CalculiX: increments", "iterations")
+
+
+def recipe_of(case: Case) -> MeshRecipe:
+    """The smallest recipe with more elements along the flanks."""
+    recipe = load_recipe(RECIPE)
+    gears = {g: getattr(recipe, g).model_copy(update={"flank": case.flank}) for g in ("flexible_spline", "ring_gear")}
+    return recipe.model_copy(update=gears)
+
+
+def read_prints(path: Path) -> tuple[float, dict[str, float]]:
+    """Rotation (rad) of the output, and moments (N mm) about z by slave surface, the last that drive.dat has."""
+    lines = path.read_text(encoding="ascii").splitlines()
+    rotation, moments = np.nan, {}
+    for k, line in enumerate(lines):
+        if line.startswith(" displacements") and "set OUTPUT" in line:
+            rotation = float(lines[k + 3].split()[3])
+        elif line.startswith(" statistics for slave set"):
+            moments[line.split()[4].rstrip(",")] = float(lines[k + 4].split()[5])
+    return rotation, moments
+
+
+def compare(name: str, out: Path, cores: int) -> dict[str, object]:
+    """A row of the table."""
+    case = CASES[name]
+    folder = out / name
+    shutil.rmtree(folder, ignore_errors=True)
+    design, recipe = swgpar.load_design(DESIGN, [*case.overrides, *LOADED]), recipe_of(case)
+    if not isinstance(design, DriveDesign):
+        raise TypeError(DESIGN)
+    swgpar.run(design, recipe, folder / "run")
+    swgpar.export(design, folder, ["inp"], recipe)
+    cost = timed(
+        ["ccx", "drive"], folder, folder / "ccx.log", {"OMP_NUM_THREADS": str(cores), "OPENBLAS_NUM_THREADS": "1"}
+    )
+    if "Job finished" not in (folder / "ccx.log").read_text():
+        raise RuntimeError(f"CalculiX failed: see {folder / 'ccx.log'}")
+    result = swgpar.open_result(folder / "run")
+    model = JobModel(design, recipe)
+    points, n = model.points, model.n_spline
+    u, stress = read_fields(folder / "drive.frd", len(points))
+    tensor = stress[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2]]]
+    first, second, third = np.linalg.eigvalsh(tensor).T
+    vm = np.sqrt(0.5 * ((first - second) ** 2 + (second - third) ** 2 + (third - first) ** 2))
+    grid = result.grid(body="flexible_spline", whole=True)
+    distance, ours = cKDTree(grid.points).query(points[:n])
+    if distance.max() > 1e-5:
+        raise ValueError(f"{folder}: a node of the mesh is {distance.max():.2g} mm from those of the result")
+    off = u[:n] - np.asarray(grid.point_data["displacement"])[ours]
+    reference = np.asarray(grid.point_data["vm"], dtype=float)[ours]
+    rotation, moments = read_prints(folder / "drive.dat")
+    last = {key: float(values[-1]) for key, values in result.history.items()}
+    cam = moments.pop("FLEXIBLE_SPLINE_INNER")
+    rows = [line.split() for line in (folder / "drive.sta").read_text().splitlines()[2:]]
+    return {
+        "case": name,
+        "elements": result.summary["elements"],
+        "swgpar_rotation_deg": last["output_angle_deg"],
+        "ccx_rotation_deg": float(np.degrees(rotation)),
+        "swgpar_cam_torque_Nmm": last["wg_torque_Nmm"],
+        "ccx_cam_torque_Nmm": cam,
+        "swgpar_flank_torque_Nmm": last["tooth_torque_Nmm"],
+        "ccx_flank_torque_Nmm": sum(moments.values()),
+        "swgpar_fs_s1_MPa": last["fs_s1"],
+        "ccx_fs_s1_MPa": float(third[:n].max()),
+        "swgpar_fs_vm_MPa": last["fs_vm"],
+        "ccx_fs_vm_MPa": float(vm[:n].max()),
+        "displacement_difference_mm": float(np.linalg.norm(off, axis=1).max()),
+        "vm_rms_difference": float(np.sqrt(np.mean((vm[:n] - reference) ** 2)) / reference.max()),
+        "ccx_increments": len(rows),
+        "ccx_iterations": sum(int(row[3]) for row in rows),
+        "ccx_seconds": cost.seconds,
+    }
+
+
+def line_of(row: dict[str, object]) -> list[str]:
+    """The cells of a row."""
+    forms = {"elements": ",", "displacement_difference_mm": ".2g", "vm_rms_difference": ".2%"}
+    forms |= {f"{program}_{name}": ".4g" for name in BOTH for program in ("swgpar", "ccx")}
+    forms |= {f"{program}_rotation_deg": ".4f" for program in ("swgpar", "ccx")}
+    return [format(row[name], forms.get(name, "")) for name in COLUMNS[:-1]]
+
+
+def main() -> None:
+    """Compare the cases that are named, and write the table."""
+    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options.add_argument("--cases", nargs="+", default=list(CASES), choices=list(CASES))
+    options.add_argument("--out", type=Path, default=Path("results/bench/peer_drive"), help="jobs, runs and logs")
+    options.add_argument("--cores", type=int, default=2, help="threads of CalculiX")
+    options.add_argument("--no-page", action="store_true", help="leave docs/verification as it is")
+    arguments = options.parse_args()
+    if shutil.which("ccx") is None:
+        options.error("CalculiX (ccx) is not installed: on Debian apt-get install calculix-ccx")
+    out = arguments.out.resolve()
+    kept = out / "rows.json"
+    rows = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}
+    for name in arguments.cases:
+        rows[name] = compare(name, out, arguments.cores)
+        kept.write_text(json.dumps(rows, indent=1), encoding="utf-8")
+        print(" | ".join(line_of(rows[name])), flush=True)
+    if not arguments.no_page:
+        found = [rows[name] for name in CASES if name in rows]
+        write_results("peer_drive", COLUMNS[:-1], found, markdown([HEAD, *map(line_of, found)]), page="peer")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,114 @@
+"""The job of CalculiX: its cam, its constraints, and what it refuses; `tests/verification` runs it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import swgpar
+from support.bearing import BEARING
+from support.paths import DESIGN, RECIPE
+from support.small_drive import PLANE
+from swgpar.design.design_file import load_design
+from swgpar.errors import InputError
+from swgpar.exchange.calculix_model import JobModel
+from swgpar.exchange.cam_facets import OUTER_FACE, SAGITTA, cam_facets
+from swgpar.geometry.rotation import rotated
+from swgpar.meshing import load_recipe
+from swgpar.meshing.inp import HEX_FACES
+from swgpar.meshing.quality import hex_volumes
+
+ROLLERS = ("wave_generator.type=four_roller", "wave_generator.beta=30", "wave_generator.r_4=4")
+
+
+@pytest.mark.parametrize("overrides", [(), PLANE, (*PLANE, *ROLLERS)], ids=["cup", "plane", "rollers"])
+def test_facets_lie_on_the_cam(overrides: tuple[str, ...]) -> None:
+    design = load_design(DESIGN, overrides)
+    inset = 5e-4
+    cam = cam_facets(design, 2.0, inset)
+    assert cam.sagitta <= SAGITTA * design.drive.module
+    assert hex_volumes(cam.points, cam.elements).min() > 0.0
+    outer = cam.elements[:, HEX_FACES[OUTER_FACE]]
+    level, *_ = design.cam_surface().evaluate(cam.points[np.unique(outer)])
+    assert level == pytest.approx(np.full(len(level), 2.0 / 3.0 * cam.sagitta - inset), abs=1e-6)
+    middles = cam.points[outer].mean(axis=1)
+    height = design.cam_surface().evaluate(middles)[0] + inset
+    # along the width the facets have a height of their own, where crowning curves the cam
+    crowned = design.micro_geometry.wg_crowning / 16**2
+    assert np.abs(height).max() < cam.sagitta + crowned
+
+
+@pytest.mark.parametrize("layout", ["ring_fixed", "spline_fixed"])
+@pytest.mark.parametrize("overrides", [(), PLANE], ids=["cup", "plane"])
+def test_equations_give_the_mean_motion(overrides: tuple[str, ...], layout: str) -> None:
+    """A small rigid motion, and the waves of a bent spline, which have no mean."""
+    model = JobModel(load_design(DESIGN, [*overrides, f"drive.layout={layout}"]), load_recipe(RECIPE))
+    bodies = {"bore": model.spline} | ({"outer": model.ring} if layout == "spline_fixed" else {})
+    move, turn = np.array([2e-3, -1e-3, 3e-3]), np.array([1e-4, -2e-4, 3e-4])
+    for name, mesh in bodies.items():
+        surface = model.surface(mesh, name)
+        housed = name == "outer"
+        x = model.points.copy()
+        x[:, 2] -= x[surface.mean, 2].mean()
+        angle = np.arctan2(x[:, 1], x[:, 0])
+        tilt = turn * (0.0 if model.plane else 1.0, 0.0 if model.plane else 1.0, 1.0)
+        shift = move * (not housed, not housed, not model.plane)
+        u = np.cross(tilt * ((0.0, 0.0, 1.0) if housed else 1.0), x) + shift
+        if not housed:
+            for order in (2, 4, 6):
+                wave = np.column_stack([np.cos(order * angle), 0.3 * np.sin(order * angle)])
+                u[:, :2] += 0.1 * rotated(wave, angle)
+        elif not model.plane:
+            u[:, 2] += tilt[0] * x[:, 1] - tilt[1] * x[:, 0]
+        values = {(len(u), k): shift[k - 1] for k in (1, 2, 3)} | {(len(u) + 1, k): tilt[k - 1] for k in (1, 2, 3)}
+        equations = list(model.mean_motion(surface, len(u), in_housing=housed))
+        dependent = [terms[0][:2] for terms in equations]
+        assert len(set(dependent)) == len(equations) == (1 if housed else 3) + (0 if model.plane else 3)
+        for terms in equations:
+            assert not {term[:2] for term in terms[1:]} & set(dependent)
+            found = sum(f * (values[n, k] if n >= len(u) else u[n, k - 1]) for n, k, f in terms)
+            assert abs(found) < 1e-12 * sum(abs(f) for *_, f in terms)
+        if housed:
+            assert all(abs(sum(f * u[n, k - 1] for n, k, f in terms)) < 1e-12 for terms in model.housing(surface))
+
+
+def test_forces_have_the_torque_of_the_design(tmp_path: Path) -> None:
+    design = load_design(DESIGN, PLANE)
+    job, mesh = swgpar.export(design, tmp_path, ["inp"], RECIPE)
+    points = JobModel(design, load_recipe(RECIPE)).points
+    text = job.read_text()
+    forces = [line.split(", ") for line in text.split("*CLOAD\n")[1].split("*")[0].splitlines()]
+    moment = 0.0
+    for node, axis, force in forces:
+        x, y, _ = points[int(node) - 1]
+        moment += float(force) * (x if axis == "2" else -y)
+    assert moment == pytest.approx(200.0)
+    assert f"*INCLUDE, INPUT={mesh.name}" in text
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        ("contact.friction=0.1", "contact.friction = 0.1 is not available with the format inp: allowed 0"),
+        ("load.torque=0", "load.torque = 0 N·m is not available with the format inp: allowed above"),
+        ("load.torque=1e-5", "load.torque = 1e-05 N·m"),
+        (BEARING, "[wave_generator.bearing] is not available"),
+        ("deviations.flexible_spline.eccentricity=0.01", "[deviations] is not available"),
+        ("stiffness.torque=0.2", "[stiffness] is not available"),
+        ("ratcheting.increment=0.1", "[ratcheting] is not available"),
+    ],
+)
+def test_what_the_job_does_not_carry(tmp_path: Path, change: str | tuple[str, ...], words: str) -> None:
+    design = load_design(DESIGN, [*PLANE, *([change] if isinstance(change, str) else change)])
+    with pytest.raises(InputError) as raised:
+        swgpar.export(design, tmp_path, ["inp"], RECIPE)
+    assert words in str(raised.value)
+
+
+def test_a_mesh_is_needed_for_the_job_and_for_nothing_else(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match='format = "inp" needs a mesh recipe'):
+        swgpar.export(DESIGN, tmp_path, ["inp"])
+    with pytest.raises(InputError, match="a mesh recipe is of no use"):
+        swgpar.export(DESIGN, tmp_path, ["dxf"], RECIPE)
