@@ -9,6 +9,7 @@ import pytest
 from mpi4py import MPI
 from scipy.integrate import quad
 
+import swgpar
 from support.paths import RECIPE
 from support.stepping import assert_agree, loaded, rotate, small
 from swgpar.analysis.drive_model import build_layout, newton_settings, sector_elements
@@ -24,6 +25,7 @@ from swgpar.meshing import load_recipe
 from swgpar.meshing.tooth_sector import build_sector
 from swgpar.solve.discrete_problem import DiscreteProblem
 from swgpar.solve.newton import NewtonSolver
+from swgpar.systems.drive import DRIVE
 
 HOUSING = ("ring_gear.housing.thickness=4.0", "ring_gear.housing.E=70e3", "ring_gear.housing.nu=0.33")
 OTHER = "drive.layout=spline_fixed"
@@ -45,6 +47,15 @@ def test_torques_balance(model: str, overrides: tuple[str, ...]) -> None:
     assert abs(r["output_torque_Nmm"]) == pytest.approx(TORQUE[model])
     assert r["torque_balance_Nmm"] < 1e-6 * TORQUE[model]
     assert r["housing_vm"] > 0.0 and r["pairs_in_contact"] > 0
+
+
+@pytest.mark.parametrize("overrides", [(), ("drive.layout=wave_generator_fixed",), ("stiffness.positions=1",)])
+def test_a_study_measures_what_it_offers(overrides: tuple[str, ...]) -> None:
+    design = small("plane", *HOUSING, *overrides, "steps.samples=2", "steps.rotation=9")
+    measured, offered = DRIVE.measure(swgpar.run(design, RECIPE, progress=False)).values, DRIVE.quantities(design)
+    assert {"housing.s1", "housing.vm", "housing.bulge"} <= set(measured) & set(offered)
+    assert min(measured[f"housing.{name}"] for name in ("s1", "vm", "bulge")) > 0.0
+    assert ("input.torque" in measured) == ("input.torque" in offered) == design.wave_generator_is_fixed
 
 
 @pytest.mark.parallel([2, 3])
