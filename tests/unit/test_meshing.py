@@ -385,7 +385,13 @@ def test_meshes_scale_with_the_unit_system() -> None:
 
 # the wall of forces and medium has joined columns; a thick cup continues more layers
 @pytest.mark.parametrize(
-    ("recipe", "overrides"), [(RECIPE, SMALL), ("forces", ()), ("medium", ("cup.thickness_coef=0.95",))]
+    ("recipe", "overrides"),
+    [
+        (RECIPE, SMALL),
+        ("forces", ()),
+        ("medium", ("cup.thickness_coef=0.95",)),
+        (RECIPE, (*SMALL, "ring_gear.housing.thickness=4")),
+    ],
 )
 def test_whole_drive_is_watertight(recipe: Path, overrides: tuple[str, ...]) -> None:
     for mesh in meshes(recipe, *overrides).values():
