@@ -13,7 +13,9 @@ GALLERY = Path(__file__).parents[1] / "gallery"
 
 ORDER = (
     "first_drive",
+    "new_drive",
     "profiles",
+    "conjugate",
     "cams",
     "mesh",
     "stress_wave",

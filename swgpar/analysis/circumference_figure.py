@@ -53,7 +53,7 @@ def draw_circumference(
             axes.plot(angle[order], values[order], lw=1.2, label=part)
         axes.set(ylabel=label, xlim=(-180.0, 180.0), xticks=range(-180, 181, 45))
         axes.grid(alpha=0.3)
-    panels[0].set_title(f"flexible spline, largest of every tooth's sector; {title}", fontsize=10)
-    panels[0].legend(fontsize=8)
+    figure.suptitle(f"flexible spline, largest of every tooth's sector\n{title}", fontsize=10)
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=8)
     panels[-1].set_xlabel("tooth, from the major axis (degrees)")
     return figure
