@@ -39,9 +39,7 @@ class BentSpline:
         self.amplitudes = bent_ring(design.cam(), design.inner_radius, self.radius, design.lobes)
         self.order = float(design.lobes) * np.arange(len(self.amplitudes))
         self.half = 0.5 * design.wave_generator.face_width
-        self.end = 0.5 * design.drive.face_width
-        if design.cup:  # the middle of the closed end
-            self.end += design.cup.length - 0.5 * design.cup_thickness
+        self.end = design.rest_plane if design.cup else 0.5 * design.drive.face_width
         self.surface = design.cam_surface()
 
     def displacement(self, points: np.ndarray) -> np.ndarray:
@@ -57,8 +55,8 @@ class BentSpline:
         moved[:, :2] += (lift * share / on_cam)[:, None] * np.column_stack([-np.sin(theta), np.cos(theta)])
         if self.design.drive.model == "cup":
             moved[:, 2] = self._axial(theta, radius)
-            inside = radius < self.design.inner_radius - 0.5 * self.design.flexible_spline.rim
-            moved[inside] = self._closed_end(theta[inside], radius[inside], z[inside])
+            plate = self._on_plate(radius, z)
+            moved[plate] = self._closed_end(theta[plate], radius[plate], z[plate])
         return moved
 
     def _share(self, z: np.ndarray) -> np.ndarray:
@@ -97,8 +95,17 @@ class BentSpline:
             moved += self.radius / order**2 * (amplitude * np.exp(1j * order * theta)).real
         return moved / self.end
 
+    def _on_plate(self, radius: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """Which points (n,) belong to the closed end or flange, the fillet but for its beginning included."""
+        wall, margin = self.design.cup_wall, 0.5 * self.design.flexible_spline.rim
+        if wall.outwards:
+            beyond = radius > wall.outer.points[-1, 1] + margin
+        else:
+            beyond = radius < wall.inner.points[-1, 1] - margin
+        return beyond & (z > wall.back + wall.length)
+
     def _closed_end(self, theta: np.ndarray, radius: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """Displacement (n, 3) mm of the closed end, a plate that bends along with the wall at its outer edge."""
+        """Displacement (n, 3) mm of the closed end or flange, a plate that bends along with the wall at its edge."""
         deflection, slope, around = (np.zeros_like(radius) for _ in range(3))
         for amplitude, order in zip(self.amplitudes[1:], self.order[1:]):
             wave = amplitude * np.exp(1j * order * theta) / self.end
@@ -114,9 +121,10 @@ class BentSpline:
     def _plate(self, order: float) -> tuple[np.ndarray, np.ndarray]:
         """Powers (4,) of the radius and their factors (4,) in the deflection of a plate, for waves of this order.
 
-        They solve the biharmonic equation. The inner edge is free, the outer one has the wall's deflection and lean.
+        They solve the biharmonic equation. The bore, or the rim of a flange, is free. The other edge has the wall's
+        deflection and lean.
         """
-        edge, nu = self.design.cup.inner_radius / self.radius, self.design.material.nu
+        edge, nu = self.design.cup.edge / self.radius, self.design.material.nu
         power = np.array([order, -order, order + 2.0, 2.0 - order])
 
         def derivative(at: float, times: int) -> np.ndarray:

@@ -210,16 +210,18 @@ def _cut(curve: np.ndarray, half: float, low: float, high: float) -> np.ndarray:
 
 
 def _meridian(design: DriveDesign) -> str:
-    cup, width = design.cup, design.drive.face_width
+    cup, wall, width = design.cup, design.cup_wall, design.drive.face_width
     spline, ring = (design.profile(gear) for gear in GEARS)
     outer = design.outer_radius
     back = 0.5 * width
     length = width + cup.length
-    scale = min((SIZE - 150.0) / length, 420.0 / outer)
-    sheet = Sheet(scale, 60.0 + scale * back, 55.0 + scale * outer, 100.0 + scale * outer)
-    inner_line, outer_line = meridian(design, CupRecipe(cylinder=1, fillet=24, closed_end=1))
+    top = max(outer, wall.edge)
+    scale = min((SIZE - 150.0) / length, 420.0 / top)
+    sheet = Sheet(scale, 60.0 + scale * back, 55.0 + scale * top, 100.0 + scale * top)
+    lines = meridian(design, CupRecipe(cylinder=48 if cup.contour else 1, fillet=24, closed_end=1))
+    inner_line, outer_line = lines.inner, lines.outer
     tooth = np.array([[spline.r_tip_circle, back], [spline.r_tip_circle, -back], [design.inner_radius, -back]])
-    wall = np.concatenate([inner_line, outer_line[::-1], tooth])
+    body = np.concatenate([inner_line, outer_line[::-1], tooth])
     half = 0.5 * design.wave_generator.face_width
     boxes = {
         **({"housing": (design.ring_outer_radius, outer, back)} if design.housing else {}),
@@ -229,16 +231,17 @@ def _meridian(design: DriveDesign) -> str:
     for name, (r1, r2, reach) in boxes.items():
         box = np.array([[-reach, r1], [reach, r1], [reach, r2], [-reach, r2]])
         sheet.outline([box], FILLS[name], NAMES[name])
-    sheet.outline([wall[:, ::-1]], FILLS["flexible_spline"], NAMES["flexible_spline"])
+    sheet.outline([body[:, ::-1]], FILLS["flexible_spline"], NAMES["flexible_spline"])
     sheet.line(*sheet.at(-0.6 * width, 0.0), *sheet.at(back + cup.length + 0.1 * length, 0.0), style="axis")
     end = back + cup.length
     sheet.across(-back, back, outer, 22.0, f"{width:g}")
     sheet.across(back, end, outer_line[0, 0], 44.0, f"{cup.length:g}")
     bottom = sheet.at(0.0, 0.0)[1]
-    sheet.upright(0.0, cup.inner_radius, end, sheet.at(end, 0.0)[0] + 14.0, f"bore r {cup.inner_radius:g}")
+    edge = "flange" if wall.outwards else "bore"
+    sheet.upright(0.0, wall.edge, end, sheet.at(end, 0.0)[0] + 14.0, f"{edge} r {wall.edge:g}")
     sheet.upright(0.0, design.inner_radius, -back, 40.0, f"r {design.inner_radius:.4g}", "start")
-    x, y = sheet.at(back + 0.5 * cup.length, design.inner_radius)
-    sheet.text(x, y + 18.0, f"wall {design.cup_thickness:.3g}, fillet r {cup.fillet_radius:g}")
+    x, y = sheet.at(back + 0.5 * cup.length, min(radius for _, radius, _, _ in design.wall_points))
+    sheet.text(x, y + 18.0, f"wall {_thicknesses(design)}, fillet r {cup.fillet_radius:g}")
     sheet.height = bottom + 20.0
     micro = design.micro_geometry
     caption = (
@@ -246,3 +249,15 @@ def _meridian(design: DriveDesign) -> str:
         f"{micro.wg_crowning:g}, slope {micro.wg_slope:g}; flank crowning {micro.fs_crowning:g}."
     )
     return sheet.svg(caption)
+
+
+def _thicknesses(design: DriveDesign) -> str:
+    """Thickness of the wall in words: where it changes from place to place, with that of the closed end or flange."""
+    wall = " / ".join(f"{thickness:.3g}" for thickness in _changes([t for _, _, t, _ in design.wall_points]))
+    end, last = design.end_thickness, design.wall_points[-1][2]
+    return wall if end == last else f"{wall}, {'flange' if design.cup_wall.outwards else 'end'} {end:.3g}"
+
+
+def _changes(values: Sequence[float]) -> list[float]:
+    """Values without those that equal the one before."""
+    return [value for k, value in enumerate(values) if k == 0 or value != values[k - 1]]

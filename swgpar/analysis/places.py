@@ -53,7 +53,7 @@ class Place:
 
     value : MPa;  body : name
     region : "tooth root", "tooth end", "flank under contact", "flank", "tip", "rim inside", "rim", "notch", "cup wall",
-    "fillet at the back", "fillet", "closed end", "bore", "housing" or "inside the tooth"
+    "fillet at the back", "fillet", "closed end", "bore", "flange", "rim of the flange", "housing" or "inside the tooth"
     tooth : number, counter-clockwise from +y in the undeformed drive
     radius, z : mm;  angle_deg : from +y, counter-clockwise
     warning : why the value depends on the mesh; empty where it converges
@@ -269,12 +269,14 @@ def _region_of_the_flank(design: DriveDesign, mesh: SectorMesh, s: float, z: flo
 
 
 def _region_of_the_cup(design: DriveDesign, mesh: SectorMesh, node: int, radius: float, z: float) -> str:
-    cup, end = design.cup, 0.5 * design.drive.face_width + design.cup.length
+    wall = design.cup_wall
     if node in mesh.node_sets["bore"]:
-        return "bore"
-    if z > end - cup.fillet_radius and radius > design.inner_radius + design.cup_thickness - cup.fillet_radius:
-        return "fillet"
-    return "closed end" if z > end - 2.0 * design.cup_thickness else "cup wall"
+        return "rim of the flange" if wall.outwards else "bore"
+    (r_center, z_center), near = wall.center, NEAR * design.drive.module
+    beyond = radius > r_center if wall.outwards else radius < r_center
+    if beyond and z > min(wall.faces) - near:
+        return "flange" if wall.outwards else "closed end"
+    return "fillet" if z > z_center + near else "cup wall"
 
 
 def warning_of(design: DriveDesign, region: str, point: np.ndarray) -> str:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from swgpar.design.conjugate_checks import check_conjugate
+from swgpar.design.cup_section import Cup
 from swgpar.design.deviations import Deviations
 from swgpar.design.fit_checks import check_fit
 from swgpar.design.program_sections import Ratcheting, Stiffness
@@ -15,7 +16,6 @@ from swgpar.design.sections import (
     GEARS,
     OMITTED_BENDING,
     Contact,
-    Cup,
     Drive,
     ExternalGear,
     Fatigue,
@@ -32,6 +32,7 @@ from swgpar.design.sections import (
 )
 from swgpar.geometry.bearing import BearingSizes
 from swgpar.geometry.cams import Bearing, Cam, FourRoller, WaveGenerator, make_cam
+from swgpar.geometry.cup_wall import CupWall, rounded_lines
 from swgpar.geometry.micro_geometry import WaveGeneratorSurface
 from swgpar.geometry.neutral_line import NeutralLine, neutral_line
 from swgpar.geometry.profiles import Conjugate, RackInvolute, Teeth, ToothMotion, ToothProfile, make_profile
@@ -282,8 +283,43 @@ class DriveDesign(Design):
 
     @property
     def cup_thickness(self) -> float:
-        """Thickness of the cup's wall, mm; that of the rim in the plane model, which has no cup."""
+        """Thickness (mm) of the cup's wall at the back of the teeth; that of the rim in the plane model without cup."""
         return (self.cup.thickness_coef if self.cup else 1.0) * self.flexible_spline.rim
+
+    @property
+    def wall_points(self) -> list[tuple[float, float, float, float]]:
+        """Points of the cup's wall: distance from the back of the teeth, inner radius, thickness and rounding, mm."""
+        cup = self.cup
+        points = [(0.0, self.inner_radius, self.cup_thickness, 0.0)]
+        points += [(p.distance, p.radius or self.inner_radius, p.thickness, p.rounding) for p in cup.contour]
+        (last, radius, thickness, _), length = points[-1], cup.length - cup.fillet_radius
+        return points if last >= length else [*points, (length, radius, thickness, 0.0)]
+
+    @property
+    def cup_wall(self) -> CupWall:
+        """Section of the wall of the cup, which the design must have."""
+        cup, back = self.cup, 0.5 * self.drive.face_width
+        inner, outer = rounded_lines(self.wall_points)
+        return CupWall(
+            inner=inner,
+            outer=outer,
+            back=back,
+            end=back + cup.length,
+            fillet=cup.fillet_radius,
+            end_thickness=self.end_thickness,
+            edge=cup.edge,
+            outwards=cup.shape == "hat",
+        )
+
+    @property
+    def end_thickness(self) -> float:
+        """Thickness of the closed end or flange, mm."""
+        return self.cup.end_thickness or self.wall_points[-1][2]
+
+    @property
+    def rest_plane(self) -> float:
+        """z (mm) at which the deflection vanishes: the middle of the closed end or flange; 0 in the plane model."""
+        return 0.5 * self.drive.face_width + self.cup.length - 0.5 * self.end_thickness if self.cup else 0.0
 
     @property
     def penalty(self) -> float:
@@ -323,8 +359,7 @@ class DriveDesign(Design):
         share = 1.0
         if self.cup:
             # the deflection of a cup grows linearly from the closed end, whose middle stays plane
-            end = 0.5 * self.drive.face_width + self.cup.length - 0.5 * self.cup_thickness
-            share = (end - z) / end
+            share = (self.rest_plane - z) / self.rest_plane
         line = _line(self.wave_generator, self.major_semi_axis, self.minor_semi_axis, self.inner_radius, radius, share)
         return ToothMotion(line, self.drive.teeth_fs, self.drive.teeth_rg)
 

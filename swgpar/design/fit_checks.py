@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from swgpar.design.bearing_checks import check_bearing
+from swgpar.design.cup_checks import check_cup
 from swgpar.design.deviation_checks import check_deviations
 from swgpar.design.program_checks import check_program
 from swgpar.design.sections import GEARS, OMITTED_BENDING
@@ -23,9 +24,6 @@ SMALLEST_MINOR_AXIS = 0.4
 THINNEST_RIM, THICKEST_RIM = 0.01, 100.0
 """Thickness of a rim, or of a housing, in modules: thinner and thicker ones are slips."""
 
-THICK_CUP = 0.85
-"""Cup thickness over rim thickness above which the cup continues the layers below the root as well."""
-
 LARGEST_SHEAR = 0.01
 """Nominal shear strain under the output torque; steel yields at half of it, and far above the teeth find no contact."""
 
@@ -38,6 +36,8 @@ def check_fit(design: DriveDesign) -> None:
     _check_wave_generator(design)
     _check_teeth(design)
     _check_steps(design)
+    if design.drive.model == "cup":
+        check_cup(design)
     _check_torque(design)
     _check_fatigue(design)
     check_program(design)
@@ -58,7 +58,6 @@ def check_fit(design: DriveDesign) -> None:
     if design.drive.model == "plane":
         _check_plane(design)
     else:
-        _check_cup(design)
         _check_micro_geometry(design)
     _check_outline(design)
     if design.bearing is not None:
@@ -115,9 +114,12 @@ def _check_steps(design: DriveDesign) -> None:
 
 
 def _check_torque(design: DriveDesign) -> None:
-    """Torques that a cylinder with the cup's thickness, or the rim's in the plane model, cannot carry."""
+    """Torques that a cylinder like the weakest section of the cup, or the rim in the plane model, cannot carry."""
     shear_modulus = 0.5 * design.material.E / (1.0 + design.material.nu)
-    most = 0.001 * LARGEST_SHEAR * shear_modulus * 2.0 * np.pi * design.inner_radius**2 * design.cup_thickness
+    weakest = design.inner_radius**2 * design.cup_thickness
+    if design.drive.model == "cup":
+        weakest = min(radius**2 * thickness for _, radius, thickness, _ in design.wall_points)
+    most = 0.001 * LARGEST_SHEAR * shear_modulus * 2.0 * np.pi * weakest
     torques = {"load.torque": design.load.torque}
     torques |= {f"load.program.{k}.torque": stage.torque or 0.0 for k, stage in enumerate(design.load.program, 1)}
     if design.stiffness is not None:
@@ -157,33 +159,6 @@ def _check_plane(design: DriveDesign) -> None:
         value = getattr(design.micro_geometry, key)
         if value != 0.0:
             _refuse(f"micro_geometry.{key}", value, 'only 0 with drive.model = "plane"')
-
-
-def _check_cup(design: DriveDesign) -> None:
-    """Sizes of the cup; the mesh of its wall relies on them (`swgpar.meshing.cup.meridian`)."""
-    cup = design.cup
-    if design.solver.condensed_sectors:
-        raise InputError('solver.condensed_sectors = true is out of range: allowed only with drive.model = "plane"')
-    if cup is None:
-        raise InputError('cup is missing: allowed only with drive.model = "plane"')
-    if cup.fillet_radius < design.cup_thickness:
-        _refuse("cup.fillet_radius", cup.fillet_radius, f"{design.cup_thickness:g} (the cup's thickness) to inf mm")
-    if cup.length <= cup.fillet_radius:
-        _refuse("cup.length", cup.length, f"above {cup.fillet_radius:g} mm (cup.fillet_radius)")
-    # narrower splines leave the ring gear's width (docs/verification/stability.md)
-    narrowest = max(design.axial_travel, 0.5 * design.flexible_spline.rim)
-    if design.drive.face_width < narrowest:
-        allowed = f"{narrowest:.4g} mm (axial travel of the teeth, half of the rim) to inf mm"
-        _refuse("drive.face_width", design.drive.face_width, allowed)
-    step = design.flexible_spline.rim - design.cup_thickness if cup.thickness_coef <= THICK_CUP else 0.0
-    most = min(step, 0.5 * (cup.length - cup.fillet_radius))
-    if cup.back_fillet > most * (1.0 + 1e-9):
-        allowed = f"0 to {most:.4g} mm (rim less wall; only 0 with cup.thickness_coef above {THICK_CUP:g})"
-        _refuse("cup.back_fillet", cup.back_fillet, allowed)
-    closed_end = design.inner_radius + design.cup_thickness - cup.fillet_radius
-    if cup.inner_radius >= closed_end:
-        allowed = f"above 0 to below {closed_end:g} mm (the closed end inside cup.fillet_radius)"
-        _refuse("cup.inner_radius", cup.inner_radius, allowed)
 
 
 def _check_micro_geometry(design: DriveDesign) -> None:

@@ -69,16 +69,6 @@ class InternalGear(Gear):
     housing: Housing | None = None
 
 
-class Cup(Section):
-    """Section [cup]: the wall of the flexible spline behind its teeth."""
-
-    length: float = quantity(unit="mm", text="from the back of the teeth to the closed end", gt=0.0)
-    thickness_coef: float = quantity(0.8, text="cup thickness over rim thickness", ge=0.1, le=0.95)
-    fillet_radius: float = quantity(unit="mm", text="outer fillet radius", gt=0.0)
-    inner_radius: float = quantity(unit="mm", text="bore radius of the closed end", gt=0.0)
-    back_fillet: float = quantity(0.0, unit="mm", text="fillet radius between back of teeth and wall", ge=0.0)
-
-
 class MicroGeometry(Section):
     """Section [micro_geometry]: crowning and slope (section 7.12)."""
 

@@ -126,34 +126,71 @@ def _loop(gmsh: ModuleType, edges: Sequence[Edge], z: float) -> int:
     return occ.addCurveLoop(curves)
 
 
+class _Meridian:
+    """Curves of a section in the plane of r and z, one after the other; `at` is the tag of the last point."""
+
+    def __init__(self, gmsh: ModuleType, r: float, z: float) -> None:
+        self.occ, self.curves, self.place = gmsh.model.occ, [], (r, z)
+        self.first = self.at = self.occ.addPoint(r, 0.0, z)
+
+    def _end(self, r: float, z: float) -> int:
+        self.place = r, z
+        return self.occ.addPoint(r, 0.0, z)
+
+    def line(self, r: float, z: float) -> None:
+        """A line to a point, unless it is the present one."""
+        if np.hypot(r - self.place[0], z - self.place[1]) > SAME:
+            start, self.at = self.at, self._end(r, z)
+            self.curves.append(self.occ.addLine(start, self.at))
+
+    def arc(self, r: float, z: float, center: tuple[float, float]) -> None:
+        """The shorter arc to a point, or that of an ellipse with axes along r and z; none without a size."""
+        sizes = [max(abs(a - c), abs(b - c)) for a, b, c in zip(self.place, (r, z), center, strict=True)]
+        if min(sizes) < SAME:  # a fillet without one of its sizes is a corner
+            self.line(center[0], center[1])
+            self.line(r, z)
+            return
+        middle, start = self.occ.addPoint(center[0], 0.0, center[1]), self.at
+        round_arc = abs(np.hypot(*np.subtract(self.place, center)) - np.hypot(r - center[0], z - center[1])) < SAME
+        self.at = self._end(r, z)
+        if round_arc:
+            self.curves.append(self.occ.addCircleArc(start, middle, self.at))
+            return
+        along = (1.0, 0.0) if sizes[0] > sizes[1] else (0.0, 1.0)
+        major = self.occ.addPoint(center[0] + along[0], 0.0, center[1] + along[1])
+        self.curves.append(self.occ.addEllipseArc(start, middle, major, self.at))
+
+    def surface(self) -> int:
+        """The closed section."""
+        self.curves.append(self.occ.addLine(self.at, self.first))
+        return self.occ.addPlaneSurface([self.occ.addCurveLoop(self.curves)])
+
+
 def _wall(gmsh: ModuleType, design: DriveDesign) -> tuple[int, int]:
     """The wall of the cup behind the teeth: its section turned about the axis."""
-    occ, cup, thickness, inner = gmsh.model.occ, design.cup, design.cup_thickness, design.inner_radius
-    back = 0.5 * design.drive.face_width
-    end, r_mid = back + cup.length, inner + thickness - cup.fillet_radius
-    z_mid = end - cup.fillet_radius
-
-    def point(r: float, z: float) -> int:
-        return occ.addPoint(r, 0.0, z)
-
-    center = point(r_mid, z_mid)
-    wall, fillet = inner + thickness, cup.back_fillet
-    outer = [point(wall, back + fillet), point(wall, z_mid), point(r_mid, end)]
-    bore = [point(cup.inner_radius, end), point(cup.inner_radius, end - thickness)]
-    curves = [occ.addLine(outer[0], outer[1]), occ.addCircleArc(outer[1], center, outer[2])]
-    curves += [occ.addLine(outer[2], bore[0]), occ.addLine(bore[0], bore[1])]
-    if cup.fillet_radius - thickness > SAME:
-        inside = [point(r_mid, end - thickness), point(inner, z_mid)]
-        curves += [occ.addLine(bore[1], inside[0]), occ.addCircleArc(inside[0], center, inside[1])]
-        last = inside[1]
-    else:
-        last = center
-        curves.append(occ.addLine(bore[1], center))
-    first = point(inner, back)
-    start = outer[0] if fillet == 0.0 else point(wall + fillet, back)
-    curves += [occ.addLine(last, first), occ.addLine(first, start)]
+    occ, wall, fillet = gmsh.model.occ, design.cup_wall, design.cup.back_fillet
+    r_center, z_center = wall.center
+    r_first = wall.outer.points[0, 1]
+    section = _Meridian(gmsh, wall.inner.points[0, 1], wall.back)
+    section.line(r_first + fillet, wall.back)
     if fillet:
-        curves.append(occ.addCircleArc(start, point(wall + fillet, back + fillet), outer[0]))
-    section = occ.addPlaneSurface([occ.addCurveLoop(curves)])
-    solid = occ.revolve([(2, section)], 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 2.0 * np.pi)
+        section.arc(r_first, wall.back + fillet, (r_first + fillet, wall.back + fillet))
+    for _, (s, r), center in wall.outer.pieces():
+        _continue(section, wall.back, s, r, center)
+    section.arc(r_center, wall.faces[1], (r_center, z_center))
+    for z in wall.faces[::-1]:
+        section.line(wall.edge, z)
+    section.line(r_center, wall.faces[0])
+    section.arc(wall.inner.points[-1, 1], z_center, (r_center, z_center))
+    for (s, r), _, center in wall.inner.pieces()[:0:-1]:
+        _continue(section, wall.back, s, r, center)
+    solid = occ.revolve([(2, section.surface())], 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 2.0 * np.pi)
     return next(entity for entity in solid if entity[0] == 3)
+
+
+def _continue(section: _Meridian, back: float, s: float, r: float, center: np.ndarray | None) -> None:
+    """A piece of a wall's line to a distance from the back of the teeth and a radius."""
+    if center is None:
+        section.line(r, back + s)
+    else:
+        section.arc(r, back + s, (center[1], back + center[0]))

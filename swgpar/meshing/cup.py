@@ -1,4 +1,4 @@
-"""The cup's slice of one tooth sector: the lower rim continued over cylinder and closed end to the bore."""
+"""The cup's slice of one tooth sector: the lower rim continued over the wall and the closed end or flange."""
 
 from __future__ import annotations
 
@@ -44,38 +44,44 @@ def fillet_points(share: Floats, radius: float) -> tuple[Floats, Floats]:
     return radius * (1.0 - np.cos(angle)), radius * (1.0 - np.sin(angle))
 
 
-def meridian(design: DriveDesign, recipe: CupRecipe, layers: int = 1) -> tuple[Floats, Floats]:
-    """Return the inner and the outer line of the cup in the meridian plane.
+@dataclass(frozen=True)
+class Meridian:
+    """Stations of the wall in the meridian plane, from the back of the teeth to the bore or the rim of the flange.
+
+    inner, outer : (n_station, 2) mm, points (r, z) of both surfaces
+    wall, end : station at which the fillet begins, and the closed end or flange
+    """
+
+    inner: Floats
+    outer: Floats
+    wall: int
+    end: int
+
+
+def meridian(design: DriveDesign, recipe: CupRecipe, layers: int = 1) -> Meridian:
+    """Return the stations of the wall.
 
     layers : elements along the half of the fillet at the back of the teeth that belongs to the wall
 
-    Returns
-    -------
-    inner, outer : (n_station, 2) float64, mm
-        Points (r, z) of the inner and outer surface, from the back of the teeth to the bore.
-
-    The sizes of the cup are those of a checked design (`swgpar.design.fit_checks`).
+    The sizes of the cup are those of a checked design (`swgpar.design.cup_checks`).
     """
-    cup, thickness = design.cup, design.cup_thickness
-    back = 0.5 * design.drive.face_width
-    # centre of the fillet's arcs
-    r_centre = design.inner_radius + thickness - cup.fillet_radius
-    z_centre = back + cup.length - cup.fillet_radius
-    s = cylinder_stations(z_centre - back, recipe, cup.back_fillet, layers)
+    wall, back_fillet = design.cup_wall, design.cup.back_fillet
+    r_center, z_center = wall.center
+    s = wall.stations(cylinder_stations(wall.length, recipe, back_fillet, layers), back_fillet * (1.0 + 1e-9))
     angle = np.linspace(0.0, 0.5 * np.pi, recipe.fillet + 1)[1:]
-    r = r_centre - (r_centre - cup.inner_radius) * symmetric_steps(recipe.closed_end, recipe.end_ratio)[1:]
+    side = -1.0 if wall.outwards else 1.0
+    r = r_center + (wall.edge - r_center) * symmetric_steps(recipe.closed_end, recipe.end_ratio)[1:]
     lines = []
-    for offset in (0.0, thickness):
-        cylinder = np.stack((np.full_like(s, design.inner_radius + offset), back + s), axis=-1)
-        if offset and cup.back_fillet:
-            on = s <= cup.back_fillet * (1.0 + 1e-9)
-            up, along = fillet_points(-s[on] / cup.back_fillet, cup.back_fillet)
-            cylinder[on] = np.stack((design.inner_radius + offset + up, back + along), axis=-1)
-        radius = cup.fillet_radius - thickness + offset
-        fillet = np.stack((r_centre + radius * np.cos(angle), z_centre + radius * np.sin(angle)), axis=-1)
-        end = np.stack((r, np.full_like(r, back + cup.length - thickness + offset)), axis=-1)
-        lines.append(np.concatenate((cylinder, fillet, end)))
-    return lines[0], lines[1]
+    for line, (along_r, along_z), face in zip((wall.inner, wall.outer), wall.sizes, wall.faces, strict=True):
+        radius = line.radius(s)
+        cylinder = np.stack((radius, wall.back + s), axis=-1)
+        if line is wall.outer and back_fillet:
+            on = s <= back_fillet * (1.0 + 1e-9)
+            up, along = fillet_points(-s[on] / back_fillet, back_fillet)
+            cylinder[on] = np.stack((radius[on] + up, wall.back + along), axis=-1)
+        arms = np.stack((side * along_r * np.cos(angle), along_z * np.sin(angle)), axis=-1)
+        lines.append(np.concatenate((cylinder, wall.center + arms, np.stack((r, np.full_like(r, face)), axis=-1))))
+    return Meridian(lines[0], lines[1], len(s) - 1, len(s) - 1 + recipe.fillet)
 
 
 def attached_quads(section: CrossSection, root_too: bool) -> NDArray[np.bool_]:
@@ -197,7 +203,8 @@ def transition(below: Ints, above: Ints, between: Ints, groups: list[int]) -> In
 
 def transition_station(design: DriveDesign, recipe: CupRecipe, layers: int) -> int:
     """Station after which columns are joined: of the cylinder, a pitch or more behind the teeth if there is one."""
-    z = meridian(design, recipe, layers)[0][: -recipe.fillet - recipe.closed_end - 1, 1]
+    lines = meridian(design, recipe, layers)
+    z = lines.inner[: lines.wall, 1]
     behind = np.flatnonzero(z - z[0] >= np.pi * design.drive.module)
     return int(behind[0]) if len(behind) else len(z) - 1
 
@@ -215,7 +222,8 @@ def cup_slice(
     """
     attached = attached_quads(section, root_too)
     grid = wall_grid(section, attached)
-    inner, outer = meridian(design, recipe, layers)
+    lines = meridian(design, recipe, layers)
+    inner, outer = lines.inner, lines.outer
     fraction = depth_fractions(section, grid, design.inner_radius, design.cup_thickness)
     angle = np.arctan2(*section.coords.T)
     if recipe.joined_columns:

@@ -63,7 +63,7 @@ def _counts(design: DriveDesign, recipe: MeshRecipe, gear: GearName) -> SectorCo
     elements, nodes, side = quads * layers, nodes * (layers + 1), side * (layers + 1)
     if external:
         cup = recipe.cup
-        stations = len(meridian(design, cup, teeth.under)[0]) - 1
+        stations = len(meridian(design, cup, teeth.under).inner) - 1
         depth = teeth.rim + (teeth.under if continues_root(design) else 0)
         with_all, joined, threes = stations, around, 0
         if cup.joined_columns:

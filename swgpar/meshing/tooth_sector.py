@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from swgpar.design.cup_checks import THICK_CUP
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.fit_checks import THICK_CUP
 from swgpar.design.sections import GEARS, GearName
 from swgpar.errors import InputError
 from swgpar.geometry.arrays import Floats, Ints

@@ -12,6 +12,8 @@ import pyvista
 
 import swgpar
 from support import drive_groups
+from support.cup_shapes import SHAPES, shaped
+from support.cup_shapes import wall_volume as revolved_wall
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE, SHORT
 from swgpar.design.drive_design import DriveDesign
@@ -109,6 +111,19 @@ def test_volumes_of_step_files(
             assert len(solids) == (4 if path.stem == "wave_generator" and cam == "four_roller" else 1)
             volume = sum(gmsh.model.occ.getMass(*solid) for solid in solids)
             assert volume == pytest.approx(volumes[path.stem], rel=1e-4), path.stem
+
+
+@pytest.mark.parametrize("shape", list(SHAPES))
+def test_volumes_of_step_files_of_other_cups(tmp_path: Path, shape: str) -> None:
+    design = shaped(SHAPES[shape])
+    path = swgpar.export(design, tmp_path, ["step"])[0]
+    bore = np.pi * design.inner_radius**2
+    toothed = (section_area(design, "flexible_spline") - bore) * design.drive.face_width
+    with gmsh_model("read") as gmsh:
+        solids = [entity for entity in gmsh.model.occ.importShapes(str(path)) if entity[0] == 3]
+        assert len(solids) == 1
+        volume = gmsh.model.occ.getMass(*solids[0]) - toothed
+    assert volume == pytest.approx(revolved_wall(design), rel=1e-4)  # asked: 1e-3
 
 
 @pytest.mark.parametrize("profile", ["quadruple_arc", "double_arc", "involute"])

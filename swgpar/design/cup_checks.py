@@ -1,0 +1,112 @@
+"""Checks that the sizes of the cup fit each other: its wall, contour, closed end or flange.
+
+The mesh of the wall (`swgpar.meshing.cup`) and its section (`swgpar.geometry.cup_wall`) rely on them.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from swgpar.design.cup_section import Cup
+from swgpar.errors import InputError
+
+if TYPE_CHECKING:  # a design checks itself
+    from swgpar.design.drive_design import DriveDesign
+
+THICK_CUP = 0.85
+"""Cup thickness over rim thickness above which the cup continues the layers below the root as well."""
+
+THINNEST = 0.1
+"""Thickness of a wall over that of the rim, at least."""
+
+ROUND_OFF = 1.0 + 1e-9
+"""Factor on largest values that follow from others."""
+
+
+def check_cup(design: DriveDesign) -> None:
+    """Raise InputError for the first size of the cup that does not fit the others."""
+    cup = design.cup
+    if design.solver.condensed_sectors:
+        raise InputError('solver.condensed_sectors = true is out of range: allowed only with drive.model = "plane"')
+    if cup is None:
+        raise InputError('cup is missing: allowed only with drive.model = "plane"')
+    if cup.length <= cup.fillet_radius:
+        _refuse("cup.length", cup.length, f"above {cup.fillet_radius:g} mm (cup.fillet_radius)")
+    _check_shape(cup)
+    _check_contour(design, cup)
+    _check_end(design, cup)
+    _check_back(design, cup)
+
+
+def _refuse(key: str, value: float, allowed: str) -> None:
+    raise InputError(f"{key} = {value:g} is out of range: allowed {allowed}")
+
+
+def _check_shape(cup: Cup) -> None:
+    """Each shape has its keys."""
+    for key, shape in (("inner_radius", "cup"), ("flange_radius", "hat")):
+        value = getattr(cup, key)
+        if value is None and cup.shape == shape:
+            raise InputError(f'cup.{key} is missing: allowed only with another cup.shape than "{shape}"')
+        if value is not None and cup.shape != shape:
+            raise InputError(f'cup.{key} = {value:g} is not available: allowed only with cup.shape = "{shape}"')
+
+
+def _check_contour(design: DriveDesign, cup: Cup) -> None:
+    """Every point lies behind the one before, and no surface is steeper than 45 degrees."""
+    length, least = cup.length - cup.fillet_radius, THINNEST * design.flexible_spline.rim
+    points = design.wall_points
+    for k, (point, before) in enumerate(zip(cup.contour, points, strict=False), 1):
+        key, (start, inner, thickness, _) = f"cup.contour.{k}", before
+        if not start < point.distance <= length * ROUND_OFF:
+            limits = f"above {start:g} (the point before) to {length:g} mm (where the fillet begins)"
+            _refuse(f"{key}.distance", point.distance, limits)
+        step, radius = (point.distance - start) * ROUND_OFF, points[k][1]
+        steep = f"no steeper than 45 degrees from {start:g} mm on"
+        if abs(radius - inner) > step:
+            _refuse(f"{key}.radius", radius, f"{max(inner - step, 0.0):.5g} to {inner + step:.5g} mm ({steep})")
+        low, high = max(inner + thickness - step - radius, least), inner + thickness + step - radius
+        if not low <= point.thickness <= high:
+            _refuse(f"{key}.thickness", point.thickness, f"{low:.5g} to {high:.5g} mm ({steep}, {THINNEST:g} rims)")
+    wall = design.cup_wall
+    most = np.minimum(wall.inner.largest_rounding(), wall.outer.largest_rounding())
+    for k, point in enumerate(cup.contour, 1):
+        limit = most[k - 1] if k <= len(most) else 0.0  # the last point may be where the fillet begins
+        if point.rounding > limit * ROUND_OFF:
+            _refuse(f"cup.contour.{k}.rounding", point.rounding, f"0 to {limit:.4g} mm (half of the shorter side)")
+
+
+def _check_end(design: DriveDesign, cup: Cup) -> None:
+    """Fillet and closed end or flange."""
+    wall = design.cup_wall
+    if cup.fillet_radius < wall.thickness:
+        _refuse("cup.fillet_radius", cup.fillet_radius, f"{wall.thickness:g} (the cup's thickness) to inf mm")
+    least = THINNEST * design.flexible_spline.rim
+    if not least <= wall.end_thickness <= cup.fillet_radius:
+        limits = f"{least:g} ({THINNEST:g} rims) to {cup.fillet_radius:g} mm (cup.fillet_radius)"
+        _refuse("cup.end_thickness", wall.end_thickness, limits)
+    begin, _ = wall.center
+    if wall.outwards and cup.flange_radius <= begin:
+        _refuse("cup.flange_radius", cup.flange_radius, f"above {begin:g} mm (the flange outside cup.fillet_radius)")
+    if not wall.outwards and cup.inner_radius >= begin:
+        limits = f"above 0 to below {begin:g} mm (the closed end inside cup.fillet_radius)"
+        _refuse("cup.inner_radius", cup.inner_radius, limits)
+
+
+def _check_back(design: DriveDesign, cup: Cup) -> None:
+    """Face width and fillet at the back of the teeth."""
+    # narrower splines leave the ring gear's width (docs/verification/stability.md)
+    narrowest = max(design.axial_travel, 0.5 * design.flexible_spline.rim)
+    if design.drive.face_width < narrowest:
+        allowed = f"{narrowest:.4g} mm (axial travel of the teeth, half of the rim) to inf mm"
+        _refuse("drive.face_width", design.drive.face_width, allowed)
+    step = design.flexible_spline.rim - design.cup_thickness if cup.thickness_coef <= THICK_CUP else 0.0
+    most = min(step, 0.5 * (cup.length - cup.fillet_radius))
+    if cup.back_fillet > most * ROUND_OFF:
+        allowed = f"0 to {most:.4g} mm (rim less wall; only 0 with cup.thickness_coef above {THICK_CUP:g})"
+        _refuse("cup.back_fillet", cup.back_fillet, allowed)
+    straight = min(line.straight for line in (design.cup_wall.inner, design.cup_wall.outer))
+    if cup.back_fillet > straight * ROUND_OFF:
+        _refuse("cup.back_fillet", cup.back_fillet, f"0 to {straight:.4g} mm (as far as cup.contour is straight)")

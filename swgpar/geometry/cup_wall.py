@@ -1,0 +1,191 @@
+"""The section of the flexible spline's wall behind its teeth: exact lines of its inner and outer surface.
+
+The wall runs from the back of the teeth to a fillet, and from there inwards as a closed end with a bore or outwards as
+a flange. All lines are straight pieces, arcs and quarters of ellipses.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from swgpar.geometry.arrays import Floats
+
+SAME = 1e-7
+"""mm, length up to which pieces are left out."""
+
+STRAIGHT = 1e-9
+"""rad, by which a line turns at most at a point where it counts as straight."""
+
+
+class Arc(NamedTuple):
+    """A rounded corner. start, end, center : (2,) distance and radius, mm"""
+
+    start: Floats
+    end: Floats
+    center: Floats
+
+
+class RoundedLine:
+    """Radius over the distance from the back of the teeth: straight pieces whose corners are rounded by arcs.
+
+    points : (n, 2) distance, which increases, and radius, mm;  rounding : (n,) mm, 0 at both ends
+    """
+
+    def __init__(self, points: Floats, rounding: Floats) -> None:
+        self.points, self.rounding = points, rounding
+        sides = np.diff(points, axis=0)
+        self._along = sides / np.linalg.norm(sides, axis=1)[:, None]
+
+    def turning(self) -> Floats:
+        """Angles (n - 2,) rad by which the line turns at its inner points, positive where it turns outwards."""
+        a, b = self._along[:-1].T, self._along[1:].T
+        angle = np.arctan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1])
+        return np.where(np.abs(angle) < STRAIGHT, 0.0, angle)
+
+    def largest_rounding(self) -> Floats:
+        """Radii (n - 2,) mm of arcs that take half of the shorter side at a point; inf where the line is straight."""
+        half = 0.5 * np.linalg.norm(np.diff(self.points, axis=0), axis=1)
+        with np.errstate(divide="ignore"):
+            return np.minimum(half[:-1], half[1:]) / np.tan(0.5 * np.abs(self.turning()))
+
+    def _arc(self, k: int) -> Arc | None:
+        """The arc at point k, None where the line is straight or not rounded."""
+        radius, turning = self.rounding[k], self.turning()[k - 1]
+        if radius == 0.0 or turning == 0.0:
+            return None
+        before, after, reach = self._along[k - 1], self._along[k], radius * np.tan(0.5 * abs(turning))
+        start = self.points[k] - reach * before
+        normal = np.sign(turning) * np.array([-before[1], before[0]])
+        return Arc(start, self.points[k] + reach * after, start + radius * normal)
+
+    def arcs(self) -> list[Arc]:
+        """The rounded corners."""
+        found = (self._arc(k) for k in range(1, len(self.points) - 1))
+        return [arc for arc in found if arc is not None]
+
+    def pieces(self) -> list[tuple[Floats, Floats, Floats | None]]:
+        """Start, end and centre (2,) of straight pieces, without a centre, and of arcs, one after the other."""
+        found: list[tuple[Floats, Floats, Floats | None]] = []
+        at = self.points[0]
+        for k, turning in enumerate(self.turning(), 1):
+            arc = self._arc(k)
+            if turning != 0.0:
+                found.append((at, self.points[k] if arc is None else arc.start, None))
+                at = self.points[k] if arc is None else arc.end
+            if arc is not None:
+                found.append((arc.start, arc.end, arc.center))
+        return [piece for piece in [*found, (at, self.points[-1], None)] if piece[1][0] - piece[0][0] > SAME]
+
+    def corners(self) -> Floats:
+        """Distances (n,) mm of the points at which the line turns."""
+        return self.points[1:-1, 0][self.turning() != 0.0]
+
+    @property
+    def straight(self) -> float:
+        """Distance (mm) as far as which the line keeps its first radius."""
+        if self.points[1, 1] != self.points[0, 1]:
+            return 0.0
+        starts = [*(float(arc.start[0]) for arc in self.arcs()), *self.corners().tolist(), float(self.points[-1, 0])]
+        return min(starts)
+
+    def radius(self, distance: Floats) -> Floats:
+        """Radii (n,) mm at distances (n,) mm."""
+        r = np.interp(distance, *self.points.T)
+        for start, end, center in self.arcs():
+            on = (distance > start[0]) & (distance < end[0])
+            side = np.sign(start[1] - center[1])
+            arm = np.hypot(*(start - center))
+            r[on] = center[1] + side * np.sqrt(arm**2 - (distance[on] - center[0]) ** 2)
+        return r
+
+
+@dataclass(frozen=True)
+class CupWall:
+    """The section of the wall.
+
+    inner, outer : lines over the distance from the back of the teeth, as far as the fillet
+    back, end : mm, z of the back of the teeth and of the far face of the closed end or flange
+    fillet : mm, radius of the fillet, on its outer side (closed end) or its inner side (flange)
+    end_thickness : mm, of the closed end or flange;  edge : mm, radius of its bore or rim
+    outwards : whether the wall ends in a flange
+    """
+
+    inner: RoundedLine
+    outer: RoundedLine
+    back: float
+    end: float
+    fillet: float
+    end_thickness: float
+    edge: float
+    outwards: bool
+
+    @property
+    def length(self) -> float:
+        """Length (mm) of the wall as far as the fillet."""
+        return float(self.inner.points[-1, 0])
+
+    @property
+    def thickness(self) -> float:
+        """Thickness (mm) of the wall where the fillet begins."""
+        return float(self.outer.points[-1, 1] - self.inner.points[-1, 1])
+
+    @property
+    def center(self) -> tuple[float, float]:
+        """Radius and z (mm) of the centre of the fillet's curves."""
+        r = self.inner.points[-1, 1] + self.fillet if self.outwards else self.outer.points[-1, 1] - self.fillet
+        return float(r), self.end - self.fillet
+
+    @property
+    def sizes(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Semi-axes (along r and z, mm) of the fillet's curves on the inner and on the outer line."""
+        long = self.fillet, self.fillet
+        short = self.fillet - self.thickness, self.fillet - self.end_thickness
+        return (long, short) if self.outwards else (short, long)
+
+    @property
+    def faces(self) -> tuple[float, float]:
+        """z (mm) of the closed end or flange on the inner and on the outer line."""
+        near = self.end - self.end_thickness
+        return (self.end, near) if self.outwards else (near, self.end)
+
+    def stations(self, usual: Floats, first: float) -> Floats:
+        """Distances (n,) mm of stations, with the corners and the ends of their arcs in place of those close by.
+
+        usual : (m,) mm, from 0 to `length`;  first : mm, as far as which they stay
+        """
+        corners = np.unique(np.concatenate([line.corners() for line in (self.inner, self.outer)]))
+        arcs = [arc for line in (self.inner, self.outer) for arc in line.arcs()]
+        ends = np.array([point[0] for arc in arcs for point in (arc.start, arc.end)])
+        keep = np.concatenate([usual[usual <= first], usual[-1:], corners])
+        found = usual
+        for at in np.concatenate([corners, ends]):
+            found = with_station(found, at, keep)
+        return found
+
+
+def with_station(stations: Floats, at: float, keep: Floats) -> Floats:
+    """The stations (n,) with one at `at`, unless one that is kept is close: the nearest other one that is close moves.
+
+    keep : (m,) stations that do not move
+    """
+    near = int(np.abs(stations - at).argmin())
+    gap = np.diff(stations)[min(near, len(stations) - 2)]
+    fixed = bool(np.isclose(stations[near], keep, rtol=0.0, atol=1e-9).any())
+    if abs(stations[near] - at) >= (0.25 if fixed else 0.5) * gap:
+        return np.insert(stations, int(np.searchsorted(stations, at)), at)
+    moved = stations.copy()
+    if not fixed:
+        moved[near] = at
+    return moved
+
+
+def rounded_lines(points: Sequence[tuple[float, float, float, float]]) -> tuple[RoundedLine, RoundedLine]:
+    """Inner and outer line through points: distance, inner radius, thickness and rounding, mm."""
+    distance, radius, thickness, rounding = np.array(points).T
+    lines = (radius, radius + thickness)
+    inner, outer = (RoundedLine(np.column_stack([distance, line]), rounding) for line in lines)
+    return inner, outer

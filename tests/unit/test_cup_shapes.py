@@ -1,0 +1,141 @@
+"""Shapes of the flexible spline: contours of the wall, silk hats, short cups."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from support.cup_shapes import HAT, SHAPES, Changes, shaped, wall_volume
+from support.paths import RECIPE
+from support.stepping import loaded
+from swgpar.analysis.bent_start import BentSpline
+from swgpar.analysis.drive_model import build_drive_model
+from swgpar.analysis.forecast import forecast
+from swgpar.design.drive_design import DriveDesign
+from swgpar.errors import InputError
+from swgpar.geometry.cup_wall import RoundedLine
+from swgpar.meshing import SectorMesh, load_recipe
+from swgpar.meshing.cup import meridian
+from swgpar.meshing.quality import hex_volumes
+from swgpar.meshing.tooth_sector import build_sector
+
+shapes = pytest.mark.parametrize("shape", list(SHAPES))
+
+
+def spline(case: DriveDesign, recipe: str = "full") -> SectorMesh:
+    return build_sector(case, load_recipe(recipe), "flexible_spline")
+
+
+@pytest.mark.parametrize("recipe", ["coarse", "medium", "full"])
+def test_a_contour_that_is_straight_changes_no_bit_of_the_mesh(recipe: str) -> None:
+    thickness = shaped({}).cup_thickness
+    points = [{"distance": at, "thickness": thickness, "rounding": 2.0} for at in (3.1, 7.0)]
+    plain, drawn = spline(shaped({}), recipe), spline(shaped({"contour": points}), recipe)
+    assert np.array_equal(plain.coords, drawn.coords) and np.array_equal(plain.hexes, drawn.hexes)
+
+
+@shapes
+def test_volume_behind_the_teeth_tends_to_that_of_the_solid_of_revolution(shape: str) -> None:
+    case, recipe, errors = shaped(SHAPES[shape]), load_recipe("full"), []
+    for factor in (1, 2, 4):
+        counts = {name: factor * getattr(recipe.cup, name) for name in ("cylinder", "fillet", "closed_end")}
+        cup = recipe.cup.model_copy(update=counts | {"joined_columns": False})
+        finer = recipe.model_copy(update={"cup": cup})
+        mesh = build_sector(case, finer, "flexible_spline")
+        behind = mesh.coords[mesh.hexes, 2].min(axis=1) > 0.5 * case.drive.face_width * (1.0 - 1e-9)
+        volume = mesh.n_sectors * hex_volumes(mesh.coords, mesh.hexes[behind]).sum()
+        errors.append(abs(volume / wall_volume(case) - 1.0))
+        assert factor > 1 or mesh.quality["min_scaled_jacobian"] > 0.3
+    # chords of arcs: quadratic, 16 times less
+    assert errors[0] < 6e-3 and errors[2] < 5e-4 and errors[2] < errors[0] / 12.0, errors
+
+
+@shapes
+def test_surfaces_of_the_mesh_are_those_of_the_drawing(shape: str) -> None:
+    """Every corner of the contour is a node; the last nodes are those of the bore, or of the rim of the flange."""
+    case = shaped(SHAPES[shape])
+    mesh, end = spline(case, "medium"), 0.5 * case.drive.face_width + case.cup.length
+    radius, z = np.hypot(*mesh.coords[:, :2].T), mesh.coords[:, 2]
+    assert radius[mesh.node_sets["bore"]] == pytest.approx(case.cup.edge, rel=1e-12)
+    assert z.max() == pytest.approx(end)
+    for point in case.cup.contour:
+        if point.rounding == 0.0:
+            at = np.abs(z - 0.5 * case.drive.face_width - point.distance) < 1e-9
+            assert radius[at].min() == pytest.approx(point.radius or case.inner_radius, rel=1e-12)
+            assert np.ptp(radius[at]) == pytest.approx(point.thickness, rel=1e-9)
+
+
+def test_rounded_corners_are_arcs_that_are_tangent_to_both_sides() -> None:
+    line = RoundedLine(np.array([[0.0, 5.0], [3.0, 5.0], [6.0, 7.0], [9.0, 6.0]]), np.array([0.0, 2.0, 1.5, 0.0]))
+    assert np.sign(line.turning()).tolist() == [1.0, -1.0]
+    for arc, radius, before, after in zip(line.arcs(), (2.0, 1.5), (0.0, 2.0 / 3.0), (2.0 / 3.0, -1.0 / 3.0)):
+        s = np.linspace(arc.start[0], arc.end[0], 101)
+        r = line.radius(s)
+        assert np.hypot(s - arc.center[0], r - arc.center[1]) == pytest.approx(radius, rel=1e-12)
+        for at, slope in ((arc.start[0], before), (arc.end[0], after)):
+            near = line.radius(at + np.array([-1e-5, 1e-5]))
+            assert np.diff(near)[0] / 2e-5 == pytest.approx(slope, abs=1e-4)
+
+
+@shapes
+def test_counts_are_those_of_the_model(shape: str) -> None:
+    case, recipe = shaped(SHAPES[shape]), load_recipe(RECIPE)
+    found = forecast(case, recipe)
+    model = build_drive_model(case, recipe, comm=MPI.COMM_SELF)
+    counts = model.counts().values()
+    assert (found.elements, found.unknowns) == (model.n_elements(), sum(count["dofs"] for count in counts))
+    model.destroy()
+
+
+@shapes
+def test_torques_balance(shape: str) -> None:
+    _, row = loaded(shaped(SHAPES[shape]), MPI.COMM_SELF)
+    total = row["wg_torque_Nmm"] + row["tooth_torque_Nmm"] + row["output_torque_Nmm"]
+    assert row["output_torque_Nmm"] == pytest.approx(2000.0) and abs(total) < 2e-3
+    assert row["pairs_in_contact"] > 0
+
+
+@shapes
+def test_the_bent_start_is_continuous_where_the_plate_begins(shape: str) -> None:
+    """The plate has the wall's deflection; the shape has no jump larger than its slope explains."""
+    case = shaped(SHAPES[shape])
+    bent, lines = BentSpline(case), meridian(case, load_recipe("full").cup)
+    path = 0.5 * (lines.inner + lines.outer)
+    dense = np.concatenate([np.linspace(a, b, 50) for a, b in zip(path[:-1], path[1:])])
+    moved = bent.displacement(np.column_stack([0.0 * dense[:, 0], dense]))
+    step = np.linalg.norm(np.diff(moved, axis=0), axis=1)
+    assert step.max() < 0.1 * 0.5 * case.deflection
+    assert np.abs(moved[-1]).max() < 0.5 * case.deflection
+
+
+def point(**keys: float) -> Changes:
+    """A contour whose second point has these keys."""
+    return {"contour": [{"distance": 2.0, "thickness": 0.48}, keys]}
+
+
+REFUSED = [
+    (point(distance=1.0, thickness=0.4), "cup.contour.2.distance = 1 ", "above 2 (the point before) to 10 mm"),
+    (point(distance=11.0, thickness=0.4), "cup.contour.2.distance = 11 ", "to 10 mm (where the fillet begins)"),
+    (point(distance=4.0, thickness=0.03), "cup.contour.2.thickness = 0.03 ", "0.06 to 2.48 mm"),
+    (point(distance=3.0, thickness=1.6), "cup.contour.2.thickness = 1.6 ", "0.06 to 1.48 mm"),
+    (point(distance=3.0, thickness=0.4, radius=16.0), "cup.contour.2.radius = 16 ", "17.6 to 19.6 mm"),
+    (point(distance=3.0, thickness=0.4, rounding=90.0), "cup.contour.2.rounding = 90 ", "half of the shorter side"),
+    ({"end_thickness": 2.5}, "cup.end_thickness = 2.5 ", "0.06 (0.1 rims) to 2 mm (cup.fillet_radius)"),
+    ({"shape": "hat"}, "cup.inner_radius = 6 is not available", 'cup.shape = "cup"'),
+    (HAT | {"flange_radius": None}, "cup.flange_radius is missing", '"hat"'),
+    ({"inner_radius": None}, "cup.inner_radius is missing", '"cup"'),
+    (HAT | {"flange_radius": 20.0}, "cup.flange_radius = 20 ", "above 20.6 mm"),
+]
+
+
+@pytest.mark.parametrize(("changes", "key", "words"), REFUSED)
+def test_what_does_not_fit_is_refused_in_one_sentence(changes: Changes, key: str, words: str) -> None:
+    with pytest.raises(InputError) as refusal:
+        shaped(changes)
+    assert str(refusal.value).startswith(key) and words in str(refusal.value), str(refusal.value)
+
+
+def test_a_contour_that_slopes_from_the_teeth_on_leaves_no_room_for_a_fillet_there() -> None:
+    with pytest.raises(InputError, match=r"cup.back_fillet = 0.1 is .*as far as cup.contour is straight"):
+        shaped({"contour": [{"distance": 4.0, "thickness": 0.4}], "back_fillet": 0.1})
