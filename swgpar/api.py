@@ -17,7 +17,7 @@ from swgpar import log
 from swgpar.analysis.drive_result import DriveResult
 from swgpar.analysis.shortcuts import MESHES
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.starter import CamType, Profile, Request, as_toml, starter_design
+from swgpar.design.starter import CamType, Profile, Request, Shape, as_toml, starter_design
 from swgpar.errors import InputError, OutputError, SwgparError
 from swgpar.input.design import Design
 from swgpar.input.toml_file import Overrides, apply_overrides, read_toml
@@ -52,6 +52,7 @@ def new(
     cam: CamType = "elliptical",
     layout: Literal["ring_fixed", "spline_fixed"] = "ring_fixed",
     model: Literal["cup", "plane"] = "cup",
+    shape: Shape = "cup",
     overwrite: bool = False,
 ) -> DriveDesign:
     """A checked design to start from; collective when it is written.
@@ -69,6 +70,7 @@ def new(
     profile : "quadruple_arc", "double_arc" or "involute"
     cam : "elliptical", "parabolic", "simplified" or "four_roller"
     layout, model : as in the section [drive]
+    shape : "cup", "short" (a cup of half the length) or "hat" (silk hat, with a flange outwards)
     overwrite : bool
         Replace a file that exists.
 
@@ -85,7 +87,7 @@ def new(
     >>> design.drive.teeth_fs, design.drive.module
     (200, 0.254)
     """
-    request = Request(ratio, torque, diameter, bore, profile, cam, layout, model)
+    request = Request(ratio, torque, diameter, bore, profile, cam, layout, model, shape)
     design, table = starter_design(request)
     build_sector_meshes(design, _load_recipe(MESHES[model]))
     if out is not None:

@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from swgpar.constraints.distributing_coupling import DistributingCoupling
+from swgpar.constraints.distributing_coupling import DistributingCoupling, NodeMeans
 from swgpar.constraints.race_coupling import RaceCoupling
 from swgpar.contact.ball_contact import LARGEST_REACH, BallContact, BallSet
 from swgpar.contact.point_contact import ball_spring, effective_modulus
@@ -99,6 +99,6 @@ def build_race_contact(
     )
 
 
-def race_coupling(partition: Partition, elements: Elements, spline: DistributingCoupling, halved: bool) -> RaceCoupling:
+def race_coupling(partition: Partition, elements: Elements, spline: NodeMeans, halved: bool) -> RaceCoupling:
     """Support of the race. spline : coupling of the flexible spline"""
     return RaceCoupling(DistributingCoupling(partition, elements.bodies[OUTER_RACE], "outer", halved), spline)

@@ -114,6 +114,9 @@ class BentSpline:
             deflection += shape * wave.real
             slope += (radius / self.radius)[:, None] ** (power - 1.0) @ (power * terms) * wave.real
             around -= order * shape / radius * wave.imag
+        if self.design.cup.attachment == "clamped":
+            held = self.design.cup.is_attached(np.column_stack([-radius * np.sin(theta), radius * np.cos(theta)]))
+            deflection[held] = slope[held] = around[held] = 0.0
         height, sine, cosine = self.end - z, np.sin(theta), np.cos(theta)
         outward, across = height * slope, height * around
         return np.column_stack([-sine * outward - cosine * across, cosine * outward - sine * across, deflection])
@@ -121,10 +124,11 @@ class BentSpline:
     def _plate(self, order: float) -> tuple[np.ndarray, np.ndarray]:
         """Powers (4,) of the radius and their factors (4,) in the deflection of a plate, for waves of this order.
 
-        They solve the biharmonic equation. The bore, or the rim of a flange, is free. The other edge has the wall's
-        deflection and lean.
+        They solve the biharmonic equation. The bore, or the rim of a flange, is free; with a clamped ring the plate
+        ends there and neither deflects nor leans. The other edge has the wall's deflection and lean.
         """
-        edge, nu = self.design.cup.edge / self.radius, self.design.material.nu
+        cup = self.design.cup
+        edge, nu = (cup.clamping_radius or cup.edge) / self.radius, self.design.material.nu
         power = np.array([order, -order, order + 2.0, 2.0 - order])
 
         def derivative(at: float, times: int) -> np.ndarray:
@@ -134,7 +138,8 @@ class BentSpline:
         moment = bend + nu * (slope / edge - order**2 * value / edge**2)
         laplacian_slope = third + bend / edge - slope / edge**2 - order**2 * (slope / edge**2 - 2.0 * value / edge**3)
         shear = laplacian_slope - (1.0 - nu) * order**2 / edge * (slope / edge - value / edge**2)
-        conditions = [derivative(1.0, 0), derivative(1.0, 1), moment, shear]
+        at_edge = [moment, shear] if cup.clamping_radius is None else [value, slope]
+        conditions = [derivative(1.0, 0), derivative(1.0, 1), *at_edge]
         return power, np.linalg.solve(conditions, [1.0 / order**2, 1.0, 0.0, 0.0])
 
 

@@ -36,7 +36,7 @@ def bearing_shares(model: DriveModel, state: LoadState) -> dict[str, ComplianceS
     u, balls = problem.displacement(), ball_contact(model)
     problem.tangent(u, state)
     border, rows = problem.supports.border(u, state)
-    grounding, active = problem.supports.ground_vectors, problem.matrix_rows.active
+    grounding, active = problem.supports.grounding(u), problem.matrix_rows.active
     system.set_system(problem.matrix, active, grounding, border, rows, bound=np.inf)
     system.factorise()
 

@@ -240,6 +240,8 @@ def _meridian(design: DriveDesign) -> str:
     edge = "flange" if wall.outwards else "bore"
     sheet.upright(0.0, wall.edge, end, sheet.at(end, 0.0)[0] + 14.0, f"{edge} r {wall.edge:g}")
     sheet.upright(0.0, design.inner_radius, -back, 40.0, f"r {design.inner_radius:.4g}", "start")
+    if cup.attachment != "edge":
+        _draw_attachment(sheet, design)
     x, y = sheet.at(back + 0.5 * cup.length, min(radius for _, radius, _, _ in design.wall_points))
     sheet.text(x, y + 18.0, f"wall {_thicknesses(design)}, fillet r {cup.fillet_radius:g}")
     sheet.height = bottom + 20.0
@@ -261,3 +263,17 @@ def _thicknesses(design: DriveDesign) -> str:
 def _changes(values: Sequence[float]) -> list[float]:
     """Values without those that equal the one before."""
     return [value for k, value in enumerate(values) if k == 0 or value != values[k - 1]]
+
+
+def _draw_attachment(sheet: Sheet, design: DriveDesign) -> None:
+    """Radius of the clamped ring, or the axis of a bolt with its circle."""
+    cup, wall = design.cup, design.cup_wall
+    x = sheet.at(min(wall.faces), 0.0)[0] - 14.0
+    if cup.attachment == "clamped":
+        sheet.upright(0.0, cup.clamping_radius, min(wall.faces), x, f"clamped r {cup.clamping_radius:g}", "end")
+        return
+    radius = 0.5 * cup.bolt_circle
+    (x1, y), (x2, _) = (sheet.at(z, radius) for z in (min(wall.faces), max(wall.faces)))
+    sheet.line(x1 - 12.0, y, x2 + 12.0, y, style="axis")
+    text = f"{cup.bolts} bolts ⌀ {cup.washer_diameter:g}, circle ⌀ {cup.bolt_circle:g}"
+    sheet.upright(0.0, radius, min(wall.faces), x, text, "end")

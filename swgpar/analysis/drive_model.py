@@ -15,7 +15,8 @@ from swgpar.analysis.bearing_model import (
     race_coupling,
     race_reference,
 )
-from swgpar.constraints.distributing_coupling import DistributingCoupling, RadialGuide
+from swgpar.constraints.distributing_coupling import DistributingCoupling, NodeMeans, RadialGuide
+from swgpar.constraints.rigid_attachment import RigidAttachment
 from swgpar.constraints.supports import Supports
 from swgpar.contact.contact import NO_KEYS, Contact, largest
 from swgpar.contact.flank_state import Crowning, SearchRange
@@ -58,6 +59,8 @@ def is_halved(design: DriveDesign) -> bool:
     counts = [design.drive.teeth_fs, design.drive.teeth_rg]
     if design.bearing is not None:
         counts.append(design.bearing.balls)
+    if design.is_bolted:
+        counts.append(design.cup.bolts)
     even = all(count % 2 == 0 for count in counts)
     return design.solver.twofold_symmetry and even and design.lobes == 2
 
@@ -235,13 +238,21 @@ def _condenses_teeth(design: DriveDesign) -> bool:
 
 
 def build_supports(design: DriveDesign, *, partition: Partition, elements: Elements) -> Supports:
-    """Couplings of the bore, of a ring gear that is not clamped and of a bearing; the guide of a rotating ring gear."""
+    """Couplings of the spline, of a ring gear that is not clamped and of a bearing; the guide of a rotating ring."""
     spline, ring = elements.bodies[:2]
     halved = is_halved(design)
     # a plane section with deviations is centred by its cam alone: the wall of the cup gives way
     centred = design.drive.model == "cup" or design.deviations is None
     rotates, guide = design.output_gear == "ring_gear", None
-    couplings = [DistributingCoupling(partition, spline, "bore", halved, centred)]
+    couplings: list[NodeMeans] = []
+    if design.drive.model == "cup" and design.cup.attachment != "edge":
+        cup, penalty = design.cup, design.penalty
+        attachment = RigidAttachment(
+            partition, spline, "end", cup.is_attached, cup.attached_width, penalty=penalty, images=halved
+        )
+        couplings.append(attachment)
+    else:
+        couplings.append(DistributingCoupling(partition, spline, "bore", halved, centred))
     if rotates or not design.frame_is_rigid:
         couplings.append(DistributingCoupling(partition, ring, "outer", halved))
     if rotates and design.frame_is_rigid:

@@ -19,6 +19,9 @@ from swgpar.meshing.sector import SectorMesh
 BACK = "fillet at the back"
 """Region of the fillet between the back of the teeth and the wall of the cup."""
 
+ATTACHED = "attachment"
+"""Region of the clamped ring of closed end or flange, or of the ring in which its bolts lie."""
+
 TOOTH_ROOT, TOOTH_END, UNDER_CONTACT = "tooth root", "tooth end", "flank under contact"
 """Regions of the roots and of the ends of the teeth; of the flanks that touch and of what is close below them."""
 
@@ -43,6 +46,7 @@ OF_REGION = " in "
 AVERAGE = "below the contact of teeth: an average over elements, larger on a finer mesh"
 NOTCH = "in the notch behind the teeth, a corner without fillet: no limit to converge to"
 EDGE = "at the edge of the wave generator: edge contact, no limit to converge to"
+CLAMPED = "at the edge of a rigid attachment: no limit to converge to"
 ROLLER = "below a roller: an average over elements, larger on a finer mesh"
 CORNER = "a contact lies on the edge of a tooth: larger on a finer mesh"
 
@@ -53,7 +57,8 @@ class Place:
 
     value : MPa;  body : name
     region : "tooth root", "tooth end", "flank under contact", "flank", "tip", "rim inside", "rim", "notch", "cup wall",
-    "fillet at the back", "fillet", "closed end", "bore", "flange", "rim of the flange", "housing" or "inside the tooth"
+    "fillet at the back", "fillet", "closed end", "bore", "attachment", "flange", "rim of the flange", "housing" or
+    "inside the tooth"
     tooth : number, counter-clockwise from +y in the undeformed drive
     radius, z : mm;  angle_deg : from +y, counter-clockwise
     warning : why the value depends on the mesh; empty where it converges
@@ -270,6 +275,8 @@ def _region_of_the_flank(design: DriveDesign, mesh: SectorMesh, s: float, z: flo
 
 def _region_of_the_cup(design: DriveDesign, mesh: SectorMesh, node: int, radius: float, z: float) -> str:
     wall = design.cup_wall
+    if _is_attached(design, radius) and z > min(wall.faces) - NEAR * design.drive.module:
+        return ATTACHED
     if node in mesh.node_sets["bore"]:
         return "rim of the flange" if wall.outwards else "bore"
     (r_center, z_center), near = wall.center, NEAR * design.drive.module
@@ -279,12 +286,23 @@ def _region_of_the_cup(design: DriveDesign, mesh: SectorMesh, node: int, radius:
     return "fillet" if z > z_center + near else "cup wall"
 
 
+def _is_attached(design: DriveDesign, radius: float) -> bool:
+    """Whether points at a radius (mm) of closed end or flange are clamped, or lie under bolts or between them."""
+    cup, near = design.cup, NEAR * design.drive.module
+    if cup.attachment == "bolted":
+        return abs(radius - 0.5 * cup.bolt_circle) < 0.5 * cup.washer_diameter + near
+    point = np.array([0.0, radius + near if cup.shape == "hat" else radius - near])
+    return bool(cup.is_attached(point))
+
+
 def warning_of(design: DriveDesign, region: str, point: np.ndarray) -> str:
     """Why a stress at a point (3,) mm of a region has no limit, or depends on the mesh; empty where it converges."""
     if region == UNDER_CONTACT:
         return AVERAGE
     if region == "notch":
         return NOTCH
+    if region == ATTACHED:
+        return CLAMPED
     edge = 0.5 * design.wave_generator.face_width
     at_edge = region == "rim inside" and abs(abs(point[2]) - edge) < NEAR * design.drive.module
     if design.drive.model == "cup" and at_edge:

@@ -108,6 +108,8 @@ def run_drive(
             raise InputError(
                 f"accuracy = {accuracy:g} is not available with wave_generator.bearing: allowed without it"
             )
+        if design.is_bolted:
+            raise InputError(f'accuracy = {accuracy:g} is not available with cup.attachment = "bolted"')
         design = with_accuracy(design, accuracy)
     left_out: tuple[str, ...] = ()
     if not plain:

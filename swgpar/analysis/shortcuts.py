@@ -62,8 +62,8 @@ def with_shortcuts(design: DriveDesign, recipe: MeshRecipe, *, levels: bool = Tr
     points = program_points(design)
     stiffness = design.stiffness
 
-    # with a bearing balls pass: no angle of another period has the same state
-    repeats = design.bearing is None
+    # with a bearing balls pass, with bolts teeth are not alike: no angle of another period has the same state
+    repeats = design.bearing is None and not design.is_bolted
 
     def leave_out(key: str, value: int | bool, words: str) -> None:
         if key not in steps.model_fields_set and value != getattr(steps, key):

@@ -195,6 +195,7 @@ def _add_new(commands: _Commands) -> None:
         ("--cam", ("elliptical", "parabolic", "simplified", "four_roller"), "cam of the wave generator"),
         ("--layout", ("ring_fixed", "spline_fixed"), "fixed member"),
         ("--model", ("cup", "plane"), "the cup drive, or the toothed section in plane stress"),
+        ("--shape", ("cup", "short", "hat"), "flexible spline: a cup, one of half the length, a silk hat"),
     ):
         new.add_argument(name, choices=choices, default=choices[0], help=f"{text} (default: {choices[0]})")
     new.add_argument("--overwrite", action="store_true", help="replace a file that exists")

@@ -73,41 +73,42 @@ def node_weights(coords: np.ndarray, nodes: np.ndarray, ccw: np.ndarray) -> np.n
     return np.where(np.isin(nodes, ccw), 0.0, weight)
 
 
-class DistributingCoupling:
-    """Mean motions of a surface of a body.
+class NodeMeans:
+    """Mean motions of nodes of a body.
 
     Parameters
     ----------
     partition : ownership
-    body : elements of the body on this rank (bound to local nodes);  surface : name of its node set
-    images : the model holds half a turn; then only z and the rotation can be non-zero
-    centred : whether the mean displacement along x and y is coupled
+    nodes : (n,) local nodes that this rank owns, each once;  reference : (n, 3) mm, undeformed
+    weight : (n,) of the nodes in the means, of any sum
+    images : the model holds half a turn
+    fixed_axis : the rotation is that about the drive's axis, and not about the mean place of the nodes
+
+    Attributes
+    ----------
+    total : sum of the weights of all ranks;  weight : (n,) over that sum
     """
 
     def __init__(
-        self, partition: Partition, body: BodyElements, surface: str, images: bool, centred: bool = True
+        self,
+        partition: Partition,
+        nodes: np.ndarray,
+        reference: np.ndarray,
+        weight: np.ndarray,
+        *,
+        images: bool,
+        fixed_axis: bool,
     ) -> None:
         self.comm = partition.comm
-        self.images = images
-        mesh = body.layout.mesh
-        nodes = mesh.node_sets[surface]
-        weight = node_weights(mesh.coords, nodes, mesh.ccw_nodes)
-        weighted = weight > 0
-        nodes, weight = nodes[weighted], weight[weighted]
-        sectors = np.arange(len(body.sectors))[body.owned]
-        self.nodes = body.local[np.ix_(sectors, nodes)].ravel()
-        self.reference = body.positions()[np.ix_(sectors, nodes)].reshape(-1, 3)
-        self.weight = np.tile(weight, len(sectors))
-        total = self.sum(self.weight)
-        self.weight = self.weight / total
-        center = np.zeros(3) if images else self.sum(self.weight[:, None] * self.reference)
+        self.images, self.fixed_axis = images, fixed_axis
+        self.nodes, self.reference = nodes, reference
+        self.total = float(self.sum(weight))
+        self.weight = weight / self.total
+        center = np.zeros(3) if fixed_axis else self.sum(self.weight[:, None] * self.reference)
         center[2] = self.sum(self.weight * self.reference[:, 2])
         self.arm = self.reference - center
         self.radius2 = float(self.sum(self.weight * (self.arm[:, 0] ** 2 + self.arm[:, 1] ** 2)))
         self.solid = partition.dims == 3
-        whole = not images
-        held = whole and centred
-        self.active = np.array([held, held, self.solid, whole and self.solid, whole and self.solid, True])
 
     def sum(self, value: np.ndarray) -> np.ndarray:
         """Sum over all nodes of the surface, on all ranks."""
@@ -118,7 +119,7 @@ class DistributingCoupling:
         """Coupled quantities (mm, mm, mm, rad, rad, rad) and their gradients at displacement u (n_local, 3)."""
         v, w, arm = u[self.nodes], self.weight, self.arm
         mean = self.sum(w[:, None] * v)
-        if self.images:
+        if self.fixed_axis:
             mean[:2] = 0.0
         x, y = arm[:, 0] + v[:, 0] - mean[0], arm[:, 1] + v[:, 1] - mean[1]
         sine, cosine = self.sum(
@@ -137,6 +138,39 @@ class DistributingCoupling:
         gradient[ROTATION, :, 0] = w * (-cosine * arm[:, 1] - sine * arm[:, 0]) / norm
         gradient[ROTATION, :, 1] = w * (cosine * arm[:, 0] - sine * arm[:, 1]) / norm
         return MeanMotion(value, gradient)
+
+
+class DistributingCoupling(NodeMeans):
+    """Mean motions of a surface of a body.
+
+    Parameters
+    ----------
+    partition : ownership
+    body : elements of the body on this rank (bound to local nodes);  surface : name of its node set
+    images : the model holds half a turn; then only z and the rotation can be non-zero
+    centred : whether the mean displacement along x and y is coupled
+    """
+
+    def __init__(
+        self, partition: Partition, body: BodyElements, surface: str, images: bool, centred: bool = True
+    ) -> None:
+        mesh = body.layout.mesh
+        nodes = mesh.node_sets[surface]
+        weight = node_weights(mesh.coords, nodes, mesh.ccw_nodes)
+        weighted = weight > 0
+        nodes, weight = nodes[weighted], weight[weighted]
+        sectors = np.arange(len(body.sectors))[body.owned]
+        super().__init__(
+            partition,
+            body.local[np.ix_(sectors, nodes)].ravel(),
+            body.positions()[np.ix_(sectors, nodes)].reshape(-1, 3),
+            np.tile(weight, len(sectors)),
+            images=images,
+            fixed_axis=images,
+        )
+        whole = not images
+        held = whole and centred
+        self.active = np.array([held, held, self.solid, whole and self.solid, whole and self.solid, True])
 
     def supports(self) -> np.ndarray:
         """Unit directions (n, n_local, 3) on single nodes that support the body rigidly.

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from swgpar.constraints.distributing_coupling import N_COUPLED, ROTATION, DistributingCoupling, MeanMotion, Z
+from swgpar.constraints.distributing_coupling import N_COUPLED, ROTATION, DistributingCoupling, MeanMotion, NodeMeans, Z
 
 
 class RaceCoupling:
@@ -17,7 +17,7 @@ class RaceCoupling:
     race : coupling of the race's outer surface;  spline : coupling of the flexible spline
     """
 
-    def __init__(self, race: DistributingCoupling, spline: DistributingCoupling) -> None:
+    def __init__(self, race: DistributingCoupling, spline: NodeMeans) -> None:
         self.race, self.spline = race, spline
         self.nodes = np.concatenate([race.nodes, spline.nodes])
         self.active = np.zeros(N_COUPLED, dtype=bool)

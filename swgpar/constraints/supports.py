@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.constraints.distributing_coupling import N_COUPLED, ROTATION, Coupling, DistributingCoupling, RadialGuide
+from swgpar.constraints.distributing_coupling import N_COUPLED, ROTATION, Coupling, NodeMeans, RadialGuide
 from swgpar.constraints.race_coupling import RaceCoupling
+from swgpar.constraints.rigid_attachment import RigidAttachment
 from swgpar.design.load_states import LoadState
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.partition import Partition
@@ -34,14 +35,13 @@ class Supports:
 
     Attributes
     ----------
-    ground_vectors : B of the grounding B B^T, one for each supported direction
     offsets : (n_couplings, 6) values at which coupled quantities are held, mm and rad
     """
 
     def __init__(
         self,
         partition: Partition,
-        couplings: list[DistributingCoupling],
+        couplings: list[NodeMeans],
         *,
         output: int = FLEXIBLE_SPLINE,
         guide: RadialGuide | None = None,
@@ -54,7 +54,8 @@ class Supports:
         self.output_gear, self._gears = output, len(couplings)
         self.scale, self.share = scale, share
         self.offsets = np.zeros((len(self.couplings), N_COUPLED))
-        self.ground_vectors: list[PETSc.Vec] = []
+        self._attached = [(i, c) for i, c in enumerate(couplings) if isinstance(c, RigidAttachment)]
+        self._ground_vectors: list[PETSc.Vec] = []
         self._grounded_nodes: list[tuple[int, np.ndarray]] = []
         for coupling in self.couplings:
             for support in coupling.supports():
@@ -68,7 +69,19 @@ class Supports:
             direction = np.sqrt(GROUNDING * self.scale) * support[i]
             array[coupling.nodes[i]] += direction
             self._grounded_nodes.append((int(coupling.nodes[i]), direction))
-        self.ground_vectors.append(vector)
+        self._ground_vectors.append(vector)
+
+    def grounding(self, u: np.ndarray) -> list[PETSc.Vec]:
+        """Vectors B of what the matrix holds too much at displacement u (n_local, 3) mm: B B^T; collective.
+
+        One for each supported direction, and one for the free rotation of each rigid attachment.
+        """
+        found = list(self._ground_vectors)
+        for _, attachment in self._attached:
+            vector = create_vector(self.partition)
+            vector.array.reshape(-1, 3)[attachment.nodes] = attachment.free_rotation(u)
+            found.append(vector)
+        return found
 
     @property
     def output(self) -> Coupling:
@@ -114,6 +127,8 @@ class Supports:
         """
         if self.guide is not None:
             self.guide.add_forces(u, residual)
+        for i, attachment in self._attached:
+            attachment.add_forces(u, self.offsets[i], residual)
         motion = [coupling.evaluate(u) for coupling in self.couplings]
         rows = self.scale * multiplier  # unused ones are zero; used ones are overwritten below
         if not motion:
@@ -129,11 +144,13 @@ class Supports:
         return rows
 
     def add_blocks(self, u: np.ndarray, rows: BlockRows) -> None:
-        """Add the stiffness of grounding and guide to the tangent's diagonal."""
+        """Add the stiffness of grounding, guide and rigid attachments to the tangent's diagonal."""
         for node, direction in self._grounded_nodes:
             add_diagonal(rows, self.partition, np.array([node]), np.outer(direction, direction))
         if self.guide is not None:
             add_diagonal(rows, self.partition, self.guide.nodes, self.guide.blocks(u))
+        for _, attachment in self._attached:
+            add_diagonal(rows, self.partition, attachment.nodes, attachment.blocks())
 
     def border(self, u: np.ndarray, state: LoadState) -> tuple[list[PETSc.Vec], list[int]]:
         """Gradients of all prescribed quantities, with the rows of their multipliers; a loaded rotation is last."""

@@ -21,6 +21,14 @@ THICK_CUP = 0.85
 THINNEST = 0.1
 """Thickness of a wall over that of the rim, at least."""
 
+KEYS = (
+    ("shape", "cup", ("inner_radius",)),
+    ("shape", "hat", ("flange_radius",)),
+    ("attachment", "clamped", ("clamping_radius",)),
+    ("attachment", "bolted", ("bolts", "bolt_circle", "washer_diameter")),
+)
+"""Keys of the cup that belong to one choice."""
+
 ROUND_OFF = 1.0 + 1e-9
 """Factor on largest values that follow from others."""
 
@@ -38,6 +46,9 @@ def check_cup(design: DriveDesign) -> None:
     _check_contour(design, cup)
     _check_end(design, cup)
     _check_back(design, cup)
+    _check_attachment(design, cup)
+    if cup.attachment == "bolted":
+        _check_bolted(design)
 
 
 def _refuse(key: str, value: float, allowed: str) -> None:
@@ -45,13 +56,14 @@ def _refuse(key: str, value: float, allowed: str) -> None:
 
 
 def _check_shape(cup: Cup) -> None:
-    """Each shape has its keys."""
-    for key, shape in (("inner_radius", "cup"), ("flange_radius", "hat")):
-        value = getattr(cup, key)
-        if value is None and cup.shape == shape:
-            raise InputError(f'cup.{key} is missing: allowed only with another cup.shape than "{shape}"')
-        if value is not None and cup.shape != shape:
-            raise InputError(f'cup.{key} = {value:g} is not available: allowed only with cup.shape = "{shape}"')
+    """Each shape and each attachment has its keys."""
+    for choice, kind, keys in KEYS:
+        for key in keys:
+            value, chosen = getattr(cup, key), getattr(cup, choice) == kind
+            if value is None and chosen:
+                raise InputError(f'cup.{key} is missing: it is needed with cup.{choice} = "{kind}"')
+            if value is not None and not chosen:
+                raise InputError(f'cup.{key} = {value:g} is not available: allowed only with cup.{choice} = "{kind}"')
 
 
 def _check_contour(design: DriveDesign, cup: Cup) -> None:
@@ -110,3 +122,34 @@ def _check_back(design: DriveDesign, cup: Cup) -> None:
     straight = min(line.straight for line in (design.cup_wall.inner, design.cup_wall.outer))
     if cup.back_fillet > straight * ROUND_OFF:
         _refuse("cup.back_fillet", cup.back_fillet, f"0 to {straight:.4g} mm (as far as cup.contour is straight)")
+
+
+def _check_attachment(design: DriveDesign, cup: Cup) -> None:
+    """What is attached lies on the flat part of closed end or flange; washers lie beside each other."""
+    begin, _ = design.cup_wall.center
+    low, high = sorted((begin, cup.edge))
+    flat = f"the flat part of the {'flange' if cup.shape == 'hat' else 'closed end'}"
+    if cup.attachment == "clamped":
+        radius = cup.clamping_radius
+        if not low <= radius <= high or radius == cup.edge:
+            _refuse("cup.clamping_radius", radius, f"{low:g} to {high:g} mm ({flat}), but not its edge")
+    if cup.attachment == "bolted":
+        washer, circle = cup.washer_diameter, cup.bolt_circle
+        if washer > (high - low) * ROUND_OFF:
+            _refuse("cup.washer_diameter", washer, f"above 0 to {high - low:g} mm ({flat})")
+        least, most = 2.0 * low + washer, 2.0 * high - washer
+        if not least <= circle * ROUND_OFF or circle > most * ROUND_OFF:
+            _refuse("cup.bolt_circle", circle, f"{least:g} to {most:g} mm (washers on {flat})")
+        if circle * np.sin(np.pi / cup.bolts) < washer:
+            most_bolts = int(np.pi / np.arcsin(washer / circle))
+            _refuse("cup.bolts", cup.bolts, f"3 to {most_bolts} (washers beside each other)")
+
+
+def _check_bolted(design: DriveDesign) -> None:
+    """With bolts the teeth are not alike: the drive does not repeat after a pitch."""
+    where = 'with cup.attachment = "bolted", which does not repeat after a pitch'
+    if design.steps.samples:
+        raise InputError(f"steps.samples = {design.steps.samples} is out of range: allowed only 0 {where}")
+    for section in ("fatigue", "losses", "deviations"):
+        if getattr(design, section) is not None:
+            raise InputError(f'[{section}] is not available {where}: allowed with "edge" and "clamped"')

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from typing import Literal
 
+import numpy as np
+from numpy.typing import NDArray
+
+from swgpar.geometry.arrays import Floats
 from swgpar.input.quantities import Section, quantity
 
 
@@ -46,6 +50,39 @@ class Cup(Section):
         None, unit="mm", text='outer radius of the flange, needed with shape "hat"', gt=0.0
     )
     back_fillet: float = quantity(0.0, unit="mm", text="fillet radius between back of teeth and wall", ge=0.0)
+
+    attachment: Literal["edge", "clamped", "bolted"] = quantity(
+        "edge",
+        text="what carries the torque: bore or rim of the flange, a clamped ring of closed end or flange, bolts",
+    )
+    clamping_radius: float | None = quantity(
+        None, unit="mm", text='radius to which closed end or flange is clamped, needed with "clamped"', gt=0.0
+    )
+    bolts: int | None = quantity(None, text='bolts, evenly spaced, the first on +y, needed with "bolted"', ge=3, le=400)
+    bolt_circle: float | None = quantity(
+        None, unit="mm", text='diameter of the circle of the bolts, needed with "bolted"', gt=0.0
+    )
+    washer_diameter: float | None = quantity(
+        None, unit="mm", text='diameter of the area under a bolt, needed with "bolted"', gt=0.0
+    )
+
+    def is_attached(self, points: Floats) -> NDArray[np.bool_]:
+        """Whether points (..., 2) mm of closed end or flange are clamped or lie under a bolt, undeformed."""
+        x, y = points[..., 0], points[..., 1]
+        radius = np.hypot(x, y)
+        if self.attachment == "clamped":
+            return radius >= self.clamping_radius if self.shape == "hat" else radius <= self.clamping_radius
+        if self.attachment == "edge":
+            return np.zeros(radius.shape, dtype=bool)
+        angle, step = np.arctan2(-x, y), 2.0 * np.pi / self.bolts
+        angle -= step * np.round(angle / step)
+        across, along = radius * np.sin(angle), radius * np.cos(angle) - 0.5 * self.bolt_circle
+        return np.hypot(across, along) <= 0.5 * self.washer_diameter
+
+    @property
+    def attached_width(self) -> float:
+        """Width (mm) of the clamped ring, or diameter of the area under a bolt."""
+        return self.washer_diameter or abs((self.clamping_radius or self.edge) - self.edge)
 
     @property
     def edge(self) -> float:

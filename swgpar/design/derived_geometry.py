@@ -24,7 +24,7 @@ def derived_geometry(design: DriveDesign) -> dict[str, float]:
         "backlash at the pitch circle (mm)": design.backlash,
         "gamma, rotation that closes it (deg)": float(np.degrees(design.backlash_angle)),
         "outer diameter (mm)": 2.0 * design.outer_radius,
-        **({"cup thickness (mm)": design.cup_thickness} if design.drive.model == "cup" else {}),
+        **_cup(design),
         "tooth height, flexible spline (mm)": spline.r_tip_circle - spline.r_root_circle,
         "tooth height, ring gear (mm)": ring.r_root_circle - ring.r_tip_circle,
         "top land, flexible spline (mm)": spline.top_land,
@@ -47,3 +47,20 @@ def _rigid_contact(rigid: RigidMesh) -> dict[str, float]:
         "transmission error of rigid teeth (arcsec)": rigid.transmission_error,
         "share of rigid teeth within 1 µm of contact": rigid.teeth_share,
     }
+
+
+def _cup(design: DriveDesign) -> dict[str, float]:
+    """Thicknesses of the cup and its attached area; those that equal the first one are left out."""
+    if design.drive.model != "cup":
+        return {}
+    cup, thinnest = design.cup, min(thickness for _, _, thickness, _ in design.wall_points)
+    found = {"cup thickness (mm)": design.cup_thickness}
+    if thinnest != design.cup_thickness:
+        found["thinnest place of the wall (mm)"] = thinnest
+    if design.end_thickness != design.cup_thickness:
+        found[f"thickness of the {'flange' if cup.shape == 'hat' else 'closed end'} (mm)"] = design.end_thickness
+    if cup.attachment == "clamped":
+        found["attached area, one side (mm2)"] = np.pi * abs(cup.edge**2 - cup.clamping_radius**2)
+    if cup.attachment == "bolted":
+        found["attached area, one side (mm2)"] = 0.25 * np.pi * cup.washer_diameter**2 * cup.bolts
+    return found

@@ -151,9 +151,14 @@ class DriveDesign(Design):
     def is_mirror_symmetric(self) -> bool:
         """Whether the undeformed drive is its own image in the plane through the axis and the major axis.
 
-        The balls of a bearing are placed on one side of it or the other.
+        The balls of a bearing are placed on one side of it or the other. With bolts no other state mirrors it.
         """
-        return self.wave_generator.type != "asymmetric_parabolic" and self.bearing is None
+        return self.wave_generator.type != "asymmetric_parabolic" and self.bearing is None and not self.is_bolted
+
+    @property
+    def is_bolted(self) -> bool:
+        """Whether bolts hold the cup, so that its teeth are not alike."""
+        return self.drive.model == "cup" and self.cup.attachment == "bolted"
 
     @property
     def periods(self) -> int:

@@ -29,11 +29,17 @@ Profile = Literal["quadruple_arc", "double_arc", "involute"]
 CamType = Literal["elliptical", "parabolic", "simplified", "four_roller"]
 """Kinds of cams of a starter design."""
 
+Shape = Literal["cup", "short", "hat"]
+"""Shapes of the flexible spline: a usual cup, one of half the length, a silk hat with a flange outwards."""
+
 LEAST_RATIO, LARGEST_RATIO = 15.0, 320.0
 """Ratios for which the rules give a drive that can be built and meshed."""
 
 RIM, RING_RIM, FACE_WIDTH, LENGTH, FILLET, BORE = 0.012, 0.04, 0.17, 0.5, 0.02, 0.17
 """Over the pitch diameter: rims of both gears, face width, length, fillet and bore radius of the cup."""
+
+SHORT_LENGTH, FLANGE, FLANGE_THICKNESS = 0.25, 0.68, 0.016
+"""Over the pitch diameter: length of a short cup, radius and thickness of the flange of a silk hat."""
 
 RING_RIM_MODULES = 8.0
 """Largest rim of the ring gear, modules: a thicker one behaves alike."""
@@ -70,6 +76,7 @@ class Request:
     cam: CamType = "elliptical"
     layout: Literal["ring_fixed", "spline_fixed"] = "ring_fixed"
     model: Literal["cup", "plane"] = "cup"
+    shape: Shape = "cup"
 
 
 LAYOUTS = ("ring_fixed", "spline_fixed")
@@ -108,6 +115,8 @@ def starter_design(request: Request) -> tuple[DriveDesign, dict[str, Any]]:
 
 def _check(request: Request) -> None:
     """Refuse numbers from which no drive can be made."""
+    if request.shape != "cup" and request.model == "plane":
+        raise InputError(f'shape = "{request.shape}" is not available with model = "plane": allowed "cup"')
     for name, unit in (("torque", "N·m"), ("diameter", "mm"), ("bore", "mm")):
         value = getattr(request, name)
         if value is not None and not 0.0 < value < np.inf:
@@ -154,18 +163,29 @@ def _table(request: Request, play: float) -> dict[str, Any]:
         "wave_generator": {"type": request.cam, "face_width": width},
     }
     if request.model == "cup":
+        length = SHORT_LENGTH if request.shape == "short" else LENGTH
         table["cup"] = {
-            "length": _rounded(LENGTH * pitch),
+            "length": _rounded(length * pitch),
             "thickness_coef": 0.667,
             "fillet_radius": _rounded(FILLET * pitch),
-            "inner_radius": _rounded(BORE * pitch),
+            **_end(request.shape, pitch),
         }
-        micro = {"wg_crowning": CROWNING, "wg_slope": SLOPE, "fs_crowning": FLANK_CROWNING}
+        # the cone of the deflected wall is steeper the shorter the wall is
+        cone = (LENGTH + 0.5 * FACE_WIDTH) / (length + 0.5 * FACE_WIDTH)
+        micro = {"wg_crowning": CROWNING, "wg_slope": SLOPE * cone, "fs_crowning": FLANK_CROWNING}
         table["micro_geometry"] = {name: _rounded(value * module) for name, value in micro.items()}
     table["material"] = {"E": 210e3, "nu": 0.29}
     table["load"] = {"torque": request.torque}
     table["wave_generator"] |= _cam_keys(request.cam, table)
     return table
+
+
+def _end(shape: Shape, pitch: float) -> dict[str, Any]:
+    """Keys of the closed end or flange. pitch : mm, pitch diameter"""
+    if shape != "hat":
+        return {"inner_radius": _rounded(BORE * pitch)}
+    flange = {"flange_radius": _rounded(FLANGE * pitch), "end_thickness": _rounded(FLANGE_THICKNESS * pitch)}
+    return {"shape": "hat", **flange}
 
 
 def _gear(profile: Profile, gear: str, module: float, teeth: int, play: float) -> dict[str, Any]:

@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.geometry.arrays import Floats, Ints
+from swgpar.geometry.cup_wall import with_station
 from swgpar.meshing.cross_section import CrossSection
 from swgpar.meshing.recipe import CupRecipe
-from swgpar.meshing.sweep import sweep_quads, symmetric_steps
+from swgpar.meshing.sweep import sweep_line, sweep_quads, symmetric_steps
 
 GROWTH = 1.6
 """Ratio of the lengths of successive elements between the fillet at the back of the teeth and the other ones."""
@@ -70,7 +71,10 @@ def meridian(design: DriveDesign, recipe: CupRecipe, layers: int = 1) -> Meridia
     s = wall.stations(cylinder_stations(wall.length, recipe, back_fillet, layers), back_fillet * (1.0 + 1e-9))
     angle = np.linspace(0.0, 0.5 * np.pi, recipe.fillet + 1)[1:]
     side = -1.0 if wall.outwards else 1.0
-    r = r_center + (wall.edge - r_center) * symmetric_steps(recipe.closed_end, recipe.end_ratio)[1:]
+    share = symmetric_steps(recipe.closed_end, recipe.end_ratio)
+    if design.cup.clamping_radius is not None:
+        share = with_station(share, (design.cup.clamping_radius - r_center) / (wall.edge - r_center), share[[0, -1]])
+    r = r_center + (wall.edge - r_center) * share[1:]
     lines = []
     for line, (along_r, along_z), face in zip((wall.inner, wall.outer), wall.sizes, wall.faces, strict=True):
         radius = line.radius(s)
@@ -111,7 +115,8 @@ class CupSlice:
 
     coords : (n, 3) mm, of the nodes that are not those of the toothed part;  hexes : (n_elem, 8)
     cw, ccw : (n_pair,) nodes on the sides of the sector, without those of the toothed part
-    bore : (n_bore,) nodes
+    bore : (n_bore,) nodes of the bore, or of the rim of the flange
+    end : (n_face, 4) faces of the closed end or flange, on both sides, whose right-hand normal points outwards
     """
 
     coords: Floats
@@ -119,6 +124,7 @@ class CupSlice:
     cw: Ints
     ccw: Ints
     bore: Ints
+    end: Ints
 
 
 def wall_grid(section: CrossSection, attached: NDArray[np.bool_]) -> Ints:
@@ -262,10 +268,14 @@ def cup_slice(
         quads = np.stack((coarse[:-1, 1:], coarse[:-1, :-1], coarse[1:, :-1], coarse[1:, 1:]), axis=-1).reshape(-1, 4)
         hexes.append(sweep_quads(quads, number[last + 1 :]))
     edge = section.edge[np.isin(section.edge, columns)]
+    lines_behind = grid if last == len(inner) - 1 else coarse
+    at_end = number[lines.end :]
+    end = [sweep_line(lines_behind[0], at_end), sweep_line(lines_behind[-1][::-1], at_end)]
     return CupSlice(
         np.concatenate(coords),
         np.concatenate(hexes),
         number[1:, edge].ravel(),
         number[1:, section.mirror[edge]].ravel(),
         np.sort(number[-1][number[-1] >= 0]),
+        np.concatenate(end),
     )

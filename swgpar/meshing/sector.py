@@ -51,9 +51,10 @@ class SectorMesh:
         second of sector k + 1, in this order.
     faces : dict of (n_face, 4) int32
         Quadrilaterals whose right-hand normal points out of the material: ``inner`` (flexible spline, the
-        cylinder of the inner radius within the face width) or ``outer`` (ring gear, with its housing if it has one).
+        cylinder of the inner radius within the face width), ``end`` (both faces of the cup's closed end or
+        flange) or ``outer`` (ring gear, with its housing if it has one).
     node_sets : dict of (n,) int32
-        ``bore`` (flexible spline) or ``outer`` (ring gear, as above).
+        ``bore`` (flexible spline; the rim of a flange) or ``outer`` (ring gear, as above).
     flanks : tuple of FlankGrid
         Side +1, then side -1; none on a plain ring, which has no profile either.
     profile : ToothProfile or None

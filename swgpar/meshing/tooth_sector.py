@@ -91,8 +91,8 @@ def _toothed_part(section: CrossSection, z: Floats, relief: Floats, amount: Floa
 
 def _with_cup(
     design: DriveDesign, recipe: MeshRecipe, section: CrossSection, teeth: Swept, root_too: bool
-) -> tuple[Swept, Ints]:
-    """The sector with the slice of the cup behind its teeth, and the nodes (n,) of the bore."""
+) -> tuple[Swept, Ints, Ints]:
+    """The sector with the slice of the cup behind its teeth, nodes (n,) of the bore, faces (n, 4) of the closed end."""
     back = teeth.rows[-1]
     layers = recipe.flexible_spline.under
     cup = cup_slice(design, recipe.cup, section, root_too, back, len(teeth.coords), layers)
@@ -105,7 +105,7 @@ def _with_cup(
         np.concatenate((teeth.ccw, cup.ccw)),
         teeth.rows,
     )
-    return whole, cup.bore
+    return whole, cup.bore, cup.end
 
 
 def _relief(
@@ -153,7 +153,7 @@ def build_sector(design: DriveDesign, recipe: MeshRecipe, gear: GearName) -> Sec
         # in the plane the torque acts on the inner surface, of which the lower layer stands for both
         node_sets = {"bore": np.sort(rows[0, section.free])}
         if not plane:
-            sector, node_sets["bore"] = _with_cup(design, recipe, section, sector, root_too)
+            sector, node_sets["bore"], faces["end"] = _with_cup(design, recipe, section, sector, root_too)
     else:
         faces = {"outer": sweep_line(section.free[::-1], rows)}
         node_sets = {"outer": np.unique(rows[:1, section.free] if plane else faces["outer"])}

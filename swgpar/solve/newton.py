@@ -176,7 +176,7 @@ class NewtonSolver:
         p.stateIncrease()
         bound = problem.output_step_bound(state.load_state)
         border, rows = problem.supports.border(u, state.load_state)
-        grounding, active = problem.supports.ground_vectors, problem.matrix_rows.active
+        grounding, active = problem.supports.grounding(u), problem.matrix_rows.active
         self.system.set_system(problem.matrix, active, grounding, border, rows, bound)
 
     def _test_convergence(self, snes: PETSc.SNES, its: int, norms: tuple[float, float, float]) -> int | None:

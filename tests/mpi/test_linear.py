@@ -37,7 +37,7 @@ def system(overrides: tuple[str, ...], control: str) -> tuple[DriveModel, PETSc.
     border, rows = problem.supports.border(u, state)
     bound = problem.output_step_bound(state)
     model.solver.system.set_system(
-        problem.matrix, problem.matrix_rows.active, problem.supports.ground_vectors, border, rows, bound
+        problem.matrix, problem.matrix_rows.active, problem.supports.grounding(u), border, rows, bound
     )
     right, size = create_vector(partition), (partition.n_global, 3)
     values = np.random.default_rng(1).standard_normal(size)
@@ -59,9 +59,7 @@ def test_iterative_equals_direct(overrides: tuple[str, ...]) -> None:
     for linear in ("direct", "iterative"):
         border = BorderedSystem(partition, linear, positions, f"test_{linear}_")
         solved = solver.system
-        border.set_system(
-            problem.matrix, problem.matrix_rows.active, problem.supports.ground_vectors, solved.border, solved.rows
-        )
+        border.set_system(problem.matrix, problem.matrix_rows.active, solved.grounding, solved.border, solved.rows)
         pc = solver.snes.getKSP().getPC()
         border.setUp(pc)
         solutions.append(create_vector(partition))
@@ -81,9 +79,7 @@ def test_mumps_out_of_memory(option: str, value: int, word: str) -> None:
     PETSc.Options()[f"short_{option}_mat_mumps_icntl_{option}"] = value
     border = BorderedSystem(partition, "direct", problem.positions()[: partition.n_own], f"short_{option}_")
     solved, pc = solver.system, solver.snes.getKSP().getPC()
-    border.set_system(
-        problem.matrix, problem.matrix_rows.active, problem.supports.ground_vectors, solved.border, solved.rows
-    )
+    border.set_system(problem.matrix, problem.matrix_rows.active, solved.grounding, solved.border, solved.rows)
     x = create_vector(partition)
     with Messages() as said:
         border.setUp(pc)
@@ -115,9 +111,7 @@ def test_the_loaded_motion_is_bounded(overrides: tuple[str, ...]) -> None:
 
     def step(border: list[PETSc.Vec], rows: list[int], bound: float | None) -> PETSc.Vec:
         test = BorderedSystem(partition, "direct", problem.positions()[: partition.n_own], "test_")
-        test.set_system(
-            problem.matrix, problem.matrix_rows.active, problem.supports.ground_vectors, border, rows, bound
-        )
+        test.set_system(problem.matrix, problem.matrix_rows.active, solved.grounding, border, rows, bound)
         test.setUp(pc)
         x = create_vector(partition)
         test.apply(pc, right, x)

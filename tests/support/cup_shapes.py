@@ -62,3 +62,21 @@ def wall_volume(design: DriveDesign, n: int = 20001) -> float:
         fillet = np.column_stack([center[0] + side * a * np.cos(angle), center[1] + b * np.sin(angle)])
         lines.append(np.concatenate([np.column_stack([line.radius(s), s]), fillet, [[cup.edge, face]]]))
     return revolved(np.concatenate([lines[0], lines[1][::-1]]))
+
+
+CLAMPED: Changes = {"attachment": "clamped", "clamping_radius": 9.0}
+HAT_CLAMPED: Changes = HAT | {"attachment": "clamped", "clamping_radius": 23.0}
+
+
+def bolted(bolts: int, washer: float = 2.0) -> Changes:
+    """The closed end on bolts."""
+    return {"attachment": "bolted", "bolts": bolts, "bolt_circle": 20.0, "washer_diameter": washer}
+
+
+ATTACHMENTS: dict[str, Changes] = {
+    "clamped": CLAMPED,
+    "hat, clamped": HAT_CLAMPED,
+    "eight bolts": bolted(8),
+    "hat, ten bolts": HAT | {**bolted(10, 3.0), "bolt_circle": 47.0},
+}
+"""The cup is made stiffer than on its bore."""

@@ -15,6 +15,6 @@ def without_grounding(problem: DiscreteProblem, x: PETSc.Vec) -> PETSc.Vec:
     into.array.reshape(-1, dims)[:] = x.array_r.reshape(-1, 3)[rows, :dims]
     problem.matrix.mult(into, out)
     result.array.reshape(-1, 3)[rows, :dims] = out.array.reshape(-1, dims)
-    for vector in problem.supports.ground_vectors:
+    for vector in problem.supports.grounding(problem.displacement()):
         result.axpy(-vector.dot(x), vector)
     return result

@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from mpi4py import MPI
+from scipy.integrate import trapezoid
+from scipy.sparse import coo_matrix
+from scipy.sparse.linalg import spsolve
 
-from support.cup_shapes import HAT, SHAPES, Changes, shaped, wall_volume
-from support.paths import RECIPE
+import swgpar
+from support.cup_shapes import CLAMPED, HAT, SHAPES, Changes, bolted, shaped, wall_volume
+from support.paths import DRIVERS, RECIPE
 from support.stepping import loaded
 from swgpar.analysis.bent_start import BentSpline
 from swgpar.analysis.drive_model import build_drive_model
 from swgpar.analysis.forecast import forecast
+from swgpar.design.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.geometry.cup_wall import RoundedLine
+from swgpar.kernel import reference_elements
 from swgpar.meshing import SectorMesh, load_recipe
 from swgpar.meshing.cup import meridian
 from swgpar.meshing.quality import hex_volumes
@@ -123,8 +131,8 @@ REFUSED = [
     (point(distance=3.0, thickness=0.4, rounding=90.0), "cup.contour.2.rounding = 90 ", "half of the shorter side"),
     ({"end_thickness": 2.5}, "cup.end_thickness = 2.5 ", "0.06 (0.1 rims) to 2 mm (cup.fillet_radius)"),
     ({"shape": "hat"}, "cup.inner_radius = 6 is not available", 'cup.shape = "cup"'),
-    (HAT | {"flange_radius": None}, "cup.flange_radius is missing", '"hat"'),
-    ({"inner_radius": None}, "cup.inner_radius is missing", '"cup"'),
+    (HAT | {"flange_radius": None}, "cup.flange_radius is missing", 'needed with cup.shape = "hat"'),
+    ({"inner_radius": None}, "cup.inner_radius is missing", 'needed with cup.shape = "cup"'),
     (HAT | {"flange_radius": 20.0}, "cup.flange_radius = 20 ", "above 20.6 mm"),
 ]
 
@@ -139,3 +147,102 @@ def test_what_does_not_fit_is_refused_in_one_sentence(changes: Changes, key: str
 def test_a_contour_that_slopes_from_the_teeth_on_leaves_no_room_for_a_fillet_there() -> None:
     with pytest.raises(InputError, match=r"cup.back_fillet = 0.1 is .*as far as cup.contour is straight"):
         shaped({"contour": [{"distance": 4.0, "thickness": 0.4}], "back_fillet": 0.1})
+
+
+def torsional_stiffness(mesh: SectorMesh, case: DriveDesign, begin: float, end: float) -> float:
+    """Torque over angle (N mm / rad) of the wall between two planes z (mm) that rotate rigidly, of small rotations.
+
+    Under torsion all sectors move alike: one with equal motions of both its sides stands for all.
+    """
+    z = mesh.coords[:, 2]
+    used = (z[mesh.hexes].min(axis=1) > begin - 1e-6) & (z[mesh.hexes].max(axis=1) < end + 1e-6)
+    elements = mesh.hexes[used]
+    stiffness = reference_elements(mesh.coords[elements], case.material.E, case.material.nu).stiffness
+    # tangential, radial and axial components at a node, those of a pair of nodes on the sides are the same
+    x, y = mesh.coords[:, :2].T / np.hypot(*mesh.coords[:, :2].T)
+    frame = np.zeros((len(x), 3, 3))
+    frame[:, 0, 0], frame[:, 1, 0], frame[:, 0, 1], frame[:, 1, 1], frame[:, 2, 2] = -y, x, x, y, 1.0
+    number = np.arange(len(x))
+    number[mesh.ccw_nodes] = mesh.cw_nodes
+    local = np.einsum(
+        "enmNM,enma,eNMb->enaNb", stiffness.reshape(-1, 8, 3, 8, 3), *[frame[elements]] * 2, optimize=True
+    )
+    at = (3 * number[elements][..., None] + np.arange(3)).reshape(len(elements), -1)
+    row, column = np.broadcast_arrays(at[:, :, None], at[:, None, :])
+    matrix = coo_matrix((local.ravel(), (row.ravel(), column.ravel())), shape=(3 * len(x), 3 * len(x))).tocsr()
+    nodes = np.unique(number[elements])
+    fixed = nodes[(np.abs(z[nodes] - begin) < 1e-6) | (np.abs(z[nodes] - end) < 1e-6)]
+    motion = np.zeros(3 * len(x))
+    turned = fixed[np.abs(z[fixed] - end) < 1e-6]
+    motion[3 * turned] = np.hypot(*mesh.coords[turned, :2].T)
+    free = (3 * np.setdiff1d(nodes, fixed)[:, None] + np.arange(3)).ravel()
+    motion[free] = spsolve(matrix[free][:, free].tocsc(), -(matrix @ motion)[free])
+    return mesh.n_sectors * float(motion @ (matrix @ motion))
+
+
+@pytest.mark.parametrize("shape", ["straight", "thicker", "conical"])
+def test_torsion_of_a_wall_of_varying_thickness(shape: str) -> None:
+    """The angle is that of the integral of T / (G J) along the wall; where it is a cone, of its sections."""
+    changes = {
+        "straight": {"contour": [{"distance": 5.0, "thickness": 0.48}, {"distance": 9.0, "thickness": 0.3}]},
+        "thicker": {"contour": [{"distance": 1.0, "thickness": 0.48}, {"distance": 9.0, "thickness": 0.9}]},
+        "conical": {
+            "contour": [{"distance": 1.0, "thickness": 0.48}, {"distance": 9.0, "thickness": 0.9, "radius": 18}]
+        },
+    }[shape]
+    begin, end = {"straight": (0.0, 5.0), "thicker": (1.0, 9.0), "conical": (1.0, 9.0)}[shape]
+    case = shaped(changes)
+    mesh, back = spline(case), 0.5 * case.drive.face_width
+    s = np.linspace(begin, end, 2001)
+    (inner, outer), shear = (line.radius(s) for line in (case.cup_wall.inner, case.cup_wall.outer)), 0.5 * 210e3 / 1.29
+    exact = shear / trapezoid(2.0 / np.pi / (outer**4 - inner**4), s)
+    found = torsional_stiffness(mesh, case, back + begin, back + end)
+    print(f"{shape}: torsional stiffness over the integral {found / exact:.5f}")
+    assert found == pytest.approx(exact, rel=5e-3 if shape == "conical" else 2e-3)
+
+
+def test_the_silk_hat_of_the_drivers_runs(tmp_path: Path) -> None:
+    """One period without fields and figures on the smallest mesh: the mean input torque is that of the energy."""
+    overrides = {"output.fields": False, "output.figures": False, "output.root_stress": False}
+    case = load_design(DRIVERS / "silk_hat.toml").with_values(overrides)
+    result = swgpar.run(case, RECIPE, tmp_path / "run")
+    mean = float(np.mean(result.history["wg_torque_Nmm"]))
+    assert mean == pytest.approx(1000.0 * case.load.torque / 50.0, rel=0.01)
+    page = (tmp_path / "run" / "report.html").read_text(encoding="utf-8")
+    assert "flange r 34" in page and "clamped r 29" in page and "wall 0.4 / 0.55, flange 0.8, fillet r 1" in page
+
+
+@pytest.mark.parametrize("shape", ["short", "hat"])
+def test_starters_of_other_shapes(shape: str) -> None:
+    case = swgpar.new(ratio=100.0, diameter=50.8, torque=20.0, shape=shape)
+    assert case.cup.shape == ("hat" if shape == "hat" else "cup")
+    usual = swgpar.new(ratio=100.0, diameter=50.8, torque=20.0)
+    assert case.cup.length == pytest.approx((0.5 if shape == "short" else 1.0) * usual.cup.length, rel=1e-3)
+    with pytest.raises(InputError, match='shape = "hat" is not available with model = "plane"'):
+        swgpar.new(ratio=100.0, diameter=50.8, torque=20.0, shape="hat", model="plane")
+
+
+ATTACHED = bolted(8)
+BAD_ATTACHMENTS = [
+    ({"clamping_radius": 8.0}, "cup.clamping_radius = 8 is not available", 'cup.attachment = "clamped"'),
+    ({"attachment": "clamped"}, "cup.clamping_radius is missing", 'needed with cup.attachment = "clamped"'),
+    (CLAMPED | {"clamping_radius": 18.0}, "cup.clamping_radius = 18 ", "6 to 17.08 mm"),
+    (CLAMPED | {"clamping_radius": 6.0}, "cup.clamping_radius = 6 ", "but not its edge"),
+    (ATTACHED | {"bolt_circle": 13.0}, "cup.bolt_circle = 13 ", "14 to 32.16 mm"),
+    (ATTACHED | {"washer_diameter": 12.0}, "cup.washer_diameter = 12 ", "above 0 to 11.08 mm"),
+    (ATTACHED | {"bolts": 40}, "cup.bolts = 40 ", "3 to 31 (washers beside each other)"),
+]
+
+
+@pytest.mark.parametrize(("changes", "key", "words"), BAD_ATTACHMENTS)
+def test_attachments_that_do_not_fit_are_refused(changes: Changes, key: str, words: str) -> None:
+    with pytest.raises(InputError) as refusal:
+        shaped(changes)
+    assert str(refusal.value).startswith(key) and words in str(refusal.value), str(refusal.value)
+
+
+@pytest.mark.parametrize("override", ["steps.samples=2", "losses.loss_factor=0.001"])
+def test_bolts_refuse_what_needs_a_period(override: str) -> None:
+    with pytest.raises(InputError, match="which does not repeat after a pitch"):
+        shaped(bolted(8), "steps.rotation=45.0", override)
+    shaped(CLAMPED, "steps.rotation=45.0", "steps.samples=2")

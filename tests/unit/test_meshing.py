@@ -225,7 +225,7 @@ def test_named_faces_look_out_of_the_material(recipe: Path, overrides: tuple[str
     for gear, mesh in meshes(recipe, *overrides).items():
         name, direction = ("inner", -1.0) if gear == "flexible_spline" else ("outer", 1.0)
         radius = case.inner_radius if gear == "flexible_spline" else mesh.profile.r_root_circle + case.ring_gear.rim
-        assert set(mesh.faces) == {name}
+        assert set(mesh.faces) == ({name, "end"} if gear == "flexible_spline" else {name})
         x = mesh.coords[mesh.faces[name]]
         assert np.allclose(np.hypot(x[..., 0], x[..., 1]), radius, rtol=1e-13)
         assert np.abs(x[..., 2]).max() == 0.5 * case.drive.face_width
@@ -235,6 +235,19 @@ def test_named_faces_look_out_of_the_material(recipe: Path, overrides: tuple[str
         assert np.all(outward > 0.0)
         exact = 2.0 * np.pi / mesh.n_sectors * radius * case.drive.face_width
         assert outward.sum() == pytest.approx(exact, rel=2e-3)
+
+
+def test_faces_of_the_closed_end_look_along_the_axis_away_from_its_middle() -> None:
+    case, mesh = design(), meshes("medium")["flexible_spline"]
+    corners = mesh.coords[mesh.faces["end"]]
+    area = 0.5 * np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    outside = corners[:, :, 2].mean(axis=1) > case.rest_plane
+    assert np.array_equal(np.sign(area[:, 2]), np.where(outside, 1.0, -1.0))
+    r_out = case.inner_radius + case.cup_thickness - case.cup.fillet_radius
+    exact = np.pi * (r_out**2 - case.cup.inner_radius**2) / mesh.n_sectors
+    for side in (outside, ~outside):
+        assert np.abs(area[side, 2]).sum() == pytest.approx(exact, rel=1e-3)
+    assert np.abs(area[:, :2]).max() < 1e-12
 
 
 def test_node_sets() -> None:

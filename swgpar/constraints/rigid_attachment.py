@@ -1,0 +1,131 @@
+"""Closed end or flange that is clamped or bolted to a rigid flange, which is the output or stands still.
+
+Both faces of the attached area move as one rigid body about the drive's axis. They are bedded on it with the stiffness
+of a contact, per area: no stiffer than what the elements resolve, and no number of the result. The energy is
+
+    E = k / 2 sum a |x - R(phi) X - offset|^2,   phi = atan2(sum a (X x x)_z, sum a (X . x)),
+
+with the areas a of the nodes. phi makes E the least: the bedding is free of moment, and a torque with the potential
+-T phi is work-conjugate to phi. The tangent is k a on the nodes less one rank, k |sum a R X . x| grad phi grad phi^T.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from swgpar.constraints.distributing_coupling import N_COUPLED, ROTATION, TILT_X, TILT_Y, NodeMeans, X, Y, Z
+from swgpar.fem.elements import BodyElements
+from swgpar.fem.partition import Partition
+from swgpar.geometry.rotation import rotated
+from swgpar.meshing.sector import SectorMesh
+
+POINTS = 16
+"""Points across the attached area at which is asked whether they belong to it."""
+
+CORNERS = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+"""Parameters of the nodes of a face."""
+
+Inside = Callable[[np.ndarray], np.ndarray]
+"""Whether points (..., 2) mm of the undeformed drive belong to the attached area."""
+
+
+def area_shares(mesh: SectorMesh, surface: str, angle: float, inside: Inside, width: float) -> np.ndarray:
+    """Areas (n_node,) mm² of the nodes on plane faces of a sector within the attached area.
+
+    angle : rad, of the sector;  width : mm, of the attached area across its narrowest place
+    """
+    faces = mesh.faces[surface]
+    corners = rotated(mesh.coords[faces][..., :2], angle)
+    sides = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2).max(axis=0)
+    counts = (int(np.ceil(POINTS * max(sides[k], sides[k + 2]) / width)) for k in (0, 1))
+    at_a, at_b = ((2.0 * np.arange(n) + 1.0) / n - 1.0 for n in counts)
+    a, b = (v.ravel()[:, None] for v in np.meshgrid(at_a, at_b, indexing="ij"))
+    shape = 0.25 * (1 + a * CORNERS[:, 0]) * (1 + b * CORNERS[:, 1])
+    along_a, along_b = 0.25 * CORNERS[:, 0] * (1 + b * CORNERS[:, 1]), 0.25 * CORNERS[:, 1] * (1 + a * CORNERS[:, 0])
+    found = np.zeros(len(mesh.coords))
+    for face, points in zip(faces, corners, strict=True):
+        within = inside(shape @ points)
+        da, db = along_a[within] @ points, along_b[within] @ points
+        area = np.abs(da[:, 0] * db[:, 1] - da[:, 1] * db[:, 0]) * 4.0 / len(shape)
+        found[face] += area @ shape[within]
+    return found
+
+
+class RigidAttachment(NodeMeans):
+    """The attached area of a body as a coupling: only its rotation is prescribed or loaded.
+
+    Parameters
+    ----------
+    partition : ownership
+    body : elements of the body on this rank;  surface : name of its plane faces
+    inside : which points of them are attached;  width : mm, of the attached area across its narrowest place
+    penalty : MPa / mm;  images : the model holds half a turn
+    """
+
+    def __init__(
+        self,
+        partition: Partition,
+        body: BodyElements,
+        surface: str,
+        inside: Inside,
+        width: float,
+        *,
+        penalty: float,
+        images: bool,
+    ) -> None:
+        layout, mesh = body.layout, body.layout.mesh
+        sectors = np.arange(len(body.sectors))[body.owned]
+        angles = layout.sector_angle(layout.first_tooth + body.sectors[body.owned])
+        step = 2.0 * np.pi / mesh.n_sectors
+        around = [area_shares(mesh, surface, angle, inside, width) for angle in (*(angles[:1] - step), *angles)]
+        areas = np.array(around[1:]).reshape(len(sectors), len(mesh.coords))
+        for row, before in zip(areas, around[:-1], strict=False):
+            # nodes between two sectors belong to the second one, with the shares of both
+            row[mesh.cw_nodes] += before[mesh.ccw_nodes]
+        areas[:, mesh.ccw_nodes] = 0.0
+        used = areas > 0.0
+        super().__init__(
+            partition,
+            body.local[sectors][used],
+            body.positions()[sectors][used],
+            areas[used],
+            images=images,
+            fixed_axis=True,
+        )
+        self.stiffness = penalty * self.total * self.weight
+        self.active = np.arange(N_COUPLED) == ROTATION
+
+    def supports(self) -> np.ndarray:
+        """None: the bedding supports the body."""
+        return np.zeros((0, len(self.nodes), 3))
+
+    def _stretch(self, u: np.ndarray, offset: np.ndarray) -> np.ndarray:
+        """Displacements (n, 3) mm of the nodes from the rigid flange.
+
+        offset : (6,) mm and rad, displacements and tilts of the flange
+        """
+        rotation = self.evaluate(u).value[ROTATION]
+        shift = np.tile(offset[[X, Y, Z]], (len(self.nodes), 1))
+        tilt = np.array([offset[TILT_X], offset[TILT_Y], 0.0])
+        moved = self.reference + u[self.nodes]
+        moved[:, :2] -= rotated(self.reference[:, :2], rotation)
+        moved[:, 2] -= self.reference[:, 2]
+        return moved - shift - np.cross(tilt, self.arm)
+
+    def add_forces(self, u: np.ndarray, offset: np.ndarray, residual: np.ndarray) -> None:
+        """Add the forces of the bedding to residual (n_local, 3) N. offset : (6,) of the flange"""
+        residual[self.nodes] += self.stiffness[:, None] * self._stretch(u, offset)
+
+    def blocks(self) -> np.ndarray:
+        """Tangent blocks (n, 3, 3) N/mm of the nodes, without the part of `free_rotation`."""
+        return self.stiffness[:, None, None] * np.eye(3)
+
+    def free_rotation(self, u: np.ndarray) -> np.ndarray:
+        """Vector B (n, 3) of the part -B B^T of the tangent: the flange rotates freely."""
+        moved = self.reference[:, :2] + u[self.nodes, :2]
+        x, y = self.reference[:, :2].T
+        parts = np.column_stack([x * moved[:, 1] - y * moved[:, 0], x * moved[:, 0] + y * moved[:, 1]])
+        reach = np.hypot(*self.sum(self.stiffness[:, None] * parts))
+        return np.sqrt(reach) * self.evaluate(u).gradient[ROTATION]
