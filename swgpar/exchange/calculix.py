@@ -19,9 +19,8 @@ import numpy as np
 
 from swgpar.analysis.bent_start import BentSpline
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.load_program import internal_torque, torque_direction
+from swgpar.design.load_program import internal_torque
 from swgpar.design.remarks import negligible_torque, torque_remark
-from swgpar.design.rigid_mesh import touching_rotation
 from swgpar.errors import InputError
 from swgpar.exchange.calculix_model import JobModel, Surface, Term
 from swgpar.exchange.cam_facets import OUTER_FACE, CamFacets, cam_facets
@@ -135,7 +134,7 @@ def _job(model: JobModel, cam: CamFacets) -> Iterator[str]:
     ring_held = [line for line in [*held, rotation] if not ring_fixed and line not in bore_held]
     yield from _bend(model, dependent, ring_held)
     yield from _step("2: on the cam", "*BOUNDARY, OP=NEW", *fixed, *held, rotation, add=[CAM])
-    rotate = ("*BOUNDARY", f"{rotation}, {_closing_rotation(model):.12e}")
+    rotate = ("*BOUNDARY", f"{rotation}, {model.closing_rotation:.12e}")
     yield from _step("3: the loaded flanks meet", *rotate, add=FLANKS, acting=[CAM, *FLANKS])
     load = ["*BOUNDARY, OP=NEW", *fixed, *held, *_torque(model, bore if ring_fixed else outer)]
     yield from _step("4: torque", *load, acting=[CAM, *FLANKS], parameters=", AMPLITUDE=STEP")
@@ -183,14 +182,6 @@ def _torque(model: JobModel, surface: Surface) -> Iterator[str]:
     yield "*CLOAD"
     for node, (fx, fy) in zip(surface.nodes + 1, share[:, None] * np.column_stack([-x[:, 1], x[:, 0]]), strict=True):
         yield from (f"{node}, 1, {fx:.12e}", f"{node}, 2, {fy:.12e}")
-
-
-def _closing_rotation(model: JobModel) -> float:
-    """Rotation (rad) of the output that brings the loaded flanks together, as rigid facets."""
-    closing = abs(touching_rotation(model.design, model.faceted_flanks()))
-    if not np.isfinite(closing):  # the loaded state has to find the flanks
-        closing = model.design.backlash_angle
-    return torque_direction(model.design) * closing
 
 
 def _step(

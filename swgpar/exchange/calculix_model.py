@@ -18,9 +18,12 @@ from swgpar.analysis.drive_model import flank_crowning
 from swgpar.constraints.distributing_coupling import node_weights
 from swgpar.contact.segments import flank_faces
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.load_program import torque_direction
+from swgpar.design.rigid_mesh import touching_rotation
 from swgpar.geometry.arrays import Floats, Ints
 from swgpar.geometry.profiles import ToothProfile
 from swgpar.geometry.profiles.flank import Segment
+from swgpar.geometry.rotation import rotated
 from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes
 from swgpar.meshing.export import sector_numbers, whole_body, whole_drive
 from swgpar.meshing.inp import element_faces
@@ -152,21 +155,34 @@ class JobModel:
                 for axis in (1, 2):
                     yield [(above, axis, 1.0), (below, axis, -1.0)]
 
-    def housing(self, surface: Surface) -> Iterator[list[Term]]:
-        """The nodes of a surface move along their circle and the axis; linear."""
-        for node, axes in zip(surface.nodes.tolist(), self._radial_axes(surface.nodes), strict=True):
-            yield [(node, int(axis) + 1, float(self.points[node, axis])) for axis in axes]
+    @cached_property
+    def closing_rotation(self) -> float:
+        """Rotation (rad) of the output that brings the loaded flanks together, as rigid facets."""
+        closing = abs(touching_rotation(self.design, self.faceted_flanks()))
+        if not np.isfinite(closing):  # the loaded state has to find the flanks
+            closing = self.design.backlash_angle
+        return torque_direction(self.design) * closing
 
-    def _radial_axes(self, nodes: Ints) -> Ints:
-        """Axes (n, 2) of the displacement in the plane that follows from the other one on a circle, and of that one."""
-        first = np.abs(self.points[nodes, :2]).argmax(axis=1)
-        return np.column_stack([first, 1 - first])
+    def housing(self, surface: Surface) -> Iterator[list[Term]]:
+        """The nodes of a surface, that of the ring gear, move along its circle and the axis.
+
+        The equations are linear: a node moves on the chord of the rotation that brings the flanks together.
+        """
+        normal, axes = self._chords(surface.nodes)
+        for node, n, pair in zip(surface.nodes.tolist(), normal, axes.tolist(), strict=True):
+            yield [(node, axis + 1, float(n[axis])) for axis in pair]
+
+    def _chords(self, nodes: Ints) -> tuple[Floats, Ints]:
+        """Normals (n, 2) mm of the chords, and the axes (n, 2): of the displacement that follows, and of the other."""
+        normal = rotated(self.points[nodes, :2], 0.5 * self.closing_rotation)
+        first = np.abs(normal).argmax(axis=1)
+        return normal, np.column_stack([first, 1 - first])
 
     def mean_motion(self, surface: Surface, reference: int, in_housing: bool = False) -> Iterator[list[Term]]:
         """Mean displacements, tilts and rotation about z of a surface, linear: the degrees of freedom 1 to 3 of the
         node `reference`, and those of the next one.
 
-        in_housing : the nodes move along their circle; there is no mean displacement along x and y then
+        in_housing : the nodes move in a housing; there is no mean displacement along x and y then
         """
         x = self.points[surface.mean]
         arm, n = x - x.mean(axis=0), len(x)
@@ -186,9 +202,9 @@ class JobModel:
             ]
         factors = np.array([np.stack(factor, axis=-1).ravel() for _, factor, _ in rows])
         if in_housing:
-            for k, (first, second) in enumerate(self._radial_axes(surface.mean)):
-                slope = -self.points[surface.mean[k], second] / self.points[surface.mean[k], first]
-                factors[:, 3 * k + second] += slope * factors[:, 3 * k + first]
+            normal, axes = self._chords(surface.mean)
+            for k, (first, second) in enumerate(axes):
+                factors[:, 3 * k + second] -= normal[k, second] / normal[k, first] * factors[:, 3 * k + first]
                 factors[:, 3 * k + first] = 0.0
         dependent = [3 * k + axis for *_, (k, axis) in rows]
         # none of the dependent displacements is left in the equations of the others

@@ -55,13 +55,14 @@ def test_equations_give_the_mean_motion(overrides: tuple[str, ...], layout: str)
         angle = np.arctan2(x[:, 1], x[:, 0])
         tilt = turn * (0.0 if model.plane else 1.0, 0.0 if model.plane else 1.0, 1.0)
         shift = move * (not housed, not housed, not model.plane)
-        u = np.cross(tilt * ((0.0, 0.0, 1.0) if housed else 1.0), x) + shift
+        u = np.cross(tilt, x) + shift
         if not housed:
             for order in (2, 4, 6):
                 wave = np.column_stack([np.cos(order * angle), 0.3 * np.sin(order * angle)])
                 u[:, :2] += 0.1 * rotated(wave, angle)
-        elif not model.plane:
-            u[:, 2] += tilt[0] * x[:, 1] - tilt[1] * x[:, 0]
+        else:  # on their circle, by the angle at which the flanks meet
+            u[:, :2] = rotated(x[:, :2], model.closing_rotation) - x[:, :2]
+            tilt[2] = np.sin(model.closing_rotation)
         values = {(len(u), k): shift[k - 1] for k in (1, 2, 3)} | {(len(u) + 1, k): tilt[k - 1] for k in (1, 2, 3)}
         equations = list(model.mean_motion(surface, len(u), in_housing=housed))
         dependent = [terms[0][:2] for terms in equations]
