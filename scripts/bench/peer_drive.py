@@ -46,6 +46,7 @@ CASES = {
     "plane, flank 2": Case(PLANE, {"flank": 2}),
     "plane, flank 6": Case(PLANE, {"flank": 6}),
     "plane, flank 8, root 4, rim 2": Case(PLANE, {"flank": 8, "root": 4, "rim": 2}),
+    "plane, flank 6, spline fixed": Case((*PLANE, "drive.layout=spline_fixed"), {"flank": 6}),
     "cup, flank 2": Case((), {"flank": 2}),
     "cup, flank 2, finer wall": Case((), {"flank": 2}, {"cylinder": 4, "fillet": 2, "closed_end": 4}),
 }
