@@ -98,7 +98,7 @@ def _equation(terms: list[Term]) -> Iterator[str]:
 
 
 def _job(model: JobModel, cam: CamFacets) -> Iterator[str]:
-    design, ring_fixed = model.design, model.design.drive.layout == "ring_fixed"
+    design, ring_fixed = model.design, model.design.standing_gear == "ring_gear"
     output = len(model.points) + len(cam.points)
     bore, outer = model.surface(model.spline, "bore"), model.surface(model.ring, "outer")
     planar = ("ALL_NODES, 3, 3",) if model.plane else ()

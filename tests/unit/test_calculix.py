@@ -113,3 +113,14 @@ def test_a_mesh_is_needed_for_the_job_and_for_nothing_else(tmp_path: Path) -> No
         swgpar.export(DESIGN, tmp_path, ["inp"])
     with pytest.raises(InputError, match="a mesh recipe is of no use"):
         swgpar.export(DESIGN, tmp_path, ["dxf"], RECIPE)
+
+
+def test_a_standing_wave_generator_changes_nothing_up_to_the_loaded_state(tmp_path: Path) -> None:
+    """The flexible spline is the output there as well; the ring gear has not turned yet."""
+    jobs = []
+    for layout in ("ring_fixed", "wave_generator_fixed"):
+        folder = tmp_path / layout
+        folder.mkdir()
+        job, _ = write_calculix(load_design(DESIGN, [*PLANE, f"drive.layout={layout}"]), load_recipe(RECIPE), folder)
+        jobs.append(job.read_text())
+    assert jobs[0] == jobs[1]
