@@ -117,7 +117,7 @@ def draw_cup_section(
     low = max(design.cup.inner_radius - 0.05 * outer, 0.0)
     height = min(8.0, max(3.0, 9.0 * (outer - low) / (2.0 * length)))
     half = 0.5 * design.drive.face_width
-    box = (-1.2 * half, half + 1.05 * design.cup.length, low, 1.01 * outer)
+    box = (-1.6 * half, half + 1.05 * design.cup.length, low, 1.01 * outer)
     figure, panels = _figure(2, (9.5, 1.4 + height))
     for axes, name, turn in zip(panels, ("major axis", "minor axis"), (0.0, 0.5 * np.pi)):
         angle = wg_angle + turn

@@ -76,7 +76,7 @@ def drive_report(result: DriveResult) -> bytes:
     if summary["places"]:
         parts += ["<h3>Largest stresses under load</h3>", f"<p>{NODAL}</p>", _places(summary["places"])]
     if summary.get("regions"):  # results of earlier versions have none
-        parts += ["<h3>Largest stresses by region</h3>", _regions(summary["regions"])]
+        parts += ["<h3>Largest stresses by region</h3>", f"<p>{BY_REGION}</p>", _regions(summary["regions"])]
     parts += ["<h2>Checks</h2>", _checks(found)]
     if drawn := figures(result.folder, result.plot.names, WIDE):
         parts += ["<h2>Figures</h2>", drawn]
@@ -177,6 +177,7 @@ NODAL = (
     "Averages over elements on the mesh of the drive, the largest of all increments under load. Errors are those by "
     "this mesh. The tension at the teeth above is resolved on finer meshes of a few teeth."
 )
+BY_REGION = "Averages over elements as well. Without an error there is no estimate of it on this mesh."
 NO_ERROR = "no estimate of the error on this mesh"
 
 STRESSES = {"s1": "tension s1", "s3": "compression |s3|", "vm": "von Mises"}

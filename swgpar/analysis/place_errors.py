@@ -25,10 +25,14 @@ class CoarseStresses:
     ratio: float
 
     def errors(self, fine: Mapping[str, Place]) -> dict[str, float]:
-        """Errors of the stresses on the finer mesh as shares of them; none of those that depend on either mesh."""
+        """Errors of the stresses on the finer mesh as shares of them; none of those that depend on either mesh.
+
+        A coarser mesh may have no node in a region, for example in a fillet of one element: no error there.
+        """
         return {
             name: abs(place.value - self.places[name].value) / (self.ratio**NODAL_ORDER - 1.0) / place.value
             for name, place in fine.items()
+            if name in self.places
             if not place.warning and not self.places[name].warning and place.value > 0.0
         }
 

@@ -63,7 +63,7 @@ def view_plotter(result: DriveResult, *, off_screen: bool = False) -> pyvista.Pl
         actors[body] = plotter.add_mesh(
             surface, scalars="shown", cmap="turbo", smooth_shading=False, show_scalar_bar=False, name=body
         )
-    plotter.add_scalar_bar(title=COLOURED["vm"], mapper=actors[GEARS[0]].mapper, vertical=True)
+    plotter.add_scalar_bar(title=COLOURED["vm"], fmt="%.4g", mapper=actors[GEARS[0]].mapper, vertical=True)
 
     def update() -> None:
         largest = []

@@ -53,7 +53,8 @@ def test_figures_of_fields_in_memory_are_saved_by_all_ranks(folder: Path) -> Non
     comm = MPI.COMM_WORLD
     result = swgpar.run(swgpar.load_design(DESIGN, SMALL), RECIPE)
     files = result.plot.save(folder)
-    assert files == [folder / "figures" / f"{name}.png" for name in result.plot.names] and len(files) == 6
+    assert files == [folder / "figures" / f"{name}.png" for name in result.plot.names]
+    assert {"pairs", "contact_pattern", "deformed_drive", "loaded_teeth", "stress_around"} < set(result.plot.names)
     assert all(path.stat().st_size > 0 for path in files)
     comm.Barrier()
     if comm.rank == 0:
