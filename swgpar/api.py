@@ -49,10 +49,11 @@ def new(
     diameter: float | None = None,
     bore: float | None = None,
     profile: Profile = "quadruple_arc",
-    cam: CamType = "elliptical",
+    cam: CamType | None = None,
     layout: Literal["ring_fixed", "spline_fixed"] = "ring_fixed",
     model: Literal["cup", "plane"] = "cup",
     shape: Shape = "cup",
+    lobes: Literal[2, 3] = 2,
     overwrite: bool = False,
 ) -> DriveDesign:
     """A checked design to start from; collective when it is written.
@@ -62,15 +63,18 @@ def new(
     out : path
         Design file to write, with the meaning of every key.
     ratio : float
-        Speed of the wave generator over that of the output, without its sign; a multiple of 0.5.
+        Speed of the wave generator over that of the output, without its sign; a multiple of 0.5, with three lobes a
+        whole number.
     torque : float, N·m
         On the output.
     diameter, bore : float, mm
         Pitch diameter or inner diameter of the flexible spline; one of both.
     profile : "quadruple_arc", "double_arc" or "involute"
-    cam : "elliptical", "parabolic", "simplified" or "four_roller"
+    cam : "elliptical", "parabolic", "simplified", "four_roller" or "harmonic"
+        Without it the ellipse, and with three lobes the harmonic cam.
     layout, model : as in the section [drive]
     shape : "cup", "short" (a cup of half the length) or "hat" (silk hat, with a flange outwards)
+    lobes : 2 or 3, of the cam
     overwrite : bool
         Replace a file that exists.
 
@@ -87,7 +91,8 @@ def new(
     >>> design.drive.teeth_fs, design.drive.module
     (200, 0.254)
     """
-    request = Request(ratio, torque, diameter, bore, profile, cam, layout, model, shape)
+    cam = cam or ("elliptical" if lobes == 2 else "harmonic")
+    request = Request(ratio, torque, diameter, bore, profile, cam, layout, model, shape, lobes)
     design, table = starter_design(request)
     build_sector_meshes(design, _load_recipe(MESHES[model]))
     if out is not None:

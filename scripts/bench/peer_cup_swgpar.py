@@ -59,7 +59,7 @@ def main() -> None:
     problem = DiscreteProblem(
         partition=partition,
         elements=elements,
-        supports=Supports(partition, [], scale=scale, share=0.5 if layout.images else 1.0),
+        supports=Supports(partition, [], scale=scale, share=1.0 / layout.copies),
         rigid_contacts=[PrescribedDisplacement(partition, nodes, values[mine][first], stiffness)],
         module=design.drive.module,
         inner_radius=design.inner_radius,

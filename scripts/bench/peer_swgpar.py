@@ -29,9 +29,9 @@ RTOL = 1e-6
 """Newton's tolerance, that of a drive's default run in the plane. CalculiX accepts 5e-3."""
 
 
-def pinched(design: RingDesign, counts: RingCounts, force: float, halved: bool) -> tuple[BodyElements, np.ndarray, int]:
+def pinched(design: RingDesign, counts: RingCounts, force: float, copies: int) -> tuple[BodyElements, np.ndarray, int]:
     """The ring under two forces (N): its elements, displacements (n_local, 3) mm and the iterations it took."""
-    ring = RingBody(design, counts, MPI.COMM_WORLD, halved=halved)
+    ring = RingBody(design, counts, MPI.COMM_WORLD, copies=copies)
     nodes, share = line(ring.mesh.coords)
     sectors = ring.body.sectors[ring.body.owned]
     local, forces = [np.zeros(0, dtype=np.int64)], [np.zeros((0, 3))]
@@ -50,18 +50,18 @@ def pinched(design: RingDesign, counts: RingCounts, force: float, halved: bool) 
 
 def main() -> None:
     name, *numbers, part, folder = sys.argv[1:]
-    halved = part == "half"
+    copies = 2 if part == "half" else 1
     problem: Problem = PROBLEMS[name]
     counts = RingCounts(*map(int, numbers))
     contact = Contact(wg_penalty_coef=PENALTY, wg_quadrature=7, penetration_tolerance=1e-4)
     design = RingDesign(2.0 * OUTER, OUTER - INNER, WIDTH, False, STEEL, contact, Solver(rtol=RTOL))
     if problem.travel:
         cam = EllipticalCam(*CAM)
-        model = RingModel(design, counts, cam, np.radians(CAM_HALF_ANGLE), MPI.COMM_WORLD, halved=halved)
+        model = RingModel(design, counts, cam, np.radians(CAM_HALF_ANGLE), MPI.COMM_WORLD, copies=copies)
         iterations, body = model.spread(problem.travel), model.body
         u = model.problem.displacement()
     else:
-        body, u, iterations = pinched(design, counts, problem.force, halved)
+        body, u, iterations = pinched(design, counts, problem.force, copies)
     fields = body_fields(body, u)
     out, comm = Path(folder), MPI.COMM_WORLD
     np.savez(

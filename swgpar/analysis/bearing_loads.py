@@ -39,9 +39,8 @@ def ball_rows(model: DriveModel, state: LoadState, increment: int, step: int) ->
     contact, design = ball_contact(model), model.design
     contact.evaluate(model.problem.displacement(), state, None, None)
     found = dict(pair for part in model.comm.allgather(list(zip(*contact.owned_loads()))) for pair in part)
-    balls, half = contact.balls, contact.balls.number // 2
-    if model.copies == 2:
-        found |= {(ball + half) % balls.number: approach for ball, approach in found.items()}
+    balls, part = contact.balls, contact.balls.number // model.copies
+    found |= {(ball + k * part) % balls.number: found[ball] for ball in list(found) for k in range(1, model.copies)}
     rows = []
     for ball, angle in enumerate(balls.angles(state.angle)):
         approach = float(found[ball])

@@ -99,6 +99,6 @@ def build_race_contact(
     )
 
 
-def race_coupling(partition: Partition, elements: Elements, spline: NodeMeans, halved: bool) -> RaceCoupling:
+def race_coupling(partition: Partition, elements: Elements, spline: NodeMeans) -> RaceCoupling:
     """Support of the race. spline : coupling of the flexible spline"""
-    return RaceCoupling(DistributingCoupling(partition, elements.bodies[OUTER_RACE], "outer", halved), spline)
+    return RaceCoupling(DistributingCoupling(partition, elements.bodies[OUTER_RACE], "outer", spline.images), spline)

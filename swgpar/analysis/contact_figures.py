@@ -22,11 +22,17 @@ Columns = Mapping[str, np.ndarray]
 """Of a table."""
 
 
-def draw_pairs(pairs: Columns) -> Figure:
+def _from_lobe(pairs: Columns, lobes: int) -> np.ndarray:
+    """Angles (n,) of the pairs from the tip of the nearest lobe, degrees."""
+    half = 180.0 / lobes
+    return (pairs["angle_deg"] + half) % (2.0 * half) - half
+
+
+def draw_pairs(pairs: Columns, lobes: int = 2) -> Figure:
     """Force and largest pressure of the pairs over the tooth's angle. pairs : columns of pairs.csv"""
     from matplotlib.figure import Figure
 
-    position = (pairs["angle_deg"] + 90.0) % 180.0 - 90.0
+    position = _from_lobe(pairs, lobes)
     figure = Figure(figsize=(7.0, 6.0), layout="constrained")
     panels = list(figure.subplots(2, 1, sharex=True))
     for axes, name in zip(panels, ("force_N", "pressure_MPa"), strict=True):
@@ -44,7 +50,7 @@ def draw_pairs(pairs: Columns) -> Figure:
     return figure
 
 
-def draw_load_sharing(pairs: Columns, history: Columns, title: str) -> Figure:
+def draw_load_sharing(pairs: Columns, history: Columns, title: str, lobes: int = 2) -> Figure:
     """Share of every pair in the force, and the number of pairs.
 
     pairs, history : columns of these tables;  title : of the axis with the angle of the wave generator
@@ -53,13 +59,14 @@ def draw_load_sharing(pairs: Columns, history: Columns, title: str) -> Figure:
 
     figure = Figure(figsize=(7.0, 6.0), layout="constrained")
     upper, lower = figure.subplots(2, 1)
-    far = np.abs(pairs["angle_deg"]) > 90.0
-    angle, share = (pairs["angle_deg"] + 90.0) % 180.0 - 90.0, 100.0 * pairs["force_share"]
+    far = np.abs(pairs["angle_deg"]) > 180.0 / lobes
+    angle, share = _from_lobe(pairs, lobes), 100.0 * pairs["force_share"]
+    other = ", other end" if lobes == 2 else ", other lobes"
     for side, colour in (("clockwise", "tab:orange"), ("counter-clockwise", "tab:blue")):
         for end, mark in ((~far, "o"), (far, "x")):
             chosen = (pairs["flank"] == side) & end
             if chosen.any():
-                label = f"{side} flank" + (", other end" if mark == "x" else "")
+                label = f"{side} flank" + (other if mark == "x" else "")
                 upper.plot(angle[chosen], share[chosen], mark, ms=5, mec=colour, mfc="none", label=label)
     upper.set(xlabel="pair, from the major axis (degrees)", ylabel="share of the force (%)")
     upper.set_title("force of a pair over that of all pairs, at all computed angles", fontsize=10)

@@ -123,7 +123,7 @@ def _tooth(design: DriveDesign, gear: str) -> np.ndarray:
 
 def _curves(design: DriveDesign) -> dict[str, list[np.ndarray]]:
     """Closed curves of the gears and the cam, mm, the spline deflected with its major axis along +y."""
-    drive, d = design.drive, design.deflection
+    drive, half, lobes = design.drive, 0.5 * design.deflection, design.lobes
     angle = 2.0 * np.pi / drive.teeth_rg * (np.arange(drive.teeth_rg) + 0.5)
     ring = rotated(_tooth(design, "ring_gear")[None], angle[:, None]).reshape(-1, 2)
     outer = design.ring_outer_radius
@@ -131,9 +131,9 @@ def _curves(design: DriveDesign) -> dict[str, list[np.ndarray]]:
 
     def moved(psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Points of the mid-line (n, 2) that were at the angles psi, and the rotation of the ring there."""
-        w, v = 0.5 * d * np.cos(2.0 * psi), -0.25 * d * np.sin(2.0 * psi)
+        w, v = half * np.cos(lobes * psi), -half / lobes * np.sin(lobes * psi)
         place = ((r + w) * np.array([-np.sin(psi + v / r), np.cos(psi + v / r)])).T
-        return place, psi + (v + d * np.sin(2.0 * psi)) / r
+        return place, psi + (v + lobes * half * np.sin(lobes * psi)) / r
 
     place, turned = moved(2.0 * np.pi / drive.teeth_fs * np.arange(drive.teeth_fs))
     teeth = place[:, None] + rotated(_tooth(design, "flexible_spline")[None] - [0.0, r], turned[:, None])
@@ -160,10 +160,11 @@ def _front(design: DriveDesign, curves: dict[str, list[np.ndarray]]) -> str:
         sheet.outline(closed, FILLS[name], NAMES[name])
     for x1, y1, x2, y2 in ((-1.04, 0.0, 1.04, 0.0), (0.0, -1.04, 0.0, 1.04)):
         sheet.line(*sheet.at(x1 * outer, y1 * outer), *sheet.at(x2 * outer, y2 * outer), style="axis")
-    width, height = (float(curves["wave_generator"][0][:, k].max()) for k in (0, 1))
+    cam = curves["wave_generator"][0]
+    width, low, high = float(cam[:, 0].max()), float(cam[:, 1].min()), float(cam[:, 1].max())
     sheet.across(-outer, outer, 0.0, 20.0, f"⌀ {2 * outer:.4g}")
     sheet.across(-width, width, 0.0, 525.0, f"cam {2 * width:.5g}")
-    sheet.upright(-height, height, 0.0, 478.0, f"{2 * height:.5g}")
+    sheet.upright(low, high, 0.0, 478.0, f"{high - low:.5g}")
     drive = design.drive
     caption = (
         f"Along the axis, in mm: {drive.teeth_fs} teeth of the flexible spline (bore {2 * design.inner_radius:.5g}), "

@@ -54,15 +54,18 @@ EDGE = 1.0 + 1e-9
 """Factor on the width of a rigid surface: points on its edge belong to it."""
 
 
-def is_halved(design: DriveDesign) -> bool:
-    """Whether the model is half of the drive: it equals itself rotated by 180 degrees, and the design allows it."""
+def copies_of_model(design: DriveDesign) -> int:
+    """How many times the model makes the whole drive.
+
+    The number of lobes where the drive equals itself rotated by one of them and the design allows it, else 1.
+    """
     counts = [design.drive.teeth_fs, design.drive.teeth_rg]
     if design.bearing is not None:
         counts.append(design.bearing.balls)
     if design.is_bolted:
         counts.append(design.cup.bolts)
-    even = all(count % 2 == 0 for count in counts)
-    return design.solver.twofold_symmetry and even and design.lobes == 2
+    symmetric = all(count % design.lobes == 0 for count in counts)
+    return design.lobes if symmetric and design.solver.twofold_symmetry else 1
 
 
 def search_distance(design: DriveDesign, share: float = NEAR) -> float:
@@ -99,8 +102,13 @@ class DriveModel:
 
     @property
     def copies(self) -> int:
-        """How many times the model makes the whole drive: 2 where it is half of it."""
-        return 2 if is_halved(self.design) else 1
+        """How many times the model makes the whole drive: 2 where it is half of it, 3 where it is a third."""
+        return copies_of_model(self.design)
+
+    @property
+    def part_remark(self) -> str:
+        """What a message adds to the unknowns of the model."""
+        return {1: "", 2: " (half of it, by symmetry)", 3: " (a third of it, by symmetry)"}[self.copies]
 
     @property
     def fixed_body(self) -> int:
@@ -213,17 +221,23 @@ def sector_elements(design: DriveDesign, mesh: SectorMesh) -> ReferenceElements:
 
 def build_layout(design: DriveDesign, mesh: SectorMesh, reference: ReferenceElements | None = None) -> BodyLayout:
     """Modelled sectors of a body. reference : elements of one sector, needed where sectors are condensed"""
-    halved = is_halved(design)
+    copies = copies_of_model(design)
     clamped = mesh.body == design.standing_gear == "ring_gear" and design.frame_is_rigid
     fixed = mesh.node_sets["outer"] if clamped else np.zeros(0, dtype=np.int32)
-    count = mesh.n_sectors // 2 if halved else mesh.n_sectors
     condensed = tooth = None
     if reference is not None and design.solver.condensed_sectors:
         condensed = condense_sector(mesh, reference)
     elif reference is not None and len(mesh.tooth) and _condenses_teeth(design):
         tooth = condense_tooth(mesh, reference)
     return BodyLayout(
-        mesh=mesh, first_tooth=0, count=count, closed=True, images=halved, fixed=fixed, condensed=condensed, tooth=tooth
+        mesh=mesh,
+        first_tooth=0,
+        count=mesh.n_sectors // copies,
+        closed=True,
+        copies=copies,
+        fixed=fixed,
+        condensed=condensed,
+        tooth=tooth,
     )
 
 
@@ -240,7 +254,7 @@ def _condenses_teeth(design: DriveDesign) -> bool:
 def build_supports(design: DriveDesign, *, partition: Partition, elements: Elements) -> Supports:
     """Couplings of the spline, of a ring gear that is not clamped and of a bearing; the guide of a rotating ring."""
     spline, ring = elements.bodies[:2]
-    halved = is_halved(design)
+    copies = copies_of_model(design)
     # a plane section with deviations is centred by its cam alone: the wall of the cup gives way
     centred = design.drive.model == "cup" or design.deviations is None
     rotates, guide = design.output_gear == "ring_gear", None
@@ -248,26 +262,26 @@ def build_supports(design: DriveDesign, *, partition: Partition, elements: Eleme
     if design.drive.model == "cup" and design.cup.attachment != "edge":
         cup, penalty = design.cup, design.penalty
         attachment = RigidAttachment(
-            partition, spline, "end", cup.is_attached, cup.attached_width, penalty=penalty, images=halved
+            partition, spline, "end", cup.is_attached, cup.attached_width, penalty=penalty, images=copies > 1
         )
         couplings.append(attachment)
     else:
-        couplings.append(DistributingCoupling(partition, spline, "bore", halved, centred))
+        couplings.append(DistributingCoupling(partition, spline, "bore", copies > 1, centred))
     if rotates or not design.frame_is_rigid:
-        couplings.append(DistributingCoupling(partition, ring, "outer", halved))
+        couplings.append(DistributingCoupling(partition, ring, "outer", copies > 1))
     if rotates and design.frame_is_rigid:
         outer = float(np.hypot(*couplings[-1].reference[:, :2].T).max(initial=0.0))
-        area = 2.0 * np.pi * outer * design.drive.face_width / (2.0 if halved else 1.0)
+        area = 2.0 * np.pi * outer * design.drive.face_width / copies
         guide = RadialGuide(couplings[-1], area, design.penalty)
     scale = design.material.E * design.drive.module
-    race = None if design.bearing is None else race_coupling(partition, elements, couplings[0], halved)
+    race = None if design.bearing is None else race_coupling(partition, elements, couplings[0])
     return Supports(
         partition,
         couplings,
         output=RING_GEAR if rotates else FLEXIBLE_SPLINE,
         guide=guide,
         scale=scale,
-        share=0.5 if halved else 1.0,
+        share=1.0 / copies,
         race=race,
     )
 

@@ -13,6 +13,7 @@ from swgpar.analysis.drive_tables import DriveTables, read_tables
 from swgpar.analysis.figures import DriveFigures
 from swgpar.design.sections import GEARS, GearName
 from swgpar.errors import InputError
+from swgpar.geometry.rotation import SIXTHS, sixths
 from swgpar.results import history
 from swgpar.results.atomic import agreed
 from swgpar.results.field_sources import BodyMesh, FieldFiles, FieldSource, chosen_increment
@@ -24,9 +25,8 @@ from swgpar.results.sector_fields import SectorFields
 if TYPE_CHECKING:
     import pyvista
 
-ROTATED = {"displacement": (-1.0, -1.0, 1.0), "stress": (1.0, 1.0, -1.0, 1.0, -1.0, 1.0)}
-"""Signs of the components of vectors, and of tensors xx xy xz yy yz zz, after half a turn about z."""
-
+UPPER = np.triu_indices(3)
+"""Rows and columns of the components of a tensor, xx xy xz yy yz zz."""
 
 SPLINE: GearName = "flexible_spline"
 
@@ -158,8 +158,9 @@ class DriveResult:
     def mesh(self, body: GearName = SPLINE) -> BodyMesh:
         """Undeformed mesh of the modelled part of a body.
 
-        A drive with even tooth numbers is modelled by half of it. Nodes are numbered sector by sector, so that those
-        between two sectors appear twice. A plane model is one layer of elements.
+        A drive that equals itself after a turn by one lobe is modelled by a half, or a third with three lobes. Nodes
+        are numbered sector by sector, so that those between two sectors appear twice. A plane model is one layer of
+        elements.
 
         Parameters
         ----------
@@ -236,15 +237,16 @@ class DriveResult:
             With both, the cell data "body" is 0 for the flexible spline and 1 for the ring gear; a field that a body
             does not have is NaN there.
         whole : bool
-            Add the half that symmetry left out, if the model is half of the drive.
+            Add what symmetry left out, if the model is a half or a third of the drive.
         """
         import pyvista
 
         bodies = GEARS if body is None else (body,)
         parts = [self._part(name, increment) for name in bodies]
-        if whole and self.summary["twofold_symmetry"]:
-            parts += [_rotated(*part) for part in parts]
-            bodies = (*bodies, *bodies)
+        if whole:
+            copies = self.summary["copies"]
+            parts += [_rotated(*part, SIXTHS[k]) for k in sixths(copies, np.arange(1, copies)) for part in parts]
+            bodies = bodies * copies
         first = np.cumsum([0, *(len(points) for points, _, _ in parts)])
         cells = np.concatenate([cells + start for start, (_, cells, _) in zip(first, parts, strict=False)])
         kinds = np.full(len(cells), pyvista.CellType.HEXAHEDRON)
@@ -287,14 +289,20 @@ class DriveResult:
 
 
 def _rotated(
-    points: np.ndarray, cells: np.ndarray, fields: dict[str, np.ndarray]
+    points: np.ndarray, cells: np.ndarray, fields: dict[str, np.ndarray], rotation: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
-    """A part of the drive after half a turn about z."""
-    signed = {
-        name: values * np.array(ROTATED[name], values.dtype) if name in ROTATED else values
-        for name, values in fields.items()
-    }
-    return points * np.array(ROTATED["displacement"]), cells, signed
+    """A part of the drive after a rotation (3, 3)."""
+    out = dict(fields)
+    if "displacement" in fields:
+        values = fields["displacement"]
+        out["displacement"] = values @ rotation.T.astype(values.dtype)
+    if "stress" in fields:
+        values = fields["stress"]
+        tensor = np.empty((len(values), 3, 3), values.dtype)
+        tensor[:, UPPER[0], UPPER[1]] = tensor[:, UPPER[1], UPPER[0]] = values
+        turned = rotation.astype(values.dtype)
+        out["stress"] = (turned @ tensor @ turned.T)[:, UPPER[0], UPPER[1]]
+    return points @ rotation.T, cells, out
 
 
 def open_drive(folder: Path, comm: MPI.Comm) -> DriveResult:

@@ -167,14 +167,14 @@ class DriveFigures(FigureSet):
         All computed increments under load are drawn: a tooth goes through these positions one after the other. Pairs
         whose contact lies on an edge have hollow marks: their pressure is no property of the drive.
         """
-        return draw_pairs(self._pairs())
+        return draw_pairs(self._pairs(), self._lobes)
 
     def load_sharing(self) -> Figure:
         """Share (%) of every pair in the forces between the flanks, over its angle from the major axis.
 
         All computed increments under load are drawn, and below the number of pairs at these angles.
         """
-        return draw_load_sharing(self._pairs(), self._result.history, self._angle)
+        return draw_load_sharing(self._pairs(), self._result.history, self._angle, self._lobes)
 
     def haigh(self) -> Figure:
         """Haigh's diagram of all nodes of a sector, and the normal stress over the cycle where the safety is the least.
@@ -186,6 +186,10 @@ class DriveFigures(FigureSet):
     def safety(self) -> Figure:
         """One sector of the flexible spline, coloured by Goodman's safety factor."""
         return _as_figure(sector_picture(self._fatigue(), self._result.is_plane))
+
+    @property
+    def _lobes(self) -> int:
+        return int(self._result.summary["design"]["wave_generator"]["lobes"])
 
     def _pairs(self) -> dict[str, np.ndarray]:
         if not self._result.pairs:

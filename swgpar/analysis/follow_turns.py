@@ -46,7 +46,7 @@ def follow_turns(design: DriveDesign, recipe: MeshRecipe, recorder: Recorder) ->
             total,
             design.deviations.turns,
             sum(body["dofs"] for body in drive.model.counts().values()),
-            " (half of the drive, by symmetry)" if drive.model.copies == 2 else "",
+            drive.model.part_remark,
         )
         points = drive.points(set(known), (comm.rank, comm.size) if shared else (0, 1))
         try:

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from mpi4py import MPI
 
-from swgpar.analysis.drive_model import is_halved
+from swgpar.analysis.drive_model import copies_of_model
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutOfMemoryError
 from swgpar.meshing import MeshRecipe
@@ -55,13 +55,13 @@ def forecast(design: DriveDesign, recipe: MeshRecipe) -> Forecast:
 
     Nothing is meshed. Raises InputError where the recipe lacks a section.
     """
-    plane, halved = design.drive.model == "plane", is_halved(design)
+    plane, copies = design.drive.model == "plane", copies_of_model(design)
     elements = unknowns = 0
     for counts in sector_counts(design, recipe).values():
         fixed = counts.outer if design.standing_gear == "ring_gear" and design.frame_is_rigid else 0
         free = counts.nodes - counts.shared - fixed
         elements += counts.elements * counts.n_sectors
-        unknowns += (2 if plane else 3) * free * (counts.n_sectors // 2 if halved else counts.n_sectors)
+        unknowns += (2 if plane else 3) * free * (counts.n_sectors // copies)
     growth, size = GROWTH[design.drive.model], unknowns / 1e5
     return Forecast(
         elements=elements,

@@ -113,7 +113,7 @@ class LocalProblem:
             first_tooth=first,
             count=SECTORS,
             closed=False,
-            images=False,
+            copies=1,
             fixed=np.zeros(0, dtype=np.int32),
         )
         self.partition = Partition([self.layout], model.comm)

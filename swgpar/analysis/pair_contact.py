@@ -23,7 +23,7 @@ from swgpar.contact.search import FlankPair
 from swgpar.design.load_states import LoadState
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.vectors import read_field
-from swgpar.geometry.rotation import HALF_TURN, rotated
+from swgpar.geometry.rotation import SIXTHS, rotated
 from swgpar.log import logger
 
 SMALLEST = 0.02
@@ -185,7 +185,7 @@ def moved_teeth(model: DriveModel, pairs: list[FlankPair]) -> tuple[list[Neighbo
     for k, pair in enumerate(pairs):
         tooth = spline.first_tooth + pair.sector + around
         moved.append(tuple(MovedTooth(spline, n, pair.side, u[k, i], crowned) for i, n in enumerate(tooth)))
-        turned = HALF_TURN * ring_u[k] if pair.ring_flip else ring_u[k]
+        turned = ring_u[k] @ SIXTHS[pair.ring_flip].T
         tooth = pair.ring_tooth + around
         facing.append(tuple(MovedTooth(ring, n, -pair.side, turned[i]) for i, n in enumerate(tooth)))
     return moved, facing

@@ -101,19 +101,18 @@ class RingBody:
     ----------
     design, counts : the ring and its mesh
     comm : communicator
-    halved : model half of it, which equals itself rotated by 180 degrees
+    copies : how many times the model makes the whole ring, which equals itself rotated by that part of a turn
     incompatible : elements with incompatible modes
     """
 
     def __init__(
-        self, design: RingDesign, counts: RingCounts, comm: MPI.Comm, halved: bool, incompatible: bool = True
+        self, design: RingDesign, counts: RingCounts, comm: MPI.Comm, copies: int, incompatible: bool = True
     ) -> None:
-        self.design, self.halved = design, halved
+        self.design, self.copies = design, copies
         inner, width, material = design.inner_radius, design.width, design.material
         mesh = ring_sector(inner, design.outer_radius, width, counts.sectors, counts.radial, counts.axial, design.plane)
-        count = counts.sectors // 2 if halved else counts.sectors
-        fixed = np.zeros(0, dtype=np.int32)
-        layout = BodyLayout(mesh=mesh, first_tooth=0, count=count, closed=True, images=halved, fixed=fixed)
+        count, fixed = counts.sectors // copies, np.zeros(0, dtype=np.int32)
+        layout = BodyLayout(mesh=mesh, first_tooth=0, count=count, closed=True, copies=copies, fixed=fixed)
         self.mesh, self.partition = mesh, Partition([layout], comm)
         reference = reference_elements(mesh.coords[mesh.elements], material.E, material.nu, width, incompatible)
         self.elements = Elements(self.partition, [reference])
@@ -122,8 +121,8 @@ class RingBody:
     def solver(self, contact: Contact) -> NewtonSolver:
         """Solver of the ring with one contact."""
         design, solver = self.design, self.design.solver
-        couplings = [DistributingCoupling(self.partition, self.body, "bore", self.halved)]
-        scale, share = design.material.E * REFERENCE_LENGTH, 0.5 if self.halved else 1.0
+        couplings = [DistributingCoupling(self.partition, self.body, "bore", self.copies > 1)]
+        scale, share = design.material.E * REFERENCE_LENGTH, 1.0 / self.copies
         problem = DiscreteProblem(
             partition=self.partition,
             elements=self.elements,
@@ -153,7 +152,7 @@ class RingModel:
 
     Parameters
     ----------
-    design, counts, comm, halved, incompatible : of `RingBody`
+    design, counts, comm, copies, incompatible : of `RingBody`
     cam : curve of the rigid surface, which may have two parts that move along the major axis
     half_angle : rad, the ring can touch within this angle of the major axis while the parts move
     """
@@ -165,11 +164,11 @@ class RingModel:
         cam: Cam,
         half_angle: float,
         comm: MPI.Comm,
-        halved: bool = True,
+        copies: int = 2,
         incompatible: bool = True,
     ) -> None:
         self.design, self.comm = design, comm
-        self.ring = RingBody(design, counts, comm, halved, incompatible)
+        self.ring = RingBody(design, counts, comm, copies, incompatible)
         self.body, mesh = self.ring.body, self.ring.mesh
         layers = mesh.node_sets["outer"].reshape(-1, AROUND + 1)
         self.outline = layers[np.abs(mesh.coords[layers[:, 0], 2]).argmin()]  # counter-clockwise
@@ -237,8 +236,9 @@ class RingModel:
     def contact_force(self) -> float:
         """Contact pressure integrated over the whole inner surface, N."""
         surface = self.surface
-        copies = 2.0 if self.ring.halved else 1.0
-        return copies * self.comm.allreduce(float((surface.pressure * surface.weight)[surface.owned].sum()), op=MPI.SUM)
+        return self.ring.copies * self.comm.allreduce(
+            float((surface.pressure * surface.weight)[surface.owned].sum()), op=MPI.SUM
+        )
 
     def dial(self, angle: float, moved: float = 0.0) -> float:
         """Inward reading (mm) of a dial on the outer surface at mid-width, at `angle` (rad) from the major axis.

@@ -218,7 +218,7 @@ class _Run:
             model.n_elements(),
             sum(b["nodes_whole"] for b in counts.values()),
             sum(b["dofs"] for b in counts.values()),
-            " (half of it, by symmetry)" if model.copies == 2 else "",
+            model.part_remark,
             model.comm.size,
         )
         recorder.begin()

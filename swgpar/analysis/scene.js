@@ -15,10 +15,10 @@
   const program = gl.createProgram();
   gl.attachShader(program, compile(gl.VERTEX_SHADER, `#version 300 es
     in vec3 place, shift; in float value; uniform mat3 turn; uniform vec3 low, span, reach, view; uniform vec2 pan;
-    uniform float factor, flip, zoom, aspect; out vec3 seen; out float v;
+    uniform vec2 image; uniform float factor, zoom, aspect; out vec3 seen; out float v;
     void main() {
       vec3 p = low + span * place + factor * reach * shift;
-      p.xy *= flip; seen = turn * (p - view); v = value;
+      p.xy = mat2(image, -image.y, image.x) * p.xy; seen = turn * (p - view); v = value;
       gl_Position = vec4((seen.xy * zoom + pan) * vec2(min(1.0, 1.0 / aspect), min(1.0, aspect)), -seen.z * zoom * 0.2, 1.0);
     }`));
   gl.attachShader(program, compile(gl.FRAGMENT_SHADER, `#version 300 es
@@ -72,7 +72,7 @@
       gl.bindVertexArray(body.array);
       for (const name of ["low", "span", "reach"]) gl.uniform3fv(uniform(name), body[name]);
       for (let copy = 0; copy < data.copies; copy++) {
-        gl.uniform1f(uniform("flip"), copy ? -1 : 1); gl.drawElements(gl.TRIANGLES, body.count, gl.UNSIGNED_INT, 0);
+        const angle = 2 * Math.PI * copy / data.copies; gl.uniform2f(uniform("image"), Math.cos(angle), Math.sin(angle)); gl.drawElements(gl.TRIANGLES, body.count, gl.UNSIGNED_INT, 0);
       }
     }
   }

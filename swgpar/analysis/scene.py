@@ -69,7 +69,7 @@ def scene(result: DriveResult) -> str | None:
     radius = float(np.abs([low[:2], high[:2]]).max())
     content = {
         "bodies": bodies,
-        "copies": 2 if result.summary["twofold_symmetry"] else 1,
+        "copies": result.summary["copies"],
         "plane": result.is_plane,
         "radius": radius,
         "centre": [0.0, 0.0, float(0.5 * (low[2] + high[2]))],

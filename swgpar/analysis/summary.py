@@ -182,7 +182,7 @@ def _sizes(model: DriveModel) -> dict[str, Any]:
         "nodes": sum(body["nodes_whole"] for body in counts.values()),
         "elements": model.n_elements(),
         "dofs": sum(body["dofs"] for body in counts.values()),
-        "twofold_symmetry": model.copies == 2,
+        "copies": model.copies,
     }
 
 

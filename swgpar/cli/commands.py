@@ -66,7 +66,7 @@ def _study(arguments: argparse.Namespace) -> None:
 def _new(arguments: argparse.Namespace) -> None:
     from swgpar import api
 
-    names = ("ratio", "torque", "diameter", "bore", "profile", "cam", "layout", "model", "shape", "overwrite")
+    names = ("ratio", "torque", "diameter", "bore", "profile", "cam", "layout", "model", "shape", "lobes", "overwrite")
     design = api.new(arguments.design, **{name: getattr(arguments, name) for name in names})
     drive = design.drive
     _print(

@@ -66,6 +66,7 @@ from rules of proportion."""
 NEW_EXAMPLES = """examples:
   swgpar new drive.toml --ratio 100 --diameter 50.8 --torque 52
   swgpar new drive.toml --ratio 80 --bore 60 --torque 120 --profile involute --cam parabolic
+  swgpar new drive.toml --ratio 40 --diameter 120 --torque 20 --lobes 3
   swgpar new plane.toml --ratio 50 --diameter 42 --torque 2 --model plane
 """
 
@@ -192,12 +193,17 @@ def _add_new(commands: _Commands) -> None:
     new.add_argument("--torque", type=float, required=True, metavar="T", help="on the output, N·m")
     for name, choices, text in (
         ("--profile", ("quadruple_arc", "double_arc", "involute"), "profile of the teeth"),
-        ("--cam", ("elliptical", "parabolic", "simplified", "four_roller"), "cam of the wave generator"),
         ("--layout", ("ring_fixed", "spline_fixed"), "fixed member"),
         ("--model", ("cup", "plane"), "the cup drive, or the toothed section in plane stress"),
         ("--shape", ("cup", "short", "hat"), "flexible spline: a cup, one of half the length, a silk hat"),
     ):
         new.add_argument(name, choices=choices, default=choices[0], help=f"{text} (default: {choices[0]})")
+    new.add_argument(
+        "--cam",
+        choices=("elliptical", "parabolic", "simplified", "four_roller", "harmonic"),
+        help="cam of the wave generator (default: elliptical, with three lobes harmonic)",
+    )
+    new.add_argument("--lobes", type=int, choices=(2, 3), default=2, help="lobes of the cam (default: 2)")
     new.add_argument("--overwrite", action="store_true", help="replace a file that exists")
 
 

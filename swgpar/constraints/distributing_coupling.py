@@ -81,7 +81,7 @@ class NodeMeans:
     partition : ownership
     nodes : (n,) local nodes that this rank owns, each once;  reference : (n, 3) mm, undeformed
     weight : (n,) of the nodes in the means, of any sum
-    images : the model holds half a turn
+    images : the model is a part of the drive; then only z and the rotation can be non-zero
     fixed_axis : the rotation is that about the drive's axis, and not about the mean place of the nodes
 
     Attributes
@@ -176,8 +176,8 @@ class DistributingCoupling(NodeMeans):
         """Unit directions (n, n_local, 3) on single nodes that support the body rigidly.
 
         They ground the structure inside a factorisation and are taken out again exactly; see `BorderedSystem`. A solid
-        body needs six of them, axial and tangential at three nodes. A plane body needs the tangential ones only. Half a
-        model needs those of one node.
+        body needs six of them, axial and tangential at three nodes. A plane body needs the tangential ones only. The
+        model of a part of the drive needs those of one node.
         """
         wanted_angles = (0.0,) if self.images else (0.0, 2.0 * np.pi / 3.0, 4.0 * np.pi / 3.0)
         angle = np.mod(np.arctan2(-self.arm[:, 0], self.arm[:, 1]), 2.0 * np.pi)

@@ -19,7 +19,7 @@ from swgpar.contact.smooth_curve import NODES, STEPS, shape_functions, smooth_cu
 from swgpar.design.load_states import LoadState
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.sparse import BlockRows
-from swgpar.geometry.rotation import HALF_TURN, rotated
+from swgpar.geometry.rotation import rotated, to_images, to_owners
 from swgpar.kernel import add_face_blocks
 
 TIE = 1e-7
@@ -182,8 +182,7 @@ class BallContact:
 
     def _find(self, u: np.ndarray, state: LoadState) -> _Touch:
         """Balls on the race at u (n_local, 3)."""
-        field = u[self.conn]
-        field[self.flip == 1] *= HALF_TURN
+        field = to_images(u[self.conn], self.flip)
         nodes = np.einsum("nzi,z->ni", self.coords + field, self.spread)[:, :2]
         centre, normal, curvature = self.balls.lines(self.balls.angles(state.angle) - state.angle)
         centre, normal = rotated(centre, state.angle), rotated(normal, state.angle)
@@ -258,9 +257,7 @@ class BallContact:
         conn, flip = self._nodes(touch, chosen)
         nodal = np.zeros((len(chosen), self.n_nodes, len(self.spread), 3))
         nodal[..., :2] = nodes[:, :, None] * self.spread[:, None]
-        nodal = nodal.reshape(*conn.shape, 3)
-        nodal[flip == 1] *= HALF_TURN
-        np.add.at(residual, conn, nodal)
+        np.add.at(residual, conn, to_owners(nodal.reshape(*conn.shape, 3), flip))
 
     def _add_blocks(self, touch: _Touch, chosen: np.ndarray, rows: BlockRows) -> None:
         """The Hessian of the energy: F' grad grad^T - F Hessian of nu."""

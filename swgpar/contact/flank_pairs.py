@@ -170,7 +170,7 @@ class FlankPairs:
             flanks.rotation[k] = np.cos(angle), np.sin(angle)
             number, flip = self.partition.node_numbers(RING_GEAR, np.array([p.ring]), grid.nodes.ravel())
             flanks.conn[k] = self.local.index(number).reshape(grid.nodes.shape)
-            flanks.flip[k] = np.where(number >= 0, flip ^ p.ring_flip, 0).reshape(grid.nodes.shape)
+            flanks.flip[k] = np.where(number >= 0, (flip + p.ring_flip) % 6, 0).reshape(grid.nodes.shape)
         return flanks
 
     def _placed(self, slave: FlankFaces, pair: FlankPair, patch: int) -> PlacedFaces:

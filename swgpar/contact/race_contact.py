@@ -23,7 +23,7 @@ from swgpar.contact.smooth_curve import NODES, STEPS, curve_nodes, shape_functio
 from swgpar.design.load_states import LoadState
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.sparse import BlockRows
-from swgpar.geometry.rotation import HALF_TURN
+from swgpar.geometry.rotation import to_images, to_owners
 from swgpar.kernel import add_face_blocks
 
 LAYERS = 2
@@ -170,9 +170,7 @@ class RaceContact:
         Returns dg, a and b (n_face, n_q, 12, 2, 3) by the nodes' displacements, and the factors (n_face, n_q, 3, 3) of
         their products in d²g.
         """
-        field = u[self.conn]
-        field[self.flip == 1] *= HALF_TURN
-        x = (self.coords + field)[..., :2]
+        x = (self.coords + to_images(u[self.conn], self.flip))[..., :2]
         point = np.einsum("qa,fai->fqi", self.shape, x[:, :4])
         curve = np.einsum("fqk,fnki->fqni", self.layers, x[:, 4:].reshape(len(x), NODES, LAYERS, 2))
         polynomials, place = self.polynomials[:, None], self.first_place
@@ -213,8 +211,7 @@ class RaceContact:
         force = (self.pressure * self.weight)[faces]
         nodal = np.zeros((*self.conn[faces].shape, 3))
         nodal[..., :2] = -np.einsum("fq,fqai->fai", force, vectors[faces, ..., 0])
-        nodal[self.flip[faces] == 1] *= HALF_TURN
-        np.add.at(residual, self.conn[faces], nodal)
+        np.add.at(residual, self.conn[faces], to_owners(nodal, self.flip[faces]))
 
     def _add_blocks(self, vectors: np.ndarray, curvature: np.ndarray, faces: np.ndarray, rows: BlockRows) -> None:
         """Add the tangent: penalty times dg times dg, less the pressure times d²g."""

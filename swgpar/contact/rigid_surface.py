@@ -18,7 +18,7 @@ from swgpar.contact.face_quadrature import FaceQuadrature
 from swgpar.design.load_states import LoadState
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.sparse import BlockRows
-from swgpar.geometry.rotation import HALF_TURN, image_rotation
+from swgpar.geometry.rotation import SIXTHS, sixths, to_images, to_owners
 from swgpar.kernel import add_face_blocks
 
 
@@ -74,7 +74,7 @@ def pin_pose(state: LoadState) -> SurfacePose | None:
 
 def pin_directions(lobes: int) -> np.ndarray:
     """Outward unit vectors (lobes, 2) of the pins, in the cam's frame."""
-    return np.array([image_rotation(lobes, turns)[:2, 1] for turns in range(lobes)])
+    return SIXTHS[sixths(lobes, np.arange(lobes)), :2, 1]
 
 
 class RigidContact:
@@ -177,8 +177,7 @@ class RigidContact:
         Returns gradients (n_face, n_q, 3) and Hessians (n_face, n_q, 3, 3) of the level in the cam's frame.
         """
         field = np.where(self.conn[..., None] >= 0, u[self.conn], 0.0)
-        field[self.flip == 1] *= HALF_TURN
-        x = np.einsum("qa,fai->fqi", self.shape, self.coords + field)
+        x = np.einsum("qa,fai->fqi", self.shape, self.coords + to_images(field, self.flip))
         points = (x @ pose.rotation()).reshape(-1, 3)
         if any(pose.shift):
             points[:, :2] -= pose.shift
@@ -198,7 +197,7 @@ class RigidContact:
         force = (self.pressure * self.weight)[faces]
         nodal = -np.einsum("fq,qa,fqi->fai", force, self.shape, normal)
         flip, conn = self.flip[faces], self.conn[faces]
-        nodal[flip == 1] *= HALF_TURN
+        nodal = to_owners(nodal, flip)
         free = conn >= 0
         for axis in range(3):
             residual[:, axis] += np.bincount(conn[free], nodal[..., axis][free], minlength=len(residual))

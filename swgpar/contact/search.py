@@ -21,7 +21,7 @@ class FlankPair:
     """A flank of the flexible spline and the ring-gear flank it faces.
 
     sector : chain index in the flexible spline;  side : +1 clockwise flank, -1 counter-clockwise flank
-    ring : chain index in the ring gear;  ring_flip : 1 when that tooth is an image
+    ring : chain index in the ring gear;  ring_flip : sixths of a turn by which that tooth is rotated, an image
     ring_tooth : tooth number, images not brought back
     """
 

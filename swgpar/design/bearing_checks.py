@@ -24,6 +24,8 @@ def check_bearing(design: DriveDesign) -> None:
             f'{SECTION} is not available with wave_generator.type = "four_roller": allowed with cams whose curve an '
             "inner race can follow"
         )
+    if design.lobes != 2:
+        raise InputError(f"{SECTION} is not available with wave_generator.lobes = {design.lobes}: allowed with two")
     output = design.output
     if output.root_stress and "root_stress" in output.model_fields_set:
         raise InputError(f"output.root_stress = true is out of range: allowed only false with {SECTION}")

@@ -6,7 +6,15 @@ import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.rigid_mesh import RigidMesh, flank_clearance, rigid_mesh
-from swgpar.geometry.cams import pin_travel, taut_length
+from swgpar.geometry.cams import Cam, pin_travel, taut_length
+
+
+def _smallest(cam: Cam, lobes: int) -> dict[str, float]:
+    """Smallest size of the cam: its half width, or its radius between three lobes."""
+    outline = cam.outline(7200)
+    if lobes == 2:
+        return {"b, half width of the cam (mm)": float(outline[:, 0].max())}
+    return {"b, smallest radius of the cam (mm)": float(np.hypot(*outline.T).min())}
 
 
 def derived_geometry(design: DriveDesign) -> dict[str, float]:
@@ -17,7 +25,7 @@ def derived_geometry(design: DriveDesign) -> dict[str, float]:
         f"ratio ({'ring gear' if design.wave_generator_is_fixed else 'wave generator'} / output)": design.input_ratio,
         "d, diametral deflection (mm)": design.deflection,
         "a, major semi-axis (mm)": design.major_semi_axis,
-        "b, half width of the cam (mm)": float(cam.outline(7200)[:, 0].max()),
+        **_smallest(cam, design.lobes),
         "taut length of cam / inner perimeter - 1": taut_length(cam) / (2.0 * np.pi * design.inner_radius) - 1.0,
         "travel of the pins (mm)": pin_travel(cam, design.inner_radius, design.lobes),
         "r_fs, inner radius of the spline (mm)": design.inner_radius,

@@ -21,6 +21,8 @@ LARGEST = 0.1
 
 def check_deviations(design: DriveDesign, deviations: Deviations) -> None:
     """Raise InputError for the first deviation that does not fit."""
+    if design.lobes != 2:
+        raise InputError(f"[deviations] is not available with wave_generator.lobes = {design.lobes}: allowed with two")
     if design.load.torque == 0.0:
         raise InputError("load.torque = 0 holds the output: allowed above 0 N·m with [deviations]")
     if program := given_program(design):

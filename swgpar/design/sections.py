@@ -154,7 +154,9 @@ class Solver(Section):
     memory_limit: float | None = quantity(
         None, unit="GB", text="largest memory that a run may need by its forecast; without it what is free", gt=0.0
     )
-    twofold_symmetry: bool = quantity(True, text="model half of the drive when tooth numbers allow it")
+    twofold_symmetry: bool = quantity(
+        True, text="model half of the drive when tooth numbers allow it, with three lobes a third"
+    )
     far_teeth: Literal["left_out", "modelled"] = quantity(
         "left_out",
         text="teeth out of reach: sectors of a fixed ring gear without housing are left out, in the cup drive teeth "

@@ -19,14 +19,14 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GEARS
 from swgpar.errors import InputError
 from swgpar.geometry.cams import make_cam, taut_length
-from swgpar.geometry.cams.keys import Parabolic, Simplified, WaveGenerator
+from swgpar.geometry.cams.keys import Harmonic, Parabolic, Simplified, WaveGenerator
 from swgpar.geometry.profiles import RADII
 from swgpar.input.quantities import Section
 
 Profile = Literal["quadruple_arc", "double_arc", "involute"]
 """Kinds of profiles of a starter design."""
 
-CamType = Literal["elliptical", "parabolic", "simplified", "four_roller"]
+CamType = Literal["elliptical", "parabolic", "simplified", "four_roller", "harmonic"]
 """Kinds of cams of a starter design."""
 
 Shape = Literal["cup", "short", "hat"]
@@ -35,8 +35,8 @@ Shape = Literal["cup", "short", "hat"]
 LEAST_RATIO, LARGEST_RATIO = 15.0, 320.0
 """Ratios for which the rules give a drive that can be built and meshed."""
 
-RIM, RING_RIM, FACE_WIDTH, LENGTH, FILLET, BORE = 0.012, 0.04, 0.17, 0.5, 0.02, 0.17
-"""Over the pitch diameter: rims of both gears, face width, length, fillet and bore radius of the cup."""
+RING_RIM, FACE_WIDTH, LENGTH, FILLET, BORE = 0.04, 0.17, 0.5, 0.02, 0.17
+"""Over the pitch diameter: rim of the ring gear, face width, length, fillet and bore radius of the cup."""
 
 SHORT_LENGTH, FLANGE, FLANGE_THICKNESS = 0.25, 0.68, 0.016
 """Over the pitch diameter: length of a short cup, radius and thickness of the flange of a silk hat."""
@@ -44,8 +44,13 @@ SHORT_LENGTH, FLANGE, FLANGE_THICKNESS = 0.25, 0.68, 0.016
 RING_RIM_MODULES = 8.0
 """Largest rim of the ring gear, modules: a thicker one behaves alike."""
 
+
 ADDENDUM, DEDENDUM = 0.6, 0.8
 """Of both gears, modules."""
+
+RIM, PRESSURE_ANGLE = {2: 0.012, 3: 0.006}, {2: 20.0, 3: 14.0}
+"""By lobes: rim of the flexible spline over the pitch diameter, pressure angle in degrees. Three lobes lead a tooth on
+a path that is 1.5 times as steep, and bend the rim four times as much on the same module."""
 
 PLAY = (0.005, 0.01, 0.02, 0.03, 0.05, 0.1, 0.2)
 """Backlash that is tried: share of the tooth's thickness (1 - c_P of the ring gear), or its profile shift."""
@@ -77,6 +82,7 @@ class Request:
     layout: Literal["ring_fixed", "spline_fixed"] = "ring_fixed"
     model: Literal["cup", "plane"] = "cup"
     shape: Shape = "cup"
+    lobes: Literal[2, 3] = 2
 
 
 LAYOUTS = ("ring_fixed", "spline_fixed")
@@ -127,9 +133,15 @@ def _check(request: Request) -> None:
         )
     if request.layout not in LAYOUTS:  # from Python, where no parser has refused it
         raise InputError(f'layout = "{request.layout}" is not available for a start: allowed {" or ".join(LAYOUTS)}')
-    if not LEAST_RATIO <= request.ratio <= LARGEST_RATIO or (2.0 * request.ratio) % 1.0:
+    if request.lobes not in RIM:
+        raise InputError(f"lobes = {request.lobes} is out of range: allowed 2 or 3")
+    if request.lobes == 3 and request.cam != "harmonic":
+        raise InputError(f'lobes = 3 is not available with cam = "{request.cam}": allowed with "harmonic"')
+    step = 0.5 if request.lobes == 2 else 1.0
+    if not LEAST_RATIO <= request.ratio <= LARGEST_RATIO or request.ratio % step:
         raise InputError(
-            f"ratio = {request.ratio:g} is out of range: allowed {LEAST_RATIO:g} to {LARGEST_RATIO:g} in steps of 0.5"
+            f"ratio = {request.ratio:g} is out of range: allowed {LEAST_RATIO:g} to {LARGEST_RATIO:g} in steps of "
+            f"{step:g}"
         )
 
 
@@ -139,11 +151,12 @@ def _rounded(value: float, digits: int = 4) -> float:
 
 def _table(request: Request, play: float) -> dict[str, Any]:
     """Content of the design file with a backlash."""
-    teeth = round(2.0 * request.ratio) - (0 if request.layout == "ring_fixed" else 2)
+    lobes = request.lobes
+    teeth = round(lobes * request.ratio) - (0 if request.layout == "ring_fixed" else lobes)
     if request.diameter is not None:
         module = request.diameter / teeth
     else:  # the inner radius is the pitch radius less dedendum and rim
-        module = 0.5 * request.bore / ((0.5 - RIM) * teeth - DEDENDUM)
+        module = 0.5 * request.bore / ((0.5 - RIM[lobes]) * teeth - DEDENDUM)
     module = _rounded(module, 6)
     pitch = module * teeth
     width = _rounded(FACE_WIDTH * pitch, 3)
@@ -152,15 +165,15 @@ def _table(request: Request, play: float) -> dict[str, Any]:
             "model": request.model,
             "layout": request.layout,
             "teeth_fs": teeth,
-            "teeth_rg": teeth + 2,
+            "teeth_rg": teeth + lobes,
             "module": module,
-            "pressure_angle": 20.0,
+            "pressure_angle": PRESSURE_ANGLE[lobes],
             "addendum_coef": ADDENDUM,
             "dedendum_coef": DEDENDUM,
             "face_width": width,
         },
-        **{gear: _gear(request.profile, gear, module, teeth, play) for gear in GEARS},
-        "wave_generator": {"type": request.cam, "face_width": width},
+        **{gear: _gear(request, gear, module, teeth, play) for gear in GEARS},
+        "wave_generator": {"type": request.cam, **({"lobes": 3} if lobes == 3 else {}), "face_width": width},
     }
     if request.model == "cup":
         length = SHORT_LENGTH if request.shape == "short" else LENGTH
@@ -188,15 +201,15 @@ def _end(shape: Shape, pitch: float) -> dict[str, Any]:
     return {"shape": "hat", **flange}
 
 
-def _gear(profile: Profile, gear: str, module: float, teeth: int, play: float) -> dict[str, Any]:
+def _gear(request: Request, gear: str, module: float, teeth: int, play: float) -> dict[str, Any]:
     """Section of a gear; the ring gear has the backlash."""
-    pitch, ring = module * teeth, gear == "ring_gear"
-    rim = min(RING_RIM * pitch, RING_RIM_MODULES * module) if ring else RIM * pitch
+    profile, pitch, ring = request.profile, module * teeth, gear == "ring_gear"
+    rim = min(RING_RIM * pitch, RING_RIM_MODULES * module) if ring else RIM[request.lobes] * pitch
     radii = {name: _rounded(value * module) for name, value in RADII[profile].items()}
     section: dict[str, Any] = {"rim": _rounded(rim)}
     if profile == "involute":
         if ring:
-            radii |= {"shift": play, "cutter_teeth": 2 * round(0.5 * CUTTER_TEETH * (teeth + 2))}
+            radii |= {"shift": play, "cutter_teeth": 2 * round(0.5 * CUTTER_TEETH * (teeth + request.lobes))}
         return {**section, "profile": {"type": profile, **radii}}
     section["c_P"] = _rounded(1.0 - play) if ring else 1.0
     section["c_l"] = 0.0 if profile == "double_arc" else 0.5
@@ -209,17 +222,21 @@ def _cam_keys(cam: CamType, table: dict[str, Any]) -> dict[str, float]:
         return {"C": 1.0}
     module, teeth = table["drive"]["module"], table["drive"]["teeth_fs"]
     inner = (0.5 * teeth - DEDENDUM) * module - table["flexible_spline"]["rim"]
-    major, minor = inner + module, inner - module
+    lobes = table["drive"]["teeth_rg"] - teeth
+    major, minor = inner + 0.5 * lobes * module, inner - 0.5 * lobes * module
     if cam == "four_roller":
         return {"beta": 10.0, "r_4": _rounded(0.135 * major)}  # 8 mm on the reference drive (section 5.5)
 
     def excess(keys: WaveGenerator) -> float:
-        C = keys.C if isinstance(keys, Simplified) else 1.0
+        C = 1.0 if isinstance(keys, Parabolic) else keys.C
         return taut_length(make_cam(keys, major, C * minor), 720) / (2.0 * np.pi * inner) - 1.0
 
     # the band around the cam is as long as the spline's inner circumference
     if cam == "simplified":
         return {"C": _rounded(brentq(lambda C: excess(Simplified(C=C, face_width=1.0)), 0.5, 1.0, xtol=1e-7))}
+    if cam == "harmonic":
+        fitting = brentq(lambda C: excess(Harmonic(C=C, lobes=lobes, face_width=1.0)), 0.5, 1.0, xtol=1e-8)
+        return {"C": _rounded(fitting, 6)}
     shape = {"C_p": 0.51, "r_c": _rounded(0.175 * minor)}  # that of the improved cam of Table 5.5
     ellipse = 0.5 * major / minor**2
     bounds = ellipse, 1.08 * ellipse

@@ -1,9 +1,10 @@
 """The modelled tooth sectors of one body, and where the unknowns of a sector's nodes are.
 
 A body is a chain of congruent tooth sectors. A node on the counter-clockwise side of sector k is a node on the
-clockwise side of sector k + 1. With twofold symmetry the chain is half a turn long: the sector after the last one is
-sector 0 rotated by 180 degrees, so a node of it is an *image*: its vectors are diag(-1, -1, 1) times those of the
-owner.
+clockwise side of sector k + 1. With a symmetry of rotation the chain is half a turn long, or a third: the sector after
+the last one is sector 0 rotated by that. A node of it is an *image*: its vectors are those of the owner, rotated. The
+flag of a node, `flip`, is that rotation in sixths of a turn: 0 for the owner itself, 3 after half a turn, 2 and 4 after
+one and two thirds.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from swgpar.fem.condensed_parts import CondensedPart
+from swgpar.geometry.rotation import sixths
 from swgpar.meshing.sector import SectorMesh
 
 FLEXIBLE_SPLINE, RING_GEAR, OUTER_RACE = 0, 1, 2
@@ -55,8 +57,8 @@ class BodyLayout:
 
     mesh : the congruent sector
     first_tooth, count : modelled teeth first_tooth .. first_tooth + count - 1
-    closed : the chain closes on itself (with a half turn when the model is halved)
-    images : True when the model holds half a turn
+    closed : the chain closes on itself, with a rotation by its own length where the model is a part of the drive
+    copies : how many times the model makes the whole: 1, 2 or 3
     fixed : (n_fixed,) local nodes that do not move
     condensed : the sector as one element, whose inner nodes have no unknowns; None where they have
     tooth : the tooth as one element, for sectors whose flanks nothing touches; None where it is not used
@@ -66,7 +68,7 @@ class BodyLayout:
     first_tooth: int
     count: int
     closed: bool
-    images: bool
+    copies: int
     fixed: np.ndarray
     condensed: CondensedPart | None = None
     tooth: CondensedPart | None = None
@@ -105,19 +107,17 @@ class BodyLayout:
 
     @property
     def teeth_per_period(self) -> int:
-        """Teeth after which the model repeats: half or all of them."""
-        return self.mesh.n_sectors // 2 if self.images else self.mesh.n_sectors
+        """Teeth after which the model repeats."""
+        return self.mesh.n_sectors // self.copies
 
     def sector_angle(self, tooth: np.ndarray) -> np.ndarray:
         """Angle (rad) of the sectors of teeth about z, counter-clockwise from +y; any shape."""
         return self.mesh.phase + np.asarray(tooth) * (2.0 * np.pi / self.mesh.n_sectors)
 
     def sector_of_tooth(self, tooth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Index in the chain of any tooth (-1 where it is not modelled) and its image flag (uint8)."""
+        """Index in the chain of any tooth (-1 where it is not modelled) and its flag (uint8)."""
         periods, rest = np.divmod(np.asarray(tooth) - self.first_tooth, self.teeth_per_period)
-        index = np.where(rest < self.count, rest, -1)
-        flip = (periods % 2).astype(np.uint8) if self.images else np.zeros_like(rest, dtype=np.uint8)
-        return index, flip
+        return np.where(rest < self.count, rest, -1), sixths(self.copies, periods)
 
     def with_inner_nodes(self, sectors: np.ndarray, field: np.ndarray) -> np.ndarray:
         """Displacement with the values at the inner nodes of condensed sectors recovered.

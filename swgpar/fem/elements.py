@@ -14,7 +14,7 @@ import numpy as np
 from swgpar.fem.local_nodes import LocalNodes
 from swgpar.fem.partition import Partition
 from swgpar.fem.sparse import BlockRows
-from swgpar.geometry.rotation import HALF_TURN
+from swgpar.geometry.rotation import to_images
 from swgpar.kernel import ReferenceElements, assemble_elements, recover_stress
 
 
@@ -25,7 +25,7 @@ class AssembledElements:
     matrices : of the congruent elements;  reference : (n,) int32, index in them
     rotation : (n, 2) cosine and sine of the angle of the element's sector
     conn : (n, m) int32 local nodes, -1 where there are no unknowns
-    flip : (n, m) uint8, 1 for nodes that are images under the half turn
+    flip : (n, m) uint8, sixths of a turn by which nodes are rotated that are images
     """
 
     matrices: ReferenceElements
@@ -167,7 +167,7 @@ class BodyElements:
     def displacement(self, u: np.ndarray) -> np.ndarray:
         """Displacement of all nodes of the sectors seen, images rotated; (n_sectors, n_node, 3) mm."""
         field = np.where(self.local[..., None] >= 0, u[self.local], 0.0)
-        return self.layout.with_inner_nodes(self.sectors, np.where(self.flip[..., None] == 1, HALF_TURN * field, field))
+        return self.layout.with_inner_nodes(self.sectors, to_images(field, self.flip))
 
     def positions(self) -> np.ndarray:
         """Undeformed positions of all nodes of the sectors seen; (n_sectors, n_node, 3) mm."""

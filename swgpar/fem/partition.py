@@ -11,6 +11,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.fem.body_layout import BodyLayout
+from swgpar.geometry.rotation import sixths
 
 MULTIPLIER_NODES = 2
 """Blocks appended after the last node for each body that floats: six multipliers of its coupling."""
@@ -65,12 +66,11 @@ class Partition:
         return np.searchsorted(self._first[body], index, side="right") - 1
 
     def _into_chain(self, body: int, index: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Indices in 0 .. count - 1 of a closed chain, and whether the sector is then an image."""
+        """Indices in 0 .. count - 1 of a closed chain, and the flags of the sectors."""
         b = self.layouts[body]
         index = np.asarray(index)
         periods, rest = np.divmod(index, b.count)
-        flip = (periods % 2).astype(np.uint8) if b.images else np.zeros_like(rest, dtype=np.uint8)
-        return rest, flip
+        return rest, sixths(b.copies, periods)
 
     def node_numbers(self, body: int, index: np.ndarray, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Global block numbers of local nodes of sectors.
@@ -83,7 +83,7 @@ class Partition:
         Returns
         -------
         number : (m, k) int64, -1 where the node has no unknowns
-        flip : (m, k) uint8, 1 where the owner's vectors must be rotated by 180 degrees
+        flip : (m, k) uint8, sixths of a turn by which the owner's vectors must be rotated
         """
         b, numbering = self.layouts[body], self.layouts[body].numbering
         index, nodes = np.asarray(index, dtype=np.int64), np.asarray(nodes, dtype=np.int64)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from swgpar.fem.partition import Partition
-from swgpar.geometry.rotation import HALF_TURN
+from swgpar.geometry.rotation import to_images
 from swgpar.petsc import PETSc
 
 
@@ -50,7 +50,7 @@ def read_field(partition: Partition, body: int, sectors: np.ndarray, vector: PET
     values = exchange(vector)
     exchange.destroy()
     values = np.vstack([np.zeros((absent, 3)), values])[position.reshape(number.shape)]
-    return partition.layouts[body].with_inner_nodes(sectors, np.where(flip[..., None] == 1, HALF_TURN * values, values))
+    return partition.layouts[body].with_inner_nodes(sectors, to_images(values, flip))
 
 
 def write_field(partition: Partition, body: int, sectors: np.ndarray, values: np.ndarray, vector: PETSc.Vec) -> None:

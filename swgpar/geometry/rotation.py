@@ -4,28 +4,40 @@ from __future__ import annotations
 
 import numpy as np
 
-HALF_TURN = np.array([-1.0, -1.0, 1.0])
-"""Factors of a vector's components (x, y, z) under a rotation by 180 degrees about z."""
+SINE = np.sqrt(0.75)
 
 SIXTHS = np.array(
     [
         [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]
-        for c, s in (
-            (1.0, 0.0),
-            (0.5, np.sqrt(0.75)),
-            (-0.5, np.sqrt(0.75)),
-            (-1.0, 0.0),
-            (-0.5, -np.sqrt(0.75)),
-            (0.5, -np.sqrt(0.75)),
-        )
+        for c, s in ((1.0, 0.0), (0.5, SINE), (-0.5, SINE), (-1.0, 0.0), (-0.5, -SINE), (0.5, -SINE))
     ]
 )
-"""Rotations (6, 3, 3) about z by multiples of 60 degrees: half a turn is exact."""
+"""Rotations (6, 3, 3) about z by multiples of a sixth of a turn, those that take a drive of two or three lobes to
+itself among them. Half a turn is exact. The kernels have the same table (`kernel/contact.hpp`)."""
 
 
-def image_rotation(lobes: int, turns: int) -> np.ndarray:
-    """Rotation (3, 3) about z by so many of `lobes` parts of a turn; lobes : 2, 3 or 6."""
-    return SIXTHS[turns * (6 // lobes) % 6]
+def sixths(copies: int, number: np.ndarray | int) -> np.ndarray:
+    """Sixths of a turn, uint8, of the images with these numbers (n,), any integers; copies : 1, 2 or 3."""
+    return (np.asarray(number) % copies * (6 // copies)).astype(np.uint8)
+
+
+def to_images(vectors: np.ndarray, flip: np.ndarray) -> np.ndarray:
+    """Vectors (..., 3) of owners, rotated to their images; flip : (...) uint8, sixths of a turn."""
+    return _rotated_by(SIXTHS, vectors, flip)
+
+
+def to_owners(vectors: np.ndarray, flip: np.ndarray) -> np.ndarray:
+    """Vectors (..., 3) of images, rotated back to their owners; flip : (...) uint8, sixths of a turn."""
+    return _rotated_by(SIXTHS.transpose(0, 2, 1), vectors, flip)
+
+
+def _rotated_by(matrices: np.ndarray, vectors: np.ndarray, flip: np.ndarray) -> np.ndarray:
+    image = flip != 0
+    if not image.any():
+        return vectors
+    out = vectors.copy()
+    out[image] = np.einsum("nij,nj->ni", matrices[flip[image]], vectors[image])
+    return out
 
 
 MIRROR = np.array([-1.0, 1.0])

@@ -166,7 +166,7 @@ def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] 
 def add_face_blocks(const int32_t[:, ::1] conn, const uint8_t[:, ::1] flip, const double[:, :, :, :, ::1] blocks, rows):
     """Add dense blocks (n, m, m, 3, 3), N/mm, of nodes conn (n, m) to the owned rows of a tangent.
 
-    flip : (n, m), 1 for images under the half turn;  rows : record as for `contact_flanks`
+    flip : (n, m), sixths of a turn by which images are rotated;  rows : record as for `contact_flanks`
     Returns the number of blocks that the pattern lacks. Raises ValueError for shapes that disagree.
     """
     cdef int64_t n = conn.shape[0], missing

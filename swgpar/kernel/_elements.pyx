@@ -96,7 +96,7 @@ def assemble_elements(ref, const int32_t[::1] ref_of, const double[:, ::1] rotat
     """Add forces and tangent blocks of corotated elements; returns their strain energy (N mm).
 
     ref_of : (n,) row of `ref`;  rotation : (n, 2) cosine and sine of the sector's angle
-    conn : (n, m) local nodes, -1 fixed;  flip : (n, m), 1 for images under the half turn
+    conn : (n, m) local nodes, -1 fixed;  flip : (n, m), sixths of a turn by which images are rotated
     u : (n_local, 3) mm;  residual : (n_local, 3) N or None
     slot : (n, m * m) int64 block of each node pair, -1 to skip;  values : (n_blocks, 3, 3) N/mm, entry (k, l) of
     block p at values[p, l, k]; both None to skip the tangent

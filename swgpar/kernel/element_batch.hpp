@@ -65,10 +65,8 @@ inline std::int64_t assemble(const ElementBatch& e, const double* u, double* res
         if (block_index < 0) continue;
         const Mat3 even =
             0.5 * (t.template block<3, 3>(3 * a, 3 * b) + t.template block<3, 3>(3 * b, 3 * a).transpose());
-        Mat3 block = c.rotation * even * c.rotation.transpose();
-        if (flip[a]) block.topRows<2>() *= -1.0;
-        if (flip[b]) block.leftCols<2>() *= -1.0;
-        Eigen::Map<Mat3>(values + 9 * block_index) += block;
+        const Mat3 block = c.rotation * even * c.rotation.transpose();
+        Eigen::Map<Mat3>(values + 9 * block_index) += of_owners(block, flip[a], flip[b]);
       }
     }
   }

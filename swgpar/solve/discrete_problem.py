@@ -25,7 +25,7 @@ from swgpar.fem.partition import Partition
 from swgpar.fem.sectors_in_reach import RingSectors, SectorsInReach, WholeTeeth
 from swgpar.fem.sparse import BlockRows, MatrixRows, add_unit_diagonal, create_matrix, fill_matrix, matrix_rows
 from swgpar.fem.vectors import Exchange, create_vector, read_multipliers
-from swgpar.geometry.rotation import HALF_TURN
+from swgpar.geometry.rotation import to_owners
 from swgpar.log import PhaseTimes
 from swgpar.petsc import PETSc
 
@@ -147,8 +147,7 @@ class DiscreteProblem:
         """Undeformed positions (n_local, 3) mm as their owners see them; zero for the multipliers."""
         out = np.zeros((len(self.local), 3))
         for body in self.elements.bodies:
-            seen, position = body.local >= 0, body.positions()
-            position[body.flip == 1] *= HALF_TURN
+            seen, position = body.local >= 0, to_owners(body.positions(), body.flip)
             out[body.local[seen]] = position[seen]
         return out
 

@@ -410,6 +410,10 @@ def test_crowning_is_the_amount_at_the_edges_and_nothing_in_the_middle(shape: st
         (keys("elliptical", lobes=3), "wave_generator.lobes = 3"),
         (keys("four_roller", lobes=3, beta=10.0, r_4=8.0), "wave_generator.lobes = 3"),
         (keys("harmonic", lobes=3), "drive.teeth_rg - drive.teeth_fs = 2"),
+        (
+            keys("harmonic", bearing={"balls": 20, "ball_diameter": 4.0, "race_thickness": 1.0}, lobes=3),
+            "drive.teeth_rg - drive.teeth_fs = 2",
+        ),
         (keys("harmonic", lobes=4), "wave_generator.lobes = 4"),
         (keys("round"), 'wave_generator.type = "round"'),
     ],

@@ -50,8 +50,18 @@ def test_a_cam_fits_a_ratio_or_is_refused(ratio: float, cam: CamType) -> None:
     stretch = taut_length(design.cam()) / (2.0 * np.pi * design.inner_radius) - 1.0
     if cam != "four_roller":  # its rollers leave the spline free in between
         assert abs(stretch) < 2.0 * (design.deflection / design.inner_radius) ** 2  # an ellipse: 0.047 of it
-    if cam in ("parabolic", "simplified"):
+    if cam in ("parabolic", "simplified", "harmonic"):
         assert abs(stretch) < 2e-4  # chosen for it, and rounded
+
+
+@pytest.mark.parametrize("layout, ratio", [("ring_fixed", -40.0), ("spline_fixed", 40.0)])
+@pytest.mark.parametrize("profile", get_args(Profile))
+def test_three_lobes_give_whole_ratios(profile: Profile, layout: str, ratio: float) -> None:
+    request = Request(40.0, 10.0, diameter=60.0, profile=profile, cam="harmonic", layout=layout, model="plane", lobes=3)
+    design, _ = starter_design(request)
+    assert (design.ratio, design.lobes, design.drive.teeth_rg - design.drive.teeth_fs) == (ratio, 3, 3)
+    assert design.drive.teeth_fs % 3 == 0 and flank_clearance(design, 121) > 0.0
+    assert abs(taut_length(design.cam()) / (2.0 * np.pi * design.inner_radius) - 1.0) < 1e-5
 
 
 @pytest.mark.parametrize("layout, ratio", [("ring_fixed", -75.0), ("spline_fixed", 75.0)])
@@ -79,6 +89,9 @@ def test_every_key_of_the_file_has_its_meaning(profile: Profile, cam: CamType) -
         ({"ratio": 10.0, "diameter": 50.0}, "ratio = 10 is out of range: allowed 15 to 320"),
         ({"ratio": 50.2, "diameter": 50.0}, "steps of 0.5"),
         ({"ratio": 50.0}, "either diameter"),
+        ({"ratio": 40.5, "diameter": 50.0, "lobes": 3}, "steps of 1"),
+        ({"ratio": 40.0, "diameter": 50.0, "lobes": 3, "cam": "elliptical"}, 'allowed with "harmonic"'),
+        ({"ratio": 40.0, "diameter": 50.0, "lobes": 4}, "lobes = 4 is out of range"),
         ({"ratio": 50.0, "diameter": 50.0, "bore": 48.0}, "either diameter"),
         ({"ratio": 50.0, "diameter": -1.0}, "diameter = -1"),
         ({"ratio": 50.0, "bore": float("nan")}, "bore = nan"),

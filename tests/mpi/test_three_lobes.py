@@ -1,0 +1,104 @@
+"""A drive with three lobes: a third of it equals the whole, and the invariants hold as with two."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from support.paths import DESIGN
+from support.stepping import WORLD, Row, assert_agree, load_stepper, loaded, rotate
+from support.three_lobes import MODELS
+from swgpar.analysis.bent_start import bend
+from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.design.design_file import load_design
+from swgpar.design.drive_design import DriveDesign
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR
+from swgpar.fem.vectors import read_field
+
+PHYSICAL = ("fs_s1", "fs_s3", "fs_vm", "rg_vm", "wg_torque_Nmm", "tooth_torque_Nmm", "output_angle_deg")
+TORQUE = {"cup": 2000.0, "plane": 200.0}
+
+both_models = pytest.mark.parametrize("model", [pytest.param("cup", marks=pytest.mark.parallel(2)), "plane"])
+PERIOD_SAMPLES = 8
+
+
+def small(model: str, *overrides: str) -> DriveDesign:
+    return load_design(DESIGN, [*MODELS[model], *overrides])
+
+
+@lru_cache
+def base(model: str) -> tuple[LoadStepper, Row]:
+    return loaded(small(model))
+
+
+@lru_cache
+def whole(model: str) -> tuple[LoadStepper, Row]:
+    return loaded(small(model, "solver.twofold_symmetry=false"))
+
+
+def test_the_ratio_is_that_of_the_teeth() -> None:
+    assert small("plane").ratio == -20.0
+    assert small("plane", "drive.layout=spline_fixed").ratio == 21.0
+
+
+@both_models
+def test_a_third_equals_the_whole(model: str) -> None:
+    (part, third), (all_of_it, full) = base(model), whole(model)
+    assert (part.model.copies, all_of_it.model.copies) == (3, 1)
+    assert_agree(third, full, PHYSICAL, 1e-9)
+    assert third["pairs_in_contact"] == full["pairs_in_contact"] >= 3
+    # the displacement of every sector, images among them
+    for body, teeth in ((FLEXIBLE_SPLINE, 60), (RING_GEAR, 63)):
+        sectors = np.arange(teeth)
+        found = read_field(part.model.partition, body, sectors, part.problem.x)
+        expected = read_field(all_of_it.model.partition, body, sectors, all_of_it.problem.x)
+        assert np.abs(found - expected).max() < 1e-9
+
+
+@pytest.mark.parallel([1, 2, 3])
+def test_a_third_equals_the_whole_with_friction_and_the_spline_fixed() -> None:
+    keys = ("drive.layout=spline_fixed", "contact.friction=0.1", "load.torque=0.21")
+    (_, third), (_, full) = (loaded(small("plane", *keys, *more)) for more in ((), ("solver.twofold_symmetry=false",)))
+    assert_agree(third, full, PHYSICAL, 1e-8)
+
+
+@pytest.mark.parallel([2, 3])
+def test_any_number_of_ranks_gives_the_same() -> None:
+    _, alone = loaded(small("plane"), MPI.COMM_SELF)
+    assert_agree(base("plane")[1], alone, PHYSICAL, 1e-8)
+
+
+@both_models
+def test_torques_balance(model: str) -> None:
+    _, r = base(model)
+    assert r["output_torque_Nmm"] == pytest.approx(TORQUE[model])
+    assert abs(r["wg_torque_Nmm"] + r["tooth_torque_Nmm"] + r["output_torque_Nmm"]) < 1e-6 * TORQUE[model]
+
+
+def test_period_and_work() -> None:
+    """The state repeats after a pitch of the ring gear, and without friction the work of input and output agree."""
+    stepper, first = loaded(small("plane"))
+    design = stepper.model.design
+    angles = design.period_angle * np.arange(1, PERIOD_SAMPLES + 1) / PERIOD_SAMPLES
+    rows = [rotate(stepper, float(angle)) for angle in angles]
+    last = rows[-1]
+    assert_agree(last, first, ("fs_s1", "fs_vm", "rg_vm", "wg_torque_Nmm"), 1e-6)
+    turned = last["output_angle_deg"] - first["output_angle_deg"]
+    assert turned == pytest.approx(np.degrees(design.period_angle) / design.ratio, rel=1e-7)
+    mean = np.mean([r["wg_torque_Nmm"] for r in rows])
+    assert abs(mean) == pytest.approx(TORQUE["plane"] / abs(design.ratio), rel=0.01)
+
+
+@both_models
+def test_the_bent_shape_is_near_the_loaded_state(model: str) -> None:
+    stepper, _ = base(model)
+    fresh = load_stepper(small(model))
+    bend(fresh.model)
+    partition, sectors = stepper.model.partition, np.arange(*stepper.model.partition.owned_sectors(FLEXIBLE_SPLINE))
+    found, expected = (read_field(partition, FLEXIBLE_SPLINE, sectors, s.problem.x) for s in (fresh, stepper))
+    largest, off = (WORLD.allreduce(np.abs(v).max(initial=0.0), op=MPI.MAX) for v in (expected, found - expected))
+    assert largest > 1.4
+    assert off < 0.15 * largest
