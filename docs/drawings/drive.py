@@ -6,6 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from _drafting import (
     CAM,
+    DRIVERS,
     INK,
     RING,
     SPLINE,
@@ -24,7 +25,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
+from swgpar.design.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.sections import GearName
 from swgpar.geometry.cams import EllipticalCam
 from swgpar.meshing.cup import meridian
 from swgpar.meshing.recipe import load_recipe
@@ -229,5 +232,59 @@ def front() -> Figure:
     return figure
 
 
+def pancake() -> Figure:
+    """The pancake drive: section along its axis, and the rigid tooth of the flexible spline in both of its slots."""
+    design = load_design(DRIVERS / "pancake.toml")
+    figure, (ax, *slots) = plt.subplots(1, 3, figsize=(11.0, 4.4), width_ratios=(1.5, 1.0, 1.0))
+    inner, half = design.inner_radius, 0.5 * design.drive.face_width
+    names = {"flexible_spline": SPLINE, "ring_gear": RING, "dynamic_spline": RING}
+    cam = design.major_semi_axis
+    fill(ax, np.array([(-half, cam - 5.0), (half, cam - 5.0), (half, cam), (-half, cam)]), CAM)
+    label(ax, (0.0, cam - 2.5), "wave generator", color=INK)
+    for gear, colour in names.items():
+        profile, (low, high) = design.profile(gear), design.axial_range(gear)
+        lift = 0.5 * design.deflection if gear == "flexible_spline" else 0.0
+        ends = (inner + lift, profile.r_tip_circle + lift)
+        if gear != "flexible_spline":
+            ends = (profile.r_tip_circle, design.rim_radius(gear))
+        box = np.array([(low, ends[0]), (high, ends[0]), (high, ends[1]), (low, ends[1])])
+        fill(ax, box, colour, alpha=0.6)
+        text = {"ring_gear": "ring gear\n122 teeth, fixed", "dynamic_spline": "dynamic spline\n120 teeth, output"}
+        if gear in text:
+            label(ax, (0.5 * (low + high), ends[1] - 2.2), text[gear], color=INK)
+    outer = max(design.rim_radius(gear) for gear in design.gears[1:])
+    label(ax, (0.0, inner + 1.6), "flexible spline, 120 teeth", color=INK)
+    label(ax, (0.0, outer + 0.8), "gap", color=INK)
+    ax.set(xlim=(-half - 1.0, half + 1.0), ylim=(cam - 5.5, outer + 1.6))
+    ax.set(xlabel="z, mm", ylabel="r at the major axis, mm")
+    ax.set_aspect("equal")
+    for ax, gear in zip(slots, ("ring_gear", "dynamic_spline"), strict=True):
+        _slot(ax, design, gear)
+    figure.tight_layout()
+    return figure
+
+
+def _slot(ax: Axes, design: DriveDesign, ring: GearName) -> None:
+    """A slot of a ring gear with the rigid tooth of the flexible spline at angles around the major axis."""
+    spline, facing = design.profile("flexible_spline"), design.profile(ring)
+    flank = facing.point(np.linspace(facing.length, 0.0, 40))
+    tooth = np.concatenate([flank * (-1.0, 1.0), flank[::-1]])
+    for side in (-1.0, 1.0):
+        fill(ax, turned(tooth, side * np.pi / facing.n_teeth), RING)
+    angle = np.linspace(-0.05, 0.05, 41)
+    circle = np.column_stack([np.sin(angle), np.cos(angle)])
+    fill(ax, np.concatenate([facing.r_root_circle * circle, (facing.r_root_circle + 1.0) * circle[::-1]]), RING)
+    flank = spline.point(np.linspace(spline.length, 0.0, 40))
+    tooth = np.concatenate([flank * (-1.0, 1.0), flank[::-1]])
+    motion, psi = design.tooth_motion(ring=ring), np.radians(np.arange(-50.0, 51.0, 10.0))
+    pose = motion.pose(psi)
+    for c, angle in zip(pose.c, pose.angle, strict=True):
+        moved = c + np.exp(1j * angle) * (tooth[:, 0] + 1j * tooth[:, 1])
+        ax.plot(moved.real, moved.imag, color=SPLINE, lw=1.0)
+    pitch = 0.5 * design.drive.module * design.drive.teeth_rg
+    ax.set(xlim=(-2.0, 2.0), ylim=(pitch - 2.4, pitch + 1.6), xlabel="mm", title=ring.replace("_", " "))
+    ax.set_aspect("equal")
+
+
 if __name__ == "__main__":
-    run({"drive_section": section, "drive_teeth": teeth, "drive_front": front})
+    run({"drive_section": section, "drive_teeth": teeth, "drive_front": front, "drive_pancake": pancake})

@@ -61,7 +61,7 @@ class BentSpline:
 
     def _share(self, z: np.ndarray) -> np.ndarray:
         """Deflection at z (n,) mm over that at mid-width."""
-        if self.design.drive.model == "plane":
+        if self.design.drive.model != "cup":
             return np.ones_like(z)
         return np.clip((self.end - z) / self.end, 0.0, None)
 

@@ -69,7 +69,7 @@ def draw_load_sharing(pairs: Columns, history: Columns, title: str, lobes: int =
                 label = f"{side} flank" + (other if mark == "x" else "")
                 upper.plot(angle[chosen], share[chosen], mark, ms=5, mec=colour, mfc="none", label=label)
     upper.set(xlabel="pair, from the major axis (degrees)", ylabel="share of the force (%)")
-    upper.set_title("force of a pair over that of all pairs, at all computed angles", fontsize=10)
+    upper.set_title("force of a pair over that of all pairs of its ring gear, at all computed angles", fontsize=10)
     figure.legend(loc="outside lower center", ncols=3, fontsize=8)
     rows = np.unique(pairs["increment"]).astype(int) - 1
     lower.step(history["wg_angle_deg"][rows], history["pairs_in_contact"][rows], "o-", where="mid", ms=4)
@@ -101,7 +101,11 @@ def draw_contact_pattern(pairs: Columns, lines: Columns, step: int | None, plane
     figure = Figure(figsize=(10.0, 6.0), layout="constrained")
     angle = pairs["wg_angle_deg"][chosen[0]]
     figure.suptitle(f"contact of the flanks, wg_angle_deg = {angle:.3g}", fontsize=10)
-    (_draw_pressure_lines if plane else _draw_pressure_maps)(figure, flanks)
+    if plane:
+        _draw_pressure_lines(figure, flanks)
+    else:
+        side = "ring gear" if "ring" in pairs else "open end of the cup"
+        _draw_pressure_maps(figure, flanks, f"z (mm), {side} at negative z")
     return figure
 
 
@@ -118,8 +122,10 @@ class _Flank:
     def __init__(self, pairs: Columns, lines: Columns, k: int) -> None:
         edge = ", on an edge" if pairs["edge"][k] else ""
         load = f"{pairs['force_N'][k]:.3g} N, {pairs['pressure_MPa'][k]:.4g} MPa{edge}"
-        self.name = f"tooth {pairs['tooth'][k]:.0f}, {pairs['flank'][k]}\n{load}"
-        here = np.all([lines[name] == pairs[name][k] for name in ("increment", "tooth", "flank", "ring_tooth")], axis=0)
+        ring = f", {pairs['ring'][k].replace('_', ' ')}" if "ring" in pairs else ""
+        self.name = f"tooth {pairs['tooth'][k]:.0f}, {pairs['flank'][k]}{ring}\n{load}"
+        names = ("increment", "tooth", "flank", "ring_tooth", "ring")
+        here = np.all([lines[name] == pairs[name][k] for name in names if name in pairs], axis=0)
         self.z, self.s = lines["z_mm"][here], lines["s_mm"][here]
         self.half_width, self.peak = lines["half_width_mm"][here], lines["pressure_MPa"][here]
 
@@ -143,7 +149,7 @@ def _draw_pressure_lines(figure: Figure, flanks: list[_Flank]) -> None:
     axes.legend(fontsize=8)
 
 
-def _draw_pressure_maps(figure: Figure, flanks: list[_Flank]) -> None:
+def _draw_pressure_maps(figure: Figure, flanks: list[_Flank], along: str) -> None:
     columns = min(5 if len(flanks) > 8 else 4, len(flanks))
     rows = -(-len(flanks) // columns)
     figure.set_size_inches(12.0, max(5.0, 2.2 * rows + 1.0))
@@ -163,6 +169,6 @@ def _draw_pressure_maps(figure: Figure, flanks: list[_Flank]) -> None:
     panels[0].invert_yaxis()
     for axes in panels[len(flanks) :]:
         axes.set_axis_off()
-    figure.supxlabel("z (mm), open end of the cup at negative z", fontsize=9)
+    figure.supxlabel(along, fontsize=9)
     figure.supylabel("arc length from the tip (mm)", fontsize=9)
     figure.colorbar(image, ax=list(panels), label="contact pressure (MPa)")

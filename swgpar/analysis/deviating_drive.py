@@ -216,7 +216,7 @@ class DeviatingDrive:
             start.copy(problem.x)
             for share in np.arange(1, steps + 1) / steps:
                 self._displace_bore(pitch, state, share)
-                problem.flanks.deviate(deviations.scaled(share))
+                problem.flanks[0].deviate(deviations.scaled(share))
                 result = self.model.solver.solve(state, search=False)
                 iterations += result.iterations
                 if not result.converged:

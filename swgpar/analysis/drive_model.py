@@ -17,13 +17,12 @@ from swgpar.analysis.bearing_model import (
 )
 from swgpar.constraints.distributing_coupling import DistributingCoupling, NodeMeans, RadialGuide
 from swgpar.constraints.rigid_attachment import RigidAttachment
-from swgpar.constraints.supports import Supports
+from swgpar.constraints.supports import FixedRing, FloatingRing, Supports
 from swgpar.contact.contact import NO_KEYS, Contact, largest
 from swgpar.contact.flank_state import Crowning, SearchRange
 from swgpar.contact.flanks import FlankContact
 from swgpar.contact.rigid_surface import RigidContact, cam_pose, pin_pose
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.sections import GEARS
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR, BodyLayout
 from swgpar.fem.condensed_parts import condense_sector, condense_tooth, relative_end_rotation
 from swgpar.fem.elements import Elements
@@ -47,8 +46,13 @@ than the second distance; faces with blocks in the tangent's pattern; radial dis
 FOOT_REACH = 0.5
 """Largest gap over the module at which a foot point is looked for."""
 
-PREFIXES = (("fs",), ("rg", "housing"), ("race",))
-"""Of the names of stresses, by body and part."""
+PREFIXES = {
+    "flexible_spline": ("fs",),
+    "ring_gear": ("rg", "housing"),
+    "dynamic_spline": ("ds",),
+    "outer_race": ("race",),
+}
+"""Of the names of stresses, by the name of the body, for each of its parts."""
 
 EDGE = 1.0 + 1e-9
 """Factor on the width of a rigid surface: points on its edge belong to it."""
@@ -73,7 +77,7 @@ def search_distance(design: DriveDesign, share: float = NEAR) -> float:
 
     share : of the module, at least
     """
-    return max(share * design.drive.module, TOUCH * design.drive.module + design.backlash)
+    return max(share * design.drive.module, TOUCH * design.drive.module + max(design.backlash, design.dynamic_backlash))
 
 
 @dataclass(eq=False, kw_only=True)
@@ -113,7 +117,7 @@ class DriveModel:
     @property
     def fixed_body(self) -> int:
         """Index of the gear that does not rotate in the frame in which the drive is computed."""
-        return GEARS.index(self.design.standing_gear)
+        return self.design.gears.index(self.design.standing_gear)
 
     def omitted_bending_stress(self) -> float:
         """Stress (MPa) that condensed sectors leave out in the present state: E theta^2 / 8 where they bend most."""
@@ -138,8 +142,8 @@ class DriveModel:
         """Largest stresses (MPa) by body and kind ("fs_s1", "race_vm", …), and the nodal fields of all bodies."""
         u = self.problem.displacement()
         values, fields = {}, []
-        for prefixes, body in zip(PREFIXES, self.elements.bodies):
-            field = body_fields(body, u)
+        for body in self.elements.bodies:
+            field, prefixes = body_fields(body, u), PREFIXES[body.layout.name]
             fields.append(field)
             for prefix, largest_of in zip(prefixes, part_maxima(self.comm, body, u, field)):
                 values.update({f"{prefix}_{k}": v for k, v in largest_of.items()})
@@ -186,7 +190,7 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
         elements=elements,
         supports=supports,
         rigid_contacts=contacts,
-        flanks=build_flank_contact(design, partition=partition, elements=elements, supports=supports),
+        flanks=build_flank_contacts(design, partition=partition, elements=elements, supports=supports),
         contact_search=contact_search(design),
         module=design.drive.module,
         ring_sectors=RingSectors(layouts[RING_GEAR].count) if _leaves_out_sectors(design) else None,
@@ -222,7 +226,8 @@ def sector_elements(design: DriveDesign, mesh: SectorMesh) -> ReferenceElements:
 def build_layout(design: DriveDesign, mesh: SectorMesh, reference: ReferenceElements | None = None) -> BodyLayout:
     """Modelled sectors of a body. reference : elements of one sector, needed where sectors are condensed"""
     copies = copies_of_model(design)
-    clamped = mesh.body == design.standing_gear == "ring_gear" and design.frame_is_rigid
+    standing = mesh.body == design.standing_gear != "flexible_spline"
+    clamped = standing and design.frame_is_rigid
     fixed = mesh.node_sets["outer"] if clamped else np.zeros(0, dtype=np.int32)
     condensed = tooth = None
     if reference is not None and design.solver.condensed_sectors:
@@ -248,16 +253,16 @@ def _leaves_out_sectors(design: DriveDesign) -> bool:
 
 
 def _condenses_teeth(design: DriveDesign) -> bool:
-    return design.solver.far_teeth == "left_out" and design.drive.model == "cup"
+    return design.solver.far_teeth == "left_out" and design.drive.model != "plane"
 
 
 def build_supports(design: DriveDesign, *, partition: Partition, elements: Elements) -> Supports:
     """Couplings of the spline, of a ring gear that is not clamped and of a bearing; the guide of a rotating ring."""
-    spline, ring = elements.bodies[:2]
+    spline = elements.bodies[FLEXIBLE_SPLINE]
     copies = copies_of_model(design)
     # a plane section with deviations is centred by its cam alone: the wall of the cup gives way
-    centred = design.drive.model == "cup" or design.deviations is None
-    rotates, guide = design.output_gear == "ring_gear", None
+    centred = design.drive.model == "cup" or (design.drive.model == "plane" and design.deviations is None)
+    rotates, guide = design.output_gear != "flexible_spline", None
     couplings: list[NodeMeans] = []
     if design.drive.model == "cup" and design.cup.attachment != "edge":
         cup, penalty = design.cup, design.penalty
@@ -268,21 +273,27 @@ def build_supports(design: DriveDesign, *, partition: Partition, elements: Eleme
     else:
         couplings.append(DistributingCoupling(partition, spline, "bore", copies > 1, centred))
     if rotates or not design.frame_is_rigid:
+        ring = elements.bodies[design.gears.index(design.output_gear) if rotates else RING_GEAR]
         couplings.append(DistributingCoupling(partition, ring, "outer", copies > 1))
     if rotates and design.frame_is_rigid:
         outer = float(np.hypot(*couplings[-1].reference[:, :2].T).max(initial=0.0))
-        area = 2.0 * np.pi * outer * design.drive.face_width / copies
+        low, high = design.axial_range(design.output_gear)
+        area = 2.0 * np.pi * outer * (high - low) / copies
         guide = RadialGuide(couplings[-1], area, design.penalty)
     scale = design.material.E * design.drive.module
     race = None if design.bearing is None else race_coupling(partition, elements, couplings[0])
+    spline_ratio = None
+    if design.dynamic_spline is not None:  # the flexible spline rotates with the dynamic one
+        spline_ratio = 1.0 if design.output_gear == "dynamic_spline" else 0.0
     return Supports(
         partition,
         couplings,
-        output=RING_GEAR if rotates else FLEXIBLE_SPLINE,
+        output=len(couplings) - 1 if rotates else FLEXIBLE_SPLINE,
         guide=guide,
         scale=scale,
         share=1.0 / copies,
         race=race,
+        spline_ratio=spline_ratio,
     )
 
 
@@ -324,23 +335,29 @@ def flank_crowning(design: DriveDesign) -> Crowning:
     return Crowning(micro.fs_crowning, design.drive.face_width, micro.crowning_shape)
 
 
-def build_flank_contact(
+def build_flank_contacts(
     design: DriveDesign, *, partition: Partition, elements: Elements, supports: Supports
-) -> FlankContact:
-    """Contact of the flexible spline's flanks on the ring gear's."""
-    spline, ring = elements.bodies[:2]
-    return FlankContact(
-        partition,
-        spline,
-        ring,
-        supports,
-        order=design.contact.quadrature,
-        crowning=flank_crowning(design),
-        penalty=design.penalty,
-        max_gap=max(FOOT_REACH * design.drive.module, search_distance(design)),
-        pressure_limit=PRESSURE_LIMIT * design.material.E,
-        friction_coefficient=design.contact.friction,
-    )
+) -> list[FlankContact]:
+    """Contacts of the flexible spline's flanks, one with each ring gear."""
+    contacts = []
+    for ring in range(RING_GEAR, len(design.gears)):
+        fixed = len(partition.layouts[ring].fixed) > 0
+        contacts.append(
+            FlankContact(
+                partition,
+                elements.bodies[FLEXIBLE_SPLINE],
+                elements.bodies[ring],
+                ring,
+                FixedRing() if fixed else FloatingRing(supports.output, partition.comm),
+                order=design.contact.quadrature,
+                crowning=flank_crowning(design),
+                penalty=design.penalty,
+                max_gap=max(FOOT_REACH * design.drive.module, search_distance(design)),
+                pressure_limit=PRESSURE_LIMIT * design.material.E,
+                friction_coefficient=design.contact.friction,
+            )
+        )
+    return contacts
 
 
 def contact_search(design: DriveDesign) -> ContactSearch:

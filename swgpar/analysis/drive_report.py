@@ -90,7 +90,7 @@ def drive_report(result: DriveResult) -> bytes:
 def _introduction(summary: Mapping[str, Any], found: Iterable[Check]) -> str:
     drive = summary["design"]["drive"]
     look = [check.name for check in found if check.good is False]
-    model = "plane model" if drive["model"] == "plane" else "cup drive"
+    model = {"plane": "plane model", "cup": "cup drive", "pancake": "pancake drive"}[drive["model"]]
     fixed = FIXED[drive["layout"]]
     mesh = f"mesh {Path(summary['recipe']).stem}, " if summary["recipe"] else ""
     verdict = f"Look at: {', '.join(look)}." if look else "All checks that can be judged are good."

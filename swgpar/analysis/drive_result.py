@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 
 import numpy as np
 from mpi4py import MPI
 
 from swgpar.analysis.drive_tables import DriveTables, read_tables
 from swgpar.analysis.figures import DriveFigures
-from swgpar.design.sections import GEARS, GearName
+from swgpar.design.sections import GearName
 from swgpar.errors import InputError
 from swgpar.geometry.rotation import SIXTHS, sixths
 from swgpar.results import history
@@ -124,6 +124,11 @@ class DriveResult:
         return self.summary["design"]["drive"]["model"] == "plane"
 
     @property
+    def gears(self) -> tuple[GearName, ...]:
+        """The gears, flexible spline first."""
+        return tuple(name for name in get_args(GearName) if name in self.summary["bodies"])
+
+    @property
     def stiffness(self) -> dict[str, Any] | None:
         """Torsional stiffness: K1, K2, K3 (N m / rad), lost motion, hysteresis, backlash (arc minutes) and more.
 
@@ -164,7 +169,7 @@ class DriveResult:
 
         Parameters
         ----------
-        body : "flexible_spline" or "ring_gear"
+        body : "flexible_spline", "ring_gear", or in a pancake drive "dynamic_spline"
 
         Returns
         -------
@@ -193,7 +198,7 @@ class DriveResult:
             smallest principal stress, von Mises stress), on the flexible spline also "pressure" (MPa; contact).
         increment : int
             Number of the increment among those with fields, from 0; negative ones count from the end.
-        body : "flexible_spline" or "ring_gear"
+        body : "flexible_spline", "ring_gear", or in a pancake drive "dynamic_spline"
 
         Returns
         -------
@@ -233,15 +238,15 @@ class DriveResult:
         Parameters
         ----------
         increment : as in `field`
-        body : "flexible_spline", "ring_gear", or None for both
-            With both, the cell data "body" is 0 for the flexible spline and 1 for the ring gear; a field that a body
-            does not have is NaN there.
+        body : "flexible_spline", "ring_gear", or None for all gears
+            With all, the cell data "body" is 0 for the flexible spline, 1 for the ring gear and 2 for the dynamic
+            spline of a pancake drive; a field that a body does not have is NaN there.
         whole : bool
             Add what symmetry left out, if the model is a half or a third of the drive.
         """
         import pyvista
 
-        bodies = GEARS if body is None else (body,)
+        bodies = self.gears if body is None else (body,)
         parts = [self._part(name, increment) for name in bodies]
         if whole:
             copies = self.summary["copies"]
@@ -258,7 +263,7 @@ class DriveResult:
             grid.point_data[name] = np.concatenate(
                 [fields.get(name, np.repeat(missing, len(points), axis=0)) for points, _, fields in parts]
             )
-        numbers = [np.full(len(part[1]), GEARS.index(name)) for name, part in zip(bodies, parts, strict=True)]
+        numbers = [np.full(len(part[1]), self.gears.index(name)) for name, part in zip(bodies, parts, strict=True)]
         grid.cell_data["body"] = np.concatenate(numbers)
         return grid
 

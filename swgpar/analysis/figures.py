@@ -22,9 +22,7 @@ from swgpar.analysis.program_figures import torque_against_rotation
 from swgpar.analysis.transmission_error import orders
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import Stage
-from swgpar.design.sections import GEARS
 from swgpar.errors import InputError
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.results.figure_set import Drawings, FigureSet
 from swgpar.results.sector_fields import SectorFields
 
@@ -75,7 +73,7 @@ class DriveFigures(FigureSet):
             found["ball_loads"] = self.ball_loads
         if self._result.increments:
             found |= {"deformed_drive": self.deformed, "loaded_teeth": self.loaded_teeth}
-            if not self._result.is_plane:
+            if self._has_cup:
                 found["cup_section"] = self.cup_section
             found["stress_around"] = self.stress_around
         return found
@@ -296,8 +294,8 @@ class DriveFigures(FigureSet):
 
         increment : as in `DriveResult.field`
         """
-        if self._result.is_plane:
-            raise InputError('drive.model = "plane" has no cup: allowed with "cup"')
+        if not self._has_cup:
+            raise InputError(f'drive.model = "{self._design.drive.model}" has no cup: allowed with "cup"')
         cam_angle = self._cam_angle(self._row(increment))
         return draw_cup_section(self._grids(increment), self._design, cam_angle, self._when(increment))
 
@@ -306,7 +304,7 @@ class DriveFigures(FigureSet):
 
         increment : as in `DriveResult.field`
         """
-        result, body = self._result, GEARS[FLEXIBLE_SPLINE]
+        result, body = self._result, "flexible_spline"
         counts, design = result.summary["bodies"][body], self._design
         return draw_circumference(
             design,
@@ -318,12 +316,16 @@ class DriveFigures(FigureSet):
         )
 
     @property
+    def _has_cup(self) -> bool:
+        return self._result.summary["design"]["drive"]["model"] == "cup"
+
+    @property
     def _design(self) -> DriveDesign:
         return DriveDesign.model_validate(self._result.summary["design"])
 
     def _grids(self, increment: int) -> list[pyvista.UnstructuredGrid]:
         """Both whole bodies with their fields; collective where these are gathered. What follows is not."""
-        return [self._result.grid(increment, body, whole=True) for body in GEARS]
+        return [self._result.grid(increment, body, whole=True) for body in self._result.gears]
 
     def _row(self, increment: int) -> int:
         """Row of the history, from 0, of an increment with fields."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from swgpar.analysis.drive_model import DriveModel
+from swgpar.contact.flanks import FlankContact
 from swgpar.design.load_states import LoadState
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.fem.vectors import create_vector, read_field
@@ -36,21 +37,21 @@ class LineLoad:
         return total / np.linalg.norm(total)
 
 
-def nodal_flank_forces(model: DriveModel, state: LoadState) -> PETSc.Vec:
-    """Nodal contact forces (N) of the flanks by the last evaluation; collective. Each pair counts on one rank."""
+def nodal_flank_forces(model: DriveModel, state: LoadState, flanks: FlankContact) -> PETSc.Vec:
+    """Nodal contact forces (N) of the flanks by their last evaluation; collective. Each pair counts on one rank."""
     problem = model.problem
     local = np.zeros((len(problem.local), 3))
-    problem.flanks.add_owned_forces(problem.displacement(), state, local)
+    flanks.add_owned_forces(problem.displacement(), state, local)
     total = create_vector(model.partition)
     total.setValuesBlocked(problem.local.number, -local, addv=PETSc.InsertMode.ADD_VALUES)
     total.assemble()
     return total
 
 
-def flank_forces(model: DriveModel, state: LoadState, teeth: np.ndarray) -> np.ndarray:
-    """Contact forces (n, n_node, 3) N on the nodes of the flexible spline's `teeth` (n,); collective."""
+def flank_forces(model: DriveModel, state: LoadState, teeth: np.ndarray, flanks: FlankContact) -> np.ndarray:
+    """Contact forces (n, n_node, 3) N of `flanks` on the nodes of the flexible spline's `teeth` (n,); collective."""
     layout = model.partition.layouts[FLEXIBLE_SPLINE]
-    vector = nodal_flank_forces(model, state)
+    vector = nodal_flank_forces(model, state, flanks)
     forces = read_field(model.partition, FLEXIBLE_SPLINE, teeth - layout.first_tooth, vector)
     vector.destroy()
     # in the plane both layers have the force of the lower one

@@ -38,6 +38,7 @@ GROWTH = {
     "plane": Growth(0.18, 0.61, 12.0, 4.3),
     "cup": Growth(0.34, 1.31, 8.4, 17.4),
 }
+GROWTH["pancake"] = GROWTH["cup"]
 
 
 @dataclass(frozen=True)
@@ -57,8 +58,8 @@ def forecast(design: DriveDesign, recipe: MeshRecipe) -> Forecast:
     """
     plane, copies = design.drive.model == "plane", copies_of_model(design)
     elements = unknowns = 0
-    for counts in sector_counts(design, recipe).values():
-        fixed = counts.outer if design.standing_gear == "ring_gear" and design.frame_is_rigid else 0
+    for gear, counts in sector_counts(design, recipe).items():
+        fixed = counts.outer if gear == design.standing_gear and design.frame_is_rigid else 0
         free = counts.nodes - counts.shared - fixed
         elements += counts.elements * counts.n_sectors
         unknowns += (2 if plane else 3) * free * (counts.n_sectors // copies)

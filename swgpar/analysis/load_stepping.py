@@ -12,6 +12,7 @@ from swgpar.analysis.predictor import KnownState, predict
 from swgpar.analysis.torques import torques
 from swgpar.design.load_states import LoadState, Stage, start_state
 from swgpar.errors import ConvergenceError
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.log import logger
 from swgpar.petsc import PETSc
 from swgpar.solve.solve_state import SolveResult
@@ -78,14 +79,7 @@ class LoadStepper:
             saved = x.copy()
             end = min(1.0, done + share)
             state = origin.interpolate(target, end, self.design.drive.module, self.design.deflection)
-            if self._takes_up_torque(state):
-                self._close_backlash(state)
-            self._predict(state)
-            result = self.solver.solve(
-                state,
-                establish_contact=state.switches_on(self.load_state),
-                max_iterations=settings.iteration_limit - self.iterations,
-            )
+            result = self._solve(state, settings.iteration_limit - self.iterations)
             self.iterations += result.iterations
             if result.converged:
                 self._take(state, result)
@@ -102,6 +96,31 @@ class LoadStepper:
             logger.info(
                 "   cut back to %.3g of the increment (%s, residual %.1e)", share, result.reason, result.residual
             )
+
+    def _solve(self, state: LoadState, most: int) -> SolveResult:
+        """Solve for `state` from the present x. most : Newton iterations"""
+        before = 0
+        if self._takes_up_torque(state):
+            if (held := self._held(state)) is not None:
+                self._close_backlash(held)
+                result = self.solver.solve(held, max_iterations=most)
+                before = result.iterations
+                if not result.converged:
+                    return result
+            self._close_backlash(state)
+        self._predict(state)
+        result = self.solver.solve(
+            state, establish_contact=state.switches_on(self.load_state), max_iterations=max(1, most - before)
+        )
+        return replace(result, iterations=before + result.iterations)
+
+    def _held(self, state: LoadState) -> LoadState | None:
+        """The same load with the flexible spline held, where contacts alone are to hold it; otherwise None.
+
+        Two backlashes cannot be closed at once: the output then meets the held spline, and with it the fixed ring gear.
+        """
+        free = self.problem.supports.spline_ratio is not None and not state.spline_held
+        return replace(state, spline_held=True) if free else None
 
     def _origin(self, target: LoadState) -> LoadState:
         """The present load state with what the output has under the control of the target.
@@ -125,12 +144,15 @@ class LoadStepper:
 
     def jump(self, target: LoadState) -> None:
         """Solve for `target` from the present x in one increment, whatever it is; raises ConvergenceError."""
-        if target.control == "torque":
-            self._close_backlash(target)
-        result = self.solver.solve(target, max_iterations=MAX_JUMP_ITERATIONS)
-        if not result.converged:
-            raise ConvergenceError(self._failure(target, target, result, 0))
-        self.iterations = result.iterations
+        self.iterations = 0
+        held = self._held(target)
+        for state in (target,) if held is None else (held, target):
+            if state.control == "torque":
+                self._close_backlash(state)
+            result = self.solver.solve(state, max_iterations=MAX_JUMP_ITERATIONS)
+            if not result.converged:
+                raise ConvergenceError(self._failure(target, target, result, 0))
+            self.iterations += result.iterations
         self._take(target, result)
 
     def _take(self, state: LoadState, result: SolveResult) -> None:
@@ -202,12 +224,13 @@ class LoadStepper:
             rotation = self.problem.closing_rotation(target)
             if rotation == 0.0:
                 break
-            self._rotate_output(rotation)
+            self._rotate_output(rotation, alone=target.spline_held)
 
-    def _rotate_output(self, rotation: float) -> None:
-        """Rotate the output in its deformed pattern (rad)."""
-        x = self.problem.x
-        predict(self.model.partition, self.model.fixed_body, [KnownState(0.0, x)], x, 0.0, rotation)
+    def _rotate_output(self, rotation: float, *, alone: bool = False) -> None:
+        """Rotate the output in its deformed pattern (rad). alone : without a flexible spline that is held"""
+        x, fixed = self.problem.x, self.model.fixed_body
+        resting = {fixed, FLEXIBLE_SPLINE} if alone else {fixed}
+        predict(self.model.partition, fixed, [KnownState(0.0, x)], x, 0.0, rotation, resting)
 
     def _predict_rotation(self, angle: float) -> None:
         """Predict the state at an angle of the wave generator (rad) from the known states, or from the present one."""
@@ -224,10 +247,11 @@ class LoadStepper:
             "wg_angle_deg": float(np.degrees(state.angle)),
             "output_angle_deg": float(np.degrees(problem.output_rotation())),
             "wg_torque_Nmm": torque.wave_generator,
-            "tooth_torque_Nmm": torque.teeth,
+            "tooth_torque_Nmm": torque.teeth[0],
             "output_torque_Nmm": torque.output,
             "torque_balance_Nmm": torque.balance,
             "pairs_in_contact": self.model.copies * problem.touching_pairs(),
             "max_penetration_mm": problem.penetration(),
             "newton_iterations": self.iterations,
+            **dict(zip(("ds_tooth_torque_Nmm",), torque.teeth[1:])),
         }

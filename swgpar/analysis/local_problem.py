@@ -123,7 +123,7 @@ class LocalProblem:
         self.body = self.elements.bodies[FLEXIBLE_SPLINE]
         teeth = first + np.arange(SECTORS)
         drive_mesh = model.partition.layouts[FLEXIBLE_SPLINE].mesh
-        self.loads = line_loads(drive_mesh, flank_forces(model, state, teeth))
+        self.loads = line_loads(drive_mesh, flank_forces(model, state, teeth, model.problem.flanks[0]))
         displacement = self._of_the_drive(teeth)
         scale = design.material.E * design.drive.module
         problem = DiscreteProblem(
@@ -199,7 +199,7 @@ class LocalProblem:
         """Add the torque that acts on the inner surface in the plane, to forces (n_own, 3) N; collective."""
         model, mesh = self.model, self.layout.mesh
         found = torques(model.problem, self.state)
-        moment = -(found.wave_generator + found.teeth) / mesh.n_sectors
+        moment = -(found.wave_generator + sum(found.teeth)) / mesh.n_sectors
         nodes = mesh.node_sets["bore"].astype(np.int64)
         weight = node_weights(mesh.coords, nodes, mesh.ccw_nodes)
         weighted = weight > 0.0

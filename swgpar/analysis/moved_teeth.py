@@ -24,7 +24,7 @@ class MovedTooth:
 
     Attributes
     ----------
-    profile : of the flank;  angle : rad, of the sector
+    profile : of the flank;  angle : rad, of the sector;  ends : mm, of its face width
     """
 
     def __init__(
@@ -35,6 +35,7 @@ class MovedTooth:
         self.angle = float(layout.sector_angle(np.array(tooth)))
         self.crowned = crowned
         z = layout.mesh.flanks[0].z
+        self.ends = float(z[0]), float(z[-1])
         motion = np.array([self._motion(layout, u, station) for station in range(len(z))])
         # the sections of the plane model move alike
         self._at = CubicSpline(z, motion) if len(z) > 2 else CubicSpline(z, motion[:1].repeat(len(z), axis=0))

@@ -17,11 +17,12 @@ from scipy.integrate import trapezoid
 from swgpar.analysis.drive_model import DriveModel, flank_crowning
 from swgpar.analysis.flank_loads import LineLoad, flank_forces, line_loads
 from swgpar.analysis.moved_teeth import MovedTooth
+from swgpar.contact.flanks import FlankContact
 from swgpar.contact.line_contact import LineContact, effective_modulus, line_contact
 from swgpar.contact.patch_contact import PatchContact, patch_contact
 from swgpar.contact.search import FlankPair
 from swgpar.design.load_states import LoadState
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.fem.vectors import read_field
 from swgpar.geometry.rotation import SIXTHS, rotated
 from swgpar.log import logger
@@ -65,7 +66,7 @@ class PairContact:
 
     tooth, ring_tooth : numbers of the teeth, counter-clockwise from +y;  flank : of the flexible spline's tooth
     angle_deg : of the force on the deformed flank, from the major axis, counter-clockwise, -180 to 180
-    force_N : force between the flanks;  force_share : over the sum of the forces of all pairs of the drive
+    force_N : force between the flanks;  force_share : over the sum of the forces of all pairs of that ring gear
     torque_Nmm : about the axis, on the flexible spline
     width_mm : length along the face width that carries the force
     line_load_Nmm : largest line load, N/mm, at `z_mm`;  radius_mm : of the contact, on the undeformed flexible spline
@@ -73,6 +74,7 @@ class PairContact:
     sliding_mm_s : sliding of the flexible spline's flank on the other in the section, at the speed of the input
     edge : 1 where the contact ends at the tip of a profile, or the load at an end of the face width; the pressure is
     then no property of the drive
+    ring : body whose tooth is meant, in a drive with two ring gears; else empty
     stations : along the face width, those that carry a load
 
     From `width_mm` to `sliding_mm_s` all are nan where the pressure is not computed.
@@ -94,29 +96,37 @@ class PairContact:
     shear_MPa: float = np.nan
     sliding_mm_s: float = np.nan
     edge: int = 0
+    ring: str = ""
     stations: tuple[ContactStation, ...] = ()
 
     def row(self) -> dict[str, Any]:
         """The row of pairs.csv."""
-        return {name: value for name, value in asdict(self).items() if name != "stations"}
+        left_out = ("stations",) if self.ring else ("stations", "ring")
+        return {name: value for name, value in asdict(self).items() if name not in left_out}
 
     def station_rows(self) -> list[dict[str, Any]]:
         """The rows of contact_lines.csv."""
         pair = {"tooth": self.tooth, "flank": self.flank, "ring_tooth": self.ring_tooth}
+        pair |= {"ring": self.ring} if self.ring else {}
         return [{**pair, **asdict(station)} for station in self.stations]
 
 
 def pair_contacts(model: DriveModel, state: LoadState) -> list[PairContact]:
-    """Contacts of all touching pairs, by tooth, the same on all ranks; collective."""
+    """Contacts of all touching pairs, by ring gear and tooth, the same on all ranks; collective."""
+    return [contact for flanks in model.problem.flanks for contact in _contacts(model, state, flanks)]
+
+
+def _contacts(model: DriveModel, state: LoadState, flanks: FlankContact) -> list[PairContact]:
+    """Contacts of all touching pairs with one ring gear."""
     spline = model.partition.layouts[FLEXIBLE_SPLINE]
     first, end = model.partition.owned_sectors(FLEXIBLE_SPLINE)
-    forces = flank_forces(model, state, spline.first_tooth + np.arange(first, end))
+    forces = flank_forces(model, state, spline.first_tooth + np.arange(first, end), flanks)
     loads = line_loads(spline.mesh, forces)
-    pairs = [pair for pair in model.problem.flanks.pairs if (pair.sector - first, pair.side) in loads]
-    carried = _carried(model, state, pairs, forces, loads)
+    pairs = [pair for pair in flanks.pairs if (pair.sector - first, pair.side) in loads]
+    carried = _carried(model, state, flanks, pairs, forces, loads)
     top = max(model.comm.allgather(max((_peak(load) for load in loads.values()), default=0.0)))
     resolved = [k for k, pair in enumerate(pairs) if _peak(loads[pair.sector - first, pair.side]) > SMALLEST * top]
-    moved, facing = moved_teeth(model, [pairs[k] for k in resolved])
+    moved, facing = moved_teeth(model, [pairs[k] for k in resolved], flanks)
     failed = []
     for k, teeth, ring_teeth in zip(resolved, moved, facing):
         load = loads[pairs[k].sector - first, pairs[k].side]
@@ -135,12 +145,14 @@ def pair_contacts(model: DriveModel, state: LoadState) -> list[PairContact]:
 def _carried(
     model: DriveModel,
     state: LoadState,
+    flanks: FlankContact,
     pairs: list[FlankPair],
     forces: np.ndarray,
     loads: Mapping[tuple[int, int], LineLoad],
 ) -> list[PairContact]:
     """Force, torque and place of owned pairs, without pressure and share. forces : (n_owned, n_node, 3) N"""
-    body, ring = model.elements.bodies[FLEXIBLE_SPLINE], model.partition.layouts[RING_GEAR]
+    body, ring = model.elements.bodies[FLEXIBLE_SPLINE], flanks.ring.layout
+    name = ring.name if len(model.problem.flanks) > 1 else ""
     spline, (first, _) = body.layout, model.partition.owned_sectors(FLEXIBLE_SPLINE)
     positions = (body.positions() + body.displacement(model.problem.displacement()))[body.owned]
     grids = {grid.side: grid for grid in spline.mesh.flanks}
@@ -159,6 +171,7 @@ def _carried(
                 force_N=float(trapezoid(load.load @ load.direction, load.z)),
                 force_share=np.nan,
                 torque_Nmm=float(x @ force[:, 1] - y @ force[:, 0]),
+                ring=name,
             )
         )
     return found
@@ -168,9 +181,11 @@ def _peak(load: LineLoad) -> float:
     return float(np.linalg.norm(load.load, axis=1).max())
 
 
-def moved_teeth(model: DriveModel, pairs: list[FlankPair]) -> tuple[list[Neighbours], list[Neighbours]]:
+def moved_teeth(
+    model: DriveModel, pairs: list[FlankPair], flanks: FlankContact
+) -> tuple[list[Neighbours], list[Neighbours]]:
     """The teeth of every pair, of the flexible spline and of the ring gear, between their neighbours; collective."""
-    spline, ring = model.partition.layouts[:2]
+    spline, ring = model.partition.layouts[FLEXIBLE_SPLINE], flanks.ring.layout
     around, x = np.arange(-1, 2), model.problem.x
 
     def fields(body: int, sectors: list[int]) -> np.ndarray:
@@ -179,7 +194,7 @@ def moved_teeth(model: DriveModel, pairs: list[FlankPair]) -> tuple[list[Neighbo
             len(sectors), 3, len(model.partition.layouts[body].mesh.coords), 3
         )
 
-    u, ring_u = fields(FLEXIBLE_SPLINE, [p.sector for p in pairs]), fields(RING_GEAR, [p.ring for p in pairs])
+    u, ring_u = fields(FLEXIBLE_SPLINE, [p.sector for p in pairs]), fields(flanks.ring_body, [p.ring for p in pairs])
     crowned = flank_crowning(model.design)
     moved, facing = [], []
     for k, pair in enumerate(pairs):
@@ -290,8 +305,10 @@ def _line(model: DriveModel, gap: _Gap, load: LineLoad) -> LineContact:
 
 
 def _patch(model: DriveModel, gap: _Gap, load: LineLoad, along: np.ndarray, force: float) -> PatchContact:
-    """Contact of a pair in the cup model. along : (n,) N/mm, line load of the mesh"""
-    ends = float(load.z[0]), float(load.z[-1])
+    """Contact of a pair in space. along : (n,) N/mm, line load of the mesh"""
+    # the ring gears of a pancake drive are narrower than the flexible spline
+    low, high = gap.facing.ends
+    ends = max(float(load.z[0]), low), min(float(load.z[-1]), high)
     place = float(trapezoid(along * load.z, load.z)) / force
     width = WIDTH * model.design.drive.module
     return patch_contact(gap, gap.least_at, ends, width, force=force, place=place, modulus=_modulus(model))

@@ -12,7 +12,6 @@ from swgpar.analysis.contact_pressure import nodal_pressure
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import LoadState
-from swgpar.design.sections import GEARS
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.meshing.sector import SectorMesh
 
@@ -211,7 +210,7 @@ def _largest(model: DriveModel, k: int, values: np.ndarray, touched: np.ndarray)
     angle = float(body.layout.sector_angle(np.array(tooth)) - np.arctan2(x, y))
     return Place(
         value=value,
-        body=GEARS[k],
+        body=body.layout.name,
         region=region,
         tooth=tooth % body.layout.mesh.n_sectors,
         radius=float(np.hypot(x, y)),
@@ -246,7 +245,7 @@ def region_of(design: DriveDesign, mesh: SectorMesh, node: int, touched: bool) -
         if radius < root - near:
             return "tip" if radius < mesh.profile.r_tip_circle + near else inside
         return "housing" if radius > outer - near else "rim" if radius > root + near else TOOTH_ROOT
-    if not mesh.plane and abs(z - half) < near and radius < root + near:
+    if design.drive.model == "cup" and abs(z - half) < near and radius < root + near:
         return "notch"
     if radius < root + near:
         return TOOTH_END if abs(z) > END * design.drive.face_width and not mesh.plane else TOOTH_ROOT
@@ -258,9 +257,9 @@ def region_of(design: DriveDesign, mesh: SectorMesh, node: int, touched: bool) -
 
 def _at_the_back(design: DriveDesign, mesh: SectorMesh, radius: float, z: float) -> bool:
     """Whether a point (mm) lies on the fillet at the back of the teeth, or close below it."""
-    fillet, wall, near = design.cup.back_fillet, design.inner_radius + design.cup_thickness, NEAR * design.drive.module
-    if mesh.body != "flexible_spline" or fillet == 0.0:
+    if mesh.body != "flexible_spline" or design.cup is None or design.cup.back_fillet == 0.0:
         return False
+    fillet, wall, near = design.cup.back_fillet, design.inner_radius + design.cup_thickness, NEAR * design.drive.module
     back = 0.5 * design.drive.face_width
     return back - near < z < back + fillet + near and wall - near < radius < mesh.profile.r_root_circle + near
 
@@ -305,6 +304,6 @@ def warning_of(design: DriveDesign, region: str, point: np.ndarray) -> str:
         return CLAMPED
     edge = 0.5 * design.wave_generator.face_width
     at_edge = region == "rim inside" and abs(abs(point[2]) - edge) < NEAR * design.drive.module
-    if design.drive.model == "cup" and at_edge:
+    if design.drive.model != "plane" and at_edge:
         return EDGE
     return ""

@@ -6,6 +6,7 @@ at all angles that differ from its own by whole pitches. States between them are
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -71,17 +72,19 @@ def predict(
     x: PETSc.Vec,
     angle: float,
     output_rotation: float = 0.0,
+    resting: Collection[int] = (),
 ) -> None:
     """Set x to the state at an angle of the wave generator (rad), from states at others; collective.
 
     fixed_body : index of the gear that does not rotate
-    output_rotation : rad, further rotation of the other gear in its deformed pattern
+    output_rotation : rad, further rotation in its deformed pattern of what is not `resting`
+    resting : indices of bodies
     """
     new = []
     for body, layout in enumerate(partition.layouts):
         first, end = partition.owned_sectors(body)
         own = np.arange(first, end)
-        moved = _pattern(partition, fixed_body, body, known, angle, 0.0 if body == fixed_body else output_rotation)
+        moved = _pattern(partition, fixed_body, body, known, angle, 0.0 if body in resting else output_rotation)
         at = layout.sector_angle(layout.first_tooth + own)[:, None]
         new.append((body, own, rotated(layout.mesh.coords + moved, at) - rotated(layout.mesh.coords, at)))
     for body, own, values in new:

@@ -38,7 +38,7 @@ def write_state(
         blocks[body.layout.name] = (np.ascontiguousarray(displacement[body.layout.name]), first, body.layout.count)
     if model.design.contact.friction:
         first, end = model.partition.owned_sectors(FLEXIBLE_SPLINE)
-        for name, values in problem.flanks.traction_rows(first, end).items():
+        for name, values in problem.flanks[0].traction_rows(first, end).items():
             blocks[name] = values, first, model.partition.layouts[FLEXIBLE_SPLINE].count
     cycle = recorder.cycle
     if cycle is not None:

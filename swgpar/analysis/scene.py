@@ -13,8 +13,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from swgpar.design.sections import GEARS
-
 if TYPE_CHECKING:
     from swgpar.analysis.drive_result import DriveResult
 
@@ -59,9 +57,9 @@ def scene(result: DriveResult) -> str | None:
     """
     if not result.increments:
         return None
-    stresses = {body: result.field("vm", body=body) for body in GEARS}
+    stresses = {body: result.field("vm", body=body) for body in result.gears}
     limit = float(np.percentile(np.concatenate(list(stresses.values())), PERCENTILE)) or 1.0
-    bodies = [_body(result, body, stresses[body] / limit) for body in GEARS]
+    bodies = [_body(result, body, stresses[body] / limit) for body in result.gears]
     if sum(body.pop("nodes") for body in bodies) > MOST_NODES:
         return None
     low = np.min([body["low"] for body in bodies], axis=0)
@@ -75,7 +73,7 @@ def scene(result: DriveResult) -> str | None:
         "centre": [0.0, 0.0, float(0.5 * (low[2] + high[2]))],
     }
     script = files("swgpar.analysis").joinpath("scene.js").read_text(encoding="utf-8")
-    boxes = "".join(f'<label><input type="checkbox" checked> {body.replace("_", " ")}</label>' for body in GEARS)
+    boxes = "".join(f'<label><input type="checkbox" checked> {body.replace("_", " ")}</label>' for body in result.gears)
     move = "drag to move it" if result.is_plane else "drag to turn it, with shift to move it"
     return (
         f'<div id="scene"><canvas></canvas><div class="bar"></div><div class="range"><span>0</span>'
@@ -92,7 +90,7 @@ def _body(result: DriveResult, body: str, values: np.ndarray) -> dict[str, Any]:
     """Surface of a body in the form that the drawer reads."""
     points, cells = result.mesh(body)
     counts = result.summary["bodies"][body]
-    teeth = result.summary["design"]["drive"]["teeth_fs" if body == "flexible_spline" else "teeth_rg"]
+    teeth = result.summary["design"]["drive"]["teeth_rg" if body == "ring_gear" else "teeth_fs"]
     per_sector = counts["elements_whole"] // teeth
     sectors = len(cells) // per_sector
     stride = len(points) // sectors

@@ -17,15 +17,15 @@ from swgpar.design.load_program import program_points
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.recipe_counts import coarser
 
-MESHES = {"plane": "plane_coarse", "cup": "forces"}
+MESHES = {"plane": "plane_coarse", "cup": "forces", "pancake": "forces"}
 """Mesh recipes of the package for a run that names none. Windows that they drive are within 1 % of those that finer
 meshes drive (docs/verification/windows.md)."""
 
-SAMPLES = {"plane": 6, "cup": 4}
+SAMPLES = {"plane": 6, "cup": 4, "pancake": 4}
 """Angles in a period. In the plane eight change the means by 0.1 %, the range of the input torque by a twentieth. In
 the cup six change the mean of s1 by 0.1 %, that range by a tenth."""
 
-RTOL = {"plane": 1e-6, "cup": 1e-5}
+RTOL = {"plane": 1e-6, "cup": 1e-5, "pancake": 1e-5}
 """Newton's tolerance. The stresses of the reference drives keep all digits that are printed, the input torque of the
 cup drive changes by 1e-5. At 1e-5 that of a fine plane mesh would change by 0.6 %."""
 
@@ -35,7 +35,7 @@ FEWEST = 4
 MOST = 4
 """Coarser meshes at most: the largest value of `steps.start_levels`."""
 
-WORTH = {"plane": 12, "cup": 16}
+WORTH = {"plane": 12, "cup": 16, "pancake": 16}
 """Elements along the flank from which a start on coarser meshes saves time."""
 
 

@@ -29,6 +29,12 @@ from swgpar.version import __version__
 STRESSES = ("fs_s1", "fs_s3", "fs_vm", "rg_s1", "rg_s3", "rg_vm")
 """Columns of the history with the largest stresses of both bodies."""
 
+PANCAKE_STRESSES = ("ds_s1", "ds_s3", "ds_vm")
+"""Those of the dynamic spline of a pancake drive."""
+
+RING = "ring_gear"
+"""The ring gear whose load sharing is summarised."""
+
 INPUT_TORQUE = "wg_torque_Nmm"
 
 MEANS = (*STRESSES, INPUT_TORQUE)
@@ -63,6 +69,11 @@ def mesh_error(
     return found
 
 
+def mean_columns(rows: Sequence[Row]) -> tuple[str, ...]:
+    """Columns whose means and maxima are taken: `MEANS`, and the stresses of a dynamic spline."""
+    return (*MEANS, *(name for name in PANCAKE_STRESSES if rows and name in rows[0]))
+
+
 def over_rotation(rows: Sequence[Row], ratio: float) -> dict[str, Any]:
     """Means, maxima, torque ripple and transmission error over the increments `rows` of the rotation.
 
@@ -75,8 +86,8 @@ def over_rotation(rows: Sequence[Row], ratio: float) -> dict[str, Any]:
     error = transmission_error(column(rows, "wg_angle_deg"), column(rows, "output_angle_deg"), ratio)
     mean = float(torque.mean())
     return {
-        "means": {name: float(np.mean([row[name] for row in rows])) for name in MEANS},
-        "maxima": {name: float(column(rows, name).max()) for name in MEANS},
+        "means": {name: float(np.mean([row[name] for row in rows])) for name in mean_columns(rows)},
+        "maxima": {name: float(column(rows, name).max()) for name in mean_columns(rows)},
         "torque_ripple": float(np.ptp(torque)) / abs(mean) if mean else None,
         "transmission_error_arcsec": float(np.ptp(error)),
     }
@@ -141,7 +152,7 @@ def summarise(
             default=None,
         ),
         "load_sharing": load_sharing(
-            pairs,
+            [pair for pair in pairs if pair.get("ring", RING) == RING],
             [row["tooth_torque_Nmm"] for row in rows],
             # without a rotation the loaded state stands for it
             range(len(rows) - max(len(sampled), 1) + 1, len(rows) + 1),
@@ -152,7 +163,7 @@ def summarise(
         "housing": dict(housing) or None,
         "mesh_error": mesh_error(root_stress, values["means"], places),
         "condensed_MPa": model.omitted_bending_stress() if design.solver.condensed_sectors else None,
-        "sampling_error": sampling_error(design, rows, MEANS) if sampled_period else None,
+        "sampling_error": sampling_error(design, rows, mean_columns(rows)) if sampled_period else None,
         "newton_iterations_mean": float(np.mean([r["newton_iterations"] for r in rotation])) if rotation else None,
         "balance_error_Nmm": max((r["torque_balance_Nmm"] for r in rows), default=0.0),
         "program": summarise_program(program),

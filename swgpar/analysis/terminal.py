@@ -165,9 +165,10 @@ def _print_mesh_error(error: Mapping[str, float]) -> None:
 
 
 def _print_contact(contact: Mapping[str, Any]) -> None:
+    on = f" on the {contact['ring'].replace('_', ' ')}" if "ring" in contact else ""
     console.print(
         f"largest contact pressure of the flanks: {contact['pressure_MPa']:.0f} MPa at "
-        f"{contact['line_load_Nmm']:.1f} N/mm (tooth {contact['tooth']}, {contact['flank']} flank, radius "
+        f"{contact['line_load_Nmm']:.1f} N/mm (tooth {contact['tooth']}, {contact['flank']} flank{on}, radius "
         f"{contact['radius_mm']:.2f}, z {contact['z_mm']:.2f} mm; half width {contact['half_width_mm']:.4f} mm, "
         f"largest shear {contact['shear_MPa']:.0f} MPa)"
     )

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from swgpar.analysis.off_screen import errors_only, has_display
-from swgpar.design.sections import GEARS
 from swgpar.errors import InputError
 
 if TYPE_CHECKING:
@@ -56,14 +55,14 @@ def view_plotter(result: DriveResult, *, off_screen: bool = False) -> pyvista.Pl
     surfaces: dict[str, pyvista.PolyData] = {}
     places: dict[str, np.ndarray] = {}
     actors = {}
-    for body in GEARS:
+    for body in result.gears:
         surface = result.grid(-1, body, whole=True).extract_surface(algorithm="dataset_surface")
         surfaces[body], places[body] = surface, surface.points.copy()
         surface.point_data["shown"] = surface.point_data["vm"]
         actors[body] = plotter.add_mesh(
             surface, scalars="shown", cmap="turbo", smooth_shading=False, show_scalar_bar=False, name=body
         )
-    plotter.add_scalar_bar(title=COLOURED["vm"], fmt="%.4g", mapper=actors[GEARS[0]].mapper, vertical=True)
+    plotter.add_scalar_bar(title=COLOURED["vm"], fmt="%.4g", mapper=actors[result.gears[0]].mapper, vertical=True)
 
     def update() -> None:
         largest = []
@@ -104,9 +103,10 @@ def view_plotter(result: DriveResult, *, off_screen: bool = False) -> pyvista.Pl
         )
     for key, name in zip("123", COLOURED):
         plotter.add_key_event(key, lambda name=name: set_value("field", name))
-    for body in GEARS:
+    for body in result.gears:
         plotter.add_key_event(body[0], lambda body=body: actors[body].SetVisibility(not actors[body].GetVisibility()))
-    plotter.add_text("1 von Mises   2 s1   3 s3   f flexible spline   r ring gear   q close", font_size=9)
+    keys = "   ".join(f"{body[0]} {body.replace('_', ' ')}" for body in result.gears)
+    plotter.add_text(f"1 von Mises   2 s1   3 s3   {keys}   q close", font_size=9)
     if result.is_plane:
         plotter.view_xy()
     update()

@@ -19,6 +19,44 @@ GROUNDING = 0.1
 """Stiffness of the grounding over E times the module."""
 
 
+SPLINE = 0
+"""Index of the coupling of the flexible spline."""
+
+
+class FixedRing:
+    """A ring gear whose outer surface is fixed; meets the protocol `RingMotion`."""
+
+    floats = False
+
+    def ring_rotation(self, u: np.ndarray) -> float:
+        """Zero."""
+        return 0.0
+
+    def add_ring_moment(self, u: np.ndarray, moment: float, residual: np.ndarray) -> None:
+        """The frame takes it."""
+
+
+class FloatingRing:
+    """A ring gear that rotates with its outer surface; meets the protocol `RingMotion`.
+
+    coupling : of that surface;  comm : communicator
+    """
+
+    floats = True
+
+    def __init__(self, coupling: Coupling, comm: MPI.Comm) -> None:
+        self.coupling, self.comm = coupling, comm
+
+    def ring_rotation(self, u: np.ndarray) -> float:
+        """Rotation (rad) of the ring gear at displacement u (n_local, 3) mm; collective."""
+        return float(self.coupling.evaluate(u).value[ROTATION])
+
+    def add_ring_moment(self, u: np.ndarray, moment: float, residual: np.ndarray) -> None:
+        """Add this rank's part of a moment (N mm) on that rotation to residual (n_local, 3) N; collective."""
+        total = self.comm.allreduce(moment, op=MPI.SUM)
+        residual[self.coupling.nodes] += total * self.coupling.evaluate(u).gradient[ROTATION]
+
+
 class Supports:
     """The couplings of all bodies that float: of the gears by their indices, then of a bearing's outer race.
 
@@ -32,6 +70,8 @@ class Supports:
     scale : unit of the multipliers and of the grounding: E times the module, N/mm
     share : modelled share of the drive, 1 or 0.5
     race : coupling of the outer race, without a bearing None
+    spline_ratio : rotation of the flexible spline over that of the output, where contacts alone hold it unless the load
+    state says otherwise; None where its coupling supports it
 
     Attributes
     ----------
@@ -48,7 +88,9 @@ class Supports:
         scale: float,
         share: float,
         race: RaceCoupling | None = None,
+        spline_ratio: float | None = None,
     ) -> None:
+        self.spline_ratio = spline_ratio
         self.partition, self.guide = partition, guide
         self.couplings: list[Coupling] = [*couplings] if race is None else [*couplings, race]
         self.output_gear, self._gears = output, len(couplings)
@@ -98,7 +140,13 @@ class Supports:
         active = [(i, int(k)) for i, c in enumerate(self.couplings) for k in np.flatnonzero(c.active)]
         if state.control == "torque":
             active.remove((self.output_gear, ROTATION))
+        if self.spline_ratio is not None and not state.spline_held:
+            active.remove((SPLINE, ROTATION))
         return active
+
+    def holds_spline(self, state: LoadState) -> bool:
+        """Whether the load state prescribes the rotation of the flexible spline."""
+        return (SPLINE, ROTATION) in self.prescribed(state)
 
     def unused_multipliers(self, state: LoadState) -> np.ndarray:
         """Which multipliers the load state does not use; bool, one entry each."""
@@ -109,16 +157,6 @@ class Supports:
     def output_rotation(self, u: np.ndarray) -> float:
         """Rotation (rad) of the output at displacement u (n_local, 3) mm; collective."""
         return float(self.output.evaluate(u).value[ROTATION])
-
-    def ring_rotation(self, u: np.ndarray) -> float:
-        """Rotation (rad) of the ring gear at displacement u (n_local, 3) mm, zero when it is clamped; collective."""
-        return float(self.couplings[RING_GEAR].evaluate(u).value[ROTATION]) if self.ring_floats else 0.0
-
-    def add_ring_moment(self, u: np.ndarray, moment: float, residual: np.ndarray) -> None:
-        """Add this rank's part of a moment (N mm) on a ring gear that is not clamped to residual (n_local, 3) N."""
-        if self.ring_floats:
-            ring, moment = self.couplings[RING_GEAR], self.partition.comm.allreduce(moment, op=MPI.SUM)
-            residual[ring.nodes] += moment * ring.evaluate(u).gradient[ROTATION]
 
     def add_forces(self, u: np.ndarray, state: LoadState, multiplier: np.ndarray, residual: np.ndarray) -> np.ndarray:
         """Add forces of multipliers, load and guide to residual (n_local, 3) N.
@@ -135,6 +173,8 @@ class Supports:
             return rows
         target = self.offsets.copy()
         target[self.output_gear, ROTATION] += state.output_rotation
+        if self.spline_ratio is not None:
+            target[SPLINE, ROTATION] += self.spline_ratio * state.output_rotation
         for i, k in self.prescribed(state):
             gradient = motion[i].gradient[k]
             residual[self.couplings[i].nodes] += self.scale * multiplier[N_COUPLED * i + k] * gradient

@@ -13,7 +13,12 @@ from swgpar.contact.segments import Segments
 
 
 class RingMotion(Protocol):
-    """Rotation of the ring gear as a whole; both methods are collective."""
+    """Rotation of the ring gear as a whole; both methods are collective.
+
+    floats : whether it is not fixed
+    """
+
+    floats: bool
 
     def ring_rotation(self, u: np.ndarray) -> float:
         """Rotation (rad) of the ring gear at displacement u (n_local, 3) mm; zero when it is fixed."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE, BodyLayout
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.partition import Partition
 
@@ -38,14 +38,14 @@ class FlankPair:
 
 
 def facing_flanks(
-    partition: Partition, spline: BodyElements, u: np.ndarray, ring_rotation: float, margin: float
+    partition: Partition, spline: BodyElements, ring: BodyLayout, u: np.ndarray, ring_rotation: float, margin: float
 ) -> list[FlankPair]:
     """Pairs of flanks that can meet at displacement u (n_local, 3); the same list on every rank.
 
-    ring_rotation : rad, of the ring gear as a whole
+    ring : the ring gear whose flanks are meant;  ring_rotation : rad, of the ring gear as a whole
     margin : mm, how far the tip of a tooth may stay inside the tip circle of the ring gear
     """
-    layout, ring = partition.layouts[:2]
+    layout = partition.layouts[FLEXIBLE_SPLINE]
     first, end = partition.owned_sectors(FLEXIBLE_SPLINE)
     rows = np.arange(len(spline.sectors))[spline.owned]
     tips = np.concatenate([f.nodes[0] for f in layout.mesh.flanks])

@@ -43,6 +43,7 @@ def derived_geometry(design: DriveDesign) -> dict[str, float]:
         "tip of ring to root of spline, major axis (mm)": ring.r_tip_circle - spline.r_root_circle - half,
         "tips at the minor axis (mm)": ring.r_tip_circle - spline.r_tip_circle + half,
         "smallest flank clearance, kinematic (mm)": flank_clearance(design),
+        **_dynamic_spline(design),
         **_rigid_contact(rigid_mesh(design)),
     }
 
@@ -72,3 +73,19 @@ def _cup(design: DriveDesign) -> dict[str, float]:
     if cup.attachment == "bolted":
         found["attached area, one side (mm2)"] = 0.25 * np.pi * cup.washer_diameter**2 * cup.bolts
     return found
+
+
+def _dynamic_spline(design: DriveDesign) -> dict[str, float]:
+    """Quantities of the second ring gear of a pancake drive; none of other drives."""
+    if design.dynamic_spline is None:
+        return {}
+    spline, second = design.profile("flexible_spline"), design.profile("dynamic_spline")
+    half = 0.5 * design.deflection
+    low, high = design.axial_range("ring_gear")
+    return {
+        "face width of the ring gear (mm)": high - low,
+        "backlash of the dynamic spline (mm)": design.dynamic_backlash,
+        "tip of spline to root of dynamic spline (mm)": second.r_root_circle - spline.r_tip_circle - half,
+        "tip of dynamic spline to root of spline (mm)": second.r_tip_circle - spline.r_root_circle - half,
+        "clearance in the dynamic spline (mm)": flank_clearance(design, ring="dynamic_spline"),
+    }

@@ -17,6 +17,7 @@ from swgpar.design.sections import (
     OMITTED_BENDING,
     Contact,
     Drive,
+    DynamicSpline,
     ExternalGear,
     Fatigue,
     GearName,
@@ -54,6 +55,7 @@ class DriveDesign(Design):
     drive: Drive
     flexible_spline: ExternalGear
     ring_gear: InternalGear
+    dynamic_spline: DynamicSpline | None = None
     wave_generator: WaveGenerator
     cup: Cup | None = None
     micro_geometry: MicroGeometry = MicroGeometry()
@@ -75,6 +77,24 @@ class DriveDesign(Design):
         design = validate(cls, table)
         check_fit(design)
         return design
+
+    @property
+    def gears(self) -> tuple[GearName, ...]:
+        """The gears in the order of the bodies; the dynamic spline of a pancake drive is the third one."""
+        return GEARS if self.dynamic_spline is None else (*GEARS, "dynamic_spline")
+
+    def axial_range(self, gear: GearName) -> tuple[float, float]:
+        """Ends (mm) of the teeth of a gear along z."""
+        half, second = 0.5 * self.drive.face_width, self.dynamic_spline
+        if second is None or gear == "flexible_spline":
+            return -half, half
+        width = second.face_width or 0.5 * (self.drive.face_width - second.gap)
+        return (half - width, half) if gear == "dynamic_spline" else (-half, half - width - second.gap)
+
+    def rim_radius(self, ring: GearName) -> float:
+        """Outer radius (mm) of a ring gear, without a housing."""
+        section: InternalGear | DynamicSpline = getattr(self, ring)
+        return self.profile(ring).r_root_circle + section.rim
 
     @property
     def deflection(self) -> float:
@@ -112,12 +132,16 @@ class DriveDesign(Design):
     @property
     def output_gear(self) -> GearName:
         """The gear that is the output; the other one stands in the frame in which the drive is computed."""
-        return "ring_gear" if self.drive.layout == "spline_fixed" else "flexible_spline"
+        if self.drive.layout == "spline_fixed":
+            return "ring_gear"
+        return "flexible_spline" if self.dynamic_spline is None else "dynamic_spline"
 
     @property
     def standing_gear(self) -> GearName:
         """The gear that stands in the frame in which the drive is computed: the fixed one, or the driven ring gear."""
-        return GEARS[1 - GEARS.index(self.output_gear)]
+        if self.output_gear != "ring_gear":
+            return "ring_gear"
+        return "flexible_spline" if self.dynamic_spline is None else "dynamic_spline"
 
     @property
     def ratio(self) -> float:
@@ -172,6 +196,15 @@ class DriveDesign(Design):
         return float(np.pi * self.drive.module - sum(thickness))
 
     @property
+    def dynamic_backlash(self) -> float:
+        """Circumferential backlash of the dynamic spline, mm: its pitch less both teeth; 0 without one."""
+        if self.dynamic_spline is None:
+            return 0.0
+        second = self.teeth("dynamic_spline")
+        space = np.pi * second.module - self.profile("dynamic_spline").thickness(second.r_pitch)
+        return float(space - self.profile("flexible_spline").thickness(self.teeth("flexible_spline").r_pitch))
+
+    @property
     def backlash_angle(self) -> float:
         """Rotation gamma of the flexible spline that closes the backlash on one side, rad (eq. 6.4)."""
         return self.backlash / (self.drive.teeth_fs * self.drive.module)
@@ -211,7 +244,7 @@ class DriveDesign(Design):
     @property
     def ring_outer_radius(self) -> float:
         """Outer radius of the ring gear, mm, without a housing."""
-        return self.profile("ring_gear").r_root_circle + self.ring_gear.rim
+        return self.rim_radius("ring_gear")
 
     @property
     def outer_radius(self) -> float:
@@ -252,8 +285,10 @@ class DriveDesign(Design):
 
     @property
     def resolves_root_stress(self) -> bool:
-        """Whether windows resolve the stress at the teeth: with one loaded state, and on a cam without a bearing."""
-        return self.output.root_stress and not self.has_program and self.bearing is None
+        """Whether windows resolve the stress at the teeth: with one loaded state, on a cam without a bearing, and one
+        ring gear."""
+        simple = self.bearing is None and self.dynamic_spline is None
+        return self.output.root_stress and not self.has_program and simple
 
     @property
     def axial_travel(self) -> float:
@@ -337,11 +372,16 @@ class DriveDesign(Design):
         return self.contact.wg_penalty_coef * self.material.E / self.drive.module
 
     def teeth(self, gear: GearName) -> Teeth:
-        """Number and sizes of the teeth of a gear."""
+        """Number and sizes of the teeth of a gear.
+
+        The dynamic spline has the teeth of the flexible spline on the pitch circle of the ring gear, where these mesh
+        at the major axis: its module is larger.
+        """
         drive, external = self.drive, gear == "flexible_spline"
+        wider = drive.teeth_rg / drive.teeth_fs if gear == "dynamic_spline" else 1.0
         return Teeth(
-            n_teeth=drive.teeth_fs if external else drive.teeth_rg,
-            module=drive.module,
+            n_teeth=drive.teeth_rg if gear == "ring_gear" else drive.teeth_fs,
+            module=drive.module * wider,
             pressure_angle=float(np.radians(drive.pressure_angle)),
             addendum=drive.addendum_coef * drive.module,
             dedendum=drive.dedendum_coef * drive.module,
@@ -358,15 +398,15 @@ class DriveDesign(Design):
             partner = self.profile(other), self.tooth_motion(section.profile.section)
         return make_profile(section.profile, self.teeth(gear), section.c_P, section.c_l, gear, partner)
 
-    def tooth_motion(self, z: float = 0.0) -> ToothMotion:
-        """Motion of the flexible spline's tooth in its slot at the section z, mm, of the rigid limit."""
+    def tooth_motion(self, z: float = 0.0, ring: GearName = "ring_gear") -> ToothMotion:
+        """Motion of the flexible spline's tooth in its slot of `ring` at the section z, mm, of the rigid limit."""
         radius = self.inner_radius + 0.5 * self.flexible_spline.rim
         share = 1.0
         if self.cup:
             # the deflection of a cup grows linearly from the closed end, whose middle stays plane
             share = (self.rest_plane - z) / self.rest_plane
         line = _line(self.wave_generator, self.major_semi_axis, self.minor_semi_axis, self.inner_radius, radius, share)
-        return ToothMotion(line, self.drive.teeth_fs, self.drive.teeth_rg)
+        return ToothMotion(line, self.drive.teeth_fs, self.teeth(ring).n_teeth)
 
     def cam(self) -> Cam:
         """Exact curve of the cam, major axis along +y. Raises InputError where its keys give no closed curve."""

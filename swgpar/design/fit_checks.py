@@ -9,8 +9,9 @@ import numpy as np
 from swgpar.design.bearing_checks import check_bearing
 from swgpar.design.cup_checks import check_cup
 from swgpar.design.deviation_checks import check_deviations
+from swgpar.design.pancake_checks import check_pancake
 from swgpar.design.program_checks import check_program
-from swgpar.design.sections import GEARS, OMITTED_BENDING
+from swgpar.design.sections import OMITTED_BENDING
 from swgpar.errors import InputError
 from swgpar.geometry.cams import FourRoller
 from swgpar.geometry.cams.keys import Harmonic
@@ -55,6 +56,7 @@ def check_fit(design: DriveDesign) -> None:
         )
     if design.deviations is not None:
         check_deviations(design, design.deviations)
+    check_pancake(design)
     if design.drive.model == "plane":
         _check_plane(design)
     else:
@@ -79,7 +81,7 @@ def _check_teeth(design: DriveDesign) -> None:
     if drive.dedendum_coef <= drive.addendum_coef:
         allowed = f"above {drive.addendum_coef:g} (the addendum) to 2 modules"
         _refuse("drive.dedendum_coef", drive.dedendum_coef, allowed)
-    walls = {f"{gear}.rim": getattr(design, gear).rim for gear in GEARS}
+    walls = {f"{gear}.rim": getattr(design, gear).rim for gear in design.gears}
     if design.housing is not None:
         walls["ring_gear.housing.thickness"] = design.housing.thickness
     least, most = THINNEST_RIM * drive.module, THICKEST_RIM * drive.module
@@ -126,7 +128,7 @@ def _check_torque(design: DriveDesign) -> None:
         torques["stiffness.torque"] = design.stiffness.torque or 0.0
     for key, torque in torques.items():
         if abs(torque) > most:
-            of = "rim" if design.drive.model == "plane" else "cup's wall"
+            of = "cup's wall" if design.drive.model == "cup" else "rim"
             _refuse(key, torque, f"up to {most:.4g} N·m (nominal shear strain of the {of}: {LARGEST_SHEAR:g})")
 
 
@@ -176,8 +178,8 @@ def _check_micro_geometry(design: DriveDesign) -> None:
 
 
 def _check_outline(design: DriveDesign) -> None:
-    """Both profiles and the cam can be built, and the cam's outline leaves room for the teeth."""
-    spline, ring = (design.profile(gear) for gear in GEARS)
+    """All profiles and the cam can be built, and the cam's outline leaves room for the teeth."""
+    spline, ring, *_ = (design.profile(gear) for gear in design.gears)
     bulge = float(np.linalg.norm(design.cam().outline(OUTLINE_POINTS), axis=1).max()) - design.major_semi_axis
     clearance = max(ring.r_root_circle - spline.r_tip_circle - 0.5 * design.deflection, 1e-6 * design.major_semi_axis)
     if bulge > clearance:

@@ -13,7 +13,7 @@ PROGRAM takes the place of LOAD and ROTATE where the design has a load program: 
 points.
 
 Without a torque, a drive with backlash has no definite output angle. The output is then held at its kinematic angle,
-and the torque that this takes is reported.
+and the torque that this takes is reported. The flexible spline of a pancake drive, which has no cup, is then held too.
 """
 
 from __future__ import annotations
@@ -71,6 +71,7 @@ class LoadState:
     pin_inset : mm, by which each pin is drawn in towards the axis; None when the pins are out
     control : "rotation" (output held at `output_rotation`, rad) or "torque" (`torque`, N mm, against the output's
     motion)
+    spline_held : in a pancake drive, whether the flexible spline is held at the output's kinematic angle
     """
 
     stage: Stage
@@ -82,6 +83,7 @@ class LoadState:
     control: Literal["rotation", "torque"] = "rotation"
     output_rotation: float = 0.0
     torque: float = 0.0
+    spline_held: bool = False
 
     @property
     def friction_acts(self) -> bool:
@@ -156,6 +158,12 @@ def start_state(design: DriveDesign) -> LoadState:
 
 def load_sequence(design: DriveDesign) -> Iterator[LoadState]:
     """Load states at the ends of all increments of a run, in order."""
+    for state in _sequence(design):
+        held = design.dynamic_spline is not None and state.control == "rotation"
+        yield replace(state, spline_held=True) if held else state
+
+
+def _sequence(design: DriveDesign) -> Iterator[LoadState]:
     yield from _deflection(design)
     yield from _engagement(design)
     if design.has_program:

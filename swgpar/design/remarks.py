@@ -15,6 +15,9 @@ CLEARANCES = (
     "tip of ring to root of spline, major axis (mm)",
     "tips at the minor axis (mm)",
     "smallest flank clearance, kinematic (mm)",
+    "tip of spline to root of dynamic spline (mm)",
+    "tip of dynamic spline to root of spline (mm)",
+    "clearance in the dynamic spline (mm)",
 )
 """Names of `derived_geometry` whose values are negative where teeth overlap."""
 
@@ -57,6 +60,6 @@ def remarks(design: DriveDesign, derived: Mapping[str, float]) -> list[str]:
     found = [
         f"interference: {name} = {derived[name]:.3g}: teeth overlap before they are loaded, and the drive may jam"
         for name in CLEARANCES
-        if derived[name] < -allowed
+        if derived.get(name, 0.0) < -allowed
     ]
     return [*found, *filter(None, [torque_remark(design)])]

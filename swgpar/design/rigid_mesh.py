@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.sections import GearName
 from swgpar.geometry.profiles import ToothProfile
 from swgpar.geometry.profiles.mesh_gap import smallest_gaps
 
@@ -21,12 +22,12 @@ NEAR = 1e-3
 """Gap (mm) below which a pair of flanks counts as in contact: what loads of rated size close."""
 
 
-def flank_clearance(design: DriveDesign, n_angles: int = 721) -> float:
+def flank_clearance(design: DriveDesign, n_angles: int = 721, ring: GearName = "ring_gear") -> float:
     """Smallest distance (mm; negative is interference) between the undeformed flanks in the deflected position.
 
-    n_angles : angles of the tooth within half of a lobe
+    n_angles : angles of the tooth within half of a lobe;  ring : whose flanks are meant
     """
-    pair, motion = (design.profile("flexible_spline"), design.profile("ring_gear")), design.tooth_motion()
+    pair, motion = (design.profile("flexible_spline"), design.profile(ring)), design.tooth_motion(ring=ring)
     widest = 0.5 * np.pi / design.lobes
     psi = np.linspace(-widest, widest, n_angles)
     # the other flank of a tooth moves like this one on the mirror image of the cam

@@ -8,11 +8,11 @@ from swgpar.design.program_sections import ProgramStage
 from swgpar.geometry.profiles import ExternalProfile, InternalProfile
 from swgpar.input.quantities import Section, quantity
 
-GearName = Literal["flexible_spline", "ring_gear"]
+GearName = Literal["flexible_spline", "ring_gear", "dynamic_spline"]
 """Name of a gear: its section in the design file, and its body in meshes and results."""
 
 GEARS: tuple[GearName, GearName] = ("flexible_spline", "ring_gear")
-"""Both gears, in the order of the bodies."""
+"""The gears that every drive has, in the order of the bodies."""
 
 OMITTED_BENDING = 0.01
 """Largest share of the bending strain that condensed sectors may leave out."""
@@ -23,9 +23,12 @@ class Drive(Section):
 
     layout: Literal["ring_fixed", "spline_fixed", "wave_generator_fixed"] = quantity(
         "ring_fixed",
-        text="fixed member; the wave generator drives the other gear, or where it is fixed the ring gear the spline",
+        text="fixed member; the wave generator drives the other gear, or where it is fixed the ring gear the spline; "
+        "in a pancake drive the dynamic spline takes the place of the flexible one",
     )
-    model: Literal["cup", "plane"] = quantity("cup", text="the cup drive, or the toothed section in plane stress")
+    model: Literal["cup", "plane", "pancake"] = quantity(
+        "cup", text="the cup drive, the toothed section in plane stress, or a flexible spline between two ring gears"
+    )
     teeth_fs: int = quantity(text="teeth of the flexible spline", ge=8, le=2000)
     teeth_rg: int = quantity(text="teeth of the ring gear", ge=10, le=2002)
     module: float = quantity(unit="mm", text="module", gt=0.0)
@@ -67,6 +70,19 @@ class InternalGear(Gear):
 
     profile: InternalProfile
     housing: Housing | None = None
+
+
+class DynamicSpline(Gear):
+    """Section [dynamic_spline]: the second ring gear of a pancake drive, with as many teeth as the flexible spline.
+
+    It lies at z > 0, [ring_gear] at z < 0. Both end with the teeth of the flexible spline, whose face width they share.
+    """
+
+    profile: InternalProfile
+    face_width: float | None = quantity(
+        None, unit="mm", text="face width; default half of what the gap leaves, the rest is the ring gear's", gt=0.0
+    )
+    gap: float = quantity(unit="mm", text="axial gap between the ring gears", gt=0.0)
 
 
 class MicroGeometry(Section):

@@ -74,6 +74,7 @@ def _check(design: DriveDesign) -> None:
     sections = {
         "[wave_generator.bearing]": design.bearing,
         "[ring_gear.housing]": design.ring_gear.housing,
+        "[dynamic_spline]": design.dynamic_spline,
         "[deviations]": design.deviations,
         "[stiffness]": design.stiffness,
         "[ratcheting]": design.ratcheting,

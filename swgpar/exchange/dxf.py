@@ -10,13 +10,12 @@ from typing import Any
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.sections import GEARS
 from swgpar.errors import InputError
 from swgpar.exchange.outlines import Edge, cam_outlines, gear_outline
 
 
 def write_dxf(design: DriveDesign, folder: Path) -> list[Path]:
-    """Write drive.dxf with the layers flexible_spline, ring_gear, wave_generator and, if there is one, housing.
+    """Write drive.dxf with a layer for each gear, the wave generator and, if there is one, the housing.
 
     Call it on one rank.
 
@@ -25,10 +24,10 @@ def write_dxf(design: DriveDesign, folder: Path) -> list[Path]:
     ezdxf = _ezdxf()
     document = ezdxf.new("R2010", units=4)  # mm
     space = document.modelspace()
-    for gear in GEARS:
+    for gear in design.gears:
         document.layers.add(gear)
         _draw(space, gear_outline(design, gear), gear)
-        rim = design.ring_outer_radius if gear == "ring_gear" else design.inner_radius
+        rim = design.inner_radius if gear == "flexible_spline" else design.rim_radius(gear)
         space.add_circle((0.0, 0.0), rim, dxfattribs={"layer": gear})
     if design.housing is not None:
         document.layers.add("housing")

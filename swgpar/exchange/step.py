@@ -17,7 +17,6 @@ from types import ModuleType
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.sections import GEARS
 from swgpar.exchange.outlines import Edge, cam_outlines, gear_outline
 from swgpar.meshing.gmsh_session import gmsh_model
 
@@ -29,12 +28,12 @@ SAME = 1e-7
 
 
 def write_step(design: DriveDesign, folder: Path) -> list[Path]:
-    """Write flexible_spline.step, ring_gear.step, wave_generator.step and of a drive with one housing.step.
+    """Write a STEP file of each gear, wave_generator.step and of a drive with one housing.step.
 
     Call it on one rank.
     """
     paths = []
-    for name in (*GEARS, "wave_generator", *(["housing"] if design.housing else [])):
+    for name in (*design.gears, "wave_generator", *(["housing"] if design.housing else [])):
         path = folder / f"{name}.step"
         with gmsh_model(name) as gmsh:
             _build(gmsh, design, name)
@@ -61,22 +60,22 @@ def _quiet() -> Iterator[None]:
 
 def _build(gmsh: ModuleType, design: DriveDesign, name: str) -> None:
     """The solid of a body in the present model."""
-    width = design.drive.face_width
     if name == "wave_generator":
         half = 0.5 * design.wave_generator.face_width
         for points in cam_outlines(design):
             curves = closed_curve(gmsh, points, design.cam().evaluate(points)[1], -half)
             _extrude(gmsh, [gmsh.model.occ.addCurveLoop(curves)], 2.0 * half)
         return
-    back = -0.5 * width
+    back, front = design.axial_range("ring_gear" if name == "housing" else name)
+    width = front - back
     if name == "housing":
         _extrude(
             gmsh, [_circle(gmsh, radius, back) for radius in (design.outer_radius, design.ring_outer_radius)], width
         )
         return
     teeth = _loop(gmsh, gear_outline(design, name), back)
-    if name == "ring_gear":
-        _extrude(gmsh, [_circle(gmsh, design.ring_outer_radius, back), teeth], width)
+    if name != "flexible_spline":
+        _extrude(gmsh, [_circle(gmsh, design.rim_radius(name), back), teeth], width)
         return
     toothed = _extrude(gmsh, [teeth, _circle(gmsh, design.inner_radius, back)], width)
     if design.drive.model == "cup":

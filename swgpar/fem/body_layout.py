@@ -18,8 +18,11 @@ from swgpar.fem.condensed_parts import CondensedPart
 from swgpar.geometry.rotation import sixths
 from swgpar.meshing.sector import SectorMesh
 
-FLEXIBLE_SPLINE, RING_GEAR, OUTER_RACE = 0, 1, 2
-"""Indices of the bodies of a drive, in partitions, elements and layouts; the race only of drives with a bearing."""
+FLEXIBLE_SPLINE, RING_GEAR, DYNAMIC_SPLINE, OUTER_RACE = 0, 1, 2, 2
+"""Indices of the bodies of a drive, in partitions, elements and layouts.
+
+The third one is the dynamic spline of a pancake drive, or the race of a drive with a bearing; no drive has both.
+"""
 
 
 @dataclass(frozen=True)

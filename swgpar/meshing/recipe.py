@@ -38,7 +38,9 @@ class ToothRecipe(Section):
 class FaceWidthRecipe(Section):
     """Elements along the face width."""
 
-    elements: int = quantity(text="elements along the face width", ge=2, le=400)
+    elements: int = quantity(
+        text="elements along the face width; in a pancake drive along that of each ring gear", ge=2, le=400
+    )
     end_ratio: float = quantity(
         1.0, text="length of the middle elements over that of the elements at both ends", ge=1.0, le=10.0
     )

@@ -38,7 +38,7 @@ class SectorMesh:
     Attributes
     ----------
     body : str
-        ``flexible_spline``, ``ring_gear`` or ``outer_race``, or ``ring`` for a plain one.
+        ``flexible_spline``, ``ring_gear``, ``dynamic_spline`` or ``outer_race``, or ``ring`` for a plain one.
     n_sectors : int
         Number of teeth of the full gear.
     phase : float, rad

@@ -8,11 +8,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.sections import GEARS, GearName
+from swgpar.design.sections import GearName
 from swgpar.meshing.cup import joined_columns, meridian, transition_station
 from swgpar.meshing.housing import housing_radii
 from swgpar.meshing.recipe import MeshRecipe, ToothRecipe
-from swgpar.meshing.tooth_sector import continues_root, require_sections
+from swgpar.meshing.tooth_sector import continues_root, gap_elements, require_sections, tooth_recipe
 
 
 @dataclass(frozen=True)
@@ -45,23 +45,25 @@ def section_counts(recipe: ToothRecipe) -> tuple[int, int, int]:
 def sector_counts(design: DriveDesign, recipe: MeshRecipe) -> dict[GearName, SectorCounts]:
     """Counts of the tooth sectors that `build_sector_meshes` makes of a design and a recipe."""
     require_sections(design, recipe)
-    return {gear: _counts(design, recipe, gear) for gear in GEARS}
+    return {gear: _counts(design, recipe, gear) for gear in design.gears}
 
 
 def _counts(design: DriveDesign, recipe: MeshRecipe, gear: GearName) -> SectorCounts:
-    teeth: ToothRecipe = getattr(recipe, gear)
+    teeth = tooth_recipe(recipe, gear)
     external = gear == "flexible_spline"
     quads, nodes, side = section_counts(teeth)
     around = 2 * (teeth.tip + teeth.layers + teeth.root)
-    n_sectors = design.drive.teeth_fs if external else design.drive.teeth_rg
-    if not external:
+    n_sectors = design.teeth(gear).n_teeth
+    if gear == "ring_gear":
         housing = len(housing_radii(design, teeth)) - 1
         quads, nodes, side = quads + housing * around, nodes + housing * (around + 1), side + housing
     if design.drive.model == "plane":
         return SectorCounts(n_sectors, quads, nodes, side, 0 if external else around)
     layers = recipe.face_width.elements
+    if external and design.drive.model == "pancake":
+        layers = 2 * layers + gap_elements(design, recipe)
     elements, nodes, side = quads * layers, nodes * (layers + 1), side * (layers + 1)
-    if external:
+    if external and design.drive.model == "cup":
         cup = recipe.cup
         stations = len(meridian(design, cup, teeth.under).inner) - 1
         depth = teeth.rim + (teeth.under if continues_root(design) else 0)

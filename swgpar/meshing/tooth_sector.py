@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from swgpar.design.cup_checks import THICK_CUP
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.sections import GEARS, GearName
+from swgpar.design.sections import GearName
 from swgpar.errors import InputError
 from swgpar.geometry.arrays import Floats, Ints
 from swgpar.geometry.micro_geometry import crowning
@@ -22,7 +22,7 @@ from swgpar.meshing.quality import hex_quality, quad_quality
 from swgpar.meshing.recipe import MeshRecipe, ToothRecipe
 from swgpar.meshing.relief import relief_field
 from swgpar.meshing.sector import FlankGrid, SectorMesh
-from swgpar.meshing.sweep import axial_stations, sweep_line, sweep_quads
+from swgpar.meshing.sweep import axial_stations, sweep_line, sweep_quads, symmetric_steps
 
 
 def continues_root(design: DriveDesign) -> bool:
@@ -35,9 +35,9 @@ def _radii(design: DriveDesign, gear: GearName, recipe: ToothRecipe, r_root: flo
     rim = getattr(design, gear).rim
     # layers of equal thickness from the root to the free surface (section 4.11.2 of the source)
     lower = rim * recipe.rim / (recipe.rim + recipe.under)
-    if gear == "ring_gear":
+    if gear != "flexible_spline":
         return r_root + rim - lower, r_root + rim, False
-    if design.drive.model == "plane":
+    if design.drive.model != "cup":
         return design.inner_radius + lower, design.inner_radius, False
     if continues_root(design):
         return design.inner_radius + lower, design.inner_radius, True
@@ -124,12 +124,44 @@ def _elements(quads: NDArray[np.bool_], layers: int) -> Ints:
     return (np.flatnonzero(quads) + len(quads) * np.arange(layers)[:, None]).ravel().astype(np.int32)
 
 
+def tooth_recipe(recipe: MeshRecipe, gear: GearName) -> ToothRecipe:
+    """Elements of half a tooth of a gear; both ring gears of a pancake drive have the same."""
+    return recipe.flexible_spline if gear == "flexible_spline" else recipe.ring_gear
+
+
+def gap_elements(design: DriveDesign, recipe: MeshRecipe) -> int:
+    """Elements along the gap between both ring gears of a pancake drive: as long as the others, one at least."""
+    gap = design.dynamic_spline.gap
+    return max(1, round(gap / (design.drive.face_width - gap) * 2 * recipe.face_width.elements))
+
+
+def _stations(design: DriveDesign, recipe: MeshRecipe, gear: GearName) -> Floats:
+    """Coordinates z (n,) mm of the nodes along the face width of a gear.
+
+    In a pancake drive each ring gear has the recipe's elements along its own width, and the flexible spline has the
+    stations of both.
+    """
+    number, ratio = recipe.face_width.elements, recipe.face_width.end_ratio
+    if design.drive.model == "cup":
+        return axial_stations(design.drive.face_width, number, ratio, design.wave_generator.face_width)
+
+    def along(ring: GearName) -> Floats:
+        low, high = design.axial_range(ring)
+        return low + symmetric_steps(number, ratio) * (high - low)
+
+    if gear != "flexible_spline":
+        return along(gear)
+    first, second = along("ring_gear"), along("dynamic_spline")
+    between = np.linspace(first[-1], second[0], gap_elements(design, recipe) + 1)[1:-1]
+    return np.concatenate((first, between, second))
+
+
 def build_sector(design: DriveDesign, recipe: MeshRecipe, gear: GearName) -> SectorMesh:
     """Mesh the tooth sector of a gear; one layer of it for the plane model.
 
     Raises InputError for a recipe or a profile that gives elements with a Jacobian that is not above 0.
     """
-    counts: ToothRecipe = getattr(recipe, gear)
+    counts = tooth_recipe(recipe, gear)
     profile = design.profile(gear)
     interface, free, root_too = _radii(design, gear, counts, profile.r_root_circle)
     try:
@@ -143,8 +175,7 @@ def build_sector(design: DriveDesign, recipe: MeshRecipe, gear: GearName) -> Sec
     if plane:
         z = np.array([-0.5, 0.5]) * width
     else:
-        number, ratio = recipe.face_width.elements, recipe.face_width.end_ratio
-        z = axial_stations(width, number, ratio, design.wave_generator.face_width)
+        z = _stations(design, recipe, gear)
     amount, relief = _relief(design, gear, section, profile, z)
     sector = _toothed_part(section, z, relief, amount)
     rows = sector.rows
@@ -152,7 +183,9 @@ def build_sector(design: DriveDesign, recipe: MeshRecipe, gear: GearName) -> Sec
         faces = {"inner": sweep_line(section.free, rows)}
         # in the plane the torque acts on the inner surface, of which the lower layer stands for both
         node_sets = {"bore": np.sort(rows[0, section.free])}
-        if not plane:
+        if design.drive.model == "pancake":
+            node_sets["bore"] = np.unique(faces["inner"])
+        elif not plane:
             sector, node_sets["bore"], faces["end"] = _with_cup(design, recipe, section, sector, root_too)
     else:
         faces = {"outer": sweep_line(section.free[::-1], rows)}
@@ -184,10 +217,9 @@ def build_sector(design: DriveDesign, recipe: MeshRecipe, gear: GearName) -> Sec
 
 def require_sections(design: DriveDesign, recipe: MeshRecipe) -> None:
     """Raise InputError where the recipe lacks a section that the model needs."""
-    if design.drive.model == "cup":
-        for name in ("face_width", "cup"):
-            if getattr(recipe, name) is None:
-                raise InputError(f'[{name}] is missing in the mesh recipe: allowed only with drive.model = "plane"')
+    for name, models in (("face_width", ("cup", "pancake")), ("cup", ("cup",))):
+        if design.drive.model in models and getattr(recipe, name) is None:
+            raise InputError(f'[{name}] is missing in the mesh recipe: drive.model = "{design.drive.model}" needs it')
 
 
 def build_sector_meshes(design: DriveDesign, recipe: MeshRecipe) -> dict[str, SectorMesh]:
@@ -196,7 +228,8 @@ def build_sector_meshes(design: DriveDesign, recipe: MeshRecipe) -> dict[str, Se
     Returns
     -------
     dict of SectorMesh
-        Keys ``flexible_spline`` (with its slice of the cup) and ``ring_gear``.
+        Keys ``flexible_spline`` (with its slice of the cup), ``ring_gear`` and, in a pancake drive,
+        ``dynamic_spline``.
     """
     require_sections(design, recipe)
-    return {gear: build_sector(design, recipe, gear) for gear in GEARS}
+    return {gear: build_sector(design, recipe, gear) for gear in design.gears}

@@ -45,6 +45,9 @@ COLUMNS = tuple(UNITS)
 INPUT_UNITS = {"input_angle_deg": "deg", "input_torque_Nmm": "N·mm"}
 """Further columns, with their units, of a drive whose wave generator is fixed: of the ring gear, which is driven."""
 
+PANCAKE_UNITS = {"ds_s1": "MPa", "ds_s3": "MPa", "ds_vm": "MPa", "ds_tooth_torque_Nmm": "N·mm"}
+"""Further columns of pancake drives: stresses of the dynamic spline, torque of its teeth on the flexible spline."""
+
 PERIODIC = (
     "fs_s1",
     "fs_s3",
@@ -65,6 +68,11 @@ _TEXT = {"step"}
 _WHOLE = {"pairs_in_contact", "newton_iterations"}
 
 
+def columns_of(row: Mapping[str, Any]) -> tuple[str, ...]:
+    """Names of the columns of a history that has such rows."""
+    return (*COLUMNS, *PANCAKE_UNITS) if PANCAKE_UNITS.keys() & row.keys() else COLUMNS
+
+
 def plain_row(row: Mapping[str, Any]) -> dict[str, Any]:
     """A row with Python's own types, in the order of the columns; ValueError when columns are wrong."""
     names = columns_of(row)
@@ -74,15 +82,11 @@ def plain_row(row: Mapping[str, Any]) -> dict[str, Any]:
     return {c: str(row[c]) if c in _TEXT else int(row[c]) if c in _WHOLE else float(row[c]) for c in names}
 
 
-def columns_of(row: Mapping[str, Any]) -> tuple[str, ...]:
-    """The columns that a row has to have: those of the input too where it has one of them."""
-    return (*COLUMNS, *INPUT_UNITS) if any(name in row for name in INPUT_UNITS) else COLUMNS
-
-
 def format_rows(rows: Iterable[Mapping[str, Any]]) -> bytes:
     """The text of the whole file; floats as the shortest text that reads back the same."""
     text, rows = io.StringIO(), list(rows)
-    writer = csv.DictWriter(text, columns_of(rows[0]) if rows else COLUMNS, lineterminator="\n")
+    names = columns_of(rows[0]) if rows else COLUMNS
+    writer = csv.DictWriter(text, names, lineterminator="\n")
     writer.writeheader()
     for row in rows:
         writer.writerow({c: repr(v) if isinstance(v, float) else v for c, v in plain_row(row).items()})
@@ -91,7 +95,8 @@ def format_rows(rows: Iterable[Mapping[str, Any]]) -> bytes:
 
 def columns(rows: Sequence[Mapping[str, Any]]) -> dict[str, np.ndarray]:
     """The history by columns, each (n,): int64 for `step` and for counts, else float64."""
-    whole, names = _WHOLE | _TEXT, columns_of(rows[0]) if rows else COLUMNS
+    whole = _WHOLE | _TEXT
+    names = columns_of(rows[0]) if rows else COLUMNS
     return {name: np.array([row[name] for row in rows], dtype=np.int64 if name in whole else float) for name in names}
 
 

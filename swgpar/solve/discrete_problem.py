@@ -19,7 +19,7 @@ from swgpar.contact.flanks import FlankContact
 from swgpar.contact.friction import PairKey
 from swgpar.contact.search import FlankPair, facing_flanks
 from swgpar.design.load_states import LoadState
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
 from swgpar.fem.sectors_in_reach import RingSectors, SectorsInReach, WholeTeeth
@@ -68,7 +68,8 @@ class DiscreteProblem:
     partition, elements : ownership and elements, bound to their local nodes
     supports : couplings, guide, grounding and load
     rigid_contacts : contacts with rigid surfaces, and those of a bearing
-    flanks, contact_search : contact of the tooth flanks and its search; None for a body without teeth
+    flanks, contact_search : contacts of the tooth flanks, one for each ring gear, and their search; none and None for a
+    body without teeth
     module : mm, length that bounds and floors refer to
     ring_sectors : ring-gear sectors that are modelled; None where all are
     whole_teeth : teeth of the flexible spline and of the ring gear that are not one element; none where all are
@@ -89,7 +90,7 @@ class DiscreteProblem:
         elements: Elements,
         supports: Supports,
         rigid_contacts: Sequence[Contact],
-        flanks: FlankContact | None = None,
+        flanks: Sequence[FlankContact] = (),
         contact_search: ContactSearch | None = None,
         module: float,
         ring_sectors: RingSectors | None = None,
@@ -99,13 +100,12 @@ class DiscreteProblem:
     ) -> None:
         self.partition, self.elements, self.supports, self.phases = partition, elements, supports, phases
         self.rigid_contacts = list(rigid_contacts)
-        self.flanks, self.contact_search = flanks, contact_search
-        self.contacts: list[Contact] = [*rigid_contacts] if self.flanks is None else [*rigid_contacts, self.flanks]
-        self.clearance = (
-            None
-            if self.flanks is None
-            else FlankClearance(self.flanks, partition.comm, module=module, outer_radius=contact_search.outer_radius)
-        )
+        self.flanks, self.contact_search = list(flanks), contact_search
+        self.contacts: list[Contact] = [*rigid_contacts, *flanks]
+        self.clearances = [
+            FlankClearance(contact, partition.comm, module=module, outer_radius=contact_search.outer_radius)
+            for contact in flanks
+        ]
         self.module = module
         self.ring_sectors, self.whole_teeth = ring_sectors, whole_teeth
         self.scale, self.coupling_keys = supports.scale, coupling_keys
@@ -130,7 +130,7 @@ class DiscreteProblem:
     @property
     def symmetric(self) -> bool:
         """Whether the tangent is symmetric."""
-        return self.flanks is None or self.flanks.symmetric
+        return all(flanks.symmetric for flanks in self.flanks)
 
     @property
     def force_floor(self) -> float:
@@ -168,19 +168,20 @@ class DiscreteProblem:
         with self.phases("search"):
             self.complete()
             self._searched = self.x.array_r.copy()
-            pairs = self._facing_pairs(state, self.contact_search.tip_margin) if self.flanks is not None else []
-            further = self.flanks.node_numbers(pairs) if self.flanks is not None else np.zeros(0, dtype=np.int64)
-            self.local = self.elements.local.extended(further)
+            pairs = [self._facing_pairs(flanks, state, self.contact_search.tip_margin) for flanks in self.flanks]
+            further = [flanks.node_numbers(facing) for flanks, facing in zip(self.flanks, pairs)]
+            self.local = self.elements.local.extended(np.concatenate([np.zeros(0, dtype=np.int64), *further]))
             self.exchange.destroy()
             self.exchange = Exchange(self.partition, self.local.number)
             pattern = self.coupling_keys
-            if self.flanks is not None:
+            if self.flanks:
                 accepted = None
-                if not self.flanks.symmetric and state.friction_acts:
+                if not self.symmetric and state.friction_acts:
                     accepted = self.displacement(self.accepted)
                 u = self.displacement()
-                found = self.flanks.search(pairs, self.local, u, self.contact_search.distances, accepted)
-                pattern = np.union1d(found, self.coupling_keys)
+                for flanks, facing in zip(self.flanks, pairs):
+                    found = flanks.search(facing, self.local, u, self.contact_search.distances, accepted)
+                    pattern = np.union1d(pattern, found)
                 self._choose_modelled_sectors()
         for contact in self.rigid_contacts:
             contact.reset()
@@ -206,23 +207,27 @@ class DiscreteProblem:
             moved = moved[: -self.partition.n_multipliers]
         return largest(self.partition.comm, float(moved.max(initial=0.0)))
 
-    def _facing_pairs(self, state: LoadState, margin: float) -> list[FlankPair]:
+    def _facing_pairs(self, flanks: FlankContact, state: LoadState, margin: float) -> list[FlankPair]:
         """Pairs of flanks that can meet at x, of this rank; none while the flanks are switched off."""
-        if not self.flanks.is_active(state):
+        if not flanks.is_active(state):
             return []
         u = self.displacement()
-        rotation = self.supports.ring_rotation(u)
-        pairs = facing_flanks(self.partition, self.elements.bodies[FLEXIBLE_SPLINE], u, rotation, margin)
-        return [pair for pair in pairs if self.flanks.takes_part(pair)]
+        rotation = flanks.ring_motion.ring_rotation(u)
+        pairs = facing_flanks(self.partition, flanks.spline, flanks.ring.layout, u, rotation, margin)
+        return [pair for pair in pairs if flanks.takes_part(pair)]
 
     def _choose_modelled_sectors(self) -> None:
         """Leave out sectors of the ring gear, and condense teeth, that are out of reach; collective."""
-        spline, ring, near = (
-            np.concatenate(part) for part in zip(*self.partition.comm.allgather(self.flanks.sectors_in_reach()))
-        )
-        changed = [teeth.update((spline, ring)[teeth.body], self.elements) for teeth in self.whole_teeth]
+        within: dict[int, list[np.ndarray]] = {}
+        near: dict[int, np.ndarray] = {}
+        for flanks in self.flanks:
+            parts = self.partition.comm.allgather(flanks.sectors_in_reach())
+            spline, ring, near[flanks.ring_body] = (np.concatenate(part) for part in zip(*parts))
+            within.setdefault(FLEXIBLE_SPLINE, []).append(spline)
+            within[flanks.ring_body] = [ring]
+        changed = [teeth.update(np.concatenate(within[teeth.body]), self.elements) for teeth in self.whole_teeth]
         if self.ring_sectors is not None:
-            changed.append(self.ring_sectors.update(near, self.elements))
+            changed.append(self.ring_sectors.update(near[RING_GEAR], self.elements))
         if any(changed):
             self.elements.renew_pattern()
             self.pattern = None
@@ -232,13 +237,13 @@ class DiscreteProblem:
 
     def overlooked(self, state: LoadState) -> bool:
         """Whether flanks that the search left out have come into contact; collective."""
-        if self.flanks is None or not self.flanks.is_active(state):
+        if not any(flanks.is_active(state) for flanks in self.flanks):
             return False
         with self.phases("search"):
             self.complete()
-            pairs = self._facing_pairs(state, 0.0)
-            found = self.flanks.overlooked(pairs, self.displacement(), state)
-        return bool(self.partition.comm.allreduce(int(found), op=MPI.MAX))
+            u = self.displacement()
+            found = [flanks.overlooked(self._facing_pairs(flanks, state, 0.0), u, state) for flanks in self.flanks]
+        return bool(self.partition.comm.allreduce(int(any(found)), op=MPI.MAX))
 
     def set_pattern(self, pattern: np.ndarray) -> None:
         """Make room in the tangent for contact blocks, keys row * n_global + column (n,), where they are other ones."""
@@ -319,37 +324,47 @@ class DiscreteProblem:
         """Bound of the output's motion in a Newton step, in units of the last border; None where it is prescribed."""
         if state.control != "torque":
             return None
-        return self.scale * self.clearance.largest_rotation(self._loaded_side(state))
+        return self.scale * min(
+            clearance.largest_rotation(self._loaded_side(clearance.flanks, state)) for clearance in self.clearances
+        )
 
     def closing_rotation(self, state: LoadState) -> float:
-        """Rotation (rad) of the output, in the direction of the torque of `state`, that brings its flanks together.
+        """Rotation (rad) of the output, in the direction of the torque of `state`, that brings flanks together.
 
-        0 where they are so close that a Newton step does the rest, or where none is near. Collective.
+        They are those of the output, or where the flexible spline rotates with it those of the fixed ring gear. 0 where
+        they are so close that a Newton step does the rest, or where none is near. Collective.
         """
         self.search(state)
-        self.flanks.evaluate(self.displacement(), state, None, None)
-        return float(np.copysign(self.clearance.closing_rotation(self._loaded_side(state)), state.torque))
+        held = self.supports.holds_spline(state)
+        (clearance,) = (one for one in self.clearances if self._is_output(one.flanks) == held)
+        clearance.flanks.evaluate(self.displacement(), state, None, None)
+        side = self._loaded_side(clearance.flanks, state)
+        return float(np.copysign(clearance.closing_rotation(side), state.torque))
 
-    def _loaded_side(self, state: LoadState) -> int:
+    def _is_output(self, flanks: FlankContact) -> bool:
+        """Whether the ring gear of these flanks is the output."""
+        return self.supports.output_gear != FLEXIBLE_SPLINE and flanks.ring_motion.floats
+
+    def _loaded_side(self, flanks: FlankContact, state: LoadState) -> int:
         """Side of the flanks that carry the torque of `state`, on the flexible spline or on the ring gear."""
-        counter_clockwise = (state.torque >= 0.0) == (self.supports.output_gear == FLEXIBLE_SPLINE)
+        counter_clockwise = (state.torque >= 0.0) != self._is_output(flanks)
         return LOADED_SIDE if counter_clockwise else -LOADED_SIDE
 
     # -- segments of the flanks ------------------------------------------------------------------------
 
     def freeze_segments(self) -> None:
         """Freeze the segments of the flanks."""
-        if self.flanks is not None:
-            self.flanks.freeze_segments()
+        for flanks in self.flanks:
+            flanks.freeze_segments()
 
     def release_segments(self) -> None:
         """Cut the segments of the flanks anew in every evaluation."""
-        if self.flanks is not None:
-            self.flanks.release_segments()
+        for flanks in self.flanks:
+            flanks.release_segments()
 
     def segments_frozen(self) -> bool:
         """Whether segments are frozen on any rank: many ranks have no flanks in reach. Collective."""
-        frozen = self.flanks is not None and self.flanks.frozen
+        frozen = any(flanks.frozen for flanks in self.flanks)
         return bool(self.partition.comm.allreduce(int(frozen), op=MPI.MAX))
 
     def freeze_friction_bounds(self) -> tuple[float, float]:
@@ -357,18 +372,18 @@ class DiscreteProblem:
 
         Returns the largest change of these pressures and the largest of them, MPa, over all ranks; 0 without friction.
         """
-        values = (0.0, 0.0) if self.flanks is None else self.flanks.freeze_friction_bound()
-        change, top = (largest(self.partition.comm, value) for value in values)
+        values = [(0.0, 0.0), *(flanks.freeze_friction_bound() for flanks in self.flanks)]
+        change, top = (largest(self.partition.comm, max(of_all)) for of_all in zip(*values))
         return change, top
 
-    def saved_segments(self) -> ActiveSegments | None:
+    def saved_segments(self) -> list[ActiveSegments | None]:
         """The present segments of the flanks, for `restore_segments`."""
-        return None if self.flanks is None else self.flanks.saved_segments()
+        return [flanks.saved_segments() for flanks in self.flanks]
 
-    def restore_segments(self, saved: ActiveSegments | None) -> None:
+    def restore_segments(self, saved: list[ActiveSegments | None]) -> None:
         """Freeze the segments that were saved."""
-        if self.flanks is not None:
-            self.flanks.restore_segments(saved)
+        for flanks, segments in zip(self.flanks, saved):
+            flanks.restore_segments(segments)
 
     # -- state -----------------------------------------------------------------------------------------
 
@@ -387,15 +402,15 @@ class DiscreteProblem:
 
     def touching_pairs(self) -> int:
         """Flank pairs of the model in contact, over all ranks; collective."""
-        pairs = 0 if self.flanks is None else self.flanks.touching_pairs()
+        pairs = sum(flanks.touching_pairs() for flanks in self.flanks)
         return int(self.partition.comm.allreduce(pairs, op=MPI.SUM))
 
     def accept(self) -> None:
         """Take x as the state from which friction counts the slip of the next solve; collective."""
         self.complete()
         self.x.copy(self.accepted)
-        if self.flanks is not None:
-            self.flanks.accept()
+        for flanks in self.flanks:
+            flanks.accept()
 
     @property
     def _in_reach(self) -> list[SectorsInReach]:
@@ -413,10 +428,10 @@ class DiscreteProblem:
         self.pattern = None
 
     def resume(self, tractions: dict[PairKey, np.ndarray]) -> None:
-        """Take x and these tractions of the flanks as an accepted state."""
+        """Take x and these tractions of the flanks of the first ring gear as an accepted state."""
         self.x.copy(self.accepted)
-        if self.flanks is not None:
-            self.flanks.resume(tractions)
+        for flanks in self.flanks[:1]:
+            flanks.resume(tractions)
 
     def output_rotation(self) -> float:
         """Rotation of the output (rad); collective."""

@@ -282,7 +282,7 @@ class NewtonSolver:
     def _begin(self, load_state: LoadState, establish_contact: bool, search: bool) -> SolveState:
         problem = self.problem
         problem.clear_unused_multipliers(load_state)
-        bounded = problem.flanks is not None and problem.flanks.is_active(load_state)
+        bounded = any(flanks.is_active(load_state) for flanks in problem.flanks)
         self.line_search.max_node_step = MAX_NODE_STEP * problem.module if bounded else np.inf
         if search:
             problem.search(load_state)

@@ -72,7 +72,7 @@ class CycleBreaker:
     active: bool = False
     started: bool = False
     rounds: int = 0
-    solution: tuple[PETSc.Vec, ActiveSegments | None] | None = None
+    solution: tuple[PETSc.Vec, list[ActiveSegments | None]] | None = None
 
 
 @dataclass

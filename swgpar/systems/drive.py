@@ -14,7 +14,7 @@ from swgpar.analysis.identity import identity
 from swgpar.analysis.program_results import COLUMNS as PROGRAM_COLUMNS
 from swgpar.analysis.run_drive import run_drive
 from swgpar.analysis.shortcuts import MESHES
-from swgpar.analysis.summary import MEANS
+from swgpar.analysis.summary import MEANS, PANCAKE_STRESSES
 from swgpar.analysis.terminal import print_drive
 from swgpar.design.derived_geometry import derived_geometry
 from swgpar.design.drive_design import DriveDesign
@@ -23,7 +23,7 @@ from swgpar.design.remarks import remarks
 from swgpar.errors import InputError
 from swgpar.input.toml_file import apply_overrides
 from swgpar.meshing import MeshRecipe, load_recipe
-from swgpar.results.history import INPUT_UNITS, UNITS
+from swgpar.results.history import INPUT_UNITS, PANCAKE_UNITS, UNITS
 from swgpar.systems.protocol import Measured, Quantity, System
 
 MAIN = ("fs_s1", "fs_s3", "fs_vm", "rg_vm", "wg_torque_Nmm")
@@ -36,6 +36,9 @@ MEANINGS = {
     "rg_s1": "ring gear, tensile s1",
     "rg_s3": "ring gear, compressive |s3|",
     "rg_vm": "ring gear, von Mises",
+    "ds_s1": "dynamic spline, tensile s1",
+    "ds_s3": "dynamic spline, compressive |s3|",
+    "ds_vm": "dynamic spline, von Mises",
     "wg_torque_Nmm": "torque of the wave generator",
 }
 """Of columns of the history; the names of the others say it themselves."""
@@ -208,12 +211,13 @@ class Drives(System[DriveDesign, DriveResult]):
         """ "mean.fs_s1" over the rotation and so on, "step1.fs_s1" at the last increment of a step."""
 
         def quantity(column: str, when: str) -> Quantity:
-            return Quantity(f"{MEANINGS.get(column, column)}, {when}", (UNITS | INPUT_UNITS)[column])
+            return Quantity(f"{MEANINGS.get(column, column)}, {when}", (UNITS | INPUT_UNITS | PANCAKE_UNITS)[column])
 
         if design.has_program:
             further = (PROGRAM_FATIGUE if design.fatigue else {}) | (BEARING if design.bearing else {})
             return program_quantities(design) | further | (HOUSING if design.housing else {})
-        known = {f"mean.{name}": quantity(name, "mean over the rotation") for name in MEANS}
+        stresses = () if design.dynamic_spline is None else PANCAKE_STRESSES
+        known = {f"mean.{name}": quantity(name, "mean over the rotation") for name in (*MEANS, *stresses)}
         if design.output.root_stress:
             known |= RESOLVED
         known |= SHARING

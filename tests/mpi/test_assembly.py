@@ -82,7 +82,7 @@ def test_tangent_is_the_derivative_of_the_residual(overrides: tuple[str, ...]) -
         difference.array[-partition.n_multipliers :] = 0.0  # the couplings' rows are in the border, not in the matrix
     assert problem.penetration() > 0.0
     if design.contact.friction:
-        active = problem.flanks.saved_segments()
+        active = problem.flanks[0].saved_segments()
         slipping = 0 if active is None else np.count_nonzero(np.linalg.norm(active.friction.current, axis=2))
         assert partition.comm.allreduce(slipping) > 0
     print(f"relative difference {difference.norm() / sides[0].norm():.1e}")

@@ -76,7 +76,7 @@ def test_renamed_deviations_are_those_of_a_drive_that_is_rotated(layout: str) ->
     stepper = loaded_stepper(turn_design(small("plane", 'deviations.mesh="same"', *overrides)))
     drive.model.problem = stepper.problem
     drive._displace_cam()
-    stepper.problem.flanks.deviate(tables)
+    stepper.problem.flanks[0].deviate(tables)
     stepper.advance(stepper.load_state)
     for index in (0, 1, 7):
         row = rotate(stepper, index * step) if index else stepper.row()

@@ -316,7 +316,7 @@ class Torn:
         self.problem.release_segments()
         self.torn = self.solver.state.breaker.solution is not None
 
-    def restore_segments(self, saved: ActiveSegments | None) -> None:
+    def restore_segments(self, saved: list[ActiveSegments | None]) -> None:
         self.problem.restore_segments(saved)
         self.torn, self.restored = False, self.restored + 1
 

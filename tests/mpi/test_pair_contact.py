@@ -90,9 +90,9 @@ def test_sliding_is_the_motion_between_two_angles(layout: str) -> None:
     for angle in (-half, half):
         rotate(stepper, angle)
         pairs = [
-            p for p in stepper.problem.flanks.pairs if (p.sector, p.side > 0) == (one.tooth, one.flank == CLOCKWISE)
+            p for p in stepper.problem.flanks[0].pairs if (p.sector, p.side > 0) == (one.tooth, one.flank == CLOCKWISE)
         ]
-        ((_, tooth, _),), ((_, facing, _),) = moved_teeth(stepper.model, pairs)
+        ((_, tooth, _),), ((_, facing, _),) = moved_teeth(stepper.model, pairs, stepper.problem.flanks[0])
         places.append((tooth.sections(flat), facing.sections(flat)))
     (tooth, facing), (tooth_after, facing_after) = places
     foot = 0.5 * sum(ring.distance(flank.from_profile(s))[1] for flank, ring in places)

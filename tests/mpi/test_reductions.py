@@ -111,7 +111,7 @@ def test_search_over_candidate_teeth_only() -> None:
 
     far, all_pairs = rotated(*PLAIN, *PLANE, prepare=look_far)
     near, candidates = rotated(*PLAIN, *PLANE)
-    wide, few = (len(stepper.problem.flanks.pairs) for stepper in (far, near))
+    wide, few = (len(stepper.problem.flanks[0].pairs) for stepper in (far, near))
     print(f"{few} of {wide} pairs of flanks")
     assert few < wide
     assert_same(all_pairs, candidates, 1e-6)

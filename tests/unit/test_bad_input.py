@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from support.paths import DESIGN, REFERENCE
+from support.paths import DATA, DESIGN, REFERENCE
 from swgpar.design.design_file import load_design
 from swgpar.errors import InputError
 
@@ -33,7 +33,9 @@ OVERRIDES = [
     ("drive.face_width=0", "drive.face_width", "above 0"),
     ("drive.face_width=-10", "drive.face_width", "-10"),
     ('drive.layout="sideways"', "drive.layout", '"spline_fixed" or "wave_generator_fixed"'),
-    ('drive.model="solid"', "drive.model", '"cup" or "plane"'),
+    ('drive.model="solid"', "drive.model", '"cup" or "plane" or "pancake"'),
+    ("drive.model=pancake", "dynamic_spline", 'drive.model = "pancake" needs it'),
+    ("dynamic_spline.gap=1", "dynamic_spline", "missing"),
     ("drive.model=plane", "micro_geometry.wg_crowning", 'only 0 with drive.model = "plane"'),
     ("drive.tooth_count=3", "drive.tooth_count", "not a key"),
     ("flexible_spline.rim=0", "flexible_spline.rim", "above 0"),
@@ -112,6 +114,38 @@ def test_condensed_sectors_that_bend_too_much() -> None:
     with pytest.raises(InputError, match="solver.condensed_sectors = true leaves out 0.019 .* allowed up to 0.01"):
         load_design(plane, few)
     load_design(plane, few[1:])
+
+
+PANCAKE = [
+    (("dynamic_spline.gap=0",), "dynamic_spline.gap = 0", "above 0"),
+    (("dynamic_spline.gap=6",), "dynamic_spline.gap = 6", "below 6 mm (drive.face_width)"),
+    (("dynamic_spline.face_width=5.5",), "dynamic_spline.face_width = 5.5", "below 5.5 mm"),
+    (("dynamic_spline.rim=200",), "dynamic_spline.rim = 200", "0.01 to 100 mm"),
+    (("dynamic_spline.profile.r_tip=9",), "dynamic_spline.profile.r_tip = 9", "smaller"),
+    (("dynamic_spline.profile={type='conjugate',r_root=0.3}",), "dynamic_spline.profile.type", "the other profiles"),
+    (("wave_generator.face_width=5",), "wave_generator.face_width = 5", "only 6 mm"),
+    (("contact.friction=0.1",), "contact.friction = 0.1", "allowed 0"),
+    (("solver.condensed_sectors=true",), "solver.condensed_sectors = true", "allowed false"),
+    (("ratcheting.limit=1",), "a load program, stiffness or ratcheting", "allowed load.torque"),
+    (("wave_generator.bearing={balls=20,ball_diameter=2.0,race_thickness=0.5}",), "wave_generator.bearing", "without"),
+    (("drive.model=cup", "wave_generator.face_width=6"), "dynamic_spline is given", 'not "cup"'),
+    (("drive.layout=wave_generator_fixed",), 'drive.layout = "wave_generator_fixed"', "spline_fixed"),
+    (("ring_gear.housing.thickness=2",), "ring_gear.housing", "allowed without it"),
+    (("drive.model=plane",), "dynamic_spline is given", 'not "plane"'),
+    (("fatigue.surface_factor=0.9",), "fatigue is not available", "allowed without it"),
+    (("losses.loss_factor=1e-4",), "losses is not available", "allowed without them"),
+    (("deviations.ring_gear.eccentricity=0.01",), "deviations is not available", "allowed without them"),
+    (("cup.length=5", "cup.fillet_radius=1", "cup.inner_radius=3"), "cup is given", 'only with drive.model = "cup"'),
+]
+"""Overrides of the small pancake drive, the start of the sentence that refuses them, and a part of its end."""
+
+
+@pytest.mark.parametrize(("overrides", "key", "reason"), PANCAKE)
+def test_pancake(overrides: tuple[str, ...], key: str, reason: str) -> None:
+    with pytest.raises(InputError) as caught:
+        load_design(DATA / "pancake.toml", list(overrides))
+    message = str(caught.value)
+    assert key in message and reason in message and "\n" not in message
 
 
 @pytest.mark.parametrize("key", ["wg_crowning", "wg_slope", "fs_crowning"])

@@ -1,0 +1,115 @@
+"""Pancake drive: a flexible spline that contacts alone hold, between a fixed ring gear and one that is the output."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+from pytest_mpi import parallel_assert
+
+from support.paths import DATA
+from support.stepping import WORLD, Row, load_stepper, rotate, row
+from swgpar.analysis.bent_start import bend
+from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.analysis.pair_contact import pair_contacts
+from swgpar.constraints.distributing_coupling import ROTATION
+from swgpar.design.design_file import load_design
+from swgpar.design.drive_design import DriveDesign
+from swgpar.design.load_states import from_loaded, load_sequence
+
+TORQUE = 1000.0
+"""Torque of the output, N mm."""
+
+LAYOUTS = {"ring_fixed": (-20.0, 42), "spline_fixed": (21.0, 40)}
+"""Ratio, and teeth of the fixed ring gear."""
+
+
+def pancake(*overrides: str) -> DriveDesign:
+    return load_design(DATA / "pancake.toml", list(overrides))
+
+
+def loaded(design: DriveDesign, comm: MPI.Comm = WORLD) -> tuple[LoadStepper, Row]:
+    """The drive under its torque, from the bent shape."""
+    stepper = load_stepper(design, comm)
+    bend(stepper.model)
+    stepper.jump(from_loaded(list(load_sequence(design)))[0])
+    return stepper, row(stepper)
+
+
+def spline_rotation(stepper: LoadStepper) -> float:
+    """Mean rotation (rad) of the flexible spline."""
+    problem = stepper.problem
+    return float(problem.supports.couplings[0].evaluate(problem.displacement()).value[ROTATION])
+
+
+@pytest.mark.parallel([1, 2])
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_balance_and_period(layout: str) -> None:
+    """Both ring gears and the wave generator balance; after a pitch of the fixed ring gear the state is the same."""
+    ratio, teeth = LAYOUTS[layout]
+    design = pancake(f"drive.layout={layout}")
+    assert design.ratio == ratio
+    stepper, first = loaded(design)
+    tooth, second, cam = first["tooth_torque_Nmm"], first["ds_tooth_torque_Nmm"], first["wg_torque_Nmm"]
+    at_output = second if layout == "ring_fixed" else tooth
+    load = first["output_torque_Nmm"]
+    parallel_assert(abs(load) == pytest.approx(TORQUE) and load * ratio < 0.0)
+    parallel_assert(at_output == pytest.approx(load, abs=1e-4 * TORQUE))
+    parallel_assert(abs(tooth + second + cam) < 1e-4 * TORQUE and 0.0 < cam < 0.2 * TORQUE)
+    parallel_assert(first["torque_balance_Nmm"] < 1e-4 * TORQUE and first["pairs_in_contact"] >= 4)
+    contacts = pair_contacts(stepper.model, stepper.load_state)
+    parallel_assert(2 * len(contacts) == first["pairs_in_contact"])
+    for ring, torque in (("ring_gear", tooth), ("dynamic_spline", second)):
+        of_ring, (low, high) = [one for one in contacts if one.ring == ring], design.axial_range(ring)
+        parallel_assert(2.0 * sum(one.torque_Nmm for one in of_ring) == pytest.approx(torque, rel=1e-6))
+        stations = [station.z_mm for one in of_ring for station in one.stations]
+        parallel_assert(len(stations) > 0 and low < min(stations) and max(stations) < high)
+    before, pitch = spline_rotation(stepper), 2.0 * np.pi / teeth
+    last = rotate(stepper, pitch)
+    turned = np.degrees(pitch) / ratio
+    parallel_assert(last["output_angle_deg"] - first["output_angle_deg"] == pytest.approx(turned, abs=1e-5))
+    # the flexible spline rotates with the dynamic one, which is the output or fixed
+    expected = np.radians(turned) if layout == "ring_fixed" else 0.0
+    parallel_assert(spline_rotation(stepper) - before == pytest.approx(expected, abs=2e-7))
+    for name in ("fs_vm", "rg_vm", "ds_vm", "wg_torque_Nmm"):
+        parallel_assert(last[name] == pytest.approx(first[name], rel=1e-4))
+
+
+@pytest.mark.parallel(2)
+def test_any_number_of_ranks_gives_the_same() -> None:
+    (_, parallel), (_, alone) = loaded(pancake()), loaded(pancake(), MPI.COMM_SELF)
+    for name in set(alone) - {"torque_balance_Nmm", "newton_iterations"}:
+        parallel_assert(parallel[name] == pytest.approx(alone[name], rel=1e-5, abs=1e-6))
+
+
+@pytest.mark.parallel(1)
+def test_half_of_the_drive_is_the_whole() -> None:
+    """Nothing but the cam and the teeth centres the flexible spline in the whole drive."""
+    (_, half), (_, whole) = loaded(pancake()), loaded(pancake("solver.twofold_symmetry=false"))
+    for name in ("output_angle_deg", "fs_vm", "rg_vm", "ds_vm", "wg_torque_Nmm", "pairs_in_contact"):
+        assert whole[name] == pytest.approx(half[name], rel=1e-4), name
+
+
+@pytest.mark.parallel(1)
+def test_energy() -> None:
+    """Without friction the input torque averages to that of the output over the ratio."""
+    stepper, _ = loaded(pancake())
+    pitch, samples = 2.0 * np.pi / 42, 8
+    rows = [rotate(stepper, k * pitch / samples) for k in range(1, samples + 1)]
+    torque = [one["wg_torque_Nmm"] for one in rows]
+    # the coarse mesh has a ripple of a third of the mean, of which eight samples leave 0.3 %
+    assert np.ptp(torque) > 0.1 * np.mean(torque)
+    assert np.mean(torque) == pytest.approx(TORQUE / 20.0, rel=0.01)
+
+
+@pytest.mark.parallel(1)
+def test_without_torque_the_flexible_spline_is_held() -> None:
+    """It rotates with the output at its kinematic angle, and nothing touches the teeth."""
+    design = pancake("load.torque=0", "steps.rotation=3", "steps.increment=3")
+    stepper, first = loaded(design)
+    stepper.advance(list(load_sequence(design))[-1])
+    last = row(stepper)
+    assert first["pairs_in_contact"] == last["pairs_in_contact"] == 0
+    assert last["output_angle_deg"] == pytest.approx(-3.0 / 20.0)
+    assert spline_rotation(stepper) == pytest.approx(np.radians(-3.0 / 20.0))
+    assert abs(last["wg_torque_Nmm"]) < 1e-3 * TORQUE
