@@ -110,6 +110,8 @@ def run_drive(
             )
         if design.is_bolted:
             raise InputError(f'accuracy = {accuracy:g} is not available with cup.attachment = "bolted"')
+        if design.dynamic_spline is not None:
+            raise InputError(f'accuracy = {accuracy:g} is not available with drive.model = "pancake": allowed "cup"')
         design = with_accuracy(design, accuracy)
     left_out: tuple[str, ...] = ()
     if not plain:
