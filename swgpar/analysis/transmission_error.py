@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -88,8 +89,8 @@ class Causes:
 
     def __init__(self, design: DriveDesign, turns: float) -> None:
         self.design, self.turns = design, turns
-        fixed = design.teeth(design.standing_gear).n_teeth
-        self.mesh = fixed if fixed % 2 == 0 else 2 * fixed
+        fixed = round(2.0 * np.pi / design.period_angle)
+        self.mesh = math.lcm(fixed, design.lobes)
         parts = {"ring gear": _kinds(design, "ring_gear"), "flexible spline": _kinds(design, "flexible_spline")}
         moving = design.output_gear.replace("_", " ")
         passes = 1.0 - 1.0 / design.ratio

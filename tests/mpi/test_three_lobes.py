@@ -7,22 +7,25 @@ from functools import lru_cache
 import numpy as np
 import pytest
 from mpi4py import MPI
+from pytest_mpi import parallel_assert
 
-from support.paths import DESIGN
-from support.stepping import WORLD, Row, assert_agree, load_stepper, loaded, rotate
+from support.paths import DESIGN, DRIVERS
+from support.stepping import WORLD, Row, assert_agree, load_stepper, loaded, rotate, row
 from support.three_lobes import MODELS
 from swgpar.analysis.bent_start import bend
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.design.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.load_states import Stage, load_sequence
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.vectors import read_field
+from swgpar.meshing import load_recipe
 
-PHYSICAL = ("fs_s1", "fs_s3", "fs_vm", "rg_vm", "wg_torque_Nmm", "tooth_torque_Nmm", "output_angle_deg")
+STATE, TORQUES = ("fs_s1", "fs_s3", "fs_vm", "rg_vm", "output_angle_deg"), ("wg_torque_Nmm", "tooth_torque_Nmm")
 TORQUE = {"cup": 2000.0, "plane": 200.0}
 
-both_models = pytest.mark.parametrize("model", [pytest.param("cup", marks=pytest.mark.parallel(2)), "plane"])
-PERIOD_SAMPLES = 8
+both_models = pytest.mark.parametrize("model", list(MODELS))
+PERIOD_SAMPLES = 16
 
 
 def small(model: str, *overrides: str) -> DriveDesign:
@@ -34,41 +37,46 @@ def base(model: str) -> tuple[LoadStepper, Row]:
     return loaded(small(model))
 
 
-@lru_cache
-def whole(model: str) -> tuple[LoadStepper, Row]:
-    return loaded(small(model, "solver.twofold_symmetry=false"))
-
-
 def test_the_ratio_is_that_of_the_teeth() -> None:
     assert small("plane").ratio == -20.0
     assert small("plane", "drive.layout=spline_fixed").ratio == 21.0
 
 
+def assert_same(a: Row, b: Row) -> None:
+    """Two states agree to round-off. That of the torques is larger: the forces of the cam, which bend the spline, have
+    no moment but through their round-off."""
+    assert_agree(a, b, STATE, 1e-9)
+    assert_agree(a, b, TORQUES, 1e-6)
+
+
 @both_models
 def test_a_third_equals_the_whole(model: str) -> None:
-    (part, third), (all_of_it, full) = base(model), whole(model)
+    keys = ("solver.rtol=1e-11",)
+    (part, third), (all_of_it, full) = (
+        loaded(small(model, *keys, *more)) for more in ((), ("solver.twofold_symmetry=false",))
+    )
     assert (part.model.copies, all_of_it.model.copies) == (3, 1)
-    assert_agree(third, full, PHYSICAL, 1e-9)
+    assert_same(third, full)
     assert third["pairs_in_contact"] == full["pairs_in_contact"] >= 3
     # the displacement of every sector, images among them
     for body, teeth in ((FLEXIBLE_SPLINE, 60), (RING_GEAR, 63)):
         sectors = np.arange(teeth)
         found = read_field(part.model.partition, body, sectors, part.problem.x)
         expected = read_field(all_of_it.model.partition, body, sectors, all_of_it.problem.x)
-        assert np.abs(found - expected).max() < 1e-9
+        parallel_assert(np.abs(found - expected).max() < 1e-9)
 
 
 @pytest.mark.parallel([1, 2, 3])
 def test_a_third_equals_the_whole_with_friction_and_the_spline_fixed() -> None:
-    keys = ("drive.layout=spline_fixed", "contact.friction=0.1", "load.torque=0.21")
+    keys = ("solver.rtol=1e-11", "drive.layout=spline_fixed", "contact.friction=0.1", "load.torque=0.21")
     (_, third), (_, full) = (loaded(small("plane", *keys, *more)) for more in ((), ("solver.twofold_symmetry=false",)))
-    assert_agree(third, full, PHYSICAL, 1e-8)
+    assert_same(third, full)
 
 
 @pytest.mark.parallel([2, 3])
 def test_any_number_of_ranks_gives_the_same() -> None:
     _, alone = loaded(small("plane"), MPI.COMM_SELF)
-    assert_agree(base("plane")[1], alone, PHYSICAL, 1e-8)
+    assert_agree(base("plane")[1], alone, (*STATE, *TORQUES), 1e-6)
 
 
 @both_models
@@ -79,17 +87,23 @@ def test_torques_balance(model: str) -> None:
 
 
 def test_period_and_work() -> None:
-    """The state repeats after a pitch of the ring gear, and without friction the work of input and output agree."""
-    stepper, first = loaded(small("plane"))
-    design = stepper.model.design
-    angles = design.period_angle * np.arange(1, PERIOD_SAMPLES + 1) / PERIOD_SAMPLES
-    rows = [rotate(stepper, float(angle)) for angle in angles]
+    """The state repeats after a pitch of the ring gear, and without friction the work of input and output agree.
+
+    On the design file of drivers/: on its mesh of nine elements along a flank the work is good to 2e-4. On the smallest
+    mesh, with two, one pair per lobe takes over from the next in steps, and it is good to 2 %.
+    """
+    design = load_design(DRIVERS / "three_lobes.toml")
+    stepper = load_stepper(design, recipe=load_recipe("plane_coarse"))
+    bend(stepper.model)
+    stepper.advance(next(s for s in load_sequence(design) if s.stage == Stage.LOAD))
+    first = row(stepper)
+    rows = [rotate(stepper, design.period_angle * k / PERIOD_SAMPLES) for k in range(1, PERIOD_SAMPLES + 1)]
     last = rows[-1]
-    assert_agree(last, first, ("fs_s1", "fs_vm", "rg_vm", "wg_torque_Nmm"), 1e-6)
+    assert_agree(last, first, (*STATE[:-1], *TORQUES), 1e-6)
     turned = last["output_angle_deg"] - first["output_angle_deg"]
     assert turned == pytest.approx(np.degrees(design.period_angle) / design.ratio, rel=1e-7)
     mean = np.mean([r["wg_torque_Nmm"] for r in rows])
-    assert abs(mean) == pytest.approx(TORQUE["plane"] / abs(design.ratio), rel=0.01)
+    assert abs(mean) == pytest.approx(1000.0 * design.load.torque / abs(design.ratio), rel=1e-3)
 
 
 @both_models
