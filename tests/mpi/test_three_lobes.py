@@ -108,8 +108,10 @@ def test_period_and_work() -> None:
 
 @both_models
 def test_the_bent_shape_is_near_the_loaded_state(model: str) -> None:
-    stepper, _ = base(model)
-    fresh = load_stepper(small(model))
+    # on a crowned cam so thin a rim rocks, which the bent shape leaves out
+    flat = ("micro_geometry.wg_crowning=0", "micro_geometry.wg_slope=0")
+    stepper, _ = loaded(small(model, *flat))
+    fresh = load_stepper(small(model, *flat))
     bend(fresh.model)
     partition, sectors = stepper.model.partition, np.arange(*stepper.model.partition.owned_sectors(FLEXIBLE_SPLINE))
     found, expected = (read_field(partition, FLEXIBLE_SPLINE, sectors, s.problem.x) for s in (fresh, stepper))
