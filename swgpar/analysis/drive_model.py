@@ -17,7 +17,7 @@ from swgpar.analysis.bearing_model import (
 )
 from swgpar.constraints.distributing_coupling import DistributingCoupling, NodeMeans, RadialGuide
 from swgpar.constraints.rigid_attachment import RigidAttachment
-from swgpar.constraints.supports import FixedRing, FloatingRing, Supports
+from swgpar.constraints.supports import RING_COUPLING, FixedRing, FloatingRing, Supports
 from swgpar.contact.contact import NO_KEYS, Contact, largest
 from swgpar.contact.flank_state import Crowning, SearchRange
 from swgpar.contact.flanks import FlankContact
@@ -348,7 +348,7 @@ def build_flank_contacts(
                 elements.bodies[FLEXIBLE_SPLINE],
                 elements.bodies[ring],
                 ring,
-                FixedRing() if fixed else FloatingRing(supports.output, partition.comm),
+                FixedRing() if fixed else FloatingRing(supports.couplings[RING_COUPLING], partition.comm),
                 order=design.contact.quadrature,
                 crowning=flank_crowning(design),
                 penalty=design.penalty,

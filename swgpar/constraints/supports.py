@@ -19,8 +19,8 @@ GROUNDING = 0.1
 """Stiffness of the grounding over E times the module."""
 
 
-SPLINE = 0
-"""Index of the coupling of the flexible spline."""
+SPLINE, RING_COUPLING = 0, 1
+"""Indices of the couplings of the flexible spline and of the ring gear that floats, if one does."""
 
 
 class FixedRing:
