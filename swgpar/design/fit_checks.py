@@ -37,6 +37,7 @@ def check_fit(design: DriveDesign) -> None:
     _check_wave_generator(design)
     _check_teeth(design)
     _check_steps(design)
+    check_pancake(design)
     if design.drive.model == "cup":
         check_cup(design)
     _check_torque(design)
@@ -56,7 +57,6 @@ def check_fit(design: DriveDesign) -> None:
         )
     if design.deviations is not None:
         check_deviations(design, design.deviations)
-    check_pancake(design)
     if design.drive.model == "plane":
         _check_plane(design)
     else:
