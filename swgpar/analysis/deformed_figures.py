@@ -106,20 +106,20 @@ def draw_loaded_teeth(
 def draw_cup_section(
     grids: Sequence[pyvista.UnstructuredGrid], design: DriveDesign, wg_angle: float, title: str
 ) -> Figure:
-    """Half sections of the deformed cup drive along its axis, through the major and the minor axis of the cam.
+    """Half sections of the deformed cup drive along its axis, through a lobe of the cam and between two lobes.
 
     wg_angle : rad, of the wave generator;  title : where in the run this is
     """
     limit = colour_limit(grids)
     bodies = deformed(grids, 1.0)
     length = design.drive.face_width + design.cup.length
-    outer = design.profile("ring_gear").r_root_circle + design.ring_gear.rim
-    low = max(design.cup.inner_radius - 0.05 * outer, 0.0)
+    outer = max(design.profile("ring_gear").r_root_circle + design.ring_gear.rim, design.cup.edge)
+    low = max(min(design.cup.edge, design.inner_radius) - 0.05 * outer, 0.0)
     height = min(8.0, max(3.0, 9.0 * (outer - low) / (2.0 * length)))
     half = 0.5 * design.drive.face_width
     box = (-1.6 * half, half + 1.05 * design.cup.length, low, 1.01 * outer)
     figure, panels = _figure(2, (9.5, 1.4 + height))
-    for axes, name, turn in zip(panels, ("major axis", "minor axis"), (0.0, 0.5 * np.pi)):
+    for axes, name, turn in zip(panels, ("major axis", "minor axis"), (0.0, np.pi / design.lobes)):
         angle = wg_angle + turn
         axis = np.array([-np.sin(angle), np.cos(angle), 0.0])
         for grid in bodies:

@@ -128,6 +128,9 @@ def run_drive(
         logger.warning("%s", remark)
     if left_out:
         logger.info("left out: %s; --plain computes all of it", ", ".join(left_out))
+    if design.output.root_stress and not design.has_program and not design.resolves_root_stress:
+        reason = "a bearing" if design.bearing is not None else "two ring gears"
+        logger.info("the stress at the teeth is not resolved by windows: not available with %s", reason)
     with reported_memory(needs), limited(design.solver.time_limit):
         kept = StartStates(folder, design)
         if not restart:
