@@ -70,7 +70,8 @@ _WHOLE = {"pairs_in_contact", "newton_iterations"}
 
 def columns_of(row: Mapping[str, Any]) -> tuple[str, ...]:
     """Names of the columns of a history that has such rows."""
-    return (*COLUMNS, *PANCAKE_UNITS) if PANCAKE_UNITS.keys() & row.keys() else COLUMNS
+    further = (units for units in (INPUT_UNITS, PANCAKE_UNITS) if units.keys() & row.keys())
+    return (*COLUMNS, *(name for units in further for name in units))
 
 
 def plain_row(row: Mapping[str, Any]) -> dict[str, Any]:

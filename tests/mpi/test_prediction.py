@@ -49,7 +49,8 @@ def wave(model: DriveModel, angle: float, slip: float = 0.0) -> PETSc.Vec:
 def error(model: DriveModel, known: list[float], angle: float, slip: float = 0.0) -> float:
     """Largest error (mm) of a prediction from the states at known angles, over all ranks."""
     x = create_vector(model.partition)
-    predict(model.partition, model.fixed_body, [KnownState(at, wave(model, at)) for at in known], x, angle, slip)
+    states = [KnownState(at, wave(model, at)) for at in known]
+    predict(model.partition, model.fixed_body, states, x, angle, slip, resting={model.fixed_body})
     exact, worst = wave(model, angle, slip), 0.0
     for body in range(len(model.partition.layouts)):
         own = np.arange(*model.partition.owned_sectors(body))

@@ -129,7 +129,7 @@ def test_start_on_a_coarser_mesh_and_one_period(tmp_path: Path) -> None:
     succeed([*command, *overrides, "steps.rotation=9"])
     rows = history.read_history(out / "history.csv")
     assert [row["step"] for row in rows] == ["3", "4", "5"]
-    assert len(list((out / "figures").glob("*.png"))) == 7
+    assert len(list((out / "figures").glob("*.png"))) == 9
     summary = json.loads((out / "summary.json").read_text())
     assert summary["increments"] == 2 and summary["phases_s"]["start"] > 0.0
     succeed([*command, *overrides, "steps.rotation=20", "--restart"])
