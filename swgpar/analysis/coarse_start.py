@@ -81,9 +81,7 @@ def solve_to_load(
             if coarse is not None:
                 coarse.destroy()
                 coarse = None
-            stepper.load_state = loaded
-            stepper.advance(loaded)
-            iterations = [stepper.iterations]
+            iterations = [_settle(stepper, loaded)]
         elif coarse is not None:
             source, coarse = coarse, None
             take_over(source, stepper, loaded)
@@ -91,6 +89,9 @@ def solve_to_load(
             iterations = [stepper.iterations]
         else:
             iterations = _reach_load(stepper, load_states)
+        if kept is not None:
+            kept.save(stepper.model, recipe)
+            _settle(stepper, loaded)  # so that the forces are those of a run that takes this state over
     except SwgparError:
         for model in (coarse, stepper and stepper.model):
             if model is not None:
@@ -98,9 +99,14 @@ def solve_to_load(
         raise
     counted = " + ".join(map(str, iterations))
     logger.info("loaded on a mesh of %d elements, Newton iterations %s", stepper.model.n_elements(), counted)
-    if kept is not None:
-        kept.save(stepper.model, recipe)
     return stepper.model
+
+
+def _settle(stepper: LoadStepper, loaded: LoadState) -> int:
+    """Search the contacts anew at the present x, which is that of the loaded state; returns Newton iterations."""
+    stepper.resume_at(loaded)
+    stepper.advance(loaded)
+    return stepper.iterations
 
 
 def starts_bent(design: DriveDesign) -> bool:
