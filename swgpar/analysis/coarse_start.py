@@ -77,7 +77,8 @@ def solve_to_load(
     try:
         stepper = LoadStepper(build_drive_model(design, recipe, comm=comm))
         loaded = from_loaded(load_states)[0]
-        if kept is not None and kept.restore(stepper.model, recipe):
+        taken_over = kept is not None and kept.restore(stepper.model, recipe)
+        if taken_over:
             if coarse is not None:
                 coarse.destroy()
                 coarse = None
@@ -89,7 +90,7 @@ def solve_to_load(
             iterations = [stepper.iterations]
         else:
             iterations = _reach_load(stepper, load_states)
-        if kept is not None:
+        if kept is not None and not taken_over:
             kept.save(stepper.model, recipe)
             _settle(stepper, loaded)  # so that the forces are those of a run that takes this state over
     except SwgparError:

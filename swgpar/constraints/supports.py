@@ -68,7 +68,7 @@ class Supports:
     output : index of the gear that is the output
     guide : around the ring gear, or None
     scale : unit of the multipliers and of the grounding: E times the module, N/mm
-    share : modelled share of the drive, 1 or 0.5
+    share : modelled share of the drive: 1, or 1 over the number of lobes
     race : coupling of the outer race, without a bearing None
     spline_ratio : rotation of the flexible spline over that of the output, where contacts alone hold it unless the load
     state says otherwise; None where its coupling supports it

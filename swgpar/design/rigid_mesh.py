@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -61,7 +60,7 @@ def rigid_mesh(design: DriveDesign, phases: int = 8, n_points: int = 300) -> Rig
     touching, gaps = _touching(design, flanks, phases, n_points)
     if not np.isfinite(touching).all():
         return RigidMesh(np.inf, 0.0)
-    share = np.count_nonzero(gaps(touching) < NEAR) / phases * design.lobes / design.drive.teeth_fs
+    share = np.count_nonzero(gaps < NEAR) / phases * design.lobes / design.drive.teeth_fs
     return RigidMesh(float(np.degrees(np.ptp(touching))) * 3600.0, share)
 
 
@@ -76,10 +75,8 @@ def touching_rotation(design: DriveDesign, flanks: Flanks, n_points: int = 300) 
     return float(touching.item())
 
 
-def _touching(
-    design: DriveDesign, flanks: Flanks, phases: int, n_points: int
-) -> tuple[np.ndarray, Callable[[np.ndarray], np.ndarray]]:
-    """Rotations (phases, 1) rad at which the first pair touches, and the gaps (mm) of all teeth at such rotations.
+def _touching(design: DriveDesign, flanks: Flanks, phases: int, n_points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Rotations (phases, 1) rad at which the first pair touches, and the gaps (phases, n) mm of all teeth then.
 
     -inf where the teeth do not reach each other, or overlap at every rotation.
     """
@@ -100,7 +97,8 @@ def _touching(
             closing = touching - STEP * before / (before - after)
         touching = np.where(np.isfinite(before) & (after < before), closing, -np.inf).max(axis=1, keepdims=True)
         if not (np.abs(touching) < 0.5 * pitch).all():
-            return np.full_like(touching, -np.inf), gaps
-    if np.abs(gaps(touching).min(axis=1)).max() > NEAR:
+            return np.full_like(touching, -np.inf), before
+    found = gaps(touching)
+    if np.abs(found.min(axis=1)).max() > NEAR:
         touching = np.full_like(touching, -np.inf)
-    return touching, gaps
+    return touching, found
