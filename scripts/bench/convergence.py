@@ -17,7 +17,6 @@ from scipy.optimize import brentq
 from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.mesh_refinement import RATIO, resized
-from swgpar.analysis.places import region_of
 from swgpar.design.design_file import load_design
 from swgpar.design.load_states import load_sequence
 from swgpar.design.sections import GEARS
@@ -43,9 +42,8 @@ def by_region(model: DriveModel) -> dict[tuple[str, str, str], float]:
     """Largest s1, |s3| and von Mises stress (MPa) by body, region and quantity; collective."""
     found: dict[tuple[str, str, str], float] = {}
     _, fields = model.stresses()
-    for name, body, field in zip(GEARS, model.elements.bodies, fields, strict=True):
-        mesh = body.layout.mesh
-        regions = np.array([region_of(model.design, mesh, node, False) for node in range(len(mesh.coords))])
+    for k, (name, field) in enumerate(zip(GEARS, fields, strict=True)):
+        regions = model.regions[k][False]
         for quantity in QUANTITIES:
             values = -field["s3"] if quantity == "s3" else field[quantity]
             for region in np.unique(regions):

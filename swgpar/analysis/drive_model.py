@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from swgpar.analysis.bearing_model import (
     race_coupling,
     race_reference,
 )
+from swgpar.analysis.regions import sector_regions
 from swgpar.constraints.distributing_coupling import DistributingCoupling, NodeMeans, RadialGuide
 from swgpar.constraints.rigid_attachment import RigidAttachment
 from swgpar.constraints.supports import RING_COUPLING, FixedRing, FloatingRing, Supports
@@ -129,6 +131,12 @@ class DriveModel:
             body.layout.mesh, angle, body.displacement(self.problem.displacement())[body.owned]
         )
         return largest(self.comm, self.design.material.E * float((theta**2).max(initial=0.0)) / 8.0)
+
+    @cached_property
+    def regions(self) -> list[dict[bool, np.ndarray]]:
+        """Regions of the nodes of a sector of flexible spline and ring gear, see `sector_regions`."""
+        bodies = (self.elements.bodies[k] for k in (FLEXIBLE_SPLINE, RING_GEAR))
+        return [sector_regions(self.design, body.layout.mesh) for body in bodies]
 
     def n_elements(self) -> int:
         """Elements of the whole drive."""

@@ -17,11 +17,13 @@ from swgpar.analysis.fatigue_criteria import (
     goodman,
     normal_stress,
 )
-from swgpar.analysis.places import APART_DISTANCE, TOOTH_END, near_contact, region_of, warning_of
+from swgpar.analysis.places import APART_DISTANCE, near_contact
+from swgpar.analysis.regions import TOOTH_END, warning_of
 from swgpar.analysis.root_stress import RootStress
 from swgpar.analysis.stress_cycle import StressCycle
 from swgpar.design.load_program import program_points
 from swgpar.design.load_states import Stage
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.fem.stress import principal
 from swgpar.results.sector_fields import SectorFields
 
@@ -150,9 +152,10 @@ def _regions(cycle: StressCycle) -> tuple[np.ndarray, np.ndarray]:
     touched = np.zeros(len(mesh.coords), dtype=bool)
     touched[cycle.nodes] = cycle.model.comm.allreduce(cycle.touched.astype(int), op=MPI.SUM) > 0
     near = near_contact(mesh, touched[None], APART_DISTANCE * design.drive.module)[0]
+    names = cycle.model.regions[FLEXIBLE_SPLINE][False]
     regions, warnings = [], []
     for node in cycle.nodes:
-        region = region_of(design, mesh, int(node), False)
+        region = str(names[node])
         if near[node] and region != ROOT:
             region = CONTACT
         regions.append(region)

@@ -13,7 +13,7 @@ import numpy as np
 
 from swgpar.analysis.drive_model import DriveModel, build_rigid_contacts, newton_settings
 from swgpar.analysis.flank_loads import flank_forces, line_loads, nodal_forces
-from swgpar.analysis.places import END, region_of, warning_of
+from swgpar.analysis.regions import END, region_of, warning_of
 from swgpar.analysis.torques import torques
 from swgpar.constraints.boundary_conditions import DeadLoad, PrescribedDisplacement
 from swgpar.constraints.distributing_coupling import node_weights

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from swgpar.analysis.places import TOOTH_ROOT, Place
+from swgpar.analysis.places import Place
+from swgpar.analysis.regions import TOOTH_ROOT
 from swgpar.analysis.root_stress import RootStress
 from swgpar.design.sections import GEARS
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE

@@ -10,28 +10,11 @@ from scipy.spatial import cKDTree
 
 from swgpar.analysis.contact_pressure import nodal_pressure
 from swgpar.analysis.drive_model import DriveModel
+from swgpar.analysis.regions import END, NEAR, warning_of
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.load_states import LoadState
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.meshing.sector import SectorMesh
-
-BACK = "fillet at the back"
-"""Region of the fillet between the back of the teeth and the wall of the cup."""
-
-ATTACHED = "attachment"
-"""Region of the clamped ring of closed end or flange, or of the ring in which its bolts lie."""
-
-TOOTH_ROOT, TOOTH_END, UNDER_CONTACT = "tooth root", "tooth end", "flank under contact"
-"""Regions of the roots and of the ends of the teeth; of the flanks that touch and of what is close below them."""
-
-END = 0.45
-"""Share of the face width from its middle beyond which a place belongs to the end of a tooth."""
-
-AT_ENDS = (TOOTH_END, BACK, "notch")
-"""Regions of the ends of the teeth."""
-
-NEAR = 0.02
-"""Distance over the module within which a place lies on an edge."""
 
 TOUCHED = 0.02
 """Share of the largest nodal pressure from which a flank's node counts as touched."""
@@ -42,10 +25,6 @@ APART, APART_DISTANCE = "_apart", 0.25
 OF_REGION = " in "
 """Between a stress and a region in the names of the largest stresses of regions: "fs_vm in cup wall"."""
 
-AVERAGE = "below the contact of teeth: an average over elements, larger on a finer mesh"
-NOTCH = "in the notch behind the teeth, a corner without fillet: no limit to converge to"
-EDGE = "at the edge of the wave generator: edge contact, no limit to converge to"
-CLAMPED = "at the edge of a rigid attachment: no limit to converge to"
 ROLLER = "below a roller: an average over elements, larger on a finer mesh"
 CORNER = "a contact lies on the edge of a tooth: larger on a finer mesh"
 
@@ -102,7 +81,7 @@ def find_places(
         near = near_contact(body.layout.mesh, touched[:1] if ring else touched, distance)
         near |= inside_teeth(design, body.layout.mesh)
         apart = np.broadcast_to(~near, touched.shape)
-        regions = _regions(design, body.layout.mesh)
+        regions = model.regions[k]
         beyond = np.ones(touched.shape[1], dtype=bool)  # nodes of the housing
         beyond[body.layout.mesh.nodes_of(0)] = False
         for stress in ("s1", "s3", "vm"):
@@ -126,12 +105,6 @@ def find_places(
                     place = replace(place, warning=CORNER)
                 found[name] = place
     return found
-
-
-def _regions(design: DriveDesign, mesh: SectorMesh) -> dict[bool, np.ndarray]:
-    """Regions (n_node,) of the nodes of a sector, by whether a contact of flanks presses on them."""
-    nodes = range(len(mesh.coords))
-    return {touched: np.array([region_of(design, mesh, node, touched) for node in nodes]) for touched in (False, True)}
 
 
 def _by_region(
@@ -205,7 +178,7 @@ def _largest(model: DriveModel, k: int, values: np.ndarray, touched: np.ndarray)
     in_root = max(model.comm.allgather(mine))
     value, sector, node, pressed = max(model.comm.allgather(best), key=lambda one: one[0])
     x, y, z = point = body.layout.mesh.coords[node]
-    region = region_of(model.design, body.layout.mesh, node, pressed)
+    region = str(model.regions[k][pressed][node])
     tooth = body.layout.first_tooth + sector
     angle = float(body.layout.sector_angle(np.array(tooth)) - np.arctan2(x, y))
     return Place(
@@ -220,90 +193,3 @@ def _largest(model: DriveModel, k: int, values: np.ndarray, touched: np.ndarray)
         in_root=in_root,
         root_spacing=root_spacing(body.layout.mesh),
     )
-
-
-def region_of(design: DriveDesign, mesh: SectorMesh, node: int, touched: bool) -> str:
-    """Region of a node of a tooth sector. touched : whether a contact of flanks presses on it, or close to it"""
-    x, y, z = mesh.coords[node]
-    radius, half = float(np.hypot(x, y)), 0.5 * design.drive.face_width
-    if not mesh.plane and _at_the_back(design, mesh, radius, float(z)):
-        return BACK
-    if not mesh.plane and z > half * (1.0 + 1e-9):
-        return _region_of_the_cup(design, mesh, node, radius, float(z))
-    inner = mesh.body == "flexible_spline" and radius < design.inner_radius + 0.5 * design.flexible_spline.rim
-    if inner:
-        return "rim inside"
-    for grid in mesh.flanks:
-        rows, _ = np.nonzero(grid.nodes == node)
-        if len(rows):
-            return _region_of_the_flank(design, mesh, float(grid.s[rows[0]]), float(z), touched)
-    root = mesh.profile.r_root_circle
-    near = NEAR * design.drive.module
-    inside = UNDER_CONTACT if touched else "inside the tooth"
-    if mesh.body == "ring_gear":
-        outer = design.ring_outer_radius
-        if radius < root - near:
-            return "tip" if radius < mesh.profile.r_tip_circle + near else inside
-        return "housing" if radius > outer - near else "rim" if radius > root + near else TOOTH_ROOT
-    if design.drive.model == "cup" and abs(z - half) < near and radius < root + near:
-        return "notch"
-    if radius < root + near:
-        return TOOTH_END if abs(z) > END * design.drive.face_width and not mesh.plane else TOOTH_ROOT
-    if radius > mesh.profile.r_tip_circle - near:
-        return "tip"
-    at_end = abs(z) > END * design.drive.face_width and not mesh.plane
-    return TOOTH_END if at_end and not touched else inside
-
-
-def _at_the_back(design: DriveDesign, mesh: SectorMesh, radius: float, z: float) -> bool:
-    """Whether a point (mm) lies on the fillet at the back of the teeth, or close below it."""
-    if mesh.body != "flexible_spline" or design.cup is None or design.cup.back_fillet == 0.0:
-        return False
-    fillet, wall, near = design.cup.back_fillet, design.inner_radius + design.cup_thickness, NEAR * design.drive.module
-    back = 0.5 * design.drive.face_width
-    return back - near < z < back + fillet + near and wall - near < radius < mesh.profile.r_root_circle + near
-
-
-def _region_of_the_flank(design: DriveDesign, mesh: SectorMesh, s: float, z: float, touched: bool) -> str:
-    if abs(z) > END * design.drive.face_width and not mesh.plane and not touched:
-        return TOOTH_END
-    if s >= mesh.profile.breaks[-2]:
-        return TOOTH_ROOT
-    return UNDER_CONTACT if touched else "flank"
-
-
-def _region_of_the_cup(design: DriveDesign, mesh: SectorMesh, node: int, radius: float, z: float) -> str:
-    wall = design.cup_wall
-    if _is_attached(design, radius) and z > min(wall.faces) - NEAR * design.drive.module:
-        return ATTACHED
-    if node in mesh.node_sets["bore"]:
-        return "rim of the flange" if wall.outwards else "bore"
-    (r_center, z_center), near = wall.center, NEAR * design.drive.module
-    beyond = radius > r_center if wall.outwards else radius < r_center
-    if beyond and z > min(wall.faces) - near:
-        return "flange" if wall.outwards else "closed end"
-    return "fillet" if z > z_center + near else "cup wall"
-
-
-def _is_attached(design: DriveDesign, radius: float) -> bool:
-    """Whether points at a radius (mm) of closed end or flange are clamped, or lie under bolts or between them."""
-    cup, near = design.cup, NEAR * design.drive.module
-    if cup.attachment == "bolted":
-        return abs(radius - 0.5 * cup.bolt_circle) < 0.5 * cup.washer_diameter + near
-    point = np.array([0.0, radius + near if cup.shape == "hat" else radius - near])
-    return bool(cup.is_attached(point))
-
-
-def warning_of(design: DriveDesign, region: str, point: np.ndarray) -> str:
-    """Why a stress at a point (3,) mm of a region has no limit, or depends on the mesh; empty where it converges."""
-    if region == UNDER_CONTACT:
-        return AVERAGE
-    if region == "notch":
-        return NOTCH
-    if region == ATTACHED:
-        return CLAMPED
-    edge = 0.5 * design.wave_generator.face_width
-    at_edge = region == "rim inside" and abs(abs(point[2]) - edge) < NEAR * design.drive.module
-    if design.drive.model != "plane" and at_edge:
-        return EDGE
-    return ""

@@ -16,8 +16,9 @@ import numpy as np
 
 from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.local_problem import SECTORS, LocalProblem, WindowStress, tooth_nodes
-from swgpar.analysis.places import AT_ENDS as END_REGIONS
-from swgpar.analysis.places import TOOTH_END, TOOTH_ROOT, root_nodes
+from swgpar.analysis.places import root_nodes
+from swgpar.analysis.regions import AT_ENDS as END_REGIONS
+from swgpar.analysis.regions import TOOTH_END, TOOTH_ROOT
 from swgpar.design.load_states import LoadState
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.fem.stress import principal

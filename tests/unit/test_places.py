@@ -12,7 +12,8 @@ from support.paths import DESIGN, RECIPE, REFERENCE
 from support.small_drive import PLANE
 from swgpar.analysis.local_problem import tooth_nodes
 from swgpar.analysis.place_errors import CoarseStresses, with_errors
-from swgpar.analysis.places import APART, AVERAGE, BACK, Place, inside_teeth, region_of, root_nodes
+from swgpar.analysis.places import APART, Place, inside_teeth, root_nodes
+from swgpar.analysis.regions import AVERAGE, BACK, region_of
 from swgpar.analysis.root_stress import BETWEEN, RootStress
 from swgpar.analysis.summary import STRESSES
 from swgpar.design.design_file import load_design
