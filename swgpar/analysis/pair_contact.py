@@ -135,8 +135,12 @@ def _contacts(model: DriveModel, state: LoadState, flanks: FlankContact) -> list
         except (ArithmeticError, np.linalg.LinAlgError) as error:
             failed.append(f"tooth {pairs[k].sector}: {error}")
     contacts = [contact for part in model.comm.allgather(carried) for contact in part]
-    for reason in (reason for part in model.comm.allgather(failed) for reason in part):
-        logger.warning("the pressure of a pair is left out of pairs.csv: %s", reason)
+    reasons = [reason for part in model.comm.allgather(failed) for reason in part]
+    if reasons:
+        pairs_left = f"a pair is left out of pairs.csv: {reasons[0]}"
+        if len(reasons) > 1:
+            pairs_left = f"{len(reasons)} pairs is left out of pairs.csv, the first is {reasons[0]}"
+        logger.warning("the pressure of %s", pairs_left)
     total = model.copies * sum(contact.force_N for contact in contacts)
     contacts = [replace(contact, force_share=contact.force_N / total) for contact in contacts]
     return sorted(contacts, key=lambda one: (one.tooth, one.flank))

@@ -29,6 +29,9 @@ FIRST_GUESS = 0.5
 MARGIN = 1.25
 """Size of a smaller grid over that of the contact."""
 
+SMALLER = 0.9
+"""Width or length of a smaller grid over the present one, above which it would not resolve the contact better."""
+
 
 @dataclass(frozen=True)
 class PatchContact:
@@ -75,15 +78,16 @@ def patch_contact(
     Raises ArithmeticError if no contact is found.
     """
     low, high, half = *ends, width
+    middle_line = np.zeros(2)
     for _ in range(MAX_GRIDS):
-        grid = _Grid(gap, centre, low, high, half)
+        grid = _Grid(gap, lambda z, line=middle_line: centre(z) + np.polyval(line, z), low, high, half)
         pressure = grid.solve(force, place, modulus)
         if pressure is None:  # cells that are too long do not carry the force at its place
             reach = 0.25 * (high - low)
             low, high, half = max(ends[0], place - reach), min(ends[1], place + reach), 0.5 * half
             continue
         acts = pressure > 0.0
-        rows, columns = np.flatnonzero(acts.any(axis=1)), np.flatnonzero(acts.any(axis=0))
+        columns = np.flatnonzero(acts.any(axis=0))
         across = int(acts.sum(axis=0).max())
         border = acts[[0, -1]] & np.isfinite(grid.beyond())
         if border.any():
@@ -95,16 +99,18 @@ def patch_contact(
             longer = 0.5 * (high - low)
             low, high = max(ends[0], low - longer * short[0]), min(ends[1], high + longer * short[1])
             continue
-        few_across, few_along = across < FEWEST, len(columns) < FEWEST
-        if not few_across and not few_along:
-            return grid.contact(pressure, ends)
-        if few_across:
-            furthest = np.abs(grid.t[rows[[0, -1]]]).max() + 0.5 * grid.dt
-            half = max(MARGIN * furthest, 2.0 * grid.dt)
-        if few_along:
+        narrower, line = half, middle_line
+        if across < FEWEST:
+            shift, furthest = grid.middle_line(acts)
+            narrower, line = max(MARGIN * furthest, 2.0 * grid.dt), middle_line + shift
+        shorter = low, high
+        if len(columns) < FEWEST:
             middle = 0.5 * (grid.z[columns[0]] + grid.z[columns[-1]])
             reach = max(0.5 * MARGIN * (len(columns) + 1), 1.5) * grid.dz
-            low, high = max(ends[0], middle - reach), min(ends[1], middle + reach)
+            shorter = max(ends[0], middle - reach), min(ends[1], middle + reach)
+        if narrower > SMALLER * half and shorter[1] - shorter[0] > SMALLER * (high - low):
+            return grid.contact(pressure, ends)
+        half, middle_line, (low, high) = narrower, line, shorter
     raise ArithmeticError(f"no contact was found for a force of {force:g} N")
 
 
@@ -125,6 +131,18 @@ class _Grid:
         """Gap (2, n_z) mm in the cells beside the grid."""
         return self._gap_at(np.array([[self.t[0] - self.dt], [self.t[-1] + self.dt]]) + self.s0, self.z)
 
+    def middle_line(self, acts: np.ndarray) -> tuple[np.ndarray, float]:
+        """Straight line along the middle of the contact, and its largest distance (mm) from the contact's edge.
+
+        acts : (n_t, n_z) bool, cells in contact;  the line has the coefficients (2,) of `numpy.polyval` over z
+        """
+        columns = np.flatnonzero(acts.any(axis=0))
+        first = acts[:, columns].argmax(axis=0)
+        last = CELLS_ACROSS - 1 - acts[::-1, columns].argmax(axis=0)
+        edges, z = np.array([self.t[first] - 0.5 * self.dt, self.t[last] + 0.5 * self.dt]), self.z[columns]
+        line = np.polyfit(z, edges.mean(axis=0), 1) if len(columns) > 2 else np.array([0.0, edges.mean()])
+        return line, float(np.abs(edges - np.polyval(line, z)).max())
+
     def _influence(self, modulus: float) -> np.ndarray:
         """Displacement (n, n) mm of cells by a pressure of 1 MPa on one of them (Johnson, 3.25)."""
         steps = np.arange(1 - CELLS_ACROSS, CELLS_ACROSS)[:, None, None] * self.dt
@@ -133,7 +151,8 @@ class _Grid:
         a, b = 0.5 * self.dt, 0.5 * self.dz
 
         def term(u: np.ndarray, v: np.ndarray, w: np.ndarray) -> np.ndarray:
-            return u * np.log((v + np.hypot(u, v)) / (w + np.hypot(u, w)))
+            size = np.maximum(np.abs(u), np.finfo(float).tiny)  # the term vanishes with u
+            return u * (np.arcsinh(v / size) - np.arcsinh(w / size))
 
         table = term(x + a, y + b, y - b) + term(x - a, y - b, y + b)
         table += term(y + b, x + a, x - a) + term(y - b, x - a, x + a)

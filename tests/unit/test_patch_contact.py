@@ -48,6 +48,25 @@ def test_hertz(short: float, long: float, force: float, place: float, width: flo
     assert not found.at_end and not found.reaches
 
 
+@pytest.mark.parametrize(("offset", "slope"), [(0.03, 0.0), (0.0, 0.02), (-0.1, 0.05)])
+def test_a_line_of_the_least_gap_beside_the_contact_does_not_matter(offset: float, slope: float) -> None:
+    """The line that is handed over is only where the contact is looked for."""
+    found = patch_contact(
+        parabola(1.0, 278.0, 0.0),
+        lambda z: 1.0 + offset + slope * z,
+        ENDS,
+        0.05,
+        force=20.0,
+        place=0.0,
+        modulus=E,
+    )
+    half_length, half_width, peak = hertz(20.0, 1.0, 278.0)
+    assert found.pressure.max() == pytest.approx(peak, rel=0.015)
+    assert found.half_width.max() == pytest.approx(half_width, rel=0.05)
+    assert 0.5 * len(found.z) * (found.z[1] - found.z[0]) == pytest.approx(half_length, abs=found.z[1] - found.z[0])
+    assert found.middle == pytest.approx(1.0, abs=0.1 * half_width)
+
+
 def test_a_tilt_of_the_bodies_does_not_matter() -> None:
     """The force and its place are given: the bodies turn until the gap is least there."""
     results = [
