@@ -31,7 +31,7 @@ def main() -> None:
     options.add_argument("--mesh", default="full")
     options.add_argument("--repeat", type=int, default=3)
     arguments = options.parse_args()
-    design = load_design(arguments.design, ["solver.twofold_symmetry=false"])
+    design = load_design(arguments.design, ["solver.symmetry=false"])
     model = build_drive_model(design, load_recipe(arguments.mesh), comm=MPI.COMM_SELF)
     problem, local, elements = model.problem, model.problem.local, model.elements
     problem.set_pattern(np.zeros(0, dtype=np.int64))

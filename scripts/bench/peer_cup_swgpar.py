@@ -52,7 +52,7 @@ def main() -> None:
         known[file["nodes"]] = file["displacement"]
     sectors = body.sectors[body.owned]
     local, values = body.local[body.owned], known[sector_numbers(mesh)[sectors % mesh.n_sectors]]
-    mine = (local >= 0) & (local < partition.n_own) & (body.flip[body.owned] == 0) & ~np.isnan(values[..., 0])
+    mine = (local >= 0) & (local < partition.n_own) & (body.sixths[body.owned] == 0) & ~np.isnan(values[..., 0])
     nodes, first = np.unique(local[mine], return_index=True)
     stiffness = STIFFNESS * material.E * design.drive.module
     scale = material.E * design.drive.module

@@ -15,7 +15,7 @@ from page import markdown, put
 from swgpar.design.design_file import load_design
 
 OFF = {
-    "solver.twofold_symmetry": "false",
+    "solver.symmetry": "false",
     "solver.far_teeth": "modelled",
     "solver.keep_factor": "false",
     "solver.condensed_sectors": "false",
@@ -24,7 +24,7 @@ OFF = {
     "steps.pins": "true",
 }
 ON = {
-    "twofold symmetry": {"solver.twofold_symmetry": "true"},
+    "twofold symmetry": {"solver.symmetry": "true"},
     "teeth out of reach": {"solver.far_teeth": "left_out"},
     "factorisation reused": {"solver.keep_factor": "true"},
     "start on a coarser mesh": {"steps.start_levels": "1"},

@@ -76,7 +76,7 @@ def turn_design(design: DriveDesign) -> DriveDesign:
     deviations = design.deviations
     solver = design.solver.model_copy(
         update={
-            "twofold_symmetry": design.solver.twofold_symmetry and _is_twofold(design, deviations),
+            "symmetry": design.solver.symmetry and _is_twofold(design, deviations),
             "condensed_sectors": design.can_condense,
             "max_iterations": max(design.solver.max_iterations, MAX_ITERATIONS),
         }

@@ -71,7 +71,7 @@ def copies_of_model(design: DriveDesign) -> int:
     if design.is_bolted:
         counts.append(design.cup.bolts)
     symmetric = all(count % design.lobes == 0 for count in counts)
-    return design.lobes if symmetric and design.solver.twofold_symmetry else 1
+    return design.lobes if symmetric and design.solver.symmetry else 1
 
 
 def search_distance(design: DriveDesign, share: float = NEAR) -> float:

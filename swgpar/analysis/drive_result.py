@@ -13,7 +13,7 @@ from swgpar.analysis.drive_tables import DriveTables, read_tables
 from swgpar.analysis.figures import DriveFigures
 from swgpar.design.sections import GearName
 from swgpar.errors import InputError
-from swgpar.geometry.rotation import SIXTHS, sixths
+from swgpar.geometry.rotation import SIXTHS, sixths_of_turn
 from swgpar.results import history
 from swgpar.results.atomic import agreed
 from swgpar.results.field_sources import BodyMesh, FieldFiles, FieldSource, chosen_increment
@@ -250,7 +250,8 @@ class DriveResult:
         parts = [self._part(name, increment) for name in bodies]
         if whole:
             copies = self.summary["copies"]
-            parts += [_rotated(*part, SIXTHS[k]) for k in sixths(copies, np.arange(1, copies)) for part in parts]
+            turns = SIXTHS[sixths_of_turn(copies, np.arange(1, copies))]
+            parts += [_rotated(*part, turn) for turn in turns for part in parts]
             bodies = bodies * copies
         first = np.cumsum([0, *(len(points) for points, _, _ in parts)])
         cells = np.concatenate([cells + start for start, (_, cells, _) in zip(first, parts, strict=False)])

@@ -204,7 +204,7 @@ def moved_teeth(
     for k, pair in enumerate(pairs):
         tooth = spline.first_tooth + pair.sector + around
         moved.append(tuple(MovedTooth(spline, n, pair.side, u[k, i], crowned) for i, n in enumerate(tooth)))
-        turned = ring_u[k] @ SIXTHS[pair.ring_flip].T
+        turned = ring_u[k] @ SIXTHS[pair.ring_sixths].T
         tooth = pair.ring_tooth + around
         facing.append(tuple(MovedTooth(ring, n, -pair.side, turned[i]) for i, n in enumerate(tooth)))
     return moved, facing

@@ -19,7 +19,7 @@ GROUNDING = 0.1
 """Stiffness of the grounding over E times the module."""
 
 
-SPLINE, RING_COUPLING = 0, 1
+SPLINE_COUPLING, RING_COUPLING = 0, 1
 """Indices of the couplings of the flexible spline and of the ring gear that floats, if one does."""
 
 
@@ -141,12 +141,12 @@ class Supports:
         if state.control == "torque":
             active.remove((self.output_gear, ROTATION))
         if self.spline_ratio is not None and not state.spline_held:
-            active.remove((SPLINE, ROTATION))
+            active.remove((SPLINE_COUPLING, ROTATION))
         return active
 
     def holds_spline(self, state: LoadState) -> bool:
         """Whether the load state prescribes the rotation of the flexible spline."""
-        return (SPLINE, ROTATION) in self.prescribed(state)
+        return (SPLINE_COUPLING, ROTATION) in self.prescribed(state)
 
     def unused_multipliers(self, state: LoadState) -> np.ndarray:
         """Which multipliers the load state does not use; bool, one entry each."""
@@ -174,7 +174,7 @@ class Supports:
         target = self.offsets.copy()
         target[self.output_gear, ROTATION] += state.output_rotation
         if self.spline_ratio is not None:
-            target[SPLINE, ROTATION] += self.spline_ratio * state.output_rotation
+            target[SPLINE_COUPLING, ROTATION] += self.spline_ratio * state.output_rotation
         for i, k in self.prescribed(state):
             gradient = motion[i].gradient[k]
             residual[self.couplings[i].nodes] += self.scale * multiplier[N_COUPLED * i + k] * gradient

@@ -107,7 +107,7 @@ class BallContact:
         sector = np.minimum(column // n, n_sectors - 1)
         nodes = groove[column - n * sector]
         sector = sector[:, None]
-        self.conn, self.flip = body.local[sector, nodes], body.flip[sector, nodes]
+        self.conn, self.sixths = body.local[sector, nodes], body.sixths[sector, nodes]
         self.coords = body.positions()[sector, nodes]
         layout, local = body.layout, body.layout.mesh.coords[groove[:, 0]]
         pitch, at = 2.0 * np.pi / layout.mesh.n_sectors, np.arctan2(-local[:, 0], local[:, 1])
@@ -182,7 +182,7 @@ class BallContact:
 
     def _find(self, u: np.ndarray, state: LoadState) -> _Touch:
         """Balls on the race at u (n_local, 3)."""
-        field = to_images(u[self.conn], self.flip)
+        field = to_images(u[self.conn], self.sixths)
         nodes = np.einsum("nzi,z->ni", self.coords + field, self.spread)[:, :2]
         centre, normal, curvature = self.balls.lines(self.balls.angles(state.angle) - state.angle)
         centre, normal = rotated(centre, state.angle), rotated(normal, state.angle)
@@ -248,16 +248,16 @@ class BallContact:
     def _nodes(self, touch: _Touch, chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Local nodes and image flags (n, m n_z) of chosen balls."""
         window, size = touch.first[chosen][:, None] + np.arange(self.n_nodes), self.n_nodes * len(self.spread)
-        conn, flip = (values[window].reshape(len(chosen), size) for values in (self.conn, self.flip))
-        return np.ascontiguousarray(conn), np.ascontiguousarray(flip)
+        conn, sixths = (values[window].reshape(len(chosen), size) for values in (self.conn, self.sixths))
+        return np.ascontiguousarray(conn), np.ascontiguousarray(sixths)
 
     def _add_forces(self, touch: _Touch, chosen: np.ndarray, residual: np.ndarray) -> None:
         force = self.balls.spring.force(touch.approach[chosen])
         nodes = -force[:, None, None] * touch.gradient[chosen]
-        conn, flip = self._nodes(touch, chosen)
+        conn, sixths = self._nodes(touch, chosen)
         nodal = np.zeros((len(chosen), self.n_nodes, len(self.spread), 3))
         nodal[..., :2] = nodes[:, :, None] * self.spread[:, None]
-        np.add.at(residual, conn, to_owners(nodal.reshape(*conn.shape, 3), flip))
+        np.add.at(residual, conn, to_owners(nodal.reshape(*conn.shape, 3), sixths))
 
     def _add_blocks(self, touch: _Touch, chosen: np.ndarray, rows: BlockRows) -> None:
         """The Hessian of the energy: F' grad grad^T - F Hessian of nu."""
@@ -272,11 +272,11 @@ class BallContact:
         hessian += touch.curvature[chosen][:, None, None, None, None] * outer(shift, shift)
         core = rate[:, None, None, None, None] * outer(gradient, gradient)
         core -= force[:, None, None, None, None] * hessian
-        conn, flip = self._nodes(touch, chosen)
+        conn, sixths = self._nodes(touch, chosen)
         n, m, n_z = len(chosen), self.n_nodes, len(self.spread)
         blocks = np.zeros((n, m, n_z, m, n_z, 3, 3))
         blocks[..., :2, :2] = np.einsum("nabij,y,z->naybzij", core, self.spread, self.spread)
-        add_face_blocks(conn, flip, np.ascontiguousarray(blocks.reshape(n, m * n_z, m * n_z, 3, 3)), rows)
+        add_face_blocks(conn, sixths, np.ascontiguousarray(blocks.reshape(n, m * n_z, m * n_z, 3, 3)), rows)
 
     def owned_forces(self) -> np.ndarray:
         """Forces (n,) N of the balls of this rank in the last evaluation."""

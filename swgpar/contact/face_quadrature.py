@@ -23,7 +23,7 @@ class FaceQuadrature:
     Attributes
     ----------
     faces : (n_sector_face, 4) nodes of a sector;  sectors : indices of the sectors among those of the body
-    conn, flip : (n_face, 4) local nodes and image flags, sector by sector;  coords : (n_face, 4, 3) mm, undeformed
+    conn, sixths : (n_face, 4) local nodes and image flags, sector by sector;  coords : (n_face, 4, 3) mm, undeformed
     owned : (n_face,) bool, faces that this rank owns
     shape : (n_q, 4) shape functions;  position : (n_face, n_q, 3) mm, undeformed, on the facets
     weight : (n_face, n_q) mm², exact area of the cylinder above the facet, not the facet's
@@ -39,7 +39,7 @@ class FaceQuadrature:
             sectors = np.r_[np.flatnonzero(body.preceding), np.arange(first, body.owned.stop)]
         self.sectors = sectors
         self.conn = np.ascontiguousarray(body.local[self.sectors][:, self.faces].reshape(-1, 4))
-        self.flip = np.ascontiguousarray(body.flip[self.sectors][:, self.faces].reshape(-1, 4))
+        self.sixths = np.ascontiguousarray(body.sixths[self.sectors][:, self.faces].reshape(-1, 4))
         self.coords = body.positions()[self.sectors][:, self.faces].reshape(-1, 4, 3)
         self.owned = np.repeat(self.sectors >= first, len(self.faces))
         counts = [order, order]

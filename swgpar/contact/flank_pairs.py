@@ -31,7 +31,7 @@ class MasterFlanks:
     orientation: np.ndarray
     rotation: np.ndarray
     conn: np.ndarray
-    flip: np.ndarray
+    sixths: np.ndarray
 
 
 @dataclass
@@ -39,7 +39,7 @@ class Faces:
     """Slave faces with their quadrature points; see `swgpar.kernel.contact_flanks`."""
 
     conn: np.ndarray
-    flip: np.ndarray
+    sixths: np.ndarray
     coords: np.ndarray
     normal: np.ndarray
     shape: np.ndarray
@@ -57,7 +57,7 @@ class PlacedFaces:
     """Whole faces of all pairs at their undeformed positions; see `Faces` and `FlankFaces`."""
 
     conn: np.ndarray
-    flip: np.ndarray
+    sixths: np.ndarray
     coords: np.ndarray
     normal: np.ndarray
     size: np.ndarray
@@ -78,7 +78,7 @@ class PlacedFaces:
         offset = np.einsum("fij,fqi,fqj->fq", self.offset[face], *weights, optimize=True)
         return Faces(
             self.conn[face],
-            self.flip[face],
+            self.sixths[face],
             self.coords[face],
             self.normal[face],
             bilinear(segments.a, segments.b),
@@ -169,20 +169,20 @@ class FlankPairs:
             flanks.orientation[k] = np.sign(np.sum(right * profile.normal(grid.s) * mirror))
             angle = self.ring.layout.sector_angle(np.array(p.ring_tooth))
             flanks.rotation[k] = np.cos(angle), np.sin(angle)
-            number, flip = self.partition.node_numbers(self.ring_body, np.array([p.ring]), grid.nodes.ravel())
+            number, sixths = self.partition.node_numbers(self.ring_body, np.array([p.ring]), grid.nodes.ravel())
             flanks.conn[k] = self.local.index(number).reshape(grid.nodes.shape)
-            flanks.flip[k] = np.where(number >= 0, (flip + p.ring_flip) % 6, 0).reshape(grid.nodes.shape)
+            flanks.sixths[k] = np.where(number >= 0, (sixths + p.ring_sixths) % 6, 0).reshape(grid.nodes.shape)
         return flanks
 
     def _placed(self, slave: FlankFaces, pair: FlankPair, patch: int) -> PlacedFaces:
         layout = self.spline.layout
-        number, flip = self.partition.node_numbers(FLEXIBLE_SPLINE, np.array([pair.sector]), slave.corners.ravel())
+        number, sixths = self.partition.node_numbers(FLEXIBLE_SPLINE, np.array([pair.sector]), slave.corners.ravel())
         angle = layout.sector_angle(np.array(layout.first_tooth + pair.sector))
         c, s = np.cos(angle), np.sin(angle)
         rotation = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
         return PlacedFaces(
             self.local.index(number).reshape(-1, 4),
-            flip.reshape(-1, 4).copy(),
+            sixths.reshape(-1, 4).copy(),
             layout.mesh.coords[slave.corners] @ rotation,
             slave.normal @ rotation,
             slave.size,

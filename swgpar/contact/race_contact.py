@@ -84,7 +84,7 @@ class RaceContact:
         )
         sector, shape = sector[..., None], (len(sector), NODES * LAYERS)
         self.conn = np.hstack([points.conn[chosen], race.local[sector, nodes].reshape(shape)])
-        self.flip = np.hstack([points.flip[chosen], race.flip[sector, nodes].reshape(shape)])
+        self.sixths = np.hstack([points.sixths[chosen], race.sixths[sector, nodes].reshape(shape)])
         of_race = race.positions()[sector, nodes]
         self.coords = np.concatenate([points.coords[chosen], of_race.reshape(*shape, 3)], axis=1)
         self.shape, position = points.shape, points.position[chosen]
@@ -170,7 +170,7 @@ class RaceContact:
         Returns dg, a and b (n_face, n_q, 12, 2, 3) by the nodes' displacements, and the factors (n_face, n_q, 3, 3) of
         their products in d²g.
         """
-        x = (self.coords + to_images(u[self.conn], self.flip))[..., :2]
+        x = (self.coords + to_images(u[self.conn], self.sixths))[..., :2]
         point = np.einsum("qa,fai->fqi", self.shape, x[:, :4])
         curve = np.einsum("fqk,fnki->fqni", self.layers, x[:, 4:].reshape(len(x), NODES, LAYERS, 2))
         polynomials, place = self.polynomials[:, None], self.first_place
@@ -211,7 +211,7 @@ class RaceContact:
         force = (self.pressure * self.weight)[faces]
         nodal = np.zeros((*self.conn[faces].shape, 3))
         nodal[..., :2] = -np.einsum("fq,fqai->fai", force, vectors[faces, ..., 0])
-        np.add.at(residual, self.conn[faces], to_owners(nodal, self.flip[faces]))
+        np.add.at(residual, self.conn[faces], to_owners(nodal, self.sixths[faces]))
 
     def _add_blocks(self, vectors: np.ndarray, curvature: np.ndarray, faces: np.ndarray, rows: BlockRows) -> None:
         """Add the tangent: penalty times dg times dg, less the pressure times d²g."""
@@ -223,4 +223,4 @@ class RaceContact:
         found = np.einsum("fqmk,fqkl,fqnl->fmn", flat, factors, flat, optimize=True)
         blocks = np.zeros((n, n_nodes, n_nodes, 3, 3))
         blocks[..., :2, :2] = found.reshape(n, n_nodes, 2, n_nodes, 2).transpose(0, 1, 3, 2, 4)
-        add_face_blocks(self.conn[faces], self.flip[faces], blocks, rows)
+        add_face_blocks(self.conn[faces], self.sixths[faces], blocks, rows)

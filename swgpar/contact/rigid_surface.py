@@ -18,7 +18,7 @@ from swgpar.contact.face_quadrature import FaceQuadrature
 from swgpar.design.load_states import LoadState
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.sparse import BlockRows
-from swgpar.geometry.rotation import SIXTHS, sixths, to_images, to_owners
+from swgpar.geometry.rotation import SIXTHS, sixths_of_turn, to_images, to_owners
 from swgpar.kernel import add_face_blocks
 
 
@@ -74,7 +74,7 @@ def pin_pose(state: LoadState) -> SurfacePose | None:
 
 def pin_directions(lobes: int) -> np.ndarray:
     """Outward unit vectors (lobes, 2) of the pins, in the cam's frame."""
-    return SIXTHS[sixths(lobes, np.arange(lobes)), :2, 1]
+    return SIXTHS[sixths_of_turn(lobes, np.arange(lobes)), :2, 1]
 
 
 class RigidContact:
@@ -112,7 +112,7 @@ class RigidContact:
         self.full_penalty = self.penalty = penalty
         self.pressure_limit = pressure_limit
         points = FaceQuadrature(body, "inner", radius, n_quadrature)
-        self.conn, self.flip, self.coords, self.owned = points.conn, points.flip, points.coords, points.owned
+        self.conn, self.sixths, self.coords, self.owned = points.conn, points.sixths, points.coords, points.owned
         self.shape, self.weight, self.offset = points.shape, points.weight, points.offset
         x = points.position
         self.inside = np.abs(x[..., 2]) <= half_width
@@ -177,7 +177,7 @@ class RigidContact:
         Returns gradients (n_face, n_q, 3) and Hessians (n_face, n_q, 3, 3) of the level in the cam's frame.
         """
         field = np.where(self.conn[..., None] >= 0, u[self.conn], 0.0)
-        x = np.einsum("qa,fai->fqi", self.shape, self.coords + to_images(field, self.flip))
+        x = np.einsum("qa,fai->fqi", self.shape, self.coords + to_images(field, self.sixths))
         points = (x @ pose.rotation()).reshape(-1, 3)
         if any(pose.shift):
             points[:, :2] -= pose.shift
@@ -196,8 +196,8 @@ class RigidContact:
         """Add the pressure's forces on `faces` along the level's gradients `normal` (n, n_q, 3)."""
         force = (self.pressure * self.weight)[faces]
         nodal = -np.einsum("fq,qa,fqi->fai", force, self.shape, normal)
-        flip, conn = self.flip[faces], self.conn[faces]
-        nodal = to_owners(nodal, flip)
+        sixths, conn = self.sixths[faces], self.conn[faces]
+        nodal = to_owners(nodal, sixths)
         free = conn >= 0
         for axis in range(3):
             residual[:, axis] += np.bincount(conn[free], nodal[..., axis][free], minlength=len(residual))
@@ -214,7 +214,7 @@ class RigidContact:
             - geometric[..., None, None] * curvature
         )
         blocks = np.einsum("fqij,qa,qb->fabij", core, self.shape, self.shape, optimize=True)
-        add_face_blocks(self.conn[faces], self.flip[faces], np.ascontiguousarray(blocks), rows)
+        add_face_blocks(self.conn[faces], self.sixths[faces], np.ascontiguousarray(blocks), rows)
 
     def penetration(self) -> float:
         """Largest penetration (mm) of the last evaluation on this rank."""

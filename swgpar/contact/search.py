@@ -21,14 +21,14 @@ class FlankPair:
     """A flank of the flexible spline and the ring-gear flank it faces.
 
     sector : chain index in the flexible spline;  side : +1 clockwise flank, -1 counter-clockwise flank
-    ring : chain index in the ring gear;  ring_flip : sixths of a turn by which that tooth is rotated, an image
+    ring : chain index in the ring gear;  ring_sixths : sixths of a turn by which that tooth is rotated, an image
     ring_tooth : tooth number, images not brought back
     """
 
     sector: int
     side: int
     ring: int
-    ring_flip: int
+    ring_sixths: int
     ring_tooth: int
 
     @property
@@ -63,7 +63,7 @@ def facing_flanks(
     for k in np.flatnonzero(table[:, 1] > ring.mesh.profile.r_tip_circle - margin):
         slot = int(np.rint((table[k, 0] - ring_rotation) / pitch))
         for side, tooth in ((1, slot - 1), (-1, slot)):
-            index, flip = ring.sector_of_tooth(np.array(tooth))
+            index, sixths = ring.sector_of_tooth(np.array(tooth))
             if index >= 0:
-                pairs.append(FlankPair(int(k), side, int(index), int(flip), tooth))
+                pairs.append(FlankPair(int(k), side, int(index), int(sixths), tooth))
     return pairs

@@ -170,7 +170,7 @@ class Solver(Section):
     memory_limit: float | None = quantity(
         None, unit="GB", text="largest memory that a run may need by its forecast; without it what is free", gt=0.0
     )
-    twofold_symmetry: bool = quantity(
+    symmetry: bool = quantity(
         True, text="model half of the drive when tooth numbers allow it, with three lobes a third"
     )
     far_teeth: Literal["left_out", "modelled"] = quantity(

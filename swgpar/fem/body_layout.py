@@ -3,8 +3,8 @@
 A body is a chain of congruent tooth sectors. A node on the counter-clockwise side of sector k is a node on the
 clockwise side of sector k + 1. With a symmetry of rotation the chain is half a turn long, or a third: the sector after
 the last one is sector 0 rotated by that. A node of it is an *image*: its vectors are those of the owner, rotated. The
-flag of a node, `flip`, is that rotation in sixths of a turn: 0 for the owner itself, 3 after half a turn, 2 and 4 after
-one and two thirds.
+flag of a node, `sixths`, is that rotation in sixths of a turn: 0 for the owner itself, 3 after half a turn, 2 and 4
+after one and two thirds.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from swgpar.fem.condensed_parts import CondensedPart
-from swgpar.geometry.rotation import sixths
+from swgpar.geometry.rotation import sixths_of_turn
 from swgpar.meshing.sector import SectorMesh
 
 FLEXIBLE_SPLINE, RING_GEAR, DYNAMIC_SPLINE, OUTER_RACE = 0, 1, 2, 2
@@ -120,7 +120,7 @@ class BodyLayout:
     def sector_of_tooth(self, tooth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Index in the chain of any tooth (-1 where it is not modelled) and its flag (uint8)."""
         periods, rest = np.divmod(np.asarray(tooth) - self.first_tooth, self.teeth_per_period)
-        return np.where(rest < self.count, rest, -1), sixths(self.copies, periods)
+        return np.where(rest < self.count, rest, -1), sixths_of_turn(self.copies, periods)
 
     def with_inner_nodes(self, sectors: np.ndarray, field: np.ndarray) -> np.ndarray:
         """Displacement with the values at the inner nodes of condensed sectors recovered.

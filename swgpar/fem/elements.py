@@ -25,14 +25,14 @@ class AssembledElements:
     matrices : of the congruent elements;  reference : (n,) int32, index in them
     rotation : (n, 2) cosine and sine of the angle of the element's sector
     conn : (n, m) int32 local nodes, -1 where there are no unknowns
-    flip : (n, m) uint8, sixths of a turn by which nodes are rotated that are images
+    sixths : (n, m) uint8, sixths of a turn by which nodes are rotated that are images
     """
 
     matrices: ReferenceElements
     reference: np.ndarray
     rotation: np.ndarray
     conn: np.ndarray
-    flip: np.ndarray
+    sixths: np.ndarray
 
 
 def sectors_seen(partition: Partition, body: int) -> np.ndarray:
@@ -60,7 +60,7 @@ class BodyElements:
     layout : BodyLayout
     sectors : (n_sectors,) indices in the chain, see `sectors_seen`;  owned : slice of the owned ones among them
     preceding : (n_sectors,) bool, the sector before the first owned one, where another rank owns it
-    number, flip, local : (n_sectors, n_node) global numbers, image flags and local indices of the nodes
+    number, sixths, local : (n_sectors, n_node) global numbers, image flags and local indices of the nodes
     sector_rotation : (n_sectors, 2) cosine and sine of the angles of the sectors
     active : (n_sectors,) bool, sectors whose elements count
     whole_teeth : (n_sectors,) bool, sectors whose tooth is not one element
@@ -79,7 +79,7 @@ class BodyElements:
         sectors = sectors_seen(partition, body)
         self.sectors = sectors
         self.owned = slice(int(np.searchsorted(sectors, first)), int(np.searchsorted(sectors, end)))
-        self.number, self.flip = partition.node_numbers(body, sectors, np.arange(len(layout.mesh.coords)))
+        self.number, self.sixths = partition.node_numbers(body, sectors, np.arange(len(layout.mesh.coords)))
         self.local = local.index(self.number)
         # on a single rank the sector before the first is an image of an owned one: it must not count twice
         self.preceding = np.zeros(len(sectors), dtype=bool)
@@ -125,7 +125,7 @@ class BodyElements:
             element,
             np.ascontiguousarray(self.sector_rotation[sector]),
             np.ascontiguousarray(self.local[sector[:, None], nodes]),
-            np.ascontiguousarray(self.flip[sector[:, None], nodes]),
+            np.ascontiguousarray(self.sixths[sector[:, None], nodes]),
         )
 
     def inside_of_teeth(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -157,7 +157,7 @@ class BodyElements:
                     elements.reference,
                     elements.rotation,
                     elements.conn,
-                    elements.flip,
+                    elements.sixths,
                     u,
                     residual,
                     None if positions is None else positions[k],
@@ -167,7 +167,7 @@ class BodyElements:
     def displacement(self, u: np.ndarray) -> np.ndarray:
         """Displacement of all nodes of the sectors seen, images rotated; (n_sectors, n_node, 3) mm."""
         field = np.where(self.local[..., None] >= 0, u[self.local], 0.0)
-        return self.layout.with_inner_nodes(self.sectors, to_images(field, self.flip))
+        return self.layout.with_inner_nodes(self.sectors, to_images(field, self.sixths))
 
     def positions(self) -> np.ndarray:
         """Undeformed positions of all nodes of the sectors seen; (n_sectors, n_node, 3) mm."""

@@ -11,7 +11,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.fem.body_layout import BodyLayout
-from swgpar.geometry.rotation import sixths
+from swgpar.geometry.rotation import sixths_of_turn
 
 MULTIPLIER_NODES = 2
 """Blocks appended after the last node for each body that floats: six multipliers of its coupling."""
@@ -70,7 +70,7 @@ class Partition:
         b = self.layouts[body]
         index = np.asarray(index)
         periods, rest = np.divmod(index, b.count)
-        return rest, sixths(b.copies, periods)
+        return rest, sixths_of_turn(b.copies, periods)
 
     def node_numbers(self, body: int, index: np.ndarray, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Global block numbers of local nodes of sectors.
@@ -83,7 +83,7 @@ class Partition:
         Returns
         -------
         number : (m, k) int64, -1 where the node has no unknowns
-        flip : (m, k) uint8, sixths of a turn by which the owner's vectors must be rotated
+        sixths : (m, k) uint8, sixths of a turn by which the owner's vectors must be rotated
         """
         b, numbering = self.layouts[body], self.layouts[body].numbering
         index, nodes = np.asarray(index, dtype=np.int64), np.asarray(nodes, dtype=np.int64)
@@ -91,9 +91,9 @@ class Partition:
         local = np.where(shared, numbering.previous[nodes], nodes)
         k = index[:, None] + shared[None, :]
         end = np.zeros(k.shape, dtype=bool)
-        flip = np.zeros(k.shape, dtype=np.uint8)
+        sixths = np.zeros(k.shape, dtype=np.uint8)
         if b.closed:
-            k, flip = self._into_chain(body, k)
+            k, sixths = self._into_chain(body, k)
         else:
             end = k == b.count
             k = np.where(end, b.count - 1, k)
@@ -107,4 +107,4 @@ class Partition:
         )
         number = self._base[rank, body] + offset
         absent = np.broadcast_to(numbering.without_unknowns[nodes], k.shape)
-        return np.where(absent, -1, number), np.where(absent, 0, flip).astype(np.uint8)
+        return np.where(absent, -1, number), np.where(absent, 0, sixths).astype(np.uint8)

@@ -43,20 +43,20 @@ class Exchange:
 
 def read_field(partition: Partition, body: int, sectors: np.ndarray, vector: PETSc.Vec) -> np.ndarray:
     """Nodal values (n_sectors, n_local_nodes, 3) of any sectors of a body, images rotated; collective."""
-    number, flip = partition.node_numbers(body, sectors, np.arange(len(partition.layouts[body].mesh.coords)))
+    number, sixths = partition.node_numbers(body, sectors, np.arange(len(partition.layouts[body].mesh.coords)))
     needed, position = np.unique(number, return_inverse=True)
     absent = int(len(needed) > 0 and needed[0] == -1)
     exchange = Exchange(partition, needed[absent:].astype(np.int32))
     values = exchange(vector)
     exchange.destroy()
     values = np.vstack([np.zeros((absent, 3)), values])[position.reshape(number.shape)]
-    return partition.layouts[body].with_inner_nodes(sectors, to_images(values, flip))
+    return partition.layouts[body].with_inner_nodes(sectors, to_images(values, sixths))
 
 
 def write_field(partition: Partition, body: int, sectors: np.ndarray, values: np.ndarray, vector: PETSc.Vec) -> None:
     """Set the owned entries of `vector` from nodal values (n_sectors, n_local_nodes, 3) of owned sectors."""
-    number, flip = partition.node_numbers(body, sectors, np.arange(len(partition.layouts[body].mesh.coords)))
-    own = (number >= partition.row_start) & (number < partition.row_start + partition.n_own) & (flip == 0)
+    number, sixths = partition.node_numbers(body, sectors, np.arange(len(partition.layouts[body].mesh.coords)))
+    own = (number >= partition.row_start) & (number < partition.row_start + partition.n_own) & (sixths == 0)
     vector.array.reshape(-1, 3)[number[own] - partition.row_start] = values[own]
 
 

@@ -16,27 +16,27 @@ SIXTHS = np.array(
 itself among them. Half a turn is exact. The kernels have the same table (`kernel/contact.hpp`)."""
 
 
-def sixths(copies: int, number: np.ndarray | int) -> np.ndarray:
+def sixths_of_turn(copies: int, number: np.ndarray | int) -> np.ndarray:
     """Sixths of a turn, uint8, of the images with these numbers (n,), any integers; copies : 1, 2 or 3."""
     return (np.asarray(number) % copies * (6 // copies)).astype(np.uint8)
 
 
-def to_images(vectors: np.ndarray, flip: np.ndarray) -> np.ndarray:
-    """Vectors (..., 3) of owners, rotated to their images; flip : (...) uint8, sixths of a turn."""
-    return _rotated_by(SIXTHS, vectors, flip)
+def to_images(vectors: np.ndarray, sixths: np.ndarray) -> np.ndarray:
+    """Vectors (..., 3) of owners, rotated to their images; sixths : (...) uint8, sixths of a turn."""
+    return _rotated_by(SIXTHS, vectors, sixths)
 
 
-def to_owners(vectors: np.ndarray, flip: np.ndarray) -> np.ndarray:
-    """Vectors (..., 3) of images, rotated back to their owners; flip : (...) uint8, sixths of a turn."""
-    return _rotated_by(SIXTHS.transpose(0, 2, 1), vectors, flip)
+def to_owners(vectors: np.ndarray, sixths: np.ndarray) -> np.ndarray:
+    """Vectors (..., 3) of images, rotated back to their owners; sixths : (...) uint8, sixths of a turn."""
+    return _rotated_by(SIXTHS.transpose(0, 2, 1), vectors, sixths)
 
 
-def _rotated_by(matrices: np.ndarray, vectors: np.ndarray, flip: np.ndarray) -> np.ndarray:
-    image = flip != 0
+def _rotated_by(matrices: np.ndarray, vectors: np.ndarray, sixths: np.ndarray) -> np.ndarray:
+    image = sixths != 0
     if not image.any():
         return vectors
     out = vectors.copy()
-    out[image] = np.einsum("nij,nj->ni", matrices[flip[image]], vectors[image])
+    out[image] = np.einsum("nij,nj->ni", matrices[sixths[image]], vectors[image])
     return out
 
 

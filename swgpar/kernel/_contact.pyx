@@ -21,12 +21,12 @@ cdef extern from "contact_batch.hpp" namespace "swgpar" nogil:
         const double* rotation
         double body_cosine, body_sine
         const int32_t* conn
-        const uint8_t* flip
+        const uint8_t* sixths
     struct FaceBatch:
         int64_t n_face
         int n_q
         const int32_t* conn
-        const uint8_t* flip
+        const uint8_t* sixths
         const double* coords
         const double* normal
         const double* shape
@@ -51,7 +51,7 @@ cdef extern from "contact_batch.hpp" namespace "swgpar" nogil:
                           double penalty, double opening, double reach, double beyond, double limit, const Friction& friction,
                           double* residual, const BlockRows& rows, double* gap, double* pressure, double* foot_point,
                           double* moment)
-    int64_t add_blocks(int64_t n, int m, const int32_t* conn, const uint8_t* flip, const double* blocks,
+    int64_t add_blocks(int64_t n, int m, const int32_t* conn, const uint8_t* sixths, const double* blocks,
                        const BlockRows& rows)
 
 
@@ -119,9 +119,9 @@ def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] 
     cdef const double[:, :, ::1] point = patches.point, tangent = patches.tangent
     cdef const double[:, ::1] rotations = patches.rotation
     cdef const int32_t[:, :, ::1] pconn = patches.conn
-    cdef const uint8_t[:, :, ::1] pflip = patches.flip
+    cdef const uint8_t[:, :, ::1] psixths = patches.sixths
     cdef const int32_t[:, ::1] conn = faces.conn
-    cdef const uint8_t[:, ::1] flip = faces.flip
+    cdef const uint8_t[:, ::1] sixths = faces.sixths
     cdef const double[:, :, ::1] coords = faces.coords
     cdef const double[:, ::1] normal = faces.normal, weight = faces.weight, offset = faces.offset
     cdef const double[:, :, ::1] shape = faces.shape
@@ -141,8 +141,8 @@ def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] 
     cdef double[:, :, ::1] foot_point = foot_point_array
     cdef FlankBatch p = FlankBatch(n_patch, s.shape[0] - 1, z.shape[0] - 1, &s[0], &z[0], &point[0, 0, 0],
                                    &tangent[0, 0, 0], &orientation[0], &rotations[0, 0], cos(rotation), sin(rotation),
-                                   &pconn[0, 0, 0], &pflip[0, 0, 0])
-    cdef FaceBatch f = FaceBatch(n_face, n_q, &conn[0, 0], &flip[0, 0], &coords[0, 0, 0], &normal[0, 0],
+                                   &pconn[0, 0, 0], &psixths[0, 0, 0])
+    cdef FaceBatch f = FaceBatch(n_face, n_q, &conn[0, 0], &sixths[0, 0], &coords[0, 0, 0], &normal[0, 0],
                                  &shape[0, 0, 0], &weight[0, 0], &offset[0, 0], &patch[0])
     cdef int64_t missing
     cdef BlockRows r = BlockRows(NULL, NULL, NULL, NULL, 0, True)
@@ -163,20 +163,20 @@ def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] 
     return gap_array, pressure_array, foot_point_array, missing
 
 
-def add_face_blocks(const int32_t[:, ::1] conn, const uint8_t[:, ::1] flip, const double[:, :, :, :, ::1] blocks, rows):
+def add_face_blocks(const int32_t[:, ::1] conn, const uint8_t[:, ::1] sixths, const double[:, :, :, :, ::1] blocks, rows):
     """Add dense blocks (n, m, m, 3, 3), N/mm, of nodes conn (n, m) to the owned rows of a tangent.
 
-    flip : (n, m), sixths of a turn by which images are rotated;  rows : record as for `contact_flanks`
+    sixths : (n, m), sixths of a turn by which images are rotated;  rows : record as for `contact_flanks`
     Returns the number of blocks that the pattern lacks. Raises ValueError for shapes that disagree.
     """
     cdef int64_t n = conn.shape[0], missing
     cdef BlockRows r = rows_of(rows)
     cdef int m = conn.shape[1]
-    if not (flip.shape[0] == n and flip.shape[1] == m and blocks.shape[0] == n and blocks.shape[1] == m
+    if not (sixths.shape[0] == n and sixths.shape[1] == m and blocks.shape[0] == n and blocks.shape[1] == m
             and blocks.shape[2] == m and blocks.shape[3] == 3 and blocks.shape[4] == 3):
         raise ValueError("add_face_blocks: array shapes disagree")
     if n == 0:
         return 0
     with nogil:
-        missing = add_blocks(n, m, &conn[0, 0], &flip[0, 0], &blocks[0, 0, 0, 0, 0], r)
+        missing = add_blocks(n, m, &conn[0, 0], &sixths[0, 0], &blocks[0, 0, 0, 0, 0], r)
     return missing

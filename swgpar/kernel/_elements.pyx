@@ -18,7 +18,7 @@ cdef extern from "element_batch.hpp" namespace "swgpar" nogil:
         const int32_t* ref_of
         const double* rotation
         const int32_t* conn
-        const uint8_t* flip
+        const uint8_t* sixths
     int64_t assemble8 "swgpar::assemble<8>"(const ElementBatch&, const double* u, double* residual,
                                             const int64_t* slot, double* values, double* energy)
     int64_t assemble4 "swgpar::assemble<4>"(const ElementBatch&, const double* u, double* residual,
@@ -83,20 +83,20 @@ def reference_elements(coords, double young, double poisson, double thickness=0.
 
 cdef ElementBatch batch(const double[:, :, ::1] stiffness, const double[:, :, ::1] gradient,
                         const double[:, :, ::1] coords, const int32_t[::1] ref_of, const double[:, ::1] rotation,
-                        const int32_t[:, ::1] conn, const uint8_t[:, ::1] flip) except *:
-    if not (rotation.shape[0] == conn.shape[0] == flip.shape[0] == ref_of.shape[0] and rotation.shape[1] == 2
-            and conn.shape[1] == flip.shape[1] == coords.shape[1]):
+                        const int32_t[:, ::1] conn, const uint8_t[:, ::1] sixths) except *:
+    if not (rotation.shape[0] == conn.shape[0] == sixths.shape[0] == ref_of.shape[0] and rotation.shape[1] == 2
+            and conn.shape[1] == sixths.shape[1] == coords.shape[1]):
         raise ValueError("element arrays: shapes disagree")
     return ElementBatch(conn.shape[0], conn.shape[1], &stiffness[0, 0, 0], &gradient[0, 0, 0], &coords[0, 0, 0], &ref_of[0],
-                        &rotation[0, 0], &conn[0, 0], &flip[0, 0])
+                        &rotation[0, 0], &conn[0, 0], &sixths[0, 0])
 
 
 def assemble_elements(ref, const int32_t[::1] ref_of, const double[:, ::1] rotation, const int32_t[:, ::1] conn,
-                      const uint8_t[:, ::1] flip, const double[:, ::1] u, residual, slot, values):
+                      const uint8_t[:, ::1] sixths, const double[:, ::1] u, residual, slot, values):
     """Add forces and tangent blocks of corotated elements; returns their strain energy (N mm).
 
     ref_of : (n,) row of `ref`;  rotation : (n, 2) cosine and sine of the sector's angle
-    conn : (n, m) local nodes, -1 fixed;  flip : (n, m), sixths of a turn by which images are rotated
+    conn : (n, m) local nodes, -1 fixed;  sixths : (n, m), sixths of a turn by which images are rotated
     u : (n_local, 3) mm;  residual : (n_local, 3) N or None
     slot : (n, m * m) int64 block of each node pair, -1 to skip;  values : (n_blocks, 3, 3) N/mm, entry (k, l) of
     block p at values[p, l, k]; both None to skip the tangent
@@ -106,7 +106,7 @@ def assemble_elements(ref, const int32_t[::1] ref_of, const double[:, ::1] rotat
     cdef double energy = 0.0
     if conn.shape[0] == 0:
         return 0.0
-    cdef ElementBatch e = batch(ref.stiffness, ref.gradient, ref.coords, ref_of, rotation, conn, flip)
+    cdef ElementBatch e = batch(ref.stiffness, ref.gradient, ref.coords, ref_of, rotation, conn, sixths)
     cdef double[:, ::1] r
     cdef double[:, :, ::1] v
     cdef const int64_t[:, ::1] p
@@ -134,7 +134,7 @@ def assemble_elements(ref, const int32_t[::1] ref_of, const double[:, ::1] rotat
 
 
 def recover_stress(ref, const int32_t[::1] ref_of, const double[:, ::1] rotation, const int32_t[:, ::1] conn,
-                   const uint8_t[:, ::1] flip, const double[:, ::1] u):
+                   const uint8_t[:, ::1] sixths, const double[:, ::1] u):
     """Stress extrapolated to the nodes of each element; (n, m, 6) MPa, global axes, xx yy zz xy yz zx.
 
     Parameters as for `assemble_elements`. Raises ValueError for shapes that disagree, FloatingPointError for an element
@@ -146,7 +146,7 @@ def recover_stress(ref, const int32_t[::1] ref_of, const double[:, ::1] rotation
     out = np.empty((conn.shape[0], conn.shape[1], 6))
     if conn.shape[0] == 0:
         return out
-    cdef ElementBatch e = batch(ref.stiffness, ref.gradient, ref.coords, ref_of, rotation, conn, flip)
+    cdef ElementBatch e = batch(ref.stiffness, ref.gradient, ref.coords, ref_of, rotation, conn, sixths)
     cdef double[:, :, ::1] o = out, s = ref.recovery
     with nogil:
         if conn.shape[1] == 4:

@@ -45,17 +45,17 @@ constexpr PlaneRotation kSixths[6] = {{1.0, 0.0},  {0.5, kSine},   {-0.5, kSine}
                                       {-1.0, 0.0}, {-0.5, -kSine}, {0.5, -kSine}};
 
 // Vector of local node `node` (-1: fixed), rotated when it is an image.
-inline Vec3 nodal(const double* u, std::int32_t node, std::uint8_t flip) {
+inline Vec3 nodal(const double* u, std::int32_t node, std::uint8_t sixths) {
   if (node < 0) return Vec3::Zero();
-  const auto [c, s] = kSixths[flip];
+  const auto [c, s] = kSixths[sixths];
   const double* v = u + 3 * node;
   return Vec3(c * v[0] - s * v[1], s * v[0] + c * v[1], v[2]);
 }
 
 // Adds the force f to the vector r (n_local, 3) at a local node; the counterpart of `nodal`.
-inline void add_nodal(double* r, std::int32_t node, std::uint8_t flip, const Vec3& f) {
+inline void add_nodal(double* r, std::int32_t node, std::uint8_t sixths, const Vec3& f) {
   if (node < 0) return;
-  const auto [c, s] = kSixths[flip];
+  const auto [c, s] = kSixths[sixths];
   r[3 * node] += c * f[0] + s * f[1];
   r[3 * node + 1] += c * f[1] - s * f[0];
   r[3 * node + 2] += f[2];
@@ -117,10 +117,10 @@ struct Patch {
   double tooth_cosine, tooth_sine;  // of the angle of the tooth
   double body_cosine, body_sine;    // of the rotation of the body as a whole
   const std::int32_t* conn;         // (n_s + 1, n_z + 1)
-  const std::uint8_t* flip;
+  const std::uint8_t* sixths;
 
   std::int32_t node(int i, int j) const { return conn[i * (n_z + 1) + j]; }
-  std::uint8_t image(int i, int j) const { return flip[i * (n_z + 1) + j]; }
+  std::uint8_t image(int i, int j) const { return sixths[i * (n_z + 1) + j]; }
   // Vector of the sector's frame in that of the undeformed drive.
   Vec2 placed(const double* p) const {
     return Vec2(tooth_cosine * p[0] - tooth_sine * p[1], tooth_sine * p[0] + tooth_cosine * p[1]);
@@ -262,7 +262,7 @@ inline FootPoint project(const Patch& p, const double* u, const Vec3& xs, double
 // With tau_a = x_a . (dx_s - dx_m), P_a = n . dx_m,a, A = x_a . x_b, B = n . x_ab, H = A - g B:
 //   d2g = -tau A^-1 B H^-1 tau - tau H^-1 P - P H^-1 tau - g P H^-1 P.
 inline int add_contact_tangent(const FootPoint& f, const double* shape, const std::int32_t* conn,
-                               const std::uint8_t* flip, double weight, double stiffness, double pressure,
+                               const std::uint8_t* sixths, double weight, double stiffness, double pressure,
                                const BlockRows& rows) {
   const double e = f.eta, q = f.zeta;
   const double m[4] = {(1 - e) * (1 - q), e * (1 - q), (1 - e) * q, e * q};
@@ -295,7 +295,7 @@ inline int add_contact_tangent(const FootPoint& f, const double* shape, const st
       block += pressure * (c[k] * right * f.normal.transpose() + c[l] * f.normal * left.transpose());
       const double pp = Vec2(d[k][0], d[k][1]).dot(h * Vec2(d[l][0], d[l][1]));
       block += pressure * f.gap * pp * nn;
-      if (!rows.add(conn[k], flip[k], conn[l], flip[l], weight * block)) ++missing;
+      if (!rows.add(conn[k], sixths[k], conn[l], sixths[l], weight * block)) ++missing;
     }
   }
   return missing;

@@ -20,7 +20,7 @@ struct FlankBatch {  // n_patch master flanks with the same grid
   const double* rotation;         // (n_patch, 2) cosine and sine of the angles of the teeth
   double body_cosine, body_sine;  // of the rotation of the body as a whole
   const std::int32_t* conn;       // (n_patch, n_s + 1, n_z + 1)
-  const std::uint8_t* flip;
+  const std::uint8_t* sixths;
 
   Patch patch(int k) const {
     const std::int64_t row = static_cast<std::int64_t>(k) * (n_s + 1);
@@ -36,7 +36,7 @@ struct FlankBatch {  // n_patch master flanks with the same grid
                  body_cosine,
                  body_sine,
                  conn + row * (n_z + 1),
-                 flip + row * (n_z + 1)};
+                 sixths + row * (n_z + 1)};
   }
 };
 
@@ -44,7 +44,7 @@ struct FaceBatch {  // slave faces and their quadrature points
   std::int64_t n_face;
   int n_q;
   const std::int32_t* conn;  // (n_face, 4)
-  const std::uint8_t* flip;
+  const std::uint8_t* sixths;
   const double* coords;       // (n_face, 4, 3) undeformed, at the tooth's angle
   const double* normal;       // (n_face, 3) undeformed outward normal, of which the side matters
   const double* shape;        // (n_face, n_q, 4)
@@ -65,14 +65,14 @@ inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& fa
   for (std::int64_t k = 0; k < faces.n_face; ++k) {
     const Patch patch = patches.patch(faces.patch[k]);
     std::int32_t conn[8];
-    std::uint8_t flip[8];
+    std::uint8_t sixths[8];
     Vec3 undeformed[4], corner[4];
     for (int a = 0; a < 4; ++a) {
       conn[a] = faces.conn[4 * k + a];
-      flip[a] = faces.flip[4 * k + a];
+      sixths[a] = faces.sixths[4 * k + a];
       const double* c = faces.coords + 12 * k + 3 * a;
       undeformed[a] = Vec3(c[0], c[1], c[2]);
-      corner[a] = undeformed[a] + nodal(u, conn[a], flip[a]);
+      corner[a] = undeformed[a] + nodal(u, conn[a], sixths[a]);
     }
     const Vec3 outward(faces.normal[3 * k], faces.normal[3 * k + 1], faces.normal[3 * k + 2]);
     Vec3 face_normal = (corner[2] - corner[0]).cross(corner[3] - corner[1]).normalized();
@@ -97,17 +97,17 @@ inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& fa
       const int di[4] = {0, 1, 0, 1}, dj[4] = {0, 0, 1, 1};
       for (int a = 0; a < 4; ++a) {
         conn[4 + a] = patch.node(f.i + di[a], f.j + dj[a]);
-        flip[4 + a] = patch.image(f.i + di[a], f.j + dj[a]);
+        sixths[4 + a] = patch.image(f.i + di[a], f.j + dj[a]);
       }
       if (p > 0.0 && residual != nullptr) {
         for (int a = 0; a < 4; ++a) {
-          add_nodal(residual, conn[a], flip[a], -p * w * shape[a] * f.normal);
-          add_nodal(residual, conn[4 + a], flip[4 + a], p * w * m[a] * f.normal);
+          add_nodal(residual, conn[a], sixths[a], -p * w * shape[a] * f.normal);
+          add_nodal(residual, conn[4 + a], sixths[4 + a], p * w * m[a] * f.normal);
         }
         moment[k] += p * w * (f.normal[1] * f.height[0] - f.normal[0] * f.height[1]);
       }
       if (p > 0.0 && rows.values != nullptr)
-        missing += add_contact_tangent(f, shape, conn, flip, w, penalty, std::min(p, limit), rows);
+        missing += add_contact_tangent(f, shape, conn, sixths, w, penalty, std::min(p, limit), rows);
       if (friction.coefficient == 0.0 || bounding <= 0.0) continue;
       const Vec2 length(patch.s[f.i + 1] - patch.s[f.i], patch.z[f.j + 1] - patch.z[f.j]);
       const Traction t =
@@ -116,13 +116,13 @@ inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& fa
       const Motion motion(f, shape);
       if (residual != nullptr) {
         const Eigen::Matrix<double, 24, 1> force = w * motion.foot.transpose() * (motion.x.transpose() * t.value);
-        for (int a = 0; a < 8; ++a) add_nodal(residual, conn[a], flip[a], force.segment<3>(3 * a));
+        for (int a = 0; a < 8; ++a) add_nodal(residual, conn[a], sixths[a], force.segment<3>(3 * a));
         moment[k] += w * motion.by_rotation(f).dot(motion.x.transpose() * t.value);
       }
       if (rows.values != nullptr)
         missing +=
             add_friction_tangent(f, t, motion, f.straight ? Vec3::Zero().eval() : patch.third_derivative(f.i), conn,
-                                 flip, w, penalty, bounding, std::min(1.0, limit / bounding), friction, rows);
+                                 sixths, w, penalty, bounding, std::min(1.0, limit / bounding), friction, rows);
     }
   }
   return missing;
@@ -130,14 +130,14 @@ inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& fa
 
 // Adds dense blocks (n, m, m, 3, 3) of the nodes conn (n, m) to the owned rows; returns the blocks that the pattern
 // lacks.
-inline std::int64_t add_blocks(std::int64_t n, int m, const std::int32_t* conn, const std::uint8_t* flip,
+inline std::int64_t add_blocks(std::int64_t n, int m, const std::int32_t* conn, const std::uint8_t* sixths,
                                const double* blocks, const BlockRows& rows) {
   std::int64_t missing = 0;
   for (std::int64_t k = 0; k < n; ++k) {
     for (int a = 0; a < m; ++a) {
       for (int b = 0; b < m; ++b) {
         const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> block(blocks + 9 * ((k * m + a) * m + b));
-        if (!rows.add(conn[k * m + a], flip[k * m + a], conn[k * m + b], flip[k * m + b], block)) ++missing;
+        if (!rows.add(conn[k * m + a], sixths[k * m + a], conn[k * m + b], sixths[k * m + b], block)) ++missing;
       }
     }
   }

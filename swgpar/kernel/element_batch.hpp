@@ -17,7 +17,7 @@ struct ElementBatch {  // N nodes each: 8; 4 in the plane; those of a condensed 
   const std::int32_t* ref_of;  // (n)
   const double* rotation;      // (n, 2) cosine and sine of the sector's angle
   const std::int32_t* conn;    // (n, N), -1: fixed
-  const std::uint8_t* flip;    // (n, N)
+  const std::uint8_t* sixths;  // (n, N)
 };
 
 template <int N>
@@ -39,7 +39,7 @@ inline CorotatedElement<N> state(const ElementBatch& e, std::int64_t k, const do
   Eigen::Matrix<double, N, 3> rotated = x, v(m, 3);
   rotated.col(0) = c * x.col(0) - s * x.col(1);
   rotated.col(1) = s * x.col(0) + c * x.col(1);
-  for (int a = 0; a < m; ++a) v.row(a) = nodal(u, e.conn[m * k + a], e.flip[m * k + a]).transpose();
+  for (int a = 0; a < m; ++a) v.row(a) = nodal(u, e.conn[m * k + a], e.sixths[m * k + a]).transpose();
   return CorotatedElement<N>(x, rotated, v, g, e.stiffness + 9 * m * m * ref);
 }
 
@@ -54,9 +54,9 @@ inline std::int64_t assemble(const ElementBatch& e, const double* u, double* res
     if (!c.valid) return k;
     *energy += 0.5 * c.d.dot(c.f0);
     const std::int32_t* conn = e.conn + m * k;
-    const std::uint8_t* flip = e.flip + m * k;
+    const std::uint8_t* sixths = e.sixths + m * k;
     if (residual != nullptr)
-      for (int a = 0; a < m; ++a) add_nodal(residual, conn[a], flip[a], c.rotation * c.r.template segment<3>(3 * a));
+      for (int a = 0; a < m; ++a) add_nodal(residual, conn[a], sixths[a], c.rotation * c.r.template segment<3>(3 * a));
     if (values == nullptr) continue;
     const auto t = c.tangent(g, e.stiffness + 9 * m * m * e.ref_of[k]);
     for (int a = 0; a < m; ++a) {
@@ -66,7 +66,7 @@ inline std::int64_t assemble(const ElementBatch& e, const double* u, double* res
         const Mat3 even =
             0.5 * (t.template block<3, 3>(3 * a, 3 * b) + t.template block<3, 3>(3 * b, 3 * a).transpose());
         const Mat3 block = c.rotation * even * c.rotation.transpose();
-        Eigen::Map<Mat3>(values + 9 * block_index) += of_owners(block, flip[a], flip[b]);
+        Eigen::Map<Mat3>(values + 9 * block_index) += of_owners(block, sixths[a], sixths[b]);
       }
     }
   }

@@ -101,7 +101,7 @@ struct Motion {
 // Adds w times the derivative of the nodal forces T . x_a foot_a. `share` bounds the geometric terms as the pressure's
 // limit does those of the normal force. third : third derivative of the master's profile
 inline int add_friction_tangent(const FootPoint& f, const Traction& t, const Motion& v, const Vec3& third,
-                                const std::int32_t* conn, const std::uint8_t* flip, double weight, double penalty,
+                                const std::int32_t* conn, const std::uint8_t* sixths, double weight, double penalty,
                                 double pressure, double share, const Friction& law, const BlockRows& rows) {
   using Row = Eigen::Matrix<double, 1, 24>;
   const Vec3& n = f.normal;
@@ -143,7 +143,7 @@ inline int add_friction_tangent(const FootPoint& f, const Traction& t, const Mot
   for (int a = 0; a < 8; ++a) {
     if (conn[a] < 0 || conn[a] >= rows.n_own) continue;
     for (int b = 0; b < 8; ++b)
-      if (conn[b] >= 0 && !rows.add(conn[a], flip[a], conn[b], flip[b], weight * k.block<3, 3>(3 * a, 3 * b)))
+      if (conn[b] >= 0 && !rows.add(conn[a], sixths[a], conn[b], sixths[b], weight * k.block<3, 3>(3 * a, 3 * b)))
         ++missing;
   }
   return missing;

@@ -147,7 +147,7 @@ class DiscreteProblem:
         """Undeformed positions (n_local, 3) mm as their owners see them; zero for the multipliers."""
         out = np.zeros((len(self.local), 3))
         for body in self.elements.bodies:
-            seen, position = body.local >= 0, to_owners(body.positions(), body.flip)
+            seen, position = body.local >= 0, to_owners(body.positions(), body.sixths)
             out[body.local[seen]] = position[seen]
         return out
 

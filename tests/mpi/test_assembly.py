@@ -23,10 +23,10 @@ CONDENSED = (*PLANE, CONDENSE)
     "overrides",
     [
         (),
-        ("solver.twofold_symmetry=false",),
+        ("solver.symmetry=false",),
         ("drive.layout=spline_fixed",),
         PLANE,
-        (*PLANE, "solver.twofold_symmetry=false"),
+        (*PLANE, "solver.symmetry=false"),
         (*PLANE, "drive.layout=spline_fixed"),
         ("contact.friction=0.2",),
         CONDENSED,

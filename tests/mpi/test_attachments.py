@@ -79,7 +79,7 @@ def test_any_number_of_ranks_gives_the_same(changes: Changes) -> None:
 
 @pytest.mark.parametrize("changes", [CLAMPED, bolted(8)], ids=["clamped", "bolted"])
 def test_half_the_drive_equals_the_whole(changes: Changes) -> None:
-    (_, half), (stepper, whole) = loaded(shaped(changes)), loaded(shaped(changes, "solver.twofold_symmetry=false"))
+    (_, half), (stepper, whole) = loaded(shaped(changes)), loaded(shaped(changes, "solver.symmetry=false"))
     assert stepper.model.copies == 1
     assert_agree(half, whole, PHYSICAL, 1e-6)
 

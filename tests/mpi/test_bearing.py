@@ -43,9 +43,7 @@ def test_same_on_any_ranks() -> None:
     stepper = jumped(*BEARING, "wave_generator.bearing.first_ball=4.0")
     found, values = loads(stepper), row(stepper)
     stepper.model.destroy()
-    alone = jumped(
-        *BEARING, "wave_generator.bearing.first_ball=4.0", "solver.twofold_symmetry=false", comm=MPI.COMM_SELF
-    )
+    alone = jumped(*BEARING, "wave_generator.bearing.first_ball=4.0", "solver.symmetry=false", comm=MPI.COMM_SELF)
     parallel_assert(np.abs(found - loads(alone)).max() < 1e-6 * found.max())
     assert_agree(values, row(alone), [*NAMES, "wg_torque_Nmm"], rel=1e-6)
     parallel_assert(values["torque_balance_Nmm"] < 1e-6 * 200.0)
@@ -145,7 +143,7 @@ def test_stiff_balls_take_no_share() -> None:
 @pytest.mark.parallel(1)
 def test_tangent() -> None:
     """The tangent of balls and race is the derivative of their forces."""
-    stepper = jumped(*BEARING, "wave_generator.bearing.first_ball=2.0", "solver.twofold_symmetry=false")
+    stepper = jumped(*BEARING, "wave_generator.bearing.first_ball=2.0", "solver.symmetry=false")
     problem, state = stepper.problem, stepper.load_state
     u, step = problem.displacement(), 1e-9
     along = np.random.default_rng(0).normal(size=u.shape) * (1.0, 1.0, 0.0)

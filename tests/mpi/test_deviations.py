@@ -145,7 +145,7 @@ def test_an_eccentric_spline_is_seen_twice_per_turn_against_it() -> None:
 def test_an_oval_ring_gear_keeps_half_of_the_model() -> None:
     oval = ("deviations.ring_gear.ovality=0.02", ONE_ANGLE)
     indices = (0, 3, 8)
-    half, whole = deviating(*oval), deviating(*oval, "solver.twofold_symmetry=false")
+    half, whole = deviating(*oval), deviating(*oval, "solver.symmetry=false")
     assert (half.model.copies, whole.model.copies) == (2, 1)
     a, b = points(half, indices), points(whole, indices)
     for k in indices:

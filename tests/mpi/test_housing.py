@@ -75,7 +75,7 @@ def test_two_ranks_give_the_same_in_space() -> None:
 @pytest.mark.parametrize("layout", [(), (OTHER,)])
 def test_half_the_drive_equals_the_whole(layout: tuple[str, ...]) -> None:
     _, half = in_housing("plane", *layout)
-    _, whole = loaded(small("plane", *HOUSING, *layout, "solver.twofold_symmetry=false"))
+    _, whole = loaded(small("plane", *HOUSING, *layout, "solver.symmetry=false"))
     assert_agree(half, whole, [*PHYSICAL, "output_angle_deg"], 1e-6)
 
 
@@ -178,7 +178,7 @@ def test_a_housing_under_two_opposite_radial_loads(halved: bool) -> None:
         "ring_gear.housing.nu=0.29",
         "material.E=0.021",
         "load.torque=0",
-        f"solver.twofold_symmetry={str(halved).lower()}",
+        f"solver.symmetry={str(halved).lower()}",
     )
     mesh = build_sector(design, load_recipe(RECIPE), "ring_gear")
     width = design.drive.face_width

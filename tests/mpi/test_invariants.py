@@ -197,7 +197,7 @@ def test_rotating_the_whole_spline_changes_no_stress(model: str) -> None:
 @both_models
 def test_half_the_drive_equals_the_whole(model: str) -> None:
     _, half = base(model)
-    _, whole = loaded(small(model, "solver.twofold_symmetry=false"))
+    _, whole = loaded(small(model, "solver.symmetry=false"))
     assert_same(half, whole, 1e-6)
 
 
@@ -206,7 +206,7 @@ def test_half_the_drive_equals_the_whole_in_the_other_layout() -> None:
     layout = "drive.layout=spline_fixed"
     (_, half), (_, whole) = (
         loaded(small("plane", layout)),
-        loaded(small("plane", layout, "solver.twofold_symmetry=false")),
+        loaded(small("plane", layout, "solver.symmetry=false")),
     )
     assert_same(half, whole, 1e-6)
 

@@ -85,7 +85,7 @@ def test_any_number_of_ranks_gives_the_same() -> None:
 @pytest.mark.parallel(1)
 def test_half_of_the_drive_is_the_whole() -> None:
     """Nothing but the cam and the teeth centres the flexible spline in the whole drive."""
-    (_, half), (_, whole) = loaded(pancake()), loaded(pancake("solver.twofold_symmetry=false"))
+    (_, half), (_, whole) = loaded(pancake()), loaded(pancake("solver.symmetry=false"))
     for name in ("output_angle_deg", "fs_vm", "rg_vm", "ds_vm", "wg_torque_Nmm", "pairs_in_contact"):
         assert whole[name] == pytest.approx(half[name], rel=1e-4), name
 

@@ -16,7 +16,7 @@ from swgpar.geometry.rotation import rotated
 from swgpar.meshing import load_recipe
 from swgpar.petsc import PETSc
 
-CASES = ((), ("drive.layout=spline_fixed",), ("solver.twofold_symmetry=false",))
+CASES = ((), ("drive.layout=spline_fixed",), ("solver.symmetry=false",))
 
 
 @pytest.fixture(scope="module", params=CASES, ids=["ring fixed", "spline fixed", "whole drive"])

@@ -247,7 +247,7 @@ def test_what_is_read_of_condensed_sectors_is_complete() -> None:
 def test_condensed_sectors_with_all_that_applies() -> None:
     refined = "plane_coarse"
     _, row = rotated(*CONDENSED, recipe=refined)
-    for further in (("steps.start_levels=1", "steps.pins=false"), ("solver.twofold_symmetry=false",)):
+    for further in (("steps.start_levels=1", "steps.pins=false"), ("solver.symmetry=false",)):
         _, other = rotated(*CONDENSED, *further, recipe=refined)
         assert_same(other, row, 1e-6)
 

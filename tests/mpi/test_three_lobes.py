@@ -52,9 +52,7 @@ def assert_same(a: Row, b: Row) -> None:
 @both_models
 def test_a_third_equals_the_whole(model: str) -> None:
     keys = ("solver.rtol=1e-11",)
-    (part, third), (all_of_it, full) = (
-        loaded(small(model, *keys, *more)) for more in ((), ("solver.twofold_symmetry=false",))
-    )
+    (part, third), (all_of_it, full) = (loaded(small(model, *keys, *more)) for more in ((), ("solver.symmetry=false",)))
     assert (part.model.copies, all_of_it.model.copies) == (3, 1)
     assert_same(third, full)
     assert third["pairs_in_contact"] == full["pairs_in_contact"] >= 3
@@ -69,7 +67,7 @@ def test_a_third_equals_the_whole(model: str) -> None:
 @pytest.mark.parallel([1, 2, 3])
 def test_a_third_equals_the_whole_with_friction_and_the_spline_fixed() -> None:
     keys = ("solver.rtol=1e-11", "drive.layout=spline_fixed", "contact.friction=0.1", "load.torque=0.21")
-    (_, third), (_, full) = (loaded(small("plane", *keys, *more)) for more in ((), ("solver.twofold_symmetry=false",)))
+    (_, third), (_, full) = (loaded(small("plane", *keys, *more)) for more in ((), ("solver.symmetry=false",)))
     assert_same(third, full)
 
 

@@ -28,7 +28,7 @@ HELD = (*HOUSING, "ring_gear.housing.outside=held")
     [
         (),
         ("drive.layout=spline_fixed",),
-        ("solver.twofold_symmetry=false",),
+        ("solver.symmetry=false",),
         THICK_CUP,
         BACK_FILLET,
         PLANE,
