@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 import matplotlib.pyplot as plt
 import numpy as np
 from _drafting import (
@@ -25,6 +28,7 @@ from matplotlib.figure import Figure
 from swgpar.geometry.cams import Cam
 from swgpar.geometry.cams.elliptical import EllipticalCam
 from swgpar.geometry.cams.four_roller import four_roller
+from swgpar.geometry.cams.harmonic import HarmonicCam
 from swgpar.geometry.cams.parabolic import Side, parabolic, solve_quarter
 from swgpar.geometry.cams.piecewise import Parabola
 from swgpar.geometry.cams.simplified import simplified
@@ -57,6 +61,22 @@ def draw_elliptical(ax: Axes) -> None:
     semi_axes(ax)
     text = "dashed: inner surface of\nthe undeformed spline, $r_{fs}$"
     label(ax, (0.0, -5.0), text, color=SPLINE)
+
+
+def draw_harmonic(ax: Axes, lobes: int) -> None:
+    base(ax, HarmonicCam(A, B, lobes), "harmonic")
+    ax.set_title(f'type = "harmonic", lobes = {lobes}', fontsize=10)
+    low = np.pi / lobes  # polar angle from +y of the least radius
+    dimension(ax, (0, 0), (0, A), "$a$", at=(0.7, 0.72 * A))
+    dimension(
+        ax, (0, 0), (B * np.sin(low), B * np.cos(low)), "$b$", at=(0.6 * B * np.sin(low), 0.6 * B * np.cos(low) - 1.0)
+    )
+    angle = 0.62 * low
+    radius = 0.5 * (A + B) + 0.5 * (A - B) * np.cos(lobes * angle)
+    ax.plot([0, radius * np.sin(angle)], [0, radius * np.cos(angle)], color=NOTE, lw=0.7)
+    angle_mark(ax, (0, 0), 4.2, 90.0, 90.0 - np.degrees(angle), r"$\theta$", out=1.25)
+    text = rf"$r = (a + b)/2 + (a - b)/2 \cdot \cos {lobes}\theta$"
+    label(ax, (0.0, -4.6), text, color=INK)
 
 
 def draw_simplified(ax: Axes) -> None:
@@ -168,7 +188,16 @@ def draw_pins(ax: Axes) -> None:
 
 def cams() -> Figure:
     """All types of wave generator, and the pins."""
-    figures = (draw_elliptical, draw_simplified, draw_parabolic, draw_asymmetric, draw_rollers, draw_pins)
+    figures: tuple[Callable[[Axes], None], ...] = (
+        draw_elliptical,
+        draw_simplified,
+        draw_parabolic,
+        draw_asymmetric,
+        draw_rollers,
+        partial(draw_harmonic, lobes=2),
+        partial(draw_harmonic, lobes=3),
+        draw_pins,
+    )
     rows = (len(figures) + 1) // 2
     figure, axes = canvas(9.0, 14.5 / 3.0 * rows, rows, 2)
     for ax, draw in zip(axes.ravel(), figures):
@@ -181,6 +210,7 @@ def cams() -> Figure:
 
 REFERENCE = {
     "elliptical": {"type": "elliptical"},
+    "harmonic": {"type": "harmonic"},
     "simplified, C = 0.97": {"type": "simplified", "C": 0.97},
     "parabolic": {"type": "parabolic", "a_p": 0.0097, "C_p": 0.51, "r_c": 10.0},
     "asymmetric_parabolic, 0.5 degrees": {
