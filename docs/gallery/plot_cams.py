@@ -17,6 +17,7 @@ import swgpar
 DRIVERS = Path(__file__).parents[2] / "drivers"
 CAMS = {
     "elliptical": {"type": "elliptical"},
+    "harmonic": {"type": "harmonic"},
     "simplified": {"type": "simplified", "C": 0.97},
     "parabolic": {"type": "parabolic", "a_p": 0.0095, "C_p": 0.45, "r_c": 12.0},
     "parabolic, asymmetric": {
