@@ -32,7 +32,7 @@ RUN_EXAMPLES = """examples:
 
 MESH_EXAMPLES = """examples:
   swgpar mesh drivers/cup_45deg.toml --mesh coarse --out results/mesh --format vtu inp
-  swgpar mesh drivers/cup_45deg.toml --mesh my_recipe.toml --out results/mesh --set drive.model=plane
+  swgpar mesh drivers/plane_half_turn.toml --mesh my_recipe.toml --out results/mesh
 """
 
 CHECK_EXAMPLES = """examples:
@@ -239,7 +239,7 @@ def _add_run(commands: _Commands) -> None:
         metavar="A",
         help="refine the mesh and the windows until the estimated error of the largest tensile stress at the teeth "
         "under load is at most A (0.02: 2 %%; 0.001 to 0.2). Without other values in the design, one period is "
-        "computed in 4, 8 or 16 angles. The mesh has at most 1,500,000 elements in the plane, "
+        "computed in 2 (from 0.04), 4, 8 or 16 angles. The mesh has at most 1,500,000 elements in the plane, "
         "700,000 in space",
     )
     run.add_argument(

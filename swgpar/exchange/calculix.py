@@ -83,6 +83,8 @@ def _check(design: DriveDesign) -> None:
     for key, given in sections.items():
         if given:
             refuse(key, "a design without it")
+    if design.cup is not None and design.cup.attachment != "edge":
+        refuse(f'cup.attachment = "{design.cup.attachment}"', '"edge"')
     if not design.load.torque or torque_remark(design):
         least = 0.001 * negligible_torque(design)
         refuse(f"load.torque = {design.load.torque:g} N·m", f"above {least:.3g} N·m, which closes the backlash")

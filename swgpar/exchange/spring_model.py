@@ -67,6 +67,11 @@ def spring_model(result: DriveResult, periodic: DriveResult | None) -> SpringMod
         raise InputError(
             "the format fmu needs a run with [stiffness]: the kinematic error comes from a second run, --ripple FOLDER"
         )
+    layout = result.summary["design"]["drive"]["layout"]
+    if layout == "wave_generator_fixed":  # the columns of both runs count the rotation of the wave generator
+        raise InputError(
+            f'drive.layout = "{layout}" is not available with the format fmu: allowed "ring_fixed" or "spline_fixed"'
+        )
     ratio = float(result.summary["ratio"])
     table = spring_table(result)
     direction = -np.sign(ratio)  # a positive torque of the table acts against the motion of the output

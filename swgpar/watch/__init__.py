@@ -79,6 +79,8 @@ def rearm() -> None:
             signal.signal(number, signal.SIG_IGN)
         else:
             _watch.arm(number)
+    if _command.armed:  # PETSc ends all ranks when the reader of the output has gone; Python raises BrokenPipeError
+        signal.signal(signal.SIGPIPE, signal.SIG_IGN)
 
 
 def begin(kind: str, out: str, *, restarts: bool, terminal: bool) -> None:

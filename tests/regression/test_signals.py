@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 from mpi4py import MPI
 
-from support.commands import assert_same_history, environment, is_rank, of_session, run_command, succeed
-from support.paths import DATA
+from support.commands import assert_same_history, environment, is_rank, of_session, run_command, succeed, swgpar
+from support.paths import DATA, DRIVERS
 from swgpar.results import history
 
 WITH_OPEN_MPI = MPI.Get_library_version().startswith("Open MPI")
@@ -25,6 +25,15 @@ def rank_of(pid: int) -> int | None:
         return None
     found = re.search(r"(?:OMPI_COMM_WORLD|PMI)_RANK=(\d+)", Path(f"/proc/{pid}/environ").read_text(encoding="utf-8"))
     return int(found[1]) if found else 0
+
+
+def test_a_reader_that_goes_ends_a_command_in_silence() -> None:
+    """As with `swgpar check FILE | head -1`: PETSc, which takes the signal, must not speak of a failure."""
+    command = swgpar("check", DRIVERS / "plane_half_turn.toml")
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment()) as process:
+        process.stdout.close()
+        assert process.stderr.read() == b""
+    assert process.returncode == 1
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ import pytest
 
 import swgpar
 from support.bearing import BEARING
-from support.paths import DESIGN, RECIPE
+from support.paths import DESIGN, DRIVERS, RECIPE
 from support.small_drive import PLANE
 from swgpar.design.design_file import load_design
 from swgpar.errors import InputError
@@ -108,6 +108,12 @@ def test_what_the_job_does_not_carry(tmp_path: Path, change: str | tuple[str, ..
     with pytest.raises(InputError) as raised:
         swgpar.export(design, tmp_path, ["inp"], mesh=RECIPE)
     assert words in str(raised.value)
+
+
+def test_a_clamped_flange_is_not_carried(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match='cup.attachment = "clamped" is not available with the format inp'):
+        swgpar.export(load_design(DRIVERS / "silk_hat.toml"), tmp_path, ["inp"], mesh="coarse")
+
 
 
 def test_a_mesh_is_needed_for_the_job_and_for_nothing_else(tmp_path: Path) -> None:

@@ -316,6 +316,10 @@ def test_what_the_results_must_have(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     slack.program["rotation_arcmin"] = np.minimum(slack.program["rotation_arcmin"], 1.0)
     with pytest.raises(InputError, match="the wind-up does not grow between"):
         write_fmu(slack, tmp_path)
+    standing = StiffnessRun()
+    standing.summary["design"]["drive"]["layout"] = "wave_generator_fixed"
+    with pytest.raises(InputError, match='"wave_generator_fixed" is not available with the format fmu'):
+        write_fmu(standing, tmp_path)
     monkeypatch.setenv("CC", "false")
     with pytest.raises(OutputError, match="the C compiler false cannot build the FMU"):
         write_fmu(StiffnessRun(), tmp_path)
