@@ -115,7 +115,6 @@ def test_a_clamped_flange_is_not_carried(tmp_path: Path) -> None:
         swgpar.export(load_design(DRIVERS / "silk_hat.toml"), tmp_path, ["inp"], mesh="coarse")
 
 
-
 def test_a_mesh_is_needed_for_the_job_and_for_nothing_else(tmp_path: Path) -> None:
     with pytest.raises(InputError, match='format = "inp" needs a mesh recipe'):
         swgpar.export(DESIGN, tmp_path, ["inp"])
