@@ -39,7 +39,7 @@ class BentSpline:
         self.amplitudes = bent_ring(design.cam(), design.inner_radius, self.radius, design.lobes)
         self.order = float(design.lobes) * np.arange(len(self.amplitudes))
         self.half = 0.5 * design.wave_generator.face_width
-        self.end = design.rest_plane if design.cup else 0.5 * design.drive.face_width
+        self.end = design.rest_plane if design.has_cup else 0.5 * design.drive.face_width
         self.surface = design.cam_surface()
 
     def displacement(self, points: np.ndarray) -> np.ndarray:

@@ -272,7 +272,7 @@ def build_supports(design: DriveDesign, *, partition: Partition, elements: Eleme
     centred = design.drive.model == "cup" or (design.drive.model == "plane" and design.deviations is None)
     rotates, guide = design.output_gear != "flexible_spline", None
     couplings: list[NodeMeans] = []
-    if design.drive.model == "cup" and design.cup.attachment != "edge":
+    if design.has_attachment:
         cup, penalty = design.cup, design.penalty
         attachment = RigidAttachment(
             partition, spline, "end", cup.is_attached, cup.attached_width, penalty=penalty, images=copies > 1

@@ -21,6 +21,12 @@ THICK_CUP = 0.85
 THINNEST = 0.1
 """Thickness of a wall over that of the rim, at least."""
 
+SMALLEST_FILLET = 1.05
+"""Radius of the fillet over the thicknesses beside it, at least: its other side is an arc of the difference."""
+
+NARROWEST = 0.1
+"""Width of the attached area over the thickness of closed end or flange, at least: points on it are counted."""
+
 KEYS = (
     ("shape", "cup", ("inner_radius",)),
     ("shape", "hat", ("flange_radius",)),
@@ -93,11 +99,13 @@ def _check_contour(design: DriveDesign, cup: Cup) -> None:
 def _check_end(design: DriveDesign, cup: Cup) -> None:
     """Fillet and closed end or flange."""
     wall = design.cup_wall
-    if cup.fillet_radius < wall.thickness:
-        _refuse("cup.fillet_radius", cup.fillet_radius, f"{wall.thickness:g} (the cup's thickness) to inf mm")
-    least = THINNEST * design.flexible_spline.rim
-    if not least <= wall.end_thickness <= cup.fillet_radius:
-        limits = f"{least:g} ({THINNEST:g} rims) to {cup.fillet_radius:g} mm (cup.fillet_radius)"
+    smallest = SMALLEST_FILLET * wall.thickness
+    if cup.fillet_radius * ROUND_OFF < smallest:
+        limits = f"{smallest:g} ({SMALLEST_FILLET:g} times the cup's thickness) to inf mm"
+        _refuse("cup.fillet_radius", cup.fillet_radius, limits)
+    least, most = THINNEST * design.flexible_spline.rim, cup.fillet_radius / SMALLEST_FILLET
+    if not least <= wall.end_thickness <= most * ROUND_OFF:
+        limits = f"{least:g} ({THINNEST:g} rims) to {most:g} mm (cup.fillet_radius over {SMALLEST_FILLET:g})"
         _refuse("cup.end_thickness", wall.end_thickness, limits)
     begin, _ = wall.center
     if wall.outwards and cup.flange_radius <= begin:
@@ -129,14 +137,16 @@ def _check_attachment(design: DriveDesign, cup: Cup) -> None:
     begin, _ = design.cup_wall.center
     low, high = sorted((begin, cup.edge))
     flat = f"the flat part of the {'flange' if cup.shape == 'hat' else 'closed end'}"
+    narrowest = NARROWEST * design.end_thickness
     if cup.attachment == "clamped":
         radius = cup.clamping_radius
-        if not low <= radius <= high or radius == cup.edge:
-            _refuse("cup.clamping_radius", radius, f"{low:g} to {high:g} mm ({flat}), but not its edge")
+        if not low <= radius <= high or abs(cup.edge - radius) < narrowest:
+            allowed = f"{low:g} to {high:g} mm ({flat}), {narrowest:g} mm or more from its edge"
+            _refuse("cup.clamping_radius", radius, allowed)
     if cup.attachment == "bolted":
         washer, circle = cup.washer_diameter, cup.bolt_circle
-        if washer > (high - low) * ROUND_OFF:
-            _refuse("cup.washer_diameter", washer, f"above 0 to {high - low:g} mm ({flat})")
+        if not narrowest <= washer <= (high - low) * ROUND_OFF:
+            _refuse("cup.washer_diameter", washer, f"{narrowest:g} to {high - low:g} mm ({flat})")
         least, most = 2.0 * low + washer, 2.0 * high - washer
         if not least <= circle * ROUND_OFF or circle > most * ROUND_OFF:
             _refuse("cup.bolt_circle", circle, f"{least:g} to {most:g} mm (washers on {flat})")

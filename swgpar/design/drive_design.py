@@ -180,9 +180,19 @@ class DriveDesign(Design):
         return self.wave_generator.type != "asymmetric_parabolic" and self.bearing is None and not self.is_bolted
 
     @property
+    def has_cup(self) -> bool:
+        """Whether the flexible spline has a wall and an end; the plane model leaves out the cup of its section."""
+        return self.drive.model == "cup"
+
+    @property
+    def has_attachment(self) -> bool:
+        """Whether closed end or flange is clamped or bolted."""
+        return self.has_cup and self.cup.attachment != "edge"
+
+    @property
     def is_bolted(self) -> bool:
         """Whether bolts hold the cup, so that its teeth are not alike."""
-        return self.drive.model == "cup" and self.cup.attachment == "bolted"
+        return self.has_attachment and self.cup.attachment == "bolted"
 
     @property
     def periods(self) -> int:
@@ -300,7 +310,7 @@ class DriveDesign(Design):
         """
         middle = self.inner_radius + 0.5 * self.flexible_spline.rim
         height = 0.5 * self.drive.teeth_fs * self.drive.module - middle
-        return 0.5 * self.deflection / self.cup.length * (middle / self.lobes**2 + height) if self.cup else 0.0
+        return 0.5 * self.deflection / self.cup.length * (middle / self.lobes**2 + height) if self.has_cup else 0.0
 
     @property
     def omitted_bending(self) -> float:
@@ -324,7 +334,7 @@ class DriveDesign(Design):
     @property
     def cup_thickness(self) -> float:
         """Thickness (mm) of the cup's wall at the back of the teeth; that of the rim in the plane model without cup."""
-        return (self.cup.thickness_coef if self.cup else 1.0) * self.flexible_spline.rim
+        return (self.cup.thickness_coef if self.has_cup else 1.0) * self.flexible_spline.rim
 
     @property
     def wall_points(self) -> list[tuple[float, float, float, float]]:
@@ -359,7 +369,7 @@ class DriveDesign(Design):
     @property
     def rest_plane(self) -> float:
         """z (mm) at which the deflection vanishes: the middle of the closed end or flange; 0 in the plane model."""
-        return 0.5 * self.drive.face_width + self.cup.length - 0.5 * self.end_thickness if self.cup else 0.0
+        return 0.5 * self.drive.face_width + self.cup.length - 0.5 * self.end_thickness if self.has_cup else 0.0
 
     @property
     def penalty(self) -> float:
@@ -402,7 +412,7 @@ class DriveDesign(Design):
         """Motion of the flexible spline's tooth in its slot of `ring` at the section z, mm, of the rigid limit."""
         radius = self.inner_radius + 0.5 * self.flexible_spline.rim
         share = 1.0
-        if self.cup:
+        if self.has_cup:
             # the deflection of a cup grows linearly from the closed end, whose middle stays plane
             share = (self.rest_plane - z) / self.rest_plane
         line = _line(self.wave_generator, self.major_semi_axis, self.minor_semi_axis, self.inner_radius, radius, share)

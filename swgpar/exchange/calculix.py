@@ -83,7 +83,7 @@ def _check(design: DriveDesign) -> None:
     for key, given in sections.items():
         if given:
             refuse(key, "a design without it")
-    if design.cup is not None and design.cup.attachment != "edge":
+    if design.has_attachment:
         refuse(f'cup.attachment = "{design.cup.attachment}"', '"edge"')
     if not design.load.torque or torque_remark(design):
         least = 0.001 * negligible_torque(design)

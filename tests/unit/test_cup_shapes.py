@@ -129,7 +129,8 @@ REFUSED = [
     (point(distance=3.0, thickness=1.6), "cup.contour.2.thickness = 1.6 ", "0.06 to 1.48 mm"),
     (point(distance=3.0, thickness=0.4, radius=16.0), "cup.contour.2.radius = 16 ", "17.6 to 19.6 mm"),
     (point(distance=3.0, thickness=0.4, rounding=90.0), "cup.contour.2.rounding = 90 ", "half of the shorter side"),
-    ({"end_thickness": 2.5}, "cup.end_thickness = 2.5 ", "0.06 (0.1 rims) to 2 mm (cup.fillet_radius)"),
+    ({"end_thickness": 2.5}, "cup.end_thickness = 2.5 ", "0.06 (0.1 rims) to 1.90476 mm (cup.fillet_radius"),
+    ({"fillet_radius": 0.48}, "cup.fillet_radius = 0.48 ", "0.504 (1.05 times the cup's thickness) to inf mm"),
     ({"shape": "hat"}, "cup.inner_radius = 6 is not available", 'cup.shape = "cup"'),
     (HAT | {"flange_radius": None}, "cup.flange_radius is missing", 'needed with cup.shape = "hat"'),
     ({"inner_radius": None}, "cup.inner_radius is missing", 'needed with cup.shape = "cup"'),
@@ -232,9 +233,11 @@ BAD_ATTACHMENTS = [
     ({"clamping_radius": 8.0}, "cup.clamping_radius = 8 is not available", 'cup.attachment = "clamped"'),
     ({"attachment": "clamped"}, "cup.clamping_radius is missing", 'needed with cup.attachment = "clamped"'),
     (CLAMPED | {"clamping_radius": 18.0}, "cup.clamping_radius = 18 ", "6 to 17.08 mm"),
-    (CLAMPED | {"clamping_radius": 6.0}, "cup.clamping_radius = 6 ", "but not its edge"),
+    (CLAMPED | {"clamping_radius": 6.0}, "cup.clamping_radius = 6 ", "0.048 mm or more from its edge"),
+    (CLAMPED | {"clamping_radius": 6.01}, "cup.clamping_radius = 6.01 ", "0.048 mm or more from its edge"),
     (ATTACHED | {"bolt_circle": 13.0}, "cup.bolt_circle = 13 ", "14 to 32.16 mm"),
-    (ATTACHED | {"washer_diameter": 12.0}, "cup.washer_diameter = 12 ", "above 0 to 11.08 mm"),
+    (ATTACHED | {"washer_diameter": 12.0}, "cup.washer_diameter = 12 ", "0.048 to 11.08 mm"),
+    (ATTACHED | {"washer_diameter": 0.01}, "cup.washer_diameter = 0.01 ", "0.048 to 11.08 mm"),
     (ATTACHED | {"bolts": 40}, "cup.bolts = 40 ", "3 to 31 (washers beside each other)"),
 ]
 
