@@ -18,12 +18,12 @@ def jamming_remark(design: DriveDesign, rows: Sequence[Row], means: Mapping[str,
     """A sentence where the mean input torque is far from that of the energy balance, T / ratio; else None.
 
     Over a period the work of the input torque is that of the output torque, plus what friction takes. Less than a
-    period, and drives without a torque, are not judged.
+    period, drives without a torque and bolted ones, which do not repeat after a pitch, are not judged.
 
     rows : increments of the rotation whose `means` are given
     """
     expected = 1000.0 * design.load.torque / abs(design.ratio)
-    if not rows or expected == 0.0 or torque_remark(design) is not None:
+    if not rows or expected == 0.0 or design.is_bolted or torque_remark(design) is not None:
         return None
     angles = column(rows, "wg_angle_deg")
     covered = design.steps.samples or np.ptp(angles) + design.steps.increment >= np.degrees(design.period_angle)

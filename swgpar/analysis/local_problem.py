@@ -7,6 +7,7 @@ the exact cam stays in contact with the inner surface. Stresses hold one pitch o
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -162,13 +163,23 @@ class LocalProblem:
         own = (number >= partition.row_start) & (number < partition.row_start + partition.n_own)
         return number - partition.row_start, own
 
+    def _attached(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        """Sectors, one by one, and their nodes where closed end or flange is clamped or bolted."""
+        design, mesh = self.model.design, self.layout.mesh
+        if not design.has_attachment or "end" not in mesh.faces:
+            return
+        nodes = np.unique(mesh.faces["end"])
+        for sector in range(SECTORS):
+            angle = self.layout.sector_angle(np.array(self.layout.first_tooth + sector))
+            yield np.array([sector]), nodes[design.cup.is_attached(rotated(mesh.coords[nodes], float(angle))[:, :2])]
+
     def _cuts(self, displacement: np.ndarray) -> PrescribedDisplacement:
-        """The nodes of all cuts, held at the displacements of the drive."""
+        """The nodes of all cuts and of the attachment, held at the displacements of the drive."""
         mesh, every = self.layout.mesh, np.arange(SECTORS)
         held: dict[int, np.ndarray] = {}
         parts = [(every[:1], mesh.cw_nodes), (every[-1:], mesh.ccw_nodes)]
         if not mesh.plane:
-            parts += [(every, mesh.node_sets["cut"]), (every, mesh.node_sets["bore"])]
+            parts += [(every, mesh.node_sets["cut"]), (every, mesh.node_sets["bore"]), *self._attached()]
         for sectors, nodes in parts:
             nodes = nodes.astype(np.int64)
             index, own = self._numbers(sectors, nodes)

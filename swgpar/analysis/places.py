@@ -35,8 +35,8 @@ class Place:
 
     value : MPa;  body : name
     region : "tooth root", "tooth end", "flank under contact", "flank", "tip", "rim inside", "rim", "notch", "cup wall",
-    "fillet at the back", "fillet", "closed end", "bore", "attachment", "flange", "rim of the flange", "housing" or
-    "inside the tooth"
+    "fillet at the back", "fillet", "closed end", "bore", "attachment", "flange", "rim of the flange", "outer surface"
+    or "inside the tooth"
     tooth : number, counter-clockwise from +y in the undeformed drive
     radius, z : mm;  angle_deg : from +y, counter-clockwise
     warning : why the value depends on the mesh; empty where it converges

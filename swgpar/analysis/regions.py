@@ -59,7 +59,7 @@ def region_of(design: DriveDesign, mesh: SectorMesh, node: int, touched: bool) -
         outer = root + design.ring_gear.rim
         if radius < root - near:
             return "tip" if radius < mesh.profile.r_tip_circle + near else inside
-        return "housing" if radius > outer - near else "rim" if radius > root + near else TOOTH_ROOT
+        return "outer surface" if radius > outer - near else "rim" if radius > root + near else TOOTH_ROOT
     if design.drive.model == "cup" and abs(z - half) < near and radius < root + near:
         return "notch"
     if radius < root + near:

@@ -61,6 +61,8 @@ def _energy(design: DriveDesign, summary: Mapping[str, Any]) -> Check:
     name, expected = "energy", summary["wg_torque_expected_Nmm"]
     if summary["jammed"]:
         return Check(name, False, summary["jammed"])
+    if design.is_bolted:
+        return Check(name, None, "a drive on bolts does not repeat after a pitch")
     mean = summary["means"].get("wg_torque_Nmm")
     covered = design.steps.samples or design.steps.rotation >= 0.999999 * np.degrees(design.period_angle)
     if mean is None or not expected or not covered:
@@ -80,7 +82,7 @@ def _penetration(design: DriveDesign, history: Mapping[str, np.ndarray]) -> Chec
 
 
 def _clearance(design: DriveDesign) -> Check:
-    clearance = flank_clearance(design, 181)
+    clearance = min(flank_clearance(design, 181, ring) for ring in design.gears[1:])
     least = -design.contact.penetration_tolerance * design.drive.module
     text = (
         f"smallest distance of the undeformed flanks {1000 * clearance:.3g} µm; good from {1000 * least:.2g} µm: the "

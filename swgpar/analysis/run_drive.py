@@ -106,12 +106,14 @@ def run_drive(
             raise InputError(f"--accuracy {accuracy:g} is not available with a load program: allowed a mesh recipe")
         if design.bearing is not None:
             raise InputError(
-                f"accuracy = {accuracy:g} is not available with wave_generator.bearing: allowed without it"
+                f"--accuracy {accuracy:g} is not available with wave_generator.bearing: allowed without it"
             )
         if design.is_bolted:
-            raise InputError(f'accuracy = {accuracy:g} is not available with cup.attachment = "bolted"')
+            raise InputError(
+                f'--accuracy {accuracy:g} is not available with cup.attachment = "bolted": allowed "edge" and "clamped"'
+            )
         if design.dynamic_spline is not None:
-            raise InputError(f'accuracy = {accuracy:g} is not available with drive.model = "pancake": allowed "cup"')
+            raise InputError(f'--accuracy {accuracy:g} is not available with drive.model = "pancake": allowed "cup"')
         design = with_accuracy(design, accuracy)
     left_out: tuple[str, ...] = ()
     if not plain:

@@ -78,8 +78,8 @@ def _check_contour(design: DriveDesign, cup: Cup) -> None:
     points = design.wall_points
     for k, (point, before) in enumerate(zip(cup.contour, points, strict=False), 1):
         key, (start, inner, thickness, _) = f"cup.contour.{k}", before
-        if not start < point.distance <= length * ROUND_OFF:
-            limits = f"above {start:g} (the point before) to {length:g} mm (where the fillet begins)"
+        if not start + least <= point.distance * ROUND_OFF or point.distance > length * ROUND_OFF:
+            limits = f"{start + least:g} ({THINNEST:g} rims behind the point before) to {length:g} mm (the fillet)"
             _refuse(f"{key}.distance", point.distance, limits)
         step, radius = (point.distance - start) * ROUND_OFF, points[k][1]
         steep = f"no steeper than 45 degrees from {start:g} mm on"
@@ -163,3 +163,5 @@ def _check_bolted(design: DriveDesign) -> None:
     for section in ("fatigue", "losses", "deviations"):
         if getattr(design, section) is not None:
             raise InputError(f'[{section}] is not available {where}: allowed with "edge" and "clamped"')
+    if design.stiffness is not None and design.stiffness.positions > 1:
+        raise InputError(f"stiffness.positions = {design.stiffness.positions} is out of range: allowed only 1 {where}")

@@ -31,7 +31,7 @@ def derived_geometry(design: DriveDesign) -> dict[str, float]:
         "r_fs, inner radius of the spline (mm)": design.inner_radius,
         "backlash at the pitch circle (mm)": design.backlash,
         "gamma, rotation that closes it (deg)": float(np.degrees(design.backlash_angle)),
-        "outer diameter (mm)": 2.0 * design.outer_radius,
+        "outer diameter (mm)": 2.0 * design.largest_radius,
         **_cup(design),
         "tooth height, flexible spline (mm)": spline.r_tip_circle - spline.r_root_circle,
         "tooth height, ring gear (mm)": ring.r_root_circle - ring.r_tip_circle,

@@ -258,8 +258,18 @@ class DriveDesign(Design):
 
     @property
     def outer_radius(self) -> float:
-        """Outer radius of the drive, mm: that of the ring gear, or of its housing."""
+        """Outer radius of the ring gear, mm, or of its housing."""
         return self.ring_outer_radius + (self.housing.thickness if self.housing else 0.0)
+
+    @property
+    def largest_radius(self) -> float:
+        """Largest radius of any part of the drive, mm: ring gears, housing, wall and flange."""
+        radii = [self.outer_radius]
+        if self.dynamic_spline is not None:
+            radii.append(self.rim_radius("dynamic_spline"))
+        if self.has_cup:
+            radii += [self.cup.edge, *(inner + thickness for _, inner, thickness, _ in self.wall_points)]
+        return max(radii)
 
     @property
     def frame_is_rigid(self) -> bool:

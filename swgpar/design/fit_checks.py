@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.optimize import brentq
 
 from swgpar.design.bearing_checks import check_bearing
 from swgpar.design.cup_checks import check_cup
@@ -18,6 +19,9 @@ from swgpar.geometry.cams.keys import Harmonic
 
 if TYPE_CHECKING:  # a design checks itself
     from swgpar.design.drive_design import DriveDesign
+
+UNIQUE = 0.25
+"""1 less curvature of a concave cam times its distance from the bore, at least: at 0 foot points are not unique."""
 
 SMALLEST_MINOR_AXIS = 0.4
 """Smallest minor semi-axis of a cam over the inner radius of the flexible spline."""
@@ -106,6 +110,20 @@ def _check_wave_generator(design: DriveDesign) -> None:
     elif design.minor_semi_axis < SMALLEST_MINOR_AXIS * design.inner_radius:
         allowed = f"values whose minor semi-axis is at least {SMALLEST_MINOR_AXIS:g} of the spline's inner radius"
         _refuse("wave_generator.C", wave.C, allowed)
+    elif wave.type == "harmonic":
+        _check_concave(design)
+
+
+def _check_concave(design: DriveDesign) -> None:
+    """Bores so far from a concave part of a harmonic cam that points of them have several feet on it."""
+    a, b, bore, order = design.major_semi_axis, design.minor_semi_axis, design.inner_radius, design.lobes**2
+
+    def room(b: float) -> float:
+        return 1.0 + (b - 0.5 * order * (a - b)) / b**2 * (bore - b) - UNIQUE
+
+    if b < bore and room(b) < 0.0:  # the curvature there is the least one of the cam
+        least = design.wave_generator.C * brentq(room, b, bore) / b
+        _refuse("wave_generator.C", design.wave_generator.C, f"{least:.4g} (a concave cam near the spline) to 1")
 
 
 def _check_steps(design: DriveDesign) -> None:

@@ -38,6 +38,11 @@ def check_pancake(design: DriveDesign) -> None:
         (design.contact.friction > 0.0, f"contact.friction = {design.contact.friction:g}", "allowed 0"),
         (design.fatigue is not None, "fatigue", "allowed without it"),
         (design.losses is not None, "losses", "allowed without them"),
+        (
+            design.output.root_stress and "root_stress" in design.output.model_fields_set,
+            "output.root_stress = true",
+            "allowed false",
+        ),
         (design.solver.condensed_sectors, "solver.condensed_sectors = true", "allowed false"),
         (
             second.profile.type == "conjugate",

@@ -68,6 +68,10 @@ def _check_stages(design: DriveDesign) -> None:
                 f"{key}.torque = {stage.torque:g} and {key}.output_rotation = {stage.output_rotation:g} are both "
                 "given: allowed one of them"
             )
+        if kinds[k] == "rotation" and design.wave_generator_is_fixed:  # rotations are prescribed in another frame
+            raise InputError(
+                f'{key}.torque is missing: allowed only stages with a torque with drive.layout = "wave_generator_fixed"'
+            )
         if stage.points > 1 and k and kinds[k] != kinds[k - 1]:
             raise InputError(
                 f"{key}.points = {stage.points} is out of range: allowed 1 where the output changes between torque and "

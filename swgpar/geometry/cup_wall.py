@@ -162,20 +162,23 @@ class CupWall:
         ends = np.array([point[0] for arc in arcs for point in (arc.start, arc.end)])
         keep = np.concatenate([usual[usual <= first], usual[-1:], corners])
         found = usual
-        for at in np.concatenate([corners, ends]):
+        for at in corners:  # all of them: between two that are close the wall may change its thickness
+            found = with_station(found, at, keep, room=0.0)
+        for at in ends:
             found = with_station(found, at, keep)
         return found
 
 
-def with_station(stations: Floats, at: float, keep: Floats) -> Floats:
+def with_station(stations: Floats, at: float, keep: Floats, room: float = 0.25) -> Floats:
     """The stations (n,) with one at `at`, unless one that is kept is close: the nearest other one that is close moves.
 
-    keep : (m,) stations that do not move
+    keep : (m,) stations that do not move;  room : share of the distance to the next one within which a station is close
+    to a kept one
     """
     near = int(np.abs(stations - at).argmin())
     gap = np.diff(stations)[min(near, len(stations) - 2)]
     fixed = bool(np.isclose(stations[near], keep, rtol=0.0, atol=1e-9).any())
-    if abs(stations[near] - at) >= (0.25 if fixed else 0.5) * gap:
+    if abs(stations[near] - at) >= (max(room * gap, 1e-9) if fixed else 0.5 * gap):
         return np.insert(stations, int(np.searchsorted(stations, at)), at)
     moved = stations.copy()
     if not fixed:

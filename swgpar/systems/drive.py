@@ -218,7 +218,7 @@ class Drives(System[DriveDesign, DriveResult]):
             return program_quantities(design) | further | (HOUSING if design.housing else {})
         stresses = () if design.dynamic_spline is None else PANCAKE_STRESSES
         known = {f"mean.{name}": quantity(name, "mean over the rotation") for name in (*MEANS, *stresses)}
-        if design.output.root_stress:
+        if design.resolves_root_stress:
             known |= RESOLVED
         known |= SHARING
         for section, names in ((design.fatigue, FATIGUE), (design.losses, LOSSES)):

@@ -66,7 +66,7 @@ def test_mesh_and_exchange(tmp_path: Path) -> None:
 def test_what_is_refused(tmp_path: Path) -> None:
     """In one sentence: windows on finer meshes and jobs of other programs know one ring gear."""
     design = swgpar.load_design(DATA / "pancake.toml")
-    with pytest.raises(InputError, match="accuracy = 0.1 is not available"):
+    with pytest.raises(InputError, match="--accuracy 0.1 is not available"):
         swgpar.run(design, mesh=RECIPE, accuracy=0.1)
     done = execute(command("export", DATA / "pancake.toml", "--format", "inp", "--mesh", RECIPE, "--out", tmp_path))
     assert done.returncode == 2 and "[dynamic_spline] is not available with the format inp" in done.stderr

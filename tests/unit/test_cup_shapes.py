@@ -122,9 +122,27 @@ def point(**keys: float) -> Changes:
     return {"contour": [{"distance": 2.0, "thickness": 0.48}, keys]}
 
 
+def test_corners_that_are_close_to_each_other_are_in_the_mesh() -> None:
+    """A thick ring that begins and ends within a third of a millimetre keeps its thickness."""
+    corners = [(3.0, 0.4), (3.3, 0.7), (6.0, 0.7), (6.3, 0.4)]
+    contour = [{"distance": distance, "thickness": thickness} for distance, thickness in corners]
+    case = shaped({"contour": contour})
+    for name in ("coarse", "medium"):
+        lines = meridian(case, load_recipe(name).cup)
+        distance = lines.outer[:, 1] - 0.5 * case.drive.face_width
+        thickness = np.hypot(*(lines.outer - lines.inner).T)
+        for at, expected in corners:
+            k = int(np.abs(distance - at).argmin())
+            assert distance[k] == pytest.approx(at) and thickness[k] == pytest.approx(expected), (name, at)
+
+
 REFUSED = [
-    (point(distance=1.0, thickness=0.4), "cup.contour.2.distance = 1 ", "above 2 (the point before) to 10 mm"),
-    (point(distance=11.0, thickness=0.4), "cup.contour.2.distance = 11 ", "to 10 mm (where the fillet begins)"),
+    (
+        point(distance=1.0, thickness=0.4),
+        "cup.contour.2.distance = 1 ",
+        "2.06 (0.1 rims behind the point before) to",
+    ),
+    (point(distance=11.0, thickness=0.4), "cup.contour.2.distance = 11 ", "to 10 mm (the fillet)"),
     (point(distance=4.0, thickness=0.03), "cup.contour.2.thickness = 0.03 ", "0.06 to 2.48 mm"),
     (point(distance=3.0, thickness=1.6), "cup.contour.2.thickness = 1.6 ", "0.06 to 1.48 mm"),
     (point(distance=3.0, thickness=0.4, radius=16.0), "cup.contour.2.radius = 16 ", "17.6 to 19.6 mm"),

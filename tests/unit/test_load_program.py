@@ -88,6 +88,10 @@ REFUSED = [
     ({"stiffness.positions": 2, "load.torque": 0.0}, "stiffness.torque is missing"),
     ({"stiffness.loop": False, "contact.friction": 0.1}, "stiffness.loop = false .* allowed true with friction"),
     ({"ratcheting.limit": 0.001}, "ratcheting.limit = 0.001 is out of range: allowed 0.02 pitches"),
+    (
+        {**program(UP, {"name": "turn", "output_rotation": 1.0}), "drive.layout": "wave_generator_fixed"},
+        'load.program.2.torque is missing: allowed only stages with a torque with drive.layout = "wave_generator_f',
+    ),
     ({"ratcheting.limit": 20.0}, "ratcheting.limit = 20 is out of range: allowed up to"),
 ]
 
