@@ -78,9 +78,12 @@ def patch_contact(
     Raises ArithmeticError if no contact is found.
     """
     low, high, half = *ends, width
-    middle_line = np.zeros(2)
+    stations = np.linspace(low, high, CELLS_ALONG + 1)
+    least, middle_line = centre(stations), np.zeros(2)  # the least gap is looked for once: only a place to begin at
     for _ in range(MAX_GRIDS):
-        grid = _Grid(gap, lambda z, line=middle_line: centre(z) + np.polyval(line, z), low, high, half)
+        grid = _Grid(
+            gap, lambda z, line=middle_line: np.interp(z, stations, least) + np.polyval(line, z), low, high, half
+        )
         pressure = grid.solve(force, place, modulus)
         if pressure is None:  # cells that are too long do not carry the force at its place
             reach = 0.25 * (high - low)
