@@ -18,7 +18,7 @@ from swgpar.analysis.bearing_model import (
 )
 from swgpar.analysis.regions import sector_regions
 from swgpar.constraints.distributing_coupling import DistributingCoupling, NodeMeans, RadialGuide
-from swgpar.constraints.rigid_attachment import RigidAttachment
+from swgpar.constraints.rigid_attachment import RigidAttachment, face_sides
 from swgpar.constraints.supports import RING_COUPLING, FixedRing, FloatingRing, Supports
 from swgpar.contact.contact import NO_KEYS, Contact, largest
 from swgpar.contact.flank_state import Crowning, SearchRange
@@ -32,7 +32,7 @@ from swgpar.fem.partition import Partition
 from swgpar.fem.sectors_in_reach import RingSectors, WholeTeeth
 from swgpar.fem.stress import body_fields, part_maxima
 from swgpar.kernel import ReferenceElements, reference_elements
-from swgpar.log import PhaseTimes
+from swgpar.log import PhaseTimes, logger
 from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes
 from swgpar.solve.discrete_problem import ContactSearch, DiscreteProblem
 from swgpar.solve.newton import NewtonSolver
@@ -278,6 +278,14 @@ def build_supports(design: DriveDesign, *, partition: Partition, elements: Eleme
             partition, spline, "end", cup.is_attached, cup.attached_width, penalty=penalty, images=copies > 1
         )
         couplings.append(attachment)
+        longest = float(face_sides(spline.layout.mesh, "end").max())
+        if design.is_bolted and longest > cup.washer_diameter:
+            logger.warning(
+                "elements of the closed end or flange are up to %.3g mm long, a washer is %.3g mm wide: a mesh with "
+                "shorter elements there holds the bolts better",
+                longest,
+                cup.washer_diameter,
+            )
     else:
         couplings.append(DistributingCoupling(partition, spline, "bore", copies > 1, centred))
     if rotates or not design.frame_is_rigid:

@@ -31,6 +31,12 @@ Inside = Callable[[np.ndarray], np.ndarray]
 """Whether points (..., 2) mm of the undeformed drive belong to the attached area."""
 
 
+def face_sides(mesh: SectorMesh, surface: str) -> np.ndarray:
+    """Largest lengths (4,) mm of the sides of a sector's plane faces."""
+    corners = mesh.coords[mesh.faces[surface]][..., :2]
+    return np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2).max(axis=0)
+
+
 def area_shares(mesh: SectorMesh, surface: str, angle: float, inside: Inside, width: float) -> np.ndarray:
     """Areas (n_node,) mm² of the nodes on plane faces of a sector within the attached area.
 
@@ -38,7 +44,7 @@ def area_shares(mesh: SectorMesh, surface: str, angle: float, inside: Inside, wi
     """
     faces = mesh.faces[surface]
     corners = rotated(mesh.coords[faces][..., :2], angle)
-    sides = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2).max(axis=0)
+    sides = face_sides(mesh, surface)
     counts = (int(np.ceil(POINTS * max(sides[k], sides[k + 2]) / width)) for k in (0, 1))
     at_a, at_b = ((2.0 * np.arange(n) + 1.0) / n - 1.0 for n in counts)
     a, b = (v.ravel()[:, None] for v in np.meshgrid(at_a, at_b, indexing="ij"))

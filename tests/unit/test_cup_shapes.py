@@ -265,8 +265,19 @@ def test_attachments_that_do_not_fit_are_refused(changes: Changes, key: str, wor
     assert_refused(changes, key, words)
 
 
-@pytest.mark.parametrize("override", ["steps.samples=2", "losses.loss_factor=0.001"])
+@pytest.mark.parametrize("override", ["steps.samples=2", "losses.loss_factor=0.001", "stiffness.positions=2"])
 def test_bolts_refuse_what_needs_a_period(override: str) -> None:
     with pytest.raises(InputError, match="which does not repeat after a pitch"):
         shaped(bolted(8), "steps.rotation=45.0", override)
     shaped(CLAMPED, "steps.rotation=45.0", "steps.samples=2")
+
+
+@pytest.mark.parametrize(("elements", "warned"), [(1, True), (4, False)])
+def test_elements_wider_than_a_washer_are_warned_of(
+    elements: int, warned: bool, caplog: pytest.LogCaptureFixture
+) -> None:
+    recipe = load_recipe(RECIPE)
+    recipe = recipe.model_copy(update={"cup": recipe.cup.model_copy(update={"closed_end": elements})})
+    with caplog.at_level("WARNING"):
+        build_drive_model(shaped(bolted(4, 6.0)), recipe, comm=MPI.COMM_SELF).destroy()
+    assert ("a washer is 6 mm wide" in caplog.text) == warned and len(caplog.records) == warned
