@@ -9,43 +9,15 @@ from typing import Any
 import pytest
 
 import swgpar
-from support.paths import DRIVERS
+from support.optimisation import FREQUENCY, OPTIMISATION
 from swgpar.errors import InputError, OutputError
 from swgpar.input.toml_file import to_toml
 
 pytest.importorskip("optuna")
 
-FREQUENCY = "natural frequency 2 (rad/s)"
-FILE = f"""
-[optimise]
-design = {str(DRIVERS / "gear_pair.toml")!r}
-set = ["monte_carlo.samples=20", "time.end=1e-4", "time.rows=2"]
-evaluations = 12
-first = [{{ "mesh.stiffness" = 2e9 }}]
-
-[[optimise.variable]]
-keys = ["mesh.stiffness"]
-low = 1e9
-high = 1e11
-log = true
-
-[[optimise.variable]]
-keys = ["gear_1.mass", "gear_2.mass"]
-low = -50.0
-high = 200.0
-
-[[optimise.objective]]
-quantity = "{FREQUENCY}"
-goal = "maximise"
-
-[[optimise.constraint]]
-quantity = "damping ratio 1"
-at_most = 0.5
-"""
-
 
 def written(folder: Path, **changes: str) -> Path:
-    text = FILE
+    text = OPTIMISATION
     for old, new in changes.items():
         assert f"\n{old} = " in text
         text = "\n".join(f"{old} = {new}" if line.startswith(f"{old} = ") else line for line in text.splitlines())

@@ -9,7 +9,8 @@ import pytest
 
 import swgpar
 from support.html_text import Page, assert_needs_nothing_else
-from support.paths import DESIGN, DRIVERS, RECIPE
+from support.optimisation import OPTIMISATION
+from support.paths import DESIGN, RECIPE
 from support.study_files import jobs_of
 from swgpar.optimisation.problem import make_problem
 from swgpar.optimisation.spec import load_specification
@@ -31,25 +32,6 @@ wave_generator.C = [0.9, 1.0]
 name = "a"
 published = {{ mean.fs_s1 = 300.0 }}
 tolerance = {{ mean.fs_s1 = 5.0 }}
-"""
-
-OPTIMISATION = f"""
-[optimise]
-design = {str(DRIVERS / "gear_pair.toml")!r}
-set = ["monte_carlo.samples=20", "time.end=1e-4", "time.rows=2"]
-evaluations = 12
-first = [{{ "mesh.stiffness" = 2e9 }}]
-[[optimise.variable]]
-keys = ["mesh.stiffness"]
-low = 1e9
-high = 1e11
-log = true
-[[optimise.objective]]
-quantity = "natural frequency 2 (rad/s)"
-goal = "maximise"
-[[optimise.constraint]]
-quantity = "damping ratio 1"
-at_most = 0.5
 """
 
 
