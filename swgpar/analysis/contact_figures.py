@@ -100,7 +100,7 @@ def draw_contact_pattern(pairs: Columns, lines: Columns, step: int | None, plane
     flanks = [_Flank(pairs, lines, int(k)) for k in chosen]
     figure = Figure(figsize=(10.0, 6.0), layout="constrained")
     angle = pairs["wg_angle_deg"][chosen[0]]
-    figure.suptitle(f"contact of the flanks, wg_angle_deg = {angle:.3g}", fontsize=10)
+    figure.suptitle(f"contact of the flanks, angle of the wave generator {angle:.3g} degrees", fontsize=10)
     if plane:
         _draw_pressure_lines(figure, flanks)
     else:
