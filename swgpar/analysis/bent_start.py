@@ -53,7 +53,7 @@ class BentSpline:
         lift = np.where(gap < near, -gap - self.inset, 0.0)
         moved = self.section(theta, radius, z) - points
         moved[:, :2] += (lift * share / on_cam)[:, None] * np.column_stack([-np.sin(theta), np.cos(theta)])
-        if self.design.drive.model == "cup":
+        if self.design.has_cup:
             moved[:, 2] = self._axial(theta, radius)
             plate = self._on_plate(radius, z)
             moved[plate] = self._closed_end(theta[plate], radius[plate], z[plate])

@@ -109,7 +109,7 @@ def draw_drive(design: DriveDesign) -> list[str]:
     """All drawings of a design."""
     curves = _curves(design)
     sheets = [_front(design, curves), _teeth(design, curves)]
-    return [*sheets, _meridian(design)] if design.drive.model == "cup" else sheets
+    return [*sheets, _meridian(design)] if design.has_cup else sheets
 
 
 def _tooth(design: DriveDesign, gear: str) -> np.ndarray:

@@ -269,7 +269,7 @@ def build_supports(design: DriveDesign, *, partition: Partition, elements: Eleme
     spline = elements.bodies[FLEXIBLE_SPLINE]
     copies = copies_of_model(design)
     # a plane section with deviations is centred by its cam alone: the wall of the cup gives way
-    centred = design.drive.model == "cup" or (design.drive.model == "plane" and design.deviations is None)
+    centred = design.has_cup or (design.drive.model == "plane" and design.deviations is None)
     rotates, guide = design.output_gear != "flexible_spline", None
     couplings: list[NodeMeans] = []
     if design.has_attachment:

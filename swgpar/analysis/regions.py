@@ -60,7 +60,7 @@ def region_of(design: DriveDesign, mesh: SectorMesh, node: int, touched: bool) -
         if radius < root - near:
             return "tip" if radius < mesh.profile.r_tip_circle + near else inside
         return "outer surface" if radius > outer - near else "rim" if radius > root + near else TOOTH_ROOT
-    if design.drive.model == "cup" and abs(z - half) < near and radius < root + near:
+    if design.has_cup and abs(z - half) < near and radius < root + near:
         return "notch"
     if radius < root + near:
         return TOOTH_END if abs(z) > END * design.drive.face_width and not mesh.plane else TOOTH_ROOT

@@ -22,6 +22,6 @@ def check_conjugate(design: DriveDesign, gear: GearName) -> None:
             f'{name}.type = "conjugate" is not available with wave_generator.type = "asymmetric_parabolic": both '
             "flanks of a tooth are mirror images, allowed are cams with two axes of symmetry"
         )
-    half = 0.5 * design.drive.face_width if design.drive.model == "cup" else 0.0
+    half = 0.5 * design.drive.face_width if design.has_cup else 0.0
     if abs(profile.section) > half:
         raise InputError(f"{name}.section = {profile.section:g} is out of range: allowed -{half:g} to {half:g} mm")

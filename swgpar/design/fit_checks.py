@@ -42,7 +42,7 @@ def check_fit(design: DriveDesign) -> None:
     _check_teeth(design)
     _check_steps(design)
     check_pancake(design)
-    if design.drive.model == "cup":
+    if design.has_cup:
         check_cup(design)
     _check_torque(design)
     _check_fatigue(design)
@@ -137,7 +137,7 @@ def _check_torque(design: DriveDesign) -> None:
     """Torques that a cylinder like the weakest section of the cup, or the rim in the plane model, cannot carry."""
     shear_modulus = 0.5 * design.material.E / (1.0 + design.material.nu)
     weakest = design.inner_radius**2 * design.cup_thickness
-    if design.drive.model == "cup":
+    if design.has_cup:
         weakest = min(radius**2 * thickness for _, radius, thickness, _ in design.wall_points)
     most = 0.001 * LARGEST_SHEAR * shear_modulus * 2.0 * np.pi * weakest
     torques = {"load.torque": design.load.torque}
@@ -146,7 +146,7 @@ def _check_torque(design: DriveDesign) -> None:
         torques["stiffness.torque"] = design.stiffness.torque or 0.0
     for key, torque in torques.items():
         if abs(torque) > most:
-            of = "cup's wall" if design.drive.model == "cup" else "rim"
+            of = "cup's wall" if design.has_cup else "rim"
             _refuse(key, torque, f"up to {most:.4g} N·m (nominal shear strain of the {of}: {LARGEST_SHEAR:g})")
 
 

@@ -78,7 +78,7 @@ def _build(gmsh: ModuleType, design: DriveDesign, name: str) -> None:
         _extrude(gmsh, [_circle(gmsh, design.rim_radius(name), back), teeth], width)
         return
     toothed = _extrude(gmsh, [teeth, _circle(gmsh, design.inner_radius, back)], width)
-    if design.drive.model == "cup":
+    if design.has_cup:
         gmsh.model.occ.fuse([toothed], [_wall(gmsh, design)])
 
 

@@ -63,7 +63,7 @@ def _counts(design: DriveDesign, recipe: MeshRecipe, gear: GearName) -> SectorCo
     if external and design.drive.model == "pancake":
         layers = 2 * layers + gap_elements(design, recipe)
     elements, nodes, side = quads * layers, nodes * (layers + 1), side * (layers + 1)
-    if external and design.drive.model == "cup":
+    if external and design.has_cup:
         cup = recipe.cup
         stations = len(meridian(design, cup, teeth.under).inner) - 1
         depth = teeth.rim + (teeth.under if continues_root(design) else 0)

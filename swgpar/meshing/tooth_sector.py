@@ -27,7 +27,7 @@ from swgpar.meshing.sweep import axial_stations, sweep_line, sweep_quads, symmet
 
 def continues_root(design: DriveDesign) -> bool:
     """Whether the cup of the flexible spline continues the layers below the root as well."""
-    return design.drive.model == "cup" and design.cup.thickness_coef > THICK_CUP
+    return design.has_cup and design.cup.thickness_coef > THICK_CUP
 
 
 def _radii(design: DriveDesign, gear: GearName, recipe: ToothRecipe, r_root: float) -> tuple[float, float, bool]:
@@ -142,7 +142,7 @@ def _stations(design: DriveDesign, recipe: MeshRecipe, gear: GearName) -> Floats
     stations of both.
     """
     number, ratio = recipe.face_width.elements, recipe.face_width.end_ratio
-    if design.drive.model == "cup":
+    if design.has_cup:
         return axial_stations(design.drive.face_width, number, ratio, design.wave_generator.face_width)
 
     def along(ring: GearName) -> Floats:

@@ -11,7 +11,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.special import ellipe
 
-from support.paths import REFERENCE
+from support.paths import DRIVERS, REFERENCE
 from swgpar.contact.rigid_surface import pin_directions
 from swgpar.design.design_file import load_design
 from swgpar.design.load_states import Stage, load_sequence, start_state
@@ -422,3 +422,12 @@ def test_cams_that_cannot_be_built_are_refused(section: dict, key: str, design_f
         load_design(design_file({"wave_generator": section}))
     message = str(caught.value)
     assert key in message and ("allowed" in message or "missing" in message) and "\n" not in message, message
+
+
+@pytest.mark.parametrize(("lobes", "least"), [(2, "0.5386"), (3, "0.6797")])
+def test_a_cam_so_concave_that_feet_are_not_unique_is_refused(lobes: int, least: str) -> None:
+    path = DRIVERS / ("three_lobes.toml" if lobes == 3 else "plane_half_turn.toml")
+    design = load_design(path).with_values({"wave_generator": {"type": "harmonic", "lobes": lobes, "face_width": 10.0}})
+    design.with_values({"wave_generator.C": 0.7})
+    with pytest.raises(InputError, match=rf"wave_generator.C = 0.5 is out of range: allowed {least} \(a concave cam"):
+        design.with_values({"wave_generator.C": 0.5})
