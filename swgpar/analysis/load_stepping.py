@@ -68,11 +68,27 @@ class LoadStepper:
     def advance(self, target: LoadState) -> None:
         """Solve up to `target`, with smaller steps where Newton's iteration fails.
 
+        Teeth that are held across a backlash may stick on the wrong flanks. The first load that friction does not let
+        through is taken up without it, and then with it.
+
         Raises ConvergenceError after `solver.max_cutbacks` halvings or `solver.iteration_limit` iterations; x is then
         the last converged state.
         """
-        settings = self.design.solver
         self.iterations = 0
+        first = self.load_state.stage == Stage.ENGAGE and target.control == "torque"
+        try:
+            self._advance(target)
+        except ConvergenceError as error:
+            if not first or not self.design.contact.friction:
+                raise
+            logger.info("   %s; the load is taken up without friction first", error)
+            tried, self.iterations = self.iterations, 0
+            self._advance(replace(target, frictionless=True))
+            self._advance(target)
+            self.iterations += tried
+
+    def _advance(self, target: LoadState) -> None:
+        settings = self.design.solver
         origin, x = self._origin(target), self.problem.x
         done, share, cutbacks = 0.0, 1.0, 0
         while done < 1.0:

@@ -72,6 +72,7 @@ class LoadState:
     control : "rotation" (output held at `output_rotation`, rad) or "torque" (`torque`, N mm, against the output's
     motion)
     spline_held : in a pancake drive, whether the flexible spline is held at the output's kinematic angle
+    frictionless : whether friction is left out, on the way to a state that is not reached with it
     """
 
     stage: Stage
@@ -84,11 +85,12 @@ class LoadState:
     output_rotation: float = 0.0
     torque: float = 0.0
     spline_held: bool = False
+    frictionless: bool = False
 
     @property
     def friction_acts(self) -> bool:
         """Whether friction acts: cam and flanks that grow into place are no motion of the drive."""
-        return self.stage >= Stage.LOAD
+        return self.stage >= Stage.LOAD and not self.frictionless
 
     @property
     def is_periodic(self) -> bool:

@@ -11,7 +11,7 @@ from swgpar.results.history import UNITS, loaded_increments
 from swgpar.results.html_page import with_unit
 from swgpar.studies.case import Case, Outcome
 from swgpar.studies.table import by_case, shown, shown_quantities, units_of_keys
-from swgpar.systems.drive import MEANINGS
+from swgpar.systems.drive_quantities import MEANINGS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from mpi4py import MPI
@@ -10,6 +12,8 @@ from support.friction_work import FrictionWork
 from support.stepping import MODELS, WORLD, assert_agree, rotate, small
 from support.stepping import loaded as under_torque
 from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.design.load_states import LoadState
+from swgpar.solve.solve_state import SolveResult
 
 PITCH = 2.0 * np.pi / 42
 
@@ -66,3 +70,28 @@ def test_friction_takes_torque() -> None:
     """In the plane; `test_input_work_is_output_work_and_dissipation` measures it in space."""
     none, much = (rotate(loaded(mu, model="plane"), 0.3 * PITCH)["wg_torque_Nmm"] for mu in (0.0, 0.1))
     assert much == pytest.approx(1.079 * none, rel=0.01)
+
+
+def test_load_that_friction_holds_back_is_taken_up_without_it() -> None:
+    """The loaded state is then that without friction: the teeth have not slipped since."""
+
+    def stick(stepper: LoadStepper) -> None:
+        """Let the first solve under friction fail."""
+        solve, failed = stepper.solver.solve, []
+
+        def fail_once(state: LoadState, **options: Any) -> SolveResult:
+            if state.friction_acts and not failed:
+                failed.append(state)
+                return SolveResult(converged=False, iterations=7, residual=1.0, reason="DIVERGED_MAX_IT")
+            return solve(state, **options)
+
+        stepper.solver.solve = fail_once
+
+    once = small("plane", "contact.friction=0.1", "solver.max_cutbacks=0")
+    stepper, found = under_torque(once, prepare=stick)
+    _, none = under_torque(small("plane"))
+    _, slid = under_torque(small("plane", "contact.friction=0.1"))
+    assert stepper.load_state.friction_acts
+    assert stepper.iterations > 7
+    assert found["wg_torque_Nmm"] == pytest.approx(none["wg_torque_Nmm"], rel=1e-6)
+    assert found["wg_torque_Nmm"] != pytest.approx(slid["wg_torque_Nmm"], rel=1e-3)

@@ -13,7 +13,8 @@ from swgpar.analysis.stress_cycle import rotated_tensor
 from swgpar.design.design_file import load_design
 from swgpar.design.sections import Fatigue
 from swgpar.errors import InputError
-from swgpar.systems.drive import DRIVE, FATIGUE, LOSSES
+from swgpar.systems.drive import DRIVE
+from swgpar.systems.drive_quantities import FATIGUE, LOSSES
 
 STEEL = Fatigue()
 PHASE = 2.0 * np.pi * np.arange(360) / 360

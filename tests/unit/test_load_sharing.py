@@ -9,7 +9,8 @@ import swgpar
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar.analysis.load_sharing import load_sharing
-from swgpar.systems.drive import DRIVE, SHARING
+from swgpar.systems.drive import DRIVE
+from swgpar.systems.drive_quantities import SHARING
 
 
 def pair(increment: int, tooth: int, share: float, torque: float, line_load: float = np.nan) -> dict[str, float]:

@@ -25,7 +25,8 @@ from swgpar.studies.report import make_report
 from swgpar.studies.spec import load_study
 from swgpar.studies.study import queue
 from swgpar.studies.table import compare, study_rows
-from swgpar.systems.drive import Drives, values
+from swgpar.systems.drive import Drives
+from swgpar.systems.drive_quantities import values
 
 MESHES = f'meshes = ["{RECIPE}"]'
 Write = Callable[..., Path]
