@@ -134,7 +134,7 @@ HOUSING = {
 
 
 def quantities(design: DriveDesign) -> dict[str, Quantity]:
-    """Known quantities of a design: "mean.fs_s1" over the rotation and so on, "step1.fs_s1" at the last increment of a step."""
+    """Known quantities of a design: "mean.fs_s1" over the rotation, "step1.fs_s1" at the end of a step, and so on."""
 
     def quantity(column: str, when: str) -> Quantity:
         return Quantity(f"{MEANINGS.get(column, column)}, {when}", (UNITS | INPUT_UNITS | PANCAKE_UNITS)[column])
