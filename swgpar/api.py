@@ -17,7 +17,7 @@ from swgpar import log
 from swgpar.analysis.drive_result import DriveResult
 from swgpar.analysis.shortcuts import MESHES
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.starter import CamType, Profile, Request, Shape, as_toml, starter_design
+from swgpar.design.starter import CamType, Model, Profile, Request, Shape, as_toml, starter_design
 from swgpar.errors import InputError, OutputError, SwgparError
 from swgpar.input.design import Design
 from swgpar.input.toml_file import Overrides, apply_overrides, read_toml
@@ -51,7 +51,7 @@ def new(
     profile: Profile = "quadruple_arc",
     cam: CamType | None = None,
     layout: Literal["ring_fixed", "spline_fixed"] = "ring_fixed",
-    model: Literal["cup", "plane"] = "cup",
+    model: Model = "cup",
     shape: Shape = "cup",
     lobes: Literal[2, 3] = 2,
     overwrite: bool = False,
@@ -72,7 +72,8 @@ def new(
     profile : "quadruple_arc", "double_arc" or "involute"
     cam : "elliptical", "parabolic", "simplified", "four_roller" or "harmonic"
         Without it the ellipse, and with three lobes the harmonic cam.
-    layout, model : as in the section [drive]
+    layout : "ring_fixed" or "spline_fixed"
+    model : "cup", "plane" or "pancake", as in the section [drive]
     shape : "cup", "short" (a cup of half the length) or "hat" (silk hat, with a flange outwards)
     lobes : 2 or 3, of the cam
     overwrite : bool

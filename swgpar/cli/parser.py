@@ -68,6 +68,7 @@ NEW_EXAMPLES = """examples:
   swgpar new drive.toml --ratio 80 --bore 60 --torque 120 --profile involute --cam parabolic
   swgpar new drive.toml --ratio 40 --diameter 120 --torque 20 --lobes 3
   swgpar new plane.toml --ratio 50 --diameter 42 --torque 2 --model plane
+  swgpar new flat.toml --ratio 60 --diameter 120 --torque 20 --model pancake
 """
 
 OPTIMISE = """Search for the best design: any keys of the design file as variables within bounds, any quantities that
@@ -194,7 +195,7 @@ def _add_new(commands: _Commands) -> None:
     for name, choices, text in (
         ("--profile", ("quadruple_arc", "double_arc", "involute"), "profile of the teeth"),
         ("--layout", ("ring_fixed", "spline_fixed"), "fixed member"),
-        ("--model", ("cup", "plane"), "the cup drive, or the toothed section in plane stress"),
+        ("--model", ("cup", "plane", "pancake"), "cup drive, toothed section in plane stress, two ring gears"),
         ("--shape", ("cup", "short", "hat"), "flexible spline: a cup, one of half the length, a silk hat"),
     ):
         new.add_argument(name, choices=choices, default=choices[0], help=f"{text} (default: {choices[0]})")

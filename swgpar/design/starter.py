@@ -2,7 +2,7 @@
 
 What is given is kept. All else follows from rules of proportion, those of the designs in `drivers/catalogue`: sizes of
 the blank over the pitch diameter D, sizes of the teeth over the module. The backlash is the smallest of a list with
-which the undeformed flanks clear each other.
+which the undeformed flanks clear each other, and the teeth of a dynamic spline are the thickest of a list.
 """
 
 from __future__ import annotations
@@ -22,12 +22,16 @@ from swgpar.geometry.cams import make_cam, taut_length
 from swgpar.geometry.cams.keys import Harmonic, Parabolic, Simplified, WaveGenerator
 from swgpar.geometry.profiles import RADII
 from swgpar.input.quantities import Section
+from swgpar.input.toml_file import with_value
 
 Profile = Literal["quadruple_arc", "double_arc", "involute"]
 """Kinds of profiles of a starter design."""
 
 CamType = Literal["elliptical", "parabolic", "simplified", "four_roller", "harmonic"]
 """Kinds of cams of a starter design."""
+
+Model = Literal["cup", "plane", "pancake"]
+"""Kinds of drives of a starter design."""
 
 Shape = Literal["cup", "short", "hat"]
 """Shapes of the flexible spline: a usual cup, one of half the length, a silk hat with a flange outwards."""
@@ -58,6 +62,21 @@ PLAY = (0.005, 0.01, 0.02, 0.03, 0.05, 0.1, 0.2)
 LEAST_CLEARANCE = 0.0005
 """Between the undeformed flanks, modules."""
 
+GAP = 0.05
+"""Between the ring gears of a pancake drive, over its face width."""
+
+DYNAMIC_RADII = {"r_tip": 0.2, "r_addendum": 3.0, "straight_l": 0.2, "r_dedendum": 3.0, "r_root": 0.3}
+"""Modules. Thin teeth need straighter flanks than those of the ring gear, or their tips end in a point."""
+
+DYNAMIC_THICKNESS = tuple(0.01 * percent for percent in range(80, 54, -2))
+"""c_P of the dynamic spline that is tried: its slots leave room for the motion of the teeth to both sides."""
+
+LEAST_DYNAMIC_CLEARANCE = 0.01
+"""Between the undeformed flanks of the dynamic spline and the flexible spline, modules."""
+
+PANCAKE_CROWNING = 0.05
+"""Of the cam of a pancake drive, modules. Its flexible spline has no cone, so that there is no slope."""
+
 CROWNING, SLOPE, FLANK_CROWNING = 0.1, 0.09, 0.045
 """Micro-geometry of the reference drive (Table 7.4), modules."""
 
@@ -80,7 +99,7 @@ class Request:
     profile: Profile = "quadruple_arc"
     cam: CamType = "elliptical"
     layout: Literal["ring_fixed", "spline_fixed"] = "ring_fixed"
-    model: Literal["cup", "plane"] = "cup"
+    model: Model = "cup"
     shape: Shape = "cup"
     lobes: Literal[2, 3] = 2
 
@@ -110,7 +129,7 @@ def starter_design(request: Request) -> tuple[DriveDesign, dict[str, Any]]:
         built = True
         # few angles suffice: a tenth of the clearance is what they change
         if flank_clearance(design, 91) > LEAST_CLEARANCE * design.drive.module:
-            return design, table
+            return (design, table) if design.dynamic_spline is None else _thin_teeth(table)
     if refusal is not None and not built:
         raise refusal
     raise InputError(
@@ -119,10 +138,23 @@ def starter_design(request: Request) -> tuple[DriveDesign, dict[str, Any]]:
     )
 
 
+def _thin_teeth(table: dict[str, Any]) -> tuple[DriveDesign, dict[str, Any]]:
+    """The pancake drive with the thickest teeth of the dynamic spline that clear those of the flexible spline."""
+    for c_P in DYNAMIC_THICKNESS:
+        thinner = with_value(table, "dynamic_spline.c_P", _rounded(c_P))
+        design = DriveDesign.from_table(thinner)
+        if flank_clearance(design, 91, ring="dynamic_spline") > LEAST_DYNAMIC_CLEARANCE * design.drive.module:
+            return design, thinner
+    drive = design.drive
+    raise InputError(
+        f"teeth_fs = {drive.teeth_fs} leaves no clearance in the dynamic spline: allowed are other ratios or profiles"
+    )
+
+
 def _check(request: Request) -> None:
     """Refuse numbers from which no drive can be made."""
-    if request.shape != "cup" and request.model == "plane":
-        raise InputError(f'shape = "{request.shape}" is not available with model = "plane": allowed "cup"')
+    if request.shape != "cup" and request.model != "cup":
+        raise InputError(f'shape = "{request.shape}" is not available with model = "{request.model}": allowed "cup"')
     for name, unit in (("torque", "N·m"), ("diameter", "mm"), ("bore", "mm")):
         value = getattr(request, name)
         if value is not None and not 0.0 < value < np.inf:
@@ -135,6 +167,8 @@ def _check(request: Request) -> None:
         raise InputError(f'layout = "{request.layout}" is not available for a start: allowed {" or ".join(LAYOUTS)}')
     if request.lobes not in RIM:
         raise InputError(f"lobes = {request.lobes} is out of range: allowed 2 or 3")
+    if request.lobes == 3 and request.model == "pancake":
+        raise InputError('lobes = 3 is not available with model = "pancake": allowed 2')
     if request.lobes == 3 and request.cam != "harmonic":
         raise InputError(f'lobes = 3 is not available with cam = "{request.cam}": allowed with "harmonic"')
     step = 0.5 if request.lobes == 2 else 1.0
@@ -187,6 +221,9 @@ def _table(request: Request, play: float) -> dict[str, Any]:
         cone = (LENGTH + 0.5 * FACE_WIDTH) / (length + 0.5 * FACE_WIDTH)
         micro = {"wg_crowning": CROWNING, "wg_slope": SLOPE * cone, "fs_crowning": FLANK_CROWNING}
         table["micro_geometry"] = {name: _rounded(value * module) for name, value in micro.items()}
+    if request.model == "pancake":
+        table["dynamic_spline"] = _dynamic_spline(table, module)
+        table["micro_geometry"] = {"wg_crowning": _rounded(PANCAKE_CROWNING * module)}
     table["material"] = {"E": 210e3, "nu": 0.29}
     table["load"] = {"torque": request.torque}
     table["wave_generator"] |= _cam_keys(request.cam, table)
@@ -199,6 +236,17 @@ def _end(shape: Shape, pitch: float) -> dict[str, Any]:
         return {"inner_radius": _rounded(BORE * pitch)}
     flange = {"flange_radius": _rounded(FLANGE * pitch), "end_thickness": _rounded(FLANGE_THICKNESS * pitch)}
     return {"shape": "hat", **flange}
+
+
+def _dynamic_spline(table: dict[str, Any], module: float) -> dict[str, Any]:
+    """Section of the second ring gear of a pancake drive, with its thickest teeth."""
+    radii = {name: _rounded(value * module) for name, value in DYNAMIC_RADII.items()}
+    return {
+        "rim": table["ring_gear"]["rim"],
+        "c_P": DYNAMIC_THICKNESS[0],
+        "gap": _rounded(GAP * table["drive"]["face_width"], 2),
+        "profile": {"type": "quadruple_arc", **radii},
+    }
 
 
 def _gear(request: Request, gear: str, module: float, teeth: int, play: float) -> dict[str, Any]:

@@ -64,6 +64,16 @@ def test_three_lobes_give_whole_ratios(profile: Profile, layout: str, ratio: flo
     assert abs(taut_length(design.cam()) / (2.0 * np.pi * design.inner_radius) - 1.0) < 1e-5
 
 
+@pytest.mark.parametrize("profile", get_args(Profile))
+@pytest.mark.parametrize("ratio", RATIOS)
+def test_a_pancake_clears_in_both_ring_gears(ratio: float, profile: Profile) -> None:
+    request = Request(ratio, 10.0, diameter=100.0, profile=profile, model="pancake")
+    design, table = starter_design(request)
+    assert flank_clearance(design, 121) > 0.0 and flank_clearance(design, 121, ring="dynamic_spline") > 0.0
+    assert design.dynamic_spline.c_P > 0.6  # thinner teeth are lost motion
+    assert "[dynamic_spline.profile]" in as_toml(request, design, table, "drive.toml")
+
+
 @pytest.mark.parametrize("layout, ratio", [("ring_fixed", -75.0), ("spline_fixed", 75.0)])
 def test_what_is_given_is_kept(layout: str, ratio: float) -> None:
     design, _ = starter_design(Request(75.0, 33.0, bore=61.7, layout=layout))
