@@ -26,6 +26,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from swgpar.geometry.cams import Cam
+from swgpar.geometry.cams.arcs import arcs
 from swgpar.geometry.cams.elliptical import EllipticalCam
 from swgpar.geometry.cams.four_roller import four_roller
 from swgpar.geometry.cams.harmonic import HarmonicCam
@@ -89,6 +90,22 @@ def draw_simplified(ax: Axes) -> None:
     point = (-B * np.sin(np.radians(48)), height + B * np.cos(np.radians(48)))
     dimension(ax, (0, height), point, "radius $b$", rotation=-42)
     leader(ax, (4.3, -8.3), "straight", (B, -2.0))
+    semi_axes(ax)
+
+
+def draw_arcs(ax: Axes) -> None:
+    cam = arcs(A, B, np.radians(40.0), "beta")
+    base(ax, cam, "arcs")
+    side, top, _ = cam.pieces
+    joint = cam.joints[0]
+    for circle, name in ((top, "parabola"), (side, "lateral")):
+        ax.plot(*circle.center, "+", color=PARTS[name], ms=10, mew=1.5)
+        ax.plot(*np.transpose([circle.center, joint]), color=PARTS[name], lw=0.7, ls=":")
+    ax.plot(*arc(top.center, top.radius, 50, 130).T, color=PARTS["parabola"], lw=2.6)
+    ax.plot(*arc(side.center, side.radius, 0, 50).T, color=PARTS["lateral"], lw=2.6)
+    angle_mark(ax, top.center, 2.6, 90.0, 50.0, r"$\beta$", out=1.3)
+    leader(ax, (9.0, 9.0), "$r_1$", tuple(arc(top.center, top.radius, 60, 61)[0]), color=PARTS["parabola"])
+    leader(ax, (10.5, 4.5), "$r_2$", tuple(arc(side.center, side.radius, 25, 26)[0]), color=PARTS["lateral"])
     semi_axes(ax)
 
 
@@ -191,6 +208,7 @@ def cams() -> Figure:
     figures: tuple[Callable[[Axes], None], ...] = (
         draw_elliptical,
         draw_simplified,
+        draw_arcs,
         draw_parabolic,
         draw_asymmetric,
         draw_rollers,
@@ -212,6 +230,7 @@ REFERENCE = {
     "elliptical": {"type": "elliptical"},
     "harmonic": {"type": "harmonic"},
     "simplified, C = 0.97": {"type": "simplified", "C": 0.97},
+    "arcs, beta = 45 degrees": {"type": "arcs", "beta": 45.0},
     "parabolic": {"type": "parabolic", "a_p": 0.0097, "C_p": 0.51, "r_c": 10.0},
     "asymmetric_parabolic, 0.5 degrees": {
         "type": "asymmetric_parabolic",

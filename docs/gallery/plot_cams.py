@@ -19,6 +19,7 @@ CAMS = {
     "elliptical": {"type": "elliptical"},
     "harmonic": {"type": "harmonic"},
     "simplified": {"type": "simplified", "C": 0.97},
+    "arcs": {"type": "arcs", "beta": 45.0},
     "parabolic": {"type": "parabolic", "a_p": 0.0095, "C_p": 0.45, "r_c": 12.0},
     "parabolic, asymmetric": {
         "type": "asymmetric_parabolic",

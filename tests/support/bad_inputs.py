@@ -78,6 +78,7 @@ def _drives() -> list[Table]:
     waves = [
         {"type": "simplified", "C": 0.9},
         {"type": "elliptical", "C": 0.95},
+        {"type": "arcs", "beta": 45.0},
         {"type": "parabolic", "C": 1.0, "a_p": 0.0097, "C_p": 0.51, "r_c": 10.0},
         {"type": "four_roller", "beta": 25.0, "r_4": 15.0},
     ]

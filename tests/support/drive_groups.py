@@ -149,6 +149,7 @@ def cams() -> Cases:
         "simplified,C=0.95": {"type": "simplified", "C": 0.95},
         "elliptical,C=0.9": {"type": "elliptical", "C": 0.9},
         "harmonic,C=0.9": {"type": "harmonic", "C": 0.9},
+        "arcs,beta=45": {"type": "arcs", "C": 1.0, "beta": 45.0},
         "parabolic": {"type": "parabolic", "C": 1.0, **improved},
         "four_roller": {"type": "four_roller", "beta": 25.0, "r_4": 15.0},
     }

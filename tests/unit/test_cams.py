@@ -17,6 +17,7 @@ from swgpar.design.design_file import load_design
 from swgpar.design.load_states import Stage, load_sequence, start_state
 from swgpar.errors import InputError
 from swgpar.geometry.cams import EllipticalCam, HarmonicCam, pin_travel, taut_length
+from swgpar.geometry.cams.arcs import arcs
 from swgpar.geometry.cams.four_roller import four_roller
 from swgpar.geometry.cams.parabolic import Side, parabolic
 from swgpar.geometry.cams.piecewise import Parabola, PiecewiseCam
@@ -93,6 +94,15 @@ def stadium(a: float, r: float) -> list[Curve]:
     return [side, top, side.turned(), top.turned()]
 
 
+def oval(a: float, b: float, beta: float) -> list[Curve]:
+    """Both radii from the joint: the centres lie on its normal, (sin beta, cos beta)."""
+    s, c = np.sin(beta), np.cos(beta)
+    r, outer = np.linalg.solve([[s, 1.0 - s], [1.0 - c, c]], [b, a])
+    side = arc(b - outer, 0.0, outer, beta - 0.5 * np.pi, 0.5 * np.pi - beta)
+    top = arc(0.0, a - r, r, 0.5 * np.pi - beta, 0.5 * np.pi + beta)
+    return [side, top, side.turned(), top.turned()]
+
+
 def quarter(a: float, b: float, a_p: float, C_p: float, r_c: float, tilt: float, mirror: float) -> list[Curve]:
     """Right side of a lobe from eqs 3.5 to 3.11, its aperture by a root of the source's equation; mirror = -1: left."""
     c, s = np.cos(tilt), np.sin(tilt)
@@ -148,6 +158,8 @@ CAMS = {
     "harmonic-three-deep": (HarmonicCam(A, 0.85 * A, 3), harmonic(A, 0.85 * A, 3)),
     "simplified": (simplified(A, 0.97 * B), stadium(A, 0.97 * B)),
     "simplified-0.5": (simplified(A, 0.5 * B), stadium(A, 0.5 * B)),
+    "arcs": (arcs(A, B, 0.8, "beta"), oval(A, B, 0.8)),
+    "arcs-0.5": (arcs(A, 0.5 * B, 0.8, "beta"), oval(A, 0.5 * B, 0.8)),
     "parabolic": (parabolic(A, B, Side(*IMPROVED), Side(*IMPROVED)), parabola(A, B, IMPROVED, IMPROVED, 0.0)),
     "parabolic-0.5": (
         parabolic(A, 0.5 * B, Side(0.01, 0.5, 10.0), Side(0.01, 0.5, 10.0)),
@@ -180,6 +192,7 @@ SECTIONS = {
     "elliptical": keys("elliptical"),
     "harmonic": keys("harmonic"),
     "simplified": keys("simplified", C=0.97),
+    "arcs": keys("arcs", beta=45.0),
     "parabolic": keys("parabolic", **SIDE),
     "angle-based": keys("asymmetric_parabolic", rotational_angle=0.5, right=SIDE, left=SIDE),
     "bilateral": keys("asymmetric_parabolic", right=OTHER_SIDE, left=SIDE),
@@ -318,7 +331,7 @@ def test_pins_fit_into_the_spline_and_end_at_the_cam(name: str, design_file: Cal
     gap = cam.evaluate(inner)[0]
     assert abs(gap.min()) < 1e-5
     assert travel >= 0.5 * design.deflection - 1e-12
-    if name in ("elliptical", "harmonic", "simplified", "parabolic", "bilateral"):
+    if name in ("elliptical", "harmonic", "simplified", "arcs", "parabolic", "bilateral"):
         assert travel == pytest.approx(0.5 * design.deflection, abs=1e-12)
     if name == "four_roller":
         x, y = cam.center
@@ -406,6 +419,8 @@ def test_crowning_is_the_amount_at_the_edges_and_nothing_in_the_middle(shape: st
         (keys("four_roller", beta=10.0, r_4=8.0, C=1.0), "wave_generator.C = 1"),
         (keys("four_roller", beta=70.0, r_4=8.0), "wave_generator.beta = 70"),
         (keys("simplified", C=0.2), "wave_generator.C = 0.2"),
+        (keys("arcs", beta=1.5), "wave_generator.beta = 1.5 is out of range: allowed above 1.97"),
+        (keys("arcs"), "wave_generator.beta is missing"),
         (keys("elliptical", lobes=3), "wave_generator.lobes = 3"),
         (keys("four_roller", lobes=3, beta=10.0, r_4=8.0), "wave_generator.lobes = 3"),
         (keys("harmonic", lobes=3), "drive.teeth_rg - drive.teeth_fs = 2"),

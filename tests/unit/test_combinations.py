@@ -23,6 +23,7 @@ CAMS = {
     "elliptical": {},
     "harmonic": {},
     "simplified": {"C": 0.97},
+    "arcs": {"beta": 45.0},
     "parabolic": SIDE,
     "asymmetric_parabolic": {"rotational_angle": 0.5, "right": SIDE, "left": {**SIDE, "r_c": 12.0}},
     "four_roller": {"beta": 10.0, "r_4": 8.0},

@@ -10,11 +10,13 @@ from typing import Protocol
 import numpy as np
 from scipy.spatial import ConvexHull
 
+from swgpar.geometry.cams.arcs import arcs
 from swgpar.geometry.cams.bearing_keys import Bearing
 from swgpar.geometry.cams.elliptical import EllipticalCam
 from swgpar.geometry.cams.four_roller import four_roller
 from swgpar.geometry.cams.harmonic import HarmonicCam
 from swgpar.geometry.cams.keys import (
+    Arcs,
     AsymmetricParabolic,
     Elliptical,
     FourRoller,
@@ -64,6 +66,8 @@ def make_cam(keys: WaveGenerator, a: float, b: float | None = None, name: str = 
         return HarmonicCam(a, b, keys.lobes)
     if isinstance(keys, Simplified):
         return simplified(a, b)
+    if isinstance(keys, Arcs):
+        return arcs(a, b, float(np.radians(keys.beta)), f"{name}.beta")
     if isinstance(keys, Parabolic):
         side = Side(keys.a_p, keys.C_p, keys.r_c, name)
         return parabolic(a, b, side, side)

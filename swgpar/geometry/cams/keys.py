@@ -51,6 +51,13 @@ class Simplified(_Reduced):
     type: Literal["simplified"] = quantity("simplified", text="kind of cam")
 
 
+class Arcs(_Reduced):
+    """Arcs of two radii."""
+
+    type: Literal["arcs"] = quantity("arcs", text="kind of cam")
+    beta: float = quantity(unit="deg", text="half angle of the arcs about the major axis", gt=0.0, lt=90.0)
+
+
 class SideKeys(Section):
     """The parabola of a lobe, or of one side of it, and how it is led to the minor axis."""
 
@@ -85,7 +92,7 @@ class FourRoller(_WaveGenerator):
 
 
 WaveGenerator = Annotated[
-    Elliptical | Harmonic | Simplified | Parabolic | AsymmetricParabolic | FourRoller,
+    Elliptical | Harmonic | Simplified | Arcs | Parabolic | AsymmetricParabolic | FourRoller,
     Field(discriminator="type"),
     BeforeValidator(default_type("elliptical")),
 ]
