@@ -94,7 +94,8 @@ def draw_loaded_teeth(
         _draw_cut(axes, cut, at, limit, (-half, half, low, high))
     axes.set(xlim=(-half, half), ylim=(low, high), xlabel="mm, along the circumference", ylabel="radius (mm)")
     _colour_bar(figure, [axes], limit)
-    axes.text(0.0, high - 0.15 * pitch, "ring gear", color="w", ha="center", va="top")
+    ring = "ring gear" if design.dynamic_spline is None or z < 0.0 else "dynamic spline"
+    axes.text(0.0, high - 0.15 * pitch, ring, color="w", ha="center", va="top")
     if design.bearing is None:
         axes.text(0.0, low + 0.1 * pitch, "wave generator", ha="center")
     place = f"teeth at {np.degrees(angle):.1f} degrees from +y"

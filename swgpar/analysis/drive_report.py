@@ -71,10 +71,11 @@ def drive_report(result: DriveResult) -> bytes:
     parts += [
         "<h2>Answers</h2>",
         cards(["", "value", "unit", "error", "where"], ((row, False) for row in answers(summary))),
-        *_not_asked(summary),
+        *_not_asked(design, summary),
     ]
     if summary["places"]:
-        parts += ["<h3>Largest stresses under load</h3>", f"<p>{NODAL}</p>", _places(summary["places"])]
+        resolved = f" {RESOLVED}" if summary["root_stress"] else ""
+        parts += ["<h3>Largest stresses under load</h3>", f"<p>{NODAL}{resolved}</p>", _places(summary["places"])]
     if summary.get("regions"):  # results of earlier versions have none
         parts += ["<h3>Largest stresses by region</h3>", f"<p>{BY_REGION}</p>", _regions(summary["regions"])]
     parts += ["<h2>Checks</h2>", _checks(found)]
@@ -131,7 +132,11 @@ def answers(summary: Mapping[str, Any]) -> list[list[Any]]:
     add("mean input torque", driven.get("torque_Nmm", summary["means"].get("wg_torque_Nmm")), "N·mm")
     if summary["torque_ripple"] is not None:
         add("input torque, largest less smallest over mean", 100.0 * summary["torque_ripple"], "%")
-    add("transmission error, peak to peak", summary["transmission_error_arcsec"], "arc seconds")
+    deviates = summary["design"]["deviations"] is not None
+    ideal = ", of the ideal drive" if deviates else ""
+    add(f"transmission error, peak to peak{ideal}", summary["transmission_error_arcsec"], "arc seconds")
+    if deviates and (turns := summary["transmission_error"]):
+        add("the same with deviations, over whole turns", turns["peak_to_peak"], "arc seconds")
     if stiffness := summary["stiffness"]:
         error = stiffness["mesh_error"] or {}
         for name in ("K1", "K2", "K3"):
@@ -159,9 +164,10 @@ def answers(summary: Mapping[str, Any]) -> list[list[Any]]:
     return rows
 
 
-def _not_asked(summary: Mapping[str, Any]) -> list[str]:
+def _not_asked(design: DriveDesign, summary: Mapping[str, Any]) -> list[str]:
     """What the design does not ask for, with the key that does."""
-    missing = [text for name, text in SECTIONS.items() if not summary.get(name)]
+    refused = ("root_stress",) if design.output.root_stress else ()  # asked for, and not available
+    missing = [text for name, text in SECTIONS.items() if not summary.get(name) and name not in refused]
     return [f"<p>Not asked for: {escape('; '.join(missing))}.</p>"] if missing else []
 
 
@@ -175,8 +181,9 @@ def _where(place: Mapping[str, Any]) -> str:
 
 NODAL = (
     "Averages over elements on the mesh of the drive, the largest of all increments under load. Errors are those by "
-    "this mesh. The tension at the teeth above is resolved on finer meshes of a few teeth."
+    "this mesh."
 )
+RESOLVED = "The tension at the teeth above is resolved on finer meshes of a few teeth."
 BY_REGION = "Averages over elements as well. Without an error there is no estimate of it on this mesh."
 NO_ERROR = "no estimate of the error on this mesh"
 

@@ -105,20 +105,24 @@ def evaluate_fatigue(cycle: StressCycle, root_stress: RootStress | None) -> Fati
 
 
 def _life(cycle: StressCycle, damage_of_cycle: float) -> dict[str, float | None]:
-    """Damage and life in turns of the wave generator, or in passages of the load program."""
+    """Damage and life in turns of the wave generator, or in passages of the load program.
+
+    Without damage the life is None, without end. Above the tensile strength it is 0 and the damage None.
+    """
     design = cycle.model.design
     found: dict[str, float | None] = dict.fromkeys(
         ("damage_per_turn", "life_turns", "life_hours", "cycles_per_turn", "damage_per_program", "life_programs")
     )
     life = 1.0 / damage_of_cycle if damage_of_cycle > 0.0 else None
+    finite = np.isfinite(damage_of_cycle)
     if design.has_program:
-        return found | {"damage_per_program": damage_of_cycle, "life_programs": life}
+        return found | {"damage_per_program": damage_of_cycle if finite else None, "life_programs": life}
     speed = 2.0 * np.pi / cycle.angle
-    turns = life / speed if life else None
+    turns = None if life is None else life / speed
     return found | {
-        "damage_per_turn": speed * damage_of_cycle,
+        "damage_per_turn": speed * damage_of_cycle if finite else None,
         "life_turns": turns,
-        "life_hours": turns / (60.0 * design.load.input_speed) if turns else None,
+        "life_hours": turns / (60.0 * design.load.input_speed) if turns is not None else None,
         "cycles_per_turn": speed,
     }
 

@@ -17,7 +17,11 @@ from swgpar.analysis.stress_cycle import StressCycle, elements_of_rank
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import Material
 from swgpar.fem.body_layout import BodyLayout
+from swgpar.log import logger
 from swgpar.results.history import Row
+
+SMALL_SHARE = 0.01
+"""Share of the flanks' force that friction leaves out without a word: pairs that hardly touch are not searched."""
 
 CHUNK = 256
 """Elements whose harmonics are combined at once."""
@@ -59,6 +63,11 @@ def evaluate_losses(
         "hysteresis": hysteresis,
         "bearing": float(bearing.mean()),
     }
+    if (missing := _force_without_sliding(pairs, increments)) > SMALL_SHARE:
+        logger.warning(
+            "the friction of the flanks leaves out %.3g %% of their force: the contacts of these pairs are not known",
+            100.0 * missing,
+        )
     total, useful = sum(parts.values()), 1000.0 * design.load.torque / abs(design.input_ratio)
     summary = {
         "loss_torque_Nmm": total,
@@ -97,6 +106,13 @@ def _flank_torque(design: DriveDesign, pairs: Sequence[Row], increment: int, cop
     # the force of a pair in a run with friction has its tangential part
     share = coefficient / np.hypot(1.0, coefficient) if design.contact.friction else coefficient
     return float(copies * share * work / omega)
+
+
+def _force_without_sliding(pairs: Sequence[Row], increments: Sequence[int]) -> float:
+    """Share of the force of all pairs whose contact, and with it their sliding, is not known."""
+    here = [pair for pair in pairs if pair["increment"] in increments]
+    missing = sum(pair["force_N"] for pair in here if np.isnan(pair["sliding_mm_s"]))
+    return missing / sum(pair["force_N"] for pair in here) if here else 0.0
 
 
 def hysteresis_work(cycle: StressCycle) -> float:

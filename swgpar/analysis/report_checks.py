@@ -67,7 +67,8 @@ def _energy(design: DriveDesign, summary: Mapping[str, Any]) -> Check:
     covered = design.steps.samples or design.steps.rotation >= 0.999999 * np.degrees(design.period_angle)
     if mean is None or not expected or not covered:
         return Check(name, None, "needs a torque, and a rotation over a period of the motion or more")
-    text = f"mean input torque {mean:.5g} N·mm, by the energy balance {expected:.5g} N·mm"
+    torque = "mean torque on the standing wave generator" if design.wave_generator_is_fixed else "mean input torque"
+    text = f"{torque} {mean:.5g} N·mm, by the energy balance {expected:.5g} N·mm"
     if design.contact.friction:
         return Check(name, mean >= expected * (1.0 - ENERGY), f"{text}; friction takes {mean - expected:.3g} N·mm")
     return Check(name, abs(mean / expected - 1.0) <= ENERGY, f"{text}; good within {100 * ENERGY:g} %")
@@ -94,7 +95,7 @@ def _clearance(design: DriveDesign) -> Check:
 def _edge(summary: Mapping[str, Any]) -> Check:
     contact = summary["contact"]
     if not contact:
-        return Check("edge contact", None, "no flank carries a load that has a pressure")
+        return Check("edge contact", None, "no contact under load is known")
     text = (
         "lies on an edge: stress and pressure there grow with every finer mesh" if contact["edge"] else "lies off edges"
     )

@@ -191,8 +191,9 @@ def _print_sharing(sharing: Mapping[str, Any]) -> None:
 def _print_fatigue(found: Mapping[str, Any], *, windows: bool) -> None:
     """windows : whether windows could resolve the stress at the teeth"""
     worst, other = found["goodman"], found["crossland"]
-    errors = [found[name] for name in ("mesh_error", "sampling_error") if found[name] is not None]
-    error = f" ± {float(np.hypot.reduce(errors)):.2g}" if errors else ""
+    error = ""  # that of the angles alone says little
+    if found["mesh_error"] is not None:
+        error = f" ± {float(np.hypot(found['mesh_error'], found['sampling_error'] or 0.0)):.2g}"
     console.print(
         f"least safety against fatigue: {worst['safety']:.3g}{error} by Goodman, {worst['region']} (radius "
         f"{worst['radius']:.2f}, z {worst['z']:.2f} mm; amplitude {worst['amplitude_MPa']:.0f}, mean "
@@ -204,9 +205,9 @@ def _print_fatigue(found: Mapping[str, Any], *, windows: bool) -> None:
         "life by Basquin: "
         + (
             f"{life:.2g} turns of the wave generator, {found['life_hours']:.2g} h"
-            if life
+            if life is not None
             else f"{programs:.2g} passages of the load program"
-            if programs
+            if programs is not None
             else "without end"
         )
     )

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import swgpar
-from support.paths import DESIGN, RECIPE
+from support.paths import DESIGN, RECIPE, REFERENCE
 from support.small_drive import PLANE
+from swgpar.analysis.fatigue import _life
 from swgpar.analysis.fatigue_criteria import critical_plane, crossland, damage, fatigue_limits, goodman, smallest_ball
 from swgpar.analysis.stress_cycle import rotated_tensor
 from swgpar.design.design_file import load_design
@@ -88,6 +89,25 @@ def test_life_by_basquin() -> None:
     assert damage(values, fatigue) == pytest.approx(1.0 / cycles, rel=1e-9)
     assert damage(np.roll(values, 77), fatigue) == pytest.approx(1.0 / cycles, rel=1e-9)
     assert damage(0.5 * values, fatigue) == 0.0
+
+
+class OneCycle:
+    """As much of a stress cycle as its life needs: a third of a turn, in a drive without a load program."""
+
+    angle = 2.0 * np.pi / 3.0
+
+    class model:
+        design = load_design(REFERENCE)
+
+
+@pytest.mark.parametrize(
+    "of_cycle, damaged, turns", [(0.0, 0.0, None), (1e-6, 3e-6, 1e6 / 3.0), (float("inf"), None, 0.0)]
+)
+def test_life_without_end_and_without_any(of_cycle: float, damaged: float | None, turns: float | None) -> None:
+    found = _life(OneCycle(), of_cycle)
+    assert found["damage_per_turn"] == (damaged if damaged is None else pytest.approx(damaged))
+    assert found["life_turns"] == (turns if turns is None else pytest.approx(turns))
+    assert (found["life_hours"] is None) == (turns is None)
 
 
 def test_rainflow_counts_every_cycle() -> None:

@@ -328,3 +328,15 @@ def test_profiles_that_cannot_be_built_are_refused(
     message = str(caught.value)
     assert key in message and gear in message and "\n" not in message, message
     assert any(word in message for word in ("allowed", "missing", "did you mean")), message
+
+
+@pytest.mark.parametrize("name", ["rack", "shaper"])
+def test_a_point_over_a_sharp_tip_is_outside(name: str) -> None:
+    """Also where it lies behind the flank's tangent at the tip end."""
+    profile = FLANKS[name]
+    away = 1.0 if profile.external else -1.0
+    angle = np.linspace(-0.9, 0.9, 19) * profile.polar_angle(0.0)[0]
+    over = (profile.r_tip_circle + away * 0.15) * np.stack([np.sin(angle), np.cos(angle)], axis=-1)
+    inside = (profile.r_tip_circle - away * 0.15) * np.stack([np.sin(angle), np.cos(angle)], axis=-1)
+    assert (profile.distance(over)[0] > 0.0).all()
+    assert (profile.distance(inside)[0] < 0.0).all()

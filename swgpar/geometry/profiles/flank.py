@@ -199,6 +199,9 @@ class ToothProfile:
             best[closer] = gap[closer]
             foot[closer] = begin + local[closer]
         side = np.einsum("ij,ij->i", points - self.point(foot), self.normal(foot))
+        # the normal of a sharp tip end does not tell a point in the tooth from one over its top land
+        beyond = self._side * (np.linalg.norm(points, axis=1) - self.r_tip_circle) >= 0.0
+        side[(foot == 0.0) & beyond] = 1.0
         return np.copysign(best, side), foot
 
     def polar_angle(self, s: ArrayLike) -> Floats:
