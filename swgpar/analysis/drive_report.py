@@ -132,7 +132,7 @@ def answers(summary: Mapping[str, Any]) -> list[list[Any]]:
     add("mean input torque", driven.get("torque_Nmm", summary["means"].get("wg_torque_Nmm")), "N·mm")
     if summary["torque_ripple"] is not None:
         add("input torque, largest less smallest over mean", 100.0 * summary["torque_ripple"], "%")
-    deviates = summary["design"]["deviations"] is not None
+    deviates = summary["design"].get("deviations") is not None
     ideal = ", of the ideal drive" if deviates else ""
     add(f"transmission error, peak to peak{ideal}", summary["transmission_error_arcsec"], "arc seconds")
     if deviates and (turns := summary["transmission_error"]):

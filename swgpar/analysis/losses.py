@@ -63,7 +63,7 @@ def evaluate_losses(
         "hysteresis": hysteresis,
         "bearing": float(bearing.mean()),
     }
-    if (missing := _force_without_sliding(pairs, increments)) > SMALL_SHARE:
+    if (missing := force_without_sliding(pairs, increments)) > SMALL_SHARE:
         logger.warning(
             "the friction of the flanks leaves out %.3g %% of their force: the contacts of these pairs are not known",
             100.0 * missing,
@@ -108,11 +108,12 @@ def _flank_torque(design: DriveDesign, pairs: Sequence[Row], increment: int, cop
     return float(copies * share * work / omega)
 
 
-def _force_without_sliding(pairs: Sequence[Row], increments: Sequence[int]) -> float:
+def force_without_sliding(pairs: Sequence[Row], increments: Sequence[int]) -> float:
     """Share of the force of all pairs whose contact, and with it their sliding, is not known."""
     here = [pair for pair in pairs if pair["increment"] in increments]
+    force = sum(pair["force_N"] for pair in here)
     missing = sum(pair["force_N"] for pair in here if np.isnan(pair["sliding_mm_s"]))
-    return missing / sum(pair["force_N"] for pair in here) if here else 0.0
+    return missing / force if force else 0.0
 
 
 def hysteresis_work(cycle: StressCycle) -> float:

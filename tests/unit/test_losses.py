@@ -9,7 +9,7 @@ from mpi4py import MPI
 import swgpar
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
-from swgpar.analysis.losses import energy_coordinates, mass_matrices
+from swgpar.analysis.losses import energy_coordinates, force_without_sliding, mass_matrices
 from swgpar.analysis.plain_ring import RingCounts, RingDesign, RingModel
 from swgpar.design.sections import Material
 from swgpar.errors import InputError
@@ -38,6 +38,16 @@ def test_mass_matrices_of_a_box() -> None:
         assert np.diag(matrix) == pytest.approx(np.full(2**d, volume / 3.0**d))
         x = box[: 2**d, 0]
         assert x @ matrix @ x == pytest.approx(volume * 4.0 / 3.0)
+
+
+def test_share_of_the_force_without_a_known_contact() -> None:
+    pairs = [
+        {"increment": 3, "force_N": 30.0, "sliding_mm_s": 5.0},
+        {"increment": 4, "force_N": 10.0, "sliding_mm_s": float("nan")},
+        {"increment": 5, "force_N": 99.0, "sliding_mm_s": float("nan")},
+    ]
+    assert force_without_sliding(pairs, (3, 4)) == 0.25
+    assert force_without_sliding(pairs, (1,)) == 0.0
 
 
 def test_hysteresis_of_a_ring_between_two_forces() -> None:

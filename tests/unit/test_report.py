@@ -45,6 +45,15 @@ def test_a_run_leaves_one_page_that_needs_nothing_else(folder: Path) -> None:
     assert f"teeth_fs = {summary['design']['drive']['teeth_fs']}" in text
 
 
+def test_the_transmission_error_with_deviations_is_an_answer(folder: Path) -> None:
+    summary = swgpar.open_result(folder).summary
+    summary["design"]["deviations"] = {"turns": 1}
+    summary["transmission_error"] = {"peak_to_peak": 44.55}
+    found = {name: value for name, value, *_ in answers(summary)}
+    assert found["the same with deviations, over whole turns"] == 44.55
+    assert found["transmission error, peak to peak, of the ideal drive"] == summary["transmission_error_arcsec"]
+
+
 def test_the_largest_of_the_regions_is_the_largest_of_the_body(folder: Path) -> None:
     summary = swgpar.open_result(folder).summary
     for stress in ("fs_s1", "fs_vm", "rg_vm"):
