@@ -75,11 +75,11 @@ class LoadStepper:
         the last converged state.
         """
         self.iterations = 0
-        first = self.load_state.stage == Stage.ENGAGE and target.control == "torque"
+        takes_up_load = self.load_state.stage == Stage.ENGAGE and target.control == "torque"
         try:
             self._advance(target)
         except ConvergenceError as error:
-            if not first or not self.design.contact.friction:
+            if not takes_up_load or not self.design.contact.friction:
                 raise
             logger.info("   %s; the load is taken up without friction first", error)
             tried, self.iterations = self.iterations, 0

@@ -145,9 +145,9 @@ def _thin_teeth(table: dict[str, Any]) -> tuple[DriveDesign, dict[str, Any]]:
         design = DriveDesign.from_table(thinner)
         if flank_clearance(design, 91, ring="dynamic_spline") > LEAST_DYNAMIC_CLEARANCE * design.drive.module:
             return design, thinner
-    drive = design.drive
+    teeth = table["drive"]["teeth_fs"]
     raise InputError(
-        f"teeth_fs = {drive.teeth_fs} leaves no clearance in the dynamic spline: allowed are other ratios or profiles"
+        f"teeth_fs = {teeth} leaves no clearance in the dynamic spline: allowed are other ratios or profiles"
     )
 
 
