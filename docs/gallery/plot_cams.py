@@ -43,13 +43,16 @@ figure, axes = plt.subplots(1, len(designs), figsize=(12.0, 3.0), sharey=True, l
 angle = np.linspace(0.0, 2.0 * np.pi, 721)
 for panel, (name, design) in zip(axes, designs.items()):
     outline = design.cam().outline(3600)
-    if name != "four rollers":
+    rollers = name == "four rollers"
+    if not rollers:
         radius = np.hypot(*outline.T)
         outline *= (1.0 + 4.0 * (1.0 - design.inner_radius / radius))[:, None]
     circle = design.inner_radius * np.stack([np.sin(angle), np.cos(angle)])
-    panel.plot(*np.vstack([outline, outline[:1]]).T, color="tab:orange")
+    for part in np.array_split(outline, 4 if rollers else 1):
+        panel.plot(*np.vstack([part, part[:1]]).T, color="tab:orange")
     panel.plot(*circle, "--", color="0.6", linewidth=0.8)
-    panel.set(title=name, aspect="equal", xlabel="x (mm)")
+    panel.set(aspect="equal", xlabel="x (mm)")
+    panel.set_title(name, fontsize=9)
 axes[0].set_ylabel("y (mm)")
 
 # %%
