@@ -29,8 +29,8 @@ from pathlib import Path
 import numpy as np
 from mpi4py import MPI
 
+from plain_ring import RingCounts, RingDesign, RingModel
 from swgpar import log
-from swgpar.analysis.plain_ring import RingCounts, RingDesign, RingModel
 from swgpar.design.sections import Material
 from swgpar.geometry.cams.simplified import simplified
 from swgpar.log import logger

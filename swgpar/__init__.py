@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 from swgpar.version import __version__
 
 if TYPE_CHECKING:
-    from swgpar.analysis.drive_result import DriveResult
     from swgpar.api import (
         check,
         export,
@@ -29,6 +28,7 @@ if TYPE_CHECKING:
         study,
     )
     from swgpar.design.drive_design import DriveDesign
+    from swgpar.drive_results.drive_result import DriveResult
     from swgpar.errors import (
         ConvergenceError,
         InputError,
@@ -57,7 +57,7 @@ _MODULES = {
     "DriveDesign": "design.drive_design",
     "MeshRecipe": "meshing.recipe",
     "DriveMesh": "meshing.drive_mesh",
-    "DriveResult": "analysis.drive_result",
+    "DriveResult": "drive_results.drive_result",
     "TrainResult": "gear_trains.result",
     "StudyResult": "studies.study",
     "OptimisationResult": "optimisation.result",

@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any, Literal
 from mpi4py import MPI
 
 from swgpar import log
-from swgpar.analysis.drive_result import DriveResult
 from swgpar.analysis.shortcuts import MESHES
+from swgpar.checks.starter import CamType, Model, Profile, Request, Shape, as_toml, starter_design
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.starter import CamType, Model, Profile, Request, Shape, as_toml, starter_design
+from swgpar.drive_results.drive_result import DriveResult
 from swgpar.errors import InputError, OutputError, SwgparError
 from swgpar.input.design import Design
 from swgpar.input.toml_file import Overrides, apply_overrides, read_toml

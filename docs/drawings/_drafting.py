@@ -8,13 +8,15 @@ from pathlib import Path
 
 import matplotlib
 
+from swgpar.checks.design_file import make_drive
+
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from swgpar.design.design_file import load_design
+from swgpar.checks.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
 from swgpar.input.toml_file import read_toml
 
@@ -99,7 +101,7 @@ def plane_with(**sections: Mapping[str, object]) -> DriveDesign:
     table = read_toml(DRIVERS / "plane_half_turn.toml")
     for name, values in sections.items():
         table[name] = dict(values) if name == "wave_generator" else {**table[name], **values}
-    return DriveDesign.from_table(table)
+    return make_drive(table)
 
 
 def run(drawings: Mapping[str, Callable[[], Figure]]) -> None:

@@ -12,8 +12,8 @@ supports.
 import matplotlib.pyplot as plt
 import numpy as np
 from mpi4py import MPI
+from plain_ring import RingCounts, RingDesign, RingModel
 
-from swgpar.analysis.plain_ring import RingCounts, RingDesign, RingModel
 from swgpar.design.sections import Material
 from swgpar.geometry.cams import EllipticalCam, taut_length
 from swgpar.geometry.cams.simplified import simplified

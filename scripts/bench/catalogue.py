@@ -13,7 +13,7 @@ from typing import Any
 from page import markdown, read_results, write_results
 from program import run
 
-from swgpar.design.design_file import load_design
+from swgpar.checks.design_file import load_design
 
 DRIVES = Path("drivers/catalogue")
 

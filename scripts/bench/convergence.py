@@ -15,12 +15,12 @@ from page import markdown, write_results
 from scipy.optimize import brentq
 
 from swgpar.analysis.coarse_start import solve_to_load
-from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.mesh_refinement import RATIO, resized
-from swgpar.design.design_file import load_design
-from swgpar.design.load_states import load_sequence
+from swgpar.checks.design_file import load_design
 from swgpar.design.sections import GEARS
+from swgpar.load.load_sequence import load_sequence
 from swgpar.meshing import load_recipe
+from swgpar.model.drive_model import DriveModel
 
 FAMILIES = {
     "plane": ("drivers/plane_half_turn.toml", "plane_coarse", (1.0, RATIO, RATIO**2, RATIO**3)),

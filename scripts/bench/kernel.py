@@ -9,10 +9,10 @@ from collections.abc import Callable
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.analysis.drive_model import build_drive_model
-from swgpar.design.design_file import load_design
+from swgpar.checks.design_file import load_design
 from swgpar.fem.sparse import fill_matrix
 from swgpar.meshing import load_recipe
+from swgpar.model.drive_model import build_drive_model
 
 
 def fastest(repeat: int, action: Callable[[], None]) -> float:

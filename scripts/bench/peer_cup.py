@@ -22,7 +22,7 @@ from peer_ccx import read_answer
 from scipy.spatial import cKDTree
 
 import swgpar
-from swgpar.design.design_file import load_design
+from swgpar.checks.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
 from swgpar.meshing import build_sector_meshes, load_recipe
 from swgpar.meshing.export import named_nodes, whole_body, whole_drive

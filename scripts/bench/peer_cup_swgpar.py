@@ -15,19 +15,19 @@ from pathlib import Path
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.analysis.drive_model import build_layout, newton_settings
+from swgpar.checks.design_file import load_design
 from swgpar.constraints.boundary_conditions import PrescribedDisplacement
 from swgpar.constraints.supports import Supports
-from swgpar.design.design_file import load_design
-from swgpar.design.load_states import LoadState, Stage
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
 from swgpar.fem.stress import body_fields
 from swgpar.kernel import reference_elements
+from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import PhaseTimes
 from swgpar.meshing import load_recipe
 from swgpar.meshing.export import sector_numbers
 from swgpar.meshing.tooth_sector import build_sector
+from swgpar.model.drive_model import build_layout, newton_settings
 from swgpar.solve.discrete_problem import DiscreteProblem
 from swgpar.solve.line_search import LineSearch
 from swgpar.solve.newton import NewtonSolver

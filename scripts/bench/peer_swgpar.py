@@ -16,13 +16,13 @@ import numpy as np
 from mpi4py import MPI
 from peer_problems import CAM, CAM_HALF_ANGLE, INNER, OUTER, PENALTY, PROBLEMS, STEEL, WIDTH, Problem, line
 
-from swgpar.analysis.plain_ring import RingBody, RingCounts, RingDesign, RingModel
+from plain_ring import RingBody, RingCounts, RingDesign, RingModel
 from swgpar.constraints.boundary_conditions import DeadLoad
-from swgpar.design.load_states import LoadState, Stage
 from swgpar.design.sections import Contact, Solver
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.stress import body_fields
 from swgpar.geometry.cams import EllipticalCam
+from swgpar.load.load_states import LoadState, Stage
 from swgpar.solve.line_search import LineSearch
 
 RTOL = 1e-6

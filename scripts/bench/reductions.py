@@ -12,7 +12,7 @@ from pathlib import Path
 import program
 from page import markdown, put
 
-from swgpar.design.design_file import load_design
+from swgpar.checks.design_file import load_design
 
 OFF = {
     "solver.symmetry": "false",

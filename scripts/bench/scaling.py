@@ -24,11 +24,11 @@ def measure(mesh: str, linear: str) -> None:
     """Print the numbers of one case; run under mpirun."""
     from mpi4py import MPI
 
-    from swgpar.analysis.drive_model import build_drive_model
-    from swgpar.design.design_file import load_design
-    from swgpar.design.load_states import load_sequence
+    from swgpar.checks.design_file import load_design
     from swgpar.fem.vectors import create_vector
+    from swgpar.load.load_sequence import load_sequence
     from swgpar.meshing import load_recipe
+    from swgpar.model.drive_model import build_drive_model
 
     comm = MPI.COMM_WORLD
     design = load_design("drivers/cup_45deg.toml", [f"solver.linear={linear}"])

@@ -42,7 +42,7 @@ from support.drive_groups import (
 from support.element_limits import element_rows
 from support.paths import ROOT
 from support.small_drive import PLANE
-from swgpar.design.load_states import Stage
+from swgpar.load.load_states import Stage
 from swgpar.results import history
 from swgpar.results.folder import SUMMARY
 

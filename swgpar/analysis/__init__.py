@@ -1,1 +1,1 @@
-"""From a design to results: drive model, load stepping, mesh refinement, figures."""
+"""A run: starts, load stepping, mesh refinement, recording, restart."""

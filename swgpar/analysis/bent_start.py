@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from swgpar.analysis.drive_model import DriveModel
 from swgpar.design.drive_design import DriveDesign
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, OUTER_RACE
 from swgpar.fem.vectors import write_field
 from swgpar.geometry.neutral_line import bent_ring
 from swgpar.geometry.rotation import rotated
+from swgpar.model.drive_model import DriveModel
 
 NEAR = 0.003
 """Gap below which the inner surface is laid on the cam, over half of the deflection: wider gaps stay open."""

@@ -13,18 +13,19 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.analysis.bent_start import bend
-from swgpar.analysis.drive_model import DriveModel, build_drive_model
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.start_states import StartStates
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.load_states import LoadState, from_loaded
 from swgpar.errors import ConvergenceError, SwgparError
 from swgpar.fem.vectors import read_field, write_field
 from swgpar.geometry.rotation import rotated
+from swgpar.load.load_sequence import from_loaded
+from swgpar.load.load_states import LoadState
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.interpolation import interpolation
 from swgpar.meshing.recipe_counts import coarser
+from swgpar.model.drive_model import DriveModel, build_drive_model
 from swgpar.petsc import PETSc
 
 

@@ -8,30 +8,32 @@ Where these repeat, the states do too, and each is computed once.
 from __future__ import annotations
 
 from collections.abc import Container, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from mpi4py import MPI
 
 from swgpar.analysis.coarse_start import solve_to_load
-from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.shortcuts import finds_contacts
-from swgpar.analysis.torques import torques
 from swgpar.constraints.distributing_coupling import TILT_X, TILT_Y, X, Y
 from swgpar.contact.flank_deviations import flank_deviations
 from swgpar.contact.flank_state import SearchRange
 from swgpar.contact.rigid_surface import SurfacePose, cam_pose
 from swgpar.design.deviations import Deviations, gear_deviations
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.load_states import LoadState, Stage, from_loaded, load_sequence
 from swgpar.design.sections import GEARS
 from swgpar.errors import ConvergenceError
+from swgpar.evaluation.torques import torques
+from swgpar.evaluation.transmission_error import TurnPoint
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.partition import split
 from swgpar.geometry.rotation import rotated
+from swgpar.load.load_sequence import from_loaded, load_sequence
+from swgpar.load.load_states import LoadState, Stage
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.recipe_counts import coarser
+from swgpar.model.drive_model import DriveModel
 from swgpar.petsc import PETSc
 
 NEAR = 0.06
@@ -46,21 +48,6 @@ STEPS = (4, 16)
 
 MAX_ITERATIONS = 50
 """Newton iterations before the residual has to halve: small loads on teeth with large deviations take many."""
-
-
-@dataclass(frozen=True)
-class TurnPoint:
-    """State at an angle of the wave generator.
-
-    index : of the angle;  wg_angle, output_angle : rad;  wg_torque : N mm
-    iterations : of Newton, 0 where a state that is known repeats
-    """
-
-    index: int
-    wg_angle: float
-    output_angle: float
-    wg_torque: float
-    iterations: int
 
 
 def turn_mesh(recipe: MeshRecipe) -> MeshRecipe:

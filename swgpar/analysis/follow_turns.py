@@ -8,11 +8,11 @@ from itertools import islice
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.analysis.deviating_drive import DeviatingDrive, TurnPoint
+from swgpar.analysis.deviating_drive import DeviatingDrive
 from swgpar.analysis.recorder import Recorder
-from swgpar.analysis.transmission_error import turn_row
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError
+from swgpar.evaluation.transmission_error import TurnPoint, turn_row
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
 from swgpar.results.history import Row

@@ -13,11 +13,11 @@ from pathlib import Path
 
 from mpi4py import MPI
 
-from swgpar.analysis.drive_model import copies_of_model
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutOfMemoryError
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.sector_counts import sector_counts
+from swgpar.model.drive_model import copies_of_model
 from swgpar.petsc import is_out_of_memory
 
 

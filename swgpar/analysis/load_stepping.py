@@ -7,13 +7,14 @@ from dataclasses import replace
 import numpy as np
 
 from swgpar.analysis.bent_start import bend
-from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.predictor import KnownState, predict
-from swgpar.analysis.torques import torques
-from swgpar.design.load_states import LoadState, Stage, start_state
 from swgpar.errors import ConvergenceError
+from swgpar.evaluation.torques import torques
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.load.load_sequence import start_state
+from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import logger
+from swgpar.model.drive_model import DriveModel
 from swgpar.petsc import PETSc
 from swgpar.solve.solve_state import SolveResult
 

@@ -14,20 +14,21 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.analysis.coarse_start import solve_to_load
-from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.forecast import fits, forecast
-from swgpar.analysis.pair_contact import pair_contacts
-from swgpar.analysis.place_errors import CoarseStresses
-from swgpar.analysis.places import Place, find_places
-from swgpar.analysis.root_stress import FEWEST_LEVELS, LEVELS, MOST_LEVELS, RootStress, resolve_root_stress
 from swgpar.analysis.shortcuts import finds_contacts
 from swgpar.analysis.start_states import StartStates
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.load_states import LoadState, from_loaded
 from swgpar.errors import ConvergenceError, InputError, SwgparError
+from swgpar.evaluation.contact.pair_contact import pair_contacts
+from swgpar.evaluation.place_errors import CoarseStresses
+from swgpar.evaluation.places import Place, find_places
+from swgpar.evaluation.windows.root_stress import FEWEST_LEVELS, LEVELS, MOST_LEVELS, RootStress, resolve_root_stress
+from swgpar.load.load_sequence import from_loaded
+from swgpar.load.load_states import LoadState
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe, build_sector_meshes
 from swgpar.meshing.recipe_counts import SMALLEST, with_counts
+from swgpar.model.drive_model import DriveModel
 
 LOWEST, HIGHEST = 1e-3, 0.2
 """Accuracies that may be asked for."""

@@ -11,30 +11,31 @@ from typing import Any
 
 import numpy as np
 
-from swgpar.analysis.bearing_loads import ComplianceShares, ball_rows
-from swgpar.analysis.compliance import bearing_shares
-from swgpar.analysis.contact_pressure import nodal_pressure
-from swgpar.analysis.drive_model import DriveModel
-from swgpar.analysis.drive_result import DriveResult, open_fields
-from swgpar.analysis.drive_tables import DriveTables
-from swgpar.analysis.housing_values import housing_values, keep_largest
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.analysis.losses import cam_force
-from swgpar.analysis.pair_contact import PairContact, pair_contacts
-from swgpar.analysis.place_errors import CoarseStresses, with_errors
-from swgpar.analysis.places import Place, find_places
-from swgpar.analysis.program_results import PointRow, point_rows
-from swgpar.analysis.ratcheting import tooth_rotation
 from swgpar.analysis.restart import write_state
-from swgpar.analysis.result_frame import history_rows, nodal_fields
-from swgpar.analysis.root_stress import RootStress
-from swgpar.analysis.stiffness import loop_rows
-from swgpar.analysis.stress_cycle import StressCycle
-from swgpar.analysis.summary import Accuracy
-from swgpar.design.load_program import internal_torque, program_points
-from swgpar.design.load_states import LoadState, Stage, from_loaded, load_sequence
+from swgpar.drive_results.drive_result import DriveResult, open_fields
+from swgpar.drive_results.drive_tables import DriveTables
+from swgpar.drive_results.summary import Accuracy
+from swgpar.evaluation.bearing_loads import ComplianceShares, ball_rows
+from swgpar.evaluation.compliance import bearing_shares
+from swgpar.evaluation.contact.contact_pressure import nodal_pressure
+from swgpar.evaluation.contact.pair_contact import PairContact, pair_contacts
+from swgpar.evaluation.housing_values import housing_values, keep_largest
+from swgpar.evaluation.losses import cam_force
+from swgpar.evaluation.place_errors import CoarseStresses, with_errors
+from swgpar.evaluation.places import Place, find_places
+from swgpar.evaluation.program_results import PointRow, point_rows
+from swgpar.evaluation.ratcheting import tooth_rotation
+from swgpar.evaluation.result_frame import history_rows, nodal_fields
+from swgpar.evaluation.stiffness import loop_rows
+from swgpar.evaluation.stress_cycle import StressCycle
+from swgpar.evaluation.windows.root_stress import RootStress
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.load.load_program import internal_torque, program_points
+from swgpar.load.load_sequence import from_loaded, load_sequence
+from swgpar.load.load_states import LoadState, Stage
 from swgpar.meshing import SectorMesh
+from swgpar.model.drive_model import DriveModel
 from swgpar.results import history
 from swgpar.results.atomic import agreed, to_json, write_from_root
 from swgpar.results.field_sources import BodyPart, FieldParts, FlankGrids

@@ -8,16 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from swgpar.analysis.bearing_loads import ComplianceShares
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.analysis.places import Place
-from swgpar.analysis.root_stress import RootStress
-from swgpar.analysis.summary import Accuracy
 from swgpar.contact import friction
-from swgpar.design.load_states import LoadState, from_loaded
+from swgpar.drive_results.summary import Accuracy
 from swgpar.errors import InputError
+from swgpar.evaluation.bearing_loads import ComplianceShares
+from swgpar.evaluation.places import Place
+from swgpar.evaluation.windows.root_stress import RootStress
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.fem.vectors import write_field
+from swgpar.load.load_sequence import from_loaded
+from swgpar.load.load_states import LoadState
 from swgpar.results import checkpoint
 
 if TYPE_CHECKING:

@@ -11,17 +11,11 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.analysis.bearing_loads import summarise_bearing
 from swgpar.analysis.coarse_start import levels, start_loaded, starts_bent
-from swgpar.analysis.drive_model import DriveModel, build_drive_model
-from swgpar.analysis.drive_result import DriveResult
-from swgpar.analysis.drive_tables import DriveTables
-from swgpar.analysis.fatigue import evaluate_fatigue
 from swgpar.analysis.follow_turns import follow_turns
 from swgpar.analysis.forecast import forecast, reported_memory, require_memory
 from swgpar.analysis.identity import identity
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.analysis.losses import evaluate_losses
 from swgpar.analysis.mesh_refinement import (
     RATIO,
     ChosenMesh,
@@ -33,25 +27,32 @@ from swgpar.analysis.mesh_refinement import (
     size_ratio,
     with_accuracy,
 )
-from swgpar.analysis.period import continued, require_samples
-from swgpar.analysis.place_errors import CoarseStresses
-from swgpar.analysis.places import find_places
-from swgpar.analysis.ratcheting import has_fallen
 from swgpar.analysis.recorder import FolderRecorder, MemoryRecorder, Recorder
 from swgpar.analysis.restart import resume
-from swgpar.analysis.root_stress import RootStress, resolve_root_stress, with_angle
 from swgpar.analysis.shortcuts import finds_contacts, with_shortcuts
 from swgpar.analysis.start_states import StartStates
 from swgpar.analysis.stiffness_error import stiffness_error
-from swgpar.analysis.summary import Accuracy, summarise
-from swgpar.analysis.transmission_error import period_rows
+from swgpar.checks.remarks import torque_remark
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.load_states import LoadState, Stage, from_loaded, load_sequence
-from swgpar.design.remarks import torque_remark
+from swgpar.drive_results.drive_result import DriveResult
+from swgpar.drive_results.drive_tables import DriveTables
+from swgpar.drive_results.summary import Accuracy, summarise
 from swgpar.errors import ConvergenceError, InputError, SwgparError, TimeLimitError
+from swgpar.evaluation.bearing_loads import summarise_bearing
+from swgpar.evaluation.fatigue import evaluate_fatigue
+from swgpar.evaluation.losses import evaluate_losses
+from swgpar.evaluation.period import continued, require_samples
+from swgpar.evaluation.place_errors import CoarseStresses
+from swgpar.evaluation.places import find_places
+from swgpar.evaluation.ratcheting import has_fallen
+from swgpar.evaluation.transmission_error import period_rows
+from swgpar.evaluation.windows.root_stress import RootStress, resolve_root_stress, with_angle
+from swgpar.load.load_sequence import from_loaded, load_sequence
+from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import IncrementProgress, logger
 from swgpar.meshing import MeshRecipe, load_recipe, require_sections
 from swgpar.meshing.recipe import to_toml
+from swgpar.model.drive_model import DriveModel, build_drive_model
 from swgpar.petsc import warn_of_unused_options
 from swgpar.results.atomic import on_all, write_from_root
 from swgpar.results.folder import RECIPE, given_folder, open_log, prepare

@@ -11,13 +11,13 @@ from pathlib import Path
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.analysis.drive_model import DriveModel
 from swgpar.analysis.identity import identity
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import OutputError
 from swgpar.fem.vectors import read_field, write_field
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
+from swgpar.model.drive_model import DriveModel
 from swgpar.results.atomic import agreed
 from swgpar.results.checkpoint import read_checkpoint, require_undamaged, write_checkpoint
 from swgpar.results.folder import START_STATES

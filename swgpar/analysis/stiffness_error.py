@@ -9,12 +9,12 @@ from mpi4py import MPI
 from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.mesh_refinement import ORDER, RATIO, resized, size_ratio
-from swgpar.analysis.program_results import PointRow, point_rows
 from swgpar.analysis.shortcuts import finds_contacts
-from swgpar.analysis.stiffness import NAMES, Stiffness, by_position
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.load_states import from_loaded, load_sequence
 from swgpar.errors import ConvergenceError, InputError
+from swgpar.evaluation.program_results import PointRow, point_rows
+from swgpar.evaluation.stiffness import NAMES, Stiffness, by_position
+from swgpar.load.load_sequence import from_loaded, load_sequence
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 import numpy as np
 
 from swgpar.contact.contact import NO_KEYS
-from swgpar.design.load_states import LoadState
 from swgpar.fem.partition import Partition
 from swgpar.fem.sparse import BlockRows, add_diagonal
+from swgpar.load.load_states import LoadState
 
 
 class BoundaryCondition:

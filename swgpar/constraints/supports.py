@@ -8,11 +8,11 @@ from mpi4py import MPI
 from swgpar.constraints.distributing_coupling import N_COUPLED, ROTATION, Coupling, NodeMeans, RadialGuide
 from swgpar.constraints.race_coupling import RaceCoupling
 from swgpar.constraints.rigid_attachment import RigidAttachment
-from swgpar.design.load_states import LoadState
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.partition import Partition
 from swgpar.fem.sparse import BlockRows, add_diagonal
 from swgpar.fem.vectors import create_vector
+from swgpar.load.load_states import LoadState
 from swgpar.petsc import PETSc
 
 GROUNDING = 0.1

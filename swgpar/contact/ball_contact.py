@@ -16,11 +16,11 @@ import numpy as np
 from swgpar.contact.contact import NO_KEYS
 from swgpar.contact.point_contact import BallSpring
 from swgpar.contact.smooth_curve import NODES, STEPS, shape_functions, smooth_curve
-from swgpar.design.load_states import LoadState
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.sparse import BlockRows
 from swgpar.geometry.rotation import rotated, to_images, to_owners
 from swgpar.kernel import add_face_blocks
+from swgpar.load.load_states import LoadState
 
 TIE = 1e-7
 """Share of a piece of the race by which its ends are shifted, so that a ball on a node belongs to one piece only."""

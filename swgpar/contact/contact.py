@@ -8,8 +8,8 @@ from typing import Protocol
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.design.load_states import LoadState
 from swgpar.fem.sparse import BlockRows
+from swgpar.load.load_states import LoadState
 
 NO_KEYS = np.zeros(0, dtype=np.int64)
 """No blocks of the tangent."""

@@ -26,13 +26,13 @@ from swgpar.contact.flank_state import ActiveSegments, Crowning, FrictionStart, 
 from swgpar.contact.friction import Friction, PairKey
 from swgpar.contact.search import FlankPair
 from swgpar.contact.segments import cut_faces, flank_faces
-from swgpar.design.load_states import LoadState
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.local_nodes import LocalNodes
 from swgpar.fem.partition import Partition
 from swgpar.fem.sparse import BlockRows
 from swgpar.kernel import contact_flanks
+from swgpar.load.load_states import LoadState
 
 CONTINUATION = 5.0
 """Length, in facets, of the straight continuation past the ends of the master's flank. Corners of slave faces have

@@ -20,11 +20,11 @@ from swgpar.contact.contact import NO_KEYS, FacePressure
 from swgpar.contact.enforcement import penetration, pressure
 from swgpar.contact.face_quadrature import FaceQuadrature
 from swgpar.contact.smooth_curve import NODES, STEPS, curve_nodes, shape_functions, smooth_curve
-from swgpar.design.load_states import LoadState
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.sparse import BlockRows
 from swgpar.geometry.rotation import to_images, to_owners
 from swgpar.kernel import add_face_blocks
+from swgpar.load.load_states import LoadState
 
 LAYERS = 2
 """Nodes of the race along z that a point of the spline touches."""

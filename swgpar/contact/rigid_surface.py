@@ -15,11 +15,11 @@ import numpy as np
 from swgpar.contact.contact import NO_KEYS, FacePressure
 from swgpar.contact.enforcement import penetration, pressure
 from swgpar.contact.face_quadrature import FaceQuadrature
-from swgpar.design.load_states import LoadState
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.sparse import BlockRows
 from swgpar.geometry.rotation import SIXTHS, sixths_of_turn, to_images, to_owners
 from swgpar.kernel import add_face_blocks
+from swgpar.load.load_states import LoadState
 
 
 class Surface(Protocol):

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
-from swgpar.design.conjugate_checks import check_conjugate
 from swgpar.design.cup_section import Cup
 from swgpar.design.deviations import Deviations
-from swgpar.design.fit_checks import check_fit
 from swgpar.design.program_sections import Ratcheting, Stiffness
 from swgpar.design.sections import (
     GEARS,
@@ -38,7 +35,6 @@ from swgpar.geometry.micro_geometry import WaveGeneratorSurface
 from swgpar.geometry.neutral_line import NeutralLine, neutral_line
 from swgpar.geometry.profiles import Conjugate, RackInvolute, Teeth, ToothMotion, ToothProfile, make_profile
 from swgpar.input.design import Design
-from swgpar.input.toml_file import validate
 
 
 @lru_cache(maxsize=16)
@@ -70,13 +66,6 @@ class DriveDesign(Design):
     fatigue: Fatigue | None = None
     losses: Losses | None = None
     deviations: Deviations | None = None
-
-    @classmethod
-    def from_table(cls, table: dict[str, Any]) -> DriveDesign:
-        """A checked design from the content of its file; every problem is an InputError of one sentence."""
-        design = validate(cls, table)
-        check_fit(design)
-        return design
 
     @property
     def gears(self) -> tuple[GearName, ...]:
@@ -413,7 +402,6 @@ class DriveDesign(Design):
         section: ExternalGear | InternalGear = getattr(self, gear)
         partner = None
         if isinstance(section.profile, Conjugate):
-            check_conjugate(self, gear)
             other = GEARS[1 - GEARS.index(gear)]
             partner = self.profile(other), self.tooth_motion(section.profile.section)
         return make_profile(section.profile, self.teeth(gear), section.c_P, section.c_l, gear, partner)

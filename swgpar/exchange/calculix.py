@@ -18,12 +18,13 @@ from pathlib import Path
 import numpy as np
 
 from swgpar.analysis.bent_start import BentSpline
+from swgpar.checks.remarks import torque_remark
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.load_program import internal_torque
-from swgpar.design.remarks import negligible_torque, torque_remark
 from swgpar.errors import InputError
 from swgpar.exchange.calculix_model import JobModel, Surface, Term
 from swgpar.exchange.cam_facets import OUTER_FACE, CamFacets, cam_facets
+from swgpar.load.load_program import internal_torque
+from swgpar.load.load_sequence import negligible_torque
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.inp import MATERIAL, write_inp
 

@@ -14,19 +14,19 @@ from functools import cached_property
 import meshio
 import numpy as np
 
-from swgpar.analysis.drive_model import flank_crowning
+from swgpar.checks.rigid_mesh import touching_rotation
 from swgpar.constraints.distributing_coupling import node_weights
 from swgpar.contact.segments import flank_faces
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.load_program import torque_direction
-from swgpar.design.rigid_mesh import touching_rotation
 from swgpar.geometry.arrays import Floats, Ints
 from swgpar.geometry.profiles import ToothProfile
 from swgpar.geometry.profiles.flank import Segment
 from swgpar.geometry.rotation import rotated
+from swgpar.load.load_program import torque_direction
 from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes
 from swgpar.meshing.export import sector_numbers, whole_body, whole_drive
 from swgpar.meshing.inp import element_faces
+from swgpar.model.drive_model import flank_crowning
 
 SIDES = {1: "clockwise", -1: "counter_clockwise"}
 """Of the flanks of a tooth."""

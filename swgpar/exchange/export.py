@@ -7,8 +7,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from swgpar.analysis.drive_result import DriveResult
 from swgpar.design.drive_design import DriveDesign
+from swgpar.drive_results.drive_result import DriveResult
 from swgpar.errors import InputError
 from swgpar.exchange.calculix import write_calculix
 from swgpar.exchange.dxf import write_dxf

@@ -29,7 +29,7 @@ from swgpar.log import logger
 from swgpar.version import __version__
 
 if TYPE_CHECKING:
-    from swgpar.analysis.drive_result import DriveResult
+    from swgpar.drive_results.drive_result import DriveResult
 
 NAME = "strain_wave_spring"
 """Of the FMU, its C file and its binary."""

@@ -12,7 +12,7 @@ from swgpar.errors import InputError
 from swgpar.exchange.tables import ripple_table, spring_table
 
 if TYPE_CHECKING:
-    from swgpar.analysis.drive_result import DriveResult
+    from swgpar.drive_results.drive_result import DriveResult
 
 FEWEST = 4
 """Angles of a period from which the kinematic error is interpolated."""

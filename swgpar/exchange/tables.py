@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from swgpar.analysis.stiffness import Loop, rows_by_position
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.load_program import stiffness_torques
 from swgpar.errors import InputError
+from swgpar.evaluation.stiffness import Loop, rows_by_position
+from swgpar.load.load_program import stiffness_torques
 from swgpar.results.table import format_columns
 
 if TYPE_CHECKING:
-    from swgpar.analysis.drive_result import DriveResult
+    from swgpar.drive_results.drive_result import DriveResult
 
 TABLES = (
     "history",

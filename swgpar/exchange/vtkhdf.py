@@ -16,7 +16,7 @@ from swgpar.results.fields import times
 from swgpar.results.parallel_hdf5 import h5py
 
 if TYPE_CHECKING:
-    from swgpar.analysis.drive_result import DriveResult
+    from swgpar.drive_results.drive_result import DriveResult
 
 HEXAHEDRON = 12
 """Of VTK's cell types."""

@@ -16,7 +16,7 @@ import numpy as np
 from swgpar.exchange.vtkhdf import require_fields, step_times
 
 if TYPE_CHECKING:
-    from swgpar.analysis.drive_result import DriveResult
+    from swgpar.drive_results.drive_result import DriveResult
 
 NAME = "drive.xdmf"
 

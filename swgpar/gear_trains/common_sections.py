@@ -32,12 +32,6 @@ class TrainDesign(Design):
 
     published: dict[str, Any] = quantity({}, text="published values by quantity")
 
-    @classmethod
-    def from_table(cls, table: dict[str, Any]) -> TrainDesign:
-        from swgpar.gear_trains.train import make_train  # it imports all trains, which import this module
-
-        return make_train(table)
-
 
 class GearTrain(Section):
     """Every design narrows `model` to the one name of its own."""

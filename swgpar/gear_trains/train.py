@@ -72,7 +72,7 @@ def make_train(table: dict[str, Any]) -> TrainDesign:
     if not isinstance(name, str) or name not in MODELS:
         raise InputError(f"{SECTION}.model = {show(name)} is not available: allowed {choices}")
     model = MODELS[name]
-    design = validate(model.design, table)
+    design = validate(model.design, table).made_by(make_train)
     model.check_fit(design)
     check_published(design.published, model.quantities(design))
     return design

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, Self
+
+from pydantic import PrivateAttr
 
 from swgpar.input.quantities import Section
 from swgpar.input.toml_file import apply_overrides
@@ -12,10 +14,12 @@ from swgpar.input.toml_file import apply_overrides
 class Design(Section):
     """The content of a design file. Attributes are its sections; a design never changes."""
 
-    @classmethod
-    def from_table(cls, table: dict[str, Any]) -> Self:
-        """A checked design from the content of its file; every problem is an InputError of one sentence."""
-        raise NotImplementedError  # the designs of drives and of gear trains have their own
+    _maker: Callable[[dict[str, Any]], Self] | None = PrivateAttr(None)
+
+    def made_by(self, maker: Callable[[dict[str, Any]], Self]) -> Self:
+        """This design, which `maker` has checked: designs that are made of it are checked in the same way."""
+        self._maker = maker
+        return self
 
     def with_values(self, values: Mapping[str, Any]) -> Self:
         """A new, checked design with other values.
@@ -34,4 +38,4 @@ class Design(Section):
         --------
         >>> lighter = design.with_values({"load.torque": 5.0, "steps.rotation": 10.0})
         """
-        return self.from_table(apply_overrides(self.model_dump(exclude_unset=True), values))
+        return self._maker(apply_overrides(self.model_dump(exclude_unset=True), values))

@@ -64,7 +64,7 @@ def meridian(design: DriveDesign, recipe: CupRecipe, layers: int = 1) -> Meridia
 
     layers : elements along the half of the fillet at the back of the teeth that belongs to the wall
 
-    The sizes of the cup are those of a checked design (`swgpar.design.cup_checks`).
+    The sizes of the cup are those of a checked design (`swgpar.checks.cup_checks`).
     """
     wall, back_fillet = design.cup_wall, design.cup.back_fillet
     r_center, z_center = wall.center

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from swgpar.design.cup_checks import THICK_CUP
+from swgpar.checks.cup_checks import THICK_CUP
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GearName
 from swgpar.errors import InputError

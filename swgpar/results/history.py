@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from swgpar.design.load_states import Stage
+from swgpar.load.load_states import Stage
 
 NAME = "history.csv"
 

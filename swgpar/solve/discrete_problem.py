@@ -18,7 +18,6 @@ from swgpar.contact.flank_state import ActiveSegments, SearchRange
 from swgpar.contact.flanks import FlankContact
 from swgpar.contact.friction import PairKey
 from swgpar.contact.search import FlankPair, facing_flanks
-from swgpar.design.load_states import LoadState
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
@@ -26,6 +25,7 @@ from swgpar.fem.sectors_in_reach import RingSectors, SectorsInReach, WholeTeeth
 from swgpar.fem.sparse import BlockRows, MatrixRows, add_unit_diagonal, create_matrix, fill_matrix, matrix_rows
 from swgpar.fem.vectors import Exchange, create_vector, read_multipliers
 from swgpar.geometry.rotation import to_owners
+from swgpar.load.load_states import LoadState
 from swgpar.log import PhaseTimes
 from swgpar.petsc import PETSc
 

@@ -16,9 +16,9 @@ from collections.abc import Callable
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.design.load_states import LoadState, Stage
 from swgpar.errors import TimeLimitError
 from swgpar.fem.vectors import create_vector
+from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import logger
 from swgpar.petsc import PETSc, accepted_options, errors_of_callbacks
 from swgpar.solve.active_set_cycles import (

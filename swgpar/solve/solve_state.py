@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from swgpar.contact.flank_state import ActiveSegments
-from swgpar.design.load_states import LoadState
+from swgpar.load.load_states import LoadState
 from swgpar.petsc import PETSc
 from swgpar.solve.active_set_cycles import VisitedSets
 

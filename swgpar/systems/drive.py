@@ -8,18 +8,19 @@ from typing import Any
 
 from mpi4py import MPI
 
-from swgpar.analysis.drive_result import DriveResult, open_drive
 from swgpar.analysis.identity import identity
 from swgpar.analysis.run_drive import run_drive
 from swgpar.analysis.shortcuts import MESHES
-from swgpar.analysis.terminal import print_drive
-from swgpar.design.derived_geometry import derived_geometry
+from swgpar.checks.derived_geometry import derived_geometry
+from swgpar.checks.design_file import make_drive
+from swgpar.checks.remarks import remarks
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.load_states import load_sequence
-from swgpar.design.remarks import remarks
+from swgpar.drive_results.drive_result import DriveResult, open_drive
 from swgpar.errors import InputError
 from swgpar.input.toml_file import apply_overrides
+from swgpar.load.load_sequence import load_sequence
 from swgpar.meshing import MeshRecipe, load_recipe
+from swgpar.presentation.terminal import print_drive
 from swgpar.systems.drive_quantities import describe_names, main_quantities, measured, quantities
 from swgpar.systems.protocol import Measured, Quantity, System
 
@@ -31,7 +32,7 @@ class Drives(System[DriveDesign, DriveResult]):
     options = frozenset({"mesh", "accuracy", "restart", "plain"})
 
     def load(self, table: dict[str, Any]) -> DriveDesign:
-        return DriveDesign.from_table(table)
+        return make_drive(table)
 
     def check(self, design: DriveDesign) -> dict[str, float]:
         return derived_geometry(design)
@@ -78,7 +79,7 @@ class Drives(System[DriveDesign, DriveResult]):
         print_drive(result.history, result.summary)
 
     def report(self, result: DriveResult) -> bytes:
-        from swgpar.analysis.drive_report import drive_report  # only where a report is written
+        from swgpar.presentation.drive_report import drive_report  # only where a report is written
 
         return drive_report(result)
 

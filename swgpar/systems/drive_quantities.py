@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from swgpar.analysis.program_results import COLUMNS as PROGRAM_COLUMNS
-from swgpar.analysis.summary import MEANS, PANCAKE_STRESSES
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.load_states import Stage
+from swgpar.drive_results.summary import MEANS, PANCAKE_STRESSES
+from swgpar.evaluation.program_results import COLUMNS as PROGRAM_COLUMNS
+from swgpar.load.load_states import Stage
 from swgpar.results.history import INPUT_UNITS, PANCAKE_UNITS, UNITS
 from swgpar.systems.protocol import Quantity
 

@@ -13,7 +13,7 @@ from mpi4py import MPI
 import swgpar
 from support.paths import DESIGN, DRIVERS, RECIPE
 from support.small_drive import NO_SHORTCUTS, PLANE
-from swgpar.analysis.figures import DriveFigures
+from swgpar.presentation.figures import DriveFigures
 
 SMALL = [*PLANE, *NO_SHORTCUTS, "steps.rotation=2.0", "steps.increment=2.0", "output.fields=true"]
 

@@ -9,11 +9,11 @@ from mpi4py import MPI
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from support.stiffness import without_grounding
-from swgpar.analysis.drive_model import build_drive_model
-from swgpar.design.design_file import load_design
-from swgpar.design.load_states import LoadState, Stage
+from swgpar.checks.design_file import load_design
 from swgpar.fem.vectors import create_vector
+from swgpar.load.load_states import LoadState, Stage
 from swgpar.meshing import load_recipe
+from swgpar.model.drive_model import build_drive_model
 
 CONDENSE = "solver.condensed_sectors=true"
 CONDENSED = (*PLANE, CONDENSE)

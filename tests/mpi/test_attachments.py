@@ -11,11 +11,11 @@ from pytest_mpi import parallel_assert
 
 from support.cup_shapes import ATTACHMENTS, CLAMPED, HAT_CLAMPED, Changes, bolted, shaped
 from support.stepping import WORLD, Row, assert_agree, loaded, rotate
-from swgpar.analysis.drive_model import copies_of_model
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.constraints.distributing_coupling import ROTATION
 from swgpar.constraints.rigid_attachment import RigidAttachment
 from swgpar.geometry.rotation import rotated
+from swgpar.model.drive_model import copies_of_model
 
 TORQUE = 2000.0
 """N mm, at the output with the ring gear fixed."""

@@ -13,12 +13,12 @@ import swgpar
 from support.bearing import BEARING
 from support.paths import RECIPE
 from support.stepping import WORLD, assert_agree, load_stepper, loaded, row, small
-from swgpar.analysis.bearing_loads import ball_contact, ball_rows
 from swgpar.analysis.bent_start import bend
-from swgpar.analysis.compliance import bearing_shares
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.design.load_states import from_loaded, load_sequence
+from swgpar.evaluation.bearing_loads import ball_contact, ball_rows
+from swgpar.evaluation.compliance import bearing_shares
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, OUTER_RACE
+from swgpar.load.load_sequence import from_loaded, load_sequence
 
 NAMES = ("fs_s1", "fs_s3", "fs_vm", "output_angle_deg")
 

@@ -12,8 +12,9 @@ from support.paths import DESIGN
 from support.small_drive import PLANE
 from support.stepping import load_stepper, loaded
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.design.design_file import load_design
-from swgpar.design.load_states import Stage, load_sequence
+from swgpar.checks.design_file import load_design
+from swgpar.load.load_sequence import load_sequence
+from swgpar.load.load_states import Stage
 
 
 @lru_cache

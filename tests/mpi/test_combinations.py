@@ -13,15 +13,15 @@ from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from support.stepping import WORLD, load_stepper, small
 from swgpar.analysis.deviating_drive import DeviatingDrive, TurnPoint
-from swgpar.analysis.drive_result import DriveResult
-from swgpar.analysis.fatigue import evaluate_fatigue
-from swgpar.analysis.stress_cycle import StressCycle
-from swgpar.analysis.terminal import print_drive
-from swgpar.design.load_states import load_sequence
+from swgpar.drive_results.drive_result import DriveResult
 from swgpar.errors import InputError
+from swgpar.evaluation.fatigue import evaluate_fatigue
+from swgpar.evaluation.stress_cycle import StressCycle
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.load.load_sequence import load_sequence
 from swgpar.log import console
 from swgpar.meshing import load_recipe
+from swgpar.presentation.terminal import print_drive
 
 SAMPLED = ("steps.samples=2", "steps.rotation=9.0")
 WEAK = (

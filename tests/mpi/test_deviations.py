@@ -14,10 +14,11 @@ from support.paths import RECIPE
 from support.stepping import WORLD, load_stepper, rotate, small
 from swgpar.analysis.deviating_drive import DeviatingDrive, TurnPoint, turn_design
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.analysis.transmission_error import spectrum
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.load_states import Stage, load_sequence
 from swgpar.errors import ConvergenceError
+from swgpar.evaluation.transmission_error import spectrum
+from swgpar.load.load_sequence import load_sequence
+from swgpar.load.load_states import Stage
 from swgpar.meshing import load_recipe
 
 TEETH_FS, TEETH_RG, RATIO = 40, 42, -20.0

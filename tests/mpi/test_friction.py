@@ -12,7 +12,7 @@ from support.friction_work import FrictionWork
 from support.stepping import MODELS, WORLD, assert_agree, rotate, small
 from support.stepping import loaded as under_torque
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.design.load_states import LoadState
+from swgpar.load.load_states import LoadState
 from swgpar.solve.solve_state import SolveResult
 
 PITCH = 2.0 * np.pi / 42

@@ -12,17 +12,17 @@ from scipy.integrate import quad
 import swgpar
 from support.paths import RECIPE
 from support.stepping import assert_agree, loaded, rotate, small
-from swgpar.analysis.drive_model import build_layout, newton_settings, sector_elements
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.constraints.boundary_conditions import DeadLoad
 from swgpar.constraints.distributing_coupling import DistributingCoupling
 from swgpar.constraints.supports import Supports
-from swgpar.design.load_states import LoadState, Stage
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
+from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import PhaseTimes
 from swgpar.meshing import load_recipe
 from swgpar.meshing.tooth_sector import build_sector
+from swgpar.model.drive_model import build_layout, newton_settings, sector_elements
 from swgpar.solve.discrete_problem import DiscreteProblem
 from swgpar.solve.newton import NewtonSolver
 from swgpar.systems.drive import DRIVE

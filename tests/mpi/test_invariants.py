@@ -11,13 +11,13 @@ from mpi4py import MPI
 from pytest_mpi import parallel_assert
 
 from support.stepping import MODELS, WORLD, assert_agree, loaded, rotate, small
-from swgpar.analysis.contact_pressure import nodal_pressure
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.contact.contact import NO_KEYS
 from swgpar.contact.flank_state import ActiveSegments
-from swgpar.design.load_states import LoadState
+from swgpar.evaluation.contact.contact_pressure import nodal_pressure
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.fem.stress import body_fields
+from swgpar.load.load_states import LoadState
 from swgpar.petsc import PETSc
 from swgpar.solve.active_set_cycles import VisitedSets
 from swgpar.solve.discrete_problem import ResidualInfo

@@ -15,15 +15,16 @@ from support.friction_work import FrictionWork
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from support.stepping import load_stepper, small
-from swgpar.analysis.drive_result import DriveResult
-from swgpar.analysis.program_results import PointRow, point_rows, work_by_torque
-from swgpar.analysis.ratcheting import AT_TEETH
 from swgpar.analysis.run_drive import run_drive
 from swgpar.contact.clearance import LOADED_SIDE
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.load_program import FIRST_LOADING, NO_TORQUE, pitch_angle
-from swgpar.design.load_states import Stage, load_sequence
+from swgpar.drive_results.drive_result import DriveResult
 from swgpar.errors import InputError
+from swgpar.evaluation.program_results import PointRow, point_rows, work_by_torque
+from swgpar.evaluation.ratcheting import AT_TEETH
+from swgpar.load.load_program import FIRST_LOADING, NO_TORQUE, pitch_angle
+from swgpar.load.load_sequence import load_sequence
+from swgpar.load.load_states import Stage
 from swgpar.meshing import load_recipe
 
 TORQUE = 0.2

@@ -13,12 +13,12 @@ from support.cup_shapes import CLAMPED, shaped
 from support.paths import RECIPE
 from support.stepping import WORLD, loaded, small
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.analysis.local_problem import MARGIN, SECTORS, LocalProblem
-from swgpar.analysis.regions import END
-from swgpar.analysis.root_stress import HIGHEST_ORDER, error_of, resolve_root_stress
+from swgpar.evaluation.windows.local_problem import MARGIN, SECTORS, LocalProblem
+from swgpar.evaluation.windows.root_stress import HIGHEST_ORDER, error_of, resolve_root_stress
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.fem.stress import principal
 from swgpar.meshing import MeshRecipe, load_recipe
+from swgpar.model.regions import END
 
 
 @lru_cache

@@ -11,8 +11,8 @@ from mpi4py import MPI
 from pytest_mpi import parallel_assert
 
 from support.stepping import WORLD, Row, loaded, rotate, small
-from swgpar.analysis.pair_contact import PairContact, moved_teeth, pair_contacts
-from swgpar.contact.line_contact import effective_modulus
+from swgpar.evaluation.contact.line_contact import effective_modulus
+from swgpar.evaluation.contact.pair_contact import PairContact, moved_teeth, pair_contacts
 
 CLOCKWISE = "clockwise"
 

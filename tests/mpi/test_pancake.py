@@ -11,11 +11,11 @@ from support.paths import DATA
 from support.stepping import WORLD, Row, load_stepper, rotate, row
 from swgpar.analysis.bent_start import bend
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.analysis.pair_contact import pair_contacts
+from swgpar.checks.design_file import load_design
 from swgpar.constraints.distributing_coupling import ROTATION
-from swgpar.design.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.load_states import from_loaded, load_sequence
+from swgpar.evaluation.contact.pair_contact import pair_contacts
+from swgpar.load.load_sequence import from_loaded, load_sequence
 
 TORQUE = 1000.0
 """Torque of the output, N mm."""

@@ -7,7 +7,7 @@ import pytest
 from mpi4py import MPI
 from pytest_mpi import parallel_assert
 
-from swgpar.analysis.plain_ring import RingCounts, RingDesign, RingModel
+from plain_ring import RingCounts, RingDesign, RingModel
 from swgpar.design.sections import Material
 from swgpar.geometry.cams.simplified import simplified
 

@@ -8,12 +8,12 @@ from mpi4py import MPI
 
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
-from swgpar.analysis.drive_model import DriveModel, build_drive_model
 from swgpar.analysis.predictor import KnownState, interpolation_points, predict
-from swgpar.design.design_file import load_design
+from swgpar.checks.design_file import load_design
 from swgpar.fem.vectors import create_vector, read_field, write_field
 from swgpar.geometry.rotation import rotated
 from swgpar.meshing import load_recipe
+from swgpar.model.drive_model import DriveModel, build_drive_model
 from swgpar.petsc import PETSc
 
 CASES = ((), ("drive.layout=spline_fixed",), ("solver.symmetry=false",))

@@ -17,10 +17,11 @@ from support.stepping import load_stepper, row
 from swgpar.analysis.coarse_start import levels, start_loaded
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.mesh_refinement import choose_mesh
-from swgpar.analysis.period import continued
-from swgpar.design.design_file import load_design
-from swgpar.design.load_states import Stage, from_loaded, load_sequence
+from swgpar.checks.design_file import load_design
+from swgpar.evaluation.period import continued
 from swgpar.fem.vectors import read_field
+from swgpar.load.load_sequence import from_loaded, load_sequence
+from swgpar.load.load_states import Stage
 from swgpar.meshing import load_recipe
 from swgpar.solve.factor_reuse import MAX_ITERATIONS
 

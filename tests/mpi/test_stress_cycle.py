@@ -12,7 +12,7 @@ from pytest_mpi import parallel_assert
 import swgpar
 from support.paths import RECIPE
 from support.stepping import WORLD, loaded, rotate, small
-from swgpar.analysis.stress_cycle import StressCycle, sector_stress
+from swgpar.evaluation.stress_cycle import StressCycle, sector_stress
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 
 SAMPLED = ("steps.samples=2", "steps.rotation=9.0")

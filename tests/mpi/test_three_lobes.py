@@ -14,11 +14,12 @@ from support.stepping import WORLD, Row, assert_agree, load_stepper, loaded, rot
 from support.three_lobes import MODELS
 from swgpar.analysis.bent_start import bend
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.design.design_file import load_design
+from swgpar.checks.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.load_states import Stage, load_sequence
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.vectors import read_field
+from swgpar.load.load_sequence import load_sequence
+from swgpar.load.load_states import Stage
 from swgpar.meshing import load_recipe
 
 STATE, TORQUES = ("fs_s1", "fs_s3", "fs_vm", "rg_vm", "output_angle_deg"), ("wg_torque_Nmm", "tooth_torque_Nmm")

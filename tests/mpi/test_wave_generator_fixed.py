@@ -13,9 +13,9 @@ from pytest_mpi import parallel_assert
 import swgpar
 from support.paths import DESIGN, RECIPE
 from support.small_drive import NO_SHORTCUTS, PLANE
-from swgpar.analysis.drive_result import DriveResult
-from swgpar.analysis.result_frame import rotated_stress
+from swgpar.drive_results.drive_result import DriveResult
 from swgpar.errors import InputError
+from swgpar.evaluation.result_frame import rotated_stress
 from swgpar.geometry.rotation import rotated
 
 SAMPLES = 24

@@ -12,9 +12,9 @@ from support.commands import assert_same_history, run_command, succeed
 from support.drive_groups import MESH, ONCE_FAILED, drift, groups, table_of
 from support.small_drive import PLANE
 from support.stepping import load_stepper, row
-from swgpar.design.drive_design import DriveDesign
-from swgpar.design.load_states import load_sequence
+from swgpar.checks.design_file import make_drive
 from swgpar.errors import InputError
+from swgpar.load.load_sequence import load_sequence
 from swgpar.meshing import load_recipe
 
 WORLD = MPI.COMM_WORLD
@@ -33,7 +33,7 @@ HARDEST = [
 
 def run(group: str, case: str) -> None:
     """Every increment converges, torques balance, and without friction the state repeats."""
-    design = DriveDesign.from_table(table_of(ALL[group].design, ALL[group].cases()[case]))
+    design = make_drive(table_of(ALL[group].design, ALL[group].cases()[case]))
     stepper = load_stepper(design, recipe=load_recipe(MESH))
     rows = []
     try:
@@ -85,7 +85,7 @@ def test_bulging_cam_is_refused() -> None:
     with pytest.raises(
         InputError, match=r"bulges .* mm beyond .* allowed up to 0.2 mm.*wave_generator\.C .*wave_generator\.a_p"
     ):
-        DriveDesign.from_table(table_of(ALL["rim, plane reference"].design, {"wave_generator": flat}))
+        make_drive(table_of(ALL["rim, plane reference"].design, {"wave_generator": flat}))
 
 
 def test_more_ranks_than_cores(tmp_path) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.analysis.plain_ring import RingCounts, RingDesign, RingModel
+from plain_ring import RingCounts, RingDesign, RingModel
 from swgpar.design.sections import Contact, Material, Solver
 from swgpar.geometry.cams import EllipticalCam
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from support.paths import DESIGN
+from swgpar.checks.design_file import make_drive
 from swgpar.design.drive_design import DriveDesign
 from swgpar.input.toml_file import read_toml
 
@@ -35,7 +36,7 @@ def shaped(changes: Changes, *overrides: str) -> DriveDesign:
         key, _, value = override.partition("=")
         section, name = key.split(".")
         table.setdefault(section, {})[name] = json.loads(value)
-    return DriveDesign.from_table({**table, "cup": cup})
+    return make_drive({**table, "cup": cup})
 
 
 def revolved(points: np.ndarray) -> float:

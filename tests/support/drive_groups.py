@@ -15,7 +15,7 @@ import numpy as np
 
 from support.paths import DATA, DESIGN, DRIVERS, RECIPE, REFERENCE
 from support.small_drive import PLANE as SMALL_PLANE
-from swgpar.design.drive_design import DriveDesign
+from swgpar.checks.design_file import make_drive
 from swgpar.errors import InputError
 from swgpar.input.toml_file import parse_value, read_toml, with_value
 from swgpar.meshing import build_sector_meshes, load_recipe
@@ -57,7 +57,7 @@ class Group:
         if self.steps:
             return {}
         try:
-            pitch = float(np.degrees(DriveDesign.from_table(table_of(self.design, case)).period_angle))
+            pitch = float(np.degrees(make_drive(table_of(self.design, case)).period_angle))
         except InputError:  # it is the run that is to refuse the design
             return {}
         return {"steps.increment": 0.5 * pitch, "steps.rotation": 1.5 * pitch}
@@ -175,7 +175,7 @@ def random_designs(count: int, seed: int, model: str = "plane") -> Cases:
         drawn += 1
         case = _draw(rng, model)
         try:
-            build_sector_meshes(DriveDesign.from_table(table_of(PLANE, case)), recipe)
+            build_sector_meshes(make_drive(table_of(PLANE, case)), recipe)
         except InputError:
             continue
         cases[f"r{drawn:04d}"] = case

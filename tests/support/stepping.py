@@ -11,12 +11,13 @@ from pytest_mpi import parallel_assert
 
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
-from swgpar.analysis.drive_model import build_drive_model
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.design.design_file import load_design
+from swgpar.checks.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.load_states import Stage, load_sequence
+from swgpar.load.load_sequence import load_sequence
+from swgpar.load.load_states import Stage
 from swgpar.meshing import MeshRecipe, load_recipe
+from swgpar.model.drive_model import build_drive_model
 
 WORLD = MPI.COMM_WORLD
 MODELS = {"cup": (), "plane": PLANE}

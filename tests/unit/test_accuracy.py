@@ -24,11 +24,11 @@ from swgpar.analysis.mesh_refinement import (
     resized,
     with_accuracy,
 )
-from swgpar.analysis.root_stress import BETWEEN, ENDS, LEVELS, RootStress, resolve_root_stress
 from swgpar.analysis.shortcuts import with_shortcuts
-from swgpar.design.design_file import load_design
-from swgpar.design.load_states import from_loaded, load_sequence
+from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError
+from swgpar.evaluation.windows.root_stress import BETWEEN, ENDS, LEVELS, RootStress, resolve_root_stress
+from swgpar.load.load_sequence import from_loaded, load_sequence
 from swgpar.meshing import load_recipe
 from swgpar.meshing.recipe import to_toml
 

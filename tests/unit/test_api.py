@@ -18,9 +18,9 @@ from support.messages import Messages
 from support.paths import DESIGN, DRIVERS, RECIPE, ROOT
 from support.small_drive import NO_SHORTCUTS, PLANE
 from swgpar import log
-from swgpar.analysis.figures import DriveFigures
 from swgpar.design.drive_design import DriveDesign
 from swgpar.input.toml_file import read_toml
+from swgpar.presentation.figures import DriveFigures
 
 OVERRIDES = [*PLANE, *NO_SHORTCUTS, "steps.rotation=4.0", "steps.increment=2.0", "output.fields=true"]
 
@@ -235,7 +235,7 @@ def test_a_figure_that_cannot_be_drawn(
     def broken(self: object) -> None:
         raise TypeError("no colours")
 
-    monkeypatch.setattr("swgpar.analysis.figures.DriveFigures.stress", broken)
+    monkeypatch.setattr("swgpar.presentation.figures.DriveFigures.stress", broken)
     with pytest.raises(swgpar.OutputError, match="cannot draw .*stress.png: no colours"):
         result.plot.save(tmp_path)
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from support.paths import DATA, DESIGN, REFERENCE
-from swgpar.design.design_file import load_design
+from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError
 
 OVERRIDES = [

@@ -8,11 +8,11 @@ import pytest
 from support.bearing import BEARING
 from support.paths import DESIGN
 from support.small_drive import PLANE
-from swgpar.contact.bearing_life import BearingSeries, million_turns
+from swgpar.checks.design_file import load_design
 from swgpar.contact.point_contact import ball_spring, effective_modulus, point_contact
 from swgpar.contact.smooth_curve import shape_functions, smooth_curve
-from swgpar.design.design_file import load_design
 from swgpar.errors import InputError
+from swgpar.evaluation.bearing_life import BearingSeries, million_turns
 from swgpar.geometry.bearing import ball_lines
 from swgpar.geometry.cams import EllipticalCam
 

@@ -9,8 +9,7 @@ import swgpar
 from support.drive_groups import PLANE, cams, table_of
 from support.paths import RECIPE, REFERENCE
 from swgpar.analysis.bent_start import BentSpline
-from swgpar.design.design_file import load_design
-from swgpar.design.drive_design import DriveDesign
+from swgpar.checks.design_file import load_design, make_drive
 from swgpar.geometry.neutral_line import bent_ring
 
 CAMS = {name: case for name, case in cams().items() if "wave_generator" in case}
@@ -38,7 +37,7 @@ def test_the_first_harmonic_on_an_elliptical_cam_is_half_of_the_deflection() -> 
 
 @pytest.mark.parametrize("name", list(CAMS))
 def test_it_lies_outside_of_every_cam_and_touches_it(name: str) -> None:
-    design = DriveDesign.from_table(table_of(PLANE, CAMS[name]))
+    design = make_drive(table_of(PLANE, CAMS[name]))
     spline = BentSpline(design)
     gap, *_ = spline.surface.evaluate(moved(spline, ring(design.inner_radius)))
     assert gap.min() > -5e-5 * design.drive.module
@@ -47,7 +46,7 @@ def test_it_lies_outside_of_every_cam_and_touches_it(name: str) -> None:
 
 @pytest.mark.parametrize("name", list(CAMS))
 def test_the_middle_line_keeps_its_length(name: str) -> None:
-    design = DriveDesign.from_table(table_of(PLANE, CAMS[name]))
+    design = make_drive(table_of(PLANE, CAMS[name]))
     spline = BentSpline(design)
     line = moved(spline, ring(spline.radius))
     length = np.linalg.norm(np.diff(line, axis=0), axis=1).sum()

@@ -12,7 +12,7 @@ import swgpar
 from support.bearing import BEARING
 from support.paths import DESIGN, DRIVERS, RECIPE
 from support.small_drive import PLANE
-from swgpar.design.design_file import load_design
+from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError
 from swgpar.exchange.calculix import write_calculix
 from swgpar.exchange.calculix_model import JobModel

@@ -12,9 +12,8 @@ from scipy.optimize import brentq
 from scipy.special import ellipe
 
 from support.paths import DRIVERS, REFERENCE
+from swgpar.checks.design_file import load_design
 from swgpar.contact.rigid_surface import pin_directions
-from swgpar.design.design_file import load_design
-from swgpar.design.load_states import Stage, load_sequence, start_state
 from swgpar.errors import InputError
 from swgpar.geometry.cams import EllipticalCam, HarmonicCam, pin_travel, taut_length
 from swgpar.geometry.cams.arcs import arcs
@@ -24,6 +23,8 @@ from swgpar.geometry.cams.piecewise import Parabola, PiecewiseCam
 from swgpar.geometry.cams.simplified import simplified
 from swgpar.geometry.micro_geometry import WaveGeneratorSurface, crowning
 from swgpar.geometry.rotation import rotated
+from swgpar.load.load_sequence import load_sequence, start_state
+from swgpar.load.load_states import Stage
 
 A, B, R_FS = 59.2, 57.2, 58.2
 

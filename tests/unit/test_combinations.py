@@ -7,8 +7,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from swgpar.checks.design_file import load_design
 from swgpar.cli import main
-from swgpar.design.design_file import load_design
 
 DOUBLE_ARC = {"type": "double_arc", "r_addendum": 1.0, "r_dedendum": 0.6}
 INVOLUTE = {"type": "involute", "cutter_radius": 0.2}

@@ -9,8 +9,8 @@ import pytest
 
 import swgpar
 from support.drive_groups import PLANE
-from swgpar.design.derived_geometry import derived_geometry
-from swgpar.design.rigid_mesh import flank_clearance, rigid_mesh
+from swgpar.checks.derived_geometry import derived_geometry
+from swgpar.checks.rigid_mesh import flank_clearance, rigid_mesh
 from swgpar.errors import InputError
 
 RING = {"type": "conjugate", "r_root": 0.2}

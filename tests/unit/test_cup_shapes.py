@@ -16,9 +16,8 @@ from support.cup_shapes import CLAMPED, HAT, SHAPES, Changes, bolted, shaped, wa
 from support.paths import DRIVERS, RECIPE
 from support.stepping import loaded
 from swgpar.analysis.bent_start import BentSpline
-from swgpar.analysis.drive_model import build_drive_model
 from swgpar.analysis.forecast import forecast
-from swgpar.design.design_file import load_design
+from swgpar.checks.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.geometry.cup_wall import RoundedLine
@@ -27,6 +26,7 @@ from swgpar.meshing import SectorMesh, load_recipe
 from swgpar.meshing.cup import meridian
 from swgpar.meshing.quality import hex_volumes
 from swgpar.meshing.tooth_sector import build_sector
+from swgpar.model.drive_model import build_drive_model
 
 shapes = pytest.mark.parametrize("shape", list(SHAPES))
 

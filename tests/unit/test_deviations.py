@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from support.paths import DRIVERS
-from swgpar.analysis.transmission_error import Causes, spectrum
-from swgpar.design.design_file import load_design
+from swgpar.checks.design_file import load_design
 from swgpar.design.deviations import gear_deviations
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
+from swgpar.evaluation.transmission_error import Causes, spectrum
 from swgpar.geometry.flank_deviations import GearDeviations
 from swgpar.geometry.pitch_deviations import pitch_tolerances, random_pitch_errors
 from swgpar.geometry.rotation import MIRROR, rotated

@@ -8,12 +8,12 @@ import pytest
 import swgpar
 from support.paths import DESIGN, RECIPE, REFERENCE
 from support.small_drive import PLANE
-from swgpar.analysis.fatigue import _life
-from swgpar.analysis.fatigue_criteria import critical_plane, crossland, damage, fatigue_limits, goodman, smallest_ball
-from swgpar.analysis.stress_cycle import rotated_tensor
-from swgpar.design.design_file import load_design
+from swgpar.checks.design_file import load_design
 from swgpar.design.sections import Fatigue
 from swgpar.errors import InputError
+from swgpar.evaluation.fatigue import _life
+from swgpar.evaluation.fatigue_criteria import critical_plane, crossland, damage, fatigue_limits, goodman, smallest_ball
+from swgpar.evaluation.stress_cycle import rotated_tensor
 from swgpar.systems.drive import DRIVE
 from swgpar.systems.drive_quantities import FATIGUE, LOSSES
 

@@ -17,11 +17,11 @@ import swgpar
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from support.stepping import small
-from swgpar.analysis.stiffness import summarise_stiffness
-from swgpar.design.load_program import program_points
 from swgpar.errors import InputError, OutputError
+from swgpar.evaluation.stiffness import summarise_stiffness
 from swgpar.exchange.fmu import VARIABLES, write_fmu
 from swgpar.exchange.tables import ripple_table, spring_table
+from swgpar.load.load_program import program_points
 
 fmpy = pytest.importorskip("fmpy")
 pytestmark = pytest.mark.skipif(not shutil.which("cc"), reason="no C compiler")

@@ -10,11 +10,11 @@ from mpi4py import MPI
 import swgpar
 from support.paths import DESIGN, DRIVERS, RECIPE, REFERENCE
 from support.small_drive import PLANE
-from swgpar.analysis.drive_model import build_drive_model
 from swgpar.analysis.forecast import Forecast, forecast, free_memory, reported_memory, require_memory
-from swgpar.design.design_file import load_design
+from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError, OutOfMemoryError
 from swgpar.meshing import load_recipe
+from swgpar.model.drive_model import build_drive_model
 from swgpar.petsc import PETSc
 
 THICK_CUP = ("cup.thickness_coef=0.9", "cup.fillet_radius=2.0")

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from swgpar.contact.line_contact import effective_modulus, line_contact
+from swgpar.evaluation.contact.line_contact import effective_modulus, line_contact
 
 E = effective_modulus(210e3, 0.29, plane_stress=False)
 

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 
 from support.stepping import small
-from swgpar.analysis.program_results import work_by_torque
-from swgpar.analysis.ratcheting import AT_TEETH, IN_SPLINE, NOTHING, has_fallen, summarise_ratcheting
 from swgpar.analysis.shortcuts import with_shortcuts
-from swgpar.analysis.stiffness import ARC_MINUTE, by_position, summarise_stiffness
-from swgpar.design.load_program import (
+from swgpar.errors import InputError
+from swgpar.evaluation.program_results import work_by_torque
+from swgpar.evaluation.ratcheting import AT_TEETH, IN_SPLINE, NOTHING, has_fallen, summarise_ratcheting
+from swgpar.evaluation.stiffness import ARC_MINUTE, by_position, summarise_stiffness
+from swgpar.load.load_program import (
     NO_TORQUE,
     POSITIVE_UNLOADING,
     TRAVEL,
@@ -21,8 +22,8 @@ from swgpar.design.load_program import (
     program_points,
     stiffness_torques,
 )
-from swgpar.design.load_states import Stage, from_loaded, load_sequence
-from swgpar.errors import InputError
+from swgpar.load.load_sequence import from_loaded, load_sequence
+from swgpar.load.load_states import Stage
 from swgpar.meshing import load_recipe
 
 

@@ -8,7 +8,7 @@ import pytest
 import swgpar
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
-from swgpar.analysis.load_sharing import load_sharing
+from swgpar.evaluation.load_sharing import load_sharing
 from swgpar.systems.drive import DRIVE
 from swgpar.systems.drive_quantities import SHARING
 

@@ -7,12 +7,12 @@ import pytest
 from mpi4py import MPI
 
 import swgpar
+from plain_ring import RingCounts, RingDesign, RingModel
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
-from swgpar.analysis.losses import energy_coordinates, force_without_sliding, mass_matrices
-from swgpar.analysis.plain_ring import RingCounts, RingDesign, RingModel
 from swgpar.design.sections import Material
 from swgpar.errors import InputError
+from swgpar.evaluation.losses import energy_coordinates, force_without_sliding, mass_matrices
 from swgpar.geometry.cams.simplified import simplified
 
 E, NU = 210e3, 0.29

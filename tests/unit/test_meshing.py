@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from support.paths import RECIPE, REFERENCE
-from swgpar.design.design_file import load_design
+from swgpar.checks.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutputError
 from swgpar.geometry.profiles.flank import Segment, ToothProfile

@@ -7,8 +7,8 @@ import pytest
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
-from swgpar.contact.line_contact import effective_modulus
-from swgpar.contact.patch_contact import Gap, patch_contact
+from swgpar.evaluation.contact.line_contact import effective_modulus
+from swgpar.evaluation.contact.patch_contact import Gap, patch_contact
 
 E = effective_modulus(210e3, 0.29, plane_stress=False)
 ENDS = -5.0, 5.0

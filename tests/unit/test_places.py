@@ -10,16 +10,16 @@ import pytest
 import swgpar
 from support.paths import DESIGN, RECIPE, REFERENCE
 from support.small_drive import PLANE
-from swgpar.analysis.local_problem import tooth_nodes
-from swgpar.analysis.place_errors import CoarseStresses, with_errors
-from swgpar.analysis.places import APART, Place, inside_teeth, root_nodes
-from swgpar.analysis.regions import AVERAGE, BACK, region_of
-from swgpar.analysis.root_stress import BETWEEN, RootStress
-from swgpar.analysis.summary import STRESSES
-from swgpar.design.design_file import load_design
+from swgpar.checks.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
+from swgpar.drive_results.summary import STRESSES
+from swgpar.evaluation.place_errors import CoarseStresses, with_errors
+from swgpar.evaluation.places import APART, Place, inside_teeth, root_nodes
+from swgpar.evaluation.windows.local_problem import tooth_nodes
+from swgpar.evaluation.windows.root_stress import BETWEEN, RootStress
 from swgpar.meshing import SectorMesh, load_recipe
 from swgpar.meshing.tooth_sector import build_sector
+from swgpar.model.regions import AVERAGE, BACK, region_of
 
 
 @pytest.fixture(scope="module")

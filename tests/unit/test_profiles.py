@@ -11,7 +11,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from swgpar.design.design_file import load_design
+from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError
 from swgpar.geometry.profiles.double_arc import double_arc, straight_length
 from swgpar.geometry.profiles.flank import ToothProfile, check_flank

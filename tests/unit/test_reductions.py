@@ -10,12 +10,12 @@ import pytest
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar.analysis.coarse_start import levels
-from swgpar.analysis.period import continued
-from swgpar.design.design_file import load_design
-from swgpar.design.load_states import load_sequence, rotation_angles
+from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError
+from swgpar.evaluation.period import continued
 from swgpar.fem.body_layout import RING_GEAR
 from swgpar.fem.sectors_in_reach import RingSectors
+from swgpar.load.load_sequence import load_sequence, rotation_angles
 from swgpar.meshing import build_sector_meshes, load_recipe
 from swgpar.meshing.interpolation import interpolation
 from swgpar.meshing.recipe import FaceWidthRecipe

@@ -11,9 +11,9 @@ from support.commands import swgpar as command
 from support.messages import Messages
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
-from swgpar.analysis.jamming import jamming_remark
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.remarks import RING_FLEXIBILITY, negligible_torque
+from swgpar.evaluation.jamming import jamming_remark
+from swgpar.load.load_sequence import RING_FLEXIBILITY, negligible_torque
 
 PERIOD = ("steps.rotation=9", "steps.increment=3")
 

@@ -13,17 +13,17 @@ import swgpar
 from support.html_text import assert_needs_nothing_else
 from support.paths import DESIGN, DRIVERS, RECIPE
 from support.small_drive import PLANE, SHORT
-from swgpar.analysis.deformed_figures import deformed
-from swgpar.analysis.drive_drawing import draw_drive
-from swgpar.analysis.drive_report import answers
-from swgpar.analysis.off_screen import off_screen_plotter
-from swgpar.analysis.report_checks import checks
-from swgpar.analysis.scene import sector_surface
-from swgpar.analysis.view import view_plotter
 from swgpar.design.sections import GEARS
+from swgpar.drive_results.report_checks import checks
 from swgpar.errors import InputError
 from swgpar.geometry.rotation import rotated
 from swgpar.meshing import build_sector_meshes, load_recipe
+from swgpar.presentation.deformed_figures import deformed
+from swgpar.presentation.drive_drawing import draw_drive
+from swgpar.presentation.drive_report import answers
+from swgpar.presentation.off_screen import off_screen_plotter
+from swgpar.presentation.scene import sector_surface
+from swgpar.presentation.view import view_plotter
 
 
 @pytest.fixture(scope="module")

@@ -5,8 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from swgpar.analysis.local_problem import WindowStress
-from swgpar.analysis.root_stress import BETWEEN, ENDS, candidates, error_at_ends, error_of, followed, may_be_largest
+from swgpar.evaluation.windows.local_problem import WindowStress
+from swgpar.evaluation.windows.root_stress import (
+    BETWEEN,
+    ENDS,
+    candidates,
+    error_at_ends,
+    error_of,
+    followed,
+    may_be_largest,
+)
 
 
 def teeth(**values: float) -> np.ndarray:

@@ -10,7 +10,7 @@ from support.messages import Messages
 from support.paths import DESIGN, DRIVERS, RECIPE, REFERENCE
 from support.small_drive import NO_SHORTCUTS, PLANE
 from swgpar.analysis.shortcuts import RTOL, SAMPLES, with_shortcuts
-from swgpar.design.design_file import load_design
+from swgpar.checks.design_file import load_design
 from swgpar.meshing import load_recipe
 from swgpar.meshing.recipe_counts import with_counts
 

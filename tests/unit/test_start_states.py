@@ -12,8 +12,8 @@ from support.paths import DESIGN
 from support.small_drive import PLANE
 from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.analysis.start_states import StartStates
-from swgpar.design.design_file import load_design
-from swgpar.design.load_states import load_sequence
+from swgpar.checks.design_file import load_design
+from swgpar.load.load_sequence import load_sequence
 from swgpar.meshing import load_recipe
 from swgpar.results.folder import START_STATES
 

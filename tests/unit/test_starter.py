@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import swgpar
+from swgpar.checks.derived_geometry import derived_geometry, flank_clearance
+from swgpar.checks.remarks import remarks
+from swgpar.checks.starter import LARGEST_RATIO, LEAST_RATIO, CamType, Profile, Request, as_toml, starter_design
 from swgpar.cli import main, parser
-from swgpar.design.derived_geometry import derived_geometry, flank_clearance
-from swgpar.design.remarks import remarks
-from swgpar.design.starter import LARGEST_RATIO, LEAST_RATIO, CamType, Profile, Request, as_toml, starter_design
 from swgpar.errors import InputError, OutputError
 from swgpar.geometry.cams import taut_length
 

@@ -7,8 +7,8 @@ import itertools
 import pytest
 
 from support.paths import DESIGN
-from swgpar.design.design_file import load_design
-from swgpar.design.load_states import load_sequence, start_state
+from swgpar.checks.design_file import load_design
+from swgpar.load.load_sequence import load_sequence, start_state
 
 
 @pytest.mark.parametrize("torque", ["0", "2"])

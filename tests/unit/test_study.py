@@ -14,8 +14,8 @@ from mpi4py import MPI
 
 from support.paths import DATA, DESIGN, RECIPE, ROOT
 from support.study_files import assert_refused, jobs_of
-from swgpar.analysis.drive_result import DriveResult
 from swgpar.analysis.error_estimate import estimate
+from swgpar.drive_results.drive_result import DriveResult
 from swgpar.errors import InputError
 from swgpar.results.table import format_csv
 from swgpar.studies.case import Outcome

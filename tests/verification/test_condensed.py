@@ -7,7 +7,7 @@ import pytest
 
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
-from swgpar.design.design_file import load_design
+from swgpar.checks.design_file import load_design
 from swgpar.fem.condensed_parts import CondensedPart, condense_sector, relative_end_rotation
 from swgpar.kernel import ReferenceElements, assemble_elements, reference_elements
 from swgpar.meshing import build_sector_meshes, load_recipe

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from plain_ring import RingCounts, RingDesign
 from support.paths import DRIVERS
 from support.scripts import load_script
-from swgpar.analysis.plain_ring import RingCounts, RingDesign
 
 EXPERIMENT = load_script(DRIVERS / "ring_experiment.py")
 OUTER_DIAMETER, THICKNESS, OUTWARD = EXPERIMENT.OUTER_DIAMETER, EXPERIMENT.THICKNESS, EXPERIMENT.OUTWARD

@@ -1,0 +1,1 @@
+"""What judges a design: fit of keys, clearance, remarks; starter designs."""

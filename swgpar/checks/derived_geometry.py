@@ -1,0 +1,91 @@
+"""Derived geometry of a design, for `swgpar check`."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from swgpar.checks.rigid_mesh import RigidMesh, flank_clearance, rigid_mesh
+from swgpar.design.drive_design import DriveDesign
+from swgpar.geometry.cams import Cam, pin_travel, taut_length
+
+
+def _smallest(cam: Cam, lobes: int) -> dict[str, float]:
+    """Smallest size of the cam: its half width, or its radius between three lobes."""
+    outline = cam.outline(7200)
+    if lobes == 2:
+        return {"b, half width of the cam (mm)": float(outline[:, 0].max())}
+    return {"b, smallest radius of the cam (mm)": float(np.hypot(*outline.T).min())}
+
+
+def derived_geometry(design: DriveDesign) -> dict[str, float]:
+    """Quantities that follow from a design: names with units, and values. `swgpar check` prints them."""
+    spline, ring = design.profile("flexible_spline"), design.profile("ring_gear")
+    cam, half = design.cam(), 0.5 * design.deflection
+    return {
+        f"ratio ({'ring gear' if design.wave_generator_is_fixed else 'wave generator'} / output)": design.input_ratio,
+        "d, diametral deflection (mm)": design.deflection,
+        "a, major semi-axis (mm)": design.major_semi_axis,
+        **_smallest(cam, design.lobes),
+        "taut length of cam / inner perimeter - 1": taut_length(cam) / (2.0 * np.pi * design.inner_radius) - 1.0,
+        "travel of the pins (mm)": pin_travel(cam, design.inner_radius, design.lobes),
+        "r_fs, inner radius of the spline (mm)": design.inner_radius,
+        "backlash at the pitch circle (mm)": design.backlash,
+        "gamma, rotation that closes it (deg)": float(np.degrees(design.backlash_angle)),
+        "outer diameter (mm)": 2.0 * design.largest_radius,
+        **_cup(design),
+        "tooth height, flexible spline (mm)": spline.r_tip_circle - spline.r_root_circle,
+        "tooth height, ring gear (mm)": ring.r_root_circle - ring.r_tip_circle,
+        "top land, flexible spline (mm)": spline.top_land,
+        "top land, ring gear (mm)": ring.top_land,
+        "root land, flexible spline (mm)": spline.root_land,
+        "root land, ring gear (mm)": ring.root_land,
+        "tip of spline to root of ring, major axis (mm)": ring.r_root_circle - spline.r_tip_circle - half,
+        "tip of ring to root of spline, major axis (mm)": ring.r_tip_circle - spline.r_root_circle - half,
+        "tips at the minor axis (mm)": ring.r_tip_circle - spline.r_tip_circle + half,
+        "smallest flank clearance, kinematic (mm)": flank_clearance(design),
+        **_dynamic_spline(design),
+        **_rigid_contact(rigid_mesh(design)),
+    }
+
+
+def _rigid_contact(rigid: RigidMesh) -> dict[str, float]:
+    """Quantities of rigid teeth; none where their first contact is not defined."""
+    if not np.isfinite(rigid.transmission_error):
+        return {}
+    return {
+        "transmission error of rigid teeth (arcsec)": rigid.transmission_error,
+        "share of rigid teeth within 1 µm of contact": rigid.teeth_share,
+    }
+
+
+def _cup(design: DriveDesign) -> dict[str, float]:
+    """Thicknesses of the cup and its attached area; those that equal the first one are left out."""
+    if design.drive.model != "cup":
+        return {}
+    cup, thinnest = design.cup, min(thickness for _, _, thickness, _ in design.wall_points)
+    found = {"cup thickness (mm)": design.cup_thickness}
+    if thinnest != design.cup_thickness:
+        found["thinnest place of the wall (mm)"] = thinnest
+    if design.end_thickness != design.cup_thickness:
+        found[f"thickness of the {'flange' if cup.shape == 'hat' else 'closed end'} (mm)"] = design.end_thickness
+    if cup.attachment == "clamped":
+        found["attached area, one side (mm2)"] = np.pi * abs(cup.edge**2 - cup.clamping_radius**2)
+    if cup.attachment == "bolted":
+        found["attached area, one side (mm2)"] = 0.25 * np.pi * cup.washer_diameter**2 * cup.bolts
+    return found
+
+
+def _dynamic_spline(design: DriveDesign) -> dict[str, float]:
+    """Quantities of the second ring gear of a pancake drive; none of other drives."""
+    if design.dynamic_spline is None:
+        return {}
+    spline, second = design.profile("flexible_spline"), design.profile("dynamic_spline")
+    half = 0.5 * design.deflection
+    low, high = design.axial_range("ring_gear")
+    return {
+        "face width of the ring gear (mm)": high - low,
+        "backlash of the dynamic spline (mm)": design.dynamic_backlash,
+        "tip of spline to root of dynamic spline (mm)": second.r_root_circle - spline.r_tip_circle - half,
+        "tip of dynamic spline to root of spline (mm)": second.r_tip_circle - spline.r_root_circle - half,
+        "clearance in the dynamic spline (mm)": flank_clearance(design, ring="dynamic_spline"),
+    }

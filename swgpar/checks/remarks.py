@@ -1,0 +1,41 @@
+"""What a design may have and what deserves a word: teeth that overlap, torques that are too small to be resolved."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from swgpar.design.drive_design import DriveDesign
+from swgpar.load.load_sequence import counts_as_none, negligible_torque
+
+CLEARANCES = (
+    "tip of spline to root of ring, major axis (mm)",
+    "tip of ring to root of spline, major axis (mm)",
+    "tips at the minor axis (mm)",
+    "smallest flank clearance, kinematic (mm)",
+    "tip of spline to root of dynamic spline (mm)",
+    "tip of dynamic spline to root of spline (mm)",
+    "clearance in the dynamic spline (mm)",
+)
+"""Names of `derived_geometry` whose values are negative where teeth overlap."""
+
+
+def torque_remark(design: DriveDesign) -> str | None:
+    """A sentence where the torque counts as none."""
+    if not counts_as_none(design):
+        return None
+    least = negligible_torque(design)
+    return (
+        f"load.torque = {design.load.torque:g} N·m counts as none: up to {0.001 * least:.3g} N·m it is too small "
+        "beside the bending of the flexible spline"
+    )
+
+
+def remarks(design: DriveDesign, derived: Mapping[str, float]) -> list[str]:
+    """Sentences about what is allowed and may not be meant. derived : of `derived_geometry`"""
+    allowed = design.contact.penetration_tolerance * design.drive.module
+    found = [
+        f"interference: {name} = {derived[name]:.3g}: teeth overlap before they are loaded, and the drive may jam"
+        for name in CLEARANCES
+        if derived.get(name, 0.0) < -allowed
+    ]
+    return [*found, *filter(None, [torque_remark(design)])]

@@ -1,0 +1,1 @@
+"""The table of answers and the result of a drive, in memory or from files."""

@@ -1,0 +1,327 @@
+"""Result of a drive: history, summary, mesh and fields, in memory or from the files of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple, get_args
+
+import numpy as np
+from mpi4py import MPI
+
+from swgpar.design.sections import GearName
+from swgpar.drive_results.drive_tables import DriveTables, read_tables
+from swgpar.errors import InputError
+from swgpar.geometry.rotation import SIXTHS, sixths_of_turn
+from swgpar.presentation.figures import DriveFigures
+from swgpar.results import history
+from swgpar.results.atomic import agreed
+from swgpar.results.field_sources import BodyMesh, FieldFiles, FieldSource, chosen_increment
+from swgpar.results.fields import INDEX
+from swgpar.results.folder import read_summary
+from swgpar.results.history import Curves, Row
+from swgpar.results.sector_fields import SectorFields
+
+if TYPE_CHECKING:
+    import pyvista
+
+UPPER = np.triu_indices(3)
+"""Rows and columns of the components of a tensor, xx xy xz yy yz zz."""
+
+SPLINE: GearName = "flexible_spline"
+
+
+class FlankPressure(NamedTuple):
+    """Contact pressure on the flanks of the flexible spline.
+
+    s : (n_s,) mm, arc length from the tip;  z : (n_z,) mm, along the face width
+    pressure : (teeth, 2, n_s, n_z) MPa, nodal means; the clockwise flank of every tooth first
+    """
+
+    s: np.ndarray
+    z: np.ndarray
+    pressure: np.ndarray
+
+
+class DriveResult:
+    """What a run of a drive gives; the same on every rank.
+
+    Every rank calls the methods together: fields that are in memory are gathered.
+
+    Attributes
+    ----------
+    history : dict of (n,) arrays
+        Columns of history.csv, a value for every increment, for example ``history["fs_s1"]`` in MPa.
+        ``pandas.DataFrame(result.history)`` makes a table of it.
+    summary : dict
+        Content of summary.json, among it ``means`` and ``maxima`` over the rotation, ``torque_ripple`` (of the input
+        torque, relative) and ``transmission_error_arcsec`` (peak to peak).
+    pairs : dict of (n,) arrays
+        Columns of pairs.csv, a value for every pair of flanks in contact at every computed increment under load.
+    contact_lines : dict of (n,) arrays
+        Columns of contact_lines.csv, a value for every station along the face width of these contacts.
+    fatigue : SectorFields or None
+        With [fatigue]: safety factors, amplitude and mean at the nodes of one sector; ``fatigue.fields["amplitude"]``.
+    fatigue_cycle : dict of (n,) arrays
+        Columns of fatigue_cycle.csv: stress over a cycle where the safety is the least.
+    losses : dict of (n,) arrays
+        Columns of losses.csv: losses at the angles of the sampled period.
+    program : dict of (n,) arrays
+        Columns of program.csv, a value for every point of a load program: torque and rotation of the output.
+    transmission_error : dict of (n,) arrays
+        Columns of transmission_error.csv: angles of input and output, transmission error and input torque over the
+        sampled period, or with ``[deviations]`` over whole turns. ``summary["transmission_error"]`` has what follows.
+    balls : dict of (n,) arrays
+        Columns of balls.csv, a value for every ball of a bearing at every computed increment; empty without a bearing.
+    folder : Path or None
+        The results folder; None when the run was in memory.
+
+    Examples
+    --------
+    >>> result = swgpar.run(design, mesh="plane_coarse")
+    >>> result.history["wg_torque_Nmm"].mean(), result.summary["transmission_error_arcsec"]
+    >>> stress = result.field("vm", body="flexible_spline")
+    >>> result.plot.stress().savefig("stress.png")
+    """
+
+    def __init__(
+        self,
+        rows: Sequence[Row],
+        summary: dict[str, Any],
+        tables: DriveTables,
+        fields: FieldSource | None,
+        comm: MPI.Comm,
+        folder: Path | None = None,
+    ) -> None:
+        self.history: dict[str, np.ndarray] = history.columns(rows)
+        self.summary = summary
+        self.pairs, self.contact_lines = dict(tables.pairs), dict(tables.contact_lines)
+        self.program: dict[str, np.ndarray] = dict(tables.program)
+        self.fatigue: SectorFields | None = tables.sector
+        self.fatigue_cycle, self.losses = dict(tables.cycle), dict(tables.losses)
+        self.transmission_error: dict[str, np.ndarray] = dict(tables.turns)
+        self.balls: dict[str, np.ndarray] = dict(tables.balls)
+        self.folder = folder
+        self._fields, self._comm = fields, comm
+
+    def __repr__(self) -> str:
+        where = f" in {self.folder}" if self.folder else ""
+        return f"<DriveResult of {len(self.history['step'])} increments, {self.increments} with fields{where}>"
+
+    @property
+    def increments(self) -> int:
+        """Number of increments with fields; 0 with ``output.fields = false``."""
+        return len(self._fields.increments) if self._fields is not None else 0
+
+    @property
+    def field_increments(self) -> tuple[int, ...]:
+        """Numbers of the increments with fields: their rows in the history, from 1."""
+        return tuple(self._fields.increments) if self._fields is not None else ()
+
+    @property
+    def is_plane(self) -> bool:
+        """Whether the drive is a plane model."""
+        return self.summary["design"]["drive"]["model"] == "plane"
+
+    @property
+    def gears(self) -> tuple[GearName, ...]:
+        """The gears, flexible spline first."""
+        return tuple(name for name in get_args(GearName) if name in self.summary["bodies"])
+
+    @property
+    def stiffness(self) -> dict[str, Any] | None:
+        """Torsional stiffness: K1, K2, K3 (N m / rad), lost motion, hysteresis, backlash (arc minutes) and more.
+
+        None for a design without the section [stiffness]. It is the entry ``stiffness`` of the summary.
+        """
+        return self.summary["stiffness"]
+
+    @property
+    def ratcheting(self) -> dict[str, Any] | None:
+        """The torque's peak under a prescribed rotation of the output, and what gave way.
+
+        None for a design without the section [ratcheting]. It is the entry ``ratcheting`` of the summary.
+        """
+        return self.summary["ratcheting"]
+
+    def curves(self) -> Curves:
+        """Columns of the history under load, over one period where the rotation was sampled."""
+        design = self.summary["design"]
+        drive = design["drive"]
+        standing = drive["teeth_fs"] if drive["layout"] == "spline_fixed" else drive["teeth_rg"]
+        # the wave generator turns against the ring gear as the ring gear turns against it, the other way round
+        ratio = self.summary["ratio"] * (-1.0 if drive["layout"] == "wave_generator_fixed" else 1.0)
+        return history.curves(
+            self.history, design["steps"]["samples"], self.summary["increments"], 360.0 / standing, ratio
+        )
+
+    @property
+    def plot(self) -> DriveFigures:
+        """The figures: ``plot.stress()`` and so on return matplotlib figures, ``plot.names`` lists them."""
+        return DriveFigures(self, self._comm, gathered=self._fields is not None and self._fields.gathered)
+
+    def mesh(self, body: GearName = SPLINE) -> BodyMesh:
+        """Undeformed mesh of the modelled part of a body.
+
+        A drive that equals itself after a turn by one lobe is modelled by a half, or a third with three lobes. Nodes
+        are numbered sector by sector, so that those between two sectors appear twice. A plane model is one layer of
+        elements.
+
+        Parameters
+        ----------
+        body : "flexible_spline", "ring_gear", or in a pancake drive "dynamic_spline"
+
+        Returns
+        -------
+        points : (n, 3) float64, mm
+        cells : (m, 8) int64, hexahedra in the order of VTK
+
+        Raises
+        ------
+        InputError
+            The run kept no fields, or there is no such body.
+        """
+        return self._source(body).mesh(body)
+
+    def names(self, body: GearName = SPLINE, increment: int = -1) -> tuple[str, ...]:
+        """Names of the fields of a body at an increment."""
+        source = self._source(body)
+        return source.names(body, chosen_increment(source, increment))
+
+    def field(self, name: str, increment: int = -1, body: GearName = SPLINE) -> np.ndarray:
+        """A nodal field.
+
+        Parameters
+        ----------
+        name : str
+            "displacement" (mm), "stress" (MPa; components xx xy xz yy yz zz), "s1", "s3", "vm" (MPa; largest and
+            smallest principal stress, von Mises stress), on the flexible spline also "pressure" (MPa; contact).
+        increment : int
+            Number of the increment among those with fields, from 0; negative ones count from the end.
+        body : "flexible_spline", "ring_gear", or in a pancake drive "dynamic_spline"
+
+        Returns
+        -------
+        (n,) or (n, components) array
+            A value for every node of ``mesh(body)``, the same on every rank.
+
+        Raises
+        ------
+        InputError
+            There is no such field, increment or body.
+        """
+        source = self._source(body)
+        number = chosen_increment(source, increment)
+        known = source.names(body, number)
+        if name not in known:
+            raise InputError(f"field {name!r} is not available on {body}: allowed {', '.join(known)}")
+        return source.read(body, name, number)
+
+    def flank_pressure(self, increment: int = -1) -> FlankPressure:
+        """Contact pressure on the flanks of the modelled teeth of the flexible spline.
+
+        increment : as in `field`
+        """
+        pressure = self.field("pressure", increment)
+        grids = self._source(SPLINE).flanks(SPLINE)
+        counts, design = self.summary["bodies"][SPLINE], self.summary["design"]
+        teeth = counts["elements"] // (counts["elements_whole"] // design["drive"]["teeth_fs"])
+        return FlankPressure(grids.s, grids.z, pressure.reshape(teeth, -1)[:, grids.nodes])
+
+    def grid(
+        self, increment: int = -1, body: GearName | None = None, *, whole: bool = False
+    ) -> pyvista.UnstructuredGrid:
+        """Undeformed mesh with all fields of an increment as point data.
+
+        ``grid.warp_by_vector("displacement")`` is the deformed drive.
+
+        Parameters
+        ----------
+        increment : as in `field`
+        body : "flexible_spline", "ring_gear", or None for all gears
+            With all, the cell data "body" is 0 for the flexible spline, 1 for the ring gear and 2 for the dynamic
+            spline of a pancake drive; a field that a body does not have is NaN there.
+        whole : bool
+            Add what symmetry left out, if the model is a half or a third of the drive.
+        """
+        import pyvista
+
+        bodies = self.gears if body is None else (body,)
+        parts = [self._part(name, increment) for name in bodies]
+        if whole:
+            copies = self.summary["copies"]
+            turns = SIXTHS[sixths_of_turn(copies, np.arange(1, copies))]
+            parts += [_rotated(*part, turn) for turn in turns for part in parts]
+            bodies = bodies * copies
+        first = np.cumsum([0, *(len(points) for points, _, _ in parts)])
+        cells = np.concatenate([cells + start for start, (_, cells, _) in zip(first, parts, strict=False)])
+        kinds = np.full(len(cells), pyvista.CellType.HEXAHEDRON)
+        grid = pyvista.UnstructuredGrid(
+            np.hstack([np.full((len(cells), 1), 8), cells]).ravel(), kinds, np.concatenate([part[0] for part in parts])
+        )
+        for name, example in {name: values for *_, fields in parts for name, values in fields.items()}.items():
+            missing = np.nan * np.empty((1, *example.shape[1:]), dtype=example.dtype)
+            grid.point_data[name] = np.concatenate(
+                [fields.get(name, np.repeat(missing, len(points), axis=0)) for points, _, fields in parts]
+            )
+        numbers = [np.full(len(part[1]), self.gears.index(name)) for name, part in zip(bodies, parts, strict=True)]
+        grid.cell_data["body"] = np.concatenate(numbers)
+        return grid
+
+    def view(self) -> None:
+        """Open a window that shows the deformed drive; call it on one rank, of a result from a folder.
+
+        Raises
+        ------
+        InputError
+            There is no display, or the run kept no fields.
+        """
+        from swgpar.presentation.view import require_display, view_plotter
+
+        require_display()
+        view_plotter(self).show()
+
+    def _part(self, body: GearName, increment: int) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
+        points, cells = self.mesh(body)
+        return points, cells, {name: self.field(name, increment, body) for name in self.names(body, increment)}
+
+    def _source(self, body: GearName) -> FieldSource:
+        bodies = list(self.summary["bodies"])
+        if body not in bodies:
+            raise InputError(f"body {body!r} is not available: allowed {' or '.join(bodies)}")
+        if self._fields is None or not self._fields.increments:
+            raise InputError("this run kept no fields: allowed with output.fields = true")
+        return self._fields
+
+
+def _rotated(
+    points: np.ndarray, cells: np.ndarray, fields: dict[str, np.ndarray], rotation: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
+    """A part of the drive after a rotation (3, 3)."""
+    out = dict(fields)
+    if "displacement" in fields:
+        values = fields["displacement"]
+        out["displacement"] = values @ rotation.T.astype(values.dtype)
+    if "stress" in fields:
+        values = fields["stress"]
+        tensor = np.empty((len(values), 3, 3), values.dtype)
+        tensor[:, UPPER[0], UPPER[1]] = tensor[:, UPPER[1], UPPER[0]] = values
+        turned = rotation.astype(values.dtype)
+        out["stress"] = (turned @ tensor @ turned.T)[:, UPPER[0], UPPER[1]]
+    return points @ rotation.T, cells, out
+
+
+def open_drive(folder: Path, comm: MPI.Comm) -> DriveResult:
+    """Result of a finished run from its folder; collective, every rank reads the files."""
+    folder = folder.absolute()  # the fields are read later
+    with agreed(comm, folder, "read"):
+        summary, rows = read_summary(folder), history.read_history(folder / history.NAME)
+        tables = read_tables(folder)
+    return DriveResult(rows, summary, tables, open_fields(folder, comm), comm, folder)
+
+
+def open_fields(folder: Path, comm: MPI.Comm) -> FieldFiles | None:
+    """Fields in a results folder, None without any; collective."""
+    present = comm.bcast((folder / INDEX).exists() if comm.rank == 0 else None)
+    with agreed(comm, folder / INDEX, "read"):
+        return FieldFiles(folder) if present else None

@@ -1,0 +1,129 @@
+"""Verdicts on a finished run: balance, energy, penetration, edge contact, resolution, and what else may mislead."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from swgpar.checks.derived_geometry import flank_clearance
+from swgpar.design.drive_design import DriveDesign
+from swgpar.results.history import loaded_increments
+
+BALANCE = 1e-4
+"""Largest torque that may be left over, over the largest torque of the teeth."""
+
+ENERGY = 0.05
+"""Largest difference between the mean input torque of a drive without friction and T / ratio, relative.
+
+The coupling of the plane model takes up to 2 % of it (docs/theory/drive.md); the rest is the sampling.
+"""
+
+RESOLUTION = 0.05
+"""Largest error of the stress at the teeth, relative."""
+
+QUALITY = 0.2
+"""Least scaled Jacobian of the elements."""
+
+
+class Check(NamedTuple):
+    """good : the verdict, None where nothing can be said;  text : the numbers behind it"""
+
+    name: str
+    good: bool | None
+    text: str
+
+
+def checks(design: DriveDesign, summary: Mapping[str, Any], history: Mapping[str, np.ndarray]) -> list[Check]:
+    """All checks of a run, from its design, summary and history."""
+    return [
+        _balance(summary, history),
+        _energy(design, summary),
+        _penetration(design, history),
+        _clearance(design),
+        _edge(summary),
+        _resolution(summary),
+        _meshed(summary),
+        _elements(summary),
+    ]
+
+
+def _balance(summary: Mapping[str, Any], history: Mapping[str, np.ndarray]) -> Check:
+    left, largest = summary["balance_error_Nmm"], float(np.abs(history["tooth_torque_Nmm"]).max(initial=0.0))
+    if largest == 0.0:
+        return Check("balance of torques", None, "the teeth carry no torque")
+    text = f"{left:.2g} N·mm are left over of {largest:.4g} N·mm at the teeth; good up to {BALANCE:g} of it"
+    return Check("balance of torques", left <= BALANCE * largest, text)
+
+
+def _energy(design: DriveDesign, summary: Mapping[str, Any]) -> Check:
+    name, expected = "energy", summary["wg_torque_expected_Nmm"]
+    if summary["jammed"]:
+        return Check(name, False, summary["jammed"])
+    if design.is_bolted:
+        return Check(name, None, "a drive on bolts does not repeat after a pitch")
+    mean = summary["means"].get("wg_torque_Nmm")
+    covered = design.steps.samples or design.steps.rotation >= 0.999999 * np.degrees(design.period_angle)
+    if mean is None or not expected or not covered:
+        return Check(name, None, "needs a torque, and a rotation over a period of the motion or more")
+    torque = "mean torque on the standing wave generator" if design.wave_generator_is_fixed else "mean input torque"
+    text = f"{torque} {mean:.5g} N·mm, by the energy balance {expected:.5g} N·mm"
+    if design.contact.friction:
+        return Check(name, mean >= expected * (1.0 - ENERGY), f"{text}; friction takes {mean - expected:.3g} N·mm")
+    return Check(name, abs(mean / expected - 1.0) <= ENERGY, f"{text}; good within {100 * ENERGY:g} %")
+
+
+def _penetration(design: DriveDesign, history: Mapping[str, np.ndarray]) -> Check:
+    loaded = loaded_increments(history)
+    values = history["max_penetration_mm"][loaded] if len(loaded) else history["max_penetration_mm"]
+    most, allowed = float(values.max(initial=0.0)), design.contact.penetration_tolerance * design.drive.module
+    text = f"flanks penetrate each other by up to {1000 * most:.2g} µm; good up to {1000 * allowed:.2g} µm"
+    return Check("penetration", most <= allowed, text)
+
+
+def _clearance(design: DriveDesign) -> Check:
+    clearance = min(flank_clearance(design, 181, ring) for ring in design.gears[1:])
+    least = -design.contact.penetration_tolerance * design.drive.module
+    text = (
+        f"smallest distance of the undeformed flanks {1000 * clearance:.3g} µm; good from {1000 * least:.2g} µm: the "
+        "contact takes up an overlap of that size"
+    )
+    return Check("clearance of the flanks", clearance >= least, text)
+
+
+def _edge(summary: Mapping[str, Any]) -> Check:
+    contact = summary["contact"]
+    if not contact:
+        return Check("edge contact", None, "no contact under load is known")
+    text = (
+        "lies on an edge: stress and pressure there grow with every finer mesh" if contact["edge"] else "lies off edges"
+    )
+    return Check("edge contact", not contact["edge"], f"the largest contact {text}")
+
+
+def _resolution(summary: Mapping[str, Any]) -> Check:
+    root, asked = summary["root_stress"], summary["accuracy"]
+    if not root:
+        text = "the stress at the teeth is not resolved by windows: nodal averages have no error (output.root_stress)"
+        return Check("resolution", None, text)
+    share = root["total_error"] / abs(root["s1"]) if root["s1"] else np.inf
+    limit = asked["asked"] if asked else RESOLUTION
+    text = f"error of the largest tension at the teeth {100 * share:.2g} %; good up to {100 * limit:.3g} %"
+    return Check("resolution", share <= limit and (not asked or asked["reached"]), text)
+
+
+def _meshed(summary: Mapping[str, Any]) -> Check:
+    doubtful = [name for name, place in summary["places"].items() if place["warning"] and not name.endswith("_apart")]
+    if not summary["places"]:
+        return Check("places of the stresses", None, "there is no increment under load")
+    if not doubtful:
+        return Check("places of the stresses", True, "no largest stress lies where the mesh determines it")
+    text = f"{', '.join(doubtful)}: the largest value lies where it depends on the mesh; see the table of stresses"
+    return Check("places of the stresses", None, text)
+
+
+def _elements(summary: Mapping[str, Any]) -> Check:
+    worst = {body: sizes["quality"]["min_scaled_jacobian"] for body, sizes in summary["bodies"].items()}
+    text = ", ".join(f"{body.replace('_', ' ')} {value:.2g}" for body, value in worst.items())
+    return Check("elements", min(worst.values()) >= QUALITY, f"least scaled Jacobian: {text}; good from {QUALITY:g}")

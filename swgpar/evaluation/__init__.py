@@ -1,0 +1,1 @@
+"""What follows from computed states: one typed result for each question."""

@@ -1,0 +1,1 @@
+"""Contact of pairs of flanks: loads, half-space pressure, nodal pressure."""

@@ -1,0 +1,126 @@
+"""Forces of the ring gear on the flanks of the flexible spline: as line loads, and on the flanks of another mesh."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from swgpar.contact.flanks import FlankContact
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.vectors import create_vector, read_field
+from swgpar.load.load_states import LoadState
+from swgpar.meshing.sector import FlankGrid, SectorMesh
+from swgpar.model.drive_model import DriveModel
+from swgpar.petsc import PETSc
+
+POINTS = 4
+"""Gauss points along z on each piece between the stations of both meshes."""
+
+
+@dataclass(frozen=True)
+class LineLoad:
+    """Line load of a flank along the face width.
+
+    z : (n,) mm, ascending;  load : (n, 3) N/mm on the flexible spline, linear between;  s : (n,) mm, arc length of its
+    middle on the tooth profile
+    """
+
+    z: np.ndarray
+    load: np.ndarray
+    s: np.ndarray
+
+    @property
+    def direction(self) -> np.ndarray:
+        """Unit vector (3,) of the sum of the loads of all stations."""
+        total = self.load.sum(axis=0)
+        return total / np.linalg.norm(total)
+
+
+def nodal_flank_forces(model: DriveModel, state: LoadState, flanks: FlankContact) -> PETSc.Vec:
+    """Nodal contact forces (N) of the flanks by their last evaluation; collective. Each pair counts on one rank."""
+    problem = model.problem
+    local = np.zeros((len(problem.local), 3))
+    flanks.add_owned_forces(problem.displacement(), state, local)
+    total = create_vector(model.partition)
+    total.setValuesBlocked(problem.local.number, -local, addv=PETSc.InsertMode.ADD_VALUES)
+    total.assemble()
+    return total
+
+
+def flank_forces(model: DriveModel, state: LoadState, teeth: np.ndarray, flanks: FlankContact) -> np.ndarray:
+    """Contact forces (n, n_node, 3) N of `flanks` on the nodes of the flexible spline's `teeth` (n,); collective."""
+    layout = model.partition.layouts[FLEXIBLE_SPLINE]
+    vector = nodal_flank_forces(model, state, flanks)
+    forces = read_field(model.partition, FLEXIBLE_SPLINE, teeth - layout.first_tooth, vector)
+    vector.destroy()
+    # in the plane both layers have the force of the lower one
+    return 0.5 * forces if layout.mesh.plane else forces
+
+
+def line_loads(mesh: SectorMesh, forces: np.ndarray) -> dict[tuple[int, int], LineLoad]:
+    """Line loads of the flanks of teeth by (index of the tooth, side) from nodal forces (n, n_node, 3) N.
+
+    Flanks without load have none.
+    """
+    found = {}
+    for k in range(len(forces)):
+        for grid in mesh.flanks:
+            load = line_load(grid, forces[k])
+            if load is not None:
+                found[k, grid.side] = load
+    return found
+
+
+def line_load(grid: FlankGrid, forces: np.ndarray) -> LineLoad | None:
+    """The line load with the resultant and the place of nodal forces (n_node, 3) N on a flank; None without forces."""
+    rows = forces[grid.nodes]
+    total = rows.sum(axis=0)
+    size = np.linalg.norm(total, axis=1)
+    if not size.max() > 0.0:
+        return None
+    direction = total.sum(axis=0)
+    direction /= np.linalg.norm(direction)
+    along = rows @ direction
+    share = np.clip(along.sum(axis=0), 1e-12 * size.max(), None)
+    middle = (along * grid.s[:, None]).sum(axis=0) / share
+    loaded = size > 1e-6 * size.max()
+    s = np.interp(grid.z, grid.z[loaded], np.clip(middle[loaded], grid.s[0], grid.s[-1]))
+    steps = np.diff(grid.z)
+    length = 0.5 * (np.r_[0.0, steps] + np.r_[steps, 0.0])
+    return LineLoad(grid.z, total / length[:, None], s)
+
+
+def nodal_forces(load: LineLoad, grid: FlankGrid, half_width: float) -> np.ndarray:
+    """Nodal forces (n_s + 1, n_z + 1, 3) N of a line load on another flank grid of the same tooth.
+
+    Along the profile the load is a parabola over `half_width` (mm) on either side of its middle.
+    """
+    out = np.zeros((len(grid.s), len(grid.z), 3))
+    point, weight = np.polynomial.legendre.leggauss(POINTS)
+    for j in range(len(grid.z) - 1):
+        # pieces between the stations of both
+        inside = load.z[(load.z > grid.z[j]) & (load.z < grid.z[j + 1])]
+        ends = np.r_[grid.z[j], inside, grid.z[j + 1]]
+        for low, high in zip(ends[:-1], ends[1:]):
+            z = 0.5 * (low + high) + 0.5 * (high - low) * point
+            t = (z - grid.z[j]) / (grid.z[j + 1] - grid.z[j])
+            for k, value in enumerate(z):
+                force = np.array([np.interp(value, load.z, load.load[:, c]) for c in range(3)])
+                force = force * weight[k] * 0.5 * (high - low)
+                share = parabola(grid.s, np.interp(value, load.z, load.s), half_width)
+                out[:, j] += (1.0 - t[k]) * share[:, None] * force
+                out[:, j + 1] += t[k] * share[:, None] * force
+    return out
+
+
+def parabola(s: np.ndarray, middle: float, half_width: float) -> np.ndarray:
+    """Shares (n,) of the nodes at `s` (n,) mm in a load of 1 whose density is 1 - ((s - middle) / half_width)^2."""
+    middle = float(np.clip(middle, s[0], s[-1]))
+    x = np.linspace(-1.0, 1.0, 41)
+    density = 1.0 - x**2
+    place = np.clip(middle + half_width * x, s[0], s[-1])
+    k = np.clip(np.searchsorted(s, place) - 1, 0, len(s) - 2)
+    t = (place - s[k]) / (s[k + 1] - s[k])
+    share = np.bincount(k, density * (1.0 - t), minlength=len(s)) + np.bincount(k + 1, density * t, minlength=len(s))
+    return share / share.sum()

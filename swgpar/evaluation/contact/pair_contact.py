@@ -1,0 +1,318 @@
+"""Contact of every touching pair of flanks: force, line load, and the local pressure that no mesh of a drive resolves.
+
+The mesh gives the force of a pair, its place along the face width, and the motion of both teeth. The exact flanks are
+moved with their teeth. In the plane model the gap between them goes into the line contact of two half planes
+(`contact.line_contact`), in the cup model into the contact of two half spaces over a patch (`contact.patch_contact`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import numpy as np
+from scipy.integrate import trapezoid
+
+from swgpar.contact.flanks import FlankContact
+from swgpar.contact.search import FlankPair
+from swgpar.evaluation.contact.flank_loads import LineLoad, flank_forces, line_loads
+from swgpar.evaluation.contact.line_contact import LineContact, effective_modulus, line_contact
+from swgpar.evaluation.contact.moved_teeth import MovedTooth
+from swgpar.evaluation.contact.patch_contact import PatchContact, patch_contact
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.vectors import read_field
+from swgpar.geometry.rotation import SIXTHS, rotated
+from swgpar.load.load_states import LoadState
+from swgpar.log import logger
+from swgpar.model.drive_model import DriveModel, flank_crowning
+
+SMALLEST = 0.02
+"""Line load, over the largest one, below which the pressure of a pair is not computed."""
+
+WIDTH = 0.05
+"""Width over the module within which the contact is looked for at first."""
+
+COARSE, FINE = 401, 21
+"""Points along a profile, and between three of them, among which that of the least gap is looked for."""
+
+END = 1e-6
+"""Distance over the module from the end of a profile within which a contact lies on an edge."""
+
+
+Neighbours = tuple[MovedTooth, MovedTooth, MovedTooth]
+"""A tooth between its neighbours, clockwise first."""
+
+
+@dataclass(frozen=True)
+class ContactStation:
+    """Contact of two flanks at a station along the face width.
+
+    z_mm : the station;  line_load_Nmm : N/mm
+    s_mm : middle of the contact, arc length from the tip of the flexible spline's tooth;  half_width_mm : of it
+    pressure_MPa : largest pressure
+    """
+
+    z_mm: float
+    line_load_Nmm: float
+    s_mm: float
+    half_width_mm: float
+    pressure_MPa: float
+
+
+@dataclass(frozen=True)
+class PairContact:
+    """Contact of two flanks.
+
+    tooth, ring_tooth : numbers of the teeth, counter-clockwise from +y;  flank : of the flexible spline's tooth
+    angle_deg : of the force on the deformed flank, from the major axis, counter-clockwise, -180 to 180
+    force_N : force between the flanks;  force_share : over the sum of the forces of all pairs of that ring gear
+    torque_Nmm : about the axis, on the flexible spline
+    width_mm : length along the face width that carries the force
+    line_load_Nmm : largest line load, N/mm, at `z_mm`;  radius_mm : of the contact, on the undeformed flexible spline
+    pressure_MPa, half_width_mm, shear_MPa : largest pressure, half width of the contact and largest shear below it
+    sliding_mm_s : sliding of the flexible spline's flank on the other in the section, at the speed of the input
+    edge : 1 where the contact ends at the tip of a profile, or the load at an end of the face width; the pressure is
+    then no property of the drive
+    ring : body whose tooth is meant, in a drive with two ring gears; else empty
+    stations : along the face width, those that carry a load
+
+    From `width_mm` to `sliding_mm_s` all are nan where the pressure is not computed.
+    """
+
+    tooth: int
+    flank: str
+    ring_tooth: int
+    angle_deg: float
+    force_N: float
+    force_share: float
+    torque_Nmm: float
+    width_mm: float = np.nan
+    line_load_Nmm: float = np.nan
+    z_mm: float = np.nan
+    radius_mm: float = np.nan
+    pressure_MPa: float = np.nan
+    half_width_mm: float = np.nan
+    shear_MPa: float = np.nan
+    sliding_mm_s: float = np.nan
+    edge: int = 0
+    ring: str = ""
+    stations: tuple[ContactStation, ...] = ()
+
+    def row(self) -> dict[str, Any]:
+        """The row of pairs.csv."""
+        left_out = ("stations",) if self.ring else ("stations", "ring")
+        return {name: value for name, value in asdict(self).items() if name not in left_out}
+
+    def station_rows(self) -> list[dict[str, Any]]:
+        """The rows of contact_lines.csv."""
+        pair = {"tooth": self.tooth, "flank": self.flank, "ring_tooth": self.ring_tooth}
+        pair |= {"ring": self.ring} if self.ring else {}
+        return [{**pair, **asdict(station)} for station in self.stations]
+
+
+def pair_contacts(model: DriveModel, state: LoadState) -> list[PairContact]:
+    """Contacts of all touching pairs, by ring gear and tooth, the same on all ranks; collective."""
+    return [contact for flanks in model.problem.flanks for contact in _contacts(model, state, flanks)]
+
+
+def _contacts(model: DriveModel, state: LoadState, flanks: FlankContact) -> list[PairContact]:
+    """Contacts of all touching pairs with one ring gear."""
+    spline = model.partition.layouts[FLEXIBLE_SPLINE]
+    first, end = model.partition.owned_sectors(FLEXIBLE_SPLINE)
+    forces = flank_forces(model, state, spline.first_tooth + np.arange(first, end), flanks)
+    loads = line_loads(spline.mesh, forces)
+    pairs = [pair for pair in flanks.pairs if (pair.sector - first, pair.side) in loads]
+    carried = _carried(model, state, flanks, pairs, forces, loads)
+    top = max(model.comm.allgather(max((_peak(load) for load in loads.values()), default=0.0)))
+    resolved = [k for k, pair in enumerate(pairs) if _peak(loads[pair.sector - first, pair.side]) > SMALLEST * top]
+    moved, facing = moved_teeth(model, [pairs[k] for k in resolved], flanks)
+    failed = []
+    for k, teeth, ring_teeth in zip(resolved, moved, facing):
+        load = loads[pairs[k].sector - first, pairs[k].side]
+        try:
+            carried[k] = _with_pressure(carried[k], model, load, teeth, ring_teeth)
+        except (ArithmeticError, np.linalg.LinAlgError) as error:
+            failed.append(f"tooth {pairs[k].sector}: {error}")
+    contacts = [contact for part in model.comm.allgather(carried) for contact in part]
+    reasons = [reason for part in model.comm.allgather(failed) for reason in part]
+    if reasons:
+        pairs_left = f"a pair is left out of pairs.csv: {reasons[0]}"
+        if len(reasons) > 1:
+            pairs_left = f"{len(reasons)} pairs is left out of pairs.csv, the first is {reasons[0]}"
+        logger.warning("the pressure of %s", pairs_left)
+    total = model.copies * sum(contact.force_N for contact in contacts)
+    contacts = [replace(contact, force_share=contact.force_N / total) for contact in contacts]
+    return sorted(contacts, key=lambda one: (one.tooth, one.flank))
+
+
+def _carried(
+    model: DriveModel,
+    state: LoadState,
+    flanks: FlankContact,
+    pairs: list[FlankPair],
+    forces: np.ndarray,
+    loads: Mapping[tuple[int, int], LineLoad],
+) -> list[PairContact]:
+    """Force, torque and place of owned pairs, without pressure and share. forces : (n_owned, n_node, 3) N"""
+    body, ring = model.elements.bodies[FLEXIBLE_SPLINE], flanks.ring.layout
+    name = ring.name if len(model.problem.flanks) > 1 else ""
+    spline, (first, _) = body.layout, model.partition.owned_sectors(FLEXIBLE_SPLINE)
+    positions = (body.positions() + body.displacement(model.problem.displacement()))[body.owned]
+    grids = {grid.side: grid for grid in spline.mesh.flanks}
+    found = []
+    for pair in pairs:
+        k, nodes = pair.sector - first, grids[pair.side].nodes.ravel()
+        force, (x, y, _) = forces[k, nodes], positions[k, nodes].T
+        load, size = loads[k, pair.side], np.linalg.norm(force, axis=1)
+        place = np.arctan2(-(size @ x), size @ y) - state.angle
+        found.append(
+            PairContact(
+                tooth=(spline.first_tooth + pair.sector) % spline.mesh.n_sectors,
+                flank="clockwise" if pair.side > 0 else "counter-clockwise",
+                ring_tooth=pair.ring_tooth % ring.mesh.n_sectors,
+                angle_deg=float(np.degrees(np.arctan2(np.sin(place), np.cos(place)))),
+                force_N=float(trapezoid(load.load @ load.direction, load.z)),
+                force_share=np.nan,
+                torque_Nmm=float(x @ force[:, 1] - y @ force[:, 0]),
+                ring=name,
+            )
+        )
+    return found
+
+
+def _peak(load: LineLoad) -> float:
+    return float(np.linalg.norm(load.load, axis=1).max())
+
+
+def moved_teeth(
+    model: DriveModel, pairs: list[FlankPair], flanks: FlankContact
+) -> tuple[list[Neighbours], list[Neighbours]]:
+    """The teeth of every pair, of the flexible spline and of the ring gear, between their neighbours; collective."""
+    spline, ring = model.partition.layouts[FLEXIBLE_SPLINE], flanks.ring.layout
+    around, x = np.arange(-1, 2), model.problem.x
+
+    def fields(body: int, sectors: list[int]) -> np.ndarray:
+        every = (np.array(sectors, dtype=np.int64)[:, None] + around).ravel()
+        return read_field(model.partition, body, every, x).reshape(
+            len(sectors), 3, len(model.partition.layouts[body].mesh.coords), 3
+        )
+
+    u, ring_u = fields(FLEXIBLE_SPLINE, [p.sector for p in pairs]), fields(flanks.ring_body, [p.ring for p in pairs])
+    crowned = flank_crowning(model.design)
+    moved, facing = [], []
+    for k, pair in enumerate(pairs):
+        tooth = spline.first_tooth + pair.sector + around
+        moved.append(tuple(MovedTooth(spline, n, pair.side, u[k, i], crowned) for i, n in enumerate(tooth)))
+        turned = ring_u[k] @ SIXTHS[pair.ring_sixths].T
+        tooth = pair.ring_tooth + around
+        facing.append(tuple(MovedTooth(ring, n, -pair.side, turned[i]) for i, n in enumerate(tooth)))
+    return moved, facing
+
+
+def _with_pressure(
+    contact: PairContact, model: DriveModel, load: LineLoad, teeth: Neighbours, ring_teeth: Neighbours
+) -> PairContact:
+    """The contact of a pair with its local pressure."""
+    tooth, facing = teeth[1], ring_teeth[1]
+    along = load.load @ load.direction
+    gap = _Gap(tooth, facing)
+    if model.design.drive.model == "plane":
+        found = _line(model, gap, load)
+        shape, width, on_edge = found, float(np.ptp(load.z)), found.at_end
+        size = float(along[0])
+        stations = (ContactStation(0.0, size, found.middle, found.half_width, found.peak),)
+    else:
+        patch = _patch(model, gap, load, along, contact.force_N)
+        shape, on_edge = patch.strongest, patch.at_end or patch.reaches
+        columns = (patch.z, patch.line_load, patch.middle, patch.half_width, patch.pressure)
+        stations = tuple(ContactStation(*map(float, values)) for values in zip(*columns, strict=True))
+        width = len(patch.z) * float(patch.z[1] - patch.z[0])
+    top = max(stations, key=lambda station: station.pressure_MPa)
+    ends = top.s_mm + top.half_width_mm * np.array([[-1.0], [1.0]])
+    on_tip = gap.foot(ends, np.array([top.z_mm])).min() < END * model.design.drive.module
+    middle = tooth.profile.point(np.clip(top.s_mm, 0.0, tooth.profile.length))[0]
+    return replace(
+        contact,
+        width_mm=width,
+        line_load_Nmm=top.line_load_Nmm,
+        z_mm=top.z_mm,
+        radius_mm=float(np.hypot(*middle)),
+        pressure_MPa=top.pressure_MPa,
+        half_width_mm=top.half_width_mm,
+        shear_MPa=shape.largest_shear(),
+        sliding_mm_s=_sliding(model, gap, teeth, ring_teeth, top) * model.design.load.input_speed * np.pi / 30.0,
+        edge=int(on_edge or on_tip),
+        stations=stations,
+    )
+
+
+def _sliding(model: DriveModel, gap: _Gap, teeth: Neighbours, ring_teeth: Neighbours, at: ContactStation) -> float:
+    """Sliding (mm per rad of the wave generator) of both flanks at a station, towards the root of the spline's tooth.
+
+    After one pitch of the fixed gear a tooth is where its neighbour was, turned by that pitch. So the neighbours give
+    the velocity of a tooth.
+    """
+    pitch = model.design.period_angle
+    z, s = np.array([at.z_mm]), np.array([[at.s_mm]])
+
+    def velocity(trio: Neighbours, arc_length: np.ndarray) -> np.ndarray:
+        before, after = (
+            rotated(trio[k].sections(z).from_profile(arc_length)[0, 0], turn) for k, turn in ((2, -pitch), (0, pitch))
+        )
+        return (after - before) / (2.0 * pitch)
+
+    step = 1e-3 * gap.tooth.profile.length * np.array([[-1.0], [1.0]])
+    low, high = gap.tooth.sections(z).from_profile(s + step)[:, 0]
+    tangent = (high - low) / np.linalg.norm(high - low)
+    return float((velocity(teeth, s) - velocity(ring_teeth, gap.foot(s, z))) @ tangent)
+
+
+class _Gap:
+    """Gap between two moved teeth over the arc length on the first one and the face width."""
+
+    def __init__(self, tooth: MovedTooth, facing: MovedTooth) -> None:
+        self.tooth, self.facing = tooth, facing
+
+    def _distance(self, s: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return self.facing.sections(z).distance(self.tooth.sections(z).from_profile(s))
+
+    def __call__(self, s: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """Gap (m, n) mm at s (m, n) and z (n,) mm, infinite beyond the ends of the profile."""
+        inside = (s >= 0.0) & (s <= self.tooth.profile.length)
+        return np.where(inside, self._distance(np.where(inside, s, 0.0), z)[0], np.inf)
+
+    def foot(self, s: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """Arc length (m, n) mm on the facing flank at s (m, n) and z (n,) mm."""
+        return self._distance(s, z)[1]
+
+    def least_at(self, z: np.ndarray) -> np.ndarray:
+        """Arc length (n,) mm of the least gap at z (n,) mm."""
+        length = self.tooth.profile.length
+        s = np.tile(np.linspace(0.0, length, COARSE)[:, None], len(z))
+        s = s[self(s, z).argmin(axis=0), np.arange(len(z))]
+        fine = s + np.linspace(-1.0, 1.0, FINE)[:, None] * length / (COARSE - 1)
+        return fine[self(fine, z).argmin(axis=0), np.arange(len(z))]
+
+
+def _modulus(model: DriveModel) -> float:
+    design = model.design
+    return effective_modulus(design.material.E, design.material.nu, plane_stress=design.drive.model == "plane")
+
+
+def _line(model: DriveModel, gap: _Gap, load: LineLoad) -> LineContact:
+    middle = np.zeros(1)
+    width, size = WIDTH * model.design.drive.module, float(np.linalg.norm(load.load[0]))
+    return line_contact(
+        lambda s: gap(s[:, None], middle)[:, 0], float(gap.least_at(middle)[0]), width, size, _modulus(model)
+    )
+
+
+def _patch(model: DriveModel, gap: _Gap, load: LineLoad, along: np.ndarray, force: float) -> PatchContact:
+    """Contact of a pair in space. along : (n,) N/mm, line load of the mesh"""
+    # the ring gears of a pancake drive are narrower than the flexible spline
+    low, high = gap.facing.ends
+    ends = max(float(load.z[0]), low), min(float(load.z[-1]), high)
+    place = float(trapezoid(along * load.z, load.z)) / force
+    width = WIDTH * model.design.drive.module
+    return patch_contact(gap, gap.least_at, ends, width, force=force, place=place, modulus=_modulus(model))

@@ -1,0 +1,268 @@
+"""Fatigue of the flexible spline over a turn of the wave generator or a load program: safety, places, life."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+
+from swgpar.evaluation.fatigue_criteria import (
+    CriticalPlane,
+    critical_plane,
+    crossland,
+    damage,
+    fatigue_limits,
+    goodman,
+    normal_stress,
+)
+from swgpar.evaluation.places import APART_DISTANCE, near_contact
+from swgpar.evaluation.stress_cycle import StressCycle
+from swgpar.evaluation.windows.root_stress import RootStress
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.stress import principal
+from swgpar.load.load_program import program_points
+from swgpar.load.load_states import Stage
+from swgpar.model.regions import TOOTH_END, warning_of
+from swgpar.results.sector_fields import SectorFields
+
+WARNING = (
+    "the strengths in [fatigue] are the user's responsibility: the defaults are those of a steel like 30CrNiMo8 and "
+    "replace no test of the part"
+)
+
+LARGEST = 1000.0
+"""Largest safety factor in the fields."""
+
+ROOT, CONTACT = "tooth root", "flank under contact"
+
+COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "zx")
+CRITERIA = ("goodman", "crossland", "yield")
+
+SAME = 1e-6
+"""Relative difference below which two utilisations are equal."""
+
+
+@dataclass(frozen=True)
+class FatigueResult:
+    """Fatigue of a run.
+
+    summary : entry ``fatigue`` of summary.json;  sector : nodal fields
+    cycle : columns of fatigue_cycle.csv, the stress where Goodman's safety is the least
+    """
+
+    summary: dict[str, Any]
+    sector: SectorFields
+    cycle: dict[str, np.ndarray]
+
+
+def evaluate_fatigue(cycle: StressCycle, root_stress: RootStress | None) -> FatigueResult:
+    """Safety factors of every node of a sector from its stress over the cycle; collective.
+
+    In a load program the least of all sectors stand for a node.
+
+    root_stress : of the loaded state, by which nodal stresses in the tooth root are scaled; None leaves them
+    """
+    model = cycle.model
+    comm, fatigue = model.comm, model.design.fatigue
+    regions, warnings = _regions(cycle)
+    factor, factor_error = _root_factor(root_stress)
+    scale = np.where(np.isin(regions, _scaled(root_stress)), factor, 1.0)
+    mine, stress = cycle.history()
+    stress *= scale[mine][:, None]
+    plane = critical_plane(stress, fatigue, model.design.drive.model == "plane")
+    utilisation = {
+        "goodman": plane.utilisation,
+        "crossland": crossland(stress, fatigue),
+        "yield": principal(stress)[2].max(axis=0) / fatigue.yield_strength,
+    }
+    own = _largest(len(cycle.nodes), mine, {**utilisation, "amplitude": plane.amplitude, "mean": plane.mean})
+    parts = comm.allgather(own)
+    joined = {name: np.concatenate([part[name] for part in parts]) for name in own}
+    nodal = _largest(len(cycle.nodes), np.tile(np.arange(len(cycle.nodes)), len(parts)), joined)
+    sound = warnings == ""
+    least = {name: _first_largest(np.where(sound, nodal[name], -1.0)) for name in CRITERIA}
+    history, normal = _history_at(comm, mine, stress, plane, least["goodman"])
+    values = normal_stress(history[:, None], normal[None])[:, 0]
+    half = _change_by_half(values, cycle, 1.0 / nodal["goodman"][least["goodman"]])
+    at_root = scale[least["goodman"]] != 1.0
+    summary = {
+        **{name: _place(cycle, name, least[name], nodal, regions) for name in CRITERIA},
+        "regions": _by_region(nodal, regions, warnings),
+        "normal": normal.tolist(),
+        "mesh_error": factor_error / factor / nodal["goodman"][least["goodman"]] if at_root else None,
+        "sampling_error": half,
+        "root_factor": factor if root_stress else None,
+        "root_factor_error": factor_error if root_stress else None,
+        **_life(cycle, damage(values, fatigue)),
+        "phases": len(values),
+        "fatigue_limit_of_the_part_MPa": fatigue_limits(fatigue)[0],
+        "warning": WARNING,
+    }
+    table = {**_when(cycle, len(values)), **dict(zip(COMPONENTS, history.T, strict=True)), "normal_stress_MPa": values}
+    return FatigueResult(summary, _sector(cycle, nodal, regions), table)
+
+
+def _life(cycle: StressCycle, damage_of_cycle: float) -> dict[str, float | None]:
+    """Damage and life in turns of the wave generator, or in passages of the load program.
+
+    Without damage the life is None, without end. Above the tensile strength it is 0 and the damage None.
+    """
+    design = cycle.model.design
+    found: dict[str, float | None] = dict.fromkeys(
+        ("damage_per_turn", "life_turns", "life_hours", "cycles_per_turn", "damage_per_program", "life_programs")
+    )
+    life = 1.0 / damage_of_cycle if damage_of_cycle > 0.0 else None
+    finite = np.isfinite(damage_of_cycle)
+    if design.has_program:
+        return found | {"damage_per_program": damage_of_cycle if finite else None, "life_programs": life}
+    speed = 2.0 * np.pi / cycle.angle
+    turns = None if life is None else life / speed
+    return found | {
+        "damage_per_turn": speed * damage_of_cycle if finite else None,
+        "life_turns": turns,
+        "life_hours": turns / (60.0 * design.load.input_speed) if turns is not None else None,
+        "cycles_per_turn": speed,
+    }
+
+
+def _when(cycle: StressCycle, count: int) -> dict[str, np.ndarray]:
+    """Columns that say when the values of a cycle are: wave-generator angles, in a load program its steps too."""
+    design = cycle.model.design
+    if not design.has_program:
+        return {"wg_angle_deg": np.degrees(cycle.angle) * np.arange(count) / count}
+    angles = np.array([point.angle for point in program_points(design)])
+    return {"step": int(Stage.LOAD) + np.arange(count), "wg_angle_deg": angles}
+
+
+def _scaled(root_stress: RootStress | None) -> list[str]:
+    """Regions whose stresses the windows resolve."""
+    if root_stress is None:
+        return []
+    return [ROOT, TOOTH_END] if root_stress.region == TOOTH_END else [ROOT]
+
+
+def _root_factor(root_stress: RootStress | None) -> tuple[float, float]:
+    """Largest tension at the teeth by windows over that of nodal averages, and its error; 1 and 0 without windows."""
+    if root_stress is None:
+        return 1.0, 0.0
+    return root_stress.s1 / root_stress.on_mesh, root_stress.total_error / root_stress.on_mesh
+
+
+def _regions(cycle: StressCycle) -> tuple[np.ndarray, np.ndarray]:
+    """Region and warning (n,) of the kept nodes; collective."""
+    design, mesh = cycle.model.design, cycle.body.layout.mesh
+    touched = np.zeros(len(mesh.coords), dtype=bool)
+    touched[cycle.nodes] = cycle.model.comm.allreduce(cycle.touched.astype(int), op=MPI.SUM) > 0
+    near = near_contact(mesh, touched[None], APART_DISTANCE * design.drive.module)[0]
+    names = cycle.model.regions[FLEXIBLE_SPLINE][False]
+    regions, warnings = [], []
+    for node in cycle.nodes:
+        region = str(names[node])
+        if near[node] and region != ROOT:
+            region = CONTACT
+        regions.append(region)
+        warnings.append(warning_of(design, region, mesh.coords[node]))
+    return np.array(regions), np.array(warnings)
+
+
+def _first_largest(values: np.ndarray) -> int:
+    """Index of the largest of the values (n,), of equal ones the first.
+
+    Both sides of a sector have the same nodes: round-off must not choose between them.
+    """
+    return int(np.flatnonzero(values >= values.max() - SAME * abs(values.max()))[0])
+
+
+def _largest(n: int, index: np.ndarray, columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Largest utilisations of n nodes, amplitude and mean where that by Goodman is the largest; -1 without values.
+
+    index : (m,) nodes of the values in columns (m,), of which a node may have several
+    """
+    out = {name: np.full(n, -1.0) for name in columns}
+    for name in CRITERIA:
+        np.maximum.at(out[name], index, columns[name])
+    upward = np.argsort(columns["goodman"], kind="stable")  # of several values the last one is kept
+    for name in ("amplitude", "mean"):
+        out[name][index[upward]] = columns[name][upward]
+    return out
+
+
+def _history_at(
+    comm: MPI.Comm, mine: np.ndarray, stress: np.ndarray, plane: CriticalPlane, node: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Stress (n_phases, 6) MPa and normal (3,) of the critical plane at a node, on every rank; collective.
+
+    Of several histories at the node it is that with the largest utilisation.
+    """
+    found, part = np.flatnonzero(mine == node), None
+    if len(found):
+        at = found[_first_largest(plane.utilisation[found])]
+        part = float(plane.utilisation[at]), stress[:, at], plane.normal[at]
+    parts = [one for one in comm.allgather(part) if one is not None]
+    _, history, normal = parts[_first_largest(np.array([utilisation for utilisation, *_ in parts]))]
+    return history, normal
+
+
+def _change_by_half(values: np.ndarray, cycle: StressCycle, safety: float) -> float | None:
+    """Largest change of Goodman's safety with one or the other half of the angles.
+
+    None for an odd number of them, and for a load program.
+    """
+    if cycle.model.design.has_program or cycle.model.design.steps.samples % 2:
+        return None
+    halves = values.reshape(-1, 2)
+    high, low = halves.max(axis=0), halves.min(axis=0)
+    utilisation = goodman(0.5 * (high - low), 0.5 * (high + low), cycle.model.design.fatigue)
+    return float(np.abs(1.0 / utilisation - safety).max())
+
+
+def _place(
+    cycle: StressCycle, criterion: str, k: int, nodal: dict[str, np.ndarray], regions: np.ndarray
+) -> dict[str, Any]:
+    """Safety by a criterion at a node and where it is; `angle_deg` from the middle of its tooth, counter-clockwise."""
+    mesh = cycle.body.layout.mesh
+    x, y, z = mesh.coords[cycle.nodes[k]]
+    return {
+        "safety": _safety(nodal[criterion][k]),
+        "amplitude_MPa": float(nodal["amplitude"][k]),
+        "mean_MPa": float(nodal["mean"][k]),
+        "region": str(regions[k]),
+        "radius": float(np.hypot(x, y)),
+        "z": 0.0 if mesh.plane else float(z),
+        "angle_deg": float(np.degrees(np.arctan2(-x, y))),
+    }
+
+
+def _safety(utilisation: float) -> float:
+    return float(min(LARGEST, 1.0 / max(utilisation, 1e-300)))
+
+
+def _by_region(nodal: dict[str, np.ndarray], regions: np.ndarray, warnings: np.ndarray) -> dict[str, dict[str, Any]]:
+    """Least safety factors of every region, with the warnings that belong to it."""
+    found = {}
+    for region in dict.fromkeys(regions.tolist()):
+        here = np.flatnonzero(regions == region)
+        at = here[_first_largest(nodal["goodman"][here])]
+        found[region] = {
+            **{name: _safety(nodal[name][here].max()) for name in CRITERIA},
+            "amplitude_MPa": float(nodal["amplitude"][at]),
+            "mean_MPa": float(nodal["mean"][at]),
+            "warning": str(warnings[at]),
+        }
+    return found
+
+
+def _sector(cycle: StressCycle, nodal: dict[str, np.ndarray], regions: np.ndarray) -> SectorFields:
+    """Fields of all nodes of the sector. `region` numbers the regions in the order of the summary."""
+    mesh = cycle.body.layout.mesh
+    index = np.zeros(len(mesh.coords), dtype=int)
+    index[cycle.nodes] = np.arange(len(cycle.nodes))
+    if mesh.lower_nodes is not None:
+        index = index[mesh.lower_nodes]
+    names = list(dict.fromkeys(regions.tolist()))
+    fields = {f"safety_{name}": np.minimum(LARGEST, 1.0 / np.clip(nodal[name], 1e-300, None)) for name in CRITERIA}
+    fields |= {name: nodal[name] for name in ("amplitude", "mean")}
+    fields["region"] = np.array([float(names.index(region)) for region in regions])
+    return SectorFields(mesh.coords, mesh.hexes, {name: values[index] for name, values in fields.items()})

@@ -1,0 +1,36 @@
+"""Whether the input torque is that of a drive whose teeth do not jam."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from swgpar.checks.remarks import torque_remark
+from swgpar.design.drive_design import DriveDesign
+from swgpar.results.history import Row, column
+
+LEAST_EFFICIENCY = 0.5
+"""Below this a drive loses more than it transmits: its teeth jam, or it turns against itself."""
+
+
+def jamming_remark(design: DriveDesign, rows: Sequence[Row], means: Mapping[str, float]) -> str | None:
+    """A sentence where the mean input torque is far from that of the energy balance, T / ratio; else None.
+
+    Over a period the work of the input torque is that of the output torque, plus what friction takes. Less than a
+    period, drives without a torque and bolted ones, which do not repeat after a pitch, are not judged.
+
+    rows : increments of the rotation whose `means` are given
+    """
+    expected = 1000.0 * design.load.torque / abs(design.ratio)
+    if not rows or expected == 0.0 or design.is_bolted or torque_remark(design) is not None:
+        return None
+    angles = column(rows, "wg_angle_deg")
+    covered = design.steps.samples or np.ptp(angles) + design.steps.increment >= np.degrees(design.period_angle)
+    mean = means["wg_torque_Nmm"]
+    if not covered or LEAST_EFFICIENCY * expected <= mean <= expected / LEAST_EFFICIENCY:
+        return None
+    return (
+        f"the mean input torque of {mean:.4g} N·mm is far from the {expected:.4g} N·mm of the energy balance: the "
+        "teeth may jam, and the results are not those of a running drive; swgpar check shows where teeth overlap"
+    )

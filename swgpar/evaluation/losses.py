@@ -1,0 +1,191 @@
+"""Losses of the drive over a turn of the wave generator: friction of flanks and bearing, hysteresis of the material.
+
+The loss torque is the input torque that the losses take: their work per turn over 2 pi (docs/theory/losses.md).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+
+from swgpar.design.drive_design import DriveDesign
+from swgpar.design.sections import Material
+from swgpar.evaluation.bearing_loads import ball_contact
+from swgpar.evaluation.stress_cycle import StressCycle, elements_of_rank
+from swgpar.fem.body_layout import BodyLayout
+from swgpar.log import logger
+from swgpar.model.drive_model import DriveModel
+from swgpar.results.history import Row
+
+SMALL_SHARE = 0.01
+"""Share of the flanks' force that friction leaves out without a word: pairs that hardly touch are not searched."""
+
+CHUNK = 256
+"""Elements whose harmonics are combined at once."""
+
+
+def cam_force(model: DriveModel) -> float:
+    """Force (N) of the wave generator on the whole drive; collective.
+
+    It is the pressure integrated over the inner surface of the spline, with a bearing the sum of the ball loads.
+    """
+    if model.design.bearing is not None:
+        mine = float(ball_contact(model).owned_forces().sum())
+    else:
+        cam = model.problem.rigid_contacts[0]
+        mine = float((cam.pressure * cam.weight)[cam.owned].sum())
+    return model.copies * model.comm.allreduce(mine, op=MPI.SUM)
+
+
+def evaluate_losses(
+    cycle: StressCycle, pairs: Sequence[Row], cam_forces: Sequence[float], increments: Sequence[int]
+) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
+    """Entry ``losses`` of summary.json and the columns of losses.csv; collective.
+
+    pairs : rows of pairs.csv;  increments : numbers of those of the sampled period, from 1
+    cam_forces : (n,) N, `cam_force` of all increments
+    """
+    model = cycle.model
+    design, losses = model.design, model.design.losses
+    omega = design.load.input_speed * np.pi / 30.0
+    sliding = np.array([_flank_torque(design, pairs, increment, model.copies) for increment in increments])
+    forces = np.array([cam_forces[increment - 1] for increment in increments])
+    arm = 0.5 * (losses.bearing_diameter or _bearing_diameter(design))
+    # the outer race turns with the flexible spline
+    relative = 1.0 if design.output_gear == "ring_gear" else 1.0 - 1.0 / design.ratio
+    bearing = losses.bearing_friction * forces * arm * relative
+    hysteresis = losses.loss_factor * hysteresis_work(cycle) / (2.0 * np.pi)
+    parts = {
+        "flank_friction": float(sliding.mean()),
+        "hysteresis": hysteresis,
+        "bearing": float(bearing.mean()),
+    }
+    if (missing := force_without_sliding(pairs, increments)) > SMALL_SHARE:
+        logger.warning(
+            "the friction of the flanks leaves out %.3g %% of their force: the contacts of these pairs are not known",
+            100.0 * missing,
+        )
+    total, useful = sum(parts.values()), 1000.0 * design.load.torque / abs(design.input_ratio)
+    summary = {
+        "loss_torque_Nmm": total,
+        "parts_Nmm": parts,
+        "work_per_turn_J": 2e-3 * np.pi * total,
+        "power_W": 1e-3 * total * omega,
+        "efficiency": useful / (useful + total) if useful else None,
+        "no_load_torque_Nmm": None if useful else total,
+        "cam_force_N": float(forces.mean()),
+        "flank_friction_coefficient": flank_coefficient(design),
+    }
+    table = {
+        "increment": np.array(increments),
+        "flank_friction_Nmm": sliding,
+        "bearing_Nmm": bearing,
+        "cam_force_N": forces,
+    }
+    return summary, table
+
+
+def _bearing_diameter(design: DriveDesign) -> float:
+    """Diameter (mm) on which the bearing's friction acts: that of the balls' centres, or without them of the bore."""
+    return 2.0 * design.inner_radius if design.bearing is None else design.bearing_sizes.pitch_diameter
+
+
+def flank_coefficient(design: DriveDesign) -> float:
+    """Coefficient of friction between the flanks: that of the run, or that of [losses] in a run without friction."""
+    return design.contact.friction or design.losses.flank_friction
+
+
+def _flank_torque(design: DriveDesign, pairs: Sequence[Row], increment: int, copies: int) -> float:
+    """Power of the friction between the flanks over the speed of the wave generator, N mm."""
+    omega, coefficient = design.load.input_speed * np.pi / 30.0, flank_coefficient(design)
+    here = [pair for pair in pairs if pair["increment"] == increment and np.isfinite(pair["sliding_mm_s"])]
+    work = sum(pair["force_N"] * abs(pair["sliding_mm_s"]) for pair in here)
+    # the force of a pair in a run with friction has its tangential part
+    share = coefficient / np.hypot(1.0, coefficient) if design.contact.friction else coefficient
+    return float(copies * share * work / omega)
+
+
+def force_without_sliding(pairs: Sequence[Row], increments: Sequence[int]) -> float:
+    """Share of the force of all pairs whose contact, and with it their sliding, is not known."""
+    here = [pair for pair in pairs if pair["increment"] in increments]
+    force = sum(pair["force_N"] for pair in here)
+    missing = sum(pair["force_N"] for pair in here if np.isnan(pair["sliding_mm_s"]))
+    return missing / force if force else 0.0
+
+
+def hysteresis_work(cycle: StressCycle) -> float:
+    """Work (N mm) per turn of the wave generator that the spline takes with a loss factor of 1; collective."""
+    model, layout = cycle.model, cycle.body.layout
+    mine, stress = cycle.history()
+    thickness = model.design.drive.face_width if layout.mesh.plane else None
+    per_cycle = work_per_cycle(model.comm, layout, cycle.nodes[mine], stress, model.design.material, thickness)
+    return per_cycle * 2.0 * np.pi / cycle.angle
+
+
+def work_per_cycle(
+    comm: MPI.Comm,
+    layout: BodyLayout,
+    nodes: np.ndarray,
+    stress: np.ndarray,
+    material: Material,
+    thickness: float | None,
+) -> float:
+    """Work (N mm) that all sectors of a body take in a cycle with a loss factor of 1; collective.
+
+    Harmonic n of the stress at a point goes through n cycles in a cycle of the drive. With a loss factor eta each of
+    them takes 2 pi eta times the strain energy of its amplitude.
+
+    nodes : (n,) of the elements of this rank;  stress : (n_phases, n, 6) MPa over the cycle
+    thickness : mm, in the plane; None for a solid
+    """
+    amplitude = np.fft.rfft(stress, axis=0)[1:] * (2.0 / len(stress))
+    if len(stress) % 2 == 0:
+        amplitude[-1] *= 0.5
+    amplitude *= np.sqrt(np.arange(1.0, len(amplitude) + 1.0))[:, None, None]
+    features = energy_coordinates(amplitude, material.E, material.nu)
+    local = np.full(len(layout.mesh.coords), -1)
+    local[nodes] = np.arange(len(nodes))
+    elements, energy = layout.mesh.elements[elements_of_rank(comm, layout)], 0.0
+    for start in range(0, len(elements), CHUNK):
+        chunk = elements[start : start + CHUNK]
+        matrix, values = mass_matrices(layout.mesh.coords[chunk], thickness), features[local[chunk]]
+        energy += float((np.matmul(matrix, values) * values).sum())
+    return 2.0 * np.pi * layout.mesh.n_sectors * comm.allreduce(energy, op=MPI.SUM)
+
+
+def energy_coordinates(amplitude: np.ndarray, E: float, nu: float) -> np.ndarray:
+    """Numbers (n, m) whose squares add up to the strain energy density (MPa) of amplitudes (k, n, 6) MPa, complex.
+
+    The density is (s_ij s_ij (1 + nu) - nu s_kk^2) / 2 E, in plane stress as well. In parts: the deviator's with
+    (1 + nu) / 2 E and the trace's with (1 - 2 nu) / 6 E.
+    """
+    xx, yy, zz, xy, yz, zx = np.moveaxis(amplitude, -1, 0)
+    trace = xx + yy + zz
+    deviator = [xx - trace / 3.0, yy - trace / 3.0, zz - trace / 3.0, *(np.sqrt(2.0) * one for one in (xy, yz, zx))]
+    parts = [np.sqrt(0.5 * (1.0 + nu) / E) * one for one in deviator] + [np.sqrt((1.0 - 2.0 * nu) / (6.0 * E)) * trace]
+    stacked = np.concatenate(parts)  # (7 k, n)
+    return np.concatenate([stacked.real, stacked.imag]).T
+
+
+def mass_matrices(coords: np.ndarray, thickness: float | None) -> np.ndarray:
+    """Integrals (n, m, m) mm³ of products of the shape functions of hexahedra (n, 8, 3) mm, or of quadrilaterals.
+
+    thickness : mm, of quadrilaterals (n, 4, 3) in the plane; None for hexahedra
+    """
+    dims = 3 if thickness is None else 2
+    corner = np.array([[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1]])
+    corner = np.vstack([corner, corner * (1, 1, -1)])[: 2**dims, :dims]
+    point = np.array(np.meshgrid(*[(-1.0 / np.sqrt(3.0), 1.0 / np.sqrt(3.0))] * dims)).reshape(dims, -1).T
+    out = np.zeros((len(coords), len(corner), len(corner)))
+    for x in point:
+        factors = 1.0 + x * corner
+        shape = factors.prod(axis=1) / 2.0**dims
+        gradient = np.stack(
+            [corner[:, k] * np.delete(factors, k, axis=1).prod(axis=1) / 2.0**dims for k in range(dims)]
+        )
+        jacobian = np.linalg.det(np.einsum("ka,nai->nki", gradient, coords[..., :dims]))
+        out += np.abs(jacobian)[:, None, None] * shape[:, None] * shape
+    return out * (1.0 if thickness is None else thickness)

@@ -1,0 +1,195 @@
+"""Where the largest stresses are: body, region, tooth, radius, z, angle, and whether the number means anything."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from swgpar.design.drive_design import DriveDesign
+from swgpar.evaluation.contact.contact_pressure import nodal_pressure
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.load.load_states import LoadState
+from swgpar.meshing.sector import SectorMesh
+from swgpar.model.drive_model import DriveModel
+from swgpar.model.regions import END, NEAR, warning_of
+
+TOUCHED = 0.02
+"""Share of the largest nodal pressure from which a flank's node counts as touched."""
+
+APART, APART_DISTANCE = "_apart", 0.25
+"""Ending of the names of stresses apart from the contact of flanks; distance (modules) from a touched node."""
+
+OF_REGION = " in "
+"""Between a stress and a region in the names of the largest stresses of regions: "fs_vm in cup wall"."""
+
+ROLLER = "below a roller: an average over elements, larger on a finer mesh"
+CORNER = "a contact lies on the edge of a tooth: larger on a finer mesh"
+
+
+@dataclass(frozen=True)
+class Place:
+    """Place of a largest stress.
+
+    value : MPa;  body : name
+    region : "tooth root", "tooth end", "flank under contact", "flank", "tip", "rim inside", "rim", "notch", "cup wall",
+    "fillet at the back", "fillet", "closed end", "bore", "attachment", "flange", "rim of the flange", "outer surface"
+    or "inside the tooth"
+    tooth : number, counter-clockwise from +y in the undeformed drive
+    radius, z : mm;  angle_deg : from +y, counter-clockwise
+    warning : why the value depends on the mesh; empty where it converges
+    in_root : largest value, MPa, in the roots of the body's teeth; at least 0
+    root_spacing : mm, length of an element along the root
+    error : MPa, estimated, by the drive's mesh; None where it is not known
+    """
+
+    value: float
+    body: str
+    region: str
+    tooth: int
+    radius: float
+    z: float
+    angle_deg: float
+    warning: str
+    in_root: float = 0.0
+    root_spacing: float = 0.0
+    error: float | None = None
+
+
+def find_places(
+    model: DriveModel, state: LoadState, fields: Sequence[Mapping[str, np.ndarray]], *, on_edge: bool = False
+) -> dict[str, Place]:
+    """Places of the largest s1, |s3| and von Mises stress of both bodies, by column of the history; collective.
+
+    |s3| and von Mises are looked for apart from the contact of flanks as well, with names that end with `APART`: on
+    surfaces and in the rim. Inside of a tooth they decrease with the distance from the contact, wherever it is cut off.
+    s1 and von Mises are looked for in every region as well, with names that have `OF_REGION`; only values above 0.
+
+    fields : nodal fields of both bodies as `DriveModel.stresses` gives them
+    on_edge : whether a contact of flanks lies on the edge of a tooth
+    """
+    pressed = pressed_nodes(model, state)  # those of the spline; any flank of the ring gear may be touched
+    found, design = {}, model.design
+    distance, on_rollers = APART_DISTANCE * design.drive.module, design.wave_generator.type == "four_roller"
+    for k, prefix in enumerate(("fs", "rg")):
+        body = model.elements.bodies[k]
+        ring = k != FLEXIBLE_SPLINE
+        touched = np.ones(fields[k]["s3"].shape, dtype=bool) if ring else pressed
+        # every sector of the ring gear is alike: one stands for all
+        near = near_contact(body.layout.mesh, touched[:1] if ring else touched, distance)
+        near |= inside_teeth(design, body.layout.mesh)
+        apart = np.broadcast_to(~near, touched.shape)
+        regions = model.regions[k]
+        beyond = np.ones(touched.shape[1], dtype=bool)  # nodes of the housing
+        beyond[body.layout.mesh.nodes_of(0)] = False
+        for stress in ("s1", "s3", "vm"):
+            values = -fields[k][stress] if stress == "s3" else fields[k][stress]
+            values = np.where(beyond, -np.inf, values)
+            # s1 below a contact is compressive or small; of the ring gear any flank may be touched
+            below = near if stress != "s1" else np.zeros_like(touched) if ring else touched
+            below = np.broadcast_to(below, touched.shape)
+            names = {f"{prefix}_{stress}": (values, below)}
+            if stress != "s1":
+                names[f"{prefix}_{stress}{APART}"] = np.where(apart, values, -np.inf), np.zeros_like(touched)
+            if stress != "s3":
+                names |= _by_region(f"{prefix}_{stress}", regions, values, below)
+            for name, of in names.items():
+                place = _largest(model, k, *of)
+                if OF_REGION in name and place.value <= 0.0:
+                    continue
+                if on_rollers and stress != "s1" and place.region == "rim inside":
+                    place = replace(place, warning=ROLLER)
+                if on_edge and ring and not place.warning:
+                    place = replace(place, warning=CORNER)
+                found[name] = place
+    return found
+
+
+def _by_region(
+    stress: str, regions: Mapping[bool, np.ndarray], values: np.ndarray, below: np.ndarray
+) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Values (n_sectors, n_node) of every region, -inf elsewhere, by name; the same names on all ranks."""
+    return {
+        f"{stress}{OF_REGION}{region}": (
+            np.where(np.where(below, regions[True] == region, regions[False] == region), values, -np.inf),
+            below,
+        )
+        for region in np.unique(np.concatenate(list(regions.values())))
+    }
+
+
+def inside_teeth(design: DriveDesign, mesh: SectorMesh) -> np.ndarray:
+    """Whether a node (n_node,) of a sector lies inside of its tooth: neither on a surface nor in the rim."""
+    radius, z = np.hypot(mesh.coords[:, 0], mesh.coords[:, 1]), mesh.coords[:, 2]
+    low, high = sorted((mesh.profile.r_root_circle, mesh.profile.r_tip_circle))
+    near = NEAR * design.drive.module
+    inside = (radius > low + near) & (radius < high - near)
+    if not mesh.plane:
+        inside &= np.abs(z) < 0.5 * design.drive.face_width - near
+    for grid in mesh.flanks:
+        inside[grid.nodes.ravel()] = False
+    return inside
+
+
+def root_nodes(design: DriveDesign, mesh: SectorMesh) -> np.ndarray:
+    """Nodes (n,) on the roots of a sector's tooth, between its ends."""
+    nodes = [grid.nodes[grid.s >= mesh.profile.breaks[-2]].ravel() for grid in mesh.flanks]
+    found = np.unique(np.concatenate(nodes))
+    return found if mesh.plane else found[np.abs(mesh.coords[found, 2]) <= END * design.drive.face_width]
+
+
+def pressed_nodes(model: DriveModel, state: LoadState) -> np.ndarray:
+    """Nodes (n_owned, n_node) bool of the flexible spline that a contact presses on; collective."""
+    pressure = nodal_pressure(model.problem, state, model.elements.bodies[FLEXIBLE_SPLINE])
+    top = max(model.comm.allgather(float(pressure.max(initial=0.0))))
+    return pressure > TOUCHED * top if top > 0.0 else np.zeros(pressure.shape, dtype=bool)
+
+
+def near_contact(mesh: SectorMesh, touched: np.ndarray, distance: float) -> np.ndarray:
+    """Nodes (n_sectors, n_node) within a distance (mm) of touched ones on the working parts of the flanks."""
+    working = np.zeros(len(mesh.coords), dtype=bool)
+    for grid in mesh.flanks:
+        working[grid.nodes[grid.s < mesh.profile.breaks[-2]]] = True
+    tree, near = cKDTree(mesh.coords), np.zeros(touched.shape, dtype=bool)
+    for sector in np.flatnonzero((touched & working).any(axis=1)):
+        nodes = np.flatnonzero(touched[sector] & working)
+        near[sector, np.unique(np.concatenate(tree.query_ball_point(mesh.coords[nodes], distance)).astype(int))] = True
+    return near
+
+
+def root_spacing(mesh: SectorMesh) -> float:
+    """Mean length (mm) of the elements along the root of a tooth, on the flank's side."""
+    s = mesh.flanks[0].s
+    begin = mesh.profile.breaks[-2]
+    return float((s[-1] - begin) / max(np.count_nonzero(s > begin + 1e-9 * s[-1]), 1))
+
+
+def _largest(model: DriveModel, k: int, values: np.ndarray, touched: np.ndarray) -> Place:
+    """Place of the largest of values (n_sectors, n_node) MPa of body k; collective. touched : nodes under contact"""
+    body = model.elements.bodies[k]
+    best: tuple[float, int, int, bool] = (-np.inf, 0, 0, False)
+    if values.size:
+        sector, node = np.unravel_index(values.argmax(), values.shape)
+        first, _ = model.partition.owned_sectors(k)
+        best = (float(values[sector, node]), first + int(sector), int(node), bool(touched[sector, node]))
+    mine = float(values[:, root_nodes(model.design, body.layout.mesh)].max(initial=0.0))
+    in_root = max(model.comm.allgather(mine))
+    value, sector, node, pressed = max(model.comm.allgather(best), key=lambda one: one[0])
+    x, y, z = point = body.layout.mesh.coords[node]
+    region = str(model.regions[k][pressed][node])
+    tooth = body.layout.first_tooth + sector
+    angle = float(body.layout.sector_angle(np.array(tooth)) - np.arctan2(x, y))
+    return Place(
+        value=value,
+        body=body.layout.name,
+        region=region,
+        tooth=tooth % body.layout.mesh.n_sectors,
+        radius=float(np.hypot(x, y)),
+        z=0.0 if body.layout.mesh.plane else float(z),
+        angle_deg=float(np.degrees(angle)) % 360.0,
+        warning=warning_of(model.design, region, point),
+        in_root=in_root,
+        root_spacing=root_spacing(body.layout.mesh),
+    )

@@ -1,0 +1,100 @@
+"""Results in the frame of the fixed member.
+
+A drive whose wave generator is fixed is computed in the frame of its ring gear, where it is a drive with the ring gear
+fixed: a rigid rotation of the whole drive changes no stress and no torque (docs/theory/kinematics.md). What a run
+leaves is rotated back by the angle of the wave generator against the ring gear, so that the wave generator stands.
+In the other layouts nothing changes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from swgpar.design.drive_design import DriveDesign
+from swgpar.geometry.rotation import rotated
+from swgpar.load.load_program import internal_torque
+from swgpar.model.drive_model import DriveModel
+from swgpar.results.history import Row, column, wrapped
+
+
+def history_rows(design: DriveDesign, rows: Sequence[Row]) -> list[Row]:
+    """Rows of history.csv from those in the frame in which the drive is computed.
+
+    With the wave generator fixed they have the ring gear's angle and its torque too: that of the teeth on the spline,
+    which is the torque that drives the ring gear. `wg_angle_deg` is the angle against the ring gear in all layouts with
+    the flexible spline as the output.
+    """
+    if not design.wave_generator_is_fixed:
+        return list(rows)
+    return [
+        {
+            **row,
+            "output_angle_deg": shown_output(design, row),
+            "input_angle_deg": design.in_frame_of_result(0.0, row["wg_angle_deg"]),
+            "input_torque_Nmm": row["tooth_torque_Nmm"],
+        }
+        for row in rows
+    ]
+
+
+def shown_output(design: DriveDesign, row: Row) -> float:
+    """Angle of the output (degrees), within half a turn, of a row in the frame in which the drive is computed."""
+    return float(wrapped(design.in_frame_of_result(row["output_angle_deg"], row["wg_angle_deg"])))
+
+
+def nodal_fields(
+    model: DriveModel, angle: float, fields: Mapping[str, dict[str, np.ndarray]]
+) -> dict[str, dict[str, np.ndarray]]:
+    """Nodal fields of all bodies by name. angle : rad, of the wave generator in the frame of the computation
+
+    Displacements go from the undeformed place to that in the frame of the fixed member.
+    """
+    if not model.design.wave_generator_is_fixed:
+        return dict(fields)
+    found = {}
+    for body in model.elements.bodies:
+        values, position = fields[body.layout.name], body.positions()[body.owned]
+        back = np.full((len(position), 1), model.design.in_frame_of_result(0.0, angle))
+        found[body.layout.name] = {
+            **values,
+            "displacement": rotated(position + values["displacement"], back) - position,
+            "stress": rotated_stress(values["stress"], float(model.design.in_frame_of_result(0.0, angle))),
+        }
+    return found
+
+
+def rotated_stress(stress: np.ndarray, angle: float) -> np.ndarray:
+    """Tensors (..., 6), xx yy zz xy yz zx, rotated about z by an angle (rad)."""
+    xx, yy, zz, xy, yz, zx = np.moveaxis(stress, -1, 0)
+    c, s = np.cos(angle), np.sin(angle)
+    return np.stack(
+        [
+            c * c * xx + s * s * yy - 2.0 * c * s * xy,
+            s * s * xx + c * c * yy + 2.0 * c * s * xy,
+            zz,
+            c * s * (xx - yy) + (c * c - s * s) * xy,
+            c * yz + s * zx,
+            c * zx - s * yz,
+        ],
+        axis=-1,
+    )
+
+
+def summarise_input(design: DriveDesign, rows: Sequence[Row]) -> dict[str, Any] | None:
+    """Entry `input` of the summary, over the increments `rows` of the rotation; None where the wave generator drives.
+
+    `torque_ripple` is the largest less the smallest torque, over the mean. The expected torque follows from
+    T_in theta_in + T_out theta_out = 0.
+    """
+    if not design.wave_generator_is_fixed or not rows:
+        return None
+    torque = column(rows, "tooth_torque_Nmm")
+    mean = float(torque.mean())
+    return {
+        "torque_Nmm": mean,
+        "torque_expected_Nmm": -internal_torque(design, design.load.torque) / design.input_ratio,
+        "torque_ripple": float(np.ptp(torque)) / abs(mean) if mean else None,
+    }

@@ -1,0 +1,203 @@
+"""Torsional stiffness from the points of the stiffness loops (docs/theory/stiffness.md)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, fields
+from typing import Any
+
+import numpy as np
+
+from swgpar.design.drive_design import DriveDesign
+from swgpar.evaluation.program_results import PointRow, work_by_torque
+from swgpar.load.load_program import (
+    BRANCHES,
+    FIRST_LOADING,
+    NEGATIVE_LOADING,
+    NEGATIVE_UNLOADING,
+    POSITIVE_LOADING,
+    POSITIVE_UNLOADING,
+    TRAVEL,
+    computed_position,
+    rated_torque,
+    stiffness_angles,
+    stiffness_torque,
+)
+
+ARC_MINUTE = np.pi / 10800.0
+"""rad"""
+
+SAME_ANGLE = 1e-6
+"""Difference (deg) below which two angles of the wave generator are the same."""
+
+POSITIVE = (POSITIVE_UNLOADING, POSITIVE_LOADING)
+"""Branches with a positive torque."""
+
+WAY_BACK = {
+    POSITIVE_UNLOADING: POSITIVE_LOADING,
+    POSITIVE_LOADING: POSITIVE_UNLOADING,
+    NEGATIVE_UNLOADING: NEGATIVE_LOADING,
+    NEGATIVE_LOADING: NEGATIVE_UNLOADING,
+}
+"""The branch that is the same without friction."""
+
+
+@dataclass(frozen=True)
+class Stiffness:
+    """Torsional stiffness at one angle of the wave generator, or its mean, spread or error over several.
+
+    K1, K2, K3 : N m / rad, chords of the middle line up to the first break point, to the second and to the top
+    lost_motion : arc minutes, between the middles of both branches at plus and minus a share of the rated torque
+    hysteresis : arc minutes, width of the loop at zero torque
+    backlash : arc minutes, rotation without torque where the torque changes its sign
+    loop_work : N mm, area of the loop
+    """
+
+    K1: float
+    K2: float
+    K3: float
+    lost_motion: float
+    hysteresis: float
+    backlash: float
+    loop_work: float
+
+
+NAMES = tuple(field.name for field in fields(Stiffness))
+
+
+class Branch:
+    """Rotation over torque of one branch, both made positive for the negative side.
+
+    rows : points of the branch, in any order
+    """
+
+    def __init__(self, rows: Sequence[PointRow], sign: float) -> None:
+        torque = sign * np.array([row["torque_Nm"] for row in rows])
+        order = np.argsort(torque)
+        self.torque = torque[order]
+        self.rotation = sign * ARC_MINUTE * np.array([row["rotation_arcmin"] for row in rows])[order]
+
+    def at(self, torque: float) -> float:
+        """Rotation (rad) at a torque of the program (N·m); without torque on the line through the first points."""
+        if torque == 0.0:
+            (a, b), (u, v) = self.torque[:2], self.rotation[:2]
+            return float(u - a * (v - u) / (b - a))
+        return float(np.interp(torque, self.torque, self.rotation))
+
+
+class Loop:
+    """The loop at one angle of the wave generator; what the program has left out is made of its image.
+
+    Attributes
+    ----------
+    unloading, loading : branches with positive and with negative torques
+    work : N mm, area of the loop; 0 where one way of it stands for both
+    """
+
+    def __init__(self, rows: Sequence[PointRow]) -> None:
+        """rows : at that angle, in the order of the program"""
+        found: dict[str, list[PointRow]] = {name: [] for name in (FIRST_LOADING, *BRANCHES)}
+        before: list[PointRow] = []
+        for row in rows:
+            branch = found.get(row["stage"], [])
+            if not branch and row["stage"] in (POSITIVE_UNLOADING, NEGATIVE_UNLOADING):
+                branch += before  # it begins where the one before has ended
+            branch.append(row)
+            before = [row]
+        branches = {
+            name: Branch(found[name] or found[WAY_BACK[name]], 1.0 if name in POSITIVE else -1.0)
+            for name in BRANCHES
+            if found[name] or found[WAY_BACK[name]]
+        }
+        # a side that is left out is the image of the other one
+        one = next(iter(branches.values()))
+        self.unloading = [branches.get(name, one) for name in (POSITIVE_UNLOADING, NEGATIVE_UNLOADING)]
+        self.loading = [branches.get(name, one) for name in (POSITIVE_LOADING, NEGATIVE_LOADING)]
+        self.work = _loop_work([found[name] for name in BRANCHES])
+
+    def falling(self, torque: float) -> float:
+        """Rotation (rad) at a torque (N·m, not 0) on the way from the largest to the least."""
+        return self.unloading[0].at(torque) if torque > 0.0 else -self.loading[1].at(-torque)
+
+    def rising(self, torque: float) -> float:
+        """Rotation (rad) at a torque (N·m, not 0) on the way back."""
+        return self.loading[0].at(torque) if torque > 0.0 else -self.unloading[1].at(-torque)
+
+
+def at_position(design: DriveDesign, rows: Sequence[PointRow]) -> Stiffness:
+    """The stiffness from the rows of the loop at one angle of the wave generator, in the order of the program."""
+    loop = Loop(rows)
+    unloading, loading = loop.unloading, loop.loading
+
+    def middle(side: int, torque: float) -> float:
+        return 0.5 * (unloading[side].at(torque) + loading[side].at(torque))
+
+    top, share = stiffness_torque(design), design.stiffness.lost_motion_share * rated_torque(design)
+    ends = [0.0, *(b * top for b in design.stiffness.break_points), top]
+    line = np.array([0.5 * (middle(0, torque) + middle(1, torque)) for torque in ends])
+    chords = np.diff(ends) / np.diff(line)
+    return Stiffness(
+        *(float(value) for value in chords),
+        lost_motion=(middle(0, share) + middle(1, share)) / ARC_MINUTE,
+        hysteresis=(unloading[0].at(0.0) + unloading[1].at(0.0)) / ARC_MINUTE,
+        backlash=0.5 * sum(a.at(0.0) + b.at(0.0) for a, b in zip(loading, unloading[::-1])) / ARC_MINUTE,
+        loop_work=loop.work,
+    )
+
+
+def loop_rows(rows: Sequence[PointRow]) -> list[dict[str, Any]]:
+    """Rows of stiffness.csv from those of program.csv: the branches of the loops."""
+    return [
+        {
+            "position_deg": row["wg_angle_deg"],
+            "branch": row["stage"],
+            "torque_Nm": row["torque_Nm"],
+            "rotation_arcmin": row["rotation_arcmin"],
+        }
+        for row in rows
+        if row["stage"] != TRAVEL
+    ]
+
+
+def _loop_work(branches: Sequence[Sequence[PointRow]]) -> float:
+    """Area of the loop; 0 where one way of it stands for both."""
+    if not all(branches):
+        return 0.0
+    return work_by_torque([row for rows in branches for row in rows])
+
+
+def by_position(design: DriveDesign, rows: Sequence[PointRow]) -> dict[float, Stiffness]:
+    """The stiffness at every angle (deg) of the wave generator, from all rows of program.csv."""
+    return {angle: at_position(design, here) for angle, here in rows_by_position(design, rows).items()}
+
+
+def rows_by_position(design: DriveDesign, rows: Sequence[PointRow]) -> dict[float, list[PointRow]]:
+    """Rows of the loop that stands for every angle (deg) of the wave generator, from all rows of program.csv."""
+    angles = stiffness_angles(design)
+    found = {}
+    for k, angle in enumerate(angles):
+        computed = angles[computed_position(design, k)]
+        found[angle] = [row for row in rows if abs(row["wg_angle_deg"] - computed) < SAME_ANGLE]
+    return found
+
+
+def summarise_stiffness(
+    design: DriveDesign, rows: Sequence[PointRow], error: Mapping[str, float] | None
+) -> dict[str, Any] | None:
+    """Entry of the summary; None where the design asks for none.
+
+    error : of every value by the mesh, None where it is not known
+    """
+    if design.stiffness is None:
+        return None
+    found = by_position(design, rows)
+    table = {name: np.array([getattr(one, name) for one in found.values()]) for name in NAMES}
+    return {
+        "torque_Nm": stiffness_torque(design),
+        "rated_torque_Nm": rated_torque(design),
+        "break_points": list(design.stiffness.break_points),
+        **{name: float(values.mean()) for name, values in table.items()},
+        "spread": {name: float(np.ptp(values)) for name, values in table.items()},
+        "mesh_error": None if error is None else dict(error),
+        "positions": [{"wg_angle_deg": angle, **asdict(one)} for angle, one in found.items()],
+    }

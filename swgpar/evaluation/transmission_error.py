@@ -1,0 +1,200 @@
+"""Transmission error and ripple of the input torque: curves, spectra by orders of the input's turn, causes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from swgpar.design.deviations import TiltedOffset
+from swgpar.design.drive_design import DriveDesign
+from swgpar.evaluation.period import of_period
+from swgpar.evaluation.result_frame import shown_output
+from swgpar.results.history import Row, column, transmission_error
+
+COLUMNS = (
+    "wg_angle_deg",
+    "output_angle_deg",
+    "transmission_error_arcsec",
+    "wg_torque_Nmm",
+    "newton_iterations",
+)
+"""Columns of transmission_error.csv."""
+
+LARGEST = 12
+"""Orders of a spectrum that the summary names."""
+
+NEGLIGIBLE = 1e-9
+"""Amplitudes below this share of the largest one are round-off."""
+
+
+@dataclass(frozen=True)
+class TurnPoint:
+    """State at an angle of the wave generator.
+
+    index : of the angle;  wg_angle, output_angle : rad;  wg_torque : N mm
+    iterations : of Newton, 0 where a state that is known repeats
+    """
+
+    index: int
+    wg_angle: float
+    output_angle: float
+    wg_torque: float
+    iterations: int
+
+
+def turn_row(point: TurnPoint, design: DriveDesign) -> Row:
+    """Row of transmission_error.csv; the output's angle lies between -180 and 180 degrees."""
+    wg_angle, output = float(np.degrees(point.wg_angle)), float(np.degrees(point.output_angle))
+    error = transmission_error(np.array([wg_angle]), np.array([output]), design.ratio)[0]
+    output = design.in_frame_of_result(output, wg_angle)
+    shown = output - 360.0 * np.round(output / 360.0)
+    values = (wg_angle, float(shown), float(error), point.wg_torque, point.iterations)
+    return dict(zip(COLUMNS, values, strict=True))
+
+
+def period_rows(design: DriveDesign, rows: Sequence[Row]) -> list[Row]:
+    """Rows of transmission_error.csv of the ideal drive from the history of its sampled period; none without one."""
+    if not design.steps.samples or len(rows) < design.steps.samples or not design.load.torque:
+        return []
+    period = of_period(design, list(rows))
+    angle, output = column(period, "wg_angle_deg"), column(period, "output_angle_deg")
+    error = transmission_error(angle, output, design.ratio)
+    return [
+        dict(
+            zip(
+                COLUMNS,
+                (
+                    row["wg_angle_deg"],
+                    shown_output(design, row),
+                    float(e),
+                    row["wg_torque_Nmm"],
+                    row["newton_iterations"],
+                ),
+            )
+        )
+        for row, e in zip(period, error)
+    ]
+
+
+def spectrum(values: np.ndarray, turns: float) -> tuple[np.ndarray, np.ndarray]:
+    """Orders (m,) of the input's turn above 0, and amplitudes (m,) of values (n,) at even angles over `turns` turns."""
+    amplitude = np.abs(np.fft.rfft(values)) / len(values)
+    both = 2.0 * np.ones(len(amplitude))
+    if len(values) % 2 == 0:
+        both[-1] = 1.0  # the highest order stands alone
+    order = np.arange(len(amplitude)) / turns
+    return order[1:], (both * amplitude)[1:]
+
+
+class Causes:
+    """Names of the orders of the input's turn.
+
+    A gear that stands is passed by both waves in every turn: its deviations have whole orders. The other gear turns
+    with the output, against which the wave generator turns 1 - 1 / ratio times. The teeth mesh once per pitch of the
+    standing gear, with odd numbers of teeth twice.
+
+    Parameters
+    ----------
+    design : the drive;  turns : of the wave generator over which the spectrum was taken
+    """
+
+    def __init__(self, design: DriveDesign, turns: float) -> None:
+        self.design, self.turns = design, turns
+        fixed = round(2.0 * np.pi / design.period_angle)
+        self.mesh = math.lcm(fixed, design.lobes)
+        parts = {"ring gear": _kinds(design, "ring_gear"), "flexible spline": _kinds(design, "flexible_spline")}
+        moving = design.output_gear.replace("_", " ")
+        passes = 1.0 - 1.0 / design.ratio
+        self.gears = [(name, kinds, passes if name == moving else 1.0) for name, kinds in parts.items() if kinds]
+
+    def of(self, order: float) -> str:
+        """Cause of an order, or several that the spectrum cannot tell apart."""
+        half = 0.5 / self.turns * (1.0 + 1e-9)
+        times = round(order / self.mesh)
+        if times and abs(order - times * self.mesh) < half:
+            return "mesh of the teeth" if times == 1 else f"mesh of the teeth, {times} times"
+        found = []
+        for name, kinds, passes in self.gears:
+            times = round(order / passes)
+            if times and abs(order - times * passes) < half:
+                found.append(f"{name} ({', '.join(kinds)}), {times} per turn against it")
+        output = 1.0 / abs(self.design.ratio)
+        times = round(order / output)
+        if not found and times and abs(order - times * output) < half and self.turns >= abs(self.design.ratio):
+            against = " against the ring gear" if self.design.wave_generator_is_fixed else ""
+            found.append(f"output, {times} per turn{against}")
+        if round(order) == 1 and (kinds := _kinds(self.design, "wave_generator")):
+            found.append(f"wave generator ({', '.join(kinds)})")
+        return " or ".join(found) or "combined"
+
+
+def _kinds(design: DriveDesign, part: str) -> list[str]:
+    """Kinds of deviations of a part that are not zero."""
+    if design.deviations is None:
+        return []
+    section = getattr(design.deviations, part)
+    kinds = []
+    if not isinstance(section, TiltedOffset) or part == "ring_gear":
+        kinds += ["pitch"] if section.pitch_errors or section.pitch_grade else []
+    kinds += ["eccentricity"] if section.eccentricity else []
+    kinds += ["tilt"] if getattr(section, "tilt", 0.0) else []
+    kinds += ["ovality"] if getattr(section, "ovality", 0.0) else []
+    if part == "flexible_spline":
+        cup = design.deviations.cup
+        kinds += [name for name, value in (("cup eccentricity", cup.eccentricity), ("cup tilt", cup.tilt)) if value]
+    return kinds
+
+
+def summarise_turns(design: DriveDesign, rows: Sequence[Row]) -> dict[str, Any] | None:
+    """The entry `transmission_error` of the summary, from the rows of transmission_error.csv; None without rows."""
+    if not rows:
+        return None
+    turns = len(rows) * _step(design) / (2.0 * np.pi)
+    error, torque = column(rows, "transmission_error_arcsec"), column(rows, "wg_torque_Nmm")
+    mean = float(torque.mean())
+    causes = Causes(design, turns)
+    return {
+        "turns": turns,
+        "angles": len(rows),
+        "peak_to_peak": float(np.ptp(error)),
+        "amplitude": 0.5 * float(np.ptp(error)),
+        "mean": float(error.mean()),
+        "spectrum": _named(error, turns, causes),
+        "torque": {
+            "mean": mean,
+            "peak_to_peak": float(np.ptp(torque)),
+            "ripple": float(np.ptp(torque)) / abs(mean) if mean else None,
+            "spectrum": _named(torque, turns, causes),
+        },
+    }
+
+
+def _step(design: DriveDesign) -> float:
+    """Angle (rad) of the wave generator between two rows."""
+    count = design.steps.samples if design.deviations is None else design.deviations.angles_per_pitch
+    return design.period_angle / count
+
+
+def _named(values: np.ndarray, turns: float, causes: Causes) -> list[dict[str, Any]]:
+    """The largest orders of a spectrum with their causes."""
+    order, amplitude = spectrum(values, turns)
+    largest = np.argsort(-amplitude, kind="stable")[:LARGEST]
+    floor = NEGLIGIBLE * max(float(np.abs(values).max(initial=0.0)), 1e-300)
+    return [
+        {"order": float(order[k]), "amplitude": float(amplitude[k]), "cause": causes.of(float(order[k]))}
+        for k in largest
+        if amplitude[k] > floor
+    ]
+
+
+def orders(summary: Mapping[str, Any], rows: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Orders (m,) and amplitudes (m,) of the transmission error (arc seconds) and of the input torque (N mm).
+
+    summary : its entry `transmission_error`;  rows : columns of transmission_error.csv
+    """
+    order, error = spectrum(rows["transmission_error_arcsec"], summary["turns"])
+    return order, error, spectrum(rows["wg_torque_Nmm"], summary["turns"])[1]

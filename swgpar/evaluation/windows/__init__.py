@@ -1,0 +1,1 @@
+"""Windows on finer meshes that resolve the stress at the teeth."""

@@ -1,0 +1,257 @@
+"""A window of the flexible spline on a finer mesh, driven by a state of the drive.
+
+The displacements of a drive converge long before its stresses. A few tooth sectors are cut out, meshed finely, and
+solved once more: the cuts have the displacements of the drive, the flanks carry its contact forces, and
+the exact cam stays in contact with the inner surface. Stresses hold one pitch or more inside of the cuts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from swgpar.constraints.boundary_conditions import DeadLoad, PrescribedDisplacement
+from swgpar.constraints.distributing_coupling import node_weights
+from swgpar.constraints.supports import Supports
+from swgpar.design.drive_design import DriveDesign
+from swgpar.errors import ConvergenceError
+from swgpar.evaluation.contact.flank_loads import flank_forces, line_loads, nodal_forces
+from swgpar.evaluation.torques import torques
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE, BodyLayout
+from swgpar.fem.elements import Elements
+from swgpar.fem.partition import Partition
+from swgpar.fem.stress import principal
+from swgpar.fem.vectors import read_field, write_field
+from swgpar.geometry.rotation import rotated
+from swgpar.kernel import reference_elements
+from swgpar.load.load_states import LoadState, Stage
+from swgpar.log import PhaseTimes
+from swgpar.meshing import MeshRecipe
+from swgpar.meshing.interpolation import interpolation
+from swgpar.meshing.sector import SectorMesh
+from swgpar.meshing.tooth_sector import build_sector
+from swgpar.meshing.trim import trimmed
+from swgpar.model.drive_model import DriveModel, build_rigid_contacts, newton_settings
+from swgpar.model.regions import END, region_of, warning_of
+from swgpar.solve.discrete_problem import DiscreteProblem
+from swgpar.solve.newton import NewtonSolver
+
+SECTORS, MARGIN = 5, 1
+"""Tooth sectors of a window, and those next to each cut whose stresses are not read."""
+
+CUP_LENGTH = 2.0
+"""Length of the cup's wall behind the teeth that belongs to a window, over sqrt(radius * thickness): a disturbance of
+the cut at its end decays by e within about 0.8 of that."""
+
+TOOTHED = 0.5 + 1e-9
+"""Share of the face width on either side of its middle to which the toothed part reaches."""
+
+STIFFNESS = 1e3
+"""Stiffness of the springs that hold the nodes of the cuts, over E times the module: forces of some N stretch them by
+nanometres."""
+
+RTOL = {"plane": 1e-4, "cup": 1e-3}
+"""Newton's tolerance: it changes the stress by up to 1e-5 and 5e-4, far less than a finer window."""
+
+HALF_WIDTH = 0.05
+"""Half width of the flanks' contact over the module, of the order of Hertz's; the root is far from it."""
+
+
+@dataclass(frozen=True)
+class WindowStress:
+    """Largest tensile stress in a window.
+
+    value : MPa;  tooth : where;  position : (3,) mm, undeformed, with the tooth at +y
+    region, warning : as of a `Place`;  elements : of the window
+    """
+
+    value: float
+    tooth: int
+    position: np.ndarray
+    region: str
+    warning: str
+    elements: int
+
+
+def window_mesh(design: DriveDesign, recipe: MeshRecipe) -> SectorMesh:
+    """The sector of a window: the toothed part and the beginning of the cup's wall, which ends in the set ``cut``."""
+    mesh = build_sector(design, recipe, "flexible_spline")
+    if mesh.plane:
+        return mesh
+    end = 0.5 * design.drive.face_width + CUP_LENGTH * np.sqrt(design.inner_radius * design.cup_thickness)
+    return trimmed(mesh, mesh.coords[mesh.hexes, 2].min(axis=1) < end)
+
+
+def tooth_nodes(mesh: SectorMesh, design: DriveDesign, ends: bool) -> np.ndarray:
+    """Nodes (n,) of the toothed part at the ends of its face width, or between them. The plane has no ends.
+
+    The fillet at the back of the teeth belongs to their end.
+    """
+    z, face_width = np.zeros(len(mesh.coords)) if mesh.plane else np.abs(mesh.coords[:, 2]), design.drive.face_width
+    if not ends:
+        return np.flatnonzero(z <= END * face_width)
+    return np.flatnonzero((z > END * face_width) & (z <= TOOTHED * face_width + design.cup.back_fillet))
+
+
+class LocalProblem:
+    """A window around a tooth.
+
+    Parameters
+    ----------
+    model, state : the drive in its equilibrium under that load state
+    tooth : in the middle of the window
+    recipe : of the window's mesh
+    """
+
+    def __init__(self, model: DriveModel, state: LoadState, tooth: int, recipe: MeshRecipe) -> None:
+        self.model, self.state, design = model, state, model.design
+        first = tooth - SECTORS // 2
+        mesh = window_mesh(design, recipe)
+        self.layout = BodyLayout(
+            mesh=mesh,
+            first_tooth=first,
+            count=SECTORS,
+            closed=False,
+            copies=1,
+            fixed=np.zeros(0, dtype=np.int32),
+        )
+        self.partition = Partition([self.layout], model.comm)
+        material = design.material
+        reference = reference_elements(mesh.coords[mesh.elements], material.E, material.nu, design.drive.face_width)
+        self.elements = Elements(self.partition, [reference])
+        self.body = self.elements.bodies[FLEXIBLE_SPLINE]
+        teeth = first + np.arange(SECTORS)
+        drive_mesh = model.partition.layouts[FLEXIBLE_SPLINE].mesh
+        self.loads = line_loads(drive_mesh, flank_forces(model, state, teeth, model.problem.flanks[0]))
+        displacement = self._of_the_drive(teeth)
+        scale = design.material.E * design.drive.module
+        problem = DiscreteProblem(
+            partition=self.partition,
+            elements=self.elements,
+            supports=Supports(self.partition, [], scale=scale, share=1.0),
+            rigid_contacts=[
+                *build_rigid_contacts(design, elements=self.elements),
+                self._dead_load(),
+                self._cuts(displacement),
+            ],
+            module=design.drive.module,
+            phases=PhaseTimes(),
+        )
+        self.solver = NewtonSolver(
+            problem, replace(newton_settings(design), rtol=RTOL[design.drive.model], linear="direct", reuse_factor=True)
+        )
+        self.problem = problem
+        own_first, own_end = self.partition.owned_sectors(0)
+        write_field(self.partition, 0, np.arange(own_first, own_end), displacement[own_first:own_end], problem.x)
+
+    def _of_the_drive(self, teeth: np.ndarray) -> np.ndarray:
+        """Displacement (n_teeth, n_node, 3) mm of the drive at the nodes of the window; collective."""
+        model = self.model
+        coarse = model.partition.layouts[FLEXIBLE_SPLINE]
+        field = read_field(model.partition, FLEXIBLE_SPLINE, teeth - coarse.first_tooth, model.problem.x)
+        angle = self.layout.sector_angle(teeth)
+        local = rotated(field, -angle[:, None])
+        matrix = interpolation(coarse.mesh, self.layout.mesh)
+        return rotated(np.stack([matrix @ sector for sector in local]), angle[:, None])
+
+    def _numbers(self, sectors: np.ndarray, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Own local indices (n_sectors, n) of nodes, and whether this rank owns them."""
+        partition = self.partition
+        number, _ = partition.node_numbers(0, sectors, nodes)
+        own = (number >= partition.row_start) & (number < partition.row_start + partition.n_own)
+        return number - partition.row_start, own
+
+    def _attached(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        """Sectors, one by one, and their nodes where closed end or flange is clamped or bolted."""
+        design, mesh = self.model.design, self.layout.mesh
+        if not design.has_attachment or "end" not in mesh.faces:
+            return
+        nodes = np.unique(mesh.faces["end"])
+        for sector in range(SECTORS):
+            angle = self.layout.sector_angle(np.array(self.layout.first_tooth + sector))
+            yield np.array([sector]), nodes[design.cup.is_attached(rotated(mesh.coords[nodes], float(angle))[:, :2])]
+
+    def _cuts(self, displacement: np.ndarray) -> PrescribedDisplacement:
+        """The nodes of all cuts and of the attachment, held at the displacements of the drive."""
+        mesh, every = self.layout.mesh, np.arange(SECTORS)
+        held: dict[int, np.ndarray] = {}
+        parts = [(every[:1], mesh.cw_nodes), (every[-1:], mesh.ccw_nodes)]
+        if not mesh.plane:
+            parts += [(every, mesh.node_sets["cut"]), (every, mesh.node_sets["bore"]), *self._attached()]
+        for sectors, nodes in parts:
+            nodes = nodes.astype(np.int64)
+            index, own = self._numbers(sectors, nodes)
+            for k, sector in enumerate(sectors):
+                for i, node in zip(index[k, own[k]], nodes[own[k]]):
+                    held[int(i)] = displacement[sector, node]
+        nodes = np.array(sorted(held), dtype=np.int64)
+        values = np.array([held[int(i)] for i in nodes]).reshape(-1, 3)
+        stiffness = STIFFNESS * self.model.design.material.E * self.model.design.drive.module
+        return PrescribedDisplacement(self.partition, nodes, values, stiffness)
+
+    def _dead_load(self) -> DeadLoad:
+        """Contact forces of the flanks, on their nodes of the window."""
+        forces = np.zeros((self.partition.n_own, 3))
+        module = self.model.design.drive.module
+        grids = {grid.side: grid for grid in self.layout.mesh.flanks}
+        for (sector, side), load in self.loads.items():
+            grid = grids[side]
+            nodal = nodal_forces(load, grid, HALF_WIDTH * module).reshape(-1, 3)
+            index, own = self._numbers(np.array([sector]), grid.nodes.ravel().astype(np.int64))
+            np.add.at(forces, index[0, own[0]], nodal[own[0]])
+        if self.layout.mesh.plane:
+            self._add_torque(forces)
+        nodes = np.flatnonzero(np.abs(forces).sum(axis=1))
+        return DeadLoad(nodes, forces[nodes])
+
+    def _add_torque(self, forces: np.ndarray) -> None:
+        """Add the torque that acts on the inner surface in the plane, to forces (n_own, 3) N; collective."""
+        model, mesh = self.model, self.layout.mesh
+        found = torques(model.problem, self.state)
+        moment = -(found.wave_generator + sum(found.teeth)) / mesh.n_sectors
+        nodes = mesh.node_sets["bore"].astype(np.int64)
+        weight = node_weights(mesh.coords, nodes, mesh.ccw_nodes)
+        weighted = weight > 0.0
+        nodes, share = nodes[weighted], weight[weighted] / weight.sum()
+        x, y, _ = mesh.coords[nodes].T
+        force = (moment * share / (x**2 + y**2))[:, None] * np.column_stack([-y, x, 0.0 * x])
+        for sector in range(SECTORS):
+            angle = self.layout.sector_angle(np.array([self.layout.first_tooth + sector]))
+            index, own = self._numbers(np.array([sector]), nodes)
+            np.add.at(forces, index[0, own[0]], rotated(force[None], angle[:, None])[0][own[0]])
+
+    def solve(self) -> None:
+        """Bring the window to equilibrium. Raises ConvergenceError."""
+        state = replace(self.state, stage=Stage.ROTATE, control="rotation", flank_clearance=None)
+        result = self.solver.solve(state)
+        if not result.converged:
+            raise ConvergenceError(f"a window around tooth {self.layout.first_tooth + SECTORS // 2}: {result.reason}")
+
+    def stress(self) -> tuple[np.ndarray, np.ndarray]:
+        """Stress (n, n_node, 6) MPa at the nodes of owned sectors inside of the margin, and their indices (n,)."""
+        first, end = self.partition.owned_sectors(0)
+        sectors = np.arange(first, end)
+        inside = (sectors >= MARGIN) & (sectors < SECTORS - MARGIN)
+        return self.body.nodal_stress(self.problem.displacement())[inside], sectors[inside]
+
+    def largest(self, ends: bool = False) -> WindowStress:
+        """Largest s1 of the teeth at their ends or between them, one pitch or more inside of the cuts; collective."""
+        mesh = self.layout.mesh
+        stress, sectors = self.stress()
+        toothed = tooth_nodes(mesh, self.model.design, ends)
+        best = (-np.inf, 0, 0)
+        if len(sectors):
+            s1 = principal(stress[:, toothed])[0]
+            k, i = np.unravel_index(s1.argmax(), s1.shape)
+            best = (float(s1[k, i]), self.layout.first_tooth + int(sectors[k]), int(toothed[i]))
+        value, tooth, node = max(self.model.comm.allgather(best), key=lambda found: found[0])
+        design = self.model.design
+        region = region_of(design, mesh, node, False)
+        warning = warning_of(design, region, mesh.coords[node])
+        return WindowStress(value, tooth, mesh.coords[node], region, warning, SECTORS * len(mesh.hexes))
+
+    def destroy(self) -> None:
+        """Release the solver; collective."""
+        self.solver.destroy()

@@ -1,0 +1,1 @@
+"""Load states, stages and programs: what is applied, in which order."""

@@ -1,0 +1,1 @@
+"""Laws of materials, and the materials of a design."""

@@ -1,0 +1,1 @@
+"""The drive as bodies, contacts, supports and solver."""

@@ -1,0 +1,400 @@
+"""The drive as it is computed: meshes, ownership, elements, contacts, supports and solver, built by factories."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+
+from swgpar.constraints.distributing_coupling import DistributingCoupling, NodeMeans, RadialGuide
+from swgpar.constraints.rigid_attachment import RigidAttachment, face_sides
+from swgpar.constraints.supports import RING_COUPLING, FixedRing, FloatingRing, Supports
+from swgpar.contact.contact import NO_KEYS, Contact, largest
+from swgpar.contact.flank_state import Crowning, SearchRange
+from swgpar.contact.flanks import FlankContact
+from swgpar.contact.rigid_surface import RigidContact, cam_pose, pin_pose
+from swgpar.design.drive_design import DriveDesign
+from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR, BodyLayout
+from swgpar.fem.condensed_parts import condense_sector, condense_tooth, relative_end_rotation
+from swgpar.fem.elements import Elements
+from swgpar.fem.partition import Partition
+from swgpar.fem.sectors_in_reach import RingSectors, WholeTeeth
+from swgpar.fem.stress import body_fields, part_maxima
+from swgpar.kernel import ReferenceElements, reference_elements
+from swgpar.log import PhaseTimes, logger
+from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes
+from swgpar.model.bearing_model import (
+    build_ball_contact,
+    build_race_contact,
+    build_race_mesh,
+    race_coupling,
+    race_reference,
+)
+from swgpar.model.regions import sector_regions
+from swgpar.solve.discrete_problem import ContactSearch, DiscreteProblem
+from swgpar.solve.newton import NewtonSolver
+from swgpar.solve.solve_state import NewtonSettings
+
+PRESSURE_LIMIT = 0.02
+"""Bound of contact pressures in the tangent's geometric terms, as a share of E: above any real pressure."""
+
+NEAR, REACH, TOUCH, TIP_MARGIN = 0.25, 0.1, 0.01, 0.1
+"""Distances of the contact search over the module: faces that are evaluated, those of a flank one of which is closer
+than the second distance; faces with blocks in the tangent's pattern; radial distance of the tips."""
+
+FOOT_REACH = 0.5
+"""Largest gap over the module at which a foot point is looked for."""
+
+PREFIXES = {
+    "flexible_spline": ("fs",),
+    "ring_gear": ("rg", "housing"),
+    "dynamic_spline": ("ds",),
+    "outer_race": ("race",),
+}
+"""Of the names of stresses, by the name of the body, for each of its parts."""
+
+EDGE = 1.0 + 1e-9
+"""Factor on the width of a rigid surface: points on its edge belong to it."""
+
+
+def copies_of_model(design: DriveDesign) -> int:
+    """How many times the model makes the whole drive.
+
+    The number of lobes where the drive equals itself rotated by one of them and the design allows it, else 1.
+    """
+    counts = [design.drive.teeth_fs, design.drive.teeth_rg]
+    if design.bearing is not None:
+        counts.append(design.bearing.balls)
+    if design.is_bolted:
+        counts.append(design.cup.bolts)
+    symmetric = all(count % design.lobes == 0 for count in counts)
+    return design.lobes if symmetric and design.solver.symmetry else 1
+
+
+def search_distance(design: DriveDesign, share: float = NEAR) -> float:
+    """Distance (mm) within which flanks are followed: under torque all those that the backlash may bring together.
+
+    share : of the module, at least
+    """
+    return max(share * design.drive.module, TOUCH * design.drive.module + max(design.backlash, design.dynamic_backlash))
+
+
+@dataclass(eq=False, kw_only=True)
+class DriveModel:
+    """Everything that exists once per run; made by `build_drive_model`.
+
+    design, comm : what is computed, and the communicator
+    meshes : one sector of each body by name
+    partition, elements : ownership and elements
+    problem, solver : discrete problem and its Newton solver
+    phases : wall seconds
+    """
+
+    design: DriveDesign
+    comm: MPI.Comm
+    meshes: dict[str, SectorMesh]
+    partition: Partition
+    elements: Elements
+    problem: DiscreteProblem
+    solver: NewtonSolver
+    phases: PhaseTimes
+
+    def destroy(self) -> None:
+        """Release the solver and its factor; collective. PETSc's objects refer to each other, so Python does not."""
+        self.solver.destroy()
+
+    @property
+    def copies(self) -> int:
+        """How many times the model makes the whole drive: 2 where it is half of it, 3 where it is a third."""
+        return copies_of_model(self.design)
+
+    @property
+    def part_remark(self) -> str:
+        """What a message adds to the unknowns of the model."""
+        return {1: "", 2: " (half of it, by symmetry)", 3: " (a third of it, by symmetry)"}[self.copies]
+
+    @property
+    def fixed_body(self) -> int:
+        """Index of the gear that does not rotate in the frame in which the drive is computed."""
+        return self.design.gears.index(self.design.standing_gear)
+
+    def omitted_bending_stress(self) -> float:
+        """Stress (MPa) that condensed sectors leave out in the present state: E theta^2 / 8 where they bend most."""
+        body = self.elements.bodies[FLEXIBLE_SPLINE]
+        if body.layout.condensed is None:
+            return 0.0
+        angle = body.layout.sector_angle(body.layout.first_tooth + body.sectors[body.owned])
+        theta = relative_end_rotation(
+            body.layout.mesh, angle, body.displacement(self.problem.displacement())[body.owned]
+        )
+        return largest(self.comm, self.design.material.E * float((theta**2).max(initial=0.0)) / 8.0)
+
+    @cached_property
+    def regions(self) -> list[dict[bool, np.ndarray]]:
+        """Regions of the nodes of a sector of flexible spline and ring gear, see `sector_regions`."""
+        bodies = (self.elements.bodies[k] for k in (FLEXIBLE_SPLINE, RING_GEAR))
+        return [sector_regions(self.design, body.layout.mesh) for body in bodies]
+
+    def n_elements(self) -> int:
+        """Elements of the whole drive."""
+        return sum(b["elements_whole"] for b in self.counts().values())
+
+    def counts(self) -> dict[str, Any]:
+        """Nodes, elements and unknowns per body, modelled and of the whole drive."""
+        return {layout.name: body_counts(layout) for layout in self.partition.layouts}
+
+    def stresses(self) -> tuple[dict[str, float], list[dict[str, np.ndarray]]]:
+        """Largest stresses (MPa) by body and kind ("fs_s1", "race_vm", …), and the nodal fields of all bodies."""
+        u = self.problem.displacement()
+        values, fields = {}, []
+        for body in self.elements.bodies:
+            field, prefixes = body_fields(body, u), PREFIXES[body.layout.name]
+            fields.append(field)
+            for prefix, largest_of in zip(prefixes, part_maxima(self.comm, body, u, field)):
+                values.update({f"{prefix}_{k}": v for k, v in largest_of.items()})
+        return values, fields
+
+
+def body_counts(layout: BodyLayout) -> dict[str, Any]:
+    """Nodes, elements and unknowns of a body, modelled and of the whole drive."""
+    plane = layout.mesh.plane
+    per_sector = (len(layout.mesh.coords) - len(layout.mesh.ccw_nodes)) // (2 if plane else 1)
+    return {
+        "nodes": per_sector * layout.count,
+        "elements": len(layout.mesh.hexes) * layout.count,
+        "dofs": (2 if plane else 3) * len(layout.numbering.owned_nodes) * layout.count,
+        "nodes_whole": per_sector * layout.mesh.n_sectors,
+        "elements_whole": len(layout.mesh.hexes) * layout.mesh.n_sectors,
+        "quality": layout.mesh.quality,
+    }
+
+
+def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm) -> DriveModel:
+    """Mesh the drive and set up its discrete problem and solver; collective.
+
+    Raises InputError where the recipe gives no mesh of this design.
+    """
+    phases = PhaseTimes()
+    with phases("mesh"):
+        meshes = build_sector_meshes(design, recipe)
+    with phases("elements"):
+        references = {name: sector_elements(design, mesh) for name, mesh in meshes.items()}
+        layouts = [build_layout(design, mesh, references[name]) for name, mesh in meshes.items()]
+        if design.bearing is not None:
+            race = build_race_mesh(design, meshes["flexible_spline"])
+            references[race.body] = race_reference(design, race)
+            layouts.append(build_layout(design, race))
+    partition = Partition(layouts, comm)
+    with phases("elements"):
+        symmetric = design.contact.friction == 0.0
+        elements = Elements(partition, list(references.values()), symmetric=symmetric)
+    supports = build_supports(design, partition=partition, elements=elements)
+    contacts, coupling_keys = build_wave_generator_contacts(design, elements=elements)
+    problem = DiscreteProblem(
+        partition=partition,
+        elements=elements,
+        supports=supports,
+        rigid_contacts=contacts,
+        flanks=build_flank_contacts(design, partition=partition, elements=elements, supports=supports),
+        contact_search=contact_search(design),
+        module=design.drive.module,
+        ring_sectors=RingSectors(layouts[RING_GEAR].count) if _leaves_out_sectors(design) else None,
+        whole_teeth=[WholeTeeth(layout.count, k) for k, layout in enumerate(layouts) if layout.tooth is not None],
+        coupling_keys=coupling_keys,
+        phases=phases,
+    )
+    solver = NewtonSolver(problem, newton_settings(design))
+    return DriveModel(
+        design=design,
+        comm=comm,
+        meshes=meshes,
+        partition=partition,
+        elements=elements,
+        problem=problem,
+        solver=solver,
+        phases=phases,
+    )
+
+
+def sector_elements(design: DriveDesign, mesh: SectorMesh) -> ReferenceElements:
+    """Matrices of the elements of a sector of a gear, those of its housing of the housing's material."""
+    material, width = design.material, design.drive.face_width
+    coords = mesh.coords[mesh.elements]
+    elements = reference_elements(coords, material.E, material.nu, width)
+    if len(mesh.housing):
+        of_housing = reference_elements(coords[mesh.housing], *design.housing_material, width)
+        for matrices, other in zip(elements, of_housing):
+            matrices[mesh.housing] = other
+    return elements
+
+
+def build_layout(design: DriveDesign, mesh: SectorMesh, reference: ReferenceElements | None = None) -> BodyLayout:
+    """Modelled sectors of a body. reference : elements of one sector, needed where sectors are condensed"""
+    copies = copies_of_model(design)
+    standing = mesh.body == design.standing_gear != "flexible_spline"
+    clamped = standing and design.frame_is_rigid
+    fixed = mesh.node_sets["outer"] if clamped else np.zeros(0, dtype=np.int32)
+    condensed = tooth = None
+    if reference is not None and design.solver.condensed_sectors:
+        condensed = condense_sector(mesh, reference)
+    elif reference is not None and len(mesh.tooth) and _condenses_teeth(design):
+        tooth = condense_tooth(mesh, reference)
+    return BodyLayout(
+        mesh=mesh,
+        first_tooth=0,
+        count=mesh.n_sectors // copies,
+        closed=True,
+        copies=copies,
+        fixed=fixed,
+        condensed=condensed,
+        tooth=tooth,
+    )
+
+
+def _leaves_out_sectors(design: DriveDesign) -> bool:
+    # an elastic housing gives way all round
+    clamped = design.standing_gear == "ring_gear" and design.housing is None
+    return design.solver.far_teeth == "left_out" and clamped
+
+
+def _condenses_teeth(design: DriveDesign) -> bool:
+    return design.solver.far_teeth == "left_out" and design.drive.model != "plane"
+
+
+def build_supports(design: DriveDesign, *, partition: Partition, elements: Elements) -> Supports:
+    """Couplings of the spline, of a ring gear that is not clamped and of a bearing; the guide of a rotating ring."""
+    spline = elements.bodies[FLEXIBLE_SPLINE]
+    copies = copies_of_model(design)
+    # a plane section with deviations is centred by its cam alone: the wall of the cup gives way
+    centred = design.has_cup or (design.drive.model == "plane" and design.deviations is None)
+    rotates, guide = design.output_gear != "flexible_spline", None
+    couplings: list[NodeMeans] = []
+    if design.has_attachment:
+        cup, penalty = design.cup, design.penalty
+        attachment = RigidAttachment(
+            partition, spline, "end", cup.is_attached, cup.attached_width, penalty=penalty, images=copies > 1
+        )
+        couplings.append(attachment)
+        longest = float(face_sides(spline.layout.mesh, "end").max())
+        if design.is_bolted and longest > cup.washer_diameter:
+            logger.warning(
+                "elements of the closed end or flange are up to %.3g mm long, a washer is %.3g mm wide: a mesh with "
+                "shorter elements there holds the bolts better",
+                longest,
+                cup.washer_diameter,
+            )
+    else:
+        couplings.append(DistributingCoupling(partition, spline, "bore", copies > 1, centred))
+    if rotates or not design.frame_is_rigid:
+        ring = elements.bodies[design.gears.index(design.output_gear) if rotates else RING_GEAR]
+        couplings.append(DistributingCoupling(partition, ring, "outer", copies > 1))
+    if rotates and design.frame_is_rigid:
+        outer = float(np.hypot(*couplings[-1].reference[:, :2].T).max(initial=0.0))
+        low, high = design.axial_range(design.output_gear)
+        area = 2.0 * np.pi * outer * (high - low) / copies
+        guide = RadialGuide(couplings[-1], area, design.penalty)
+    scale = design.material.E * design.drive.module
+    race = None if design.bearing is None else race_coupling(partition, elements, couplings[0])
+    spline_ratio = None
+    if design.dynamic_spline is not None:  # the flexible spline rotates with the dynamic one
+        spline_ratio = 1.0 if design.output_gear == "dynamic_spline" else 0.0
+    return Supports(
+        partition,
+        couplings,
+        output=len(couplings) - 1 if rotates else FLEXIBLE_SPLINE,
+        guide=guide,
+        scale=scale,
+        share=1.0 / copies,
+        race=race,
+        spline_ratio=spline_ratio,
+    )
+
+
+def build_wave_generator_contacts(design: DriveDesign, *, elements: Elements) -> tuple[list[Contact], np.ndarray]:
+    """Contacts of the cam, or of the bearing on it, and keys (n,) of the tangent's blocks that they need."""
+    if design.bearing is None:
+        return [*build_rigid_contacts(design, elements=elements)], NO_KEYS
+    race = build_race_contact(
+        design, elements, 0.5 * design.race_width * EDGE, PRESSURE_LIMIT * design.race_material[0]
+    )
+    balls = build_ball_contact(design, elements)
+    keys = np.unique(np.concatenate([elements.block_keys(conn).ravel() for conn in (race.conn, balls.windows)]))
+    return [race, balls], keys[keys >= 0]
+
+
+def build_rigid_contacts(design: DriveDesign, *, elements: Elements) -> list[RigidContact]:
+    """Contact of the cam and of the pins on the inner surface."""
+    surface = design.cam_surface()
+    return [
+        RigidContact(
+            elements.bodies[FLEXIBLE_SPLINE],
+            surface,
+            pose,
+            radius=design.inner_radius,
+            half_width=0.5 * design.wave_generator.face_width * EDGE,
+            n_quadrature=design.contact.wg_quadrature,
+            penalty=design.wg_penalty,
+            pin_half_angle=float(np.radians(design.wave_generator.pin_half_angle)),
+            lobes=design.lobes,
+            pressure_limit=PRESSURE_LIMIT * design.material.E,
+        )
+        for pose in (cam_pose, pin_pose)
+    ]
+
+
+def flank_crowning(design: DriveDesign) -> Crowning:
+    """Crowning of the flexible spline's flanks."""
+    micro = design.micro_geometry
+    return Crowning(micro.fs_crowning, design.drive.face_width, micro.crowning_shape)
+
+
+def build_flank_contacts(
+    design: DriveDesign, *, partition: Partition, elements: Elements, supports: Supports
+) -> list[FlankContact]:
+    """Contacts of the flexible spline's flanks, one with each ring gear."""
+    contacts = []
+    for ring in range(RING_GEAR, len(design.gears)):
+        fixed = len(partition.layouts[ring].fixed) > 0
+        contacts.append(
+            FlankContact(
+                partition,
+                elements.bodies[FLEXIBLE_SPLINE],
+                elements.bodies[ring],
+                ring,
+                FixedRing() if fixed else FloatingRing(supports.couplings[RING_COUPLING], partition.comm),
+                order=design.contact.quadrature,
+                crowning=flank_crowning(design),
+                penalty=design.penalty,
+                max_gap=max(FOOT_REACH * design.drive.module, search_distance(design)),
+                pressure_limit=PRESSURE_LIMIT * design.material.E,
+                friction_coefficient=design.contact.friction,
+            )
+        )
+    return contacts
+
+
+def contact_search(design: DriveDesign) -> ContactSearch:
+    """Distances of the contact search."""
+    module = design.drive.module
+    reach = search_distance(design, REACH if _condenses_teeth(design) else NEAR)
+    return ContactSearch(
+        tip_margin=TIP_MARGIN * module,
+        distances=SearchRange(near=search_distance(design), reach=reach, touch=TOUCH * module),
+        outer_radius=0.5 * design.drive.teeth_rg * module + design.deflection,
+    )
+
+
+def newton_settings(design: DriveDesign) -> NewtonSettings:
+    """Settings of the solver."""
+    solver, contact = design.solver, design.contact
+    return NewtonSettings(
+        rtol=solver.rtol,
+        max_iterations=solver.max_iterations,
+        max_augmentations=contact.max_augmentations,
+        penetration_tolerance=contact.penetration_tolerance * design.drive.module,
+        linear=solver.linear,
+        reuse_factor=solver.keep_factor,
+    )

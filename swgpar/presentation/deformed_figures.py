@@ -1,0 +1,207 @@
+"""Figures of the deformed drive, true to scale: the whole, the loaded teeth on the cam, sections of the cup."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from swgpar.design.drive_design import DriveDesign
+from swgpar.geometry.rotation import rotated
+from swgpar.presentation.off_screen import off_screen_plotter, without_margin
+
+if TYPE_CHECKING:
+    import pyvista
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+PERCENTILE = 99.9
+"""Of the von Mises stress of the nodes: the end of the colour range."""
+
+COLOURS = "turbo"
+
+CAM_COLOUR = "#d9d9d9"
+
+PITCHES = 2.2
+"""Half width of the close-up of the teeth, in pitches."""
+
+CAM_GRID = 400
+"""Points along each side of the close-up in which the distance from the cam is evaluated."""
+
+
+def colour_limit(grids: Sequence[pyvista.UnstructuredGrid]) -> float:
+    """End of the colour range (MPa) of the von Mises stress of several bodies."""
+    return float(np.percentile(np.concatenate([grid.point_data["vm"] for grid in grids]), PERCENTILE)) or 1.0
+
+
+def deformed(grids: Sequence[pyvista.UnstructuredGrid], factor: float) -> list[pyvista.UnstructuredGrid]:
+    """The grids with their nodes moved by their displacements. factor : magnification of these"""
+    moved = [grid.copy() for grid in grids]
+    for grid in moved:
+        grid.points = grid.points + factor * grid.point_data["displacement"]
+    return moved
+
+
+def draw_deformed(grids: Sequence[pyvista.UnstructuredGrid], factor: float, *, plane: bool, title: str) -> Figure:
+    """Both deformed gears: seen from the open end of the cup, a plane model along its axis.
+
+    factor : magnification of the displacements;  title : where in the run this is
+    """
+    plotter = off_screen_plotter(1400, 1300)
+    limit = colour_limit(grids)
+    for grid in deformed(grids, factor):
+        surface = grid.extract_surface(algorithm="dataset_surface")
+        plotter.add_mesh(
+            surface, scalars="vm", cmap=COLOURS, clim=(0.0, limit), smooth_shading=False, show_scalar_bar=False
+        )
+    if plane:
+        plotter.enable_parallel_projection()
+        plotter.view_xy()
+        plotter.camera.tight(padding=0.03, adjust_render_window=False)
+    else:
+        plotter.camera_position = [(60.0, 60.0, -170.0), (0.0, 0.0, 10.0), (0.0, 1.0, 0.0)]
+        plotter.reset_camera()
+        plotter.camera.zoom(1.3)
+    picture = without_margin(plotter.screenshot(return_img=True))
+    plotter.close()
+    figure, axes = _figure(1, (9.0, 8.0))
+    axes[0].imshow(picture)
+    axes[0].set_axis_off()
+    _colour_bar(figure, axes, limit)
+    scale = "true to scale" if factor == 1.0 else f"displacements x {factor:g}, bodies may seem to cross"
+    _title(figure, title, scale, limit)
+    return figure
+
+
+def draw_loaded_teeth(
+    grids: Sequence[pyvista.UnstructuredGrid], design: DriveDesign, wg_angle: float, angle: float, z: float, title: str
+) -> Figure:
+    """Close-up of the deformed teeth and of the cam below them, across the axis.
+
+    wg_angle : rad, of the wave generator;  angle : rad, of the middle of the close-up from +y, counter-clockwise
+    z : mm, of the section;  title : where in the run this is
+    """
+    limit, pitch = colour_limit(grids), np.pi * design.drive.module
+    half = PITCHES * pitch
+    low = design.inner_radius - 0.5 * pitch
+    high = design.profile("ring_gear").r_root_circle + min(design.ring_gear.rim, 0.5 * pitch)
+    figure, (axes,) = _figure(1, (9.0, 1.6 + 7.0 * (high - low) / (2.0 * half)))
+    _draw_cam(axes, design, wg_angle - angle, z, (-half, half, low, high))
+    for grid in deformed(grids, 1.0):
+        cut = grid.slice(normal="z", origin=(0.0, 0.0, z))
+        at = rotated(np.asarray(cut.points)[:, :2], -angle)
+        _draw_cut(axes, cut, at, limit, (-half, half, low, high))
+    axes.set(xlim=(-half, half), ylim=(low, high), xlabel="mm, along the circumference", ylabel="radius (mm)")
+    _colour_bar(figure, [axes], limit)
+    ring = "ring gear" if design.dynamic_spline is None or z < 0.0 else "dynamic spline"
+    axes.text(0.0, high - 0.15 * pitch, ring, color="w", ha="center", va="top")
+    if design.bearing is None:
+        axes.text(0.0, low + 0.1 * pitch, "wave generator", ha="center")
+    place = f"teeth at {np.degrees(angle):.1f} degrees from +y"
+    where = place if design.drive.model == "plane" else f"{place}, section at z {z:.2f} mm"
+    _title(figure, f"{title}; {where}", "true to scale", limit)
+    return figure
+
+
+def draw_cup_section(
+    grids: Sequence[pyvista.UnstructuredGrid], design: DriveDesign, wg_angle: float, title: str
+) -> Figure:
+    """Half sections of the deformed cup drive along its axis, through a lobe of the cam and between two lobes.
+
+    wg_angle : rad, of the wave generator;  title : where in the run this is
+    """
+    limit = colour_limit(grids)
+    bodies = deformed(grids, 1.0)
+    length = design.drive.face_width + design.cup.length
+    outer = design.largest_radius
+    low = max(min(design.cup.edge, design.inner_radius) - 0.05 * outer, 0.0)
+    height = min(8.0, max(3.0, 9.0 * (outer - low) / (2.0 * length)))
+    half = 0.5 * design.drive.face_width
+    box = (-1.6 * half, half + 1.05 * design.cup.length, low, 1.01 * outer)
+    figure, panels = _figure(2, (9.5, 1.4 + height))
+    for axes, name, turn in zip(panels, ("major axis", "minor axis"), (0.0, np.pi / design.lobes)):
+        angle = wg_angle + turn
+        axis = np.array([-np.sin(angle), np.cos(angle), 0.0])
+        for grid in bodies:
+            cut = grid.slice(normal=(np.cos(angle), np.sin(angle), 0.0), origin=(0.0, 0.0, 0.0))
+            points = np.asarray(cut.points)
+            _draw_cut(axes, cut, np.column_stack([points[:, 2], points @ axis]), limit, box)
+        axes.set(xlabel="z (mm), open end at negative z", title=f"through the {name}", xlim=box[:2], ylim=box[2:])
+    panels[0].set_ylabel("radius (mm)")
+    _colour_bar(figure, panels, limit)
+    _title(figure, title, "true to scale", limit)
+    return figure
+
+
+def _figure(panels: int, size: tuple[float, float]) -> tuple[Figure, list[Axes]]:
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=size, dpi=110, layout="constrained")
+    axes = list(figure.subplots(1, panels, squeeze=False)[0])
+    for panel in axes:
+        panel.set_aspect("equal")
+    return figure, axes
+
+
+def _title(figure: Figure, when: str, what: str, limit: float) -> None:
+    figure.suptitle(
+        f"{when}\n{what}; colours end at {limit:.4g} MPa ({PERCENTILE:g} % of the nodes are below)", fontsize=10
+    )
+
+
+def _colour_bar(figure: Figure, axes: Sequence[Axes], limit: float) -> None:
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+
+    figure.colorbar(
+        ScalarMappable(Normalize(0.0, limit), COLOURS),
+        ax=list(axes),
+        extend="max",
+        shrink=0.8,
+        label="von Mises stress (MPa), nodal averages",
+    )
+
+
+def _draw_cut(
+    axes: Axes, cut: pyvista.PolyData, at: np.ndarray, limit: float, box: tuple[float, float, float, float]
+) -> None:
+    """Draw a plane cut through a body with its outline. at : (n, 2) mm, places of its points in the figure"""
+    from matplotlib.collections import LineCollection
+
+    if not cut.n_points:
+        return
+    flat = cut.copy()
+    flat.points = np.column_stack([at, np.zeros(len(at))])
+    flat = flat.clip_box((*box, -1.0, 1.0), invert=False).extract_surface(algorithm="dataset_surface").triangulate()
+    if not flat.n_cells:
+        return
+    flat = flat.clean(tolerance=1e-5, absolute=True)  # sectors have nodes of their own where they meet
+    points, triangles = np.asarray(flat.points), flat.regular_faces
+    axes.tripcolor(
+        points[:, 0],
+        points[:, 1],
+        triangles,
+        flat.point_data["vm"],
+        shading="gouraud",
+        cmap=COLOURS,
+        vmin=0.0,
+        vmax=limit,
+        rasterized=True,
+    )
+    edges = flat.extract_feature_edges(
+        boundary_edges=True, feature_edges=False, manifold_edges=False, non_manifold_edges=False
+    )
+    lines = edges.lines.reshape(-1, 3)[:, 1:]
+    axes.add_collection(LineCollection(np.asarray(edges.points)[lines][:, :, :2], colors="#222", linewidths=0.5))
+
+
+def _draw_cam(axes: Axes, design: DriveDesign, turn: float, z: float, box: tuple[float, float, float, float]) -> None:
+    """Fill the cam at z (mm) where it is in the box. turn : rad, of its major axis from the middle of the figure"""
+    if design.bearing is not None:
+        return  # the spline lies on a race that the run models
+    x, y = np.meshgrid(np.linspace(*box[:2], CAM_GRID), np.linspace(*box[2:], CAM_GRID))
+    points = rotated(np.column_stack([x.ravel(), y.ravel()]), -turn)
+    distance = design.cam_surface().evaluate(np.column_stack([points, np.full(len(points), z)]))[0].reshape(x.shape)
+    axes.contourf(x, y, distance, levels=[-np.inf, 0.0], colors=[CAM_COLOUR])
+    axes.contour(x, y, distance, levels=[0.0], colors="#222", linewidths=0.8)

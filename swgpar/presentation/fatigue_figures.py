@@ -1,0 +1,84 @@
+"""Figures of the fatigue of a drive: Haigh's diagram, and the safety factor on a sector."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from swgpar.presentation.off_screen import off_screen_plotter
+from swgpar.results.sector_fields import SectorFields
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+SHOWN = (0.5, 20.0)
+"""Safety factors at the ends of the colour scale, which is logarithmic."""
+
+
+def draw_haigh(sector: SectorFields, cycle: dict[str, np.ndarray], summary: dict[str, Any], angle: str) -> Figure:
+    """Amplitude over mean (MPa) of all nodes by region with the lines of Goodman and of yield, above the worst cycle.
+
+    summary : of the run;  angle : title of the axis with the angle of the wave generator
+    """
+    from matplotlib.figure import Figure
+
+    found, strengths = summary["fatigue"], summary["design"]["fatigue"]
+    figure = Figure(figsize=(7.5, 7.5), layout="constrained")
+    axes, below = figure.subplots(2, 1, height_ratios=[1.6, 1.0])
+    fields = sector.fields
+    for number, region in enumerate(found["regions"]):
+        here = fields["region"] == number
+        hollow = bool(found["regions"][region]["warning"])
+        label = region + (" (depends on the mesh)" if hollow else "")
+        axes.plot(fields["mean"][here], fields["amplitude"][here], "x" if hollow else ".", ms=4, label=label)
+    limit, tensile = found["fatigue_limit_of_the_part_MPa"], strengths["tensile_strength"]
+    most = strengths["yield_strength"]
+    low = min(0.0, 1.05 * float(fields["mean"].min()))
+    axes.plot([low, 0.0, tensile], [limit, limit, 0.0], "k-", label="Goodman, safety 1")
+    axes.plot([max(low, -most), 0.0, most], [most + max(low, -most), most, 0.0], "k--", lw=0.8, label="yield")
+    worst = found["goodman"]
+    axes.plot(worst["mean_MPa"], worst["amplitude_MPa"], "r*", ms=12, label=f"least safety {worst['safety']:.3g}")
+    axes.set(xlabel="mean of the normal stress (MPa)", ylabel="amplitude (MPa)")
+    axes.set(xlim=(low, 1.05 * tensile), ylim=(0.0, 1.1 * max(limit, float(fields["amplitude"].max()))))
+    axes.set_title("Haigh's diagram, on the critical plane of every node", fontsize=10)
+    axes.legend(fontsize=7)
+    of_program = "step" in cycle
+    below.plot(cycle["step" if of_program else "wg_angle_deg"], cycle["normal_stress_MPa"], ".-" if of_program else "-")
+    what = "point of the load program (step)" if of_program else angle
+    below.set(xlabel=what, ylabel="normal stress (MPa)")
+    below.set_title(f"cycle where the safety is the least: {worst['region']}", fontsize=10)
+    for panel in (axes, below):
+        panel.grid(alpha=0.3)
+    return figure
+
+
+def sector_picture(sector: SectorFields, plane: bool) -> np.ndarray:
+    """Picture (height, width, 3) of a sector coloured by Goodman's safety factor: a plane one along its axis."""
+    import pyvista
+
+    cells = np.hstack([np.full((len(sector.cells), 1), 8), sector.cells]).ravel()
+    grid = pyvista.UnstructuredGrid(cells, np.full(len(sector.cells), pyvista.CellType.HEXAHEDRON), sector.points)
+    grid.point_data["safety"] = np.clip(sector.fields["safety_goodman"], *SHOWN)
+    plotter = off_screen_plotter(1200, 900)
+    plotter.add_mesh(
+        grid.extract_surface(algorithm="dataset_surface"),
+        scalars="safety",
+        cmap="turbo_r",
+        clim=SHOWN,
+        log_scale=True,
+        show_edges=True,
+        edge_opacity=0.2,
+        scalar_bar_args={"title": "safety by Goodman", "position_x": 0.2, "position_y": 0.02},
+    )
+    if plane:
+        plotter.enable_parallel_projection()
+        plotter.view_xy()
+        plotter.camera.zoom(1.6)
+    else:
+        plotter.camera_position = [(1.2, 0.6, -1.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)]
+        plotter.reset_camera()
+        plotter.camera.zoom(1.3)
+    picture = plotter.screenshot(return_img=True)
+    plotter.close()
+    return picture

@@ -1,0 +1,357 @@
+"""Figures of a drive's result."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+from mpi4py import MPI
+
+from swgpar.design.drive_design import DriveDesign
+from swgpar.errors import InputError
+from swgpar.evaluation.transmission_error import orders
+from swgpar.load.load_states import Stage
+from swgpar.presentation.circumference_figure import FIELDS, draw_circumference
+from swgpar.presentation.contact_figures import (
+    ANGLE,
+    ANGLE_AGAINST_RING,
+    draw_contact_pattern,
+    draw_load_sharing,
+    draw_pairs,
+)
+from swgpar.presentation.deformed_figures import draw_cup_section, draw_deformed, draw_loaded_teeth
+from swgpar.presentation.fatigue_figures import draw_haigh, sector_picture
+from swgpar.presentation.program_figures import torque_against_rotation
+from swgpar.results.figure_set import Drawings, FigureSet
+from swgpar.results.sector_fields import SectorFields
+
+if TYPE_CHECKING:
+    import pyvista
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from swgpar.drive_results.drive_result import DriveResult
+
+STRESSES = {
+    "fs_s1": "flexible spline, tensile s1",
+    "fs_s3": "flexible spline, compressive |s3|",
+    "fs_vm": "flexible spline, von Mises",
+    "rg_vm": "ring gear, von Mises",
+}
+"""Columns of the history in the figure of stresses."""
+
+
+class DriveFigures(FigureSet):
+    """Figures of a drive: each method draws one and returns a matplotlib figure.
+
+    `save` writes all of them. Every rank calls it, and the methods whose figures show fields.
+    """
+
+    exact_size = ("deformed_drive", "loaded_teeth", "cup_section", "safety")
+
+    def __init__(self, result: DriveResult, comm: MPI.Comm, *, gathered: bool) -> None:
+        super().__init__(comm, gathered=gathered)
+        self._result = result
+
+    @property
+    def drawings(self) -> Drawings:
+        found: dict[str, Callable[[], Figure]] = {"stress": self.stress}
+        if self._result.program:
+            found["torque_against_rotation"] = self.torque_against_rotation
+        else:
+            found["torque_and_transmission_error"] = self.torque_and_transmission_error
+        if self._result.transmission_error:
+            found["transmission_error_spectrum"] = self.transmission_error_spectrum
+        if self._result.pairs:
+            found |= {"pairs": self.pairs, "load_sharing": self.load_sharing}
+            if np.isfinite(self._result.pairs["pressure_MPa"]).any():
+                found["contact_pattern"] = self.contact_pattern
+        if self._result.fatigue is not None:
+            found |= {"haigh": self.haigh, "safety": self.safety}
+        if self._result.balls:
+            found["ball_loads"] = self.ball_loads
+        if self._result.increments:
+            found |= {"deformed_drive": self.deformed, "loaded_teeth": self.loaded_teeth}
+            if self._has_cup:
+                found["cup_section"] = self.cup_section
+            found["stress_around"] = self.stress_around
+        return found
+
+    def stress(self) -> Figure:
+        """Largest stresses of both bodies (MPa) against the angle of the wave generator, under load."""
+        figure, (axes,) = self._panels(1)
+        for name, label in STRESSES.items():
+            self._draw(axes, name, label)
+        root = self._result.summary.get("root_stress")
+        if root and root["period"]:
+            angle, value = np.array(root["period"]).T
+            axes.plot(angle, value, "k^--", ms=4, lw=0.8, label="flexible spline, s1 at the teeth by windows")
+        axes.set(ylabel="stress (MPa)", title="largest stresses (nodal averages)" + self._over_period())
+        axes.set_ylim(bottom=0.0)
+        figure.legend(loc="outside lower center", ncols=2, fontsize=8)
+        return figure
+
+    def torque(self) -> Figure:
+        """Input torque (N·mm) against the angle of the wave generator, beside that of the energy balance."""
+        figure, (axes,) = self._panels(1)
+        self._draw_torque(axes)
+        return figure
+
+    def transmission_error(self) -> Figure:
+        """Angle of the output less its kinematic value (arc seconds) against the angle of the wave generator."""
+        figure, (axes,) = self._panels(1)
+        self._draw_transmission_error(axes)
+        return figure
+
+    def torque_and_transmission_error(self) -> Figure:
+        """Input torque and transmission error in one figure."""
+        figure, (upper, lower) = self._panels(2)
+        self._draw_torque(upper)
+        self._draw_transmission_error(lower)
+        return figure
+
+    def transmission_error_spectrum(self) -> Figure:
+        """Transmission error (arc seconds) over the angle of the input, and its orders of the input's turn.
+
+        Over whole turns with deviations, or over the sampled period of the ideal drive.
+        """
+        from matplotlib.figure import Figure
+
+        rows, summary = self._result.transmission_error, self._result.summary["transmission_error"]
+        if not rows:
+            raise InputError("this run has no transmission error: allowed with steps.samples or [deviations]")
+        figure = Figure(figsize=(7.0, 6.0), layout="constrained")
+        upper, lower = figure.subplots(2, 1)
+        error = rows["transmission_error_arcsec"]
+        upper.plot(rows["wg_angle_deg"], error - error.mean(), lw=1.0, marker="o" if len(error) < 40 else None, ms=3)
+        upper.set(xlabel=self._angle, ylabel="arc seconds", title="transmission error less its mean")
+        order, amplitude, _ = orders(summary, rows)
+        lower.vlines(order, 0.0, amplitude, lw=1.2)
+        named = summary["spectrum"][:4]
+        for line in named:
+            lower.plot(line["order"], line["amplitude"], "o", ms=4, label=f"{line['order']:.4g}: {line['cause']}")
+        lower.set(xlabel="order of the input's turn", ylabel="amplitude (arc seconds)", ylim=(0.0, None))
+        if named:
+            lower.legend(fontsize=7)
+        for axes in (upper, lower):
+            axes.grid(alpha=0.3)
+        return figure
+
+    def _draw_torque(self, axes: Axes) -> None:
+        driven = self._result.summary.get("input")
+        if driven:
+            self._draw(axes, "input_torque_Nmm", "ring gear")
+        else:
+            self._draw(axes, "wg_torque_Nmm", "wave generator")
+        expected = driven["torque_expected_Nmm"] if driven else self._result.summary["wg_torque_expected_Nmm"]
+        axes.axhline(expected, color="0.4", ls="--", label="energy balance, T / ratio")
+        axes.set(ylabel="torque (N·mm)", title="input torque" + self._over_period())
+        axes.legend(fontsize=8)
+
+    def _draw_transmission_error(self, axes: Axes) -> None:
+        self._draw(axes, "transmission_error", None)
+        axes.set(ylabel="arc seconds", title="transmission error: output angle less its kinematic value")
+
+    def torque_against_rotation(self) -> Figure:
+        """Torque on the output (N·m) against its rotation (arc minutes), along a load program."""
+        if not self._result.program:
+            raise InputError("this run has no load program: allowed with load.program, [stiffness] or [ratcheting]")
+        return torque_against_rotation(self._result.program, self._result.summary)
+
+    def pairs(self) -> Figure:
+        """Force (N) and largest contact pressure (MPa) of the pairs, over the tooth's angle from the major axis.
+
+        All computed increments under load are drawn: a tooth goes through these positions one after the other. Pairs
+        whose contact lies on an edge have hollow marks: their pressure is no property of the drive.
+        """
+        return draw_pairs(self._pairs(), self._lobes)
+
+    def load_sharing(self) -> Figure:
+        """Share (%) of every pair in the forces between the flanks, over its angle from the major axis.
+
+        All computed increments under load are drawn, and below the number of pairs at these angles.
+        """
+        return draw_load_sharing(self._pairs(), self._result.history, self._angle, self._lobes)
+
+    def haigh(self) -> Figure:
+        """Haigh's diagram of all nodes of a sector, and the normal stress over the cycle where the safety is the least.
+
+        Runs with the section [fatigue] have it.
+        """
+        return draw_haigh(self._fatigue(), self._result.fatigue_cycle, self._result.summary, self._angle)
+
+    def safety(self) -> Figure:
+        """One sector of the flexible spline, coloured by Goodman's safety factor."""
+        return _as_figure(sector_picture(self._fatigue(), self._result.is_plane))
+
+    @property
+    def _lobes(self) -> int:
+        return int(self._result.summary["design"]["wave_generator"]["lobes"])
+
+    def _pairs(self) -> dict[str, np.ndarray]:
+        if not self._result.pairs:
+            raise InputError("this run has no flanks in contact under load: allowed with load.torque above 0")
+        return self._result.pairs
+
+    def _fatigue(self) -> SectorFields:
+        if self._result.fatigue is None:
+            raise InputError("this run has no fatigue: allowed with the section [fatigue]")
+        return self._result.fatigue
+
+    def _draw(self, axes: Axes, name: str, label: str | None) -> None:
+        """Draw a column under load: points where it was computed, and the curve through them."""
+        curves = self._result.curves()
+        (line,) = axes.plot(curves.fine_angle, curves.fine[name], label=label)
+        axes.plot(curves.angle, curves.values[name], "o", ms=3, color=line.get_color())
+
+    @property
+    def _angle(self) -> str:
+        """Title of the axis with the column `wg_angle_deg`."""
+        fixed = self._result.summary["design"]["drive"]["layout"] == "wave_generator_fixed"
+        return ANGLE_AGAINST_RING if fixed else ANGLE
+
+    def _panels(self, count: int) -> tuple[Figure, list[Axes]]:
+        """A figure with panels above one another, over the angle of the wave generator."""
+        from matplotlib.figure import Figure
+
+        figure = Figure(figsize=(7.0, 4.2 if count == 1 else 3.0 * count), layout="constrained")
+        panels = list(figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0])
+        for axes in panels:
+            axes.grid(alpha=0.3)
+        panels[-1].set_xlabel(self._angle)
+        return figure, panels
+
+    def _over_period(self) -> str:
+        return ", over one period" if self._result.summary["design"]["steps"]["samples"] else ""
+
+    def ball_loads(self) -> Figure:
+        """Loads of a bearing's balls (N) over the angle from the major axis, and the largest during the rotation."""
+        from matplotlib.figure import Figure
+
+        balls, bearing = self._result.balls, self._result.summary["bearing"]
+        if not balls:
+            raise InputError("this run has no balls: allowed with wave_generator.bearing")
+        loaded = balls["step"] >= Stage.LOAD
+        shown = {name: values[loaded] if loaded.any() else values for name, values in balls.items()}
+        figure = Figure(figsize=(7.0, 6.5), layout="constrained")
+        upper, lower = figure.subplots(2, 1)
+        increments = np.unique(shown["increment"])
+        angles = []
+        for increment in increments:
+            here = shown["increment"] == increment
+            order = np.argsort(shown["cam_angle_deg"][here])
+            upper.plot(shown["cam_angle_deg"][here][order], shown["load_N"][here][order], "o-", ms=3, lw=0.6)
+            angles.append(shown["wg_angle_deg"][here][0])
+        upper.set(xlabel="angle from the major axis (degrees)", ylabel="ball load (N)", xlim=(-180.0, 180.0))
+        upper.set_title(f"loads of {len(shown['ball']) // len(increments)} balls at {len(increments)} angles")
+        peaks = shown["load_N"].reshape(len(increments), -1).max(axis=1)
+        lower.plot(angles, peaks, "o-", ms=4)
+        fixed = ", balls fixed to the cam" if bearing["balls_fixed_to_cam"] else ""
+        lower.set(xlabel=self._angle, ylabel="largest ball load (N)" + fixed)
+        for axes in (upper, lower):
+            axes.set_ylim(bottom=0.0)
+            axes.grid(alpha=0.3)
+        return figure
+
+    def contact_pattern(self, step: int | None = None) -> Figure:
+        """Pressure (MPa) on all loaded flanks, over arc length and face width.
+
+        In the plane model over arc length. step : of the history; None for that with the largest pressure
+        """
+        return draw_contact_pattern(self._pairs(), self._result.contact_lines, step, self._result.is_plane)
+
+    def deformed(self, increment: int = -1, magnification: float = 1.0) -> Figure:
+        """The deformed drive, coloured by von Mises stress: seen from its open end, a plane model along its axis.
+
+        Parameters
+        ----------
+        increment : among those with fields, as in `DriveResult.field`
+        magnification : of the displacements; above 1 bodies may seem to cross
+        """
+        return draw_deformed(
+            self._grids(increment), magnification, plane=self._result.is_plane, title=self._when(increment)
+        )
+
+    def loaded_teeth(self, increment: int = -1) -> Figure:
+        """Close-up of the pair of flanks with the largest force and the cam below it, by von Mises stress.
+
+        A cup drive is cut across its axis where the pressure of this pair is the largest. Without a pair in contact
+        the teeth at the major axis are shown. increment : as in `DriveResult.field`
+        """
+        result, row = self._result, self._row(increment)
+        cam_angle = self._cam_angle(row)
+        angle, z, pairs = cam_angle, 0.0, result.pairs
+        here = np.flatnonzero(pairs["increment"] == row + 1) if pairs else []
+        if len(here):
+            largest = here[np.argmax(pairs["force_N"][here])]
+            angle = cam_angle + float(np.radians(pairs["angle_deg"][largest]))
+            z = float(np.nan_to_num(pairs["z_mm"][largest]))
+        return draw_loaded_teeth(self._grids(increment), self._design, cam_angle, angle, z, self._when(increment))
+
+    def cup_section(self, increment: int = -1) -> Figure:
+        """Sections of the deformed cup along its axis, through the major and the minor axis, by von Mises stress.
+
+        increment : as in `DriveResult.field`
+        """
+        if not self._has_cup:
+            raise InputError(f'drive.model = "{self._design.drive.model}" has no cup: allowed with "cup"')
+        cam_angle = self._cam_angle(self._row(increment))
+        return draw_cup_section(self._grids(increment), self._design, cam_angle, self._when(increment))
+
+    def stress_around(self, increment: int = -1) -> Figure:
+        """Largest s1 and von Mises stress (MPa) of every tooth's sector of the flexible spline, around it.
+
+        increment : as in `DriveResult.field`
+        """
+        result, body = self._result, "flexible_spline"
+        counts, design = result.summary["bodies"][body], self._design
+        return draw_circumference(
+            design,
+            result.mesh(body).points,
+            {name: result.field(name, increment, body) for name in FIELDS},
+            counts["elements"] // (counts["elements_whole"] // design.drive.teeth_fs),
+            float(np.radians(result.history["wg_angle_deg"][self._row(increment)])),
+            self._when(increment),
+        )
+
+    @property
+    def _has_cup(self) -> bool:
+        return self._result.summary["design"]["drive"]["model"] == "cup"
+
+    @property
+    def _design(self) -> DriveDesign:
+        return DriveDesign.model_validate(self._result.summary["design"])
+
+    def _grids(self, increment: int) -> list[pyvista.UnstructuredGrid]:
+        """Both whole bodies with their fields; collective where these are gathered. What follows is not."""
+        return [self._result.grid(increment, body, whole=True) for body in self._result.gears]
+
+    def _row(self, increment: int) -> int:
+        """Row of the history, from 0, of an increment with fields."""
+        known = self._result.field_increments
+        if not -len(known) <= increment < len(known):
+            raise InputError(f"increment = {increment} has no fields: allowed from {-len(known)} to {len(known) - 1}")
+        return known[increment] - 1
+
+    def _cam_angle(self, row: int) -> float:
+        """Angle (rad) of the cam in the fields of a row of the history; 0 where the wave generator is fixed."""
+        if self._design.drive.layout == "wave_generator_fixed":
+            return 0.0
+        return float(np.radians(self._result.history["wg_angle_deg"][row]))
+
+    def _when(self, increment: int) -> str:
+        row = self._row(increment)
+        return f"increment {row + 1}, wave generator at {self._result.history['wg_angle_deg'][row]:.3g} degrees"
+
+
+def _as_figure(picture: np.ndarray) -> Figure:
+    """A figure that shows a picture (height, width, 3) pixel by pixel."""
+    from matplotlib.figure import Figure
+
+    height, width = picture.shape[:2]
+    figure = Figure(figsize=(width / 100.0, height / 100.0), dpi=100)
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.imshow(picture)
+    axes.set_axis_off()
+    return figure

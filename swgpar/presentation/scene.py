@@ -1,0 +1,118 @@
+"""The deformed drive as a view that turns in a page of HTML, without a network: the surface and a drawer in WebGL.
+
+All sectors of a body are congruent: the triangles of one are stored, and places, displacements and stresses of all.
+Places have 16 bits, stresses 8.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from swgpar.drive_results.drive_result import DriveResult
+
+MOST_NODES = 400_000
+"""Nodes of the surface up to which it goes into a report; it then has some 7 MB."""
+
+PERCENTILE = 99.9
+"""Of the von Mises stress: the end of the colour range."""
+
+HEX_FACES = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])
+
+STYLE = """
+#scene canvas { width: 100%; height: min(70vh, 640px); border: 1px solid #ddd; touch-action: none; cursor: grab; }
+#scene .bar { height: 14px; background: linear-gradient(90deg,
+  #30123b, #4662d7, #36aaf9, #1ae4b6, #72fe5e, #c8ef34, #faba39, #f66b19, #ca2a04, #7a0403); }
+#scene .range { display: flex; justify-content: space-between; font-size: 13px; }
+#scene label { margin-right: 1.2em; white-space: nowrap; }
+"""
+
+
+def sector_surface(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
+    """Triangles (n, 3) of the surface of one sector, without the sides where it meets its neighbours.
+
+    points : (n, 3) mm, of the sector;  cells : (m, 8) hexahedra in VTK order
+    """
+    faces = cells[:, HEX_FACES].reshape(-1, 4)
+    _, first, count = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
+    outside = faces[first[count == 1]]
+    axis = points[:, :2].mean(axis=0)
+    angle = np.arctan2(points[:, :2] @ [-axis[1], axis[0]], points[:, :2] @ axis)
+    # the sides lie in planes through the axis, at the largest and the smallest angle
+    at = angle[outside]
+    sides = [np.all(np.abs(at - end) < 1e-6 * np.ptp(angle), axis=1) for end in (angle.min(), angle.max())]
+    quads = outside[~(sides[0] | sides[1])]
+    return np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+
+
+def scene(result: DriveResult) -> str | None:
+    """The view of the last increment with fields, as HTML; None without fields, or where it would be too large.
+
+    Reads files only: one rank may call it alone.
+    """
+    if not result.increments:
+        return None
+    stresses = {body: result.field("vm", body=body) for body in result.gears}
+    limit = float(np.percentile(np.concatenate(list(stresses.values())), PERCENTILE)) or 1.0
+    bodies = [_body(result, body, stresses[body] / limit) for body in result.gears]
+    if sum(body.pop("nodes") for body in bodies) > MOST_NODES:
+        return None
+    low = np.min([body["low"] for body in bodies], axis=0)
+    high = np.max([np.add(body["low"], body["span"]) for body in bodies], axis=0)
+    radius = float(np.abs([low[:2], high[:2]]).max())
+    content = {
+        "bodies": bodies,
+        "copies": result.summary["copies"],
+        "plane": result.is_plane,
+        "radius": radius,
+        "centre": [0.0, 0.0, float(0.5 * (low[2] + high[2]))],
+    }
+    script = files("swgpar.presentation").joinpath("scene.js").read_text(encoding="utf-8")
+    boxes = "".join(f'<label><input type="checkbox" checked> {body.replace("_", " ")}</label>' for body in result.gears)
+    move = "drag to move it" if result.is_plane else "drag to turn it, with shift to move it"
+    return (
+        f'<div id="scene"><canvas></canvas><div class="bar"></div><div class="range"><span>0</span>'
+        f"<span>von Mises stress, nodal averages, MPa</span><span>{limit:.4g} and more</span></div><p>{boxes}"
+        '<label>displacements <input type="range" min="0" max="10" step="0.5" value="1"> <output>× 1</output></label>'
+        f'</p><p class="note">The drive of the last increment: {move}, turn the wheel to zoom. With displacements '
+        "above × 1 bodies may seem to cross.</p>"
+        f'<script type="application/json" id="scene-data">{json.dumps(content, separators=(",", ":"))}</script>'
+        f"<script>{script}</script></div>"
+    )
+
+
+def _body(result: DriveResult, body: str, values: np.ndarray) -> dict[str, Any]:
+    """Surface of a body in the form that the drawer reads."""
+    points, cells = result.mesh(body)
+    counts = result.summary["bodies"][body]
+    teeth = result.summary["design"]["drive"]["teeth_rg" if body == "ring_gear" else "teeth_fs"]
+    per_sector = counts["elements_whole"] // teeth
+    sectors = len(cells) // per_sector
+    stride = len(points) // sectors
+    triangles = sector_surface(points[:stride], cells[:per_sector])
+    used, local = np.unique(triangles, return_inverse=True)
+    chosen = (used + stride * np.arange(sectors)[:, None]).ravel()
+    place, shift = points[chosen], result.field("displacement", body=body)[chosen]
+    low, span = place.min(axis=0), np.maximum(np.ptp(place, axis=0), 1e-9)
+    reach = np.maximum(np.abs(shift).max(axis=0), 1e-9)
+    return {
+        "nodes": len(chosen),
+        "sectors": sectors,
+        "stride": len(used),
+        "low": low.tolist(),
+        "span": span.tolist(),
+        "reach": reach.tolist(),
+        "points": _text(np.rint((place - low) / span * 65535.0).astype("<u2")),
+        "shifts": _text(np.rint(shift / reach * 32767.0).astype("<i2")),
+        "values": _text(np.rint(np.clip(values[chosen], 0.0, 1.0) * 255.0).astype("<u1")),
+        "faces": _text(local.reshape(-1).astype("<u4")),
+    }
+
+
+def _text(array: np.ndarray) -> str:
+    return base64.b64encode(np.ascontiguousarray(array).tobytes()).decode()

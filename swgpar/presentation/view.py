@@ -1,0 +1,113 @@
+"""The deformed drive in a window: what `swgpar view` opens."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from swgpar.errors import InputError
+from swgpar.presentation.off_screen import errors_only, has_display
+
+if TYPE_CHECKING:
+    import pyvista
+
+    from swgpar.drive_results.drive_result import DriveResult
+
+COLOURED = {"vm": "von Mises, MPa", "s1": "s1, MPa", "s3": "s3, MPa"}
+"""Fields that the keys 1, 2 and 3 show, with the titles of their colour ranges."""
+
+MOST_MAGNIFIED = 10.0
+
+PERCENTILE = 99.9
+"""Of a field's size: the end of its colour range."""
+
+
+def require_display() -> None:
+    """Raise InputError where no window can be opened."""
+    if not has_display():
+        shown = os.environ.get("DISPLAY")
+        reason = f"DISPLAY = {shown} cannot be reached" if shown else "DISPLAY is not set"
+        raise InputError(
+            f"view needs a display, and {reason}: report.html of the results folder shows the same drive in a browser"
+        )
+
+
+def view_plotter(result: DriveResult, *, off_screen: bool = False) -> pyvista.Plotter:
+    """Both gears with all teeth, at the last increment with fields, coloured by von Mises stress.
+
+    Sliders choose the increment and the magnification of displacements. The keys 1, 2 and 3 colour by von Mises stress,
+    s1 and s3; f and r hide the flexible spline and the ring gear.
+
+    Raises
+    ------
+    InputError
+        The run kept no fields.
+    """
+    import pyvista
+
+    if not result.increments:
+        raise InputError("this run kept no fields: allowed with output.fields = true")
+    with errors_only():
+        plotter = pyvista.Plotter(off_screen=off_screen, title="swgpar", window_size=(1300, 950))
+    shown = {"increment": result.increments - 1, "factor": 1.0, "field": "vm"}
+    surfaces: dict[str, pyvista.PolyData] = {}
+    places: dict[str, np.ndarray] = {}
+    actors = {}
+    for body in result.gears:
+        surface = result.grid(-1, body, whole=True).extract_surface(algorithm="dataset_surface")
+        surfaces[body], places[body] = surface, surface.points.copy()
+        surface.point_data["shown"] = surface.point_data["vm"]
+        actors[body] = plotter.add_mesh(
+            surface, scalars="shown", cmap="turbo", smooth_shading=False, show_scalar_bar=False, name=body
+        )
+    plotter.add_scalar_bar(title=COLOURED["vm"], fmt="%.4g", mapper=actors[result.gears[0]].mapper, vertical=True)
+
+    def update() -> None:
+        largest = []
+        for body, surface in surfaces.items():
+            fields = result.grid(shown["increment"], body, whole=True).extract_surface(algorithm="dataset_surface")
+            surface.points = places[body] + shown["factor"] * fields.point_data["displacement"]
+            surface.point_data["shown"] = fields.point_data[shown["field"]]
+            largest.append(np.percentile(np.abs(surface.point_data["shown"]), PERCENTILE))
+        limit = float(max(largest))
+        for actor in actors.values():
+            actor.mapper.scalar_range = (-limit, 0.0) if shown["field"] == "s3" else (0.0, limit)
+        plotter.scalar_bar.SetTitle(COLOURED[shown["field"]])
+        plotter.render()
+
+    def set_value(name: str, value: float | str) -> None:
+        if shown[name] != value:
+            shown[name] = value
+            update()
+
+    if not off_screen:
+        if result.increments > 1:
+            plotter.add_slider_widget(
+                lambda value: set_value("increment", round(value)),
+                (0, result.increments - 1),
+                value=result.increments - 1,
+                title="increment",
+                fmt="%.0f",
+                pointa=(0.05, 0.08),
+                pointb=(0.4, 0.08),
+            )
+        plotter.add_slider_widget(
+            lambda value: set_value("factor", value),
+            (0.0, MOST_MAGNIFIED),
+            value=1.0,
+            title="displacements x",
+            pointa=(0.55, 0.08),
+            pointb=(0.9, 0.08),
+        )
+    for key, name in zip("123", COLOURED):
+        plotter.add_key_event(key, lambda name=name: set_value("field", name))
+    for body in result.gears:
+        plotter.add_key_event(body[0], lambda body=body: actors[body].SetVisibility(not actors[body].GetVisibility()))
+    keys = "   ".join(f"{body[0]} {body.replace('_', ' ')}" for body in result.gears)
+    plotter.add_text(f"1 von Mises   2 s1   3 s3   {keys}   q close", font_size=9)
+    if result.is_plane:
+        plotter.view_xy()
+    update()
+    return plotter
