@@ -1,53 +1,102 @@
-"""Picture of a package's rooms: which room imports which, each room one level above all that it imports.
+"""What a package's rooms and files import, in numbers and as a picture of the rooms.
 
     python scripts/import_graph.py swgpar import_graph.png
 
-A room is a folder or a loose module directly below the package. Imports below `TYPE_CHECKING` count as well. The script
-prints the numbers of rooms, levels and arrows.
+A room is a folder or a loose module directly below the package. Imports in functions and below `TYPE_CHECKING` count as
+well. A name that a package's `__init__.py` only hands on counts as an import of the module that defines it. The picture
+has each room one level above all that it imports.
+
+The script prints the numbers of rooms, levels and arrows; the numbers of files, of arrows between files and of circles
+of files, with their members; and the largest room's share of the lines.
 """
 
 from __future__ import annotations
 
 import argparse
 import ast
-from collections.abc import Mapping
 from pathlib import Path
 
 Graph = dict[str, set[str]]
-"""The rooms that each room imports."""
+"""What each room, or each file, imports."""
 
 
 def rooms(package: Path) -> dict[str, list[Path]]:
     """Rooms of a package with their source files; `__init__.py` of the package itself is none."""
-    found: dict[str, list[Path]] = {}
+    members: dict[str, list[Path]] = {}
     for path in sorted(package.rglob("*.py")):
         name = path.relative_to(package).parts[0].removesuffix(".py")
         if name != "__init__":
-            found.setdefault(name, []).append(path)
-    return found
+            members.setdefault(name, []).append(path)
+    return members
 
 
-def imported(path: Path, package: Path, names: Mapping[str, object]) -> set[str]:
-    """Rooms (of `names`) that a source file imports."""
+def module_name(path: Path, package: Path) -> str:
+    """Full name of the module in a source file."""
+    parts = path.relative_to(package).with_suffix("").parts
+    return ".".join([package.name, *parts]).removesuffix(".__init__")
+
+
+def imported_names(path: Path, package: Path) -> dict[str, str]:
+    """Full names from the package that a source file imports, each with its name in the file."""
     own = path.relative_to(package).parts
-    found: list[str] = []
+    names: dict[str, str] = {}
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            found += [alias.name for alias in node.names]
+            names |= {alias.name: alias.asname or alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             base = [package.name, *own[: len(own) - node.level]] if node.level else []
             base += node.module.split(".") if node.module else []
-            found += [".".join([*base, alias.name]) for alias in node.names]
-    parts = (name.split(".") for name in found)
-    return {part[1] for part in parts if len(part) > 1 and part[0] == package.name and part[1] in names}
+            names |= {".".join([*base, alias.name]): alias.asname or alias.name for alias in node.names}
+    return {name: inside for name, inside in names.items() if name.split(".")[0] == package.name}
 
 
 def import_graph(package: Path) -> Graph:
     """Which room imports which other room."""
-    found = rooms(package)
-    return {
-        name: set().union(*(imported(path, package, found) for path in paths)) - {name} for name, paths in found.items()
+    members = rooms(package)
+    graph: Graph = {}
+    for room, paths in members.items():
+        names = [name.split(".") for path in paths for name in imported_names(path, package)]
+        graph[room] = {parts[1] for parts in names if len(parts) > 1 and parts[1] in members} - {room}
+    return graph
+
+
+def file_graph(package: Path) -> Graph:
+    """Which module imports which other module; Cython modules import nothing here."""
+    paths = {module_name(path, package): path for path in sorted(package.rglob("*.py"))}
+    names = {module: imported_names(path, package) for module, path in paths.items()}
+    handed_on = {
+        f"{module}.{inside}": name
+        for module, path in paths.items()
+        if path.name == "__init__.py"
+        for name, inside in names[module].items()
     }
+    modules = paths.keys() | {module_name(path, package) for path in package.rglob("*.pyx")}
+
+    def defined_in(name: str) -> str:
+        """The module that a full name is, or in which it is defined."""
+        while name not in modules and name in handed_on:
+            name = handed_on[name]
+        while name not in modules:
+            name = name.rpartition(".")[0]
+        return name
+
+    return {module: {defined_in(name) for name in names.get(module, ())} - {module} for module in sorted(modules)}
+
+
+def circles(graph: Graph) -> list[list[str]]:
+    """Groups in which each member imports all others, directly or through others."""
+
+    def reachable(start: str) -> set[str]:
+        reached: set[str] = set()
+        ahead = [start]
+        while ahead:
+            ahead += graph[ahead.pop()] - reached
+            reached.update(ahead)
+        return reached
+
+    reach = {name: reachable(name) for name in graph}
+    groups = {tuple(sorted(other for other in reach[name] if name in reach[other])) for name in graph}
+    return sorted(list(group) for group in groups if group)
 
 
 def levels(graph: Graph) -> dict[str, int]:
@@ -123,9 +172,30 @@ def draw(graph: Graph, title: str, image: Path) -> None:
 
 
 def counts(graph: Graph) -> str:
-    """Rooms, levels and arrows as a sentence."""
+    """Rooms, levels and arrows as a sentence; without levels where rooms import each other."""
     arrows = sum(len(needs) for needs in graph.values())
+    if groups := circles(graph):
+        return f"{len(graph)} rooms, {arrows} arrows; circles: {'; '.join(', '.join(group) for group in groups)}"
     return f"{len(graph)} rooms on {max(levels(graph).values()) + 1} levels, {arrows} arrows"
+
+
+def file_counts(graph: Graph) -> str:
+    """Files, arrows and circles as a sentence, and the members of every circle on a line."""
+    arrows = sum(len(needs) for needs in graph.values())
+    groups = circles(graph)
+    lines = [f"{len(graph)} files, {arrows} arrows, {len(groups)} circles"]
+    return "\n".join([*lines, *(f"circle: {', '.join(group)}" for group in groups)])
+
+
+def largest_room(package: Path) -> str:
+    """The room with the most lines of Python, and its share of all, as a sentence."""
+    lines = {
+        room: sum(len(path.read_text(encoding="utf-8").splitlines()) for path in paths)
+        for room, paths in rooms(package).items()
+    }
+    total = sum(lines.values())
+    room = max(lines, key=lambda name: lines[name])
+    return f"largest room: {room} with {lines[room] / total:.1%} of {total} lines"
 
 
 def main() -> None:
@@ -134,10 +204,13 @@ def main() -> None:
     options.add_argument("image", type=Path, nargs="?", help="PNG or SVG; without it only the numbers are printed")
     options.add_argument("--title")
     chosen = options.parse_args()
-    graph = import_graph(chosen.package.resolve())
+    package = chosen.package.resolve()
+    graph = import_graph(package)
     print(counts(graph))
+    print(file_counts(file_graph(package)))
+    print(largest_room(package))
     if chosen.image is not None:
-        draw(graph, chosen.title or f"{chosen.package.name}: {counts(graph)}", chosen.image)
+        draw(graph, chosen.title or f"{package.name}: {counts(graph)}", chosen.image)
 
 
 if __name__ == "__main__":

@@ -25,7 +25,7 @@ def main() -> None:
     folder.mkdir(parents=True, exist_ok=True)
     command = [sys.executable, str(ROOT / "scripts" / "import_graph.py"), str(ROOT / "swgpar")]
     command.append(str(folder / "import_graph.png"))
-    counts = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    counts = subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()[0]
     rows = ["| layout | rooms | levels | arrows |", "|---|---|---|---|"]
     rows += [f"| first (769526c) | {cells(FIRST_LAYOUT)} |", f"| present | {cells(counts)} |"]
     (folder / "room_counts.md").write_text("\n".join(rows) + "\n", encoding="utf-8")

@@ -44,6 +44,31 @@ def test_circles_are_named(tmp_path: Path) -> None:
         graph.levels(graph.import_graph(package(tmp_path, sources)))
 
 
+def test_circles_of_files(tmp_path: Path) -> None:
+    """Names that a package hands on lead to the file that defines them; imports in functions count."""
+    sources = {
+        "__init__.py": "",
+        "a/__init__.py": "from house.a.one import x as y\n",
+        "a/one.py": "from house.b import two\n",
+        "a/core.pyx": "import numpy\n",
+        "b/__init__.py": "from house.b.three import deep\n\ndef own(): ...\n",
+        "b/two.py": "def f():\n    from house.a import y\n",
+        "b/three.py": "from house.a.core import kernel\n",
+        "c.py": "from house.b import deep, own\n",
+    }
+    files = graph.file_graph(package(tmp_path, sources))
+    assert files["house.b.two"] == {"house.a.one"}
+    assert files["house.b.three"] == {"house.a.core"}
+    assert files["house.c"] == {"house.b", "house.b.three"}
+    assert graph.circles(files) == [["house.a.one", "house.b.two"]]
+    assert graph.file_counts(files).splitlines()[1] == "circle: house.a.one, house.b.two"
+
+
+def test_largest_room(tmp_path: Path) -> None:
+    house = package(tmp_path, SOURCES)
+    assert graph.largest_room(house) == "largest room: middle with 50.0% of 8 lines"
+
+
 def test_picture(tmp_path: Path) -> None:
     image = tmp_path / "graph.png"
     graph.draw(graph.import_graph(package(tmp_path, SOURCES)), "house", image)

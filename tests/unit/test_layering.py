@@ -1,4 +1,4 @@
-"""The rooms of the package: what a module may import, and that no annotation is missing that would hide an import."""
+"""The rooms of the package: what a module may import, no circle of files, no annotation missing that would hide one."""
 
 from __future__ import annotations
 
@@ -9,7 +9,11 @@ from pathlib import Path
 import pytest
 
 import swgpar
+from support.paths import ROOT as CHECKOUT
+from support.scripts import load_script
 from swgpar.rooms import PURPOSE, ROOMS
+
+graph = load_script(CHECKOUT / "scripts" / "import_graph.py")
 
 ROOT = Path(swgpar.__file__).parent
 MODULES = sorted(path.relative_to(ROOT) for path in ROOT.rglob("*.py"))
@@ -19,21 +23,6 @@ LOOSE = 8
 
 def room_of(module: Path) -> str:
     return module.parts[0].removesuffix(".py")
-
-
-def imported(module: Path) -> Iterator[str]:
-    """Full names of what a module imports from the package: at its top, in functions and under TYPE_CHECKING."""
-    package = ["swgpar", *module.parent.parts]
-    for node in ast.walk(ast.parse((ROOT / module).read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names if alias.name.startswith("swgpar"))
-        elif isinstance(node, ast.ImportFrom):
-            source = package[: len(package) + 1 - node.level] if node.level else []
-            source = ".".join([*source, *([node.module] if node.module else [])])
-            if source == "swgpar":
-                yield from (f"swgpar.{alias.name}" for alias in node.names)
-            elif source.startswith("swgpar."):
-                yield source
 
 
 def public_functions(body: list[ast.stmt]) -> Iterator[ast.FunctionDef]:
@@ -69,10 +58,15 @@ def test_imports_come_from_the_same_room_or_from_those_before_it(room: str) -> N
         f"{module} imports {name}"
         for module in MODULES
         if room_of(module) == room
-        for name in imported(module)
+        for name in graph.imported_names(ROOT / module, ROOT)
         if name == "swgpar" or name.split(".")[1] not in allowed
     ]
     assert not wrong
+
+
+@pytest.mark.xfail(reason="results and their figures, the recorder and the restart import each other")
+def test_no_files_import_each_other_in_a_circle() -> None:
+    assert graph.circles(graph.file_graph(ROOT)) == []
 
 
 def test_public_functions_are_annotated() -> None:
@@ -87,7 +81,7 @@ def test_public_functions_are_annotated() -> None:
 
 
 def test_the_rooms_are_described_as_they_are() -> None:
-    lines = (Path(__file__).parents[2] / "CONTRIBUTING.md").read_text(encoding="utf-8").splitlines()
+    lines = (CHECKOUT / "CONTRIBUTING.md").read_text(encoding="utf-8").splitlines()
     first = lines.index("| room | purpose |") + 2
     assert lines[first : first + len(PURPOSE)] == [f"| `{room}` | {purpose} |" for room, purpose in PURPOSE.items()]
     assert not lines[first + len(PURPOSE)].startswith("|")
