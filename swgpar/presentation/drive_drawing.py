@@ -1,4 +1,4 @@
-"""Drawings of a drive with its dimensions, as SVG: along the axis, the teeth at the major axis, the section of the cup.
+"""Drawings of a drive with its dimensions: along the axis, the teeth at the major axis, the section of the cup.
 
 The flexible spline is drawn as the wave generator deflects it before it is loaded: an inextensible ring, whose teeth
 move as rigid bodies. Profiles, cam and walls are the exact curves.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from html import escape
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,46 +25,67 @@ SIZE = 560.0
 FLANK_POINTS = 12
 
 FILLS = {"housing": "#e3e3da", "ring_gear": "#c9d6e6", "flexible_spline": "#f0c987", "wave_generator": "#d9d9d9"}
-NAMES = {
-    "housing": "housing",
-    "ring_gear": "ring gear",
-    "flexible_spline": "flexible spline",
-    "wave_generator": "wave generator",
-}
+
+
+class Outline(NamedTuple):
+    """Closed curves as the path of SVG, filled between them."""
+
+    path: str
+    fill: str
+    name: str
+
+
+class Line(NamedTuple):
+    """From x1, y1 to x2, y2 in pixels. style : class of the style sheet"""
+
+    x1: float
+    y1: float
+    x2: float
+    y2: float
+    style: str = "dim"
+
+
+class Text(NamedTuple):
+    """A text at pixels. anchor : which part of it is there"""
+
+    x: float
+    y: float
+    text: str
+    anchor: str = "middle"
 
 
 @dataclass
 class Sheet:
-    """Pixels of a drawing: (x, y) in mm is at (left + scale x, top - scale y). parts : elements of SVG"""
+    """Pixels of a drawing and what lies on it: (x, y) in mm is at (left + scale x, top - scale y)."""
 
     scale: float
     left: float
     top: float
     height: float
-    parts: list[str] = field(default_factory=list)
+    width: float = SIZE
+    caption: str = ""
+    outlines: list[Outline] = field(default_factory=list)
+    lines: list[Line] = field(default_factory=list)
+    texts: list[Text] = field(default_factory=list)
 
     def at(self, x: float, y: float) -> tuple[float, float]:
         """Pixels of a point in mm."""
         return self.left + self.scale * x, self.top - self.scale * y
 
-    def outline(self, points: Sequence[np.ndarray], fill: str, name: str) -> None:
-        """Closed curves, each (n, 2) mm, filled between them."""
+    def outline(self, points: Sequence[np.ndarray], name: str) -> None:
+        """Closed curves of a body, each (n, 2) mm, filled between them."""
         path = " ".join(
             "M" + "L".join(f"{x:.2f} {y:.2f}" for x, y in (self.at(*p) for p in curve)) + "Z" for curve in points
         )
-        self.parts.append(
-            f'<path d="{path}" fill="{fill}" fill-rule="evenodd" stroke="#333" stroke-width=".7">'
-            f"<title>{escape(name)}</title></path>"
-        )
-
-    def text(self, x: float, y: float, text: str, anchor: str = "middle") -> None:
-        """A text at pixels."""
-        self.parts.append(f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}">{escape(text)}</text>')
+        self.outlines.append(Outline(path, FILLS[name], name.replace("_", " ")))
 
     def line(self, *pixels: float, style: str = "dim") -> None:
         """A line from x, y to x, y in pixels."""
-        x1, y1, x2, y2 = pixels
-        self.parts.append(f'<line class="{style}" x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}"/>')
+        self.lines.append(Line(*pixels, style=style))
+
+    def text(self, x: float, y: float, text: str, anchor: str = "middle") -> None:
+        """A text at pixels."""
+        self.texts.append(Text(x, y, text, anchor))
 
     def across(self, x1: float, x2: float, y_from: float, y: float, text: str) -> None:
         """A horizontal dimension from x1 to x2 mm at the height y (pixels), with lines from y_from mm."""
@@ -82,30 +103,8 @@ class Sheet:
         self.line(x, a, x, b)
         self.text(x + (6 if anchor == "start" else -6), 0.5 * (a + b) + 4, text, anchor)
 
-    def svg(self, caption: str) -> str:
-        """The drawing with its caption."""
-        return (
-            f'<figure><svg class="drawing" viewBox="0 0 {SIZE:.0f} {self.height:.0f}" role="img" '
-            f'aria-label="{escape(caption)}">{ARROWS}{"".join(self.parts)}</svg>'
-            f"<figcaption>{escape(caption)}</figcaption></figure>"
-        )
 
-
-ARROWS = (
-    '<defs><marker id="a" viewBox="0 0 10 6" refX="10" refY="3" markerWidth="9" markerHeight="6" '
-    'orient="auto-start-reverse"><path d="M0 0L10 3L0 6z" fill="#06c"/></marker></defs>'
-)
-
-DRAWING_STYLE = """
-figure { margin: 0 0 1em; } figcaption { font-size: 13px; color: #555; }
-.drawing { width: 100%; background: #fff; font: 14px sans-serif; }
-.drawing .dim { stroke: #06c; stroke-width: 1; marker-start: url(#a); marker-end: url(#a); }
-.drawing .thin { stroke: #06c; stroke-width: .5; } .drawing text { fill: #04a; }
-.drawing .axis { stroke: #888; stroke-width: .8; stroke-dasharray: 14 4 3 4; }
-"""
-
-
-def draw_drive(design: DriveDesign) -> list[str]:
+def draw_drive(design: DriveDesign) -> list[Sheet]:
     """All drawings of a design."""
     curves = _curves(design)
     sheets = [_front(design, curves), _teeth(design, curves)]
@@ -153,11 +152,11 @@ def _circle(radius: float) -> np.ndarray:
     return radius * np.column_stack([np.cos(angle), np.sin(angle)])
 
 
-def _front(design: DriveDesign, curves: dict[str, list[np.ndarray]]) -> str:
+def _front(design: DriveDesign, curves: dict[str, list[np.ndarray]]) -> Sheet:
     outer = design.outer_radius
     sheet = Sheet(215.0 / outer, 250.0, 265.0, 545.0)
     for name, closed in curves.items():
-        sheet.outline(closed, FILLS[name], NAMES[name])
+        sheet.outline(closed, name)
     for x1, y1, x2, y2 in ((-1.04, 0.0, 1.04, 0.0), (0.0, -1.04, 0.0, 1.04)):
         sheet.line(*sheet.at(x1 * outer, y1 * outer), *sheet.at(x2 * outer, y2 * outer), style="axis")
     cam = curves["wave_generator"][0]
@@ -166,15 +165,15 @@ def _front(design: DriveDesign, curves: dict[str, list[np.ndarray]]) -> str:
     sheet.across(-width, width, 0.0, 525.0, f"cam {2 * width:.5g}")
     sheet.upright(low, high, 0.0, 478.0, f"{high - low:.5g}")
     drive = design.drive
-    caption = (
+    sheet.caption = (
         f"Along the axis, in mm: {drive.teeth_fs} teeth of the flexible spline (bore {2 * design.inner_radius:.5g}), "
         f"{drive.teeth_rg} of the ring gear, module {drive.module:g}, deflection {design.deflection:.4g}; "
         f"{design.wave_generator.type.replace('_', ' ')} cam. Before it is loaded."
     )
-    return sheet.svg(caption)
+    return sheet
 
 
-def _teeth(design: DriveDesign, curves: dict[str, list[np.ndarray]]) -> str:
+def _teeth(design: DriveDesign, curves: dict[str, list[np.ndarray]]) -> Sheet:
     pitch = np.pi * design.drive.module
     spline, ring = (design.profile(gear) for gear in GEARS)
     low, high = design.major_semi_axis - 0.3 * pitch, ring.r_root_circle + min(design.ring_gear.rim, 0.5 * pitch)
@@ -184,18 +183,18 @@ def _teeth(design: DriveDesign, curves: dict[str, list[np.ndarray]]) -> str:
     for name, closed in curves.items():
         if name == "housing":  # beyond the window
             continue
-        sheet.outline([_cut(curve, half, low, high) for curve in closed], FILLS[name], NAMES[name])
+        sheet.outline([_cut(curve, half, low, high) for curve in closed], name)
     a, edge = 0.5 * design.deflection, SIZE - 90.0
     # dimensions of the spline are drawn where its tooth is deflected to
     sheet.upright(spline.r_root_circle + a, spline.r_tip_circle + a, 0.0, edge, f"{_height(spline):.4g} spline")
     sheet.upright(design.major_semi_axis, spline.r_root_circle + a, 0.0, edge, f"{design.flexible_spline.rim:.4g} rim")
     sheet.upright(ring.r_tip_circle, ring.r_root_circle, -half, 90.0, f"{_height(ring):.4g} ring", "end")
-    caption = (
+    sheet.caption = (
         f"Teeth at the major axis, in mm: {design.flexible_spline.profile.type.replace('_', ' ')} on "
         f"{design.ring_gear.profile.type.replace('_', ' ')}, backlash "
         f"{max(round(design.backlash, 6), 0.0):.3g} at the pitch circle, face width {design.drive.face_width:g}."
     )
-    return sheet.svg(caption)
+    return sheet
 
 
 def _height(profile: ToothProfile) -> float:
@@ -210,7 +209,7 @@ def _cut(curve: np.ndarray, half: float, low: float, high: float) -> np.ndarray:
     return np.clip(np.concatenate([near, below]), [-half, low], [half, high])
 
 
-def _meridian(design: DriveDesign) -> str:
+def _meridian(design: DriveDesign) -> Sheet:
     cup, wall, width = design.cup, design.cup_wall, design.drive.face_width
     spline, ring = (design.profile(gear) for gear in GEARS)
     outer = design.outer_radius
@@ -231,8 +230,8 @@ def _meridian(design: DriveDesign) -> str:
     }
     for name, (r1, r2, reach) in boxes.items():
         box = np.array([[-reach, r1], [reach, r1], [reach, r2], [-reach, r2]])
-        sheet.outline([box], FILLS[name], NAMES[name])
-    sheet.outline([body[:, ::-1]], FILLS["flexible_spline"], NAMES["flexible_spline"])
+        sheet.outline([box], name)
+    sheet.outline([body[:, ::-1]], "flexible_spline")
     sheet.line(*sheet.at(-0.6 * width, 0.0), *sheet.at(back + cup.length + 0.1 * length, 0.0), style="axis")
     end = back + cup.length
     sheet.across(-back, back, outer, 22.0, f"{width:g}")
@@ -247,11 +246,11 @@ def _meridian(design: DriveDesign) -> str:
     sheet.text(x, y + 18.0, f"wall {_thicknesses(design)}, fillet r {cup.fillet_radius:g}")
     sheet.height = bottom + 20.0
     micro = design.micro_geometry
-    caption = (
+    sheet.caption = (
         "Half section, in mm, undeformed, teeth without their backlash. Micro-geometry: cam crowning "
         f"{micro.wg_crowning:g}, slope {micro.wg_slope:g}; flank crowning {micro.fs_crowning:g}."
     )
-    return sheet.svg(caption)
+    return sheet
 
 
 def _thicknesses(design: DriveDesign) -> str:

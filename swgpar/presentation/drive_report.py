@@ -2,35 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from html import escape
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.drive_results.report_checks import Check, checks
+from swgpar.drive_results.report_checks import checks
 from swgpar.evaluation.places import OF_REGION
-from swgpar.presentation import scene
-from swgpar.presentation.drive_drawing import DRAWING_STYLE, draw_drive
-from swgpar.results.html_page import page, table
-from swgpar.results.result_page import STYLE as RESULT_STYLE
-from swgpar.results.result_page import cards, figures, inputs, versions
+from swgpar.presentation.drive_drawing import draw_drive
+from swgpar.presentation.scene import SCRIPT, scene
+from swgpar.results.page import Row, Table
+from swgpar.results.result_page import result_page
 
 if TYPE_CHECKING:
     from swgpar.drive_results.drive_result import DriveResult
-
-STYLE = (
-    RESULT_STYLE
-    + DRAWING_STYLE
-    + scene.STYLE
-    + """
-.drawings { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 22em), 1fr)); gap: 1em; }
-.ok { color: #176b17; font-weight: bold; } .look { color: #a40000; font-weight: bold; } .none { color: #666; }
-.checks td:nth-child(2) { white-space: nowrap; }
-"""
-)
 
 WIDE = ("contact_pattern", "deformed_drive", "loaded_teeth", "cup_section", "safety")
 """Figures that take the width of the page."""
@@ -45,13 +32,6 @@ SECTIONS = {
 }
 """What a run computes when the design asks for it: entry of the summary -> what it is, and its key."""
 
-VERDICTS = {
-    True: '<span class="ok">good</span>',
-    False: '<span class="look">look</span>',
-    None: '<span class="none">not judged</span>',
-}
-
-
 FIXED = {
     "ring_fixed": "ring gear fixed",
     "spline_fixed": "flexible spline fixed",
@@ -59,45 +39,45 @@ FIXED = {
 }
 
 
+TEMPLATE = "presentation/drive_report.html.j2"
+
+
 def drive_report(result: DriveResult) -> bytes:
     """The whole page; reads the figures in the results folder. Call it on one rank."""
     summary = result.summary
     design = DriveDesign.model_validate(summary["design"])
+    view = scene(result)
     found = checks(design, summary, result.history)
-    drive = summary["design"]["drive"]
-    title = f"Strain wave gear {drive['teeth_fs']}/{drive['teeth_rg']}, {summary['design']['load']['torque']:g} N·m"
-    parts = [f"<h1>{escape(title)}</h1>", _introduction(summary, found)]
-    parts += ['<h2>The drive</h2><div class="drawings">', *draw_drive(design), "</div>"]
-    parts += [
-        "<h2>Answers</h2>",
-        cards(["", "value", "unit", "error", "where"], ((row, False) for row in answers(summary))),
-        *_not_asked(design, summary),
-    ]
-    if summary["places"]:
-        resolved = f" {RESOLVED}" if summary["root_stress"] else ""
-        parts += ["<h3>Largest stresses under load</h3>", f"<p>{NODAL}{resolved}</p>", _places(summary["places"])]
-    if summary.get("regions"):  # results of earlier versions have none
-        parts += ["<h3>Largest stresses by region</h3>", f"<p>{BY_REGION}</p>", _regions(summary["regions"])]
-    parts += ["<h2>Checks</h2>", _checks(found)]
-    if drawn := figures(result.folder, result.plot.names, WIDE):
-        parts += ["<h2>Figures</h2>", drawn]
-    view = scene.scene(result)
-    if view:
-        parts += ["<h2>View</h2>", view]
-    parts += ["<h2>Inputs</h2>", inputs(summary["design"]), "<h2>Program</h2>", versions(summary)]
-    return page(title, parts, STYLE)
+    return result_page(
+        TEMPLATE,
+        f"Strain wave gear {design.drive.teeth_fs}/{design.drive.teeth_rg}, {design.load.torque:g} N·m",
+        summary,
+        result.folder,
+        result.plot.names,
+        wide=WIDE,
+        scripts=(SCRIPT,) if view else (),
+        description=_description(summary),
+        look=[check.name for check in found if check.good is False],
+        drawings=draw_drive(design),
+        answers=Table(["", "value", "unit", "error", "where"], [Row(row) for row in answers(summary)]),
+        not_asked=_not_asked(design, summary),
+        places=_places(summary["places"]) if summary["places"] else None,
+        resolved=bool(summary["root_stress"]),
+        # results of earlier versions have none
+        regions=_regions(summary["regions"]) if summary.get("regions") else None,
+        checks=found,
+        scene=view,
+        plane=result.is_plane,
+    )
 
 
-def _introduction(summary: Mapping[str, Any], found: Iterable[Check]) -> str:
+def _description(summary: Mapping[str, Any]) -> str:
     drive = summary["design"]["drive"]
-    look = [check.name for check in found if check.good is False]
     model = {"plane": "plane model", "cup": "cup drive", "pancake": "pancake drive"}[drive["model"]]
-    fixed = FIXED[drive["layout"]]
     mesh = f"mesh {Path(summary['recipe']).stem}, " if summary["recipe"] else ""
-    verdict = f"Look at: {', '.join(look)}." if look else "All checks that can be judged are good."
     return (
-        f"<p>{model}, ratio {summary['ratio']:g}, {fixed}; {escape(mesh)}{summary['elements']} elements, "
-        f"{summary['increments']} increments.</p><p class={'bad' if look else 'ok'}>{escape(verdict)}</p>"
+        f"{model}, ratio {summary['ratio']:g}, {FIXED[drive['layout']]}; {mesh}{summary['elements']} elements, "
+        f"{summary['increments']} increments."
     )
 
 
@@ -167,8 +147,7 @@ def answers(summary: Mapping[str, Any]) -> list[list[Any]]:
 def _not_asked(design: DriveDesign, summary: Mapping[str, Any]) -> list[str]:
     """What the design does not ask for, with the key that does."""
     refused = ("root_stress",) if design.output.root_stress else ()  # asked for, and not available
-    missing = [text for name, text in SECTIONS.items() if not summary.get(name) and name not in refused]
-    return [f"<p>Not asked for: {escape('; '.join(missing))}.</p>"] if missing else []
+    return [text for name, text in SECTIONS.items() if not summary.get(name) and name not in refused]
 
 
 def _where(place: Mapping[str, Any]) -> str:
@@ -179,19 +158,13 @@ def _where(place: Mapping[str, Any]) -> str:
     )
 
 
-NODAL = (
-    "Averages over elements on the mesh of the drive, the largest of all increments under load. Errors are those by "
-    "this mesh."
-)
-RESOLVED = "The tension at the teeth above is resolved on finer meshes of a few teeth."
-BY_REGION = "Averages over elements as well. Without an error there is no estimate of it on this mesh."
 NO_ERROR = "no estimate of the error on this mesh"
 
 STRESSES = {"s1": "tension s1", "s3": "compression |s3|", "vm": "von Mises"}
 BODIES = {"fs": "flexible spline", "rg": "ring gear"}
 
 
-def _places(places: Mapping[str, Mapping[str, Any]]) -> str:
+def _places(places: Mapping[str, Mapping[str, Any]]) -> Table:
     rows = []
     for name, place in places.items():
         body, stress, *apart = name.split("_")
@@ -200,11 +173,11 @@ def _places(places: Mapping[str, Mapping[str, Any]]) -> str:
         )
         remark = place["warning"] or ("" if place.get("error") is not None else NO_ERROR)
         cells = [what, float(place["value"]), "MPa", _error(place.get("error")), _where(place), remark]
-        rows.append((cells, False))
-    return cards(["nodal average", "value", "unit", "error", "where", "remark"], rows)
+        rows.append(Row(cells))
+    return Table(["nodal average", "value", "unit", "error", "where", "remark"], rows)
 
 
-def _regions(regions: Mapping[str, Mapping[str, Any]]) -> str:
+def _regions(regions: Mapping[str, Mapping[str, Any]]) -> Table:
     found: dict[tuple[str, str], dict[str, Mapping[str, Any]]] = {}
     for name, place in regions.items():
         stress, region = name.split(OF_REGION)
@@ -217,9 +190,9 @@ def _regions(regions: Mapping[str, Mapping[str, Any]]) -> str:
             place = places.get(stress)
             cells += [float(place["value"]), _error(place["error"])] if place else [None, ""]
         shown = places.get("vm") or places["s1"]
-        rows.append(([*cells, _where(shown), shown["warning"]], False))
+        rows.append(Row([*cells, _where(shown), shown["warning"]]))
     heads = ["region", "s1 (MPa)", "error", "von Mises (MPa)", "error", "where von Mises is", "depends on the mesh"]
-    return table(heads, rows)
+    return Table(heads, rows)
 
 
 def _error(value: float | None) -> str:
@@ -228,13 +201,3 @@ def _error(value: float | None) -> str:
         return ""
     digits = 1 - int(np.floor(np.log10(value))) if value > 0.0 else 0
     return f"±\u00a0{round(value, digits):.{max(digits, 0)}f}"
-
-
-def _checks(found: Iterable[Check]) -> str:
-    rows = "".join(
-        f"<tr><td class=text>{escape(check.name)}</td><td class=text>{VERDICTS[check.good]}</td>"
-        f"<td class=text>{escape(check.text)}</td></tr>"
-        for check in found
-    )
-    head = "<tr><th class=text>check</th><th class=text>verdict</th><th class=text>numbers</th></tr>"
-    return f'<div class="scroll cards"><table class="checks">{head}{rows}</table></div>'

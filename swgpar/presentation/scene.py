@@ -7,8 +7,7 @@ Places have 16 bits, stresses 8.
 from __future__ import annotations
 
 import base64
-import json
-from importlib.resources import files
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,13 +23,16 @@ PERCENTILE = 99.9
 
 HEX_FACES = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])
 
-STYLE = """
-#scene canvas { width: 100%; height: min(70vh, 640px); border: 1px solid #ddd; touch-action: none; cursor: grab; }
-#scene .bar { height: 14px; background: linear-gradient(90deg,
-  #30123b, #4662d7, #36aaf9, #1ae4b6, #72fe5e, #c8ef34, #faba39, #f66b19, #ca2a04, #7a0403); }
-#scene .range { display: flex; justify-content: space-between; font-size: 13px; }
-#scene label { margin-right: 1.2em; white-space: nowrap; }
-"""
+SCRIPT = "presentation/scene.js"
+
+
+@dataclass(frozen=True)
+class Scene:
+    """content : what the drawer reads;  limit : end of the colour range, MPa"""
+
+    content: dict[str, Any]
+    bodies: list[str]
+    limit: float
 
 
 def sector_surface(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
@@ -50,8 +52,8 @@ def sector_surface(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
     return np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
 
 
-def scene(result: DriveResult) -> str | None:
-    """The view of the last increment with fields, as HTML; None without fields, or where it would be too large.
+def scene(result: DriveResult) -> Scene | None:
+    """The view of the last increment with fields; None without fields, or where it would be too large.
 
     Reads files only: one rank may call it alone.
     """
@@ -72,18 +74,7 @@ def scene(result: DriveResult) -> str | None:
         "radius": radius,
         "centre": [0.0, 0.0, float(0.5 * (low[2] + high[2]))],
     }
-    script = files("swgpar.presentation").joinpath("scene.js").read_text(encoding="utf-8")
-    boxes = "".join(f'<label><input type="checkbox" checked> {body.replace("_", " ")}</label>' for body in result.gears)
-    move = "drag to move it" if result.is_plane else "drag to turn it, with shift to move it"
-    return (
-        f'<div id="scene"><canvas></canvas><div class="bar"></div><div class="range"><span>0</span>'
-        f"<span>von Mises stress, nodal averages, MPa</span><span>{limit:.4g} and more</span></div><p>{boxes}"
-        '<label>displacements <input type="range" min="0" max="10" step="0.5" value="1"> <output>× 1</output></label>'
-        f'</p><p class="note">The drive of the last increment: {move}, turn the wheel to zoom. With displacements '
-        "above × 1 bodies may seem to cross.</p>"
-        f'<script type="application/json" id="scene-data">{json.dumps(content, separators=(",", ":"))}</script>'
-        f"<script>{script}</script></div>"
-    )
+    return Scene(content, [body.replace("_", " ") for body in result.gears], limit)
 
 
 def _body(result: DriveResult, body: str, values: np.ndarray) -> dict[str, Any]:

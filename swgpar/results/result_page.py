@@ -1,63 +1,52 @@
-"""Parts that the reports of all systems have: the figures of the results folder, versions and times."""
+"""Parts that the reports of all systems have: the figures of the results folder, the design, versions and times."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from html import escape
 from pathlib import Path
 from typing import Any
 
-from swgpar.results import html_page
 from swgpar.results.figure_set import FOLDER
-from swgpar.results.html_page import image, table
-
-STYLE = (
-    html_page.STYLE
-    + """
-h1 { font-size: 1.5em; } h2 { margin-top: 1.6em; border-bottom: 1px solid #bbb; }
-.figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 30em), 1fr)); gap: 0 1.5em; }
-.wide { grid-column: 1 / -1; text-align: center; }
-@media (max-width: 40em) {
-  body { margin: 1em auto; }
-  .cards th { display: none; } .cards tr { display: block; padding: .4em 0; border-bottom: 1px solid #ddd; }
-  .cards td { display: inline-block; border: 0; padding: 0 .5em 0 0; text-align: left; }
-  .cards td:empty { display: none; }
-  .cards td:first-child { display: block; font-weight: bold; } .cards td:nth-child(n + 5) { display: block; }
-}
-"""
-)
+from swgpar.results.page import Picture, Row, Table, page
 
 
-def figures(folder: Path | None, names: Iterable[str], wide: Collection[str] = ()) -> str:
-    """The figures that the folder has, of those with these names. wide : those that take the width of the page"""
-    paths = [folder / FOLDER / f"{name}.png" for name in names] if folder is not None else []
-    images = [
-        f"<div{' class=wide' if path.stem in wide else ''}>"
-        f"{image(path.read_bytes(), path.stem.replace('_', ' '))}</div>"
-        for path in paths
-        if path.exists()
+def result_page(
+    template: str,
+    title: str,
+    summary: Mapping[str, Any],
+    folder: Path | None,
+    figures: Iterable[str],
+    *,
+    wide: Collection[str] = (),
+    scripts: Sequence[str] = (),
+    **values: Any,
+) -> bytes:
+    """The whole page from a template that extends `results/result_page.html.j2`.
+
+    figures : names of those that are shown where the results folder has them;  wide : those of them that take the
+    width of the page;  scripts, values : as of `page`
+    """
+    paths = [folder / FOLDER / f"{name}.png" for name in figures] if folder is not None else []
+    pictures = [
+        Picture(path.read_bytes(), path.stem.replace("_", " "), path.stem in wide) for path in paths if path.exists()
     ]
-    return f'<div class="figures">{"".join(images)}</div>' if images else ""
+    common = {"figures": pictures, "inputs": _inputs(summary["design"]), "versions": _versions(summary)}
+    return page(template, title, scripts=scripts, **common, **values)
 
 
-def cards(header: Sequence[str], rows: Iterable[tuple[Sequence[Any], bool]]) -> str:
-    """A table, as `html_page.table` makes it, whose rows are blocks under each other on a narrow page."""
-    return f'<div class="cards">{table(header, rows)}</div>'
-
-
-def versions(summary: Mapping[str, Any]) -> str:
+def _versions(summary: Mapping[str, Any]) -> Table:
     """Versions, ranks, time and memory of a run."""
-    rows: list[tuple[list[Any], bool]] = [([name, str(value)], False) for name, value in summary["versions"].items()]
+    rows = [Row([name, str(value)]) for name, value in summary["versions"].items()]
     for name, text, unit in (("ranks", "MPI ranks", ""), ("wall_s", "time", "s")):
         if summary.get(name) is not None:
-            rows.append(([text, f"{summary[name]:.4g} {unit}".strip()], False))
+            rows.append(Row([text, f"{summary[name]:.4g} {unit}".strip()]))
     if memory := summary.get("peak_memory_MB_per_rank"):
-        rows.append((["largest memory of a rank", f"{max(memory):.0f} MB"], False))
-    return table(["", "version or amount"], rows)
+        rows.append(Row(["largest memory of a rank", f"{max(memory):.0f} MB"]))
+    return Table(["", "version or amount"], rows)
 
 
-def inputs(design: Mapping[str, Any]) -> str:
+def _inputs(design: Mapping[str, Any]) -> str:
     """The whole design, defaults included, as the lines of a design file."""
     lines: list[str] = []
 
@@ -72,5 +61,4 @@ def inputs(design: Mapping[str, Any]) -> str:
     for title, content in design.items():
         if isinstance(content, Mapping):
             section(title, content)
-    text = escape("\n".join(lines).strip())
-    return f"<details><summary>The design, defaults included</summary><pre>{text}</pre></details>"
+    return "\n".join(lines).strip()

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from html import escape
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from swgpar.results.figure_set import import_matplotlib
-from swgpar.results.html_page import RANK, RANKING, image, page, table, with_unit
+from swgpar.results.page import RANK, Picture, Row, Table, page, with_unit
 from swgpar.studies import figures
 from swgpar.studies.spec import Study
 from swgpar.studies.table import (
@@ -24,13 +24,6 @@ from swgpar.studies.table import (
 )
 from swgpar.version import __version__
 
-ESTIMATE = (
-    "The error estimate is Richardson's extrapolation from the last two meshes of a case: with element sizes "
-    "h1 &gt; h2 that follow from the numbers of elements (n<sup>-1/3</sup>, in plane models n<sup>-1/2</sup>) and an "
-    "error that falls with h, converged = f2 + (f2 - f1) / (h1/h2 - 1), and the estimate is |converged - f2|. It "
-    "holds when both meshes resolve the stress and all directions were refined alike. Under edge contact (no "
-    "micro-geometry) and for |s3| below the tooth contact it means nothing: the stress then grows with the mesh."
-)
 HEADINGS = {
     "newton_mean": "Newton iterations, mean",
     "wall_s": "time (s)",
@@ -44,6 +37,23 @@ LOG_LINES = 12
 """Of a failed run, in the report."""
 
 
+@dataclass(frozen=True)
+class Failure:
+    """A failed run. log : end of its log"""
+
+    title: str
+    reason: str
+    log: str
+
+
+@dataclass(frozen=True)
+class FigureSection:
+    """Figures below a heading."""
+
+    title: str
+    pictures: Sequence[Picture]
+
+
 def make_report(
     study: Study, results: Sequence[Result], comparisons: Sequence[Comparison], out: Path, missing: int = 0
 ) -> bytes:
@@ -51,49 +61,38 @@ def make_report(
 
     missing : number of runs that have not ended; their report has no figures
     """
-    title = study.title
-    parts = [f"<h1>{escape(title)}</h1>", _introduction(study, results)]
-    if missing:
-        parts.append(
-            f"<p class=bad>{missing} more runs have not ended. Figures are drawn when all have: swgpar study with "
-            "--restart continues.</p>"
-        )
-    if comparisons:
-        parts += ["<h2>Published values</h2>", _comparisons(comparisons)]
-    parts += [
-        "<h2>Cases</h2>",
-        RANKING,
-        _cases(results),
-        "<h2>Quantities</h2>",
-        _meanings(results),
-    ]
-    if ranked := _extremes(results):
-        parts += ["<h2>Smallest and largest</h2>", ranked]
-    estimates = _estimates(complete(results))
-    if estimates or any(c.estimate for c in comparisons):
-        parts += ["<h2>Error estimates from meshes</h2>", f"<p>{ESTIMATE}</p>", estimates]
-    parts += _failures(results, out)
+    sections: list[FigureSection] = []
+    failed_figures = ""
     try:
         if not missing:
             import_matplotlib()
-            parts += _figures(study, results)
+            sections = _figures(study, results)
     except Exception as error:  # a picture that fails must not cost the report
-        parts.append(f"<p class=bad>Figures could not be drawn: {escape(str(error))}</p>")
-    if study.section.remarks:
-        parts.append("<h2>Remarks</h2>")
-        parts += [f"<p>{escape(text)}</p>" for text in study.section.remarks.strip().split("\n\n")]
-    parts += ["<h2>Study file</h2>", f"<pre>{escape(study.text)}</pre>", RANK]
-    return page(title, parts)
+        failed_figures = str(error)
+    return page(
+        "studies/study.html.j2",
+        study.title,
+        scripts=(RANK,),
+        version=__version__,
+        runs=len(results),
+        failed=sum(outcome.status == "failed" for _, outcome in results),
+        seconds=sum(outcome.wall_s or 0.0 for _, outcome in results),
+        section=study.section,
+        missing=missing,
+        published=_comparisons(comparisons) if comparisons else None,
+        cases=_cases(results),
+        meanings=_meanings(results),
+        extremes=_extremes(results),
+        estimates=_estimates(complete(results)),
+        estimated=any(comparison.estimate for comparison in comparisons),
+        failures=_failures(results, out),
+        sections=sections,
+        failed_figures=failed_figures,
+        text=study.text,
+    )
 
 
-def _introduction(study: Study, results: Sequence[Result]) -> str:
-    failed = sum(outcome.status == "failed" for _, outcome in results)
-    seconds = sum(outcome.wall_s or 0.0 for _, outcome in results)
-    text = f"swgpar {__version__}: {len(results)} runs, {failed} failed, {seconds:.0f} s of computing."
-    return f"<p>{text} Design: {escape(study.section.design)}.</p>"
-
-
-def _cases(results: Sequence[Result]) -> str:
+def _cases(results: Sequence[Result]) -> Table:
     rows: list[Mapping[str, Any]] = study_rows(results)
     header = [name for name in rows[0] if name != "reason"]
     notes = {job.case.name: job.case.section.note for job, _ in results}
@@ -102,33 +101,34 @@ def _cases(results: Sequence[Result]) -> str:
         rows = [{**row, "note": notes[row["case"]]} for row in rows]
     units = units_of_keys(results) | {name: quantity.unit for name, quantity in shown_quantities(results).items()}
     heads = [HEADINGS.get(name) or with_unit(name, units.get(name, "")) for name in header]
-    return table(heads, (([row[name] for name in header], row["status"] == "failed") for row in rows), ranked=True)
+    shown = [Row([row[name] for name in header], row["status"] == "failed") for row in rows]
+    return Table(heads, shown, ranked=True)
 
 
-def _extremes(results: Sequence[Result]) -> str:
+def _extremes(results: Sequence[Result]) -> Table:
     """Which case has the smallest and the largest value of every quantity, each case on its finest mesh."""
     found = [(case.name, outcomes[-1].values) for case, outcomes in by_case(results)]
-    rows: list[tuple[list[Any], bool]] = []
+    rows = []
     for name, quantity in shown_quantities(results).items():
         values = sorted((values[name], case) for case, values in found if name in values)
         if len(values) > 1:
             (low, of_low), (high, of_high) = values[0], values[-1]
-            rows.append(([with_unit(name, quantity.unit), low, of_low, high, of_high], False))
-    return table(["quantity", "smallest", "of case", "largest", "of case"], rows) if rows else ""
+            rows.append(Row([with_unit(name, quantity.unit), low, of_low, high, of_high]))
+    return Table(["quantity", "smallest", "of case", "largest", "of case"], rows)
 
 
-def _comparisons(comparisons: Sequence[Comparison]) -> str:
+def _comparisons(comparisons: Sequence[Comparison]) -> Table:
     rows = published_rows(comparisons)
     heads = [HEADINGS.get(name, name) for name in rows[0]]
-    return table(heads, ((list(row.values()), row["verdict"] == "MISS") for row in rows))
+    return Table(heads, [Row(list(row.values()), row["verdict"] == "MISS") for row in rows])
 
 
-def _meanings(results: Sequence[Result]) -> str:
-    rows = [([name, q.meaning, q.unit], False) for name, q in shown_quantities(results).items()]
-    return table(["quantity", "meaning", "unit"], rows)
+def _meanings(results: Sequence[Result]) -> Table:
+    rows = [Row([name, q.meaning, q.unit]) for name, q in shown_quantities(results).items()]
+    return Table(["quantity", "meaning", "unit"], rows)
 
 
-def _estimates(results: Sequence[Result]) -> str:
+def _estimates(results: Sequence[Result]) -> Table:
     rows = []
     for case, outcomes in by_case(results):
         for name in case.shown:
@@ -137,30 +137,27 @@ def _estimates(results: Sequence[Result]) -> str:
                 values = [outcome.values[name] for outcome in outcomes[-2:]]
                 percent = 100.0 * found.error / abs(values[1]) if values[1] else None
                 unit = case.known[name].unit if name in case.known else ""
-                rows.append(([case.name, with_unit(name, unit), *values, found.converged, found.error, percent], False))
+                rows.append(Row([case.name, with_unit(name, unit), *values, found.converged, found.error, percent]))
     header = ["case", "quantity", "coarser mesh", "finest mesh", "converged", "error estimate", "error estimate (%)"]
-    return table(header, rows) if rows else ""
+    return Table(header, rows)
 
 
-def _failures(results: Sequence[Result], out: Path) -> list[str]:
-    parts = []
+def _failures(results: Sequence[Result], out: Path) -> list[Failure]:
+    failures = []
     for job, outcome in results:
         if outcome.status == "failed":
-            parts.append(f"<h3>{escape(job.title)}</h3><p class=bad>{escape(outcome.reason)}</p>")
-            log = job.folder(out) / "run.log"
+            log, end = job.folder(out) / "run.log", ""
             if log.exists():
-                lines = log.read_text(encoding="utf-8", errors="replace").splitlines()[-LOG_LINES:]
-                parts.append(f"<pre>{escape(chr(10).join(lines))}</pre>")
-    return ["<h2>Failures</h2>", *parts] if parts else []
+                lines = log.read_text(encoding="utf-8", errors="replace").splitlines()
+                end = "\n".join(lines[-LOG_LINES:])
+            failures.append(Failure(job.title, outcome.reason, end))
+    return failures
 
 
-def _figures(study: Study, results: Sequence[Result]) -> list[str]:
-    parts = [image(png, "stresses against angle") for png in figures.over_angle(results)]
-    if parts:
-        parts.insert(0, "<h2>Stresses against the angle of the wave generator</h2>")
+def _figures(study: Study, results: Sequence[Result]) -> list[FigureSection]:
+    over_angle = [Picture(png, "stresses against angle") for png in figures.over_angle(results)]
+    sections = [FigureSection("Stresses against the angle of the wave generator", over_angle)]
     for key in dict.fromkeys(key for job, _ in results for key in job.case.varied):
         drawn = figures.over_key(results, key, in_step=study.section.mode == "sweep")
-        images = [image(png, f"quantities against {key}") for png in drawn]
-        if images:
-            parts += [f"<h2>Against {escape(key)}</h2>", *images]
-    return parts
+        sections.append(FigureSection(f"Against {key}", [Picture(png, f"quantities against {key}") for png in drawn]))
+    return sections

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import hashlib
 import re
 from pathlib import Path
 
@@ -14,7 +16,7 @@ from support.paths import DESIGN, RECIPE
 from support.study_files import jobs_of
 from swgpar.optimisation.problem import make_problem
 from swgpar.optimisation.spec import load_specification
-from swgpar.results.html_page import table
+from swgpar.results.page import RANK, Row, Table, page
 from swgpar.studies.case import Outcome
 from swgpar.studies.report import make_report
 from swgpar.studies.spec import load_study
@@ -51,8 +53,7 @@ def test_tables_of_a_study(tmp_path: Path) -> None:
         for n in [0 if job.finer else 1]
     ]
     text = make_report(load_study(path), results, compare(results), tmp_path).decode()
-    page = assert_needs_nothing_else(text)
-    headings = [heads for heads, _ in page.tables]
+    headings = [heads for heads, _ in assert_needs_nothing_else(text).tables]
     cases = next(heads for heads in headings if "case" in heads and "status" in heads)
     assert "load.torque (N·m)" in cases and "wave_generator.C" in cases and "time (s)" in cases
     for name, quantity in shown_quantities(results).items():
@@ -71,9 +72,9 @@ def test_tables_of_an_optimisation(tmp_path: Path) -> None:
     path.write_text(OPTIMISATION, encoding="utf-8")
     found = swgpar.optimise(path, tmp_path / "out")
     text = (tmp_path / "out" / "optimise.html").read_text(encoding="utf-8")
-    page = assert_needs_nothing_else(text)
+    tables = assert_needs_nothing_else(text).tables
     unit = make_problem(load_specification(path)).units["mesh.stiffness"]
-    number, (heads, _) = next((k, entry) for k, entry in enumerate(page.tables) if "status" in entry[0])
+    number, (heads, _) = next((k, entry) for k, entry in enumerate(tables) if "status" in entry[0])
     assert unit and f"mesh.stiffness ({unit})" in heads and "time (s)" in heads
     cells = [dict(zip(heads, row)) for row in rows_of(text, number)]
     feasible = [row for row in cells if row["status"] == "feasible"]
@@ -84,7 +85,27 @@ def test_tables_of_an_optimisation(tmp_path: Path) -> None:
     assert frequencies == sorted(frequencies, reverse=True) and len(set(frequencies)) > 1
 
 
+def report(heading: str, text: str) -> str:
+    """A page with one table of answers, and a script."""
+    empty = Table(["", "version or amount"], [])
+    answers = Table([heading], [Row([text]), Row([0.1 + 0.2])])
+    values = {"figures": [], "inputs": text, "versions": empty, "answers": answers, "compared": None}
+    return page("gear_trains/train_report.html.j2", text, scripts=(RANK,), **values).decode()
+
+
 def test_a_table_that_does_not_scroll_is_found() -> None:
-    text = table(["load (N)"], [([1.0], False)])
-    assert Page(text).tables == [(["load (N)"], True)]
-    assert Page(text.replace("scroll", "still")).tables == [(["load (N)"], False)]
+    text = report("load (N)", "text")
+    assert Page(text).tables[0] == (["load (N)"], True)
+    assert Page(text.replace("scroll", "still")).tables[0] == (["load (N)"], False)
+
+
+def test_texts_are_escaped_and_only_scripts_of_the_package_run() -> None:
+    text = report("load <b>", '</pre><script>alert("x")</script>')
+    found = assert_needs_nothing_else(text)
+    assert found.tags.count("script") == 1 and "b" not in found.tags
+    assert 'data-value="0.30000000000000004">0.3<' in text
+    source = re.search(r"<script>(.*?)</script>", text, flags=re.DOTALL)
+    assert source is not None
+    digest = base64.b64encode(hashlib.sha256(source[1].encode()).digest()).decode()
+    policy = re.search(r'Content-Security-Policy" content="([^"]*)"', text)
+    assert policy is not None and policy[1].endswith(f"script-src 'sha256-{digest}'") and "'none'" in policy[1]

@@ -1,0 +1,94 @@
+"""Pages of HTML that are one file and need nothing else: templates of the package, and the tables and pictures in them.
+
+Templates lie in the room of their page as `*.html.j2`. They escape every value. A page names its scripts, and its
+content security policy lets no others run.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+RANK = "results/rank.js"
+"""Script that puts the rows of ranked tables in the order of the column whose heading is clicked."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """Cells of a table. bad : whether something is wrong"""
+
+    cells: Sequence[Any]
+    bad: bool = False
+
+
+@dataclass(frozen=True)
+class Table:
+    """Texts stand on the left, numbers on the right. ranked : whether headings order the rows, by `RANK` on the page"""
+
+    header: Sequence[str]
+    rows: Sequence[Row]
+    ranked: bool = False
+
+    @property
+    def has_texts(self) -> list[bool]:
+        """Of every column: whether all its cells are texts."""
+        return [all(isinstance(row.cells[k], str) for row in self.rows) for k in range(len(self.header))]
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A picture in the file itself. text : what it shows;  wide : whether it takes the width of the page"""
+
+    png: bytes
+    text: str
+    wide: bool = False
+
+
+def page(template: str, title: str, *, scripts: Sequence[str] = (), **values: Any) -> bytes:
+    """The whole file.
+
+    template, scripts : paths below the package;  values : what the template shows
+    """
+    sources = [_source(name) for name in scripts]
+    hashes = [base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in sources]
+    allowed = " ".join(f"'sha256-{text}'" for text in hashes) or "'none'"
+    shown = {"title": title, "scripts": [Markup(text) for text in sources], "allowed_scripts": Markup(allowed)}
+    return _environment().get_template(template).render(**shown, **values).encode()
+
+
+@cache
+def _environment() -> Environment:
+    found = Environment(
+        loader=PackageLoader("swgpar", ""),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    found.filters |= {"number": number, "base64": lambda data: base64.b64encode(data).decode()}
+    return found
+
+
+def _source(name: str) -> str:
+    environment = _environment()
+    assert environment.loader is not None
+    return environment.loader.get_source(environment, name)[0]
+
+
+def with_unit(name: str, unit: str) -> str:
+    """A heading: the name and, where there is one, the unit."""
+    return f"{name} ({unit})" if unit else name
+
+
+def number(value: Any) -> str:
+    """A value in a table: five digits, nothing for None."""
+    if value is None:
+        return ""
+    return f"{value:.5g}" if isinstance(value, float) else str(value)
