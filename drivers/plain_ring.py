@@ -9,7 +9,7 @@ from mpi4py import MPI
 
 from swgpar.constraints.distributing_coupling import DistributingCoupling
 from swgpar.constraints.supports import Supports
-from swgpar.contact.contact import Contact
+from swgpar.contact.contact import PenaltyContact
 from swgpar.contact.rigid_surface import RigidContact, SurfacePose, cam_pose, pin_pose
 from swgpar.design import sections
 from swgpar.errors import ConvergenceError
@@ -118,7 +118,7 @@ class RingBody:
         self.elements = Elements(self.partition, [reference])
         self.body = self.elements.bodies[FLEXIBLE_SPLINE]
 
-    def solver(self, contact: Contact) -> NewtonSolver:
+    def solver(self, contact: PenaltyContact) -> NewtonSolver:
         """Solver of the ring with one contact."""
         design, solver = self.design, self.design.solver
         couplings = [DistributingCoupling(self.partition, self.body, "bore", self.copies > 1)]
@@ -127,7 +127,7 @@ class RingBody:
             partition=self.partition,
             elements=self.elements,
             supports=Supports(self.partition, couplings, scale=scale, share=share),
-            rigid_contacts=[contact],
+            surface_contacts=[contact],
             module=REFERENCE_LENGTH,
             phases=PhaseTimes(),
         )

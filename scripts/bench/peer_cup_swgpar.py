@@ -60,7 +60,7 @@ def main() -> None:
         partition=partition,
         elements=elements,
         supports=Supports(partition, [], scale=scale, share=1.0 / layout.copies),
-        rigid_contacts=[PrescribedDisplacement(partition, nodes, values[mine][first], stiffness)],
+        boundary_terms=[PrescribedDisplacement(partition, nodes, values[mine][first], stiffness)],
         module=design.drive.module,
         inner_radius=design.inner_radius,
         phases=PhaseTimes(),

@@ -182,7 +182,7 @@ class DeviatingDrive:
             ideal = cam_pose(state)
             return ideal and replace(ideal, shift=shift, lean=lean)
 
-        self.model.problem.rigid_contacts[0].pose = pose
+        self.model.problem.surface_contacts[0].pose = pose
 
     def _displace_bore(self, pitch: int, state: LoadState, share: float) -> None:
         """Hold the bore off the axis, in the direction that its material has at a pitch."""

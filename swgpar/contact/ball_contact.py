@@ -125,25 +125,11 @@ class BallContact:
         self.n_nodes = min(int(np.ceil(span)) + NODES, len(column))
         windows = np.arange(len(column) - self.n_nodes + 1 if n_sectors else 0)[:, None] + np.arange(self.n_nodes)
         self.windows = self.conn[windows].reshape(len(windows), self.n_nodes * len(spread))
-        self.multiplier = np.zeros((0, 1))
         self.touch: _Touch | None = None
 
     def is_active(self, state: LoadState) -> bool:
         """With the cam."""
         return state.cam_clearance is not None
-
-    def reset(self) -> None:
-        """Nothing is to be forgotten."""
-
-    def scale_penalty(self, share: float) -> None:
-        """Balls are no penalty."""
-
-    def augment(self) -> None:
-        """There are no multipliers."""
-
-    def penetration(self) -> float:
-        """Zero: the approach of a ball is elastic."""
-        return 0.0
 
     def active_sets(self) -> list[np.ndarray]:
         """Balls that carry in the last evaluation on this rank."""
@@ -151,9 +137,6 @@ class BallContact:
         if self.touch is not None:
             carries[self.touch.ball[self.touch.approach > 0.0]] = True
         return [carries]
-
-    def owned_pressure(self) -> None:
-        """None on the flexible spline."""
 
     def evaluate(
         self, u: np.ndarray, state: LoadState, residual: np.ndarray | None, rows: BlockRows | None

@@ -1,4 +1,7 @@
-"""What every contact of the drive offers: cam, pins, flanks and the surface of a plain ring meet this protocol."""
+"""What the discrete problem asks of its parts: force terms, contacts, contacts with a penalty.
+
+Only flanks search for pairs and freeze segments; see `swgpar.contact.flanks.FlankContact`.
+"""
 
 from __future__ import annotations
 
@@ -29,32 +32,47 @@ class FacePressure:
     pressure: np.ndarray
 
 
-class Contact(Protocol):
-    """One contact. `reset` begins it anew at every contact search; all other methods may follow in any order.
+class ForceTerm(Protocol):
+    """What adds forces to the residual and blocks to the tangent."""
 
-    All ranks call `evaluate` and `add_owned_forces` together: an implementation may communicate in them.
+    def evaluate(
+        self, u: np.ndarray, state: LoadState, residual: np.ndarray | None, rows: BlockRows | None
+    ) -> np.ndarray:
+        """Add to residual (n_local, 3) N and to the tangent's rows at u (n_local, 3) mm.
+
+        All ranks call it together: an implementation may communicate. Returns keys (n,) of blocks
+        that the pattern of `rows` lacks.
+        """
+
+
+class Contact(ForceTerm, Protocol):
+    """A force term of two surfaces that touch or do not: cam, pins, race, balls and flanks.
+
+    `evaluate` also computes gaps and pressures. All ranks call `add_owned_forces` together.
+    """
+
+    def is_active(self, state: LoadState) -> bool:
+        """Whether the load state switches this contact on."""
+
+    def add_owned_forces(self, u: np.ndarray, state: LoadState, residual: np.ndarray) -> None:
+        """Add the forces of the faces that this rank owns, each face once over all ranks."""
+
+    def active_sets(self) -> list[np.ndarray]:
+        """Arrays that tell which points or faces touch, and which slip, in the last evaluation on this rank."""
+
+
+class PenaltyContact(Contact, Protocol):
+    """A contact enforced by a penalty and multipliers: all but the balls, whose approach is elastic.
+
+    `reset` begins it anew at every contact search; all other methods may follow in any order.
 
     multiplier : (n_face, n_q) MPa, of the augmented Lagrangian
     """
 
     multiplier: np.ndarray
 
-    def is_active(self, state: LoadState) -> bool:
-        """Whether the load state switches this contact on."""
-
     def reset(self) -> None:
         """Forget multipliers, gaps and pressures."""
-
-    def evaluate(
-        self, u: np.ndarray, state: LoadState, residual: np.ndarray | None, rows: BlockRows | None
-    ) -> np.ndarray:
-        """Compute gaps and pressures at u (n_local, 3) mm; add to residual (n_local, 3) N and to the tangent's rows.
-
-        Returns keys (n,) of blocks that the pattern of `rows` lacks.
-        """
-
-    def add_owned_forces(self, u: np.ndarray, state: LoadState, residual: np.ndarray) -> None:
-        """Add the forces of the faces that this rank owns, each face once over all ranks."""
 
     def scale_penalty(self, share: float) -> None:
         """Use this share of the full penalty."""
@@ -64,9 +82,6 @@ class Contact(Protocol):
 
     def penetration(self) -> float:
         """Largest penetration (mm) of the last evaluation on this rank."""
-
-    def active_sets(self) -> list[np.ndarray]:
-        """Arrays that tell which points or faces touch, and which slip, in the last evaluation on this rank."""
 
     def owned_pressure(self) -> FacePressure | None:
         """Pressures of the last evaluation on owned faces; None without faces."""

@@ -43,7 +43,7 @@ SLIP_SHARE = 0.99
 
 
 class FlankContact:
-    """Contact of all flank pairs that this rank takes part in; meets the protocol `Contact`.
+    """Contact of all flank pairs that this rank takes part in; meets the protocol `PenaltyContact`.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ from collections.abc import Callable
 import numpy as np
 
 from swgpar.contact.contact import NO_KEYS, FacePressure
-from swgpar.contact.enforcement import penetration, pressure
+from swgpar.contact.enforcement import PressedPoints
 from swgpar.contact.face_quadrature import FaceQuadrature
 from swgpar.contact.smooth_curve import NODES, STEPS, curve_nodes, shape_functions, smooth_curve
 from swgpar.fem.elements import BodyElements
@@ -30,8 +30,8 @@ LAYERS = 2
 """Nodes of the race along z that a point of the spline touches."""
 
 
-class RaceContact:
-    """Face quadrature of the spline's inner surface against the race's outer surface; meets the protocol `Contact`.
+class RaceContact(PressedPoints):
+    """Face quadrature of the spline's inner surface against the race's outer one; meets `PenaltyContact`.
 
     Parameters
     ----------
@@ -64,7 +64,6 @@ class RaceContact:
         penalty: float,
         pressure_limit: float,
     ) -> None:
-        self.full_penalty = self.penalty = penalty
         self.pressure_limit = pressure_limit
         sectors = (
             np.arange(len(spline.sectors)) if spline.preceding.any() else np.arange(len(spline.sectors))[spline.owned]
@@ -90,6 +89,7 @@ class RaceContact:
         self.shape, position = points.shape, points.position[chosen]
         self.inside = np.abs(position[..., 2]) <= half_width
         self.weight = points.weight[chosen]
+        super().__init__(self.weight.shape, penalty)
         self.offset = points.offset[chosen] + relief(position[..., 2].ravel()).reshape(self.weight.shape)
         self.polynomials = smooth_curve(of_race[:, :, 0, :2])
         low, high = of_race[:, 1, 0, 2], of_race[:, 1, 1, 2]
@@ -99,9 +99,6 @@ class RaceContact:
         self.first_place = np.sum((position[..., :2] - start) * (end - start), axis=-1) / np.sum(
             (end - start) ** 2, axis=-1
         )
-        self.multiplier = np.zeros_like(self.weight)
-        self.gap = np.full_like(self.weight, np.inf)
-        self.pressure = np.zeros_like(self.weight)
 
     @staticmethod
     def _reach_owned_nodes(spline: BodyElements, sector: np.ndarray, column: np.ndarray, n: int) -> np.ndarray:
@@ -113,28 +110,6 @@ class RaceContact:
     def is_active(self, state: LoadState) -> bool:
         """With the cam."""
         return state.cam_clearance is not None
-
-    def reset(self) -> None:
-        """Forget multipliers, gaps and pressures."""
-        self.multiplier = np.zeros_like(self.weight)
-        self.gap = np.full_like(self.weight, np.inf)
-        self.pressure = np.zeros_like(self.weight)
-
-    def scale_penalty(self, share: float) -> None:
-        """Use this share of the full penalty."""
-        self.penalty = share * self.full_penalty
-
-    def augment(self) -> None:
-        """Take the pressures of the last evaluation as multipliers."""
-        self.multiplier = self.pressure.copy()
-
-    def penetration(self) -> float:
-        """Largest penetration (mm) of the last evaluation on this rank."""
-        return penetration(self.gap, self.pressure)
-
-    def active_sets(self) -> list[np.ndarray]:
-        """Quadrature points with pressure of the last evaluation on this rank."""
-        return [self.pressure > 0.0]
 
     def owned_pressure(self) -> FacePressure:
         """Pressures of the last evaluation on owned faces of the flexible spline."""
@@ -151,7 +126,7 @@ class RaceContact:
         if not self.is_active(state):
             return NO_KEYS
         vectors, curvature = self._find_gaps(u)
-        touching = np.flatnonzero((self.pressure > 0.0).any(axis=1))
+        touching = self.touching_faces()
         if residual is not None:
             self._add_forces(vectors, touching, residual)
         if rows is not None:
@@ -162,7 +137,8 @@ class RaceContact:
         """Add the forces of the faces that this rank owns to residual (n_local, 3) N."""
         if self.is_active(state):
             vectors, _ = self._find_gaps(u)
-            self._add_forces(vectors, np.flatnonzero((self.pressure > 0.0).any(axis=1) & self.owned), residual)
+            touching = self.touching_faces()
+            self._add_forces(vectors, touching[self.owned[touching]], residual)
 
     def _find_gaps(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Set gaps and pressures.
@@ -184,9 +160,7 @@ class RaceContact:
         length = np.sum(tangent * tangent, axis=-1)
         normal = np.stack([tangent[..., 1], -tangent[..., 0]], axis=-1) / np.sqrt(length)[..., None]
         distance, k = np.sum(normal * away, axis=-1), np.sum(normal * bend, axis=-1)
-        self.gap = np.where(self.inside, distance + self.offset, np.inf)
-        trial = pressure(np.where(self.inside, self.gap, 0.0), self.multiplier, self.penalty)
-        self.pressure = np.where(self.inside, trial, 0.0)
+        self.set_gap(distance + self.offset, self.inside)
 
         def on_race(weights: np.ndarray) -> np.ndarray:
             return (weights[..., None] * self.layers[:, :, None]).reshape(*weights.shape[:2], NODES * LAYERS)

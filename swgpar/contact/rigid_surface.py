@@ -13,7 +13,7 @@ from typing import Protocol
 import numpy as np
 
 from swgpar.contact.contact import NO_KEYS, FacePressure
-from swgpar.contact.enforcement import penetration, pressure
+from swgpar.contact.enforcement import PressedPoints
 from swgpar.contact.face_quadrature import FaceQuadrature
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.sparse import BlockRows
@@ -77,8 +77,8 @@ def pin_directions(lobes: int) -> np.ndarray:
     return SIXTHS[sixths_of_turn(lobes, np.arange(lobes)), :2, 1]
 
 
-class RigidContact:
-    """Face quadrature of the inner surface against a rigid surface; meets the protocol `Contact`.
+class RigidContact(PressedPoints):
+    """Face quadrature of the inner surface against a rigid surface; meets the protocol `PenaltyContact`.
 
     Parameters
     ----------
@@ -109,9 +109,9 @@ class RigidContact:
         pressure_limit: float,
     ) -> None:
         self.surface, self.pose = surface, pose
-        self.full_penalty = self.penalty = penalty
         self.pressure_limit = pressure_limit
         points = FaceQuadrature(body, "inner", radius, n_quadrature)
+        super().__init__(points.weight.shape, penalty)
         self.conn, self.sixths, self.coords, self.owned = points.conn, points.sixths, points.coords, points.owned
         self.shape, self.weight, self.offset = points.shape, points.weight, points.offset
         x = points.position
@@ -121,27 +121,10 @@ class RigidContact:
         self.pin = pin_directions(lobes)[along.argmax(axis=-1)].reshape(-1, 2)
         self.cosine = along.max(axis=-1) / np.hypot(x[..., 0], x[..., 1])
         self.angle_limit = np.cos(pin_half_angle)
-        self.multiplier = np.zeros_like(self.weight)
-        self.gap = np.full_like(self.weight, np.inf)
-        self.pressure = np.zeros_like(self.weight)
 
     def is_active(self, state: LoadState) -> bool:
         """Whether the load state switches this contact on."""
         return self.pose(state) is not None
-
-    def reset(self) -> None:
-        """Forget multipliers, gaps and pressures."""
-        self.multiplier = np.zeros_like(self.weight)
-        self.gap = np.full_like(self.weight, np.inf)
-        self.pressure = np.zeros_like(self.weight)
-
-    def scale_penalty(self, share: float) -> None:
-        """Use this share of the full penalty."""
-        self.penalty = share * self.full_penalty
-
-    def augment(self) -> None:
-        """Take the pressures of the last evaluation as multipliers."""
-        self.multiplier = self.pressure.copy()
 
     def evaluate(
         self, u: np.ndarray, state: LoadState, residual: np.ndarray | None, rows: BlockRows | None
@@ -155,7 +138,7 @@ class RigidContact:
             return NO_KEYS
         gradient, hessian = self._find_gaps(u, pose)
         rotation = pose.rotation()
-        touching = np.flatnonzero((self.pressure > 0.0).any(axis=1))
+        touching = self.touching_faces()
         normal = gradient[touching] @ rotation.T
         if residual is not None:
             self._add_forces(normal, touching, residual)
@@ -168,7 +151,8 @@ class RigidContact:
         pose = self.pose(state)
         if pose is not None:
             gradient, _ = self._find_gaps(u, pose)
-            touching = np.flatnonzero((self.pressure > 0.0).any(axis=1) & self.owned)
+            touching = self.touching_faces()
+            touching = touching[self.owned[touching]]
             self._add_forces(gradient[touching] @ pose.rotation().T, touching, residual)
 
     def _find_gaps(self, u: np.ndarray, pose: SurfacePose) -> tuple[np.ndarray, np.ndarray]:
@@ -187,9 +171,7 @@ class RigidContact:
             reachable = reachable & (self.cosine >= self.angle_limit)
         level, gradient, hessian = self.surface.evaluate(points)
         shape = self.weight.shape
-        self.gap = np.where(reachable, level.reshape(shape) + self.offset + pose.clearance, np.inf)
-        trial = pressure(np.where(reachable, self.gap, 0.0), self.multiplier, self.penalty)
-        self.pressure = np.where(reachable, trial, 0.0)
+        self.set_gap(level.reshape(shape) + self.offset + pose.clearance, reachable)
         return gradient.reshape(*shape, 3), hessian.reshape(*shape, 3, 3)
 
     def _add_forces(self, normal: np.ndarray, faces: np.ndarray, residual: np.ndarray) -> None:
@@ -215,14 +197,6 @@ class RigidContact:
         )
         blocks = np.einsum("fqij,qa,qb->fabij", core, self.shape, self.shape, optimize=True)
         add_face_blocks(self.conn[faces], self.sixths[faces], np.ascontiguousarray(blocks), rows)
-
-    def penetration(self) -> float:
-        """Largest penetration (mm) of the last evaluation on this rank."""
-        return penetration(self.gap, self.pressure)
-
-    def active_sets(self) -> list[np.ndarray]:
-        """Quadrature points with pressure of the last evaluation on this rank."""
-        return [self.pressure > 0.0]
 
     def owned_pressure(self) -> FacePressure:
         """Pressures of the last evaluation on owned faces."""

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from swgpar.contact.ball_contact import BallContact
 from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.bearing_life import BearingSeries, million_turns
 from swgpar.load.load_states import LoadState
@@ -29,14 +28,9 @@ class ComplianceShares:
     race: float
 
 
-def ball_contact(model: DriveModel) -> BallContact:
-    """Contact of the balls of a drive with a bearing."""
-    return next(contact for contact in model.problem.rigid_contacts if isinstance(contact, BallContact))
-
-
 def ball_rows(model: DriveModel, state: LoadState, increment: int, step: int) -> list[Row]:
     """Rows of balls.csv of the present state, a ball each, on all ranks; collective."""
-    contact, design = ball_contact(model), model.design
+    contact, design = model.problem.balls, model.design
     contact.evaluate(model.problem.displacement(), state, None, None)
     found = dict(pair for part in model.comm.allgather(list(zip(*contact.owned_loads()))) for pair in part)
     balls, part = contact.balls, contact.balls.number // model.copies

@@ -12,7 +12,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.contact.contact import largest
-from swgpar.evaluation.bearing_loads import ComplianceShares, ball_contact
+from swgpar.evaluation.bearing_loads import ComplianceShares
 from swgpar.fem.body_layout import OUTER_RACE
 from swgpar.fem.vectors import create_vector
 from swgpar.load.load_states import LoadState
@@ -33,7 +33,7 @@ def bearing_shares(model: DriveModel, state: LoadState) -> dict[str, ComplianceS
     if state.control != "torque":
         return {}
     problem, system = model.problem, model.solver.system
-    u, balls = problem.displacement(), ball_contact(model)
+    u, balls = problem.displacement(), problem.balls
     problem.tangent(u, state)
     border, rows = problem.supports.border(u, state)
     grounding, active = problem.supports.grounding(u), problem.matrix_rows.active

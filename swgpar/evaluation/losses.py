@@ -13,7 +13,6 @@ from mpi4py import MPI
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import Material
-from swgpar.evaluation.bearing_loads import ball_contact
 from swgpar.evaluation.stress_cycle import StressCycle, elements_of_rank
 from swgpar.fem.body_layout import BodyLayout
 from swgpar.log import logger
@@ -33,9 +32,9 @@ def cam_force(model: DriveModel) -> float:
     It is the pressure integrated over the inner surface of the spline, with a bearing the sum of the ball loads.
     """
     if model.design.bearing is not None:
-        mine = float(ball_contact(model).owned_forces().sum())
+        mine = float(model.problem.balls.owned_forces().sum())
     else:
-        cam = model.problem.rigid_contacts[0]
+        cam = model.problem.surface_contacts[0]
         mine = float((cam.pressure * cam.weight)[cam.owned].sum())
     return model.copies * model.comm.allreduce(mine, op=MPI.SUM)
 

@@ -51,7 +51,7 @@ def torques(problem: DiscreteProblem, state: LoadState) -> Torques:
     reactions = supports.reactions(problem.multipliers())
     if state.control == "torque":
         reactions[supports.output_gear] = state.torque
-    output, wave_generator = float(reactions[supports.output_gear]), moment(problem.rigid_contacts)
+    output, wave_generator = float(reactions[supports.output_gear]), moment(problem.wave_generator_contacts)
     teeth = tuple(moment([flanks]) for flanks in problem.flanks)
     balance = abs(wave_generator + sum(teeth) + float(reactions[FLEXIBLE_SPLINE]))
     if supports.ring_floats:

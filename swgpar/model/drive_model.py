@@ -12,7 +12,8 @@ from mpi4py import MPI
 from swgpar.constraints.distributing_coupling import DistributingCoupling, NodeMeans, RadialGuide
 from swgpar.constraints.rigid_attachment import RigidAttachment, face_sides
 from swgpar.constraints.supports import RING_COUPLING, FixedRing, FloatingRing, Supports
-from swgpar.contact.contact import NO_KEYS, Contact, largest
+from swgpar.contact.ball_contact import BallContact
+from swgpar.contact.contact import NO_KEYS, PenaltyContact, largest
 from swgpar.contact.flank_state import Crowning, SearchRange
 from swgpar.contact.flanks import FlankContact
 from swgpar.contact.rigid_surface import RigidContact, cam_pose, pin_pose
@@ -192,12 +193,13 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
         symmetric = design.contact.friction == 0.0
         elements = Elements(partition, list(references.values()), symmetric=symmetric)
     supports = build_supports(design, partition=partition, elements=elements)
-    contacts, coupling_keys = build_wave_generator_contacts(design, elements=elements)
+    surface_contacts, balls, coupling_keys = build_wave_generator_contacts(design, elements=elements)
     problem = DiscreteProblem(
         partition=partition,
         elements=elements,
         supports=supports,
-        rigid_contacts=contacts,
+        surface_contacts=surface_contacts,
+        balls=balls,
         flanks=build_flank_contacts(design, partition=partition, elements=elements, supports=supports),
         contact_search=contact_search(design),
         module=design.drive.module,
@@ -313,16 +315,18 @@ def build_supports(design: DriveDesign, *, partition: Partition, elements: Eleme
     )
 
 
-def build_wave_generator_contacts(design: DriveDesign, *, elements: Elements) -> tuple[list[Contact], np.ndarray]:
-    """Contacts of the cam, or of the bearing on it, and keys (n,) of the tangent's blocks that they need."""
+def build_wave_generator_contacts(
+    design: DriveDesign, *, elements: Elements
+) -> tuple[list[PenaltyContact], BallContact | None, np.ndarray]:
+    """Contacts of the inner surface, balls of a bearing, and keys (n,) of the tangent's blocks that they need."""
     if design.bearing is None:
-        return [*build_rigid_contacts(design, elements=elements)], NO_KEYS
+        return [*build_rigid_contacts(design, elements=elements)], None, NO_KEYS
     race = build_race_contact(
         design, elements, 0.5 * design.race_width * EDGE, PRESSURE_LIMIT * design.race_material[0]
     )
     balls = build_ball_contact(design, elements)
     keys = np.unique(np.concatenate([elements.block_keys(conn).ravel() for conn in (race.conn, balls.windows)]))
-    return [race, balls], keys[keys >= 0]
+    return [race], balls, keys[keys >= 0]
 
 
 def build_rigid_contacts(design: DriveDesign, *, elements: Elements) -> list[RigidContact]:

@@ -12,8 +12,9 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.constraints.supports import Supports
+from swgpar.contact.ball_contact import BallContact
 from swgpar.contact.clearance import LOADED_SIDE, FlankClearance
-from swgpar.contact.contact import NO_KEYS, Contact, largest
+from swgpar.contact.contact import NO_KEYS, Contact, ForceTerm, PenaltyContact, largest
 from swgpar.contact.flank_state import ActiveSegments, SearchRange
 from swgpar.contact.flanks import FlankContact
 from swgpar.contact.friction import PairKey
@@ -67,9 +68,11 @@ class DiscreteProblem:
     ----------
     partition, elements : ownership and elements, bound to their local nodes
     supports : couplings, guide, grounding and load
-    rigid_contacts : contacts with rigid surfaces, and those of a bearing
+    surface_contacts : of the inner surface: with cam and pins, or with a bearing's outer race
+    balls : of the bearing, or None
     flanks, contact_search : contacts of the tooth flanks, one for each ring gear, and their search; none and None for a
     body without teeth
+    boundary_terms : what holds and loads a part that is cut out
     module : mm, length that bounds and floors refer to
     ring_sectors : ring-gear sectors that are modelled; None where all are
     whole_teeth : teeth of the flexible spline and of the ring gear that are not one element; none where all are
@@ -78,6 +81,7 @@ class DiscreteProblem:
 
     Attributes
     ----------
+    contacts : all of them;  penalty_contacts : those with multipliers;  force_terms : all that is evaluated
     x : state vector: displacements (mm) and multipliers;  accepted : the last state found in equilibrium
     matrix : the tangent of the last `tangent`;  rows : its blocks on this rank;  matrix_rows : which of them it has
     round_off : N, largest force that a last-digit error of the positions makes, of the last `tangent`
@@ -89,9 +93,11 @@ class DiscreteProblem:
         partition: Partition,
         elements: Elements,
         supports: Supports,
-        rigid_contacts: Sequence[Contact],
+        surface_contacts: Sequence[PenaltyContact] = (),
+        balls: BallContact | None = None,
         flanks: Sequence[FlankContact] = (),
         contact_search: ContactSearch | None = None,
+        boundary_terms: Sequence[ForceTerm] = (),
         module: float,
         ring_sectors: RingSectors | None = None,
         whole_teeth: Sequence[WholeTeeth] = (),
@@ -99,9 +105,13 @@ class DiscreteProblem:
         phases: PhaseTimes,
     ) -> None:
         self.partition, self.elements, self.supports, self.phases = partition, elements, supports, phases
-        self.rigid_contacts = list(rigid_contacts)
+        self.surface_contacts, self.balls = list(surface_contacts), balls
         self.flanks, self.contact_search = list(flanks), contact_search
-        self.contacts: list[Contact] = [*rigid_contacts, *flanks]
+        self.penalty_contacts: list[PenaltyContact] = [*surface_contacts, *flanks]
+        bearing = [] if balls is None else [balls]
+        self.wave_generator_contacts: list[Contact] = [*surface_contacts, *bearing]
+        self.contacts: list[Contact] = [*self.wave_generator_contacts, *flanks]
+        self.force_terms: list[ForceTerm] = [*self.contacts, *boundary_terms]
         self.clearances = [
             FlankClearance(contact, partition.comm, module=module, outer_radius=contact_search.outer_radius)
             for contact in flanks
@@ -183,7 +193,7 @@ class DiscreteProblem:
                     found = flanks.search(facing, self.local, u, self.contact_search.distances, accepted)
                     pattern = np.union1d(pattern, found)
                 self._choose_modelled_sectors()
-        for contact in self.rigid_contacts:
+        for contact in self.surface_contacts:
             contact.reset()
         self.set_pattern(pattern)
 
@@ -197,7 +207,7 @@ class DiscreteProblem:
 
     def reset_contacts(self) -> None:
         """Begin all contacts anew with the pairs and faces of the last search."""
-        for contact in self.contacts:
+        for contact in self.penalty_contacts:
             contact.reset()
 
     def moved_since_search(self) -> float:
@@ -267,12 +277,12 @@ class DiscreteProblem:
 
     # -- residual and tangent --------------------------------------------------------------------------
 
-    def _evaluate_contacts(
+    def _evaluate_terms(
         self, u: np.ndarray, state: LoadState, residual: np.ndarray | None, rows: BlockRows | None
     ) -> np.ndarray:
-        """Add the forces and blocks of all contacts; returns keys of blocks that the pattern lacks."""
-        missing = [contact.evaluate(u, state, residual, rows) for contact in self.contacts]
-        return np.concatenate(missing)
+        """Add the forces and blocks of all force terms; returns keys of blocks that the pattern lacks."""
+        missing = [term.evaluate(u, state, residual, rows) for term in self.force_terms]
+        return np.concatenate([NO_KEYS, *missing])
 
     def residual(self, x: PETSc.Vec, f: PETSc.Vec, state: LoadState) -> ResidualInfo:
         """Set f to the residual at x, N; collective."""
@@ -282,7 +292,7 @@ class DiscreteProblem:
             contact = np.zeros_like(u)
             collapsed = False
             try:
-                self._evaluate_contacts(u, state, contact, None)
+                self._evaluate_terms(u, state, contact, None)
                 residual = contact.copy()
                 self.elements.assemble(u, residual, None, None)
             except FloatingPointError:
@@ -303,7 +313,7 @@ class DiscreteProblem:
         with self.phases("tangent"):
             self.rows.values[:] = 0.0
             self.elements.assemble(u, None, self.rows, self.slots)
-            missing = self._evaluate_contacts(u, state, None, self.rows)
+            missing = self._evaluate_terms(u, state, None, self.rows)
             self.supports.add_blocks(u, self.rows)
             add_unit_diagonal(self.rows, self.partition, self.scale)
         self.round_off = self._round_off()
@@ -393,12 +403,14 @@ class DiscreteProblem:
 
     def scale_penalties(self, share: float) -> None:
         """Use this share of the full penalty in every contact."""
-        for contact in self.contacts:
+        for contact in self.penalty_contacts:
             contact.scale_penalty(share)
 
     def penetration(self) -> float:
         """Largest penetration (mm) of the last evaluation, over all ranks; collective."""
-        return largest(self.partition.comm, max(contact.penetration() for contact in self.contacts))
+        return largest(
+            self.partition.comm, max((contact.penetration() for contact in self.penalty_contacts), default=0.0)
+        )
 
     def touching_pairs(self) -> int:
         """Flank pairs of the model in contact, over all ranks; collective."""

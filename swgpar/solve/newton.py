@@ -377,7 +377,7 @@ class NewtonSolver:
         state.result = SolveResult(True, state.iterations, state.residual, "converged")
 
     def _augment(self, state: SolveState) -> None:
-        contacts = self.problem.contacts
+        contacts = self.problem.penalty_contacts
         multipliers = [contact.multiplier for contact in contacts]
         state.before_augmentation = AcceptableState(state.residual, self.problem.x.copy(), multipliers)
         state.augmentations += 1
@@ -388,7 +388,7 @@ class NewtonSolver:
         """Accept the state before an augmentation that failed."""
         problem = self.problem
         before.x.copy(problem.x)
-        for contact, multiplier in zip(problem.contacts, before.multipliers):
+        for contact, multiplier in zip(problem.penalty_contacts, before.multipliers):
             contact.multiplier = multiplier
         self._trial_residual(problem.x, problem.x.duplicate())  # pressures and gaps of that state
         state.augmentations -= 1

@@ -77,7 +77,7 @@ class CycleBreaker:
 
 @dataclass
 class AcceptableState:
-    """State before an augmentation: acceptable if the augmentation fails. multipliers : of all contacts, MPa"""
+    """State before an augmentation: acceptable if the augmentation fails. multipliers : of all penalty contacts, MPa"""
 
     residual: float
     x: PETSc.Vec

@@ -15,7 +15,7 @@ from support.paths import RECIPE
 from support.stepping import WORLD, assert_agree, load_stepper, loaded, row, small
 from swgpar.analysis.bent_start import bend
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.evaluation.bearing_loads import ball_contact, ball_rows
+from swgpar.evaluation.bearing_loads import ball_rows
 from swgpar.evaluation.compliance import bearing_shares
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, OUTER_RACE
 from swgpar.load.load_sequence import from_loaded, load_sequence
@@ -68,7 +68,7 @@ def test_balls_balance_the_force_on_the_spline() -> None:
     u = problem.displacement()
     place = problem.positions() + u
     forces = {}
-    for name, contact in zip(("race", "balls"), problem.rigid_contacts):
+    for name, contact in zip(("race", "balls"), problem.contacts):
         nodal = np.zeros_like(u)
         contact.add_owned_forces(u, state, nodal)
         forces[name] = nodal
@@ -134,7 +134,8 @@ def test_stiff_balls_take_no_share() -> None:
     soft, stiff = jumped(*BEARING), jumped(*BEARING, "wave_generator.bearing.stiffness_factor=1e3")
     shares = [bearing_shares(one.model, one.load_state)["torsional"].balls for one in (soft, stiff)]
     assert abs(shares[1]) < 0.01 * shares[0]
-    ratio = ball_contact(stiff.model).balls.spring.stiffness / ball_contact(soft.model).balls.spring.stiffness
+    stiffness = [stepper.problem.balls.balls.spring.stiffness for stepper in (stiff, soft)]
+    ratio = stiffness[0] / stiffness[1]
     assert ratio == pytest.approx(1e3)
     for one in (soft, stiff):
         one.model.destroy()
@@ -147,8 +148,9 @@ def test_tangent() -> None:
     problem, state = stepper.problem, stepper.load_state
     u, step = problem.displacement(), 1e-9
     along = np.random.default_rng(0).normal(size=u.shape) * (1.0, 1.0, 0.0)
-    for contact in problem.rigid_contacts:
-        contact.multiplier = contact.multiplier + (1.0 if contact is problem.rigid_contacts[0] else 0.0)  # all touch
+    (race,) = problem.surface_contacts
+    race.multiplier = race.multiplier + 1.0  # all touch
+    for contact in (race, problem.balls):
         contact.evaluate(u, state, None, None)
         problem.rows.values[:] = 0.0
         contact.evaluate(u, state, None, problem.rows)

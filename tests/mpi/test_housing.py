@@ -194,7 +194,7 @@ def test_a_housing_under_two_opposite_radial_loads(halved: bool) -> None:
         partition=partition,
         elements=body_elements,
         supports=supports,
-        rigid_contacts=[DeadLoad(coupling.nodes[loaded_nodes], force * arm[loaded_nodes])],
+        boundary_terms=[DeadLoad(coupling.nodes[loaded_nodes], force * arm[loaded_nodes])],
         module=1.0,
         phases=PhaseTimes(),
     )

@@ -181,7 +181,7 @@ def test_rotating_the_whole_spline_changes_no_stress(model: str) -> None:
     def forces(w: np.ndarray, wg_angle: float) -> np.ndarray:
         r = np.zeros_like(w)
         problem.elements.assemble(w, r, None, None)
-        for contact in problem.rigid_contacts:
+        for contact in problem.surface_contacts:
             contact.evaluate(w, replace(state, angle=wg_angle), r, None)
         return r[nodes[nodes < problem.partition.n_own]]
 
@@ -289,9 +289,15 @@ def test_an_augmentation_that_leads_to_no_solution_is_taken_back() -> None:
     _, without = loaded(small("plane", *soft, "contact.max_augmentations=0"))
     poisoned = Poisoned()
     design = small("plane", *soft, "contact.max_augmentations=10")
-    stepper, taken = loaded(design, prepare=lambda stepper: stepper.problem.contacts.append(poisoned))
+
+    def poison(stepper: LoadStepper) -> None:
+        problem = stepper.problem
+        for terms in (problem.force_terms, problem.contacts, problem.penalty_contacts):
+            terms.append(poisoned)
+
+    stepper, taken = loaded(design, prepare=poison)
     assert poisoned.augmentations and stepper.solver.state.augmentations == 0
-    parallel_assert(all(np.all(contact.multiplier == 0.0) for contact in stepper.problem.contacts))
+    parallel_assert(all(np.all(contact.multiplier == 0.0) for contact in stepper.problem.penalty_contacts))
     assert_same(taken, without, 1e-6)
 
 

@@ -19,7 +19,7 @@ def nodal_pressure(problem: DiscreteProblem, state: LoadState, body: BodyElement
     """
     n = len(problem.local)
     sums = np.zeros((n, 3))  # force and area, as two components of a vector of the model
-    for contact in problem.contacts:
+    for contact in problem.penalty_contacts:
         faces = contact.owned_pressure() if contact.is_active(state) else None
         if faces is not None:
             _add_nodal(faces, sums)

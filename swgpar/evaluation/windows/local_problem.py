@@ -131,11 +131,8 @@ class LocalProblem:
             partition=self.partition,
             elements=self.elements,
             supports=Supports(self.partition, [], scale=scale, share=1.0),
-            rigid_contacts=[
-                *build_rigid_contacts(design, elements=self.elements),
-                self._dead_load(),
-                self._cuts(displacement),
-            ],
+            surface_contacts=build_rigid_contacts(design, elements=self.elements),
+            boundary_terms=[self._dead_load(), self._cuts(displacement)],
             module=design.drive.module,
             phases=PhaseTimes(),
         )
