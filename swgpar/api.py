@@ -8,6 +8,7 @@ script.py` ends all ranks then.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -28,6 +29,7 @@ from swgpar.meshing.recipe import make_recipe
 from swgpar.results.atomic import agreed, on_all, raise_first, sentence, write_file, write_from_root
 from swgpar.results.figure_set import save_figures
 from swgpar.results.folder import REPORT, given_folder, read_summary
+from swgpar.run_options import RunOptions
 from swgpar.systems import Result, system_of, system_of_table
 
 if TYPE_CHECKING:
@@ -229,24 +231,13 @@ def run(
     >>> result.summary["root_stress"]["s1"], result.history["fs_s1"].max()
     """
     comm = MPI.COMM_WORLD if comm is None else comm
-    checked, recipe = on_all(comm, lambda: _checked(design, mesh, accuracy, plain, restart))
-    system = system_of(checked)
-    folder = given_folder(out)
-    terminal = log.console.is_terminal if progress is None else progress
+    terminal, folder = _terminal(progress), given_folder(out)
+    given = RunOptions(
+        folder, accuracy=accuracy, plain=plain, restart=restart, overwrite=overwrite, comm=comm, terminal=terminal
+    )
+    checked, options = on_all(comm, lambda: _checked(design, mesh, given))
     with log.session(comm, terminal=terminal):
-        result = system.run(
-            checked,
-            recipe,
-            folder,
-            recipe_name=str(mesh) if isinstance(mesh, (str, Path)) else "",
-            accuracy=accuracy,
-            plain=plain,
-            restart=restart,
-            overwrite=overwrite,
-            comm=comm,
-            terminal=terminal,
-            on_increment=lambda: None,
-        )
+        result = system_of(checked).run(checked, options)
         if folder is not None:
             if checked.output.figures:
                 save_figures(result.plot, folder)
@@ -417,7 +408,7 @@ def study(
         out,
         restart=restart,
         overwrite=overwrite,
-        terminal=log.console.is_terminal if progress is None else progress,
+        terminal=_terminal(progress),
         comm=MPI.COMM_WORLD if comm is None else comm,
     )
 
@@ -472,7 +463,7 @@ def optimise(
         out,
         restart=restart,
         overwrite=overwrite,
-        terminal=log.console.is_terminal if progress is None else progress,
+        terminal=_terminal(progress),
         comm=MPI.COMM_WORLD if comm is None else comm,
     )
 
@@ -568,14 +559,17 @@ def _require(name: str, value: Any) -> None:
         raise InputError(f"{name} is of the type {type(value).__name__}: allowed are a path, a dict or a loaded {name}")
 
 
-def _checked(
-    design: DesignLike, mesh: MeshLike | None, accuracy: float | None, plain: bool, restart: bool
-) -> tuple[Design, MeshRecipe | None]:
-    """Design and recipe of a run; refuses options that the design's system does not have."""
+def _terminal(progress: bool | None) -> bool:
+    """Whether to report on the terminal."""
+    return log.console.is_terminal if progress is None else progress
+
+
+def _checked(design: DesignLike, mesh: MeshLike | None, options: RunOptions) -> tuple[Design, RunOptions]:
+    """The design of a run, and its options with the mesh; refuses options that the design's system does not have."""
     checked = load_design(design)
     system = system_of(checked)
-    given = {"mesh": mesh is not None, "accuracy": accuracy is not None, "plain": plain, "restart": restart}
-    for name in given:
-        if given[name] and name not in system.options:
-            raise InputError(f"{name} has no meaning for {system.noun}: leave it out")
-    return checked, None if mesh is None else load_mesh(mesh)
+    options.require_available(system.options, system.noun, mesh=mesh is not None)
+    if mesh is None:
+        return checked, options
+    name = str(mesh) if isinstance(mesh, (str, Path)) else ""
+    return checked, replace(options, recipe=load_mesh(mesh), recipe_name=name)

@@ -15,11 +15,11 @@ from page import markdown, write_results
 from scipy.optimize import brentq
 
 from swgpar.analysis.coarse_start import solve_to_load
-from swgpar.analysis.mesh_refinement import RATIO, resized
 from swgpar.checks.design_file import load_design
 from swgpar.design.sections import GEARS
 from swgpar.load.load_sequence import load_sequence
 from swgpar.meshing import load_recipe
+from swgpar.meshing.recipe_counts import RATIO, resized
 from swgpar.model.drive_model import DriveModel
 
 FAMILIES = {

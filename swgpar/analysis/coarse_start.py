@@ -14,9 +14,10 @@ from mpi4py import MPI
 
 from swgpar.analysis.bent_start import bend
 from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.analysis.shortcuts import finds_contacts
 from swgpar.analysis.start_states import StartStates
 from swgpar.design.drive_design import DriveDesign
-from swgpar.errors import ConvergenceError, SwgparError
+from swgpar.errors import ConvergenceError, InputError, SwgparError
 from swgpar.fem.vectors import read_field, write_field
 from swgpar.geometry.rotation import rotated
 from swgpar.load.load_sequence import from_loaded
@@ -24,7 +25,7 @@ from swgpar.load.load_states import LoadState
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.interpolation import interpolation
-from swgpar.meshing.recipe_counts import coarser
+from swgpar.meshing.recipe_counts import RATIO, coarser, resized
 from swgpar.model.drive_model import DriveModel, build_drive_model
 from swgpar.petsc import PETSc
 
@@ -138,6 +139,35 @@ def _reach_load(stepper: LoadStepper, load_states: list[LoadState]) -> list[int]
 def _jump(stepper: LoadStepper, load_states: list[LoadState]) -> None:
     bend(stepper.model)
     stepper.jump(from_loaded(load_states)[0])
+
+
+def start_at_load(
+    stepper: LoadStepper,
+    recipe: MeshRecipe,
+    load_states: list[LoadState],
+    on_coarse: Callable[[DriveModel, MeshRecipe], None],
+    kept: StartStates,
+) -> bool:
+    """Reach the loaded state on coarser meshes or from the bent shape; False if none is asked for, or if that fails.
+
+    recipe : of the stepper's mesh;  for the others see `start_loaded`
+    """
+    coarser_ones = levels(stepper.design, recipe)
+    ways = [coarser_ones] if coarser_ones else []
+    if starts_bent(stepper.design):
+        compared = resized(recipe, 1.0 / RATIO)
+        if stepper.design.resolves_root_stress and not ways and finds_contacts(compared):
+            ways.append([compared])
+        ways.append([])
+    for recipes in ways:
+        try:
+            start_loaded(stepper, recipes, load_states, on_coarse, kept)
+            return True
+        except (ConvergenceError, InputError) as error:
+            what = "on coarser meshes" if recipes else "from the bent shape"
+            logger.info("no start %s: %s", what, error)
+            stepper.reset()
+    return False
 
 
 def start_loaded(

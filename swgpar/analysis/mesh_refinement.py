@@ -10,9 +10,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
 from mpi4py import MPI
 
+from swgpar.analysis.accuracy import ROUGH
 from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.analysis.forecast import fits, forecast
 from swgpar.analysis.shortcuts import finds_contacts
@@ -27,23 +27,11 @@ from swgpar.load.load_sequence import from_loaded
 from swgpar.load.load_states import LoadState
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe, build_sector_meshes
-from swgpar.meshing.recipe_counts import SMALLEST, with_counts
+from swgpar.meshing.recipe_counts import RATIO, resized
 from swgpar.model.drive_model import DriveModel
 
-LOWEST, HIGHEST = 1e-3, 0.2
-"""Accuracies that may be asked for."""
-
-ROUGH = 0.04
-"""Accuracy from which an answer may be rough: the first windows are few."""
-
-SAMPLES = ((ROUGH, 2), (0.02, 4), (0.005, 8), (0.0, 16))
-"""Smallest accuracy and number of angles in a period. Four instead of eight change the means of the plane half
-turn by 0.3 %, those of the cup drive by 0.5 %. Two instead of four change s1 of the cup drive by 0.7 %, its input
-torque by 0.2 %. The summary of a run has the change by half of its own angles."""
-
-RATIO, ORDER = 1.5, 2
-"""Elements in every direction of a mesh of the drive over those of the one before, but for rounding, and the order of
-its displacements."""
+ORDER = 2
+"""Order of the displacements of a mesh."""
 
 COMPARED_LEVELS = 2
 """Windows of which the last one shows what the mesh of the drive changes."""
@@ -76,25 +64,6 @@ class ChosenMesh:
     root_stress: RootStress
     error: float
     coarse: CoarseStresses
-
-
-def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
-    """The design with as many angles of the period as suit an accuracy, where it does not say them itself.
-
-    Raises InputError where the accuracy is out of range.
-    """
-    if not LOWEST <= accuracy <= HIGHEST:
-        raise InputError(f"--accuracy {accuracy:g} is out of range: allowed {LOWEST:g} to {HIGHEST:g}")
-    whole_period = design.steps.rotation >= 0.999999 * design.periods * np.degrees(design.period_angle)
-    if "samples" in design.steps.model_fields_set or not whole_period:
-        return design
-    samples = next(count for least, count in SAMPLES if accuracy >= least)
-    return design.model_copy(update={"steps": design.steps.model_copy(update={"samples": samples})})
-
-
-def resized(recipe: MeshRecipe, ratio: float) -> MeshRecipe:
-    """The recipe with so many times the elements in every direction; raises InputError where a count is too large."""
-    return with_counts(recipe, lambda _, name, count: max(SMALLEST.get(name, 1), round(ratio * count)))
 
 
 def compared_stresses(model: DriveModel, state: LoadState) -> Mapping[str, Sequence[float]]:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.analysis.mesh_refinement import ChosenMesh
 from swgpar.analysis.restart import write_state
 from swgpar.drive_results.drive_result import DriveResult, open_fields
 from swgpar.drive_results.drive_tables import DriveTables
@@ -35,6 +36,7 @@ from swgpar.load.load_program import internal_torque, program_points
 from swgpar.load.load_sequence import from_loaded, load_sequence
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.meshing import SectorMesh
+from swgpar.meshing.recipe import to_toml
 from swgpar.model.drive_model import DriveModel
 from swgpar.results import history
 from swgpar.results.atomic import agreed, to_json, write_from_root
@@ -45,6 +47,7 @@ from swgpar.results.folder import (
     CONTACT_LINES,
     PAIRS,
     PROGRAM,
+    RECIPE,
     STIFFNESS,
     SUMMARY,
     TRANSMISSION_ERROR,
@@ -101,6 +104,11 @@ class Recorder(ABC):
         self.race_stress: dict[str, float] = {}
         self.housing: dict[str, float] = {}
         self.bearing_shares: dict[str, ComplianceShares] = {}
+
+    def keep_choice(self, chosen: ChosenMesh, accuracy: float) -> None:
+        """Keep the stress that the windows of a mesh chosen for an accuracy gave."""
+        self.accuracy = Accuracy(accuracy, chosen.error, chosen.error <= accuracy)
+        self.root_stress, self.coarse = chosen.root_stress, chosen.coarse
 
     def record(self, stepper: LoadStepper, seconds: float, elapsed: float) -> None:
         """Keep the state after an increment.
@@ -262,6 +270,10 @@ class FolderRecorder(Recorder):
         self.out, self.identity = out, identity
         self.names: dict[str, dict[str, int]] = {}
         self._writer = FieldWriter(out, self.comm) if model.design.output.fields else None
+
+    def keep_choice(self, chosen: ChosenMesh, accuracy: float) -> None:
+        super().keep_choice(chosen, accuracy)
+        write_from_root(self.comm, self.out / RECIPE, to_toml(chosen.recipe).encode())
 
     def begin(self) -> None:
         if self._writer is None:

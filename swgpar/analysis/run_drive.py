@@ -5,38 +5,27 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-from mpi4py import MPI
 
-from swgpar.analysis.coarse_start import levels, start_loaded, starts_bent
+from swgpar.analysis.accuracy import require_refinable, with_accuracy
+from swgpar.analysis.coarse_start import start_at_load
 from swgpar.analysis.follow_turns import follow_turns
 from swgpar.analysis.forecast import forecast, reported_memory, require_memory
 from swgpar.analysis.identity import identity
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.analysis.mesh_refinement import (
-    RATIO,
-    ChosenMesh,
-    choose_mesh,
-    compared_stresses,
-    drive_error,
-    least_error,
-    resized,
-    size_ratio,
-    with_accuracy,
-)
+from swgpar.analysis.mesh_refinement import choose_mesh, compared_stresses, drive_error, least_error, size_ratio
 from swgpar.analysis.recorder import FolderRecorder, MemoryRecorder, Recorder
 from swgpar.analysis.restart import resume
-from swgpar.analysis.shortcuts import finds_contacts, with_shortcuts
+from swgpar.analysis.shortcuts import MESHES, with_shortcuts
 from swgpar.analysis.start_states import StartStates
 from swgpar.analysis.stiffness_error import stiffness_error
 from swgpar.checks.remarks import torque_remark
 from swgpar.design.drive_design import DriveDesign
 from swgpar.drive_results.drive_result import DriveResult
 from swgpar.drive_results.drive_tables import DriveTables
-from swgpar.drive_results.summary import Accuracy, summarise
+from swgpar.drive_results.summary import summarise
 from swgpar.errors import ConvergenceError, InputError, SwgparError, TimeLimitError
 from swgpar.evaluation.bearing_loads import summarise_bearing
 from swgpar.evaluation.fatigue import evaluate_fatigue
@@ -51,104 +40,71 @@ from swgpar.load.load_sequence import from_loaded, load_sequence
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import IncrementProgress, logger
 from swgpar.meshing import MeshRecipe, load_recipe, require_sections
-from swgpar.meshing.recipe import to_toml
 from swgpar.model.drive_model import DriveModel, build_drive_model
 from swgpar.petsc import warn_of_unused_options
-from swgpar.results.atomic import on_all, write_from_root
-from swgpar.results.folder import RECIPE, given_folder, open_log, prepare
+from swgpar.results.atomic import on_all
+from swgpar.results.folder import RECIPE, open_log, prepare
 from swgpar.results.history import loaded_increments
 from swgpar.results.lock import releasing
+from swgpar.run_options import RunOptions
 from swgpar.solve.time_limit import limited
 
 
 @releasing
-def run_drive(
-    design: DriveDesign,
-    recipe: MeshRecipe,
-    out: str | Path | None = None,
-    *,
-    plain: bool = False,
-    restart: bool = False,
-    overwrite: bool = False,
-    comm: MPI.Comm = MPI.COMM_WORLD,
-    recipe_name: str = "",
-    accuracy: float | None = None,
-    terminal: bool = False,
-    on_increment: Callable[[], None] = lambda: None,
-) -> DriveResult:
+def run_drive(design: DriveDesign, options: RunOptions) -> DriveResult:
     """Run a design; collective.
-
-    Parameters
-    ----------
-    out : results folder; None keeps everything in memory
-    plain : take the design as it is, without `with_shortcuts`
-    restart : continue from the checkpoint in the folder
-    overwrite : replace results that the folder already holds
-    recipe_name : name of the recipe in the summary
-    accuracy : estimated relative error of the largest tensile stress up to which `recipe` is refined (`choose_mesh`)
-    terminal : whether rank 0 shows a progress bar on its terminal
-    on_increment : called after every increment
 
     Raises
     ------
     InputError, OutputError, ConvergenceError, TimeLimitError
         On all ranks. After the last two everything up to the last converged increment is in the folder and can be
-        continued with `restart`.
+        continued with `options.restart`.
     OutOfMemoryError
         On the rank whose allocation has failed.
     """
     begin = time.perf_counter()
-    folder = given_folder(out)
-    if folder is None and restart:
-        raise InputError("restart = true needs the results folder out: a run in memory leaves no checkpoint")
+    folder, comm = options.out, options.comm
+    recipe, recipe_name = options.recipe, options.recipe_name
+    if recipe is None:
+        recipe_name = MESHES[design.drive.model]
+        recipe = load_recipe(recipe_name)
     require_sections(design, recipe)
-    if accuracy is not None:
-        if design.has_program:
-            raise InputError(f"--accuracy {accuracy:g} is not available with a load program: allowed a mesh recipe")
-        if design.bearing is not None:
-            raise InputError(
-                f"--accuracy {accuracy:g} is not available with wave_generator.bearing: allowed without it"
-            )
-        if design.is_bolted:
-            raise InputError(
-                f'--accuracy {accuracy:g} is not available with cup.attachment = "bolted": allowed "edge" and "clamped"'
-            )
-        if design.dynamic_spline is not None:
-            raise InputError(f'--accuracy {accuracy:g} is not available with drive.model = "pancake": allowed "cup"')
-        design = with_accuracy(design, accuracy)
+    if options.accuracy is not None:
+        require_refinable(design, options.accuracy)
+        design = with_accuracy(design, options.accuracy)
     left_out: tuple[str, ...] = ()
-    if not plain:
-        shortcuts = with_shortcuts(design, recipe, levels=accuracy is None)
+    if not options.plain:
+        shortcuts = with_shortcuts(design, recipe, levels=options.accuracy is None)
         design, left_out = shortcuts.design, shortcuts.left_out
     require_samples(design)
     needs = forecast(design, recipe)
     require_memory(needs, design.solver.memory_limit, comm)
-    resumed = False
-    if folder is not None:
-        resumed = prepare(folder, comm, restart, overwrite)
+    resumed = folder is not None and prepare(folder, comm, options.restart, options.overwrite)
     open_log(folder, comm)
-    if (remark := torque_remark(design)) is not None:
-        logger.warning("%s", remark)
-    if left_out:
-        logger.info("left out: %s; --plain computes all of it", ", ".join(left_out))
-    if design.output.root_stress and not design.has_program and not design.resolves_root_stress:
-        reason = "a bearing" if design.bearing is not None else "two ring gears"
-        logger.info("the stress at the teeth is not resolved by windows: not available with %s", reason)
+    _log_remarks(design, left_out)
     with reported_memory(needs), limited(design.solver.time_limit):
         kept = StartStates(folder, design)
-        if not restart:
+        if not options.restart:
             kept.remove(comm)
         elif not resumed:
             way = "taking over loaded states" if kept.found(comm) else "starting from the beginning"
             logger.info("no increment was saved: %s", way)
-        model, recipe, chosen = _model(design, recipe, accuracy, folder if resumed else None, kept, comm)
-        recorder = _recorder(model, folder, identity(design, recipe, accuracy))
+        what = identity(design, recipe, options.accuracy)
+        chosen = None
+        if options.accuracy is not None:
+            if resumed:
+                recipe = on_all(comm, lambda: load_recipe(folder / RECIPE))
+            else:
+                chosen = choose_mesh(design, recipe, list(load_sequence(design)), options.accuracy, comm, kept=kept)
+                recipe = chosen.recipe
+        model = build_drive_model(design, recipe, comm=comm) if chosen is None else chosen.model
+        recorder = MemoryRecorder(model) if folder is None else FolderRecorder(model, folder, what)
         try:
             if chosen is not None:
-                _record_choice(recorder, chosen, accuracy, folder)
-            run = _Run(model, recipe, recorder, kept, on_increment, begin)
+                recorder.keep_choice(chosen, options.accuracy)
+            run = _Run(model, recipe, recorder, kept, options.on_increment, begin)
             items = run.resume() if resumed else run.start()
-            run.go_through(items, terminal)
+            run.go_through(items, options.terminal)
             result = run.finish(recipe_name)
         except SwgparError as error:
             model.destroy()  # collective: all ranks have this error, but perhaps not one of another kind
@@ -159,44 +115,15 @@ def run_drive(
     return result
 
 
-def _model(
-    design: DriveDesign,
-    recipe: MeshRecipe,
-    accuracy: float | None,
-    earlier: Path | None,
-    kept: StartStates,
-    comm: MPI.Comm,
-) -> tuple[DriveModel, MeshRecipe, ChosenMesh | None]:
-    """The model, its recipe, and with an accuracy how its mesh was chosen. earlier : as in `_choose_mesh`"""
-    chosen = None
-    if accuracy is not None:
-        chosen, recipe = _choose_mesh(design, recipe, accuracy, earlier, kept, comm)
-    return build_drive_model(design, recipe, comm=comm) if chosen is None else chosen.model, recipe, chosen
-
-
-def _choose_mesh(
-    design: DriveDesign, recipe: MeshRecipe, accuracy: float, earlier: Path | None, kept: StartStates, comm: MPI.Comm
-) -> tuple[ChosenMesh | None, MeshRecipe]:
-    """The loaded model on a mesh for an accuracy, with its recipe; for a restart the recipe only.
-
-    earlier : folder of the run that is continued
-    """
-    if earlier is not None:
-        return None, on_all(comm, lambda: load_recipe(earlier / RECIPE))
-    chosen = choose_mesh(design, recipe, list(load_sequence(design)), accuracy, comm, kept=kept)
-    return chosen, chosen.recipe
-
-
-def _recorder(model: DriveModel, folder: Path | None, what: str) -> Recorder:
-    return MemoryRecorder(model) if folder is None else FolderRecorder(model, folder, what)
-
-
-def _record_choice(recorder: Recorder, chosen: ChosenMesh, accuracy: float, folder: Path | None) -> None:
-    """Keep the mesh that was chosen for an accuracy, and the stress that its windows gave."""
-    if folder is not None:
-        write_from_root(recorder.comm, folder / RECIPE, to_toml(chosen.recipe).encode())
-    recorder.accuracy = Accuracy(accuracy, chosen.error, chosen.error <= accuracy)
-    recorder.root_stress, recorder.coarse = chosen.root_stress, chosen.coarse
+def _log_remarks(design: DriveDesign, left_out: Sequence[str]) -> None:
+    """Say what the run leaves out, and what of the design may not be meant."""
+    if (remark := torque_remark(design)) is not None:
+        logger.warning("%s", remark)
+    if left_out:
+        logger.info("left out: %s; --plain computes all of it", ", ".join(left_out))
+    if design.output.root_stress and not design.has_program and not design.resolves_root_stress:
+        reason = "a bearing" if design.bearing is not None else "two ring gears"
+        logger.info("the stress at the teeth is not resolved by windows: not available with %s", reason)
 
 
 class _Run:
@@ -250,7 +177,7 @@ class _Run:
         if self.recorder.accuracy is not None:  # the model was loaded when its mesh was chosen
             self.stepper.resume_at(from_loaded(items)[0])
             return from_loaded(items)
-        self.recorder.starts_loaded = _start_loaded(self.stepper, self.recipe, items, self._keep_coarse, self.kept)
+        self.recorder.starts_loaded = start_at_load(self.stepper, self.recipe, items, self._keep_coarse, self.kept)
         return from_loaded(items) if self.recorder.starts_loaded else items
 
     def _keep_coarse(self, model: DriveModel, recipe: MeshRecipe) -> None:
@@ -388,29 +315,3 @@ class _Run:
                 summary["losses"], columns = evaluate_losses(cycle, recorder.pairs, recorder.cam_forces, increments)
                 tables = replace(tables, losses=columns)
         return tables
-
-
-def _start_loaded(
-    stepper: LoadStepper,
-    recipe: MeshRecipe,
-    items: list[LoadState],
-    on_coarse: Callable[[DriveModel, MeshRecipe], None],
-    kept: StartStates,
-) -> bool:
-    """Reach the loaded state on coarser meshes or from the bent shape; False if none is asked for, or if that fails."""
-    coarser_ones = levels(stepper.design, recipe)
-    ways = [coarser_ones] if coarser_ones else []
-    if starts_bent(stepper.design):
-        compared = resized(recipe, 1.0 / RATIO)
-        if stepper.design.resolves_root_stress and not ways and finds_contacts(compared):
-            ways.append([compared])
-        ways.append([])
-    for recipes in ways:
-        try:
-            start_loaded(stepper, recipes, items, on_coarse, kept)
-            return True
-        except (ConvergenceError, InputError) as error:
-            what = "on coarser meshes" if recipes else "from the bent shape"
-            logger.info("no start %s: %s", what, error)
-            stepper.reset()
-    return False

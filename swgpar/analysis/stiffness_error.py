@@ -8,7 +8,7 @@ from mpi4py import MPI
 
 from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.analysis.mesh_refinement import ORDER, RATIO, resized, size_ratio
+from swgpar.analysis.mesh_refinement import ORDER, size_ratio
 from swgpar.analysis.shortcuts import finds_contacts
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError, InputError
@@ -17,6 +17,7 @@ from swgpar.evaluation.stiffness import NAMES, Stiffness, by_position
 from swgpar.load.load_sequence import from_loaded, load_sequence
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
+from swgpar.meshing.recipe_counts import RATIO, resized
 
 
 def stiffness_error(

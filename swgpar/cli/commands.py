@@ -27,10 +27,7 @@ def _run(arguments: argparse.Namespace) -> None:
         design,
         arguments.mesh,
         arguments.out,
-        accuracy=arguments.accuracy,
-        plain=arguments.plain,
-        restart=arguments.restart,
-        overwrite=arguments.overwrite,
+        **{name: getattr(arguments, name) for name in ("accuracy", "plain", "restart", "overwrite")},
         progress=True,
         comm=comm,
     )

@@ -25,8 +25,9 @@ from swgpar.input.toml_file import validate
 from swgpar.log import logger
 from swgpar.results.atomic import agreed, sentence
 from swgpar.results.figure_set import Drawings, NamedFigures
-from swgpar.results.folder import given_folder, open_log, prepare
+from swgpar.results.folder import open_log, prepare
 from swgpar.results.lock import releasing
+from swgpar.run_options import RunOptions
 from swgpar.version import __version__
 
 SECTION = "gear_train"
@@ -84,28 +85,17 @@ def model_of(design: TrainDesign) -> TrainModel:
 
 
 @releasing
-def run_train(
-    design: TrainDesign,
-    out: str | Path | None = None,
-    *,
-    overwrite: bool = False,
-    comm: MPI.Comm = MPI.COMM_WORLD,
-) -> TrainResult:
-    """Compute a gear train; collective.
-
-    Parameters
-    ----------
-    out : results folder; None keeps everything in memory
-    overwrite : replace results that the folder already holds
+def run_train(design: TrainDesign, options: RunOptions) -> TrainResult:
+    """Compute a gear train; collective. Of the options it has `out`, `overwrite` and `comm`.
 
     Raises
     ------
     InputError, OutputError, ConvergenceError
         On all ranks.
     """
-    folder, begin, model = given_folder(out), time.perf_counter(), model_of(design)
+    folder, comm, begin, model = options.out, options.comm, time.perf_counter(), model_of(design)
     if folder is not None:
-        prepare(folder, comm, False, overwrite)
+        prepare(folder, comm, False, options.overwrite)
     open_log(folder, comm)
     with reported_arithmetic():
         computed = model.compute(design, comm)

@@ -10,6 +10,9 @@ from swgpar.meshing.recipe import MeshRecipe
 SMALLEST = {"tip": 2, "root": 2}
 """Smallest counts of a recipe by name; all others reach 1, along the face width 2 or 3."""
 
+RATIO = 1.5
+"""Elements in every direction of a mesh over those of the one before it, but for rounding."""
+
 
 def with_counts(recipe: MeshRecipe, count: Callable[[str, str, int], int]) -> MeshRecipe:
     """The recipe with ``count(section, name, elements)`` in place of every element count. Gradings stay.
@@ -33,3 +36,8 @@ def with_counts(recipe: MeshRecipe, count: Callable[[str, str, int], int]) -> Me
 def coarser(recipe: MeshRecipe) -> MeshRecipe:
     """The recipe with half of every count, rounded up."""
     return with_counts(recipe, lambda _, name, value: max(SMALLEST.get(name, 1), -(-value // 2)))
+
+
+def resized(recipe: MeshRecipe, ratio: float) -> MeshRecipe:
+    """The recipe with so many times the elements in every direction; raises InputError where a count is too large."""
+    return with_counts(recipe, lambda _, name, count: max(SMALLEST.get(name, 1), round(ratio * count)))

@@ -18,9 +18,9 @@ from swgpar.input.toml_file import apply_overrides, read_toml, with_value
 from swgpar.meshing import MeshRecipe, load_recipe
 from swgpar.meshing.recipe import is_recipe_name
 from swgpar.optimisation.spec import OptimiseSection, Specification
-from swgpar.studies.case import Case, Job, not_known
-from swgpar.studies.job import run_job
-from swgpar.studies.spec import CaseSection
+from swgpar.run_options import RunOptions
+from swgpar.studies.case import PlannedRun, not_known
+from swgpar.studies.job import run_planned
 from swgpar.systems import Quantity, System, system_of_table
 
 FAILED = 100.0
@@ -103,8 +103,8 @@ class Problem:
         violations = self._violations(quantities)
         if refusal or any(amount > 0.0 for amount in violations.values()):
             return self._ended(values, refusal, quantities, 0.0)
-        case = Case("", values, design, "", {}, (), (), 0, CaseSection.model_construct(name=""), self.system)
-        outcome = run_job(Job(case, self.mesh, self.recipe, 0), None, comm, on_increment=on_increment)
+        planned = PlannedRun(self.system, design, self.recipe, str(self.mesh or ""))
+        outcome = run_planned(planned, RunOptions(comm=comm, on_increment=on_increment))
         quantities |= {name: float(outcome.values[name]) for name in self.names if name in outcome.values}
         reason = outcome.reason
         missing = [name for name in self.names if not np.isfinite(quantities.get(name, np.nan))]

@@ -53,6 +53,21 @@ class Outcome:
 
 
 @dataclass(frozen=True)
+class PlannedRun:
+    """A design that is to be run on a mesh: by a study, or by a search.
+
+    design : None when it is refused, for the reason in `refusal`
+    recipe, recipe_name : of a drive
+    """
+
+    system: System[Any, Any]
+    design: Design | None
+    recipe: MeshRecipe | None = None
+    recipe_name: str = ""
+    refusal: str = ""
+
+
+@dataclass(frozen=True)
 class Case:
     """A design of the study.
 
@@ -83,6 +98,12 @@ class Job:
     mesh: Path | None
     recipe: MeshRecipe | None
     finer: int
+
+    @property
+    def planned(self) -> PlannedRun:
+        """What is to be run."""
+        case = self.case
+        return PlannedRun(case.system, case.design, self.recipe, str(self.mesh or ""), case.refusal)
 
     @property
     def mesh_name(self) -> str:

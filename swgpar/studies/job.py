@@ -1,11 +1,11 @@
-"""One job of a study: run it, keep what went wrong in its folder, continue it after a restart."""
+"""One of many runs: run it, keep what went wrong in its folder, continue it after a restart."""
 
 from __future__ import annotations
 
 import gc
 import json
-from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,10 +17,12 @@ from swgpar.log import logger
 from swgpar.petsc import PETSc
 from swgpar.results.atomic import agreed, sentence, to_json, write_file, write_from_root
 from swgpar.results.figure_set import save_figures
-from swgpar.studies.case import Job, Outcome
+from swgpar.run_options import RunOptions
+from swgpar.studies.case import Outcome, PlannedRun
+from swgpar.systems import System
 
 STATUS = "status.json"
-"""In the folder of a job: status ("started", "failed", "finished"), identity of what is computed, reason."""
+"""In the folder of a run: status ("started", "failed", "finished"), identity of what is computed, reason."""
 
 
 def read_status(folder: Path) -> dict[str, Any]:
@@ -32,33 +34,25 @@ def read_status(folder: Path) -> dict[str, Any]:
     return {}
 
 
-def run_job(
-    job: Job,
-    folder: Path | None,
-    comm: MPI.Comm,
-    *,
-    restart: bool = False,
-    overwrite: bool = False,
-    on_increment: Callable[[], None] = lambda: None,
-) -> Outcome:
-    """Run a job; collective. Failures are returned, and recorded in the job's folder.
+def run_planned(planned: PlannedRun, options: RunOptions) -> Outcome:
+    """Run a design without shortcuts; collective. Failures are returned, and recorded in the folder of the options.
 
-    Only an error that swgpar does not know is raised when several ranks share the case: one rank may have met it
+    Only an error that swgpar does not know is raised when several ranks share the run: one rank may have met it
     alone, and the others then wait for it.
-
-    folder : of the job's results; None keeps nothing
     """
     record: dict[str, Any] = {"identity": ""}
+    folder, comm = options.out, options.comm
+    options = replace(options, recipe=planned.recipe, recipe_name=planned.recipe_name, plain=True)
     try:
-        if job.case.design is None:
-            raise InputError(job.case.refusal)
-        record = job.case.system.identity(job.case.design, job.recipe)
+        if planned.design is None:
+            raise InputError(planned.refusal)
+        record = planned.system.identity(planned.design, planned.recipe)
         if folder is not None:
-            outcome, same = _earlier(job, folder, comm, record, restart)
+            outcome, same = _earlier(planned.system, folder, comm, record, options.restart)
             if outcome is not None:
                 return outcome
-            restart, overwrite = restart and same, overwrite or not same
-        outcome = _compute(job, folder, comm, restart, overwrite, on_increment)
+            options = replace(options, restart=options.restart and same, overwrite=options.overwrite or not same)
+        outcome = _compute(planned, options)
     except SwgparError as error:
         if getattr(error, "alone", False) and comm.size > 1:
             raise
@@ -81,11 +75,11 @@ def run_job(
 
 
 def _earlier(
-    job: Job, folder: Path, comm: MPI.Comm, record: dict[str, Any], restart: bool
+    system: System[Any, Any], folder: Path, comm: MPI.Comm, record: dict[str, Any], restart: bool
 ) -> tuple[Outcome | None, bool]:
-    """Outcome of a job that an earlier call finished, else None; and whether the folder holds this design's results.
+    """Outcome of a run that an earlier call finished, else None; and whether the folder holds this design's results.
 
-    Marks the job as started unless there is an outcome; collective.
+    Marks the run as started unless there is an outcome; collective.
     """
     old = comm.bcast(read_status(folder) if comm.rank == 0 else None)
     same = old.get("identity", record["identity"]) == record["identity"]
@@ -95,7 +89,7 @@ def _earlier(
             return Outcome("failed", reason), same
         complete = comm.bcast((folder / "summary.json").exists() if comm.rank == 0 else None)
         if complete and all(old.get(key) == value for key, value in record.items()):
-            return _kept(job, folder, comm), same
+            return _kept(system, folder, comm), same
     if comm.rank == 0:
         with suppress(OSError):  # whether the folder can be written is found out below, by all ranks
             folder.mkdir(parents=True, exist_ok=True)
@@ -103,32 +97,13 @@ def _earlier(
     return None, same
 
 
-def _compute(
-    job: Job,
-    folder: Path | None,
-    comm: MPI.Comm,
-    restart: bool,
-    overwrite: bool,
-    on_increment: Callable[[], None],
-) -> Outcome:
-    system = job.case.system
+def _compute(planned: PlannedRun, options: RunOptions) -> Outcome:
+    system = planned.system
     if "restart" not in system.options:  # an interrupted run begins anew, and may have left its first tables
-        restart, overwrite = False, overwrite or restart
-    result = system.run(
-        job.case.design,
-        job.recipe,
-        folder,
-        recipe_name=str(job.mesh) if job.mesh is not None else "",
-        accuracy=None,
-        plain=True,
-        restart=restart,
-        overwrite=overwrite,
-        comm=comm,
-        terminal=False,
-        on_increment=on_increment,
-    )
-    if folder is not None and job.case.design.output.figures:
-        save_figures(result.plot, folder)
+        options = replace(options, restart=False, overwrite=options.overwrite or options.restart)
+    result = system.run(planned.design, options)
+    if options.out is not None and planned.design.output.figures:
+        save_figures(result.plot, options.out)
     return Outcome.finished(system.measure(result))
 
 
@@ -141,12 +116,11 @@ def _record(folder: Path, comm: MPI.Comm, status: dict[str, Any]) -> None:
         write_from_root(comm, folder / STATUS, to_json(status))
 
 
-def _kept(job: Job, folder: Path, comm: MPI.Comm) -> Outcome:
+def _kept(system: System[Any, Any], folder: Path, comm: MPI.Comm) -> Outcome:
     """Outcome from the files of a finished run; collective."""
     outcome = None
     with agreed(comm, folder / "summary.json", "read"):
         if comm.rank == 0:
-            system = job.case.system
             outcome = Outcome.finished(system.measure(system.open(folder, MPI.COMM_SELF)), kept=True)
     return comm.bcast(outcome)
 

@@ -18,9 +18,10 @@ from swgpar.results.atomic import agreed, first_reason, write_from_root
 from swgpar.results.folder import given_folder, remove_results
 from swgpar.results.lock import acquire, releasing
 from swgpar.results.table import format_csv
+from swgpar.run_options import RunOptions
 from swgpar.studies.case import Job, Outcome
 from swgpar.studies.cases import expand
-from swgpar.studies.job import STATUS, read_status, run_job
+from swgpar.studies.job import STATUS, read_status, run_planned
 from swgpar.studies.report import make_report
 from swgpar.studies.schedule import Counter, Reports
 from swgpar.studies.spec import Study, load_study, make_study
@@ -237,15 +238,14 @@ def _run_one(
 ) -> None:
     """Run a job and report its increments, as None, and its outcome."""
     job = jobs[number]
-    outcome = run_job(
-        job,
+    options = RunOptions(
         None if out is None else job.folder(out),
-        comm,
         restart=restart,
         overwrite=overwrite,
+        comm=comm,
         on_increment=lambda: report((number, None)),
     )
-    report((number, outcome))
+    report((number, run_planned(job.planned, options)))
 
 
 def _cases_at_once(order: Sequence[int], comm: MPI.Comm, receive: Report, run: Run) -> None:

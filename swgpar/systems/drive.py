@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +10,6 @@ from mpi4py import MPI
 
 from swgpar.analysis.identity import identity
 from swgpar.analysis.run_drive import run_drive
-from swgpar.analysis.shortcuts import MESHES
 from swgpar.checks.derived_geometry import derived_geometry
 from swgpar.checks.design_file import make_drive
 from swgpar.checks.remarks import remarks
@@ -19,8 +18,9 @@ from swgpar.drive_results.drive_result import DriveResult, open_drive
 from swgpar.errors import InputError
 from swgpar.input.toml_file import apply_overrides
 from swgpar.load.load_sequence import load_sequence
-from swgpar.meshing import MeshRecipe, load_recipe
+from swgpar.meshing import MeshRecipe
 from swgpar.presentation.terminal import print_drive
+from swgpar.run_options import RunOptions
 from swgpar.systems.drive_quantities import describe_names, main_quantities, measured, quantities
 from swgpar.systems.protocol import Measured, Quantity, System
 
@@ -40,37 +40,8 @@ class Drives(System[DriveDesign, DriveResult]):
     def remarks(self, design: DriveDesign, derived: dict[str, float]) -> list[str]:
         return remarks(design, derived)
 
-    def run(
-        self,
-        design: DriveDesign,
-        recipe: MeshRecipe | None,
-        out: Path | None,
-        *,
-        recipe_name: str,
-        accuracy: float | None,
-        plain: bool,
-        restart: bool,
-        overwrite: bool,
-        comm: MPI.Comm,
-        terminal: bool,
-        on_increment: Callable[[], None],
-    ) -> DriveResult:
-        if recipe is None:
-            recipe_name = MESHES[design.drive.model]
-            recipe = load_recipe(recipe_name)
-        return run_drive(
-            design,
-            recipe,
-            out,
-            recipe_name=recipe_name,
-            accuracy=accuracy,
-            plain=plain,
-            restart=restart,
-            overwrite=overwrite,
-            comm=comm,
-            terminal=terminal,
-            on_increment=on_increment,
-        )
+    def run(self, design: DriveDesign, options: RunOptions) -> DriveResult:
+        return run_drive(design, options)
 
     def open(self, folder: Path, comm: MPI.Comm) -> DriveResult:
         return open_drive(folder, comm)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,7 @@ from swgpar.gear_trains.train import make_train, model_of, open_train, reported_
 from swgpar.input.toml_file import apply_overrides
 from swgpar.meshing import MeshRecipe
 from swgpar.results.atomic import to_json
+from swgpar.run_options import RunOptions
 from swgpar.systems.protocol import Measured, Quantity, System
 
 
@@ -37,22 +38,8 @@ class GearTrains(System[TrainDesign, TrainResult]):
         require_finite(found)
         return found
 
-    def run(
-        self,
-        design: TrainDesign,
-        recipe: MeshRecipe | None,
-        out: Path | None,
-        *,
-        recipe_name: str,
-        accuracy: float | None,
-        plain: bool,
-        restart: bool,
-        overwrite: bool,
-        comm: MPI.Comm,
-        terminal: bool,
-        on_increment: Callable[[], None],
-    ) -> TrainResult:
-        return run_train(design, out, overwrite=overwrite, comm=comm)
+    def run(self, design: TrainDesign, options: RunOptions) -> TrainResult:
+        return run_train(design, options)
 
     def open(self, folder: Path, comm: MPI.Comm) -> TrainResult:
         return open_train(folder, comm)

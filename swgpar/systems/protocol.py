@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar
@@ -14,6 +14,7 @@ from mpi4py import MPI
 from swgpar.input.design import Design
 from swgpar.meshing import MeshRecipe
 from swgpar.results.figure_set import FigureSet
+from swgpar.run_options import RunOptions
 
 
 class Result(Protocol):
@@ -89,22 +90,8 @@ class System(ABC, Generic[D, R]):
         return []
 
     @abstractmethod
-    def run(
-        self,
-        design: D,
-        recipe: MeshRecipe | None,
-        out: Path | None,
-        *,
-        recipe_name: str,
-        accuracy: float | None,
-        plain: bool,
-        restart: bool,
-        overwrite: bool,
-        comm: MPI.Comm,
-        terminal: bool,
-        on_increment: Callable[[], None],
-    ) -> R:
-        """Run a design, in memory without a folder `out`; collective. Options are those of `options`."""
+    def run(self, design: D, options: RunOptions) -> R:
+        """Run a design; collective. Options have values as far as `options` of this class names them."""
 
     @abstractmethod
     def open(self, folder: Path, comm: MPI.Comm) -> R:

@@ -26,6 +26,7 @@ from swgpar.load.load_program import FIRST_LOADING, NO_TORQUE, pitch_angle
 from swgpar.load.load_sequence import load_sequence
 from swgpar.load.load_states import Stage
 from swgpar.meshing import load_recipe
+from swgpar.run_options import RunOptions
 
 TORQUE = 0.2
 """N·m"""
@@ -48,7 +49,7 @@ LOW_TEETH = {
 
 
 def run(design: DriveDesign, **options: Any) -> DriveResult:
-    return run_drive(design, load_recipe(RECIPE), **options)
+    return run_drive(design, RunOptions(recipe=load_recipe(RECIPE), **options))
 
 
 def branches(result: DriveResult, *stages: str) -> tuple[np.ndarray, np.ndarray]:

@@ -86,13 +86,14 @@ def test_a_run_restarts(tmp_path: Path) -> None:
         pass
 
     from swgpar.analysis.run_drive import run_drive
+    from swgpar.run_options import RunOptions
 
     def stop() -> None:
         raise Stop
 
     recipe = swgpar.load_mesh(RECIPE)
     with pytest.raises(Stop):
-        run_drive(design, recipe, tmp_path / "out", comm=WORLD, on_increment=stop)
+        run_drive(design, RunOptions(tmp_path / "out", recipe, comm=WORLD, on_increment=stop))
     again = swgpar.run(design, RECIPE, tmp_path / "out", restart=True, comm=WORLD)
     for part in ("fatigue", "losses"):
         parallel_assert(same(whole.summary[part], again.summary[part]), part)

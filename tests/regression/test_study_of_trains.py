@@ -14,6 +14,7 @@ from support.commands import execute, on_ranks, swgpar
 from support.paths import DRIVERS
 from swgpar import load_design
 from swgpar.gear_trains.train import run_train
+from swgpar.run_options import RunOptions
 
 DESIGN = DRIVERS / "gear_pair.toml"
 SMALL = ("monte_carlo.samples=500", "time.end=0.0005", "time.rows=10")
@@ -60,7 +61,7 @@ def test_the_table_has_what_a_run_gives(whole: Path, tmp_path: Path) -> None:
     assert "mesh.half_backlash = -1 is out of range: allowed 0 to 1000000 µm" in rows[REFUSED[0]]["reason"]
     for name, noise in zip(KEPT, (50, 200), strict=True):
         design = load_design(DESIGN, [*SMALL, f"load.noise={noise}.0", "mesh.half_backlash=20.0"])
-        run_train(design, tmp_path / name, comm=MPI.COMM_SELF)
+        run_train(design, RunOptions(tmp_path / name, comm=MPI.COMM_SELF))
         found = json.loads((tmp_path / name / "summary.json").read_text(encoding="utf-8"))["quantities"]
         assert {key: float(rows[name][key]) for key in SHOWN} == {key: found[key] for key in SHOWN}
         assert (float(rows[name]["load.noise"]), float(rows[name]["mesh.half_backlash"])) == (noise, 20.0)

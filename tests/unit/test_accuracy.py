@@ -11,18 +11,16 @@ from support.drive_groups import PLANE as PLANE_DRIVE
 from support.messages import Messages
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
+from swgpar.analysis.accuracy import with_accuracy
 from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.analysis.mesh_refinement import (
     LEAST,
     LEAST_WITH_EDGES,
     ORDER,
-    RATIO,
     ChosenMesh,
     choose_mesh,
     drive_error,
     least_error,
-    resized,
-    with_accuracy,
 )
 from swgpar.analysis.shortcuts import with_shortcuts
 from swgpar.checks.design_file import load_design
@@ -31,6 +29,7 @@ from swgpar.evaluation.windows.root_stress import BETWEEN, ENDS, LEVELS, RootStr
 from swgpar.load.load_sequence import from_loaded, load_sequence
 from swgpar.meshing import load_recipe
 from swgpar.meshing.recipe import to_toml
+from swgpar.meshing.recipe_counts import RATIO, resized
 
 LOADED = ["steps.rotation=0", "steps.bent_start=true"]
 

@@ -18,9 +18,10 @@ from swgpar.analysis.error_estimate import estimate
 from swgpar.drive_results.drive_result import DriveResult
 from swgpar.errors import InputError
 from swgpar.results.table import format_csv
+from swgpar.run_options import RunOptions
 from swgpar.studies.case import Outcome
 from swgpar.studies.figures import over_angle, over_key
-from swgpar.studies.job import read_status, run_job
+from swgpar.studies.job import read_status, run_planned
 from swgpar.studies.report import make_report
 from swgpar.studies.spec import load_study
 from swgpar.studies.study import queue
@@ -190,7 +191,7 @@ class Broken(Drives):
 def test_an_unforeseen_error_is_the_case_s_own(study_file: Write, tmp_path: Path) -> None:
     (job,) = jobs_of(study_file())
     job = replace(job, case=replace(job.case, system=Broken()))
-    found = run_job(job, tmp_path / "a" / "b", MPI.COMM_SELF, restart=False)
+    found = run_planned(job.planned, RunOptions(tmp_path / "a" / "b", comm=MPI.COMM_SELF))
     assert (found.status, found.reason) == ("failed", "ZeroDivisionError: by nothing")
     assert read_status(tmp_path / "a" / "b")["reason"] == found.reason
 
