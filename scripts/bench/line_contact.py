@@ -16,7 +16,8 @@ from page import markdown, put
 from program import run
 
 import swgpar
-from swgpar.meshing.recipe import make_recipe, to_toml
+from swgpar.input.toml_file import to_toml
+from swgpar.meshing.recipe import make_recipe
 
 DESIGN, CUP, OUT = "drivers/plane_half_turn.toml", "drivers/cup_45deg.toml", Path("results/bench/line_contact")
 
@@ -58,7 +59,7 @@ def written(name: str, content: dict[str, Any]) -> Path:
     """File of a recipe with this content."""
     path = OUT / f"{name}.toml"
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(to_toml(make_recipe(content)), encoding="utf-8")
+    path.write_text(to_toml(make_recipe(content).model_dump()), encoding="utf-8")
     return path
 
 

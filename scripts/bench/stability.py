@@ -37,11 +37,11 @@ from support.drive_groups import (
     Group,
     drift,
     groups,
-    toml_value,
 )
 from support.element_limits import element_rows
 from support.paths import ROOT
 from support.small_drive import PLANE
+from swgpar.input.toml_file import toml_value
 from swgpar.load.load_states import Stage
 from swgpar.results import history
 from swgpar.results.folder import SUMMARY

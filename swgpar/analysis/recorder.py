@@ -32,11 +32,11 @@ from swgpar.evaluation.stiffness import loop_rows
 from swgpar.evaluation.stress_cycle import StressCycle
 from swgpar.evaluation.windows.root_stress import RootStress
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.input.toml_file import to_toml
 from swgpar.load.load_program import internal_torque, program_points
 from swgpar.load.load_sequence import from_loaded, load_sequence
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.meshing import SectorMesh
-from swgpar.meshing.recipe import to_toml
 from swgpar.model.drive_model import DriveModel
 from swgpar.results import history
 from swgpar.results.atomic import agreed, to_json, write_from_root
@@ -273,7 +273,7 @@ class FolderRecorder(Recorder):
 
     def keep_choice(self, chosen: ChosenMesh, accuracy: float) -> None:
         super().keep_choice(chosen, accuracy)
-        write_from_root(self.comm, self.out / RECIPE, to_toml(chosen.recipe).encode())
+        write_from_root(self.comm, self.out / RECIPE, to_toml(chosen.recipe.model_dump()).encode())
 
     def begin(self) -> None:
         if self._writer is None:

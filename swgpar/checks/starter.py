@@ -7,7 +7,6 @@ which the undeformed flanks clear each other, and the teeth of a dynamic spline 
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -23,7 +22,7 @@ from swgpar.geometry.cams import make_cam, taut_length
 from swgpar.geometry.cams.keys import Harmonic, Parabolic, Simplified, WaveGenerator
 from swgpar.geometry.profiles import RADII
 from swgpar.input.quantities import Section
-from swgpar.input.toml_file import with_value
+from swgpar.input.toml_file import toml_value, with_value
 
 Profile = Literal["quadruple_arc", "double_arc", "involute"]
 """Kinds of profiles of a starter design."""
@@ -316,7 +315,7 @@ def as_toml(request: Request, design: DriveDesign, table: dict[str, Any], name: 
 def _section(title: str, section: Section, content: dict[str, Any]) -> list[str]:
     """Lines of a section: its plain keys with the texts of their fields, then the sections in it."""
     tables = {key: value for key, value in content.items() if isinstance(value, dict)}
-    entries = {key: f"{key} = {json.dumps(value)}" for key, value in content.items() if key not in tables}
+    entries = {key: f"{key} = {toml_value(value)}" for key, value in content.items() if key not in tables}
     width = max(map(len, entries.values()))
     fields = type(section).model_fields
     lines = ["", f"[{title}]", *(f"{entry:{width}s}  # {fields[key].description}" for key, entry in entries.items())]

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
-import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
+import tomli_w
 from pydantic import ValidationError
 
 from swgpar.errors import InputError
@@ -118,39 +117,26 @@ def _copy(value: Any) -> Any:
     return [_copy(item) for item in value] if isinstance(value, list) else value
 
 
-def to_toml(table: Mapping[str, Any], above: str = "") -> str:
-    """The text of a TOML file with this content: tables in tables, and in lists, of numbers, texts and lists.
-
-    above : names of the tables around it, each with a dot
-    """
-    plain = {key: value for key, value in table.items() if not _is_table(value)}
-    parts = ["".join(f"{_bare(key)} = {_inline(value)}\n" for key, value in plain.items())]
-    for key, value in table.items():
-        name = f"{above}{_bare(key)}"
-        if isinstance(value, Mapping):
-            parts.append(f"[{name}]\n{to_toml(value, f'{name}.')}")
-        elif _is_table(value):
-            parts += [f"[[{name}]]\n{to_toml(entry, f'{name}.')}" for entry in value]
-    return "\n".join(part for part in parts if part)
+def to_toml(table: Mapping[str, Any]) -> str:
+    """The text of a TOML file with this content; keys without a value (None) are left out."""
+    return tomli_w.dumps(_without_none(table))
 
 
-def _is_table(value: Any) -> bool:
-    return isinstance(value, Mapping) or (
-        isinstance(value, list) and bool(value) and all(isinstance(entry, Mapping) for entry in value)
-    )
+def _without_none(table: Mapping[str, Any]) -> dict[str, Any]:
+    return {
+        key: _without_none(value) if isinstance(value, Mapping) else value
+        for key, value in table.items()
+        if value is not None
+    }
 
 
-def _bare(key: str) -> str:
-    return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else json.dumps(key, ensure_ascii=False)
-
-
-def _inline(value: Any) -> str:
-    """A value on one line; JSON writes texts, numbers and truth values as TOML does."""
+def toml_value(value: Any) -> str:
+    """A value, list or table as TOML on one line."""
     if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{_bare(key)} = {_inline(item)}" for key, item in value.items()) + " }"
+        return "{ " + ", ".join(f"{key} = {toml_value(item)}" for key, item in value.items()) + " }"
     if isinstance(value, list):
-        return "[" + ", ".join(map(_inline, value)) + "]"
-    return json.dumps(value, ensure_ascii=False)
+        return "[" + ", ".join(map(toml_value, value)) + "]"
+    return tomli_w.dumps({"value": value}).removeprefix("value = ").strip()
 
 
 def validate(model: type[SectionType], table: dict[str, Any]) -> SectionType:

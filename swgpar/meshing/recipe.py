@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -121,12 +120,3 @@ def make_recipe(table: dict[str, Any]) -> MeshRecipe:
             allowed = ", ".join(MeshRecipe.model_fields)
             raise InputError(f"{show_key(key)} = {show(value)} is not a section of a mesh recipe: allowed {allowed}")
     return validate(MeshRecipe, table)
-
-
-def to_toml(recipe: MeshRecipe) -> str:
-    """The recipe as `load_recipe` reads it."""
-    sections = recipe.model_dump(exclude_none=True).items()
-    return "\n".join(
-        f"[{name}]\n" + "".join(f"{key} = {json.dumps(value)}\n" for key, value in section.items())
-        for name, section in sections
-    )

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from swgpar.input.toml_file import to_toml
 from swgpar.results.figure_set import FOLDER
 from swgpar.results.page import Picture, Row, Table, page
 
@@ -31,7 +31,7 @@ def result_page(
     pictures = [
         Picture(path.read_bytes(), path.stem.replace("_", " "), path.stem in wide) for path in paths if path.exists()
     ]
-    common = {"figures": pictures, "inputs": _inputs(summary["design"]), "versions": _versions(summary)}
+    common = {"figures": pictures, "inputs": to_toml(summary["design"]), "versions": _versions(summary)}
     return page(template, title, scripts=scripts, **common, **values)
 
 
@@ -44,21 +44,3 @@ def _versions(summary: Mapping[str, Any]) -> Table:
     if memory := summary.get("peak_memory_MB_per_rank"):
         rows.append(Row(["largest memory of a rank", f"{max(memory):.0f} MB"]))
     return Table(["", "version or amount"], rows)
-
-
-def _inputs(design: Mapping[str, Any]) -> str:
-    """The whole design, defaults included, as the lines of a design file."""
-    lines: list[str] = []
-
-    def section(title: str, content: Mapping[str, Any]) -> None:
-        plain = {key: value for key, value in content.items() if value is not None and not isinstance(value, Mapping)}
-        lines.extend(["", f"[{title}]"] if plain else [])
-        lines.extend(f"{key} = {json.dumps(value, ensure_ascii=False)}" for key, value in plain.items())
-        for key, value in content.items():
-            if isinstance(value, Mapping):
-                section(f"{title}.{key}", value)
-
-    for title, content in design.items():
-        if isinstance(content, Mapping):
-            section(title, content)
-    return "\n".join(lines).strip()

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from swgpar.analysis.error_estimate import Estimate, estimate
 from swgpar.input.quantities import unit_of_key
+from swgpar.input.toml_file import toml_value
 from swgpar.studies.case import Case, Job, Outcome
 from swgpar.systems import Quantity
 
@@ -121,15 +121,9 @@ def study_rows(results: Sequence[Result]) -> list[dict[str, Any]]:
 
 def shown(value: Any) -> Any:
     """A varied value in a table: numbers and texts as they are, all else as in TOML."""
-    if isinstance(value, dict):
-        return "{ " + ", ".join(f"{key} = {_toml(item)}" for key, item in value.items()) + " }"
     if value is None:
         return None
-    return value if isinstance(value, (float, int, str)) and not isinstance(value, bool) else _toml(value)
-
-
-def _toml(value: Any) -> str:
-    return str(shown(value)) if isinstance(value, dict) else json.dumps(value, ensure_ascii=False)
+    return value if isinstance(value, (float, int, str)) and not isinstance(value, bool) else toml_value(value)
 
 
 def published_rows(comparisons: Iterable[Comparison]) -> list[dict[str, Any]]:

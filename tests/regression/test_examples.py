@@ -16,11 +16,10 @@ from pathlib import Path
 import pytest
 
 from support.commands import on_ranks, succeed
-from support.drive_groups import toml_value
 from support.paths import DESIGN, DRIVERS, RECIPE, ROOT
 from support.small_drive import PLANE
 from support.small_trains import SMALL
-from swgpar.input.toml_file import apply_overrides, read_toml
+from swgpar.input.toml_file import apply_overrides, read_toml, toml_value
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 GALLERY = sorted((ROOT / "docs" / "gallery").glob("plot_*.py"))

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import tomli_w
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 from mpi4py import MPI
@@ -197,30 +198,6 @@ def damaged(draw: st.DrawFn, content: bytes) -> tuple[bytes, str]:
     return content[:begin] + new + content[end:], f"bytes at {begin}"
 
 
-def to_toml(table: Mapping[str, Any], above: tuple[str, ...] = ()) -> str:
-    """A table as TOML, as far as TOML has the values."""
-    lines = [f"{_key(key)} = {_value(value)}" for key, value in table.items() if not isinstance(value, dict)]
-    text = (f"[{'.'.join(map(_key, above))}]\n" if above else "") + "\n".join(lines) + "\n"
-    nested = [(key, value) for key, value in table.items() if isinstance(value, dict)]
-    return text + "".join(to_toml(value, (*above, key)) for key, value in nested)
-
-
-def _key(name: str) -> str:
-    return json.dumps(name)
-
-
-def _value(value: Any) -> str:
-    if isinstance(value, dict):
-        return "{ " + ", ".join(f"{_key(k)} = {_value(v)}" for k, v in value.items()) + " }"
-    if isinstance(value, list):
-        return "[" + ", ".join(map(_value, value)) + "]"
-    if isinstance(value, datetime.date):
-        return value.isoformat()
-    if isinstance(value, float) and not math.isfinite(value):
-        return repr(value)
-    return json.dumps(value)
-
-
 @functools.cache
 def right_checkpoint(folder: Path) -> bytes:
     """A checkpoint with two data sets and attributes of a run, written into the folder."""
@@ -246,7 +223,7 @@ def bad_inputs(draw: st.DrawFn, folder: Path) -> BadInput:
         column = draw(st.sampled_from(("pitch", "pitch", "", "tooth", "none")))
         return BadInput(kind, {"pitch.csv": content, "column": column.encode()}, f"{what}, column {column}")
     table, what = draw(changed_tables(kind))
-    content = to_toml(table).encode(errors="surrogatepass")
+    content = tomli_w.dumps(table).encode(errors="surrogatepass")
     if draw(st.integers(0, 7)) == 0:
         content, damage = draw(damaged(content))
         what = f"{what}, {damage}"

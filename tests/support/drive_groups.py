@@ -5,7 +5,6 @@ Groups serve `tests/stability` and `scripts/bench/stability`. All run on the sma
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -71,15 +70,6 @@ def each(key: str, values: Iterable[float], more: Case | None = None) -> Cases:
 def crossed(cases: Cases, others: Cases) -> Cases:
     """Every case with every other."""
     return {f"{a}_{b}": {**one, **other} for a, one in cases.items() for b, other in others.items()}
-
-
-def toml_value(value: Any) -> str:
-    """A value, list or table as TOML on one line."""
-    if isinstance(value, dict):
-        return "{ " + ", ".join(f"{k} = {toml_value(v)}" for k, v in value.items()) + " }"
-    if isinstance(value, list):
-        return "[" + ", ".join(map(toml_value, value)) + "]"
-    return json.dumps(value)
 
 
 def units(design: Path = SMALL) -> Cases:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from swgpar.input.toml_file import to_toml
 from swgpar.meshing import MeshRecipe, load_recipe
-from swgpar.meshing.recipe import to_toml
 from swgpar.meshing.recipe_counts import with_counts
 
 
@@ -20,5 +20,5 @@ def refined(mesh: str, path: Path, factor: float, keys: Sequence[str] = ()) -> P
             content[section][name] = getattr(getattr(finer, section), name)
         finer = MeshRecipe.model_validate(content)
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(to_toml(finer), encoding="utf-8")
+    path.write_text(to_toml(finer.model_dump()), encoding="utf-8")
     return path

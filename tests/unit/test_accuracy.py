@@ -26,9 +26,9 @@ from swgpar.analysis.shortcuts import with_shortcuts
 from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError
 from swgpar.evaluation.windows.root_stress import BETWEEN, ENDS, LEVELS, RootStress, resolve_root_stress
+from swgpar.input.toml_file import to_toml
 from swgpar.load.load_sequence import from_loaded, load_sequence
 from swgpar.meshing import load_recipe
-from swgpar.meshing.recipe import to_toml
 from swgpar.meshing.recipe_counts import RATIO, resized
 
 LOADED = ["steps.rotation=0", "steps.bent_start=true"]
@@ -56,7 +56,7 @@ def test_a_resized_recipe_scales_every_count_and_no_grading() -> None:
 def test_a_chosen_recipe_can_be_read_again(tmp_path: Path) -> None:
     for name in ("full", "plane"):
         recipe = load_recipe(name)
-        (tmp_path / "recipe.toml").write_text(to_toml(recipe))
+        (tmp_path / "recipe.toml").write_text(to_toml(recipe.model_dump()))
         assert load_recipe(tmp_path / "recipe.toml") == recipe
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import errno
 import fcntl
-import json
 import os
 import platform
 import subprocess
@@ -13,6 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from filelock import FileLock, SoftFileLock
 
 from support.commands import environment, execute, on_ranks, run_command, swgpar
 from support.paths import DESIGN, RECIPE
@@ -71,15 +71,15 @@ def test_the_lock_is_released_after_an_error(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("host", "process", "begun", "refused"),
     [
-        (platform.node(), os.getpid(), None, True),
-        (platform.node(), os.getpid(), "1", False),  # the number of an ended process was given to another one
-        (platform.node(), 2**22 + 1, "1", False),
-        ("elsewhere", 2**22 + 1, "1", True),
+        ("", os.getpid(), None, True),
+        ("", os.getpid(), 1, False),  # the number of an ended process was given to another one
+        ("", 2**22 + 1, 1, False),
+        ("elsewhere", 2**22 + 1, 1, True),
     ],
     ids=["this process", "its number before", "an ended process", "another machine"],
 )
 def test_without_locks_the_record_decides(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, host: str, process: int, begun: str | None, refused: bool
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, host: str, process: int, begun: int | None, refused: bool
 ) -> None:
     """As on file systems that are mounted without them."""
 
@@ -87,21 +87,26 @@ def test_without_locks_the_record_decides(
         raise OSError(errno.ENOLCK, "No locks available")
 
     monkeypatch.setattr(fcntl, "flock", without)
-    if begun is None:  # that of this process
-        begun = Path("/proc/self/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[19]
-    record = {"host": host, "process": process, "begun": begun, "since": "yesterday"}
-    (tmp_path / lock.NAME).write_text(json.dumps(record), encoding="utf-8")
+    owner = tmp_path / lock.OWNER
+    with SoftFileLock(owner):
+        _, here, start = owner.read_text(encoding="utf-8").split()
+    owner.write_text(f"{process}\n{host or here}\n{begun or start}\n", encoding="utf-8")
     if refused:
-        with pytest.raises(OutputError, match=f"process {process} on {host} since yesterday.*remove .*{lock.NAME}"):
+        name = host or platform.node()
+        with pytest.raises(OutputError, match=f"process {process} on {name} since .*remove .*{lock.OWNER}"):
             use(tmp_path)
     else:
         use(tmp_path)
 
 
 def test_records_of_anything_are_read(tmp_path: Path) -> None:
-    for text in ("", "[1]", "\x00\xff", '{"process": "x"}', 5000 * "{"):
+    for text in ("", "[1]", "\x00\xff", "x\ny\n", 5000 * "{"):
         (tmp_path / lock.NAME).write_text(text, encoding="latin-1")
         use(tmp_path)
+        with FileLock(tmp_path / lock.NAME):
+            (tmp_path / lock.NAME).write_text(text, encoding="latin-1")
+            with pytest.raises(OutputError, match="is in use by another process: "):
+                lock.acquire(tmp_path)
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
