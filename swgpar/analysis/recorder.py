@@ -53,7 +53,7 @@ from swgpar.results.folder import (
     TRANSMISSION_ERROR,
 )
 from swgpar.results.history import Row
-from swgpar.results.table import as_columns, format_csv, read_columns
+from swgpar.results.table import as_columns, as_rows, format_csv, read_columns
 
 NodalFields = dict[str, dict[str, np.ndarray]]
 """Body -> name of the field -> values (n_sectors, n_local[, n_components]) of the owned sectors."""
@@ -164,7 +164,7 @@ class Recorder(ABC):
         contacts: list[PairContact] = []
         if state.is_periodic and not self.model.design.stiffness:
             row = self.rows[-1]
-            when = {"increment": len(self.rows), "step": int(row["step"]), "wg_angle_deg": row["wg_angle_deg"]}
+            when = {"increment": len(self.rows), "step": row["step"], "wg_angle_deg": row["wg_angle_deg"]}
             contacts = pair_contacts(self.model, state)
             self.pairs += [{**when, **contact.row()} for contact in contacts]
             self.contact_lines += [{**when, **row} for contact in contacts for row in contact.station_rows()]
@@ -172,7 +172,7 @@ class Recorder(ABC):
 
     def _keep_balls(self, state: LoadState, race: Mapping[str, float]) -> None:
         if self.model.design.bearing is not None:
-            self.balls += ball_rows(self.model, state, len(self.rows), int(self.rows[-1]["step"]))
+            self.balls += ball_rows(self.model, state, len(self.rows), self.rows[-1]["step"])
             if state.is_periodic:
                 keep_largest(self.race_stress, race)
             if state.stage == Stage.LOAD or self._has_largest_torque(state):
@@ -214,7 +214,7 @@ class Recorder(ABC):
 
     @abstractmethod
     def begin(self) -> None:
-        """Keep the undeformed mesh, if the design asks for fields."""
+        """Keep what does not change: the undeformed mesh, if the design asks for fields."""
 
     @abstractmethod
     def _keep(self, stepper: LoadStepper, fields: NodalFields, elapsed: float) -> None:
@@ -276,6 +276,7 @@ class FolderRecorder(Recorder):
         write_from_root(self.comm, self.out / RECIPE, to_toml(chosen.recipe.model_dump()).encode())
 
     def begin(self) -> None:
+        write_from_root(self.comm, self.out / history.DESCRIPTION, history.format_description())
         if self._writer is None:
             return
         bodies, extra = {}, {}
@@ -319,8 +320,7 @@ class FolderRecorder(Recorder):
         present = self.comm.bcast(path.exists() if self.comm.rank == 0 else None)
         with agreed(self.comm, path, "read"):
             columns = read_columns(path) if present else {}
-        rows = [dict(zip(columns, values)) for values in zip(*(column.tolist() for column in columns.values()))]
-        return [{**row, "newton_iterations": int(row["newton_iterations"])} for row in rows]
+        return [{**row, "newton_iterations": int(row["newton_iterations"])} for row in as_rows(columns)]
 
     def write_index(self) -> None:
         """Write the index of the fields, and the history."""

@@ -70,7 +70,7 @@ def continued(design: DriveDesign, rows: list[Row]) -> list[Row]:
             out.append(
                 {
                     **row,
-                    "step": str(int(out[-1]["step"]) + 1),
+                    "step": out[-1]["step"] + 1,
                     "wg_angle_deg": angle,
                     "output_angle_deg": row["output_angle_deg"] + periods * pitch / design.ratio,
                     "newton_iterations": 0,

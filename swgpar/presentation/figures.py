@@ -24,6 +24,7 @@ from swgpar.presentation.deformed_figures import draw_cup_section, draw_deformed
 from swgpar.presentation.fatigue_figures import draw_haigh, sector_picture
 from swgpar.presentation.program_figures import torque_against_rotation
 from swgpar.results.figure_set import Drawings, FigureSet
+from swgpar.results.history import COLUMNS
 from swgpar.results.sector_fields import SectorFields
 
 if TYPE_CHECKING:
@@ -33,12 +34,7 @@ if TYPE_CHECKING:
 
     from swgpar.drive_results.drive_result import DriveResult
 
-STRESSES = {
-    "fs_s1": "flexible spline, tensile s1",
-    "fs_s3": "flexible spline, compressive |s3|",
-    "fs_vm": "flexible spline, von Mises",
-    "rg_vm": "ring gear, von Mises",
-}
+STRESSES = ("fs_s1", "fs_s3", "fs_vm", "rg_vm")
 """Columns of the history in the figure of stresses."""
 
 
@@ -81,8 +77,8 @@ class DriveFigures(FigureSet):
     def stress(self) -> Figure:
         """Largest stresses of both bodies (MPa) against the angle of the wave generator, under load."""
         figure, (axes,) = self._panels(1)
-        for name, label in STRESSES.items():
-            self._draw(axes, name, label)
+        for name in STRESSES:
+            self._draw(axes, name, COLUMNS[name].label)
         root = self._result.summary.get("root_stress")
         if root and root["period"]:
             angle, value = np.array(root["period"]).T
@@ -202,6 +198,8 @@ class DriveFigures(FigureSet):
     def _draw(self, axes: Axes, name: str, label: str | None) -> None:
         """Draw a column under load: points where it was computed, and the curve through them."""
         curves = self._result.curves()
+        if name not in curves.values:  # a result of another version
+            return
         (line,) = axes.plot(curves.fine_angle, curves.fine[name], label=label)
         axes.plot(curves.angle, curves.values[name], "o", ms=3, color=line.get_color())
 

@@ -60,6 +60,7 @@ LOG = "run.log"
 
 RESULTS = (
     history.NAME,
+    history.DESCRIPTION,
     checkpoint.NAME,
     START_STATES,
     SUMMARY,

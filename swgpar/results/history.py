@@ -1,110 +1,170 @@
-"""history.csv: one row per increment, numbers that read back to the last bit."""
+"""history.csv: one row per increment, numbers that read back to the last bit.
+
+`COLUMNS` declares every column once. Tables, figures, quantities and the reference take names, units and meanings from
+there. A file has those columns that its drive has, and is read by their names: one more or less is no obstacle.
+"""
 
 from __future__ import annotations
 
-import csv
-import io
+import json
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from swgpar.load.load_states import Stage
+from swgpar.results.atomic import to_json
+from swgpar.results.table import as_rows, format_csv, read_columns
+from swgpar.version import __version__
 
 NAME = "history.csv"
 
+DESCRIPTION = "history.json"
+"""Beside it: the version of the columns, and what each of them is."""
+
+VERSION = 2
+"""Of the meanings of the columns. Files of version 1 have no description beside them."""
+
 Row = dict[str, Any]
-"""One increment: a value for every column."""
+"""One increment: values by column."""
 
-UNITS = {
-    "step": "",
-    "wg_angle_deg": "deg",
-    "output_angle_deg": "deg",
-    "fs_s1": "MPa",
-    "fs_s3": "MPa",
-    "fs_vm": "MPa",
-    "rg_s1": "MPa",
-    "rg_s3": "MPa",
-    "rg_vm": "MPa",
-    "wg_torque_Nmm": "N·mm",
-    "tooth_torque_Nmm": "N·mm",
-    "output_torque_Nmm": "N·mm",
-    "torque_balance_Nmm": "N·mm",
-    "pairs_in_contact": "",
-    "max_penetration_mm": "mm",
-    "newton_iterations": "",
-    "wall_s": "s",
-}
-"""Columns in the order of the file, with their units. Stresses are maxima of nodal averages over a body,
-s3 as a positive number; torques act on the flexible spline, that of the output on the output."""
 
-COLUMNS = tuple(UNITS)
+@dataclass(frozen=True)
+class Column:
+    """A column of the history.
 
-INPUT_UNITS = {"input_angle_deg": "deg", "input_torque_Nmm": "N·mm"}
-"""Further columns, with their units, of a drive whose wave generator is fixed: of the ring gear, which is driven."""
+    unit : empty for a pure number;  meaning : a phrase for the reference
+    label : short, for tables and figures; where it is empty, the name says it
+    whole : whether the values are integers
+    periodic : whether it is the same after one period, and smooth between
+    drives : which ones have it: "all", "pancake", or those with the "wave generator fixed"
+    """
 
-PANCAKE_UNITS = {"ds_s1": "MPa", "ds_s3": "MPa", "ds_vm": "MPa", "ds_tooth_torque_Nmm": "N·mm"}
-"""Further columns of pancake drives: stresses of the dynamic spline, torque of its teeth on the flexible spline."""
+    name: str
+    unit: str
+    meaning: str
+    label: str = ""
+    whole: bool = False
+    periodic: bool = False
+    drives: str = "all"
 
-PERIODIC = (
-    "fs_s1",
-    "fs_s3",
-    "fs_vm",
-    "rg_s1",
-    "rg_s3",
-    "rg_vm",
-    "wg_torque_Nmm",
-    "input_torque_Nmm",
-    "transmission_error",
+
+def _stresses(prefix: str, body: str, *, periodic: bool = True, drives: str = "all") -> tuple[Column, ...]:
+    """Columns of the largest stresses of a body."""
+    return tuple(
+        Column(f"{prefix}_{name}", "MPa", meaning, f"{body}, {label}", periodic=periodic, drives=drives)
+        for name, label, meaning in (
+            ("s1", "tensile s1", f"largest tensile stress in the {body} (first principal stress)"),
+            ("s3", "compressive |s3|", f"largest compressive stress in the {body}, as a positive number"),
+            ("vm", "von Mises", f"largest von Mises stress in the {body}"),
+        )
+    )
+
+
+DECLARED = (
+    Column(
+        "step",
+        "",
+        "load step: 1 deflection, 2 engagement, 3 load, 4 and on rotation; with a load program 3 and on its points",
+        whole=True,
+    ),
+    Column("wg_angle_deg", "deg", "angle of the wave generator; where it is fixed, against the ring gear"),
+    Column("output_angle_deg", "deg", "angle of the output, within half a turn: -180 to 180"),
+    *_stresses("fs", "flexible spline"),
+    *_stresses("rg", "ring gear"),
+    Column(
+        "wg_torque_Nmm",
+        "N·mm",
+        "torque of wave generator and pins on the flexible spline",
+        "torque of the wave generator",
+        periodic=True,
+    ),
+    Column("tooth_torque_Nmm", "N·mm", "torque of the ring gear's teeth on the flexible spline"),
+    Column("output_torque_Nmm", "N·mm", "load on the output"),
+    Column("torque_balance_Nmm", "N·mm", "what is left of the sum of torques that must vanish"),
+    Column("pairs_in_contact", "", "pairs of flanks in contact, in the whole drive", whole=True),
+    Column("max_penetration_mm", "mm", "largest penetration of a contact"),
+    Column("newton_iterations", "", "Newton iterations of the increment", whole=True),
+    Column("wall_s", "s", "wall time of the increment"),
+    Column("input_angle_deg", "deg", "angle of the ring gear, which is driven", drives="wave generator fixed"),
+    Column(
+        "input_torque_Nmm",
+        "N·mm",
+        "torque that drives the ring gear",
+        periodic=True,
+        drives="wave generator fixed",
+    ),
+    *_stresses("ds", "dynamic spline", periodic=False, drives="pancake"),
+    Column(
+        "ds_tooth_torque_Nmm",
+        "N·mm",
+        "torque of the dynamic spline's teeth on the flexible spline",
+        drives="pancake",
+    ),
 )
-"""Columns that are the same after one period and smooth between, the transmission error among them."""
+"""In the order of the file. Stresses are maxima of nodal averages over a body."""
+
+COLUMNS = {column.name: column for column in DECLARED}
+"""By name."""
+
+REQUIRED = ("step", "wg_angle_deg")
+"""Columns that a history cannot be read without."""
+
+TRANSMISSION_ERROR = "transmission_error"
+"""Name of the curve that follows from two columns; it is periodic."""
 
 FINE = 201
 """Points of a curve over a period."""
 
-_TEXT = {"step"}
-_WHOLE = {"pairs_in_contact", "newton_iterations"}
+
+def columns_of(drives: str) -> tuple[Column, ...]:
+    """The columns that these drives have beside those of "all", or those of "all"."""
+    return tuple(column for column in DECLARED if column.drives == drives)
 
 
-def columns_of(row: Mapping[str, Any]) -> tuple[str, ...]:
-    """Names of the columns of a history that has such rows."""
-    further = (units for units in (INPUT_UNITS, PANCAKE_UNITS) if units.keys() & row.keys())
-    return (*COLUMNS, *(name for units in further for name in units))
-
-
-def plain_row(row: Mapping[str, Any]) -> dict[str, Any]:
-    """A row with Python's own types, in the order of the columns; ValueError when columns are wrong."""
-    names = columns_of(row)
-    if set(row) != set(names):
-        wrong = sorted(set(row) ^ set(names))
-        raise ValueError(f"history row: missing or unknown columns {', '.join(wrong)}")
-    return {c: str(row[c]) if c in _TEXT else int(row[c]) if c in _WHOLE else float(row[c]) for c in names}
+def plain_row(row: Mapping[str, Any]) -> Row:
+    """A row with Python's own types, in the order of the columns; ValueError for one that is not declared."""
+    if unknown := sorted(row.keys() - COLUMNS.keys()):
+        raise ValueError(f"history row: {', '.join(unknown)} is not declared in swgpar.results.history")
+    return {name: (int if column.whole else float)(row[name]) for name, column in COLUMNS.items() if name in row}
 
 
 def format_rows(rows: Iterable[Mapping[str, Any]]) -> bytes:
     """The text of the whole file; floats as the shortest text that reads back the same."""
-    text, rows = io.StringIO(), list(rows)
-    names = columns_of(rows[0]) if rows else COLUMNS
-    writer = csv.DictWriter(text, names, lineterminator="\n")
-    writer.writeheader()
-    for row in rows:
-        writer.writerow({c: repr(v) if isinstance(v, float) else v for c, v in plain_row(row).items()})
-    return text.getvalue().encode()
+    return format_csv([plain_row(row) for row in rows])
+
+
+def format_description() -> bytes:
+    """The text of the file beside it."""
+    return to_json({"version": VERSION, "columns": [asdict(column) for column in DECLARED]})
 
 
 def columns(rows: Sequence[Mapping[str, Any]]) -> dict[str, np.ndarray]:
     """The history by columns, each (n,): int64 for `step` and for counts, else float64."""
-    whole = _WHOLE | _TEXT
-    names = columns_of(rows[0]) if rows else COLUMNS
-    return {name: np.array([row[name] for row in rows], dtype=np.int64 if name in whole else float) for name in names}
+    names = rows[0] if rows else [column.name for column in columns_of("all")]
+    kinds = {column.name: np.int64 if column.whole else float for column in DECLARED}
+    return {name: np.array([row[name] for row in rows], dtype=kinds.get(name)) for name in names}
 
 
-def read_history(path: Path) -> list[dict[str, Any]]:
-    """Rows of a history.csv."""
-    with open(path, newline="", encoding="utf-8") as file:
-        return [plain_row(row) for row in csv.DictReader(file)]
+def read_history(path: Path) -> list[Row]:
+    """Rows of a history.csv. Columns that are not declared, of other versions, come last.
+
+    Raises ValueError for columns of a newer version, or without those of `REQUIRED`.
+    """
+    description = path.with_name(DESCRIPTION)
+    version = json.loads(description.read_text(encoding="utf-8"))["version"] if description.exists() else 1
+    if version > VERSION:
+        raise ValueError(f"its columns are of version {version}, and swgpar {__version__} reads up to {VERSION}")
+    found = read_columns(path)
+    if missing := [name for name in REQUIRED if name not in found]:
+        raise ValueError(f"{NAME} has no column {missing[0]}")
+    known = {name for name in found if name in COLUMNS}
+    return [
+        plain_row({name: row[name] for name in known}) | {n: v for n, v in row.items() if n not in known}
+        for row in as_rows(found)
+    ]
 
 
 def column(rows: Iterable[Mapping[str, Any]], name: str) -> np.ndarray:
@@ -145,7 +205,7 @@ class Curves:
     """The history under load, ready to be drawn.
 
     angle, values : (n,) degrees of the wave generator, and columns by name, where they were computed
-    fine_angle, fine : (m,) and the columns `PERIODIC` between them; the points where the rotation was not sampled
+    fine_angle, fine : (m,) and the periodic columns between them; the points where the rotation was not sampled
     """
 
     angle: np.ndarray
@@ -162,9 +222,10 @@ def curves(history: Mapping[str, np.ndarray], samples: int, increments: int, per
     samples : angles in a period, 0 where every increment was computed;  increments : that were computed
     period : degrees;  ratio : change of `wg_angle_deg` over that of `output_angle_deg`, on average
     """
-    shown = dict(history) | {
-        "transmission_error": transmission_error(history["wg_angle_deg"], history["output_angle_deg"], ratio)
-    }
+    shown = dict(history)
+    if "output_angle_deg" in history:
+        angles = history["wg_angle_deg"], history["output_angle_deg"]
+        shown[TRANSMISSION_ERROR] = transmission_error(*angles, ratio)
     if not samples or increments < samples:
         loaded = loaded_increments(history)
         values = {name: column[loaded] for name, column in shown.items()}
@@ -175,6 +236,7 @@ def curves(history: Mapping[str, np.ndarray], samples: int, increments: int, per
     angle = values["wg_angle_deg"]
     knots = np.append(angle, angle[0] + period)
     fine_angle = np.linspace(knots[0], knots[-1], FINE)
-    closed = {name: np.append(column, column[0]) for name, column in values.items() if name in PERIODIC}
+    periodic = {TRANSMISSION_ERROR, *(name for name, column in COLUMNS.items() if column.periodic)}
+    closed = {name: np.append(column, column[0]) for name, column in values.items() if name in periodic}
     fine = {name: CubicSpline(knots, column, bc_type="periodic")(fine_angle) for name, column in closed.items()}
     return Curves(angle, values, fine_angle, fine)

@@ -67,3 +67,8 @@ def read_columns(path: Path) -> dict[str, np.ndarray]:
         except ValueError:
             columns[name] = np.array(values)
     return columns
+
+
+def as_rows(columns: Mapping[str, np.ndarray]) -> list[dict[str, Any]]:
+    """The rows of a table given by its columns, with Python's own types."""
+    return [dict(zip(columns, values)) for values in zip(*(column.tolist() for column in columns.values()))]

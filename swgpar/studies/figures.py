@@ -7,11 +7,10 @@ import textwrap
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-from swgpar.results.history import UNITS, loaded_increments
+from swgpar.results.history import COLUMNS, loaded_increments
 from swgpar.results.page import with_unit
 from swgpar.studies.case import Case, Outcome
 from swgpar.studies.table import by_case, shown, shown_quantities, units_of_keys
-from swgpar.systems.drive_quantities import MEANINGS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -51,8 +50,10 @@ def over_angle(results: Sequence[Result]) -> Iterator[bytes]:
         for name, panel in zip(OVER_ANGLE, axes):
             for k, (label, columns) in enumerate(part):
                 loaded = loaded_increments(columns)
-                panel.plot(columns["wg_angle_deg"][loaded], columns[name][loaded], label=label, **_style(k))
-            _name(panel, MEANINGS[name], f"stress ({UNITS[name]})", "angle of the wave generator (degrees)")
+                if name in columns:
+                    panel.plot(columns["wg_angle_deg"][loaded], columns[name][loaded], label=label, **_style(k))
+            column = COLUMNS[name]
+            _name(panel, column.label, f"stress ({column.unit})", "angle of the wave generator (degrees)")
         yield _png(figure, axes)
 
 

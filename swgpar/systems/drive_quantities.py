@@ -11,28 +11,19 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.drive_results.summary import MEANS, PANCAKE_STRESSES
 from swgpar.evaluation.program_results import COLUMNS as PROGRAM_COLUMNS
 from swgpar.load.load_states import Stage
-from swgpar.results.history import INPUT_UNITS, PANCAKE_UNITS, UNITS
+from swgpar.results.history import COLUMNS, columns_of
 from swgpar.systems.protocol import Quantity
 
 MAIN = ("fs_s1", "fs_s3", "fs_vm", "rg_vm", "wg_torque_Nmm")
 """Columns whose means over the rotation tables and figures show."""
 
-MEANINGS = {
-    "fs_s1": "flexible spline, tensile s1",
-    "fs_s3": "flexible spline, compressive |s3|",
-    "fs_vm": "flexible spline, von Mises",
-    "rg_s1": "ring gear, tensile s1",
-    "rg_s3": "ring gear, compressive |s3|",
-    "rg_vm": "ring gear, von Mises",
-    "ds_s1": "dynamic spline, tensile s1",
-    "ds_s3": "dynamic spline, compressive |s3|",
-    "ds_vm": "dynamic spline, von Mises",
-    "wg_torque_Nmm": "torque of the wave generator",
-}
-"""Of columns of the history; the names of the others say it themselves."""
-
-COLUMNS = tuple(name for name in UNITS if name not in ("step", "wall_s"))
-"""Columns of the history that are quantities; with the wave generator fixed also those of `INPUT_UNITS`."""
+STEP_COLUMNS = tuple(
+    column.name
+    for drives in ("all", "wave generator fixed")
+    for column in columns_of(drives)
+    if column.name not in ("step", "wall_s")
+)
+"""Columns of the history that are quantities at the ends of the steps."""
 
 GROUPS = range(Stage.DEFLECT, Stage.ROTATE + 1)
 """Steps with quantities of their own; all increments of the rotation count as the last one."""
@@ -137,7 +128,7 @@ def quantities(design: DriveDesign) -> dict[str, Quantity]:
     """Known quantities of a design: "mean.fs_s1" over the rotation, "step1.fs_s1" at the end of a step, and so on."""
 
     def quantity(column: str, when: str) -> Quantity:
-        return Quantity(f"{MEANINGS.get(column, column)}, {when}", (UNITS | INPUT_UNITS | PANCAKE_UNITS)[column])
+        return Quantity(f"{COLUMNS[column].label or column}, {when}", COLUMNS[column].unit)
 
     if design.has_program:
         further = (PROGRAM_FATIGUE if design.fatigue else {}) | (BEARING if design.bearing else {})
@@ -152,10 +143,11 @@ def quantities(design: DriveDesign) -> dict[str, Quantity]:
     known |= TRANSMISSION
     for section, names in ((design.bearing, BEARING), (design.housing, HOUSING)):
         known |= names if section else {}
-    columns = COLUMNS
+    columns = list(STEP_COLUMNS)
     if design.wave_generator_is_fixed:
         known["input.torque"] = Quantity("torque of the driven ring gear, mean over the rotation", "N·mm")
-        columns = (*COLUMNS, *INPUT_UNITS)
+    else:
+        columns = [name for name in columns if COLUMNS[name].drives == "all"]
     return known | {f"step{k}.{name}": quantity(name, f"end of step {k}") for k in GROUPS for name in columns}
 
 
@@ -319,6 +311,5 @@ def values(means: Mapping[str, float], history: Mapping[str, np.ndarray]) -> dic
     group = np.minimum(history["step"], GROUPS[-1])
     for k in GROUPS:
         for last in np.flatnonzero(group == k)[-1:]:
-            columns = [name for name in (*COLUMNS, *INPUT_UNITS) if name in history]
-            found |= {f"step{k}.{name}": float(history[name][last]) for name in columns}
+            found |= {f"step{k}.{name}": float(history[name][last]) for name in STEP_COLUMNS if name in history}
     return found

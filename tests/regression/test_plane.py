@@ -18,7 +18,7 @@ from swgpar.results import history
 
 def test_result_files(plain: Path) -> None:
     rows = history.read_history(plain / "history.csv")
-    assert [r["step"] for r in rows] == ["1", "2", "3", "4", "5"]
+    assert [r["step"] for r in rows] == [1, 2, 3, 4, 5]
     summary = json.loads((plain / "summary.json").read_text(encoding="utf-8"))
     assert summary["balance_error_Nmm"] < 1e-6 * 200.0
     recipe = load_recipe(RECIPE).flexible_spline

@@ -21,7 +21,7 @@ CUP_ROTATION = DRIVERS / "cup_rotation.py"
 
 def test_result_files(cup: Path) -> None:
     rows = history.read_history(cup / "history.csv")
-    assert [r["step"] for r in rows] == ["1", "2", "3", "4", "5"]
+    assert [r["step"] for r in rows] == [1, 2, 3, 4, 5]
     summary = json.loads((cup / "summary.json").read_text(encoding="utf-8"))
     assert summary["balance_error_Nmm"] < 1e-6 * 2000.0
     assert summary["means"]["fs_s1"] == pytest.approx(np.mean([r["fs_s1"] for r in rows[3:]]))
@@ -110,7 +110,7 @@ def test_script_of_the_reference_drive(cup: Path, tmp_path: Path) -> None:
     assert "\x1b" not in done.stdout  # no progress bar in a file, though mpirun gives its ranks a terminal
     printed = [line.split() for line in done.stdout.splitlines() if line.startswith("step ")]
     rows = history.read_history(cup / "history.csv")
-    assert [words[1] for words in printed] == [r["step"] for r in rows]
+    assert [int(words[1]) for words in printed] == [r["step"] for r in rows]
     assert [words[5] for words in printed] == [f"{r['fs_s1']:.1f}" for r in rows]
 
 
@@ -128,13 +128,13 @@ def test_start_on_a_coarser_mesh_and_one_period(tmp_path: Path) -> None:
     command = run_command(out)
     succeed([*command, *overrides, "steps.rotation=9"])
     rows = history.read_history(out / "history.csv")
-    assert [row["step"] for row in rows] == ["3", "4", "5"]
+    assert [row["step"] for row in rows] == [3, 4, 5]
     assert len(list((out / "figures").glob("*.png"))) == 9
     summary = json.loads((out / "summary.json").read_text())
     assert summary["increments"] == 2 and summary["phases_s"]["start"] > 0.0
     succeed([*command, *overrides, "steps.rotation=20", "--restart"])
     longer = history.read_history(out / "history.csv")
-    assert longer[:3] == rows and [row["step"] for row in longer] == ["3", "4", "5", "6", "7"]
+    assert longer[:3] == rows and [row["step"] for row in longer] == [3, 4, 5, 6, 7]
     assert longer[-1]["wg_angle_deg"] == pytest.approx(2.0 * 360.0 / 42.0)
     assert longer[-1]["fs_s1"] == rows[-1]["fs_s1"]
 

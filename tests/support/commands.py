@@ -74,7 +74,7 @@ def assert_same_history(folder: Path, other: Path, rel: float | None = None, *, 
     rel = rel or (1e-8 if iterations else 1e-7)
     a, b = (history.read_history(path / history.NAME) for path in (folder, other))
     assert [r["step"] for r in a] == [r["step"] for r in b]
-    for name in history.COLUMNS:
+    for name in a[0]:
         if name in ("step", "wall_s") or (name == "newton_iterations" and not iterations):
             continue
         left, right = history.column(a, name), history.column(b, name)

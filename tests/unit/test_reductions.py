@@ -79,7 +79,7 @@ def test_one_period_is_continued_over_the_rotation() -> None:
     assert len(list(load_sequence(design))) == 6
     rows = [
         {
-            "step": str(3 + k),
+            "step": 3 + k,
             "wg_angle_deg": np.degrees(a),
             "output_angle_deg": 1.0 - np.degrees(a) / 20.0,
             "fs_s1": 100.0 + k,
@@ -92,7 +92,7 @@ def test_one_period_is_continued_over_the_rotation() -> None:
     assert history[:4] == rows
     assert len(history) == 15 and history[-1]["wg_angle_deg"] == pytest.approx(14 * pitch / 4)
     assert [row["fs_s1"] for row in history] == [100.0 + k % 4 for k in range(15)]
-    assert [row["step"] for row in history] == [str(3 + k) for k in range(15)]
+    assert [row["step"] for row in history] == [3 + k for k in range(15)]
     # the output follows the line that the rows lie on
     expected = [1.0 - row["wg_angle_deg"] / 20.0 for row in history]
     assert [row["output_angle_deg"] for row in history] == pytest.approx(expected)
