@@ -1,109 +1,206 @@
-"""The modules that one number of a design file passes on its way to the figures of a run.
+"""The way of the design, of the recipe or of one number through the package, from the file to the report.
 
-    PYTHONPATH=TREE python scripts/number_path.py load.torque 1.2345 --design FILE --mesh RECIPE
+    PYTHONPATH=TREE python scripts/number_path.py design
+    PYTHONPATH=TREE python scripts/number_path.py torque --json
 
-Runs the design with that value on one rank and watches every function of the package at its end. A module is on the way
-when one of its functions holds the number: as a number (in any unit of UNITS), in a text, in a list, a table or a small
-array, or in a load state. Prints the modules in the order in which the number reaches them, with their functions, and
-counts: modules, functions, lines of these functions.
+TREE is the checkout that is measured: the present one or another. The script runs `swgpar run` and `swgpar report` on
+one rank and watches every function of the package.
+
+A function is on the way if it holds what is followed: as an argument, a local variable or its result.
+
+- design, recipe: an object of `DriveDesign` or `MeshRecipe`. Its own methods do not count: it is asked, not handed on.
+- torque: the value of `load.torque` in N·m, N·mm, or N·mm of half of the drive.
+- stress: the largest `fs_s1` of the history. A first run gives its value.
+
+A number is also held by a text, a list, a small array or a frozen dataclass that has it. Every function counts once, at
+its first entry that holds it. Nested functions without a name belong to the function around them.
+
+A *stay* is a series of entries into functions of one module. A *climb* is a stay in a module on a higher level of the
+import graph than the stay before: a module stands one level above the highest module that it imports. Modules that
+import each other share a level.
 """
 
 from __future__ import annotations
 
 import argparse
-import dataclasses
+import contextlib
+import csv
+import io
+import itertools
+import json
+import math
 import sys
 import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from types import CodeType, FrameType
 from typing import Any
 
 import numpy as np
+from import_graph import Graph, circles, file_graph, levels
 
-UNITS = (1.0, 1000.0, 500.0)
+PACKAGE = "swgpar"
+CLASSES = {"design": "DriveDesign", "recipe": "MeshRecipe"}
+TORQUE = "1.2345"
+"""Value of `load.torque`, N·m, that no other quantity of a run has."""
+
+TORQUE_UNITS = (1.0, 1000.0, 500.0)
 """N·m; N·mm; N·mm of half of the drive."""
 
-STATES = ("LoadState", "Scene")
-"""Classes whose attributes are searched: load states are handed from function to function."""
+STRESS = "fs_s1"
+"""Column of the history."""
+
+MOST = 200
+"""Largest number of values of an array or a list that is searched."""
+
+DEPTH = 2
+"""Levels of lists, dictionaries and dataclasses that are searched."""
+
+Holds = Callable[[Any], bool]
+"""Whether a value is, or has, what is followed."""
 
 
-class Watch:
-    """Remembers the functions of a package in which a number was seen."""
+def of_class(name: str) -> Holds:
+    """Recognises the objects of a class."""
+    return lambda value: type(value).__name__ == name
 
-    def __init__(self, package: str, value: float, text: str) -> None:
-        self.package, self.text = package, text
-        self.values = np.array([value * unit for unit in UNITS])
-        self.seen: dict[CodeType, str] = {}
 
-    def is_number(self, value: Any) -> bool:
-        """Whether a number or a small array has the value."""
-        array = np.abs(np.asarray(value, dtype=float))
-        return bool(np.isclose(array.ravel()[:, None], self.values, rtol=1e-12, atol=0.0).any())
+class Number:
+    """Recognises a number. values : in all its units;  texts : ways in which it is written"""
 
-    def holds(self, value: Any, depth: int = 2) -> bool:
-        """Whether a value is the number, or a text, a container or a load state that has it."""
+    def __init__(self, values: Sequence[float], texts: Sequence[str]) -> None:
+        self.values, self.texts = values, texts
+
+    def __call__(self, value: Any, depth: int = DEPTH) -> bool:
         if isinstance(value, bool):
             return False
         if isinstance(value, (int, float, np.floating)):
-            return self.is_number(value)
+            return any(math.isclose(abs(value), own, rel_tol=1e-12) for own in self.values)
         if isinstance(value, np.ndarray):
-            return value.dtype.kind == "f" and 0 < value.size < 200 and self.is_number(value)
+            return value.dtype.kind == "f" and value.size < MOST and any(map(self, value.ravel().tolist()))
         if isinstance(value, (str, bytes)):
             text = value if isinstance(value, str) else value.decode("utf-8", "replace")
-            return self.text in text
-        if depth == 0:
-            return False
-        if isinstance(value, dict):
-            return any(self.holds(item, depth - 1) for item in value.values())
-        if isinstance(value, (list, tuple)):
-            return len(value) < 200 and any(self.holds(item, depth - 1) for item in value)
-        if type(value).__name__ in STATES and dataclasses.is_dataclass(value):
-            return any(self.holds(item, 0) for item in vars(value).values())
-        return False
+            return any(own in text for own in self.texts)
+        return depth > 0 and any(self(item, depth - 1) for item in members(value))
+
+
+def members(value: Any) -> Iterator[Any]:
+    """What a short container or a frozen dataclass has."""
+    if isinstance(value, dict):
+        yield from value.values()
+    elif isinstance(value, (list, tuple)) and len(value) < MOST:
+        yield from value
+    elif is_frozen(value):
+        yield from vars(value).values()
+
+
+def is_frozen(value: Any) -> bool:
+    """Whether a value is an object of a frozen dataclass."""
+    parameters = getattr(type(value), "__dataclass_params__", None)
+    return parameters is not None and parameters.frozen and hasattr(value, "__dict__")
+
+
+class Watch:
+    """Remembers the first entry of every function of a package that holds something.
+
+    asked : whether methods whose `self` is what is followed do not count
+    """
+
+    def __init__(self, package: str, holds: Holds, asked: bool = False) -> None:
+        self.package, self.holds, self.asked = package, holds, asked
+        self.entries, self.open = 0, [0]
+        self.first: dict[CodeType, tuple[int, str]] = {}
 
     def __call__(self, frame: FrameType, event: str, result: Any) -> None:
-        """Called at the end of every function (`sys.setprofile`)."""
-        module = frame.f_globals.get("__name__", "")
-        if event != "return" or not module.startswith(f"{self.package}.") or frame.f_code in self.seen:
+        """Called at the beginning and at the end of every function (`sys.setprofile`)."""
+        if event == "call":
+            self.entries += 1
+            self.open.append(self.entries)
+        elif event == "return":
+            self._leave(frame, self.open.pop() if len(self.open) > 1 else 0, result)
+
+    def _leave(self, frame: FrameType, entry: int, result: Any) -> None:
+        code, module = frame.f_code, frame.f_globals.get("__name__", "")
+        if not module.startswith(f"{self.package}.") or "<" in (code.co_name[0], code.co_filename[0]):
             return
-        if self.holds(result) or any(self.holds(value) for value in frame.f_locals.values()):
-            self.seen[frame.f_code] = module
+        if code in self.first and self.first[code][0] <= entry:
+            return
+        values = dict(frame.f_locals)
+        if self.asked and self.holds(values.get("self")):
+            return
+        if self.holds(result) or any(map(self.holds, values.values())):
+            self.first[code] = entry, module
 
-    def functions(self) -> dict[str, dict[str, int]]:
-        """Lines of every function in which the number was seen, by module; comprehensions are part of functions."""
-        found: dict[str, dict[str, int]] = {}
-        for code, module in self.seen.items():
-            lines = [line for *_, line in code.co_lines() if line is not None]
-            functions = found.setdefault(module, {})
-            if not code.co_name.startswith("<"):
-                functions[code.co_qualname] = max(lines) - code.co_firstlineno + 1
-        return found
+    def way(self) -> list[tuple[str, CodeType]]:
+        """Modules and functions in the order of their entries."""
+        ordered = sorted(self.first.items(), key=lambda item: item[1][0])
+        return [(module, code) for code, (_, module) in ordered]
 
 
-def main() -> None:
-    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    options.add_argument("key")
-    options.add_argument("value")
-    options.add_argument("--design", required=True)
-    options.add_argument("--mesh", required=True)
-    options.add_argument("--set", nargs="*", default=[])
-    chosen = options.parse_args()
+def module_levels(graph: Graph) -> dict[str, int]:
+    """Level of every module; those that import each other have the same one."""
+    group = {name: name for name in graph} | {name: members[0] for members in circles(graph) for name in members}
+    merged: Graph = {head: set() for head in group.values()}
+    for name, needs in graph.items():
+        merged[group[name]] |= {group[other] for other in needs} - {group[name]}
+    level = levels(merged)
+    return {name: level[group[name]] for name in graph}
+
+
+def lines_of(code: CodeType) -> int:
+    """Lines of a function."""
+    return max(line for *_, line in code.co_lines() if line is not None) - code.co_firstlineno + 1
+
+
+@dataclass(frozen=True)
+class Way:
+    """The way of a thing. stays : module and its functions, in order;  climbs : numbers of stays, from 0
+
+    lines : of all functions
+    """
+
+    stays: list[tuple[str, list[str]]]
+    climbs: list[int]
+    lines: int
+
+    @property
+    def modules(self) -> list[str]:
+        """Every module once, in the order of the first stays."""
+        return list(dict.fromkeys(module for module, _ in self.stays))
+
+    @property
+    def functions(self) -> int:
+        """Number of functions."""
+        return sum(len(names) for _, names in self.stays)
+
+    def counts(self) -> dict[str, int]:
+        """What is compared between checkouts."""
+        return {
+            "modules": len(self.modules),
+            "functions": self.functions,
+            "lines": self.lines,
+            "climbs": len(self.climbs),
+        }
+
+
+def find_way(watch: Watch, level: dict[str, int]) -> Way:
+    """The way that a watch has seen, on the levels of its package."""
+    way = watch.way()
+    stays = [
+        (module, [code.co_qualname for _, code in entries])
+        for module, entries in itertools.groupby(way, key=lambda entry: entry[0])
+    ]
+    pairs = itertools.pairwise(module for module, _ in stays)
+    climbs = [k for k, (before, module) in enumerate(pairs, start=1) if level[module] > level[before]]
+    return Way(stays, climbs, sum(lines_of(code) for _, code in way))
+
+
+def run(arguments: list[str], watch: Watch | None = None) -> None:
+    """Execute a command of the package, watched or not; what it prints is dropped."""
     from swgpar import cli
 
-    watch = Watch("swgpar", float(chosen.value), chosen.value)
-    with tempfile.TemporaryDirectory() as folder:
-        settings = [f"{chosen.key}={chosen.value}", *chosen.set]
-        arguments = [
-            "run",
-            chosen.design,
-            "--mesh",
-            chosen.mesh,
-            "--plain",
-            "--out",
-            str(Path(folder) / "out"),
-            "--set",
-            *settings,
-        ]
+    with contextlib.redirect_stdout(io.StringIO()):
         sys.setprofile(watch)
         try:
             code = cli.main(arguments)
@@ -113,11 +210,48 @@ def main() -> None:
             sys.setprofile(None)
     if code:
         raise SystemExit(code)
-    found = watch.functions()
-    for number, (module, functions) in enumerate(found.items(), start=1):
-        print(f"{number:3d}  {module}: {', '.join(functions)}")
-    lines = [count for functions in found.values() for count in functions.values()]
-    print(f"{len(found)} modules, {len(lines)} functions of {sum(lines)} lines")
+
+
+def largest_stress(history: Path) -> float:
+    """Largest value of the column of stresses."""
+    with history.open(encoding="utf-8", newline="") as file:
+        return max(float(row[STRESS]) for row in csv.DictReader(file))
+
+
+def main() -> None:
+    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options.add_argument("thing", choices=["design", "torque", "recipe", "stress"])
+    options.add_argument("--design", default="drivers/plane_half_turn.toml")
+    options.add_argument("--mesh", default="plane_coarse")
+    options.add_argument("--set", nargs="*", default=[], help="keys of the design file")
+    options.add_argument("--json", action="store_true", help="print JSON")
+    chosen = options.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        out = str(Path(folder) / "out")
+        command = ["run", chosen.design, "--mesh", chosen.mesh, "--out", out, "--overwrite"]
+        command += ["--set", f"load.torque={TORQUE}", *chosen.set]
+        holds: Holds
+        if chosen.thing in CLASSES:
+            holds = of_class(CLASSES[chosen.thing])
+        elif chosen.thing == "torque":
+            holds = Number([float(TORQUE) * unit for unit in TORQUE_UNITS], [TORQUE])
+        else:
+            run(command)
+            value = largest_stress(Path(out) / "history.csv")
+            holds = Number([value], [repr(value), f"{value:.4g}"])
+        watch = Watch(PACKAGE, holds, asked=chosen.thing in CLASSES)
+        run(command, watch)
+        run(["report", out], watch)
+    package = Path(sys.modules[PACKAGE].__file__ or "").parent
+    level = module_levels(file_graph(package))
+    way = find_way(watch, level)
+    if chosen.json:
+        print(json.dumps({**way.counts(), "stays": way.stays, "climbs_at": way.climbs}, indent=1))
+        return
+    for k, (module, functions) in enumerate(way.stays):
+        mark = "climb" if k in way.climbs else ""
+        print(f"{k + 1:3d}  level {level[module]:2d} {mark:6s}{module}: {', '.join(functions)}")
+    print(", ".join(f"{count} {name}" for name, count in way.counts().items()))
 
 
 if __name__ == "__main__":

@@ -74,7 +74,7 @@ def measure(family: str) -> list[Row]:
     design, model, levels, elements = load_design(path, LOADED), None, [], []
     for ratio in ratios:
         recipe = resized(load_recipe(name), ratio)
-        model = solve_to_load(design, recipe, list(load_sequence(design)), MPI.COMM_WORLD, model)
+        model = solve_to_load(design, recipe, load_sequence(design), MPI.COMM_WORLD, model)
         levels.append(by_region(model))
         elements.append(model.n_elements())
         if MPI.COMM_WORLD.rank == 0:

@@ -24,7 +24,7 @@ from swgpar.evaluation.contact.pair_contact import pair_contacts
 from swgpar.evaluation.place_errors import CoarseStresses, with_errors
 from swgpar.evaluation.places import find_places
 from swgpar.evaluation.windows.root_stress import LEVELS, resolve_root_stress
-from swgpar.load.load_sequence import from_loaded, load_sequence
+from swgpar.load.load_sequence import load_sequence
 from swgpar.meshing.recipe_counts import resized
 
 LARGEST = 10_000_000
@@ -35,15 +35,15 @@ def solve(case: dict[str, Any]) -> dict[str, Any]:
     begin = time.perf_counter()
     recipe = resized(swgpar.load_mesh(case["mesh"]), case["times"])
     design = with_shortcuts(swgpar.load_design(case["design"], case["overrides"]), recipe, levels=False).design
-    states = list(load_sequence(design))
-    loaded = from_loaded(states)[0]
+    sequence = load_sequence(design)
+    loaded = sequence.loaded
     coarse = None
     if case["further"] is None:
-        usual = Refinement(design, recipe, states, MPI.COMM_WORLD, LARGEST)
+        usual = Refinement(design, recipe, sequence, MPI.COMM_WORLD, LARGEST)
         model, found = usual.model, usual.found
         coarse = CoarseStresses(usual.coarse_places, usual.ratio)
     else:
-        model = solve_to_load(design, recipe, states, MPI.COMM_WORLD)
+        model = solve_to_load(design, recipe, sequence, MPI.COMM_WORLD)
         found = resolve_root_stress(model, loaded, LEVELS[design.drive.model] + case["further"])
     pairs = pair_contacts(model, loaded)
     edge = any(pair.edge for pair in pairs)

@@ -33,7 +33,7 @@ def measure(mesh: str, linear: str) -> None:
     comm = MPI.COMM_WORLD
     design = load_design("drivers/cup_45deg.toml", [f"solver.linear={linear}"])
     model = build_drive_model(design, load_recipe(mesh), comm=comm)
-    problem, system, state = model.problem, model.solver.system, next(iter(load_sequence(design)))
+    problem, system, state = model.problem, model.solver.system, load_sequence(design).states[0]
     problem.search(state)
     right, x, product = (create_vector(model.partition) for _ in range(3))
 

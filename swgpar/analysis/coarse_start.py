@@ -20,7 +20,7 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError, InputError, SwgparError
 from swgpar.fem.vectors import read_field, write_field
 from swgpar.geometry.rotation import rotated
-from swgpar.load.load_sequence import from_loaded
+from swgpar.load.load_sequence import LoadSequence
 from swgpar.load.load_states import LoadState
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
@@ -62,7 +62,7 @@ def levels(design: DriveDesign, recipe: MeshRecipe) -> list[MeshRecipe]:
 def solve_to_load(
     design: DriveDesign,
     recipe: MeshRecipe,
-    load_states: list[LoadState],
+    sequence: LoadSequence,
     comm: MPI.Comm,
     coarse: DriveModel | None = None,
     *,
@@ -70,7 +70,7 @@ def solve_to_load(
 ) -> DriveModel:
     """The drive on one mesh in its loaded state, from the loaded state of the model `coarse`, which is released.
 
-    load_states : all increments of the run
+    sequence : of the run
     kept : loaded states of an earlier run, to which this one is added
 
     Raises ConvergenceError or InputError where a mesh does not allow it.
@@ -78,7 +78,7 @@ def solve_to_load(
     stepper = None
     try:
         stepper = LoadStepper(build_drive_model(design, recipe, comm=comm))
-        loaded = from_loaded(load_states)[0]
+        loaded = sequence.loaded
         taken_over = kept is not None and kept.restore(stepper.model, recipe)
         if taken_over:
             if coarse is not None:
@@ -91,7 +91,7 @@ def solve_to_load(
             stepper.advance(loaded)
             iterations = [stepper.iterations]
         else:
-            iterations = _reach_load(stepper, load_states)
+            iterations = _reach_load(stepper, sequence)
         if kept is not None and not taken_over:
             kept.save(stepper.model, recipe)
             _settle(stepper, loaded)  # so that the forces are those of a run that takes this state over
@@ -117,18 +117,18 @@ def starts_bent(design: DriveDesign) -> bool:
     return design.steps.bent_start and not design.contact.friction
 
 
-def _reach_load(stepper: LoadStepper, load_states: list[LoadState]) -> list[int]:
+def _reach_load(stepper: LoadStepper, sequence: LoadSequence) -> list[int]:
     """From the bent shape if the design asks for it and that works, else step by step; returns Newton iterations."""
     if starts_bent(stepper.design):
         try:
-            _jump(stepper, load_states)
+            _jump(stepper, sequence)
             return [stepper.iterations]
         except ConvergenceError as error:
             logger.info("no start from the bent shape: %s", error)
             stepper.reset()
     iterations = []
-    loaded = from_loaded(load_states)[0]
-    for state in load_states:
+    loaded = sequence.loaded
+    for state in sequence.states:
         stepper.advance(state)
         iterations.append(stepper.iterations)
         if state == loaded:
@@ -136,9 +136,9 @@ def _reach_load(stepper: LoadStepper, load_states: list[LoadState]) -> list[int]
     return iterations
 
 
-def _jump(stepper: LoadStepper, load_states: list[LoadState]) -> None:
+def _jump(stepper: LoadStepper, sequence: LoadSequence) -> None:
     bend(stepper.model)
-    stepper.jump(from_loaded(load_states)[0])
+    stepper.jump(sequence.loaded)
 
 
 def start_at_load(
@@ -173,26 +173,26 @@ def start_at_load(
 def start_loaded(
     stepper: LoadStepper,
     recipes: list[MeshRecipe],
-    load_states: list[LoadState],
+    sequence: LoadSequence,
     on_coarse: Callable[[DriveModel, MeshRecipe], None] = lambda model, recipe: None,
     kept: StartStates | None = None,
 ) -> None:
     """Bring `stepper` to the loaded state by way of coarser meshes, the coarsest of `recipes` first, or bent at once.
 
-    load_states : all increments of the run
+    sequence : of the run
     on_coarse : called with the model on the last of the coarser meshes, and its recipe; it raises nothing
     kept : see `solve_to_load`
 
     Raises ConvergenceError or InputError where a mesh does not allow it; `stepper` is then to be reset.
     """
     target, coarse = stepper.model, None
-    loaded = from_loaded(load_states)[0]
+    loaded = sequence.loaded
     with target.phases("start"):
         if not recipes:
-            _jump(stepper, load_states)
+            _jump(stepper, sequence)
             return
         for recipe in recipes:
-            coarse = solve_to_load(target.design, recipe, load_states, target.comm, coarse, kept=kept)
+            coarse = solve_to_load(target.design, recipe, sequence, target.comm, coarse, kept=kept)
         on_coarse(coarse, recipes[-1])
         take_over(coarse, stepper, loaded)
         stepper.advance(loaded)

@@ -23,7 +23,7 @@ from swgpar.evaluation.contact.pair_contact import pair_contacts
 from swgpar.evaluation.place_errors import CoarseStresses
 from swgpar.evaluation.places import Place, find_places
 from swgpar.evaluation.windows.root_stress import FEWEST_LEVELS, LEVELS, MOST_LEVELS, RootStress, resolve_root_stress
-from swgpar.load.load_sequence import from_loaded
+from swgpar.load.load_sequence import LoadSequence
 from swgpar.load.load_states import LoadState
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe, build_sector_meshes
@@ -105,7 +105,7 @@ class Refinement:
 
     Parameters
     ----------
-    design, load_states, comm : the drive, all increments of its run, communicator
+    design, sequence, comm : the drive, load states of its run, communicator
     recipe : the first mesh, compared with a coarser one, or where that would not find the contacts with a finer one
     largest : elements of the whole drive beyond which no mesh is taken
     kept : loaded states of an earlier run, to which those of this one are added
@@ -116,20 +116,20 @@ class Refinement:
         self,
         design: DriveDesign,
         recipe: MeshRecipe,
-        load_states: list[LoadState],
+        sequence: LoadSequence,
         comm: MPI.Comm,
         largest: int,
         kept: StartStates | None = None,
         levels: int | None = None,
     ) -> None:
-        self.design, self.load_states, self.comm, self.largest = design, load_states, comm, largest
+        self.design, self.sequence, self.comm, self.largest = design, sequence, comm, largest
         self.kind, self.kept = design.drive.model, kept
         self.levels = levels or LEVELS[self.kind]
         coarse = resized(recipe, 1.0 / RATIO)
         if not finds_contacts(coarse):
             coarse, recipe = recipe, resized(recipe, RATIO)
         self.recipe, self.ratio = recipe, size_ratio(coarse, recipe)
-        self.model = solve_to_load(design, coarse, load_states, comm, kept=kept)
+        self.model = solve_to_load(design, coarse, sequence, comm, kept=kept)
         try:
             self.coarse = compared_stresses(self.model, self.loaded)
             self.coarse_places = self._places()
@@ -142,7 +142,7 @@ class Refinement:
     @property
     def loaded(self) -> LoadState:
         """The loaded state."""
-        return from_loaded(self.load_states)[0]
+        return self.sequence.loaded
 
     def _places(self) -> dict[str, Place]:
         return find_places(self.model, self.loaded, self.model.stresses()[1])
@@ -152,13 +152,13 @@ class Refinement:
         coarse = self.model
         if self.design.contact.friction:
             coarse.destroy()
-            self.model = solve_to_load(self.design, recipe, self.load_states, self.comm, kept=self.kept)
+            self.model = solve_to_load(self.design, recipe, self.sequence, self.comm, kept=self.kept)
             return
         try:
-            self.model = solve_to_load(self.design, recipe, self.load_states, self.comm, coarse, kept=self.kept)
+            self.model = solve_to_load(self.design, recipe, self.sequence, self.comm, coarse, kept=self.kept)
         except (ConvergenceError, InputError) as error:
             logger.info("the state of another mesh does not lead to that of this one: %s", error)
-            self.model = solve_to_load(self.design, recipe, self.load_states, self.comm, kept=self.kept)
+            self.model = solve_to_load(self.design, recipe, self.sequence, self.comm, kept=self.kept)
 
     def _resolve(self, before: float | None = None) -> RootStress:
         """Windows on the present mesh. before : error (MPa) of the mesh before it"""
@@ -207,7 +207,7 @@ class Refinement:
             logger.warning("no finer mesh of the drive: %s", error)
             self.coarse, self.ratio, self.found, self.coarse_places = earlier
             self.model.destroy()
-            self.model = solve_to_load(self.design, self.recipe, self.load_states, self.comm, kept=self.kept)
+            self.model = solve_to_load(self.design, self.recipe, self.sequence, self.comm, kept=self.kept)
             return False
         self.recipe = finer
         return True
@@ -216,7 +216,7 @@ class Refinement:
 def choose_mesh(
     design: DriveDesign,
     recipe: MeshRecipe,
-    load_states: list[LoadState],
+    sequence: LoadSequence,
     accuracy: float,
     comm: MPI.Comm,
     *,
@@ -225,7 +225,7 @@ def choose_mesh(
 ) -> ChosenMesh:
     """Refine `recipe` and the windows until the estimated relative error of the root's stress is at most `accuracy`.
 
-    load_states : all increments of the run
+    sequence : of the run
     largest : elements of the whole drive beyond which no finer mesh is taken; None for those of `LARGEST`
     kept : see `Refinement`
 
@@ -234,7 +234,7 @@ def choose_mesh(
     """
     largest = LARGEST[design.drive.model] if largest is None else largest
     levels = FEWEST_LEVELS[design.drive.model] if accuracy >= ROUGH else None
-    drive = Refinement(design, recipe, load_states, comm, largest, kept, levels)
+    drive = Refinement(design, recipe, sequence, comm, largest, kept, levels)
     refine = {"windows": drive.refine_windows, "mesh": drive.refine_drive}
     while relative_error(drive.found) > accuracy:
         errors = {"windows": drive.found.error, "mesh": drive.found.drive_error}

@@ -33,8 +33,8 @@ from swgpar.evaluation.stress_cycle import StressCycle
 from swgpar.evaluation.windows.root_stress import RootStress
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.input.toml_file import to_toml
-from swgpar.load.load_program import internal_torque, program_points
-from swgpar.load.load_sequence import from_loaded, load_sequence
+from swgpar.load.load_program import internal_torque
+from swgpar.load.load_sequence import LoadSequence
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.meshing import SectorMesh
 from swgpar.model.drive_model import DriveModel
@@ -83,8 +83,8 @@ class Recorder(ABC):
     bearing_shares : of the bearing in the compliance of the loaded state
     """
 
-    def __init__(self, model: DriveModel) -> None:
-        self.model, self.comm = model, model.comm
+    def __init__(self, model: DriveModel, sequence: LoadSequence) -> None:
+        self.model, self.comm, self._sequence = model, model.comm, sequence
         self.rows: list[Row] = []
         self.starts_loaded = False
         self.accuracy: Accuracy | None = None
@@ -95,7 +95,6 @@ class Recorder(ABC):
         self.pairs: list[Row] = []
         self.contact_lines: list[Row] = []
         design = model.design
-        self._loaded = from_loaded(list(load_sequence(design)))[0]  # which coarser meshes are compared in
         self.cycle = StressCycle(model) if design.fatigue or design.losses else None
         self.cam_forces: list[float] = []
         self.tooth_rotations: list[float] = []
@@ -152,7 +151,7 @@ class Recorder(ABC):
             for name, place in find_places(self.model, state, fields, on_edge=on_edge).items():
                 if name not in self.places or place.value > self.places[name].value:
                     self.places[name] = place
-            if self.coarse is not None and state == self._loaded:
+            if self.coarse is not None and state == self._sequence.loaded:
                 self.stress_errors, self.coarse = self.coarse.errors(self.places), None
 
     def places_with_errors(self) -> dict[str, Place]:
@@ -182,8 +181,8 @@ class Recorder(ABC):
         """Whether a point of the load program is the first one with its largest torque."""
         if state.stage != Stage.PROGRAM or state.control != "torque" or self.bearing_shares:
             return False
-        torques = [abs(point.value) for point in program_points(self.model.design) if point.control == "torque"]
-        return abs(state.torque) >= abs(internal_torque(self.model.design, max(torques))) * (1.0 - 1e-9)
+        torques = [abs(point.value) for point in self._sequence.points if point.control == "torque"]
+        return abs(state.torque) >= abs(internal_torque(self.model.design.ratio, max(torques))) * (1.0 - 1e-9)
 
     def keep_turns(self, rows: list[Row]) -> None:
         """Keep rows of transmission_error.csv in place of those before."""
@@ -228,8 +227,8 @@ class Recorder(ABC):
 class MemoryRecorder(Recorder):
     """Keeps everything in memory: each rank the fields of the sectors that it owns."""
 
-    def __init__(self, model: DriveModel) -> None:
-        super().__init__(model)
+    def __init__(self, model: DriveModel, sequence: LoadSequence) -> None:
+        super().__init__(model, sequence)
         self._parts: FieldParts | None = None
 
     def begin(self) -> None:
@@ -260,13 +259,13 @@ class FolderRecorder(Recorder):
 
     Parameters
     ----------
-    model : the drive
+    model, sequence : the drive, and the load states of its run
     out : results folder
     identity : of what is computed, for restarts
     """
 
-    def __init__(self, model: DriveModel, out: Path, identity: str) -> None:
-        super().__init__(model)
+    def __init__(self, model: DriveModel, sequence: LoadSequence, out: Path, identity: str) -> None:
+        super().__init__(model, sequence)
         self.out, self.identity = out, identity
         self.names: dict[str, dict[str, int]] = {}
         self._writer = FieldWriter(out, self.comm) if model.design.output.fields else None

@@ -17,7 +17,7 @@ from swgpar.evaluation.places import Place
 from swgpar.evaluation.windows.root_stress import RootStress
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.fem.vectors import write_field
-from swgpar.load.load_sequence import from_loaded
+from swgpar.load.load_sequence import LoadSequence
 from swgpar.load.load_states import LoadState
 from swgpar.results import checkpoint
 
@@ -74,11 +74,13 @@ def write_state(
     checkpoint.write_checkpoint(recorder.out, model.comm, blocks, state)
 
 
-def resume(recorder: FolderRecorder, stepper: LoadStepper, items: list[LoadState]) -> tuple[list[LoadState], float]:
+def resume(
+    recorder: FolderRecorder, stepper: LoadStepper, sequence: LoadSequence
+) -> tuple[tuple[LoadState, ...], float]:
     """Bring back the state of the checkpoint, on any number of ranks; collective.
 
-    items : the sequence that is to be continued. Returns those of it that the run consists of, without the first
-    ones where they were computed on other meshes, and the wall seconds spent so far.
+    sequence : that is to be continued. Returns those of its states that the run consists of, without the first ones
+    where they were computed on other meshes, and the wall seconds spent so far.
     """
     model, path = recorder.model, recorder.out / checkpoint.NAME
     _, state = checkpoint.read_checkpoint(path, model.comm)
@@ -90,8 +92,7 @@ def resume(recorder: FolderRecorder, stepper: LoadStepper, items: list[LoadState
         )
     checkpoint.require_undamaged(path, model.comm)
     last = LoadState.from_dict(state["load_state"])
-    if state["starts_loaded"] or state["accuracy"]:
-        items = from_loaded(items)
+    items = sequence.from_loaded if state["starts_loaded"] or state["accuracy"] else sequence.states
     computed = [float(np.radians(row["wg_angle_deg"])) for row in state["rows"]]
     same = (
         np.allclose(computed, [item.angle for item in items[: len(computed)]]) if len(computed) <= len(items) else False

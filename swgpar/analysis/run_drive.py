@@ -36,7 +36,7 @@ from swgpar.evaluation.places import find_places
 from swgpar.evaluation.ratcheting import has_fallen
 from swgpar.evaluation.transmission_error import period_rows
 from swgpar.evaluation.windows.root_stress import RootStress, resolve_root_stress, with_angle
-from swgpar.load.load_sequence import from_loaded, load_sequence
+from swgpar.load.load_sequence import LoadSequence, load_sequence
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import IncrementProgress, logger
 from swgpar.meshing import MeshRecipe, load_recipe, require_sections
@@ -89,20 +89,20 @@ def run_drive(design: DriveDesign, options: RunOptions) -> DriveResult:
         elif not resumed:
             way = "taking over loaded states" if kept.found(comm) else "starting from the beginning"
             logger.info("no increment was saved: %s", way)
-        what = identity(design, recipe, options.accuracy)
+        what, sequence = identity(design, recipe, options.accuracy), load_sequence(design)
         chosen = None
         if options.accuracy is not None:
             if resumed:
                 recipe = on_all(comm, lambda: load_recipe(folder / RECIPE))
             else:
-                chosen = choose_mesh(design, recipe, list(load_sequence(design)), options.accuracy, comm, kept=kept)
+                chosen = choose_mesh(design, recipe, sequence, options.accuracy, comm, kept=kept)
                 recipe = chosen.recipe
         model = build_drive_model(design, recipe, comm=comm) if chosen is None else chosen.model
-        recorder = MemoryRecorder(model) if folder is None else FolderRecorder(model, folder, what)
+        recorder = MemoryRecorder(model, sequence) if folder is None else FolderRecorder(model, sequence, folder, what)
         try:
             if chosen is not None:
                 recorder.keep_choice(chosen, options.accuracy)
-            run = _Run(model, recipe, recorder, kept, options.on_increment, begin)
+            run = _Run(model, recipe, sequence, recorder, kept, options.on_increment, begin)
             items = run.resume() if resumed else run.start()
             run.go_through(items, options.terminal)
             result = run.finish(recipe_name)
@@ -129,7 +129,7 @@ def _log_remarks(design: DriveDesign, left_out: Sequence[str]) -> None:
 class _Run:
     """One run: start or restart, all increments, end.
 
-    recipe : of the model's mesh;  kept : loaded states on the meshes of the start
+    recipe : of the model's mesh;  sequence : load states of the run;  kept : those on the meshes of the start
     begin : time.perf_counter() at the run's start
     """
 
@@ -137,12 +137,13 @@ class _Run:
         self,
         model: DriveModel,
         recipe: MeshRecipe,
+        sequence: LoadSequence,
         recorder: Recorder,
         kept: StartStates,
         on_increment: Callable[[], None],
         begin: float,
     ) -> None:
-        self.kept = kept
+        self.sequence, self.kept = sequence, kept
         self.model, self.recipe, self.recorder, self.stepper = model, recipe, recorder, LoadStepper(model)
         self.on_increment, self.begin = on_increment, begin
         self.earlier_seconds, self.ended_early = 0.0, False
@@ -163,26 +164,26 @@ class _Run:
         """Wall seconds of the run, restarts included."""
         return self.earlier_seconds + time.perf_counter() - self.begin
 
-    def resume(self) -> list[LoadState]:
+    def resume(self) -> Sequence[LoadState]:
         """Bring back the state of the checkpoint; returns all increments that the run consists of."""
-        items, self.earlier_seconds = resume(self.recorder, self.stepper, list(load_sequence(self.model.design)))
+        items, self.earlier_seconds = resume(self.recorder, self.stepper, self.sequence)
         logger.info("restarted after increment %d", len(self.recorder.rows))
         if self.model.design.resolves_root_stress and not self.recorder.root_stress:
             logger.info("the stress at the teeth is resolved only by the run that computes the loaded state")
         return items
 
-    def start(self) -> list[LoadState]:
+    def start(self) -> Sequence[LoadState]:
         """Reach the loaded state at once if the design asks for it; returns all increments of the run."""
-        items = list(load_sequence(self.model.design))
+        sequence = self.sequence
         if self.recorder.accuracy is not None:  # the model was loaded when its mesh was chosen
-            self.stepper.resume_at(from_loaded(items)[0])
-            return from_loaded(items)
-        self.recorder.starts_loaded = start_at_load(self.stepper, self.recipe, items, self._keep_coarse, self.kept)
-        return from_loaded(items) if self.recorder.starts_loaded else items
+            self.stepper.resume_at(sequence.loaded)
+            return sequence.from_loaded
+        self.recorder.starts_loaded = start_at_load(self.stepper, self.recipe, sequence, self._keep_coarse, self.kept)
+        return sequence.from_loaded if self.recorder.starts_loaded else sequence.states
 
     def _keep_coarse(self, model: DriveModel, recipe: MeshRecipe) -> None:
         """Keep the largest stresses of a coarser mesh of the drive, to see what the mesh changes."""
-        loaded = from_loaded(list(load_sequence(model.design)))[0]
+        loaded = self.sequence.loaded
         places = find_places(model, loaded, model.stresses()[1])
         self.recorder.coarse = CoarseStresses(places, size_ratio(recipe, self.recipe))
         if model.design.resolves_root_stress:
@@ -191,7 +192,7 @@ class _Run:
             except (ConvergenceError, InputError) as error:
                 logger.info("the error by the mesh of the drive is not known: %s", error)
 
-    def go_through(self, items: list[LoadState], terminal: bool) -> None:
+    def go_through(self, items: Sequence[LoadState], terminal: bool) -> None:
         """Compute and record the increments that are left."""
         stepper, recorder = self.stepper, self.recorder
         loaded = next((item for item in reversed(items) if item.stage == Stage.LOAD), None)

@@ -14,7 +14,7 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError, InputError
 from swgpar.evaluation.program_results import PointRow, point_rows
 from swgpar.evaluation.stiffness import NAMES, Stiffness, by_position
-from swgpar.load.load_sequence import from_loaded, load_sequence
+from swgpar.load.load_sequence import load_sequence
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.recipe_counts import RATIO, resized
@@ -51,13 +51,13 @@ def _first_position(design: DriveDesign) -> DriveDesign:
 
 def _stiffness_on(design: DriveDesign, recipe: MeshRecipe, comm: MPI.Comm) -> Stiffness:
     """The stiffness at the only position of a design, on another mesh."""
-    states = list(load_sequence(design))
-    model = solve_to_load(design, recipe, states, comm)
+    sequence = load_sequence(design)
+    model = solve_to_load(design, recipe, sequence, comm)
     try:
         stepper = LoadStepper(model)
-        stepper.resume_at(from_loaded(states)[0])
+        stepper.resume_at(sequence.loaded)
         rows = [stepper.row()]
-        for state in from_loaded(states)[1:]:
+        for state in sequence.from_loaded[1:]:
             stepper.advance(state)
             rows.append(stepper.row())
     finally:

@@ -30,7 +30,7 @@ the output by it, beyond what the ratio makes of the wave generator's angle."""
 
 def point_rows(design: DriveDesign, rows: Sequence[Row]) -> list[PointRow]:
     """Rows of program.csv from those of the history; none without a load program."""
-    points, direction = program_points(design), torque_direction(design)
+    points, direction = program_points(design), torque_direction(design.ratio)
     found = []
     for row in rows:
         index = int(row["step"]) - Stage.LOAD

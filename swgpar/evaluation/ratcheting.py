@@ -53,7 +53,7 @@ def what_gave_way(design: DriveDesign, rows: Sequence[PointRow], teeth: Sequence
     if top == len(rows) - 1:
         return NOTHING
     output = (rows[-1]["rotation_arcmin"] - rows[top]["rotation_arcmin"]) / 60.0
-    turned = torque_direction(design) * (teeth[-1] - teeth[top])
+    turned = torque_direction(design.ratio) * (teeth[-1] - teeth[top])
     between_teeth = output - turned if design.output_gear == "ring_gear" else turned
     return AT_TEETH if between_teeth > 0.5 * output else IN_SPLINE
 

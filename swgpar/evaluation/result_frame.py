@@ -95,6 +95,6 @@ def summarise_input(design: DriveDesign, rows: Sequence[Row]) -> dict[str, Any] 
     mean = float(torque.mean())
     return {
         "torque_Nmm": mean,
-        "torque_expected_Nmm": -internal_torque(design, design.load.torque) / design.input_ratio,
+        "torque_expected_Nmm": -internal_torque(design.ratio, design.load.torque) / design.input_ratio,
         "torque_ripple": float(np.ptp(torque)) / abs(mean) if mean else None,
     }

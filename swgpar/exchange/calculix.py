@@ -180,7 +180,7 @@ def _bend(model: JobModel, dependent: set[int], held: Iterable[str]) -> Iterator
 
 def _torque(model: JobModel, surface: Surface) -> Iterator[str]:
     """Forces of the torque: those of the distributing coupling at the angle zero of the output."""
-    torque = internal_torque(model.design, model.design.load.torque)
+    torque = internal_torque(model.design.ratio, model.design.load.torque)
     x = model.points[surface.nodes, :2]
     share = torque * surface.weight / float((surface.weight * (x**2).sum(axis=1)).sum())
     yield "*CLOAD"

@@ -161,7 +161,7 @@ class JobModel:
         closing = abs(touching_rotation(self.design, self.faceted_flanks()))
         if not np.isfinite(closing):  # the loaded state has to find the flanks
             closing = self.design.backlash_angle
-        return torque_direction(self.design) * closing
+        return torque_direction(self.design.ratio) * closing
 
     def housing(self, surface: Surface) -> Iterator[list[Term]]:
         """The nodes of a surface, that of the ring gear, move along its circle and the axis.

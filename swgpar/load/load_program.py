@@ -183,15 +183,18 @@ def _ratcheting(design: DriveDesign) -> list[ProgramPoint]:
     count = int(np.ceil(round(section.limit / section.increment, 9)))
     shares = [min(i * section.increment, section.limit) for i in range(1, count + 1)]
     start = section.wave_generator / design.ratio
-    angles = [start + torque_direction(design) * share * pitch for share in shares]
+    angles = [start + torque_direction(design.ratio) * share * pitch for share in shares]
     return [ProgramPoint(RATCHETING, section.wave_generator, "rotation", angle) for angle in angles]
 
 
-def torque_direction(design: DriveDesign) -> float:
-    """Sense about z in which a positive torque turns the output: against its motion, 1 or -1."""
-    return float(-np.sign(design.ratio))
+def torque_direction(ratio: float) -> float:
+    """Sense about z in which a positive torque turns the output: against its motion, 1 or -1.
+
+    ratio : speed of the wave generator over that of the output
+    """
+    return float(-np.sign(ratio))
 
 
-def internal_torque(design: DriveDesign, torque: float) -> float:
-    """Torque about z on the output (N mm) for one against its motion (N·m)."""
-    return torque_direction(design) * 1000.0 * torque
+def internal_torque(ratio: float, torque: float) -> float:
+    """Torque about z on the output (N mm) for one against its motion (N·m). ratio : as in `torque_direction`"""
+    return torque_direction(ratio) * 1000.0 * torque

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.geometry.cams import pin_travel
-from swgpar.load.load_program import internal_torque, program_points
+from swgpar.load.load_program import ProgramPoint, internal_torque, program_points
 from swgpar.load.load_states import CAM_START_CLEARANCE, FLANK_START_CLEARANCE, PIN_RETRACTION, LoadState, Stage
 
 RING_FLEXIBILITY = 0.25 * np.pi - 2.0 / np.pi
@@ -48,20 +48,45 @@ def start_state(design: DriveDesign) -> LoadState:
     return LoadState(Stage.START, 0, cam_clearance=travel)
 
 
-def load_sequence(design: DriveDesign) -> Iterator[LoadState]:
-    """Load states at the ends of all increments of a run, in order."""
-    for state in _sequence(design):
-        held = design.dynamic_spline is not None and state.control == "rotation"
-        yield replace(state, spline_held=True) if held else state
+@dataclass(frozen=True)
+class LoadSequence:
+    """The load states of a run.
+
+    start : undeformed drive
+    states : at the ends of all increments, in order
+    points : of the load program; empty without one
+    """
+
+    start: LoadState
+    states: tuple[LoadState, ...]
+    points: tuple[ProgramPoint, ...] = ()
+
+    @property
+    def loaded(self) -> LoadState:
+        """The fully loaded state, in a load program that of its first point."""
+        return self.from_loaded[0]
+
+    @property
+    def from_loaded(self) -> tuple[LoadState, ...]:
+        """The states from the fully loaded one on."""
+        ends = [k for k, state in enumerate(self.states) if state.stage == Stage.LOAD]
+        first = ends[-1] if ends else next(k for k, state in enumerate(self.states) if state.stage == Stage.PROGRAM)
+        return self.states[first:]
 
 
-def _sequence(design: DriveDesign) -> Iterator[LoadState]:
-    yield from _deflection(design)
-    yield from _engagement(design)
-    if design.has_program:
-        yield from _program(design)
-        return
-    torque = 0.0 if counts_as_none(design) else internal_torque(design, design.load.torque)
+def load_sequence(design: DriveDesign) -> LoadSequence:
+    """All load states of a run."""
+    start, points = start_state(design), tuple(program_points(design))
+    states = [*_deflection(start, design.steps.deflect_increments), *_engagement(design)]
+    states += _program(points, design.ratio) if points else _rotation(design)
+    if design.dynamic_spline is not None:
+        states = [replace(state, spline_held=state.control == "rotation") for state in states]
+    return LoadSequence(start, tuple(states), points)
+
+
+def _rotation(design: DriveDesign) -> Iterator[LoadState]:
+    """The stages LOAD and ROTATE."""
+    torque = 0.0 if counts_as_none(design) else internal_torque(design.ratio, design.load.torque)
     control: Literal["rotation", "torque"] = "torque" if torque else "rotation"
     loaded = LoadState(Stage.LOAD, 3, cam_clearance=0.0, flank_clearance=0.0, control=control)
     if torque:
@@ -81,13 +106,13 @@ def _sequence(design: DriveDesign) -> Iterator[LoadState]:
         )
 
 
-def _deflection(design: DriveDesign) -> Iterator[LoadState]:
-    origin, n = start_state(design), design.steps.deflect_increments
-    for i in range(1, n + 1):
-        if origin.pin_inset is not None:
-            yield LoadState(Stage.DEFLECT, 1, pin_inset=origin.pin_inset * (1.0 - i / n))
+def _deflection(start: LoadState, increments: int) -> Iterator[LoadState]:
+    for i in range(1, increments + 1):
+        left = 1.0 - i / increments
+        if start.pin_inset is not None:
+            yield LoadState(Stage.DEFLECT, 1, pin_inset=start.pin_inset * left)
         else:
-            yield LoadState(Stage.DEFLECT, 1, cam_clearance=origin.cam_clearance * (1.0 - i / n))
+            yield LoadState(Stage.DEFLECT, 1, cam_clearance=start.cam_clearance * left)
 
 
 def _engagement(design: DriveDesign) -> Iterator[LoadState]:
@@ -103,20 +128,13 @@ def _engagement(design: DriveDesign) -> Iterator[LoadState]:
         )
 
 
-def _program(design: DriveDesign) -> Iterator[LoadState]:
-    for step, point in enumerate(program_points(design), start=int(Stage.LOAD)):
+def _program(points: Sequence[ProgramPoint], ratio: float) -> Iterator[LoadState]:
+    for step, point in enumerate(points, start=int(Stage.LOAD)):
         state = LoadState(Stage.PROGRAM, step, float(np.radians(point.angle)), cam_clearance=0.0, flank_clearance=0.0)
         if point.control == "torque":
-            yield replace(state, control="torque", torque=internal_torque(design, point.value))
+            yield replace(state, control="torque", torque=internal_torque(ratio, point.value))
         else:
             yield replace(state, output_rotation=float(np.radians(point.value)))
-
-
-def from_loaded(states: list[LoadState]) -> list[LoadState]:
-    """The load states from the fully loaded one on, of a load program from its first point on."""
-    ends = [k for k, state in enumerate(states) if state.stage == Stage.LOAD]
-    loaded = ends[-1] if ends else next(k for k, state in enumerate(states) if state.stage == Stage.PROGRAM)
-    return states[loaded:]
 
 
 def rotation_angles(design: DriveDesign) -> list[float]:

@@ -77,7 +77,7 @@ class Drives(System[DriveDesign, DriveResult]):
                 )
 
     def increments(self, design: DriveDesign) -> int:
-        return sum(1 for _ in load_sequence(design))
+        return len(load_sequence(design).states)
 
     def dimensions(self, design: DriveDesign) -> int:
         return 2 if design.drive.model == "plane" else 3

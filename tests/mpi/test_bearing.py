@@ -18,7 +18,7 @@ from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.evaluation.bearing_loads import ball_rows
 from swgpar.evaluation.compliance import bearing_shares
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, OUTER_RACE
-from swgpar.load.load_sequence import from_loaded, load_sequence
+from swgpar.load.load_sequence import load_sequence
 
 NAMES = ("fs_s1", "fs_s3", "fs_vm", "output_angle_deg")
 
@@ -28,7 +28,7 @@ def jumped(*overrides: str, model: str = "plane", comm: MPI.Comm = WORLD) -> Loa
     design = small(model, *overrides)
     stepper = load_stepper(design, comm)
     bend(stepper.model)
-    stepper.jump(from_loaded(list(load_sequence(design)))[0])
+    stepper.jump(load_sequence(design).loaded)
     return stepper
 
 

@@ -60,7 +60,7 @@ def test_a_drive_that_has_parted_is_loaded_again() -> None:
     """From the middle of its backlash, where nothing holds the output, the torque brings it back to the same state."""
     design = load_design(DESIGN, [*PLANE, "ring_gear.c_P=0.8"])
     stepper = load_stepper(design)
-    items = [item for item in load_sequence(design) if item.stage <= Stage.LOAD]
+    items = [item for item in load_sequence(design).states if item.stage <= Stage.LOAD]
     for item in items:
         stepper.advance(item)
     before = stepper.row()

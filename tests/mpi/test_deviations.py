@@ -53,7 +53,7 @@ def error(found: dict[int, TurnPoint]) -> np.ndarray:
 
 def loaded_stepper(design: DriveDesign) -> LoadStepper:
     stepper = load_stepper(design)
-    for state in load_sequence(design):
+    for state in load_sequence(design).states:
         if state.stage <= Stage.LOAD:
             stepper.advance(state)
     return stepper

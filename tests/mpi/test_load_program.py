@@ -90,7 +90,7 @@ def test_the_loop_with_friction_is_the_work_of_friction() -> None:
     design = small("plane", "contact.friction=0.1", "contact.quadrature=6").with_values(values)
     stepper = load_stepper(design)
     work, rows, done = None, [], []
-    for state in load_sequence(design):
+    for state in load_sequence(design).states:
         if state.stage == Stage.PROGRAM and work is None:
             work = FrictionWork(stepper)
         stepper.advance(state)
@@ -127,7 +127,7 @@ def test_lost_motion_of_a_stiff_drive_is_its_clearance() -> None:
     turned = [{"name": "turn", "output_rotation": 0.98 * half}, {"name": "on", "output_rotation": 0.99 * half}]
     design = stiff.with_values({"load.program": turned})
     stepper, gap = load_stepper(design), []
-    for state in load_sequence(design):
+    for state in load_sequence(design).states:
         stepper.advance(state)
         gap.append(stepper.problem.clearances[0].gap(LOADED_SIDE))
         assert stepper.row()["pairs_in_contact"] == 0
@@ -138,7 +138,7 @@ def test_lost_motion_of_a_stiff_drive_is_its_clearance() -> None:
 
 def follow(design: DriveDesign) -> list[PointRow]:
     stepper, rows = load_stepper(design), []
-    for state in load_sequence(design):
+    for state in load_sequence(design).states:
         stepper.advance(state)
         rows.append(stepper.row())
     return point_rows(design, rows)

@@ -15,7 +15,7 @@ from swgpar.checks.design_file import load_design
 from swgpar.constraints.distributing_coupling import ROTATION
 from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.contact.pair_contact import pair_contacts
-from swgpar.load.load_sequence import from_loaded, load_sequence
+from swgpar.load.load_sequence import load_sequence
 
 TORQUE = 1000.0
 """Torque of the output, N mm."""
@@ -32,7 +32,7 @@ def loaded(design: DriveDesign, comm: MPI.Comm = WORLD) -> tuple[LoadStepper, Ro
     """The drive under its torque, from the bent shape."""
     stepper = load_stepper(design, comm)
     bend(stepper.model)
-    stepper.jump(from_loaded(list(load_sequence(design)))[0])
+    stepper.jump(load_sequence(design).loaded)
     return stepper, row(stepper)
 
 
@@ -107,7 +107,7 @@ def test_without_torque_the_flexible_spline_is_held() -> None:
     """It rotates with the output at its kinematic angle, and nothing touches the teeth."""
     design = pancake("load.torque=0", "steps.rotation=3", "steps.increment=3")
     stepper, first = loaded(design)
-    stepper.advance(list(load_sequence(design))[-1])
+    stepper.advance(load_sequence(design).states[-1])
     last = row(stepper)
     assert first["pairs_in_contact"] == last["pairs_in_contact"] == 0
     assert last["output_angle_deg"] == pytest.approx(-3.0 / 20.0)

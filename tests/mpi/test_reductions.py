@@ -20,7 +20,7 @@ from swgpar.analysis.mesh_refinement import choose_mesh
 from swgpar.checks.design_file import load_design
 from swgpar.evaluation.period import continued
 from swgpar.fem.vectors import read_field
-from swgpar.load.load_sequence import from_loaded, load_sequence
+from swgpar.load.load_sequence import load_sequence
 from swgpar.load.load_states import Stage
 from swgpar.meshing import load_recipe
 from swgpar.solve.factor_reuse import MAX_ITERATIONS
@@ -44,12 +44,13 @@ def rotated(
     mesh = load_recipe(recipe)
     stepper = load_stepper(design, comm, mesh)
     prepare(stepper)
-    items = list(load_sequence(design))
+    sequence = load_sequence(design)
+    items = sequence.states
     if design.steps.start_levels or design.steps.bent_start:
         recipes = levels(design, mesh)
         assert len(recipes) == design.steps.start_levels
-        start_loaded(stepper, recipes, items)
-        items = from_loaded(items)[1:]
+        start_loaded(stepper, recipes, sequence)
+        items = sequence.from_loaded[1:]
     for item in items:
         stepper.advance(item)
     return stepper, row(stepper)
@@ -260,7 +261,7 @@ def test_a_start_on_a_coarser_mesh_takes_over_what_is_inside() -> None:
         overrides = [*CONDENSED[:-1], "steps.start_levels=1", f"solver.condensed_sectors={str(condensed).lower()}"]
         design, mesh = load_design(DESIGN, overrides), load_recipe("plane_coarse")
         stepper = load_stepper(design, recipe=mesh)
-        start_loaded(stepper, levels(design, mesh), list(load_sequence(design)))
+        start_loaded(stepper, levels(design, mesh), load_sequence(design))
         iterations.append(stepper.iterations)
     print(iterations)
     assert iterations[1] <= iterations[0] + 1
@@ -277,7 +278,7 @@ def test_the_continued_history_is_that_of_a_longer_rotation() -> None:
     design = load_design(DESIGN, [*PLANE, "steps.samples=4", "steps.rotation=11"])
     stepper = load_stepper(design)
     rows = []
-    for item in load_sequence(design):
+    for item in load_sequence(design).states:
         stepper.advance(item)
         if item.stage >= Stage.LOAD:
             rows.append({**stepper.row(), **stepper.model.stresses()[0], "wall_s": 1.0})
@@ -296,8 +297,8 @@ def test_a_mesh_is_chosen_alike_on_any_number_of_ranks() -> None:
     design = load_design(DESIGN, ["steps.rotation=3", "solver.rtol=1e-9"])
     found = []
     for comm in (MPI.COMM_WORLD, MPI.COMM_SELF):
-        states = list(load_sequence(design))
-        chosen = choose_mesh(design, load_recipe(RECIPE), states, 0.2, comm)
+        sequence = load_sequence(design)
+        chosen = choose_mesh(design, load_recipe(RECIPE), sequence, 0.2, comm)
         # a coarser mesh than this one would not find the contacts: it is compared with a finer one
         assert chosen.error <= 0.2 and chosen.recipe.flexible_spline.flank == 3
         found.append((chosen, chosen.model.stresses()[0]))

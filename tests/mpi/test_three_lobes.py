@@ -94,7 +94,7 @@ def test_period_and_work() -> None:
     design = load_design(DRIVERS / "three_lobes.toml")
     stepper = load_stepper(design, recipe=load_recipe("plane_coarse"))
     bend(stepper.model)
-    stepper.advance(next(s for s in load_sequence(design) if s.stage == Stage.LOAD))
+    stepper.advance(next(s for s in load_sequence(design).states if s.stage == Stage.LOAD))
     first = row(stepper)
     rows = [rotate(stepper, design.period_angle * k / PERIOD_SAMPLES) for k in range(1, PERIOD_SAMPLES + 1)]
     last = rows[-1]

@@ -37,7 +37,7 @@ def run(group: str, case: str) -> None:
     stepper = load_stepper(design, recipe=load_recipe(MESH))
     rows = []
     try:
-        for load_state in load_sequence(design):
+        for load_state in load_sequence(design).states:
             stepper.advance(load_state)
             rows.append(row(stepper))
     finally:

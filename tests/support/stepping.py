@@ -47,7 +47,7 @@ def loaded(
     """The drive under its torque, the wave generator not yet rotated. prepare : called on the undeformed drive"""
     stepper = load_stepper(design, comm)
     prepare(stepper)
-    for state in load_sequence(design):
+    for state in load_sequence(design).states:
         if state.stage <= Stage.LOAD:
             stepper.advance(state)
     return stepper, row(stepper)

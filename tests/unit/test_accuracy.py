@@ -27,7 +27,7 @@ from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError
 from swgpar.evaluation.windows.root_stress import BETWEEN, ENDS, LEVELS, RootStress, resolve_root_stress
 from swgpar.input.toml_file import to_toml
-from swgpar.load.load_sequence import from_loaded, load_sequence
+from swgpar.load.load_sequence import load_sequence
 from swgpar.meshing import load_recipe
 from swgpar.meshing.recipe_counts import RATIO, resized
 
@@ -37,8 +37,8 @@ LOADED = ["steps.rotation=0", "steps.bent_start=true"]
 def chosen(accuracy: float, *overrides: str, times: float = 1.0, largest: int | None = None) -> ChosenMesh:
     """The small plane drive on the mesh for an accuracy. times : elements in every direction of the first mesh"""
     design = with_accuracy(load_design(DESIGN, [*PLANE, *LOADED, *overrides]), accuracy)
-    states = list(load_sequence(design))
-    return choose_mesh(design, resized(load_recipe(RECIPE), times), states, accuracy, MPI.COMM_SELF, largest=largest)
+    sequence = load_sequence(design)
+    return choose_mesh(design, resized(load_recipe(RECIPE), times), sequence, accuracy, MPI.COMM_SELF, largest=largest)
 
 
 def test_a_resized_recipe_scales_every_count_and_no_grading() -> None:
@@ -109,9 +109,9 @@ def test_contacts_on_edges_leave_more_of_an_error() -> None:
     recipe = load_recipe("plane_coarse")
     for values, least in ((profiles, LEAST_WITH_EDGES), ({}, LEAST["plane"])):
         design = with_shortcuts(load_design(PLANE_DRIVE, values), recipe, levels=False).design
-        states = list(load_sequence(design))
-        model = solve_to_load(design, recipe, states, MPI.COMM_SELF)
-        assert least_error(model, from_loaded(states)[0]) == least
+        sequence = load_sequence(design)
+        model = solve_to_load(design, recipe, sequence, MPI.COMM_SELF)
+        assert least_error(model, sequence.loaded) == least
 
 
 def test_the_error_holds() -> None:
@@ -119,9 +119,9 @@ def test_the_error_holds() -> None:
     found = chosen(0.2, times=2.0)
     error, s1, design = found.root_stress.total_error, found.root_stress.s1, found.model.design
     found.model.destroy()
-    states = list(load_sequence(design))
-    finer = solve_to_load(design, resized(found.recipe, 2.0), states, MPI.COMM_SELF)
-    reference = resolve_root_stress(finer, from_loaded(states)[0], LEVELS["plane"] + 1).s1
+    sequence = load_sequence(design)
+    finer = solve_to_load(design, resized(found.recipe, 2.0), sequence, MPI.COMM_SELF)
+    reference = resolve_root_stress(finer, sequence.loaded, LEVELS["plane"] + 1).s1
     finer.destroy()
     true = abs(s1 - reference)
     print(f"s1 {s1:.2f} for {reference:.2f} MPa: error {error:.2f} for {true:.2f} MPa")
@@ -141,7 +141,7 @@ def test_with_friction_every_mesh_is_loaded_step_by_step() -> None:
     """The state is the one that a run has on this mesh, which depends on the path to it."""
     found = chosen(0.2, "contact.friction=0.1")
     design = found.model.design
-    alone = solve_to_load(design, found.recipe, list(load_sequence(design)), MPI.COMM_SELF)
+    alone = solve_to_load(design, found.recipe, load_sequence(design), MPI.COMM_SELF)
     assert found.error <= 0.2
     assert found.model.stresses()[0] == pytest.approx(alone.stresses()[0], rel=1e-9)
     for model in (found.model, alone):

@@ -338,7 +338,7 @@ def test_pins_fit_into_the_spline_and_end_at_the_cam(name: str, design_file: Cal
         x, y = cam.center
         assert travel == pytest.approx(y - np.sqrt((R_FS - cam.radius) ** 2 - x**2), rel=1e-5)
     assert start_state(design).pin_inset == travel
-    assert [i.pin_inset for i in load_sequence(design) if i.stage == Stage.DEFLECT][-1] == 0.0
+    assert [i.pin_inset for i in load_sequence(design).states if i.stage == Stage.DEFLECT][-1] == 0.0
 
 
 def assert_derivatives(surface: WaveGeneratorSurface, x: np.ndarray) -> None:

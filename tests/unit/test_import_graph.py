@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -89,4 +91,53 @@ def test_picture(tmp_path: Path) -> None:
     ],
 )
 def test_a_number_is_recognised(value: object, held: bool) -> None:
-    assert path.Watch("house", 1.2345, "1.2345").holds(value) == held
+    number = path.Number([1.2345 * unit for unit in path.TORQUE_UNITS], ["1.2345"])
+    assert number(value) == held
+
+
+class Plan:
+    """What is followed in `LOW` and `TOP`."""
+
+
+LOW = """
+def ask(plan): return 1
+def other(x): return x
+def more(plan): return 2
+"""
+TOP = """
+def run(plan):
+    ask(plan)
+    other(3)
+    last(plan)
+    ask(plan)
+
+def last(plan):
+    more(plan)
+"""
+
+
+def test_the_way_through_modules_of_two_levels() -> None:
+    """Functions count once, at their first entry; a stay in a higher module than before is a climb."""
+    low: dict[str, Any] = {"__name__": "house.low"}
+    exec(compile(LOW, "low.py", "exec"), low)
+    top: dict[str, Any] = {**low, "__name__": "house.top"}
+    exec(compile(TOP, "top.py", "exec"), top)
+    watch = path.Watch("house", path.of_class("Plan"), asked=True)
+    sys.setprofile(watch)
+    try:
+        top["run"](Plan())
+    finally:
+        sys.setprofile(None)
+    way = path.find_way(watch, {"house.low": 0, "house.top": 1})
+    assert way.stays == [
+        ("house.top", ["run"]),
+        ("house.low", ["ask"]),
+        ("house.top", ["last"]),
+        ("house.low", ["more"]),
+    ]
+    assert way.climbs == [2]
+    assert way.counts() == {"modules": 2, "functions": 4, "lines": 9, "climbs": 1}
+
+
+def test_modules_in_a_circle_share_a_level() -> None:
+    assert path.module_levels({"a": {"b"}, "b": {"a", "c"}, "c": set(), "d": {"a"}}) == {"a": 1, "b": 1, "c": 0, "d": 2}

@@ -22,7 +22,7 @@ from swgpar.load.load_program import (
     program_points,
     stiffness_torques,
 )
-from swgpar.load.load_sequence import from_loaded, load_sequence
+from swgpar.load.load_sequence import load_sequence
 from swgpar.load.load_states import Stage
 from swgpar.meshing import load_recipe
 
@@ -56,9 +56,10 @@ def test_load_states_of_a_program(layout: str, sign: float) -> None:
     """A positive torque acts against the output's motion; the states follow the assembly."""
     held = {"name": "held", "output_rotation": 0.5, "wave_generator": 2.0}
     design = small("plane", f"drive.layout={layout}").with_values(program(UP, held))
-    states = list(load_sequence(design))
+    sequence = load_sequence(design)
+    states = sequence.states
     assert [s.stage for s in states] == [Stage.DEFLECT, Stage.ENGAGE, *[Stage.PROGRAM] * 3]
-    assert [s.step for s in states] == [1, 2, 3, 4, 5] and from_loaded(states) == states[2:]
+    assert [s.step for s in states] == [1, 2, 3, 4, 5] and sequence.from_loaded == states[2:]
     assert states[3].torque == pytest.approx(sign * 200.0) and states[3].control == "torque"
     assert states[4].output_rotation == pytest.approx(np.radians(0.5)) and states[4].control == "rotation"
     assert states[4].angle == pytest.approx(np.radians(2.0))

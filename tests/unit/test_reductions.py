@@ -76,7 +76,7 @@ def test_one_period_is_continued_over_the_rotation() -> None:
     design = load_design(DESIGN, ["steps.samples=4", "steps.rotation=30"])
     pitch = 360.0 / 42
     assert np.degrees(rotation_angles(design)) == pytest.approx([pitch * k / 4 for k in (1, 2, 3)])
-    assert len(list(load_sequence(design))) == 6
+    assert len(load_sequence(design).states) == 6
     rows = [
         {
             "step": 3 + k,

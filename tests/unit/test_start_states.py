@@ -24,12 +24,12 @@ def test_a_loaded_state_is_taken_over(tmp_path: Path) -> None:
     # with a factor for every tangent the residual ends far below the tolerance: a further search changes nothing
     values = [*PLANE, "steps.rotation=0", "steps.bent_start=true", "solver.keep_factor=false"]
     design = load_design(DESIGN, values)
-    recipe, states, comm = load_recipe("plane_coarse"), list(load_sequence(design)), MPI.COMM_SELF
+    recipe, sequence, comm = load_recipe("plane_coarse"), load_sequence(design), MPI.COMM_SELF
     kept = StartStates(tmp_path, design)
 
     def solve() -> tuple[np.ndarray, str]:
         with Messages() as messages:
-            model = solve_to_load(design, recipe, states, comm, kept=kept)
+            model = solve_to_load(design, recipe, sequence, comm, kept=kept)
         x = model.problem.x.array_r.copy()
         model.destroy()
         return x, "\n".join(messages.texts)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
-
 import pytest
 
 from support.paths import DESIGN
@@ -18,7 +16,7 @@ def test_every_increment_can_be_cut(torque: str) -> None:
     module, travel = design.drive.module, design.deflection
     before = start_state(design)
     keys = ("angle", "cam_clearance", "flank_clearance", "pin_inset", "output_rotation", "torque")
-    for target in load_sequence(design):
+    for target in load_sequence(design).states:
         # without a torque step 3 is the end of step 2
         if any(getattr(before, k) != getattr(target, k) for k in keys):
             half, end = (before.interpolate(target, share, module, travel) for share in (0.5, 1.0))
@@ -29,7 +27,7 @@ def test_every_increment_can_be_cut(torque: str) -> None:
 
 def test_engagement_grows_from_a_clearance() -> None:
     design = load_design(DESIGN, [])
-    deflected, engaged = itertools.islice(load_sequence(design), 2)
+    deflected, engaged = load_sequence(design).states[:2]
     half = deflected.interpolate(engaged, 0.5, design.drive.module, design.deflection)
     assert half.cam_clearance > 0.0 and half.flank_clearance > 0.0
     assert half.pin_inset == pytest.approx(0.125 * design.deflection)
