@@ -144,7 +144,7 @@ def _jump(stepper: LoadStepper, sequence: LoadSequence) -> None:
 def start_at_load(
     stepper: LoadStepper,
     recipe: MeshRecipe,
-    load_states: list[LoadState],
+    sequence: LoadSequence,
     on_coarse: Callable[[DriveModel, MeshRecipe], None],
     kept: StartStates,
 ) -> bool:
@@ -161,7 +161,7 @@ def start_at_load(
         ways.append([])
     for recipes in ways:
         try:
-            start_loaded(stepper, recipes, load_states, on_coarse, kept)
+            start_loaded(stepper, recipes, sequence, on_coarse, kept)
             return True
         except (ConvergenceError, InputError) as error:
             what = "on coarser meshes" if recipes else "from the bent shape"
