@@ -36,7 +36,7 @@ from swgpar.evaluation.places import find_places
 from swgpar.evaluation.ratcheting import has_fallen
 from swgpar.evaluation.transmission_error import period_rows
 from swgpar.evaluation.windows.root_stress import RootStress, resolve_root_stress, with_angle
-from swgpar.load.load_sequence import LoadSequence, load_sequence
+from swgpar.load.load_sequence import LoadSequence, load_sequence, negligible_torque
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import IncrementProgress, logger
 from swgpar.meshing import MeshRecipe, load_recipe, require_sections
@@ -117,7 +117,7 @@ def run_drive(design: DriveDesign, options: RunOptions) -> DriveResult:
 
 def _log_remarks(design: DriveDesign, left_out: Sequence[str]) -> None:
     """Say what the run leaves out, and what of the design may not be meant."""
-    if (remark := torque_remark(design)) is not None:
+    if (remark := torque_remark(design.load.torque, negligible_torque(design))) is not None:
         logger.warning("%s", remark)
     if left_out:
         logger.info("left out: %s; --plain computes all of it", ", ".join(left_out))

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from swgpar.checks.rigid_mesh import RigidMesh, flank_clearance, rigid_mesh
 from swgpar.design.drive_design import DriveDesign
 from swgpar.geometry.cams import Cam, pin_travel, taut_length
+from swgpar.geometry.profiles.rigid_teeth import RigidMesh
 
 
 def _smallest(cam: Cam, lobes: int) -> dict[str, float]:
@@ -42,9 +42,9 @@ def derived_geometry(design: DriveDesign) -> dict[str, float]:
         "tip of spline to root of ring, major axis (mm)": ring.r_root_circle - spline.r_tip_circle - half,
         "tip of ring to root of spline, major axis (mm)": ring.r_tip_circle - spline.r_root_circle - half,
         "tips at the minor axis (mm)": ring.r_tip_circle - spline.r_tip_circle + half,
-        "smallest flank clearance, kinematic (mm)": flank_clearance(design),
+        "smallest flank clearance, kinematic (mm)": design.rigid_teeth().clearance(),
         **_dynamic_spline(design),
-        **_rigid_contact(rigid_mesh(design)),
+        **_rigid_contact(design.rigid_teeth().mesh()),
     }
 
 
@@ -87,5 +87,5 @@ def _dynamic_spline(design: DriveDesign) -> dict[str, float]:
         "backlash of the dynamic spline (mm)": design.dynamic_backlash,
         "tip of spline to root of dynamic spline (mm)": second.r_root_circle - spline.r_tip_circle - half,
         "tip of dynamic spline to root of spline (mm)": second.r_tip_circle - spline.r_root_circle - half,
-        "clearance in the dynamic spline (mm)": flank_clearance(design, ring="dynamic_spline"),
+        "clearance in the dynamic spline (mm)": design.rigid_teeth("dynamic_spline").clearance(),
     }

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.load.load_sequence import counts_as_none, negligible_torque
+from swgpar.load.load_sequence import negligible_torque
 
 CLEARANCES = (
     "tip of spline to root of ring, major axis (mm)",
@@ -19,13 +19,12 @@ CLEARANCES = (
 """Names of `derived_geometry` whose values are negative where teeth overlap."""
 
 
-def torque_remark(design: DriveDesign) -> str | None:
-    """A sentence where the torque counts as none."""
-    if not counts_as_none(design):
+def torque_remark(torque: float, negligible: float) -> str | None:
+    """A sentence where a torque counts as none. torque : N·m;  negligible : N·mm"""
+    if not 0.0 < 1000.0 * torque <= negligible:
         return None
-    least = negligible_torque(design)
     return (
-        f"load.torque = {design.load.torque:g} N·m counts as none: up to {0.001 * least:.3g} N·m it is too small "
+        f"load.torque = {torque:g} N·m counts as none: up to {0.001 * negligible:.3g} N·m it is too small "
         "beside the bending of the flexible spline"
     )
 
@@ -38,4 +37,4 @@ def remarks(design: DriveDesign, derived: Mapping[str, float]) -> list[str]:
         for name in CLEARANCES
         if derived.get(name, 0.0) < -allowed
     ]
-    return [*found, *filter(None, [torque_remark(design)])]
+    return [*found, *filter(None, [torque_remark(design.load.torque, negligible_torque(design))])]

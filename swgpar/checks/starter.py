@@ -13,7 +13,6 @@ from typing import Any, Literal
 import numpy as np
 from scipy.optimize import brentq
 
-from swgpar.checks.derived_geometry import flank_clearance
 from swgpar.checks.design_file import make_drive
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import GEARS
@@ -128,7 +127,7 @@ def starter_design(request: Request) -> tuple[DriveDesign, dict[str, Any]]:
             continue
         built = True
         # few angles suffice: a tenth of the clearance is what they change
-        if flank_clearance(design, 91) > LEAST_CLEARANCE * design.drive.module:
+        if design.rigid_teeth().clearance(91) > LEAST_CLEARANCE * design.drive.module:
             return (design, table) if design.dynamic_spline is None else _thin_teeth(table)
     if refusal is not None and not built:
         raise refusal
@@ -143,7 +142,7 @@ def _thin_teeth(table: dict[str, Any]) -> tuple[DriveDesign, dict[str, Any]]:
     for c_P in DYNAMIC_THICKNESS:
         thinner = with_value(table, "dynamic_spline.c_P", _rounded(c_P))
         design = make_drive(thinner)
-        if flank_clearance(design, 91, ring="dynamic_spline") > LEAST_DYNAMIC_CLEARANCE * design.drive.module:
+        if design.rigid_teeth("dynamic_spline").clearance(91) > LEAST_DYNAMIC_CLEARANCE * design.drive.module:
             return design, thinner
     teeth = table["drive"]["teeth_fs"]
     raise InputError(

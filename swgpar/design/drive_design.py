@@ -34,6 +34,7 @@ from swgpar.geometry.cup_wall import CupWall, rounded_lines
 from swgpar.geometry.micro_geometry import WaveGeneratorSurface
 from swgpar.geometry.neutral_line import NeutralLine, neutral_line
 from swgpar.geometry.profiles import Conjugate, RackInvolute, Teeth, ToothMotion, ToothProfile, make_profile
+from swgpar.geometry.profiles.rigid_teeth import RigidTeeth
 from swgpar.input.design import Design
 
 
@@ -415,6 +416,11 @@ class DriveDesign(Design):
             share = (self.rest_plane - z) / self.rest_plane
         line = _line(self.wave_generator, self.major_semi_axis, self.minor_semi_axis, self.inner_radius, radius, share)
         return ToothMotion(line, self.drive.teeth_fs, self.teeth(ring).n_teeth)
+
+    def rigid_teeth(self, ring: GearName = "ring_gear") -> RigidTeeth:
+        """Undeformed teeth of the flexible spline and of a ring gear at mid-width."""
+        profiles, motion = (self.profile("flexible_spline"), self.profile(ring)), self.tooth_motion(ring=ring)
+        return RigidTeeth(*profiles, motion, self.lobes, self.drive.teeth_fs, self.drive.module)
 
     def cam(self) -> Cam:
         """Exact curve of the cam, major axis along +y. Raises InputError where its keys give no closed curve."""

@@ -7,7 +7,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from swgpar.checks.derived_geometry import flank_clearance
 from swgpar.design.drive_design import DriveDesign
 from swgpar.results.history import loaded_increments
 
@@ -83,7 +82,7 @@ def _penetration(design: DriveDesign, history: Mapping[str, np.ndarray]) -> Chec
 
 
 def _clearance(design: DriveDesign) -> Check:
-    clearance = min(flank_clearance(design, 181, ring) for ring in design.gears[1:])
+    clearance = min(design.rigid_teeth(ring).clearance(181) for ring in design.gears[1:])
     least = -design.contact.penetration_tolerance * design.drive.module
     text = (
         f"smallest distance of the undeformed flanks {1000 * clearance:.3g} µm; good from {1000 * least:.2g} µm: the "

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from swgpar.checks.remarks import torque_remark
 from swgpar.design.drive_design import DriveDesign
+from swgpar.load.load_sequence import counts_as_none
 from swgpar.results.history import Row, column
 
 LEAST_EFFICIENCY = 0.5
@@ -23,7 +23,7 @@ def jamming_remark(design: DriveDesign, rows: Sequence[Row], means: Mapping[str,
     rows : increments of the rotation whose `means` are given
     """
     expected = 1000.0 * design.load.torque / abs(design.ratio)
-    if not rows or expected == 0.0 or design.is_bolted or torque_remark(design) is not None:
+    if not rows or expected == 0.0 or design.is_bolted or counts_as_none(design):
         return None
     angles = column(rows, "wg_angle_deg")
     covered = design.steps.samples or np.ptp(angles) + design.steps.increment >= np.degrees(design.period_angle)

@@ -18,13 +18,12 @@ from pathlib import Path
 import numpy as np
 
 from swgpar.analysis.bent_start import BentSpline
-from swgpar.checks.remarks import torque_remark
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.exchange.calculix_model import JobModel, Surface, Term
 from swgpar.exchange.cam_facets import OUTER_FACE, CamFacets, cam_facets
 from swgpar.load.load_program import internal_torque
-from swgpar.load.load_sequence import negligible_torque
+from swgpar.load.load_sequence import counts_as_none, negligible_torque
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.inp import MATERIAL, write_inp
 
@@ -86,7 +85,7 @@ def _check(design: DriveDesign) -> None:
             refuse(key, "a design without it")
     if design.has_attachment:
         refuse(f'cup.attachment = "{design.cup.attachment}"', '"edge"')
-    if not design.load.torque or torque_remark(design):
+    if not design.load.torque or counts_as_none(design):
         least = 0.001 * negligible_torque(design)
         refuse(f"load.torque = {design.load.torque:g} N·m", f"above {least:.3g} N·m, which closes the backlash")
 

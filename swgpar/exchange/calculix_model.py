@@ -14,13 +14,13 @@ from functools import cached_property
 import meshio
 import numpy as np
 
-from swgpar.checks.rigid_mesh import touching_rotation
 from swgpar.constraints.distributing_coupling import node_weights
 from swgpar.contact.segments import flank_faces
 from swgpar.design.drive_design import DriveDesign
 from swgpar.geometry.arrays import Floats, Ints
 from swgpar.geometry.profiles import ToothProfile
 from swgpar.geometry.profiles.flank import Segment
+from swgpar.geometry.profiles.rigid_teeth import RigidTeeth
 from swgpar.geometry.rotation import rotated
 from swgpar.load.load_program import torque_direction
 from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes
@@ -141,9 +141,9 @@ class JobModel:
             gap = max(gap, float(np.abs(faces.offset).max()))
         return gap
 
-    def faceted_flanks(self) -> tuple[ToothProfile, ToothProfile]:
-        """Flanks of both gears at mid-width as polygons."""
-        return _polygon(self.spline), _polygon(self.ring)
+    def faceted_teeth(self) -> RigidTeeth:
+        """Rigid teeth whose flanks at mid-width are polygons."""
+        return replace(self.design.rigid_teeth(), spline=_polygon(self.spline), ring=_polygon(self.ring))
 
     def ties(self) -> Iterator[list[Term]]:
         """Plane model: the upper layer of nodes moves with the lower one."""
@@ -158,7 +158,7 @@ class JobModel:
     @cached_property
     def closing_rotation(self) -> float:
         """Rotation (rad) of the output that brings the loaded flanks together, as rigid facets."""
-        closing = abs(touching_rotation(self.design, self.faceted_flanks()))
+        closing = abs(self.faceted_teeth().touching_rotation())
         if not np.isfinite(closing):  # the loaded state has to find the flanks
             closing = self.design.backlash_angle
         return torque_direction(self.design.ratio) * closing
