@@ -16,13 +16,14 @@ from swgpar.errors import ConvergenceError
 from swgpar.evaluation.losses import work_per_cycle
 from swgpar.evaluation.stress_cycle import history_by_renaming, sector_stress
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, BodyLayout
+from swgpar.fem.element_matrices import element_matrices
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
 from swgpar.fem.stress import body_fields, maxima
 from swgpar.geometry.cams import Cam
-from swgpar.kernel import reference_elements
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import PhaseTimes
+from swgpar.materials import Material
 from swgpar.meshing.ring_sector import AROUND, ring_sector
 from swgpar.model.drive_model import EDGE, PRESSURE_LIMIT
 from swgpar.solve.discrete_problem import DiscreteProblem
@@ -44,7 +45,7 @@ class RingDesign:
     thickness: float
     width: float
     plane: bool
-    material: sections.Material
+    material: Material
     # a support touches over tenths of a millimetre: many points per facet, and a penalty as of the flanks
     contact: sections.Contact = sections.Contact(wg_penalty_coef=50.0, wg_quadrature=7, penetration_tolerance=1e-4)
     solver: sections.Solver = sections.Solver()
@@ -62,7 +63,7 @@ class RingDesign:
     @property
     def wg_penalty(self) -> float:
         """Penalty of the contact with the rigid surface, MPa / mm."""
-        return self.contact.wg_penalty_coef * self.material.E / REFERENCE_LENGTH
+        return self.contact.wg_penalty_coef * self.material.modulus / REFERENCE_LENGTH
 
 
 @dataclass(frozen=True)
@@ -109,12 +110,12 @@ class RingBody:
         self, design: RingDesign, counts: RingCounts, comm: MPI.Comm, copies: int, incompatible: bool = True
     ) -> None:
         self.design, self.copies = design, copies
-        inner, width, material = design.inner_radius, design.width, design.material
+        inner, width = design.inner_radius, design.width
         mesh = ring_sector(inner, design.outer_radius, width, counts.sectors, counts.radial, counts.axial, design.plane)
         count, fixed = counts.sectors // copies, np.zeros(0, dtype=np.int32)
         layout = BodyLayout(mesh=mesh, first_tooth=0, count=count, closed=True, copies=copies, fixed=fixed)
         self.mesh, self.partition = mesh, Partition([layout], comm)
-        reference = reference_elements(mesh.coords[mesh.elements], material.E, material.nu, width, incompatible)
+        reference = element_matrices(mesh.coords[mesh.elements], design.material, width, incompatible)
         self.elements = Elements(self.partition, [reference])
         self.body = self.elements.bodies[FLEXIBLE_SPLINE]
 
@@ -122,7 +123,7 @@ class RingBody:
         """Solver of the ring with one contact."""
         design, solver = self.design, self.design.solver
         couplings = [DistributingCoupling(self.partition, self.body, "bore", self.copies > 1)]
-        scale, share = design.material.E * REFERENCE_LENGTH, 1.0 / self.copies
+        scale, share = design.material.modulus * REFERENCE_LENGTH, 1.0 / self.copies
         problem = DiscreteProblem(
             partition=self.partition,
             elements=self.elements,
@@ -182,7 +183,7 @@ class RingModel:
             n_quadrature=design.contact.wg_quadrature,
             penalty=design.wg_penalty,
             pin_half_angle=half_angle,
-            pressure_limit=PRESSURE_LIMIT * design.material.E,
+            pressure_limit=PRESSURE_LIMIT * design.material.modulus,
         )
         self.solver = self.ring.solver(self.surface)
         self.problem = self.solver.problem

@@ -31,9 +31,9 @@ from mpi4py import MPI
 
 from plain_ring import RingCounts, RingDesign, RingModel
 from swgpar import log
-from swgpar.design.sections import Material
 from swgpar.geometry.cams.simplified import simplified
 from swgpar.log import logger
+from swgpar.materials import Isotropic
 from swgpar.results.atomic import agreed, write_from_root
 
 OUTER_DIAMETER, THICKNESS, SUPPORT_DIAMETER = 136.0, 4.5, 65.0
@@ -43,7 +43,7 @@ OUTWARD = np.array([0.127, 0.254, 0.381, 0.508, 0.635, 0.762, 0.813])
 MEASURED = np.array([0.064, 0.127, 0.254, 0.381, 0.533, 0.737, 0.762])
 """a and b in mm, Table A.2; the dials show steps of 0.0005 inch, 0.013 mm."""
 
-STEEL = Material(E=206e3, nu=0.29)
+STEEL = Isotropic(E=206e3, nu=0.29)
 READINGS = {
     "moving": "45°, dial moves with the support",
     "centre": "45°, dial at rest against the centre",

@@ -14,11 +14,11 @@ import numpy as np
 from mpi4py import MPI
 from plain_ring import RingCounts, RingDesign, RingModel
 
-from swgpar.design.sections import Material
 from swgpar.geometry.cams import EllipticalCam, taut_length
 from swgpar.geometry.cams.simplified import simplified
+from swgpar.materials import Isotropic
 
-STEEL = Material(E=210e3, nu=0.29)
+STEEL = Isotropic(E=210e3, nu=0.29)
 COUNTS = RingCounts(sectors=60, radial=2, axial=1)
 
 # %%

@@ -64,7 +64,7 @@ def cam(facets: int, first_node: int, first_element: int) -> list[str]:
 def write_job(problem: Problem, mesh: SectorMesh, folder: Path) -> None:
     """``ring.inp``, which is the mesh, and ``job.inp``, which names it and has supports, loads and the step."""
     meshes = {"ring": mesh}
-    write_inp(folder / "ring.inp", whole_drive(meshes), named_surfaces(meshes), STEEL, WIDTH)
+    write_inp(folder / "ring.inp", whole_drive(meshes), named_surfaces(meshes), {mesh.body: STEEL}, WIDTH)
     coords, elements = whole_body(mesh)
     x, y, z = coords.T
     # the two planes of symmetry hold the ring, which moves by symmetry only

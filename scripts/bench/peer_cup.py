@@ -79,7 +79,9 @@ def held(mesh: SectorMesh, elements: np.ndarray, pressure: np.ndarray) -> np.nda
 
 def write_job(design: DriveDesign, mesh: SectorMesh, nodes: np.ndarray, u: np.ndarray, folder: Path) -> None:
     """``spline.inp``, the mesh, and ``job.inp``, which names it and prescribes the displacements u (n, 3) mm."""
-    write_inp(folder / "spline.inp", whole_drive({BODY: mesh}), {}, design.material, design.drive.face_width)
+    write_inp(
+        folder / "spline.inp", whole_drive({BODY: mesh}), {}, {BODY: design.material_of(BODY)}, design.drive.face_width
+    )
     job = ["*INCLUDE, INPUT=spline.inp", "*STEP, NLGEOM, INC=1000", "*STATIC", "1., 1.", "*BOUNDARY"]
     job += [f"{n + 1}, {k + 1}, {k + 1}, {u[n, k]:.12e}" for n in nodes for k in range(3)]
     job += ["*NODE FILE, FREQUENCY=1000", "U", "*EL FILE, FREQUENCY=1000", "S", "*END STEP"]

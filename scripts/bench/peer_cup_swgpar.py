@@ -18,10 +18,10 @@ from mpi4py import MPI
 from swgpar.checks.design_file import load_design
 from swgpar.constraints.boundary_conditions import PrescribedDisplacement
 from swgpar.constraints.supports import Supports
+from swgpar.fem.element_matrices import element_matrices
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
 from swgpar.fem.stress import body_fields
-from swgpar.kernel import reference_elements
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import PhaseTimes
 from swgpar.meshing import load_recipe
@@ -41,10 +41,10 @@ STIFFNESS = 1e3
 def main() -> None:
     name, held, out = sys.argv[1:]
     comm, design = MPI.COMM_WORLD, load_design(Path(DESIGN), ["solver.rtol=1e-5"])
-    mesh, material = build_sector(design, load_recipe(name), BODY), design.material
+    mesh, material = build_sector(design, load_recipe(name), BODY), design.material_of(BODY)
     layout = build_layout(design, mesh)
     partition = Partition([layout], comm)
-    reference = reference_elements(mesh.coords[mesh.elements], material.E, material.nu, design.drive.face_width)
+    reference = element_matrices(mesh.coords[mesh.elements], material, design.drive.face_width)
     elements = Elements(partition, [reference])
     body = elements.bodies[0]
     with np.load(held) as file:
@@ -54,8 +54,8 @@ def main() -> None:
     local, values = body.local[body.owned], known[sector_numbers(mesh)[sectors % mesh.n_sectors]]
     mine = (local >= 0) & (local < partition.n_own) & (body.sixths[body.owned] == 0) & ~np.isnan(values[..., 0])
     nodes, first = np.unique(local[mine], return_index=True)
-    stiffness = STIFFNESS * material.E * design.drive.module
-    scale = material.E * design.drive.module
+    stiffness = STIFFNESS * material.modulus * design.drive.module
+    scale = material.modulus * design.drive.module
     problem = DiscreteProblem(
         partition=partition,
         elements=elements,

@@ -6,14 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from swgpar.design.sections import Material
+from swgpar.materials import Isotropic
 from swgpar.meshing.ring_sector import ring_sector
 from swgpar.meshing.sector import SectorMesh
 
 INNER, OUTER, WIDTH = 58.2, 59.2, 10.0
 """mm, near the rim of the reference drive"""
 
-STEEL = Material(E=210e3, nu=0.29)
+STEEL = Isotropic(E=210e3, nu=0.29)
 
 PENALTY = 50.0
 """Of the contact, over E / mm."""

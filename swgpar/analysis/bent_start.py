@@ -128,7 +128,7 @@ class BentSpline:
         ends there and neither deflects nor leans. The other edge has the wall's deflection and lean.
         """
         cup = self.design.cup
-        edge, nu = (cup.clamping_radius or cup.edge) / self.radius, self.design.material.nu
+        edge, nu = (cup.clamping_radius or cup.edge) / self.radius, self.design.material_of("flexible_spline").poisson
         power = np.array([order, -order, order + 2.0, 2.0 - order])
 
         def derivative(at: float, times: int) -> np.ndarray:

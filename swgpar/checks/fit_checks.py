@@ -133,7 +133,8 @@ def _check_steps(design: DriveDesign) -> None:
 
 def _check_torque(design: DriveDesign) -> None:
     """Torques that a cylinder like the weakest section of the cup, or the rim in the plane model, cannot carry."""
-    shear_modulus = 0.5 * design.material.E / (1.0 + design.material.nu)
+    material = design.material_of("flexible_spline")
+    shear_modulus = 0.5 * material.modulus / (1.0 + material.poisson)
     weakest = design.inner_radius**2 * design.cup_thickness
     if design.has_cup:
         weakest = min(radius**2 * thickness for _, radius, thickness, _ in design.wall_points)

@@ -38,11 +38,6 @@ class PointContact:
         return 1.5 * np.cbrt(force) / (np.pi * self.major * self.minor)
 
 
-def effective_modulus(first: tuple[float, float], second: tuple[float, float]) -> float:
-    """E* (MPa) of two materials, each given by its modulus (MPa) and its Poisson's ratio."""
-    return 1.0 / sum((1.0 - nu**2) / young for young, nu in (first, second))
-
-
 def point_contact(along: float, across: float, modulus: float) -> PointContact:
     """Contact of two bodies.
 

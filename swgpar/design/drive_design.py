@@ -13,6 +13,7 @@ from swgpar.design.sections import (
     GEARS,
     OMITTED_BENDING,
     Contact,
+    DesignBody,
     Drive,
     DynamicSpline,
     ExternalGear,
@@ -22,7 +23,6 @@ from swgpar.design.sections import (
     InternalGear,
     Load,
     Losses,
-    Material,
     MicroGeometry,
     Output,
     Solver,
@@ -36,6 +36,7 @@ from swgpar.geometry.neutral_line import NeutralLine, neutral_line
 from swgpar.geometry.profiles import Conjugate, RackInvolute, Teeth, ToothMotion, ToothProfile, make_profile
 from swgpar.geometry.profiles.rigid_teeth import RigidTeeth
 from swgpar.input.design import Design
+from swgpar.materials import ChosenMaterial, Material
 
 
 @lru_cache(maxsize=16)
@@ -56,7 +57,7 @@ class DriveDesign(Design):
     wave_generator: WaveGenerator
     cup: Cup | None = None
     micro_geometry: MicroGeometry = MicroGeometry()
-    material: Material
+    material: ChosenMaterial
     load: Load = Load()
     stiffness: Stiffness | None = None
     ratcheting: Ratcheting | None = None
@@ -225,21 +226,9 @@ class DriveDesign(Design):
         return self.bearing.race_width or self.wave_generator.face_width
 
     @property
-    def race_material(self) -> tuple[float, float]:
-        """Modulus of elasticity (MPa) and Poisson's ratio of the bearing."""
-        bearing, material = self.bearing, self.material
-        return (bearing.E or material.E, material.nu if bearing.nu is None else bearing.nu)
-
-    @property
     def housing(self) -> Housing | None:
         """Section [ring_gear.housing]; None where the frame around the ring gear is rigid."""
         return self.ring_gear.housing
-
-    @property
-    def housing_material(self) -> tuple[float, float]:
-        """Modulus of elasticity (MPa) and Poisson's ratio of the housing, which the design must have."""
-        housing, material = self.housing, self.material
-        return (housing.E or material.E, material.nu if housing.nu is None else housing.nu)
 
     @property
     def ring_outer_radius(self) -> float:
@@ -371,15 +360,23 @@ class DriveDesign(Design):
         """z (mm) at which the deflection vanishes: the middle of the closed end or flange; 0 in the plane model."""
         return 0.5 * self.drive.face_width + self.cup.length - 0.5 * self.end_thickness if self.has_cup else 0.0
 
-    @property
-    def penalty(self) -> float:
-        """Penalty of the flanks' contact, MPa / mm."""
-        return self.contact.penalty_coef * self.material.E / self.drive.module
+    def material_of(self, body: DesignBody) -> Material:
+        """Material of a body of the design: that of its own section, else [material]."""
+        section = {"housing": self.housing, "bearing": self.bearing}.get(body) or getattr(self, body)
+        return section.material or self.material
+
+    def modulus_of(self, *bodies: DesignBody) -> float:
+        """Modulus of elasticity (MPa) of the softest of bodies: the scale of contacts and supports between them."""
+        return min(self.material_of(body).modulus for body in bodies)
+
+    def penalty(self, *bodies: DesignBody) -> float:
+        """Penalty of the contact of flanks of two bodies, or of the support of one, MPa / mm."""
+        return self.contact.penalty_coef * self.modulus_of(*bodies) / self.drive.module
 
     @property
     def wg_penalty(self) -> float:
         """Penalty of the contact of cam and pins, MPa / mm."""
-        return self.contact.wg_penalty_coef * self.material.E / self.drive.module
+        return self.contact.wg_penalty_coef * self.modulus_of("flexible_spline") / self.drive.module
 
     def teeth(self, gear: GearName) -> Teeth:
         """Number and sizes of the teeth of a gear.

@@ -7,9 +7,13 @@ from typing import Literal
 from swgpar.design.program_sections import ProgramStage
 from swgpar.geometry.profiles import ExternalProfile, InternalProfile
 from swgpar.input.quantities import Section, quantity
+from swgpar.materials import OptionalMaterial
 
 GearName = Literal["flexible_spline", "ring_gear", "dynamic_spline"]
 """Name of a gear: its section in the design file, and its body in meshes and results."""
+
+DesignBody = Literal["flexible_spline", "ring_gear", "dynamic_spline", "housing", "bearing"]
+"""Name of what may have a material of its own."""
 
 GEARS: tuple[GearName, GearName] = ("flexible_spline", "ring_gear")
 """The gears that every drive has, in the order of the bodies."""
@@ -44,6 +48,7 @@ class Gear(Section):
     rim: float = quantity(unit="mm", text="rim thickness below the root circle", gt=0.0)
     c_P: float = quantity(1.0, text="angular tooth thickness reduction; 1 for involutes", gt=0.0, le=1.2)
     c_l: float = quantity(0.5, text="share of the straight segment above the pitch point", ge=0.0, le=1.0)
+    material: OptionalMaterial = None
 
 
 class ExternalGear(Gear):
@@ -56,13 +61,10 @@ class Housing(Section):
     """Section [ring_gear.housing]: an elastic ring around the ring gear and bonded to it, as wide as the gear."""
 
     thickness: float = quantity(unit="mm", text="radial thickness", gt=0.0)
-    E: float | None = quantity(
-        None, unit="MPa", text="modulus of elasticity; default material.E, aluminium has 70e3", gt=0.0
-    )
-    nu: float | None = quantity(None, text="Poisson's ratio; default material.nu", ge=0.0, le=0.499)
     outside: Literal["free", "held"] = quantity(
         "free", text="outer surface: free, with its mean motion held, or held by a rigid frame"
     )
+    material: OptionalMaterial = None
 
 
 class InternalGear(Gear):
@@ -94,13 +96,6 @@ class MicroGeometry(Section):
     )
     fs_crowning: float = quantity(0.0, unit="mm", text="crowning of the flexible spline's flanks at their ends", ge=0.0)
     crowning_shape: Literal["parabolic", "circular"] = quantity("parabolic", text="curve of the crowning")
-
-
-class Material(Section):
-    """Section [material]: linear elastic, the same for both gears."""
-
-    E: float = quantity(unit="MPa", text="modulus of elasticity", gt=0.0)
-    nu: float = quantity(text="Poisson's ratio", ge=0.0, le=0.499)
 
 
 class Load(Section):

@@ -12,10 +12,10 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.sections import Material
 from swgpar.evaluation.stress_cycle import StressCycle, elements_of_rank
 from swgpar.fem.body_layout import BodyLayout
 from swgpar.log import logger
+from swgpar.materials import Material
 from swgpar.model.drive_model import DriveModel
 from swgpar.results.history import Row
 
@@ -120,7 +120,9 @@ def hysteresis_work(cycle: StressCycle) -> float:
     model, layout = cycle.model, cycle.body.layout
     mine, stress = cycle.history()
     thickness = model.design.drive.face_width if layout.mesh.plane else None
-    per_cycle = work_per_cycle(model.comm, layout, cycle.nodes[mine], stress, model.design.material, thickness)
+    per_cycle = work_per_cycle(
+        model.comm, layout, cycle.nodes[mine], stress, model.design.material_of("flexible_spline"), thickness
+    )
     return per_cycle * 2.0 * np.pi / cycle.angle
 
 
@@ -144,7 +146,7 @@ def work_per_cycle(
     if len(stress) % 2 == 0:
         amplitude[-1] *= 0.5
     amplitude *= np.sqrt(np.arange(1.0, len(amplitude) + 1.0))[:, None, None]
-    features = energy_coordinates(amplitude, material.E, material.nu)
+    features = energy_coordinates(amplitude, material)
     local = np.full(len(layout.mesh.coords), -1)
     local[nodes] = np.arange(len(nodes))
     elements, energy = layout.mesh.elements[elements_of_rank(comm, layout)], 0.0
@@ -155,18 +157,15 @@ def work_per_cycle(
     return 2.0 * np.pi * layout.mesh.n_sectors * comm.allreduce(energy, op=MPI.SUM)
 
 
-def energy_coordinates(amplitude: np.ndarray, E: float, nu: float) -> np.ndarray:
+def energy_coordinates(amplitude: np.ndarray, material: Material) -> np.ndarray:
     """Numbers (n, m) whose squares add up to the strain energy density (MPa) of amplitudes (k, n, 6) MPa, complex.
 
-    The density is (s_ij s_ij (1 + nu) - nu s_kk^2) / 2 E, in plane stress as well. In parts: the deviator's with
-    (1 + nu) / 2 E and the trace's with (1 - 2 nu) / 6 E.
+    The density is half of the product of stress and strain, in plane stress as well: with the compliance L L^T it is
+    |L^T s|^2 / 2. A law has to be the same in all directions of the plane xy, because the stress is in global axes.
     """
-    xx, yy, zz, xy, yz, zx = np.moveaxis(amplitude, -1, 0)
-    trace = xx + yy + zz
-    deviator = [xx - trace / 3.0, yy - trace / 3.0, zz - trace / 3.0, *(np.sqrt(2.0) * one for one in (xy, yz, zx))]
-    parts = [np.sqrt(0.5 * (1.0 + nu) / E) * one for one in deviator] + [np.sqrt((1.0 - 2.0 * nu) / (6.0 * E)) * trace]
-    stacked = np.concatenate(parts)  # (7 k, n)
-    return np.concatenate([stacked.real, stacked.imag]).T
+    coordinates = amplitude @ np.linalg.cholesky(0.5 * material.compliance())
+    stacked = np.concatenate([coordinates.real, coordinates.imag], axis=0)
+    return np.moveaxis(stacked, 1, 0).reshape(amplitude.shape[1], -1)
 
 
 def mass_matrices(coords: np.ndarray, thickness: float | None) -> np.ndarray:

@@ -19,13 +19,14 @@ import numpy as np
 
 from swgpar.analysis.bent_start import BentSpline
 from swgpar.design.drive_design import DriveDesign
+from swgpar.design.sections import GEARS
 from swgpar.errors import InputError
 from swgpar.exchange.calculix_model import JobModel, Surface, Term
 from swgpar.exchange.cam_facets import OUTER_FACE, CamFacets, cam_facets
 from swgpar.load.load_program import internal_torque
 from swgpar.load.load_sequence import counts_as_none, negligible_torque
 from swgpar.meshing import MeshRecipe
-from swgpar.meshing.inp import MATERIAL, write_inp
+from swgpar.meshing.inp import write_inp
 
 JOB, MESH = "drive.inp", "drive_mesh.inp"
 
@@ -53,7 +54,8 @@ def write_calculix(design: DriveDesign, recipe: MeshRecipe, folder: Path) -> lis
     _check(design)
     model = JobModel(design, recipe)
     mesh, job = folder / MESH, folder / JOB
-    write_inp(mesh, model.drive, model.surfaces, design.material, design.drive.face_width, plane_stress=model.plane)
+    materials = {gear: design.material_of(gear) for gear in GEARS}
+    write_inp(mesh, model.drive, model.surfaces, materials, design.drive.face_width, plane_stress=model.plane)
     half = 0.5 * design.wave_generator.face_width
     if model.plane:
         half = (0.5 + CAM_OVERHANG) * design.drive.face_width
@@ -126,7 +128,7 @@ def _job(model: JobModel, cam: CamFacets) -> Iterator[str]:
         yield from ("*NODE, NSET=HELD", f"{output + 3}, 0., 0., 0.", f"{output + 4}, 0., 0., 0.")
     for terms in equations:
         yield from _equation(terms)
-    for name, penalty in (("ON_CAM", design.wg_penalty), ("ON_FLANKS", design.penalty)):
+    for name, penalty in (("ON_CAM", design.wg_penalty), ("ON_FLANKS", design.penalty("flexible_spline", "ring_gear"))):
         yield from (f"*SURFACE INTERACTION, NAME={name}", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR")
         yield f"{penalty:.12g}"
     for pair in PAIRS.values():
@@ -163,7 +165,7 @@ def _cam(model: JobModel, cam: CamFacets) -> Iterator[str]:
     yield "*ELEMENT, TYPE=C3D8, ELSET=CAM"
     for k, nodes in enumerate(cam.elements + n + 1, start=m + 1):
         yield f"{k}, {_numbered(nodes)}"
-    yield from (f"*SOLID SECTION, ELSET=CAM, MATERIAL={MATERIAL}", "*SURFACE, NAME=CAM, TYPE=ELEMENT")
+    yield from ("*SOLID SECTION, ELSET=CAM, MATERIAL=FLEXIBLE_SPLINE_MATERIAL", "*SURFACE, NAME=CAM, TYPE=ELEMENT")
     yield f"CAM, S{OUTER_FACE + 1}"
 
 

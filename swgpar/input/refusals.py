@@ -42,7 +42,7 @@ def _locate(model: type[Section], path: Sequence[Any]) -> tuple[type[Section], F
         keys.append(path.pop(0))
         field = model.model_fields.get(str(keys[-1]))
         classes = _section_classes(field) if field else []
-        if len(classes) > 1 and path:
+        if field and field.discriminator and path:
             tag = path.pop(0)
             classes = [c for c in classes if tag in get_args(c.model_fields["type"].annotation)]
         if classes and path and _is_list(field):
@@ -61,7 +61,12 @@ def _unknown_key(model: type[Section], path: Sequence[Any], value: Any) -> str:
     where = f"section [{parent}]" if parent else "design file"
     given = f"{show_key(*path)} = {show(value)}"
     alike = [name for name in names if (name in tables) == isinstance(value, dict)]
-    near = difflib.get_close_matches(str(path[-1]), alike, n=1, cutoff=0.5)
+    inner = [
+        f"{name}.{path[-1]}"
+        for name, field in model.model_fields.items()
+        if any(path[-1] in section.model_fields for section in _section_classes(field))
+    ]
+    near = inner or difflib.get_close_matches(str(path[-1]), alike, n=1, cutoff=0.5)
     if near:
         return f"{given} is not a key of the {where}: did you mean {parent + '.' if parent else ''}{near[0]}?"
     return f"{given} is not a key of the {where}: allowed {', '.join(names)}"

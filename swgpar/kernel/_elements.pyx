@@ -27,10 +27,10 @@ cdef extern from "element_batch.hpp" namespace "swgpar" nogil:
                                                            const int64_t* slot, double* values, double* energy)
     int64_t stress8 "swgpar::stress<8>"(const ElementBatch&, const double* recovery, const double* u, double* out)
     int64_t stress4 "swgpar::stress<4>"(const ElementBatch&, const double* recovery, const double* u, double* out)
-    int64_t solid "swgpar::reference<swgpar::Hex8i>"(int64_t n, const double* coords, double young, double poisson,
+    int64_t solid "swgpar::reference<swgpar::Hex8i>"(int64_t n, const double* coords, const double* elasticity,
                                                      bint incompatible, double* stiffness, double* recovery,
                                                      double* gradient, double* volume)
-    int64_t plane "swgpar::reference<swgpar::Quad4i>"(int64_t n, const double* coords, double young, double poisson,
+    int64_t plane "swgpar::reference<swgpar::Quad4i>"(int64_t n, const double* coords, const double* elasticity,
                                                       bint incompatible, double* stiffness, double* recovery,
                                                       double* gradient, double* volume, double thickness)
 
@@ -50,11 +50,13 @@ class ReferenceElements(NamedTuple):
     volume: np.ndarray
 
 
-def reference_elements(coords, double young, double poisson, double thickness=0.0, bint incompatible=True):
+def reference_elements(coords, elasticity, double thickness=0.0, bint incompatible=True):
     """Matrices of C3D8I-type hexahedra or of CPS4I-type quadrilaterals.
 
     coords : (n, 8, 3) mm, VTK node order, or (n, 4, 3) at one z, counter-clockwise seen against z
-    young : MPa;  poisson : below 0.5;  thickness : mm, of quadrilaterals
+    elasticity : MPa, symmetric, with engineering shear strains: (6, 6) of hexahedra, xx yy zz xy yz zx;
+    (3, 3) of quadrilaterals in plane stress, xx yy xy
+    thickness : mm, of quadrilaterals
     incompatible : False leaves the incompatible modes out, which gives C3D8 and CPS4, for comparison
     Raises ValueError naming the first element with a non-positive Jacobian.
     """
@@ -63,7 +65,10 @@ def reference_elements(coords, double young, double poisson, double thickness=0.
         raise ValueError("reference_elements: coords must have shape (n, 8, 3) or (n, 4, 3)")
     if x.shape[1] == 4 and not thickness > 0.0:
         raise ValueError("reference_elements: quadrilaterals need a thickness above 0")
-    cdef int64_t n = x.shape[0], m = x.shape[1], bad
+    cdef double[:, ::1] d = np.ascontiguousarray(elasticity, dtype=np.float64)
+    cdef int64_t n = x.shape[0], m = x.shape[1], size = 3 if m == 4 else 6, bad
+    if d.shape[0] != size or d.shape[1] != size:
+        raise ValueError(f"reference_elements: elasticity must have shape ({size}, {size})")
     out = ReferenceElements(np.empty((n, 3 * m, 3 * m)), np.empty((n, 6 * m, 3 * m)), np.empty((n, m, 3)),
                             np.asarray(x), np.empty(n))
     if n == 0:
@@ -72,10 +77,10 @@ def reference_elements(coords, double young, double poisson, double thickness=0.
     cdef double[::1] v = out.volume
     with nogil:
         if m == 4:
-            bad = plane(n, &x[0, 0, 0], young, poisson, incompatible, &k[0, 0, 0], &s[0, 0, 0], &g[0, 0, 0], &v[0],
+            bad = plane(n, &x[0, 0, 0], &d[0, 0], incompatible, &k[0, 0, 0], &s[0, 0, 0], &g[0, 0, 0], &v[0],
                         thickness)
         else:
-            bad = solid(n, &x[0, 0, 0], young, poisson, incompatible, &k[0, 0, 0], &s[0, 0, 0], &g[0, 0, 0], &v[0])
+            bad = solid(n, &x[0, 0, 0], &d[0, 0], incompatible, &k[0, 0, 0], &s[0, 0, 0], &g[0, 0, 0], &v[0])
     if bad >= 0:
         raise ValueError(f"element {bad} has a non-positive Jacobian determinant")
     return out

@@ -94,15 +94,17 @@ inline std::int64_t stress(const ElementBatch& e, const double* recovery, const 
   return -1;
 }
 
-// Reference matrices of n elements (Hex8i; Quad4i with its thickness); returns the index of an inverted element or -1.
+// Reference matrices of n elements (Hex8i; Quad4i with its thickness) of one elasticity matrix, which is symmetric;
+// returns the index of an inverted element or -1.
 template <class Element, class... Thickness>
-inline std::int64_t reference(std::int64_t n, const double* coords, double young, double poisson, bool incompatible,
+inline std::int64_t reference(std::int64_t n, const double* coords, const double* elasticity, bool incompatible,
                               double* stiffness, double* recovery, double* gradient, double* volume,
                               Thickness... thickness) {
   constexpr int N = Element::kNodes;
+  const typename Element::Elasticity elastic = Eigen::Map<const typename Element::Elasticity>(elasticity);
   for (std::int64_t k = 0; k < n; ++k) {
     const Eigen::Matrix<double, N, 3> x = Eigen::Map<const RowNodes<N>>(coords + 3 * N * k);
-    const Element h(x, young, poisson, incompatible, thickness...);
+    const Element h(x, elastic, incompatible, thickness...);
     if (!(h.smallest_jacobian > 0)) return k;
     Eigen::Map<Eigen::Matrix<double, 3 * N, 3 * N>>(stiffness + 9 * N * N * k) = h.stiffness;
     Eigen::Map<Eigen::Matrix<double, 6 * N, 3 * N, Eigen::RowMajor>>(recovery + 18 * N * N * k) = h.recovery;

@@ -29,15 +29,6 @@ inline Mat8x3 shape_gradient(double xi, double eta, double zeta) {
   return g;
 }
 
-inline Mat6 isotropic(double young, double poisson) {
-  Mat6 d = Mat6::Zero();
-  const double lambda = young * poisson / ((1 + poisson) * (1 - 2 * poisson)), mu = young / (2 * (1 + poisson));
-  d.topLeftCorner<3, 3>().setConstant(lambda);
-  d.diagonal().head<3>().array() += 2 * mu;
-  d.diagonal().tail<3>().setConstant(mu);
-  return d;
-}
-
 // Strain (xx, yy, zz, xy, yz, zx; engineering shear) of a vector shape with gradient g times unit axis c.
 inline void strain_column(Eigen::Ref<Eigen::Matrix<double, 6, 1>> col, const Eigen::Vector3d& g, int c) {
   col.setZero();
@@ -49,13 +40,13 @@ inline void strain_column(Eigen::Ref<Eigen::Matrix<double, 6, 1>> col, const Eig
 
 struct Hex8i {
   static constexpr int kNodes = 8;
+  using Elasticity = Mat6;  // MPa; xx, yy, zz, xy, yz, zx
   Mat24 stiffness;
   Eigen::Matrix<double, 48, 24> recovery;  // stress at the nodes: row 6 * node + component
   Mat8x3 gradient;                         // dN/dX at the centre
   double volume = 0, smallest_jacobian = 0;
 
-  Hex8i(const Mat8x3& x, double young, double poisson, bool incompatible) {
-    const Mat6 elastic = isotropic(young, poisson);
+  Hex8i(const Mat8x3& x, const Elasticity& elastic, bool incompatible) {
     const Mat8x3 center = shape_gradient(0, 0, 0);
     const Eigen::Matrix3d j0 = x.transpose() * center;  // dX/dxi
     const Eigen::Matrix3d j0inv = j0.inverse();

@@ -9,19 +9,17 @@ namespace swgpar {
 
 struct Quad4i {
   static constexpr int kNodes = 4;
+  using Elasticity = Eigen::Matrix3d;  // MPa, in plane stress; xx, yy, xy
   Eigen::Matrix<double, 12, 12> stiffness;
   Eigen::Matrix<double, 24, 12> recovery;    // stress at the nodes: row 6 * node + component
   Eigen::Matrix<double, 4, 3> gradient;      // dN/dX at the centre
   double volume = 0, smallest_jacobian = 0;  // mm^3; determinant in the plane
 
-  Quad4i(const Eigen::Matrix<double, 4, 3>& x, double young, double poisson, bool incompatible, double thickness) {
+  Quad4i(const Eigen::Matrix<double, 4, 3>& x, const Elasticity& elastic, bool incompatible, double thickness) {
     using Mat8 = Eigen::Matrix<double, 8, 8>;
     using Mat4x8 = Eigen::Matrix<double, 4, 8>;
     using Mat3x8 = Eigen::Matrix<double, 3, 8>;
     using Mat4x2 = Eigen::Matrix<double, 4, 2>;
-    const double stiff = young / (1 - poisson * poisson), shear = 0.5 * young / (1 + poisson);
-    Eigen::Matrix3d elastic;
-    elastic << stiff, stiff * poisson, 0, stiff * poisson, stiff, 0, 0, 0, shear;
     const Eigen::Matrix<double, 4, 2> plane = x.leftCols<2>();
     // on the lower face of the hexahedron its first four shape functions are those of the quadrilateral
     const Mat4x2 center = shape_gradient(0, 0, -1).topLeftCorner<4, 2>();

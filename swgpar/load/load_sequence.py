@@ -30,7 +30,7 @@ def negligible_torque(design: DriveDesign) -> float:
     The bending force is that of a ring with the section of the rim, between two opposed forces.
     """
     rim, radius = design.flexible_spline.rim, design.inner_radius + 0.5 * design.flexible_spline.rim
-    stiffness = design.material.E * design.drive.face_width * rim**3 / 12.0
+    stiffness = design.modulus_of("flexible_spline") * design.drive.face_width * rim**3 / 12.0
     force = design.deflection * stiffness / (RING_FLEXIBILITY * radius**3)
     return NEGLIGIBLE * force * radius
 

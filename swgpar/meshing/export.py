@@ -172,10 +172,8 @@ def write_mesh(
             elif name == "msh":
                 meshio.gmsh.write(path, _as_msh(drive), fmt_version="2.2", binary=True)
             else:
-                materials = {HOUSING: design.housing_material} if design.housing else {}
-                write_inp(
-                    path, drive, named_surfaces(meshes), design.material, design.drive.face_width, others=materials
-                )
+                materials = {body: design.material_of(body) for body in drive.cell_sets}
+                write_inp(path, drive, named_surfaces(meshes), materials, design.drive.face_width)
             written.append(path)
     except OSError as error:
         raise OutputError(f"the mesh cannot be written to {folder}: {error.strerror or error}") from None

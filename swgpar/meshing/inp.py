@@ -12,12 +12,10 @@ from pathlib import Path
 import meshio
 import numpy as np
 
-from swgpar.design.sections import Material
+from swgpar.errors import InputError
 from swgpar.geometry.arrays import Ints
+from swgpar.materials import Isotropic, Material
 from swgpar.meshing.sector import SectorMesh
-
-MATERIAL = "GEAR_MATERIAL"
-"""Name of the material of the gears in the file."""
 
 HEX_FACES = np.array([[0, 1, 2, 3], [4, 7, 6, 5], [0, 4, 5, 1], [1, 5, 6, 2], [2, 6, 7, 3], [3, 7, 4, 0]])
 QUAD_FACES = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
@@ -44,15 +42,33 @@ def _lines(numbers: Ints) -> Iterator[str]:
         yield ", ".join(str(n) for n in numbers[start : start + 16] + 1)
 
 
+def _constants(material: Material, plane_stress: bool) -> str:
+    """What follows *ELASTIC. plane_stress : without transverse contraction along z"""
+    if isinstance(material, Isotropic) and not plane_stress:
+        return f"\n{material.E:.12g}, {material.nu:.12g}"
+    s = material.compliance()
+    alike = np.diag([s[0, 0], s[0, 0], s[2, 2], 2.0 * (s[0, 0] - s[0, 1]), s[4, 4], s[4, 4]])
+    alike[0, 1] = alike[1, 0] = s[0, 1]
+    alike[:2, 2] = alike[2, :2] = s[0, 2]
+    if not np.allclose(s, alike, rtol=1e-9, atol=1e-9 * s[0, 0]):
+        raise InputError(
+            "the axes of a material have no place in the format inp: allowed a law that is the same in all directions "
+            "across z"
+        )
+    e, shear, shear_z = 1.0 / s[0, 0], 1.0 / s[3, 3], 1.0 / s[4, 4]
+    nu, nu_z = -s[0, 1] * e, 0.0 if plane_stress else -s[0, 2] * e
+    constants = (e, e, 1.0 / s[2, 2], nu, nu_z, nu_z, shear, shear_z)
+    return f", TYPE=ENGINEERING CONSTANTS\n{', '.join(f'{c:.12g}' for c in constants)}\n{shear_z:.12g}"
+
+
 def write_inp(
     path: Path,
     drive: meshio.Mesh,
     surfaces: dict[str, Ints],
-    material: Material,
+    materials: Mapping[str, Material],
     thickness: float,
     *,
     plane_stress: bool = False,
-    others: Mapping[str, tuple[float, float]] | None = None,
 ) -> None:
     """Write bodies that are the cell sets of `drive`: C3D8I elements, or CPS4 in the plane.
 
@@ -63,14 +79,15 @@ def write_inp(
         Its point sets are written as node sets, in capitals.
     surfaces : dict of (n, 2) int32
         Element and face of every facet, both from 0.
-    material : Material
+    materials : dict of Material
+        Of every body.
     thickness : float, mm
         Of the plane model.
     plane_stress : bool
         Gives hexahedra a material without transverse contraction along z. With no displacement along z they are then
         in plane stress.
-    others : dict of (E, nu), MPa
-        Bodies of another material.
+
+    Raises InputError for a material that is not the same in all directions across z: its axes are not in the file.
 
     meshio's own writer of this format has neither these element types nor surfaces.
     """
@@ -95,19 +112,11 @@ def write_inp(
         for name, faces in surfaces.items():
             file.write(f"*SURFACE, NAME={name.upper()}, TYPE=ELEMENT\n")
             np.savetxt(file, faces + 1, fmt="%d, S%d")
-        names = {body: f"{body.upper()}_MATERIAL" for body in others or {}}
-        constants = {MATERIAL: (material.E, material.nu)} | {
-            names[body]: found for body, found in (others or {}).items()
-        }
-        for name, (e, nu) in constants.items():
-            file.write(f"*MATERIAL, NAME={name}\n")
-            if plane_stress:
-                g = f"{0.5 * e / (1.0 + nu):.12g}"
-                file.write("*ELASTIC, TYPE=ENGINEERING CONSTANTS\n")
-                file.write(f"{e:.12g}, {e:.12g}, {e:.12g}, {nu:.12g}, 0., 0., {g}, {g}\n{g}\n")
-            else:
-                file.write(f"*ELASTIC\n{e:.12g}, {nu:.12g}\n")
         for body in drive.cell_sets:
-            file.write(f"*SOLID SECTION, ELSET={body.upper()}, MATERIAL={names.get(body, MATERIAL)}\n")
+            file.write(
+                f"*MATERIAL, NAME={body.upper()}_MATERIAL\n*ELASTIC{_constants(materials[body], plane_stress)}\n"
+            )
+        for body in drive.cell_sets:
+            file.write(f"*SOLID SECTION, ELSET={body.upper()}, MATERIAL={body.upper()}_MATERIAL\n")
             if not solid:
                 file.write(f"{thickness:.12g}\n")

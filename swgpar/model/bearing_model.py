@@ -9,15 +9,17 @@ import numpy as np
 from swgpar.constraints.distributing_coupling import DistributingCoupling, NodeMeans
 from swgpar.constraints.race_coupling import RaceCoupling
 from swgpar.contact.ball_contact import LARGEST_REACH, BallContact, BallSet
-from swgpar.contact.point_contact import ball_spring, effective_modulus
+from swgpar.contact.point_contact import ball_spring
 from swgpar.contact.race_contact import RaceContact
 from swgpar.design.drive_design import DriveDesign
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, OUTER_RACE
+from swgpar.fem.element_matrices import element_matrices
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
 from swgpar.geometry.bearing import ball_lines
 from swgpar.geometry.micro_geometry import crowning
-from swgpar.kernel import ReferenceElements, reference_elements
+from swgpar.kernel import ReferenceElements
+from swgpar.materials import contact_modulus
 from swgpar.meshing.ring_sector import opposite_cells, race_grid, race_sector
 from swgpar.meshing.sector import SectorMesh
 
@@ -33,12 +35,12 @@ def build_race_mesh(design: DriveDesign, spline: SectorMesh) -> SectorMesh:
 
 def race_reference(design: DriveDesign, mesh: SectorMesh) -> ReferenceElements:
     """Elements of a sector of the race."""
-    return reference_elements(mesh.coords[mesh.elements], *design.race_material, design.race_width)
+    return element_matrices(mesh.coords[mesh.elements], design.material_of("bearing"), design.race_width)
 
 
 def build_balls(design: DriveDesign) -> BallSet:
     """The balls with their springs, all of the bearing's material."""
-    bearing, sizes = design.bearing, design.bearing_sizes
+    bearing, sizes, material = design.bearing, design.bearing_sizes, design.material_of("bearing")
     return BallSet(
         number=bearing.balls,
         diameter=bearing.ball_diameter,
@@ -51,7 +53,7 @@ def build_balls(design: DriveDesign) -> BallSet:
             sizes.inner_groove,
             sizes.outer_groove,
             (bearing.inner_conformity, bearing.outer_conformity),
-            effective_modulus(design.race_material, design.race_material),
+            contact_modulus(material, material),
             bearing.stiffness_factor,
         ),
     )

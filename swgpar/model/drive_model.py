@@ -20,11 +20,12 @@ from swgpar.contact.rigid_surface import RigidContact, cam_pose, pin_pose
 from swgpar.design.drive_design import DriveDesign
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR, BodyLayout
 from swgpar.fem.condensed_parts import condense_sector, condense_tooth, relative_end_rotation
+from swgpar.fem.element_matrices import element_matrices
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
 from swgpar.fem.sectors_in_reach import RingSectors, WholeTeeth
 from swgpar.fem.stress import body_fields, part_maxima
-from swgpar.kernel import ReferenceElements, reference_elements
+from swgpar.kernel import ReferenceElements
 from swgpar.log import PhaseTimes, logger
 from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes
 from swgpar.model.bearing_model import (
@@ -131,7 +132,7 @@ class DriveModel:
         theta = relative_end_rotation(
             body.layout.mesh, angle, body.displacement(self.problem.displacement())[body.owned]
         )
-        return largest(self.comm, self.design.material.E * float((theta**2).max(initial=0.0)) / 8.0)
+        return largest(self.comm, self.design.modulus_of("flexible_spline") * float((theta**2).max(initial=0.0)) / 8.0)
 
     @cached_property
     def regions(self) -> list[dict[bool, np.ndarray]]:
@@ -223,11 +224,10 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
 
 def sector_elements(design: DriveDesign, mesh: SectorMesh) -> ReferenceElements:
     """Matrices of the elements of a sector of a gear, those of its housing of the housing's material."""
-    material, width = design.material, design.drive.face_width
-    coords = mesh.coords[mesh.elements]
-    elements = reference_elements(coords, material.E, material.nu, width)
+    width, coords = design.drive.face_width, mesh.coords[mesh.elements]
+    elements = element_matrices(coords, design.material_of(mesh.body), width)
     if len(mesh.housing):
-        of_housing = reference_elements(coords[mesh.housing], *design.housing_material, width)
+        of_housing = element_matrices(coords[mesh.housing], design.material_of("housing"), width)
         for matrices, other in zip(elements, of_housing):
             matrices[mesh.housing] = other
     return elements
@@ -275,7 +275,7 @@ def build_supports(design: DriveDesign, *, partition: Partition, elements: Eleme
     rotates, guide = design.output_gear != "flexible_spline", None
     couplings: list[NodeMeans] = []
     if design.has_attachment:
-        cup, penalty = design.cup, design.penalty
+        cup, penalty = design.cup, design.penalty("flexible_spline")
         attachment = RigidAttachment(
             partition, spline, "end", cup.is_attached, cup.attached_width, penalty=penalty, images=copies > 1
         )
@@ -297,8 +297,8 @@ def build_supports(design: DriveDesign, *, partition: Partition, elements: Eleme
         outer = float(np.hypot(*couplings[-1].reference[:, :2].T).max(initial=0.0))
         low, high = design.axial_range(design.output_gear)
         area = 2.0 * np.pi * outer * (high - low) / copies
-        guide = RadialGuide(couplings[-1], area, design.penalty)
-    scale = design.material.E * design.drive.module
+        guide = RadialGuide(couplings[-1], area, design.penalty(design.output_gear))
+    scale = design.modulus_of("flexible_spline") * design.drive.module
     race = None if design.bearing is None else race_coupling(partition, elements, couplings[0])
     spline_ratio = None
     if design.dynamic_spline is not None:  # the flexible spline rotates with the dynamic one
@@ -322,7 +322,7 @@ def build_wave_generator_contacts(
     if design.bearing is None:
         return [*build_rigid_contacts(design, elements=elements)], None, NO_KEYS
     race = build_race_contact(
-        design, elements, 0.5 * design.race_width * EDGE, PRESSURE_LIMIT * design.race_material[0]
+        design, elements, 0.5 * design.race_width * EDGE, PRESSURE_LIMIT * design.modulus_of("bearing")
     )
     balls = build_ball_contact(design, elements)
     keys = np.unique(np.concatenate([elements.block_keys(conn).ravel() for conn in (race.conn, balls.windows)]))
@@ -343,7 +343,7 @@ def build_rigid_contacts(design: DriveDesign, *, elements: Elements) -> list[Rig
             penalty=design.wg_penalty,
             pin_half_angle=float(np.radians(design.wave_generator.pin_half_angle)),
             lobes=design.lobes,
-            pressure_limit=PRESSURE_LIMIT * design.material.E,
+            pressure_limit=PRESSURE_LIMIT * design.modulus_of("flexible_spline"),
         )
         for pose in (cam_pose, pin_pose)
     ]
@@ -360,7 +360,7 @@ def build_flank_contacts(
 ) -> list[FlankContact]:
     """Contacts of the flexible spline's flanks, one with each ring gear."""
     contacts = []
-    for ring in range(RING_GEAR, len(design.gears)):
+    for ring, name in enumerate(design.gears[1:], RING_GEAR):
         fixed = len(partition.layouts[ring].fixed) > 0
         contacts.append(
             FlankContact(
@@ -371,9 +371,9 @@ def build_flank_contacts(
                 FixedRing() if fixed else FloatingRing(supports.couplings[RING_COUPLING], partition.comm),
                 order=design.contact.quadrature,
                 crowning=flank_crowning(design),
-                penalty=design.penalty,
+                penalty=design.penalty("flexible_spline", name),
                 max_gap=max(FOOT_REACH * design.drive.module, search_distance(design)),
-                pressure_limit=PRESSURE_LIMIT * design.material.E,
+                pressure_limit=PRESSURE_LIMIT * design.modulus_of("flexible_spline", name),
                 friction_coefficient=design.contact.friction,
             )
         )

@@ -27,7 +27,7 @@ from swgpar.solve.discrete_problem import DiscreteProblem
 from swgpar.solve.newton import NewtonSolver
 from swgpar.systems.drive import DRIVE
 
-HOUSING = ("ring_gear.housing.thickness=4.0", "ring_gear.housing.E=70e3", "ring_gear.housing.nu=0.33")
+HOUSING = ("ring_gear.housing.thickness=4.0", "ring_gear.housing.material={E=70e3, nu=0.33}")
 OTHER = "drive.layout=spline_fixed"
 TORQUE = {"cup": 2000.0, "plane": 200.0}
 STRESSES = ("fs_s1", "fs_s3", "fs_vm", "rg_s1", "rg_s3", "rg_vm")
@@ -103,7 +103,14 @@ def test_a_stiff_housing_tends_to_a_rigid_one(layout: tuple[str, ...]) -> None:
     """
     angles = []
     for young in (210e5, 210e6, 210e7):
-        _, r = loaded(small("plane", "ring_gear.housing.thickness=4", f"ring_gear.housing.E={young:g}", *layout))
+        _, r = loaded(
+            small(
+                "plane",
+                "ring_gear.housing.thickness=4",
+                f"ring_gear.housing.material={{E={young:.1f}, nu=0.29}}",
+                *layout,
+            )
+        )
         angles.append(r["output_angle_deg"])
     limit = angles[2] - (angles[1] - angles[2]) / 9.0
     if not layout:
@@ -174,8 +181,7 @@ def test_a_housing_under_two_opposite_radial_loads(halved: bool) -> None:
     design = small(
         "plane",
         f"ring_gear.housing.thickness={thickness}",
-        "ring_gear.housing.E=210e3",
-        "ring_gear.housing.nu=0.29",
+        "ring_gear.housing.material={E=210e3, nu=0.29}",
         "material.E=0.021",
         "load.torque=0",
         f"solver.symmetry={str(halved).lower()}",
@@ -204,8 +210,9 @@ def test_a_housing_under_two_opposite_radial_loads(halved: bool) -> None:
     position, moved = problem.positions()[side], problem.displacement()[side]
     found = 2.0 * float(moved[0] * np.sign(position[0]))
     radius = design.outer_radius - 0.5 * thickness
-    exact = growth_across(force, radius, thickness, width, *design.housing_material)
-    thin = force * radius**3 / (design.housing_material[0] * width * thickness**3 / 12.0) * (0.5 - 2.0 / np.pi)
+    material = design.material_of("housing")
+    exact = growth_across(force, radius, thickness, width, material.modulus, material.poisson)
+    thin = force * radius**3 / (material.modulus * width * thickness**3 / 12.0) * (0.5 - 2.0 / np.pi)
     print(f"growth across: {1e3 * found:.5f} µm, curved bar {1e3 * exact:.5f}, thin ring {1e3 * thin:.5f}")
     assert found == pytest.approx(exact, rel=1e-3)  # the thin ring differs by 2.7e-3
     solver.destroy()

@@ -11,8 +11,8 @@ from mpi4py import MPI
 from pytest_mpi import parallel_assert
 
 from support.stepping import WORLD, Row, loaded, rotate, small
-from swgpar.evaluation.contact.line_contact import effective_modulus
 from swgpar.evaluation.contact.pair_contact import PairContact, moved_teeth, pair_contacts
+from swgpar.materials import Isotropic, contact_modulus
 
 CLOCKWISE = "clockwise"
 
@@ -71,7 +71,7 @@ def test_the_forces_carry_the_torque() -> None:
 def test_an_arc_on_a_straight_flank_has_the_pressure_of_hertz() -> None:
     """The upper arc of 1 mm of the flexible spline lies on the straight part of the ring gear's flank."""
     (one,) = contacts("plane")[0]
-    load, modulus = one.line_load_Nmm, effective_modulus(210e3, 0.29, plane_stress=True)
+    load, modulus = one.line_load_Nmm, contact_modulus(*[Isotropic(E=210e3, nu=0.29)] * 2, plane_stress=True)
     assert one.pressure_MPa == pytest.approx(np.sqrt(load * modulus / (np.pi * 1.0)), rel=2e-3)
     assert one.half_width_mm == pytest.approx(np.sqrt(4.0 * load * 1.0 / (np.pi * modulus)), rel=0.01)
     assert not one.edge

@@ -209,7 +209,7 @@ CONDENSED = (*MANY, "solver.condensed_sectors=true")
         ("contact.friction=0.2",),
         ("drive.layout=spline_fixed",),
         ("solver.linear=iterative",),
-        ("ring_gear.housing.thickness=4", "ring_gear.housing.E=70e3"),
+        ("ring_gear.housing.thickness=4", "ring_gear.housing.material={E=70e3, nu=0.29}"),
     ],
 )
 def test_condensed_sectors_in_the_plane_leave_out_the_bend_of_a_sector(overrides: tuple[str, ...]) -> None:

@@ -6,13 +6,14 @@ import numpy as np
 from mpi4py import MPI
 
 from plain_ring import RingCounts, RingDesign, RingModel
-from swgpar.design.sections import Contact, Material, Solver
+from swgpar.design.sections import Contact, Solver
 from swgpar.geometry.cams import EllipticalCam
+from swgpar.materials import Isotropic
 
 INNER, THICKNESS, DEFLECTION = 58.2, 1.0, 2.0
 """mm: inner radius and rim of the reference drive's flexible spline, and its diametral deflection."""
 
-STEEL = Material(E=210e3, nu=0.0)
+STEEL = Isotropic(E=210e3, nu=0.0)
 """Without lateral strain, so that a solid and plane stress have the same answer."""
 
 HALF_ANGLE = np.radians(15.0)

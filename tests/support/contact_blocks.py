@@ -14,6 +14,7 @@ from swgpar.contact.flank_pairs import Faces, MasterFlanks, PlacedFaces
 from swgpar.contact.flanks import CONTINUATION
 from swgpar.contact.segments import Segments, cut_faces
 from swgpar.kernel import contact_flanks
+from swgpar.materials import Material
 
 ORDERING = "MMD_AT_PLUS_A"
 """Of SuperLU, for matrices with a symmetric pattern."""
@@ -80,8 +81,7 @@ class Blocks:
     flanks: MasterFlanks
     placed: PlacedFaces
     fixed: np.ndarray
-    young: float
-    poisson: float
+    material: Material
     penalty: float
     order: int
     coefficient: float = 0.0
@@ -91,7 +91,7 @@ class Blocks:
 
     def press(self, u: np.ndarray, force: np.ndarray, augmentations: int = 0) -> tuple[Faces, np.ndarray, np.ndarray]:
         """Equilibrium from u (n, 3), which is changed; its fixed components stay. Segments, pressure, contact force."""
-        mesh = ElementMesh(self.points, self.hexes, self.young, self.poisson, incompatible=self.incompatible)
+        mesh = ElementMesh(self.points, self.hexes, self.material, incompatible=self.incompatible)
         rest = 3 * (len(self.points) - self.n_surface)
         free, pick = np.flatnonzero(~self.fixed.ravel()), np.arange(len(self.placed.conn))
         settings, law = (self.penalty, 0.0, 0.2, np.inf), None

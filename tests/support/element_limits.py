@@ -15,6 +15,7 @@ from scipy.spatial.transform import Rotation
 
 from support.contact_blocks import block
 from support.element_mesh import ElementMesh
+from swgpar.materials import Isotropic
 from swgpar.meshing.quality import hex_quality, quad_quality
 
 YOUNG, STRAIN = 210e3, 1e-8
@@ -47,7 +48,7 @@ def patch(dims: int, amount: float, seed: int, stretch: float = 1.0, poisson: fl
     points[:, 1] *= stretch
     quality = (hex_quality if dims == 3 else quad_quality)(points, elements)
     try:
-        mesh = ElementMesh(points, elements, YOUNG, poisson)
+        mesh = ElementMesh(points, elements, Isotropic(E=YOUNG, nu=poisson))
     except ValueError:
         return Patch(True, quality)
     turn = Rotation.from_rotvec(rng.uniform(0.3, 3.0) * (rng.normal(size=3) if dims == 3 else np.array([0, 0, 1.0])))
@@ -96,7 +97,7 @@ def bending(dims: int, ratio: float, poisson: float) -> float:
     ends = np.array([-0.5, 0.5])
     points, hexes, _ = block(np.linspace(0.0, length, 7), ends, ends)
     points, elements = (points, hexes) if dims == 3 else flat(points, hexes)
-    mesh = ElementMesh(points, elements, YOUNG, poisson)
+    mesh = ElementMesh(points, elements, Isotropic(E=YOUNG, nu=poisson))
     root, tip = points[:, 0] < 1e-9, points[:, 0] > length * (1.0 - 1e-9)
     fixed = np.zeros(points.shape, dtype=bool)
     fixed[root, 0] = fixed[root & (points[:, 1] < 0.0), 1] = True

@@ -6,7 +6,9 @@ import numpy as np
 from scipy.sparse import bsr_matrix, csr_matrix
 from scipy.sparse.linalg import spsolve
 
-from swgpar.kernel import assemble_elements, recover_stress, reference_elements
+from swgpar.fem.element_matrices import element_matrices
+from swgpar.kernel import assemble_elements, recover_stress
+from swgpar.materials import Material
 
 
 def pinch(mesh: ElementMesh, angle: np.ndarray) -> tuple[float, float]:
@@ -32,14 +34,13 @@ class ElementMesh:
         self,
         points: np.ndarray,
         elements: np.ndarray,
-        young: float,
-        poisson: float,
+        material: Material,
         thickness: float = 1.0,
         incompatible: bool = True,
     ) -> None:
         self.points, self.elements = points, np.ascontiguousarray(elements, dtype=np.int32)
         n, self.m = elements.shape
-        self.reference = reference_elements(points[elements], young, poisson, thickness, incompatible)
+        self.reference = element_matrices(points[elements], material, thickness, incompatible)
         self.arrays = (
             np.arange(n, dtype=np.int32),
             np.tile([1.0, 0.0], (n, 1)),

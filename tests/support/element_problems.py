@@ -15,6 +15,7 @@ import numpy as np
 
 from support.contact_blocks import block
 from support.element_mesh import ElementMesh
+from swgpar.materials import Isotropic, Material
 from swgpar.petsc import PETSc
 from swgpar.solve.bordered_system import GAMG_DEFAULTS, mumps_defaults, option_defaults
 
@@ -28,14 +29,14 @@ Measure = Callable[[ElementMesh, np.ndarray], dict[str, float]]
 class Linear:
     """A meshed problem.
 
-    points (n, 3), elements (m, 8) or (m, 4), material (E, nu), thickness of quadrilaterals
+    points (n, 3), elements (m, 8) or (m, 4), thickness of quadrilaterals
     fixed (n, 3) : components that are held;  load (n, 3) : forces
     measure : of mesh and displacement, the numbers that are compared;  exact : their closed forms, where there are any
     """
 
     points: np.ndarray
     elements: np.ndarray
-    material: tuple[float, float]
+    material: Material
     fixed: np.ndarray
     load: np.ndarray
     measure: Measure
@@ -49,7 +50,7 @@ class Linear:
 
     def solve(self, incompatible: bool = True, linear: str = "direct") -> dict[str, float]:
         """The numbers that are compared, with MUMPS ("direct") or GAMG ("iterative") as `swgpar run` sets them up."""
-        mesh = ElementMesh(self.points, self.elements, *self.material, self.thickness, incompatible)
+        mesh = ElementMesh(self.points, self.elements, self.material, self.thickness, incompatible)
         return self.measure(mesh, solve(mesh, self.fixed, self.load, linear))
 
 
@@ -190,7 +191,7 @@ def pinched_ring(level: int, plane: bool) -> Linear:
     def measure(mesh: ElementMesh, u: np.ndarray) -> dict[str, float]:
         return {"displacement": 2.0 * float(share @ u[top, 1])}
 
-    return Linear(points, elements, (young, 0.0), fixed, load, measure, {"displacement": exact})
+    return Linear(points, elements, Isotropic(E=young, nu=0.0), fixed, load, measure, {"displacement": exact})
 
 
 def thick_cylinder(poisson: float, level: int, plane: bool) -> Linear:
@@ -220,7 +221,7 @@ def thick_cylinder(poisson: float, level: int, plane: bool) -> Linear:
         hoop = mesh.stress(u)[..., 0][np.isin(mesh.elements, top)].mean()
         return {"displacement": float((u[inner, :2] * normal).sum(axis=1).mean()), "hoop stress": float(hoop)}
 
-    return Linear(points, elements, (young, poisson), fixed, load, measure, exact)
+    return Linear(points, elements, Isotropic(E=young, nu=poisson), fixed, load, measure, exact)
 
 
 def cook(level: int, plane: bool) -> Linear:
@@ -238,7 +239,7 @@ def cook(level: int, plane: bool) -> Linear:
     def measure(mesh: ElementMesh, u: np.ndarray) -> dict[str, float]:
         return {"displacement": float(u[middle, 1])}
 
-    return Linear(points, elements, (1.0, 1.0 / 3.0), fixed, load, measure)
+    return Linear(points, elements, Isotropic(E=1.0, nu=1.0 / 3.0), fixed, load, measure)
 
 
 def twisted_beam(level: int, plane: bool) -> Linear:

@@ -9,6 +9,7 @@ import numpy as np
 from support.contact_blocks import Blocks, block, master
 from swgpar.contact.flank_pairs import PlacedFaces
 from swgpar.contact.segments import SAMPLES, face_corners
+from swgpar.materials import Isotropic
 
 YOUNG, POISSON, RADIUS, SIZE = 210e3, 0.3, 1000.0, 50.0
 """MPa, of both bodies; mm, radius, height and width of the blocks. The half width is about 1 mm: strains are 5e-4."""
@@ -93,7 +94,7 @@ def hertz(on_half_width: int, order: int = 2, incompatible: bool = True) -> Hert
     u = np.zeros_like(points)
     u[number[first + upper_grid.ravel()], 1] = -APPROACH
     penalty = STIFFNESS * YOUNG * on_half_width
-    blocks = Blocks(points, hexes, len(surface), flanks, placed, fixed, YOUNG, POISSON, penalty, order)
+    blocks = Blocks(points, hexes, len(surface), flanks, placed, fixed, Isotropic(E=YOUNG, nu=POISSON), penalty, order)
     blocks.incompatible = incompatible
     faces, pressure, contact = blocks.press(u, np.zeros_like(points), AUGMENTATIONS)
     # pressure as it is reported: by nodes, force over area

@@ -47,7 +47,7 @@ OVERRIDES = [
     ("flexible_spline.profile.r_root=40.0", "flexible_spline.profile", "r_root"),
     ("ring_gear.housing.thickness=0", "ring_gear.housing.thickness", "above 0"),
     ("ring_gear.housing.thickness=500", "ring_gear.housing.thickness", "0.01 to 100 mm"),
-    ("ring_gear.housing.E=70e3", "ring_gear.housing.thickness", "missing"),
+    ("ring_gear.housing.material={E=70e3, nu=0.3}", "ring_gear.housing.thickness", "missing"),
     ('ring_gear.housing={thickness=5, outside="bolted"}', "ring_gear.housing.outside", '"free" or "held"'),
     ("ring_gear.profile.r_root=5.0", "ring_gear.profile", "allowed"),
     ("ring_gear.profile.straight_l=-1", "ring_gear.profile.straight_l", "0"),

@@ -9,14 +9,15 @@ from support.bearing import BEARING
 from support.paths import DESIGN
 from support.small_drive import PLANE
 from swgpar.checks.design_file import load_design
-from swgpar.contact.point_contact import ball_spring, effective_modulus, point_contact
+from swgpar.contact.point_contact import ball_spring, point_contact
 from swgpar.contact.smooth_curve import shape_functions, smooth_curve
 from swgpar.errors import InputError
 from swgpar.evaluation.bearing_life import BearingSeries, million_turns
 from swgpar.geometry.bearing import ball_lines
 from swgpar.geometry.cams import EllipticalCam
+from swgpar.materials import Isotropic, contact_modulus
 
-STEEL = effective_modulus((210e3, 0.3), (210e3, 0.3))
+STEEL = contact_modulus(Isotropic(E=210e3, nu=0.3), Isotropic(E=210e3, nu=0.3))
 
 
 def test_contact_of_spheres() -> None:
@@ -129,7 +130,8 @@ BAD = [
     ("inner_conformity=0.5", "inner_conformity", "above 0.5"),
     ("outer_conformity=3", "outer_conformity", "2"),
     ("cage_speed=1.2", "cage_speed", "0 to 1"),
-    ("nu=0.5", "nu", "0.499"),
+    ("material={E=210e3, nu=0.5}", "material.nu", "0.499"),
+    ("E=210e3", "E", "did you mean wave_generator.bearing.material.E"),
     ("stiffness_factor=0", "stiffness_factor", "above 0"),
     ("load_rating=-5", "load_rating", "above 0"),
     ("colour=1", "colour", "not a key"),

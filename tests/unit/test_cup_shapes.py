@@ -20,8 +20,8 @@ from swgpar.analysis.forecast import forecast
 from swgpar.checks.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
+from swgpar.fem.element_matrices import element_matrices
 from swgpar.geometry.cup_wall import RoundedLine
-from swgpar.kernel import reference_elements
 from swgpar.meshing import SectorMesh, load_recipe
 from swgpar.meshing.cup import meridian
 from swgpar.meshing.quality import hex_volumes
@@ -181,7 +181,7 @@ def torsional_stiffness(mesh: SectorMesh, case: DriveDesign, begin: float, end: 
     z = mesh.coords[:, 2]
     used = (z[mesh.hexes].min(axis=1) > begin - 1e-6) & (z[mesh.hexes].max(axis=1) < end + 1e-6)
     elements = mesh.hexes[used]
-    stiffness = reference_elements(mesh.coords[elements], case.material.E, case.material.nu).stiffness
+    stiffness = element_matrices(mesh.coords[elements], case.material).stiffness
     # tangential, radial and axial components at a node, those of a pair of nodes on the sides are the same
     x, y = mesh.coords[:, :2].T / np.hypot(*mesh.coords[:, :2].T)
     frame = np.zeros((len(x), 3, 3))

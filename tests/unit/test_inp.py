@@ -14,6 +14,7 @@ from support.element_mesh import ElementMesh
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar.checks.design_file import load_design
+from swgpar.materials import Isotropic
 from swgpar.meshing import SectorMesh, build_sector_meshes, load_recipe
 from swgpar.meshing.export import named_surfaces, whole_body, whole_drive, write_mesh
 from swgpar.meshing.inp import HEX_FACES, QUAD_FACES
@@ -21,7 +22,7 @@ from swgpar.meshing.inp import HEX_FACES, QUAD_FACES
 needs_calculix = pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX (ccx) is not installed")
 
 
-HOUSING = ("ring_gear.housing.thickness=3", "ring_gear.housing.E=70e3", "ring_gear.housing.nu=0.33")
+HOUSING = ("ring_gear.housing.thickness=3", "ring_gear.housing.material={E=70e3, nu=0.33}")
 
 
 def small(model: str, directory: Path, housing: tuple[str, ...] = ()) -> tuple[dict[str, SectorMesh], Path]:
@@ -100,7 +101,7 @@ def test_the_cup_under_inner_pressure(tmp_path: Path) -> None:
         np.add.at(load, corner[:, k], pressure * weights)
     fixed = np.zeros(points.shape, dtype=bool)
     fixed[drive.point_sets["flexible_spline_bore"]] = True
-    u = ElementMesh(points, elements, 210e3, 0.29).solve(fixed, np.zeros_like(points), load)
+    u = ElementMesh(points, elements, Isotropic(E=210e3, nu=0.29)).solve(fixed, np.zeros_like(points), load)
     nodes = np.array(sorted(found))
     assert np.array_equal(nodes, np.unique(corner))
     off = np.abs(np.array([found[k] for k in nodes]) - u[nodes]).max()

@@ -7,9 +7,10 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from swgpar.evaluation.contact.line_contact import effective_modulus, line_contact
+from swgpar.evaluation.contact.line_contact import line_contact
+from swgpar.materials import Isotropic, contact_modulus
 
-E = effective_modulus(210e3, 0.29, plane_stress=False)
+E = contact_modulus(*[Isotropic(E=210e3, nu=0.29)] * 2, plane_stress=False)
 
 
 def parabola(radius: float) -> Callable[[np.ndarray], np.ndarray]:
@@ -23,8 +24,8 @@ def hertz(radius: float, load: float) -> tuple[float, float]:
 
 
 def test_moduli() -> None:
-    assert effective_modulus(2.0, 0.3, plane_stress=True) == 1.0
-    assert effective_modulus(2.0, 0.3, plane_stress=False) == pytest.approx(1.0 / 0.91)
+    assert contact_modulus(*[Isotropic(E=2.0, nu=0.3)] * 2, plane_stress=True) == 1.0
+    assert contact_modulus(*[Isotropic(E=2.0, nu=0.3)] * 2, plane_stress=False) == pytest.approx(1.0 / 0.91)
 
 
 @pytest.mark.parametrize("radius", [0.5, 20.0])

@@ -10,10 +10,10 @@ import swgpar
 from plain_ring import RingCounts, RingDesign, RingModel
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
-from swgpar.design.sections import Material
 from swgpar.errors import InputError
 from swgpar.evaluation.losses import energy_coordinates, force_without_sliding, mass_matrices
 from swgpar.geometry.cams.simplified import simplified
+from swgpar.materials import Isotropic
 
 E, NU = 210e3, 0.29
 
@@ -25,7 +25,7 @@ def test_coordinates_of_the_strain_energy() -> None:
     compliance[:3, :3] = -NU / E
     np.fill_diagonal(compliance, [1.0 / E] * 3 + [2.0 * (1.0 + NU) / E] * 3)
     expected = 0.5 * np.einsum("knc,cd,knd->n", stress.conj(), compliance, stress).real
-    assert (energy_coordinates(stress, E, NU) ** 2).sum(axis=1) == pytest.approx(expected, rel=1e-12)
+    assert (energy_coordinates(stress, Isotropic(E=E, nu=NU)) ** 2).sum(axis=1) == pytest.approx(expected, rel=1e-12)
 
 
 def test_mass_matrices_of_a_box() -> None:
@@ -56,7 +56,7 @@ def test_hysteresis_of_a_ring_between_two_forces() -> None:
     Harmonic n of the moment is 2 P R / pi / (n^2 - 1), so that the torque is 4 P^2 R^3 / (pi E I) times the sum of
     n / (n^2 - 1)^2 over even n. The stress is averaged at the nodes of four elements through the thickness.
     """
-    design = RingDesign(136.0, 2.0, 10.0, plane=True, material=Material(E=E, nu=NU))
+    design = RingDesign(136.0, 2.0, 10.0, plane=True, material=Isotropic(E=E, nu=NU))
     radius = 67.0
     cam = simplified(design.inner_radius, 0.5 * 65.0)
     model = RingModel(design, RingCounts(120, 4, 1), cam, np.radians(30.0), MPI.COMM_SELF)

@@ -7,10 +7,10 @@ import pytest
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
-from swgpar.evaluation.contact.line_contact import effective_modulus
 from swgpar.evaluation.contact.patch_contact import Gap, patch_contact
+from swgpar.materials import Isotropic, contact_modulus
 
-E = effective_modulus(210e3, 0.29, plane_stress=False)
+E = contact_modulus(*[Isotropic(E=210e3, nu=0.29)] * 2, plane_stress=False)
 ENDS = -5.0, 5.0
 
 

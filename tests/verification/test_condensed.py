@@ -9,7 +9,8 @@ from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar.checks.design_file import load_design
 from swgpar.fem.condensed_parts import CondensedPart, condense_sector, relative_end_rotation
-from swgpar.kernel import ReferenceElements, assemble_elements, reference_elements
+from swgpar.fem.element_matrices import element_matrices
+from swgpar.kernel import ReferenceElements, assemble_elements
 from swgpar.meshing import build_sector_meshes, load_recipe
 from swgpar.meshing.sector import SectorMesh
 
@@ -21,9 +22,7 @@ Sector = tuple[SectorMesh, ReferenceElements, CondensedPart]
 def sector(request) -> Sector:
     design = load_design(DESIGN, PLANE)
     mesh = build_sector_meshes(design, load_recipe(RECIPE))[request.param]
-    elements = reference_elements(
-        mesh.coords[mesh.elements], design.material.E, design.material.nu, design.drive.face_width
-    )
+    elements = element_matrices(mesh.coords[mesh.elements], design.material, design.drive.face_width)
     return mesh, elements, condense_sector(mesh, elements)
 
 

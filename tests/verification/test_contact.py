@@ -11,6 +11,7 @@ from swgpar.contact.flank_pairs import Faces, MasterFlanks, PlacedFaces
 from swgpar.contact.flanks import CONTINUATION
 from swgpar.contact.segments import SAMPLES, bilinear, cut_faces, face_corners
 from swgpar.kernel import contact_flanks
+from swgpar.materials import Isotropic
 
 PENALTY = 4e6
 
@@ -154,7 +155,7 @@ def non_uniformity(slave: int) -> float:
     u = np.zeros_like(points)
     u[first:, 1] = -1e-5  # touching
     hexes = np.vstack([lower_hexes, upper_hexes + first])
-    blocks = Blocks(points, hexes, len(points), flanks, placed, fixed, 210e3, 0.0, PENALTY, 2)
+    blocks = Blocks(points, hexes, len(points), flanks, placed, fixed, Isotropic(E=210e3, nu=0.0), PENALTY, 2)
     _, pressure, _ = blocks.press(u, force)
     return float(np.abs(pressure - load).max() / load)
 

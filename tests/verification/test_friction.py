@@ -10,6 +10,7 @@ from swgpar.contact import friction
 from swgpar.contact.flank_pairs import Faces, PlacedFaces
 from swgpar.contact.segments import SAMPLES, Segments, bilinear, face_corners
 from swgpar.kernel import contact_flanks
+from swgpar.materials import Isotropic
 
 PENALTY = 4e6
 NO_MULTIPLIER = np.zeros((1, 9))
@@ -192,8 +193,7 @@ class Stack:
             flanks,
             placed,
             fixed,
-            self.YOUNG,
-            0.0,
+            Isotropic(E=self.YOUNG, nu=0.0),
             PENALTY,
             2,
             self.COEFFICIENT,

@@ -153,9 +153,7 @@ def toothed_ring(design: RingDesign, recipe: str) -> np.ndarray:
         for low, high in shared.items():
             place[low] = number[high] + before * len(own)
         quads.append(place[sector.elements])
-    mesh = ElementMesh(
-        np.concatenate(points), np.concatenate(quads), drive.material.E, drive.material.nu, body.face_width
-    )
+    mesh = ElementMesh(np.concatenate(points), np.concatenate(quads), drive.material, body.face_width)
     stiffness = mesh.tangent(np.zeros_like(mesh.points))
     corner = mesh.points[mesh.elements][:, :, :2]
     mass = np.zeros((len(corner), 4, 4))

@@ -60,11 +60,6 @@ class LineContact:
         return float(np.hypot(0.5 * (across - normal), shear).max())
 
 
-def effective_modulus(modulus: float, poisson: float, *, plane_stress: bool) -> float:
-    """E* of two bodies of one material, MPa: 1 / E* = 2 (1 - nu²) / E; in plane stress 2 / E."""
-    return 0.5 * modulus / (1.0 if plane_stress else 1.0 - poisson**2)
-
-
 def line_contact(
     gap: Callable[[np.ndarray], np.ndarray], start: float, width: float, load: float, modulus: float
 ) -> LineContact:

@@ -17,7 +17,7 @@ from scipy.integrate import trapezoid
 from swgpar.contact.flanks import FlankContact
 from swgpar.contact.search import FlankPair
 from swgpar.evaluation.contact.flank_loads import LineLoad, flank_forces, line_loads
-from swgpar.evaluation.contact.line_contact import LineContact, effective_modulus, line_contact
+from swgpar.evaluation.contact.line_contact import LineContact, line_contact
 from swgpar.evaluation.contact.moved_teeth import MovedTooth
 from swgpar.evaluation.contact.patch_contact import PatchContact, patch_contact
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
@@ -25,6 +25,7 @@ from swgpar.fem.vectors import read_field
 from swgpar.geometry.rotation import SIXTHS, rotated
 from swgpar.load.load_states import LoadState
 from swgpar.log import logger
+from swgpar.materials import contact_modulus
 from swgpar.model.drive_model import DriveModel, flank_crowning
 
 SMALLEST = 0.02
@@ -127,11 +128,13 @@ def _contacts(model: DriveModel, state: LoadState, flanks: FlankContact) -> list
     top = max(model.comm.allgather(max((_peak(load) for load in loads.values()), default=0.0)))
     resolved = [k for k, pair in enumerate(pairs) if _peak(loads[pair.sector - first, pair.side]) > SMALLEST * top]
     moved, facing = moved_teeth(model, [pairs[k] for k in resolved], flanks)
+    materials = (model.design.material_of(layout.name) for layout in (spline, flanks.ring.layout))
+    modulus = contact_modulus(*materials, plane_stress=model.design.drive.model == "plane")
     failed = []
     for k, teeth, ring_teeth in zip(resolved, moved, facing):
         load = loads[pairs[k].sector - first, pairs[k].side]
         try:
-            carried[k] = _with_pressure(carried[k], model, load, teeth, ring_teeth)
+            carried[k] = _with_pressure(carried[k], model, load, teeth, ring_teeth, modulus)
         except (ArithmeticError, np.linalg.LinAlgError) as error:
             failed.append(f"tooth {pairs[k].sector}: {error}")
     contacts = [contact for part in model.comm.allgather(carried) for contact in part]
@@ -211,19 +214,24 @@ def moved_teeth(
 
 
 def _with_pressure(
-    contact: PairContact, model: DriveModel, load: LineLoad, teeth: Neighbours, ring_teeth: Neighbours
+    contact: PairContact,
+    model: DriveModel,
+    load: LineLoad,
+    teeth: Neighbours,
+    ring_teeth: Neighbours,
+    modulus: float,
 ) -> PairContact:
-    """The contact of a pair with its local pressure."""
+    """The contact of a pair with its local pressure. modulus : E*, MPa"""
     tooth, facing = teeth[1], ring_teeth[1]
     along = load.load @ load.direction
     gap = _Gap(tooth, facing)
     if model.design.drive.model == "plane":
-        found = _line(model, gap, load)
+        found = _line(model, gap, load, modulus)
         shape, width, on_edge = found, float(np.ptp(load.z)), found.at_end
         size = float(along[0])
         stations = (ContactStation(0.0, size, found.middle, found.half_width, found.peak),)
     else:
-        patch = _patch(model, gap, load, along, contact.force_N)
+        patch = _patch(model, gap, load, along, contact.force_N, modulus)
         shape, on_edge = patch.strongest, patch.at_end or patch.reaches
         columns = (patch.z, patch.line_load, patch.middle, patch.half_width, patch.pressure)
         stations = tuple(ContactStation(*map(float, values)) for values in zip(*columns, strict=True))
@@ -295,24 +303,19 @@ class _Gap:
         return fine[self(fine, z).argmin(axis=0), np.arange(len(z))]
 
 
-def _modulus(model: DriveModel) -> float:
-    design = model.design
-    return effective_modulus(design.material.E, design.material.nu, plane_stress=design.drive.model == "plane")
-
-
-def _line(model: DriveModel, gap: _Gap, load: LineLoad) -> LineContact:
+def _line(model: DriveModel, gap: _Gap, load: LineLoad, modulus: float) -> LineContact:
     middle = np.zeros(1)
     width, size = WIDTH * model.design.drive.module, float(np.linalg.norm(load.load[0]))
-    return line_contact(
-        lambda s: gap(s[:, None], middle)[:, 0], float(gap.least_at(middle)[0]), width, size, _modulus(model)
-    )
+    return line_contact(lambda s: gap(s[:, None], middle)[:, 0], float(gap.least_at(middle)[0]), width, size, modulus)
 
 
-def _patch(model: DriveModel, gap: _Gap, load: LineLoad, along: np.ndarray, force: float) -> PatchContact:
+def _patch(
+    model: DriveModel, gap: _Gap, load: LineLoad, along: np.ndarray, force: float, modulus: float
+) -> PatchContact:
     """Contact of a pair in space. along : (n,) N/mm, line load of the mesh"""
     # the ring gears of a pancake drive are narrower than the flexible spline
     low, high = gap.facing.ends
     ends = max(float(load.z[0]), low), min(float(load.z[-1]), high)
     place = float(trapezoid(along * load.z, load.z)) / force
     width = WIDTH * model.design.drive.module
-    return patch_contact(gap, gap.least_at, ends, width, force=force, place=place, modulus=_modulus(model))
+    return patch_contact(gap, gap.least_at, ends, width, force=force, place=place, modulus=modulus)

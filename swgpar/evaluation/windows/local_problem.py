@@ -20,12 +20,12 @@ from swgpar.errors import ConvergenceError
 from swgpar.evaluation.contact.flank_loads import flank_forces, line_loads, nodal_forces
 from swgpar.evaluation.torques import torques
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, BodyLayout
+from swgpar.fem.element_matrices import element_matrices
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
 from swgpar.fem.stress import principal
 from swgpar.fem.vectors import read_field, write_field
 from swgpar.geometry.rotation import rotated
-from swgpar.kernel import reference_elements
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import PhaseTimes
 from swgpar.meshing import MeshRecipe
@@ -118,15 +118,15 @@ class LocalProblem:
             fixed=np.zeros(0, dtype=np.int32),
         )
         self.partition = Partition([self.layout], model.comm)
-        material = design.material
-        reference = reference_elements(mesh.coords[mesh.elements], material.E, material.nu, design.drive.face_width)
+        material, width = design.material_of("flexible_spline"), design.drive.face_width
+        reference = element_matrices(mesh.coords[mesh.elements], material, width)
         self.elements = Elements(self.partition, [reference])
         self.body = self.elements.bodies[FLEXIBLE_SPLINE]
         teeth = first + np.arange(SECTORS)
         drive_mesh = model.partition.layouts[FLEXIBLE_SPLINE].mesh
         self.loads = line_loads(drive_mesh, flank_forces(model, state, teeth, model.problem.flanks[0]))
         displacement = self._of_the_drive(teeth)
-        scale = design.material.E * design.drive.module
+        scale = material.modulus * design.drive.module
         problem = DiscreteProblem(
             partition=self.partition,
             elements=self.elements,
@@ -185,7 +185,7 @@ class LocalProblem:
                     held[int(i)] = displacement[sector, node]
         nodes = np.array(sorted(held), dtype=np.int64)
         values = np.array([held[int(i)] for i in nodes]).reshape(-1, 3)
-        stiffness = STIFFNESS * self.model.design.material.E * self.model.design.drive.module
+        stiffness = STIFFNESS * self.model.design.modulus_of("flexible_spline") * self.model.design.drive.module
         return PrescribedDisplacement(self.partition, nodes, values, stiffness)
 
     def _dead_load(self) -> DeadLoad:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from swgpar.input.quantities import Section, quantity
+from swgpar.materials import OptionalMaterial
 
 
 class Bearing(Section):
@@ -29,11 +30,10 @@ class Bearing(Section):
     cage_speed: float | None = quantity(
         None, text="speed of the cage over that of the wave generator; without it that of rolling balls", ge=0.0, le=1.0
     )
-    E: float | None = quantity(None, unit="MPa", text="modulus of elasticity; without it that of [material]", gt=0.0)
-    nu: float | None = quantity(None, text="Poisson's ratio; without it that of [material]", ge=0.0, le=0.499)
     stiffness_factor: float = quantity(
         1.0, text="factor on the stiffness of the ball contacts; 1: Hertz", gt=0.0, le=1e6
     )
+    material: OptionalMaterial = None
     load_rating: float | None = quantity(
         None, unit="N", text="basic dynamic load rating; without it that of ISO 281 for these sizes", gt=0.0
     )

@@ -1,0 +1,43 @@
+"""The isotropic law."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from swgpar.input.quantities import quantity
+from swgpar.materials.material import Material
+
+
+class Isotropic(Material):
+    """Hooke's law with two constants."""
+
+    type: Literal["isotropic"] = quantity("isotropic", text="law of the material")
+    E: float = quantity(unit="MPa", text="modulus of elasticity", gt=0.0)
+    nu: float = quantity(text="Poisson's ratio", ge=0.0, le=0.499)
+
+    @property
+    def modulus(self) -> float:
+        """Modulus of elasticity, MPa."""
+        return self.E
+
+    def compliance(self) -> np.ndarray:
+        """Strains by stresses, (6, 6) 1/MPa."""
+        out = np.diag([1.0, 1.0, 1.0, *[2.0 * (1.0 + self.nu)] * 3])
+        out[:3, :3] -= self.nu * (1.0 - np.eye(3))
+        return out / self.E
+
+    def elasticity(self) -> np.ndarray:
+        """Stresses by strains, (6, 6) MPa: exact near nu = 0.5 too."""
+        shear = self.E / (2.0 * (1.0 + self.nu))
+        out = shear * np.diag([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])
+        out[:3, :3] += self.E * self.nu / ((1.0 + self.nu) * (1.0 - 2.0 * self.nu))
+        return out
+
+    def plane_stress(self) -> np.ndarray:
+        """Stresses xx, yy, xy by these strains in plane stress, (3, 3) MPa."""
+        direct = self.E / (1.0 - self.nu**2)
+        across = direct * self.nu
+        shear = 0.5 * self.E / (1.0 + self.nu)
+        return np.array([[direct, across, 0.0], [across, direct, 0.0], [0.0, 0.0, shear]])
