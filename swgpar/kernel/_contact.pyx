@@ -1,10 +1,10 @@
 # cython: language_level=3, boundscheck=False, wraparound=False
-"""Cython layer of the contact kernels: checks shapes, releases the GIL, calls."""
-
-import numpy as np
+"""Cython layer of the contact kernels: checks arrays, releases the GIL, calls."""
 
 from libc.math cimport cos, sin
 from libc.stdint cimport int32_t, int64_t, uint8_t
+
+include "arrays.pxi"
 
 
 cdef extern from "<Eigen/Dense>" nogil:
@@ -60,51 +60,62 @@ OVERHANG = 1e-4
 their ends also where elastic deformation moves one end past the other."""
 
 
-cdef BlockRows rows_of(rows):
-    cdef const int64_t[::1] start = rows.start
-    cdef const int32_t[::1] column = rows.column, number = rows.number
-    cdef double[:, :, ::1] values = rows.values
-    return BlockRows(&start[0], &column[0], &values[0, 0, 0], &number[0], rows.n_own, rows.symmetric)
+cdef BlockRows rows_of(str function, rows, n_local) except *:
+    """Rows whose pattern lies within their arrays. n_local : local nodes, ANY where the rows alone know them"""
+    cdef int64_t n_own = rows.n_own
+    number_array = checked(function, "rows.number", rows.number, INT32, (n_local,))
+    if not 0 <= n_own <= number_array.shape[0]:
+        raise ValueError(f"{function}: rows.n_own is {n_own}; expected from 0 to the {number_array.shape[0]} local nodes")
+    column_array = checked(function, "rows.column", rows.column, INT32, (ANY,))
+    cdef int64_t n_block = column_array.shape[0]
+    cdef const int64_t[::1] start = checked(function, "rows.start", rows.start, INT64, (n_own + 1,))
+    cdef const int32_t[::1] column = column_array, number = number_array
+    cdef double[:, :, ::1] values = checked(function, "rows.values", rows.values, DOUBLE, (n_block, 3, 3), True)
+    cdef int64_t k
+    cdef bint ascends = start[0] == 0 and start[n_own] == n_block
+    for k in range(n_own):
+        ascends &= start[k] <= start[k + 1]
+    if not ascends:
+        raise ValueError(f"{function}: rows.start ({n_own + 1},) is out of order; expected to ascend from 0 to the {n_block} blocks")
+    return BlockRows(&start[0], &column[0], &values[0, 0, 0], &number[0], n_own, rows.symmetric)
 
 
-cdef Friction friction_of(law, int64_t n_face, int64_t n_q) except *:
-    cdef const double[:, :, ::1] foot_point = law.foot_point, traction = law.traction
-    cdef const double[:, ::1] gap = law.gap
-    cdef double[:, :, ::1] current = law.current
-    for array in (law.foot_point, law.traction, law.gap, law.current, law.gap if law.lagged is None else law.lagged):
-        if array.shape[0] != n_face or array.shape[1] != n_q:
-            raise ValueError("contact_flanks: arrays of the friction do not have the shape (faces, points)")
-    law.current[...] = 0.0  # also at points that were in contact in the last evaluation only
+cdef Friction friction_of(str function, law, int64_t n_face, int64_t n_q) except *:
+    cdef tuple vectors = (n_face, n_q, 2), scalars = (n_face, n_q)
+    cdef const double[:, :, ::1] foot_point = checked(function, "friction.foot_point", law.foot_point, DOUBLE, vectors)
+    cdef const double[:, :, ::1] traction = checked(function, "friction.traction", law.traction, DOUBLE, vectors)
+    cdef const double[:, ::1] gap = checked(function, "friction.gap", law.gap, DOUBLE, scalars)
+    cdef double[:, :, ::1] current = checked(function, "friction.current", law.current, DOUBLE, vectors, True)
     cdef Friction made = Friction(
         law.coefficient, law.stiffness, &foot_point[0, 0, 0], &gap[0, 0], &traction[0, 0, 0], &current[0, 0, 0], NULL
     )
     cdef const double[:, ::1] lagged
     if law.lagged is not None:
-        lagged = law.lagged
+        lagged = checked(function, "friction.lagged", law.lagged, DOUBLE, scalars)
         made.lagged = &lagged[0, 0]
+    law.current[...] = 0.0  # also at points that were in contact in the last evaluation only
     return made
 
 
-def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] multiplier, double penalty,
-                   double opening, double reach, double limit, double[:, ::1] residual, rows, friction=None,
-                   double rotation=0.0, double[::1] moment=None, double beyond=OVERHANG):
+def contact_flanks(patches, faces, u, multiplier, double penalty, double opening, double reach, double limit, residual,
+                   rows, friction=None, double rotation=0.0, moment=None, double beyond=OVERHANG):
     """Gaps, forces and tangent of slave faces against master flanks (kernel/contact.hpp, kernel/friction.hpp).
 
     Parameters
     ----------
-    patches, faces : records of arrays (`swgpar.contact.flanks.Flanks`, `Faces`)
+    patches, faces : records of arrays (`swgpar.contact.flank_pairs.MasterFlanks`, `Faces`)
     u : (n_local, 3) mm, displacements
     multiplier : (n_face, n_q) MPa
     penalty : MPa / mm
     opening : mm, added to every gap
-    limit : MPa, bound of the pressure in the tangent's geometric term
     reach : mm, points farther from the master surface than this are not in contact
+    limit : MPa, bound of the pressure in the tangent's geometric term
     residual : (n_local, 3) N, added to; None to skip
     rows : record with start, column, values, number, n_own, symmetric; None to skip the tangent
     friction : record of the last converged state, which takes the tractions (`swgpar.contact.friction.Friction`), or None
     rotation : rad, of the master body as a whole
-    beyond : facets by which foot points may lie past the ends of the flank, which goes on straight there
     moment : (n_face,) N mm, derivative of the contact's energy with respect to `rotation`, added to with the residual
+    beyond : facets by which foot points may lie past the ends of the flank, which goes on straight there
 
     Returns
     -------
@@ -113,70 +124,87 @@ def contact_flanks(patches, faces, const double[:, ::1] u, const double[:, ::1] 
     foot_point : (n_face, n_q, 2) mm, arc length and z of the foot point on the master, nan where there is none
     missing : number of blocks the pattern lacks
 
-    Raises ValueError for shapes that disagree.
+    Raises ValueError for arrays that do not fit each other.
     """
-    cdef const double[::1] s = patches.s, z = patches.z, orientation = patches.orientation
-    cdef const double[:, :, ::1] point = patches.point, tangent = patches.tangent
-    cdef const double[:, ::1] rotations = patches.rotation
-    cdef const int32_t[:, :, ::1] pconn = patches.conn
-    cdef const uint8_t[:, :, ::1] psixths = patches.sixths
-    cdef const int32_t[:, ::1] conn = faces.conn
-    cdef const uint8_t[:, ::1] sixths = faces.sixths
-    cdef const double[:, :, ::1] coords = faces.coords
-    cdef const double[:, ::1] normal = faces.normal, weight = faces.weight, offset = faces.offset
-    cdef const double[:, :, ::1] shape = faces.shape
-    cdef const int32_t[::1] patch = faces.patch
-    cdef int64_t n_face = conn.shape[0], n_q = shape.shape[1], n_patch = pconn.shape[0]
-    gap_array = np.full((n_face, n_q), np.inf)
-    pressure_array = np.zeros((n_face, n_q))
+    name = "contact_flanks"
+    cdef const double[:, ::1] uv = checked(name, "u", u, DOUBLE, (ANY, 3))
+    cdef int64_t n_local = uv.shape[0]
+
+    cdef const int32_t[:, :, ::1] pconn = indices(name, "patches.conn", patches.conn, INT32, (ANY, ANY, ANY), None, n_local)
+    cdef int64_t n_patch = pconn.shape[0], n_s = pconn.shape[1], n_z = pconn.shape[2]
+    if n_s < 2 or n_z < 2:
+        raise ValueError(f"{name}: patches.conn is ({n_patch}, {n_s}, {n_z}); expected 2 nodes or more per direction")
+    cdef const uint8_t[:, :, ::1] psixths = indices(
+        name, "patches.sixths", patches.sixths, UINT8, (n_patch, n_s, n_z), None, SIXTHS
+    )
+    cdef const double[::1] s = checked(name, "patches.s", patches.s, DOUBLE, (n_s,))
+    cdef const double[::1] z = checked(name, "patches.z", patches.z, DOUBLE, (n_z,))
+    cdef const double[:, :, ::1] point = checked(name, "patches.point", patches.point, DOUBLE, (n_patch, n_s, 2))
+    cdef const double[:, :, ::1] tangent = checked(name, "patches.tangent", patches.tangent, DOUBLE, (n_patch, n_s, 2))
+    cdef const double[::1] orientation = checked(name, "patches.orientation", patches.orientation, DOUBLE, (n_patch,))
+    cdef const double[:, ::1] rotations = checked(name, "patches.rotation", patches.rotation, DOUBLE, (n_patch, 2))
+
+    cdef const int32_t[:, ::1] conn = indices(name, "faces.conn", faces.conn, INT32, (ANY, 4), None, n_local)
+    cdef int64_t n_face = conn.shape[0]
+    cdef const double[:, :, ::1] shape = checked(name, "faces.shape", faces.shape, DOUBLE, (n_face, ANY, 4))
+    cdef int64_t n_q = shape.shape[1]
+    cdef tuple points = (n_face, n_q)
+    cdef const uint8_t[:, ::1] sixths = indices(name, "faces.sixths", faces.sixths, UINT8, (n_face, 4), None, SIXTHS)
+    cdef const double[:, :, ::1] coords = checked(name, "faces.coords", faces.coords, DOUBLE, (n_face, 4, 3))
+    cdef const double[:, ::1] normal = checked(name, "faces.normal", faces.normal, DOUBLE, (n_face, 3))
+    cdef const double[:, ::1] weight = checked(name, "faces.weight", faces.weight, DOUBLE, points)
+    cdef const double[:, ::1] offset = checked(name, "faces.offset", faces.offset, DOUBLE, points)
+    cdef const int32_t[::1] patch = indices(name, "faces.patch", faces.patch, INT32, (n_face,), 0, n_patch)
+    cdef const double[:, ::1] multipliers = checked(name, "multiplier", multiplier, DOUBLE, points)
+
+    cdef BlockRows r = BlockRows(NULL, NULL, NULL, NULL, 0, True)
+    if rows is not None:
+        r = rows_of(name, rows, n_local)
+    cdef Friction law = Friction(0.0, 0.0, NULL, NULL, NULL, NULL, NULL)
+    if friction is not None:
+        law = friction_of(name, friction, n_face, n_q)
+    cdef double[:, ::1] residuals
+    cdef double* p_residual = NULL
+    if residual is not None:
+        residuals = checked(name, "residual", residual, DOUBLE, (n_local, 3), True)
+        p_residual = &residuals[0, 0]
+    if moment is None:
+        moment = np.zeros(n_face)
+    cdef double[::1] moments = checked(name, "moment", moment, DOUBLE, (n_face,), True)
+
+    gap_array = np.full(points, np.inf)
+    pressure_array = np.zeros(points)
     foot_point_array = np.full((n_face, n_q, 2), np.nan)
-    if n_face == 0 or n_patch == 0:
+    if n_face == 0:
         return gap_array, pressure_array, foot_point_array, 0
-    if not (coords.shape[0] == normal.shape[0] == shape.shape[0] == weight.shape[0] == offset.shape[0] == patch.shape[0] == n_face
-            and multiplier.shape[0] == n_face and multiplier.shape[1] == n_q and weight.shape[1] == n_q
-            and pconn.shape[1] == s.shape[0] and pconn.shape[2] == z.shape[0] and point.shape[0] == n_patch
-            and point.shape[1] == s.shape[0] and tangent.shape[1] == s.shape[0] and u.shape[1] == 3):
-        raise ValueError("contact_flanks: array shapes disagree")
     cdef double[:, ::1] gap = gap_array, pressure = pressure_array
     cdef double[:, :, ::1] foot_point = foot_point_array
-    cdef FlankBatch p = FlankBatch(n_patch, s.shape[0] - 1, z.shape[0] - 1, &s[0], &z[0], &point[0, 0, 0],
-                                   &tangent[0, 0, 0], &orientation[0], &rotations[0, 0], cos(rotation), sin(rotation),
-                                   &pconn[0, 0, 0], &psixths[0, 0, 0])
+    cdef FlankBatch p = FlankBatch(n_patch, n_s - 1, n_z - 1, &s[0], &z[0], &point[0, 0, 0], &tangent[0, 0, 0],
+                                   &orientation[0], &rotations[0, 0], cos(rotation), sin(rotation), &pconn[0, 0, 0],
+                                   &psixths[0, 0, 0])
     cdef FaceBatch f = FaceBatch(n_face, n_q, &conn[0, 0], &sixths[0, 0], &coords[0, 0, 0], &normal[0, 0],
                                  &shape[0, 0, 0], &weight[0, 0], &offset[0, 0], &patch[0])
     cdef int64_t missing
-    cdef BlockRows r = BlockRows(NULL, NULL, NULL, NULL, 0, True)
-    cdef Friction law = Friction(0.0, 0.0, NULL, NULL, NULL, NULL, NULL)
-    if rows is not None:
-        r = rows_of(rows)
-    if friction is not None:
-        law = friction_of(friction, n_face, n_q)
-    cdef double* p_residual = NULL
-    if residual is not None:
-        p_residual = &residual[0, 0]
-    cdef double[::1] moments = np.zeros(n_face) if moment is None else moment
-    if moments.shape[0] != n_face:
-        raise ValueError("contact_flanks: moment must have an entry for each face")
     with nogil:
-        missing = flank_contact(p, f, &u[0, 0], &multiplier[0, 0], penalty, opening, reach, beyond, limit, law, p_residual, r,
-                                &gap[0, 0], &pressure[0, 0], &foot_point[0, 0, 0], &moments[0])
+        missing = flank_contact(p, f, &uv[0, 0], &multipliers[0, 0], penalty, opening, reach, beyond, limit, law,
+                                p_residual, r, &gap[0, 0], &pressure[0, 0], &foot_point[0, 0, 0], &moments[0])
     return gap_array, pressure_array, foot_point_array, missing
 
 
-def add_face_blocks(const int32_t[:, ::1] conn, const uint8_t[:, ::1] sixths, const double[:, :, :, :, ::1] blocks, rows):
+def add_face_blocks(conn, sixths, blocks, rows):
     """Add dense blocks (n, m, m, 3, 3), N/mm, of nodes conn (n, m) to the owned rows of a tangent.
 
     sixths : (n, m), sixths of a turn by which images are rotated;  rows : record as for `contact_flanks`
-    Returns the number of blocks that the pattern lacks. Raises ValueError for shapes that disagree.
+    Returns the number of blocks that the pattern lacks. Raises ValueError for arrays that do not fit each other.
     """
-    cdef int64_t n = conn.shape[0], missing
-    cdef BlockRows r = rows_of(rows)
-    cdef int m = conn.shape[1]
-    if not (sixths.shape[0] == n and sixths.shape[1] == m and blocks.shape[0] == n and blocks.shape[1] == m
-            and blocks.shape[2] == m and blocks.shape[3] == 3 and blocks.shape[4] == 3):
-        raise ValueError("add_face_blocks: array shapes disagree")
+    name = "add_face_blocks"
+    cdef BlockRows r = rows_of(name, rows, ANY)
+    cdef const int32_t[:, ::1] nodes = indices(name, "conn", conn, INT32, (ANY, ANY), None, rows.number.shape[0])
+    cdef int64_t n = nodes.shape[0], m = nodes.shape[1], missing
+    cdef const uint8_t[:, ::1] images = indices(name, "sixths", sixths, UINT8, (n, m), None, SIXTHS)
+    cdef const double[:, :, :, :, ::1] dense = checked(name, "blocks", blocks, DOUBLE, (n, m, m, 3, 3))
     if n == 0:
         return 0
     with nogil:
-        missing = add_blocks(n, m, &conn[0, 0], &sixths[0, 0], &blocks[0, 0, 0, 0, 0], r)
+        missing = add_blocks(n, m, &nodes[0, 0], &images[0, 0], &dense[0, 0, 0, 0, 0], r)
     return missing

@@ -18,13 +18,13 @@ def arm(int number) -> None:
     c_arm(number)
 
 
-def set_sentence(bytes before, bytes after) -> None:
+def set_sentence(bytes before not None, bytes after not None) -> None:
     """What is written to stderr, before and after the signal's name; nothing where `after` is empty."""
     before_name.set(before, len(before))
     after_name.set(after, len(after))
 
 
-def set_sign_of_life(bytes text) -> None:
+def set_sign_of_life(bytes text not None) -> None:
     """What the sign of life says."""
     sign_of_life.set(text, len(text))
 
@@ -35,7 +35,9 @@ def note_output() -> None:
 
 
 def start_heart(double interval) -> None:
-    """Begin to write a sign of life after so many seconds without output."""
+    """Begin to write a sign of life after so many seconds without output. Raises ValueError for none."""
+    if not interval > 0.0:
+        raise ValueError(f"start_heart: interval is {interval}; expected seconds above 0")
     c_start_heart(interval)
 
 

@@ -21,14 +21,14 @@ ORDERING = "MMD_AT_PLUS_A"
 
 
 class Rows:
-    """All blocks among the first n nodes, of a symmetric matrix the upper triangle."""
+    """All blocks among the first n of n_local nodes (None: n), of a symmetric matrix the upper triangle."""
 
-    def __init__(self, n: int, symmetric: bool = True) -> None:
+    def __init__(self, n: int, symmetric: bool = True, n_local: int | None = None) -> None:
         first = np.arange(n) if symmetric else np.zeros(n, dtype=np.int64)
         self.start = np.concatenate([[0], np.cumsum(n - first)]).astype(np.int64)
         self.column = np.concatenate([np.arange(k, n) for k in first]).astype(np.int32)
         self.values = np.zeros((len(self.column), 3, 3))
-        self.number, self.n_own, self.symmetric = np.arange(n, dtype=np.int32), n, symmetric
+        self.number, self.n_own, self.symmetric = np.arange(n_local or n, dtype=np.int32), n, symmetric
 
     def matrix(self) -> np.ndarray:
         full = np.zeros((self.n_own, 3, self.n_own, 3))
@@ -97,7 +97,8 @@ class Blocks:
         settings, law = (self.penalty, 0.0, 0.2, np.inf), None
         for augmentation in range(augmentations + 1):
             for _ in range(40):
-                r, rows = mesh.residual(u) - force, Rows(self.n_surface, self.coefficient == 0.0)
+                r = mesh.residual(u) - force
+                rows = Rows(self.n_surface, self.coefficient == 0.0, len(u))
                 if augmentation == 0:
                     corners = self.placed.corners(pick)
                     zero = np.zeros((len(pick), 4))

@@ -1,9 +1,9 @@
 # cython: language_level=3, boundscheck=False, wraparound=False
-"""Cython layer of the gear trains' kernels: checks shapes, releases the GIL, calls."""
-
-import numpy as np
+"""Cython layer of the gear trains' kernels: checks arrays, releases the GIL, calls."""
 
 from libc.stdint cimport int64_t
+
+include "../../kernel/arrays.pxi"
 
 
 cdef extern from "<Eigen/Dense>" nogil:
@@ -80,69 +80,79 @@ cdef class GearboxKernel:
     cdef const Shaft[::1] shafts
     cdef GearboxData gearbox
 
-    def __init__(self, const double[::1] mass, const Mesh[::1] meshes, const Shaft[::1] shafts, 
-                 double contact_ramp, double generator_damping, bint braked):
-        if mass.shape[0] != kGears or meshes.shape[0] != kMeshes or shafts.shape[0] != kShafts:
-            raise ValueError("GearboxKernel: wrong number of gears, meshes or shafts")
-        cdef int64_t k
-        for k in range(kMeshes):
-            if not (0 <= meshes[k].driver < kGears and 0 <= meshes[k].driven < kGears):
-                raise ValueError("GearboxKernel: a mesh has no such gear")
-        for k in range(kShafts):
-            if not (0 <= shafts[k].first < kGears and 0 <= shafts[k].second < kGears):
-                raise ValueError("GearboxKernel: a shaft has no such gear")
-        self.mass, self.meshes, self.shafts = mass, meshes, shafts
-        self.gearbox = GearboxData(&meshes[0], &shafts[0], &mass[0], contact_ramp, generator_damping, braked)
+    def __cinit__(self, mass, meshes, shafts, double contact_ramp, double generator_damping, bint braked):
+        name = "GearboxKernel"
+        checked(name, "meshes", meshes, MESH, (kMeshes,))
+        checked(name, "shafts", shafts, SHAFT, (kShafts,))
+        for ends, field in ((meshes, "driver"), (meshes, "driven"), (shafts, "first"), (shafts, "second")):
+            of = "meshes" if ends is meshes else "shafts"
+            indices(name, f"{of}[{field!r}]", np.ascontiguousarray(ends[field]), INT64, (ANY,), 0, kGears)
+        self.mass = checked(name, "mass", mass, DOUBLE, (kGears,))
+        self.meshes, self.shafts = meshes, shafts
+        self.gearbox = GearboxData(
+            &self.meshes[0], &self.shafts[0], &self.mass[0], contact_ramp, generator_damping, braked
+        )
 
-    def forces(self, const MeshError[::1] errors, const double[::1] x, const double[::1] v):
-        """Forces (23,) in N of meshes, shafts and generator at displacements x (m) and velocities v (m/s)."""
-        self._check(errors.shape[0], x.shape[0], v.shape[0])
+    def forces(self, errors, x, v):
+        """Forces (23,) in N of meshes, shafts and generator at displacements x (m) and velocities v (m/s).
+
+        errors : (18,) MESH_ERROR;  x, v : (23,). Raises ValueError for other arrays, as all methods do.
+        """
+        name = "GearboxKernel.forces"
+        cdef const MeshError[::1] mesh_errors = checked(name, "errors", errors, MESH_ERROR, (kMeshes,))
+        cdef const double[::1] displacement = checked(name, "x", x, DOUBLE, (kGears,))
+        cdef const double[::1] velocity = checked(name, "v", v, DOUBLE, (kGears,))
         force = np.empty(kGears)
         cdef double[::1] out = force
         with nogil:
-            internal_forces(self.gearbox, &errors[0], &x[0], &v[0], &out[0], NULL, NULL)
+            internal_forces(self.gearbox, &mesh_errors[0], &displacement[0], &velocity[0], &out[0], NULL, NULL)
         return force
 
-    def matrices(self, const MeshError[::1] errors, const double[::1] x, const double[::1] v):
-        """Stiffness (N/m) and damping (N·s/m), (23, 23), symmetric."""
-        self._check(errors.shape[0], x.shape[0], v.shape[0])
+    def matrices(self, errors, x, v):
+        """Stiffness (N/m) and damping (N·s/m), (23, 23), symmetric; arguments as for `forces`."""
+        name = "GearboxKernel.matrices"
+        cdef const MeshError[::1] mesh_errors = checked(name, "errors", errors, MESH_ERROR, (kMeshes,))
+        cdef const double[::1] displacement = checked(name, "x", x, DOUBLE, (kGears,))
+        cdef const double[::1] velocity = checked(name, "v", v, DOUBLE, (kGears,))
         cdef double[::1] force = np.empty(kGears)
         cdef GearMatrix stiffness, damping
-        internal_forces(self.gearbox, &errors[0], &x[0], &v[0], &force[0], &stiffness, &damping)
+        internal_forces(self.gearbox, &mesh_errors[0], &displacement[0], &velocity[0], &force[0], &stiffness, &damping)
         shape = (kGears, kGears)
         return (np.array(<double[:kGears * kGears]>stiffness.data()).reshape(shape),
                 np.array(<double[:kGears * kGears]>damping.data()).reshape(shape))
 
-    def torques(self, const double[:, ::1] x, const double[:, ::1] v):
+    def torques(self, x, v):
         """Torques (n, 11) in N·m of all shafts at displacements and velocities (n, 23)."""
-        cdef int64_t k, n = x.shape[0]
-        self._check(kMeshes, x.shape[1], v.shape[1])
-        if v.shape[0] != n:
-            raise ValueError("GearboxKernel: not as many velocities as displacements")
+        name = "GearboxKernel.torques"
+        cdef const double[:, ::1] displacement = checked(name, "x", x, DOUBLE, (ANY, kGears))
+        cdef int64_t k, n = displacement.shape[0]
+        cdef const double[:, ::1] velocity = checked(name, "v", v, DOUBLE, (n, kGears))
         torque = np.empty((n, kShafts))
         cdef double[:, ::1] out = torque
         for k in range(n):
-            shaft_torques(self.gearbox, &x[k, 0], &v[k, 0], &out[k, 0])
+            shaft_torques(self.gearbox, &displacement[k, 0], &velocity[k, 0], &out[k, 0])
         return torque
 
-    def simulate(self, const MeshError[::1] errors, const double[::1] rack_force, double h, double[::1] x, double[::1] v):
+    def simulate(self, errors, rack_force, double h, x, v):
         """Advance x and v in place under rack forces at the ends of all steps, (n + 1,) N, h apart.
 
         Returns the torques of all shafts, N·m, after every step that converged: (m, 11), m = n if all did.
         """
-        self._check(errors.shape[0], x.shape[0], v.shape[0])
-        cdef int64_t n = rack_force.shape[0] - 1, done
+        name = "GearboxKernel.simulate"
+        cdef const MeshError[::1] mesh_errors = checked(name, "errors", errors, MESH_ERROR, (kMeshes,))
+        cdef const double[::1] force = checked(name, "rack_force", rack_force, DOUBLE, (ANY,))
+        cdef double[::1] displacement = checked(name, "x", x, DOUBLE, (kGears,), True)
+        cdef double[::1] velocity = checked(name, "v", v, DOUBLE, (kGears,), True)
+        cdef int64_t n = force.shape[0] - 1, done
         if n < 1:
-            raise ValueError("GearboxKernel: no step")
+            raise ValueError(f"{name}: rack_force is ({n + 1},); expected 2 values or more")
         torque = np.empty((n, kShafts))
         cdef double[:, ::1] out = torque
         with nogil:
-            done = simulate_gearbox(self.gearbox, &errors[0], &rack_force[0], n, h, &x[0], &v[0], &out[0, 0])
+            done = simulate_gearbox(
+                self.gearbox, &mesh_errors[0], &force[0], n, h, &displacement[0], &velocity[0], &out[0, 0]
+            )
         return torque[:done]
-
-    def _check(self, int64_t errors, int64_t x, int64_t v):
-        if errors != kMeshes or x != kGears or v != kGears:
-            raise ValueError("GearboxKernel: wrong number of errors, displacements or velocities")
 
 
 cdef class PlanetaryStepKernel:
@@ -160,24 +170,28 @@ cdef class PlanetaryStepKernel:
     cdef const double[:, :, ::1] deflection_rows, compliance
     cdef StepMatrices matrices
 
-    def __init__(self, double h, double half_backlash, const double[::1] from_q, const double[::1] from_y,
-                 const double[::1] from_torque, const double[::1] from_force, const double[:, :, ::1] deflection_rows,
-                 const double[:, :, ::1] compliance, const double[::1] damping):
-        cdef int64_t n = deflection_rows.shape[2], m = deflection_rows.shape[1]
-        if not 0 < m <= kMaxTrainMeshes or damping.shape[0] != m:
-            raise ValueError("PlanetaryStepKernel: wrong number of meshes")
-        if from_q.shape[0] != n or from_y.shape[0] != n or from_torque.shape[0] != n or from_force.shape[0] != n:
-            raise ValueError("PlanetaryStepKernel: wrong number of modes")
-        if compliance.shape[0] != deflection_rows.shape[0] or compliance.shape[1] != m or compliance.shape[2] != m:
-            raise ValueError("PlanetaryStepKernel: compliance and deflection_rows differ in their numbers of steps or meshes")
-        self.from_q, self.from_y, self.from_torque, self.from_force = from_q, from_y, from_torque, from_force
-        self.deflection_rows, self.compliance, self.damping = deflection_rows, compliance, damping
-        self.matrices = StepMatrices(n, m, h, half_backlash, &from_q[0], &from_y[0], &from_torque[0], &from_force[0], &deflection_rows[0, 0, 0],
-                                &compliance[0, 0, 0], &damping[0])
+    def __cinit__(self, double h, double half_backlash, from_q, from_y, from_torque, from_force, deflection_rows,
+                  compliance, damping):
+        name = "PlanetaryStepKernel"
+        self.deflection_rows = checked(name, "deflection_rows", deflection_rows, DOUBLE, (ANY, ANY, ANY))
+        cdef int64_t steps = self.deflection_rows.shape[0]
+        cdef int64_t m = self.deflection_rows.shape[1], n = self.deflection_rows.shape[2]
+        if not 0 < m <= kMaxTrainMeshes:
+            raise ValueError(
+                f"{name}: deflection_rows is ({steps}, {m}, {n}); expected from 1 to {kMaxTrainMeshes} meshes"
+            )
+        self.compliance = checked(name, "compliance", compliance, DOUBLE, (steps, m, m))
+        self.damping = checked(name, "damping", damping, DOUBLE, (m,))
+        self.from_q = checked(name, "from_q", from_q, DOUBLE, (n,))
+        self.from_y = checked(name, "from_y", from_y, DOUBLE, (n,))
+        self.from_torque = checked(name, "from_torque", from_torque, DOUBLE, (n,))
+        self.from_force = checked(name, "from_force", from_force, DOUBLE, (n,))
+        self.matrices = StepMatrices(
+            n, m, h, half_backlash, &self.from_q[0], &self.from_y[0], &self.from_torque[0], &self.from_force[0],
+            &self.deflection_rows[0, 0, 0], &self.compliance[0, 0, 0], &self.damping[0],
+        )
 
-    def advance(self, int64_t first, double[:, ::1] q, double[:, ::1] y, double[:, ::1] mesh_term,
-                const double[:, ::1] torques, const double[:, :, ::1] solve, const double[:, ::1] stiffness,
-                const double[:, ::1] constant, const double[::1] flanks=None):
+    def advance(self, int64_t first, q, y, mesh_term, torques, solve, stiffness, constant, flanks=None):
         """Advance states q, y, mesh_term (modes, states) in place by the steps after step `first`, one for each row of torques.
 
         torques : (count, states) N·m, sum of the torques at the start and the end of each step
@@ -185,23 +199,30 @@ cdef class PlanetaryStepKernel:
         flanks : (meshes,) 1 or -1, the flanks in contact for which this law holds; None for meshes without backlash
 
         Returns the number of (step, state) pairs in which some mesh was not in contact on its flank, or minus the number
-        of the step that did not converge.
+        of the step that did not converge. Raises ValueError for other arrays.
         """
-        cdef int64_t n = self.matrices.modes, m = self.matrices.meshes, count = torques.shape[0], states = q.shape[1], separated
-        if first < 0 or first + count >= self.deflection_rows.shape[0] or count < 1 or states < 1:
-            raise ValueError("PlanetaryStepKernel: no such steps or no states")
-        if q.shape[0] != n or y.shape[0] != n or mesh_term.shape[0] != n:
-            raise ValueError("PlanetaryStepKernel: wrong number of modes")
-        if y.shape[1] != states or mesh_term.shape[1] != states or torques.shape[1] != states:
-            raise ValueError("PlanetaryStepKernel: wrong number of states")
-        if (solve.shape[0] != count or solve.shape[1] != m or solve.shape[2] != m or stiffness.shape[0] != count
-                or stiffness.shape[1] != m or constant.shape[0] != count or constant.shape[1] != m):
-            raise ValueError("PlanetaryStepKernel: wrong number of meshes or steps in the mesh law")
-        if flanks is not None and flanks.shape[0] != m:
-            raise ValueError("PlanetaryStepKernel: wrong number of flanks")
-        cdef MeshLaw law = MeshLaw(&solve[0, 0, 0], &stiffness[0, 0], &constant[0, 0], NULL)
+        name = "PlanetaryStepKernel.advance"
+        cdef int64_t n = self.matrices.modes, m = self.matrices.meshes, last = self.deflection_rows.shape[0] - 1
+        cdef const double[:, ::1] torque = checked(name, "torques", torques, DOUBLE, (ANY, ANY))
+        cdef int64_t count = torque.shape[0], states = torque.shape[1], separated
+        if count < 1 or states < 1 or not 0 <= first <= last - count:
+            raise ValueError(
+                f"{name}: torques is ({count}, {states}) after step {first}; expected a state and steps from 1 to {last}"
+            )
+        cdef tuple shape = (n, states)
+        cdef double[:, ::1] q_rows = checked(name, "q", q, DOUBLE, shape, True)
+        cdef double[:, ::1] y_rows = checked(name, "y", y, DOUBLE, shape, True)
+        cdef double[:, ::1] mesh_terms = checked(name, "mesh_term", mesh_term, DOUBLE, shape, True)
+        cdef const double[:, :, ::1] inverse = checked(name, "solve", solve, DOUBLE, (count, m, m))
+        cdef const double[:, ::1] slope = checked(name, "stiffness", stiffness, DOUBLE, (count, m))
+        cdef const double[:, ::1] offset = checked(name, "constant", constant, DOUBLE, (count, m))
+        cdef const double[::1] sides
+        cdef MeshLaw law = MeshLaw(&inverse[0, 0, 0], &slope[0, 0], &offset[0, 0], NULL)
         if flanks is not None:
-            law.flanks = &flanks[0]
+            sides = checked(name, "flanks", flanks, DOUBLE, (m,))
+            law.flanks = &sides[0]
         with nogil:
-            separated = advance_states(self.matrices, law, first, count, states, &torques[0, 0], &q[0, 0], &y[0, 0], &mesh_term[0, 0])
+            separated = advance_states(
+                self.matrices, law, first, count, states, &torque[0, 0], &q_rows[0, 0], &y_rows[0, 0], &mesh_terms[0, 0]
+            )
         return separated
