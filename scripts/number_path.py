@@ -32,7 +32,7 @@ import math
 import sys
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from types import CodeType, FrameType
 from typing import Any
@@ -154,46 +154,44 @@ def lines_of(code: CodeType) -> int:
 
 
 @dataclass(frozen=True)
-class Way:
-    """The way of a thing. stays : module and its functions, in order;  climbs : numbers of stays, from 0
+class Stay:
+    """A series of entries into functions of one module.
 
-    lines : of all functions
+    level : of the module;  climb : whether it is higher than that of the stay before;  lines : of the functions
     """
 
-    stays: list[tuple[str, list[str]]]
-    climbs: list[int]
+    module: str
+    level: int
+    climb: bool
+    functions: list[str]
     lines: int
 
-    @property
-    def modules(self) -> list[str]:
-        """Every module once, in the order of the first stays."""
-        return list(dict.fromkeys(module for module, _ in self.stays))
 
-    @property
-    def functions(self) -> int:
-        """Number of functions."""
-        return sum(len(names) for _, names in self.stays)
+@dataclass(frozen=True)
+class Way:
+    """The way of a thing."""
+
+    stays: list[Stay]
 
     def counts(self) -> dict[str, int]:
         """What is compared between checkouts."""
         return {
-            "modules": len(self.modules),
-            "functions": self.functions,
-            "lines": self.lines,
-            "climbs": len(self.climbs),
+            "modules": len({stay.module for stay in self.stays}),
+            "functions": sum(len(stay.functions) for stay in self.stays),
+            "lines": sum(stay.lines for stay in self.stays),
+            "climbs": sum(stay.climb for stay in self.stays),
         }
 
 
 def find_way(watch: Watch, level: dict[str, int]) -> Way:
     """The way that a watch has seen, on the levels of its package."""
-    way = watch.way()
-    stays = [
-        (module, [code.co_qualname for _, code in entries])
-        for module, entries in itertools.groupby(way, key=lambda entry: entry[0])
-    ]
-    pairs = itertools.pairwise(module for module, _ in stays)
-    climbs = [k for k, (before, module) in enumerate(pairs, start=1) if level[module] > level[before]]
-    return Way(stays, climbs, sum(lines_of(code) for _, code in way))
+    stays: list[Stay] = []
+    for module, entries in itertools.groupby(watch.way(), key=lambda entry: entry[0]):
+        codes = [code for _, code in entries]
+        climb = bool(stays) and level[module] > stays[-1].level
+        names, lines = [code.co_qualname for code in codes], sum(map(lines_of, codes))
+        stays.append(Stay(module, level[module], climb, names, lines))
+    return Way(stays)
 
 
 def run(arguments: list[str], watch: Watch | None = None) -> None:
@@ -218,6 +216,26 @@ def largest_stress(history: Path) -> float:
         return max(float(row[STRESS]) for row in csv.DictReader(file))
 
 
+def measure(thing: str, design: str, mesh: str, settings: Sequence[str]) -> Way:
+    """The way of a thing in a run of a design and in the report of its results."""
+    with tempfile.TemporaryDirectory() as folder:
+        out = str(Path(folder) / "out")
+        command = ["run", design, "--mesh", mesh, "--out", out, "--overwrite"]
+        command += ["--set", f"load.torque={TORQUE}", *settings]
+        if thing in CLASSES:
+            watch = Watch(PACKAGE, of_class(CLASSES[thing]), asked=True)
+        elif thing == "torque":
+            watch = Watch(PACKAGE, Number([float(TORQUE) * unit for unit in TORQUE_UNITS], [TORQUE]))
+        else:
+            run(command)
+            value = largest_stress(Path(out) / "history.csv")
+            watch = Watch(PACKAGE, Number([value], [repr(value), f"{value:.4g}"]))
+        run(command, watch)
+        run(["report", out], watch)
+    package = Path(sys.modules[PACKAGE].__file__ or "").parent
+    return find_way(watch, module_levels(file_graph(package)))
+
+
 def main() -> None:
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("thing", choices=["design", "torque", "recipe", "stress"])
@@ -226,31 +244,13 @@ def main() -> None:
     options.add_argument("--set", nargs="*", default=[], help="keys of the design file")
     options.add_argument("--json", action="store_true", help="print JSON")
     chosen = options.parse_args()
-    with tempfile.TemporaryDirectory() as folder:
-        out = str(Path(folder) / "out")
-        command = ["run", chosen.design, "--mesh", chosen.mesh, "--out", out, "--overwrite"]
-        command += ["--set", f"load.torque={TORQUE}", *chosen.set]
-        holds: Holds
-        if chosen.thing in CLASSES:
-            holds = of_class(CLASSES[chosen.thing])
-        elif chosen.thing == "torque":
-            holds = Number([float(TORQUE) * unit for unit in TORQUE_UNITS], [TORQUE])
-        else:
-            run(command)
-            value = largest_stress(Path(out) / "history.csv")
-            holds = Number([value], [repr(value), f"{value:.4g}"])
-        watch = Watch(PACKAGE, holds, asked=chosen.thing in CLASSES)
-        run(command, watch)
-        run(["report", out], watch)
-    package = Path(sys.modules[PACKAGE].__file__ or "").parent
-    level = module_levels(file_graph(package))
-    way = find_way(watch, level)
+    way = measure(chosen.thing, chosen.design, chosen.mesh, chosen.set)
     if chosen.json:
-        print(json.dumps({**way.counts(), "stays": way.stays, "climbs_at": way.climbs}, indent=1))
+        print(json.dumps({"counts": way.counts(), "stays": [asdict(stay) for stay in way.stays]}, indent=1))
         return
-    for k, (module, functions) in enumerate(way.stays):
-        mark = "climb" if k in way.climbs else ""
-        print(f"{k + 1:3d}  level {level[module]:2d} {mark:6s}{module}: {', '.join(functions)}")
+    for k, stay in enumerate(way.stays, start=1):
+        mark = "climb" if stay.climb else ""
+        print(f"{k:3d}  level {stay.level:2d} {mark:6s}{stay.module}: {', '.join(stay.functions)}")
     print(", ".join(f"{count} {name}" for name, count in way.counts().items()))
 
 
