@@ -143,11 +143,20 @@ def section_rows(field: FieldInfo) -> dict[str, list[Row]]:
     if len(kinds) > 1:
         return chosen("", kinds)
     out = {"": list(plain_rows(kinds[0]))}
-    for name, inner in kinds[0].model_fields.items():
-        if len(choices(inner)) > 1:
-            for caption, lines in chosen(f"{name}.", choices(inner)).items():
-                out.setdefault(caption, []).extend(lines)
+    for prefix, inner in choices_inside(kinds[0]):
+        for caption, lines in chosen(prefix, inner).items():
+            out.setdefault(caption, []).extend(lines)
     return out
+
+
+def choices_inside(section: type[Section], prefix: str = "") -> Iterator[tuple[str, list[type[Section]]]]:
+    """Prefix and choice of the sections inside of a section that have types, at any depth."""
+    for name, field in section.model_fields.items():
+        inner = choices(field)
+        if len(inner) > 1:
+            yield f"{prefix}{name}.", inner
+        elif inner:
+            yield from choices_inside(inner[0], f"{prefix}{name}.")
 
 
 def file_tables(design: type[Section], alike: dict[str, str]) -> str:

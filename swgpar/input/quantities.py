@@ -17,6 +17,9 @@ from swgpar.input.ranges import beyond, magnitudes
 MAGNITUDE = "magnitude"
 """Kind of pydantic's finding for numbers of another magnitude than those of their unit."""
 
+WHOLE_SECTION = "whole_section"
+"""Kind of a finding on a section whose keys do not fit each other; its message goes on after the section's name."""
+
 
 class Section(BaseModel):
     """One table of an input file: immutable, no unknown keys, no silent conversion, finite numbers only."""

@@ -10,7 +10,7 @@ from typing import Any, get_args, get_origin
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 
-from swgpar.input.quantities import MAGNITUDE, Section, allowed, show, show_key
+from swgpar.input.quantities import MAGNITUDE, WHOLE_SECTION, Section, allowed, show, show_key
 
 RANGE_FINDINGS = ("greater_than", "greater_than_equal", "less_than", "less_than_equal")
 """Kinds of pydantic's findings for numbers beyond the limits of their field."""
@@ -87,6 +87,8 @@ def sentence(model: type[Section], error: ValidationError) -> str:
     if kind == "extra_forbidden" or field is None:
         return _unknown_key(owner, path, value)
     key = show_key(*path)
+    if kind == WHOLE_SECTION:
+        return f"{key} {finding['msg']}"
     if _section_classes(field):
         return _bad_section(field, kind, key, value)
     if kind == "literal_error":

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from typing import Self
 
 import numpy as np
+from pydantic import model_validator
+from pydantic_core import PydanticCustomError
 
-from swgpar.input.quantities import Section
+from swgpar.input.quantities import WHOLE_SECTION, Section
 
 IN_PLANE = [0, 1, 3]
 """Components xx, yy and xy among xx, yy, zz, xy, yz, zx."""
@@ -19,6 +22,14 @@ class Material(Section):
     tangential there, and z is the axis of the drive. Components are xx, yy, zz, xy, yz, zx, with engineering shear
     strains.
     """
+
+    @model_validator(mode="after")
+    def _is_stable(self) -> Self:
+        if np.linalg.eigvalsh(self.compliance()).min() <= 0.0:
+            raise PydanticCustomError(
+                WHOLE_SECTION, "is a material that yields energy: allowed a compliance that is positive definite"
+            )
+        return self
 
     @abstractmethod
     def compliance(self) -> np.ndarray:

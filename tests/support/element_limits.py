@@ -42,9 +42,7 @@ def patch(dims: int, amount: float, seed: int, stretch: float = 1.0, poisson: fl
     dims : 2 or 3;  amount : largest way of the inner nodes per direction, in elements;  stretch : of the whole, along y
     """
     rng = np.random.default_rng(seed)
-    points, elements = _grid(dims, 3)
-    inner = np.all((points[:, :dims] > 1e-9) & (points[:, :dims] < 3.0 - 1e-9), axis=1)
-    points[inner, :dims] += rng.uniform(-amount, amount, (inner.sum(), dims))
+    points, elements, inner = distorted_grid(dims, amount, rng)
     points[:, 1] *= stretch
     quality = (hex_quality if dims == 3 else quad_quality)(points, elements)
     try:
@@ -54,6 +52,14 @@ def patch(dims: int, amount: float, seed: int, stretch: float = 1.0, poisson: fl
     turn = Rotation.from_rotvec(rng.uniform(0.3, 3.0) * (rng.normal(size=3) if dims == 3 else np.array([0, 0, 1.0])))
     rotation = np.abs(mesh.stress(points @ turn.as_matrix().T - points)).max() / YOUNG
     return Patch(False, quality, _constant(mesh, inner, poisson), float(rotation))
+
+
+def distorted_grid(dims: int, amount: float, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Points, elements, and which points are inner ones; these are moved by up to `amount` elements per direction."""
+    points, elements = _grid(dims, 3)
+    inner = np.all((points[:, :dims] > 1e-9) & (points[:, :dims] < 3.0 - 1e-9), axis=1)
+    points[inner, :dims] += rng.uniform(-amount, amount, (inner.sum(), dims))
+    return points, elements, inner
 
 
 def _grid(dims: int, n: int) -> tuple[np.ndarray, np.ndarray]:

@@ -118,7 +118,7 @@ def beam(shape: str, level: int, plane: bool) -> Linear:
     sign = {"regular": 0.0, "parallelogram": 1.0, "trapezoid": np.interp(x, range(7), (-1.0) ** np.arange(7))}[shape]
     points = box.copy()
     points[:, 0] += np.interp(x, [0.0, 1.0, 5.0, 6.0], [0.0, 1.0, 1.0, 0.0]) * sign * (y - 0.1)  # the ends stay upright
-    return cantilever(box, points, elements, 1, (1e7, 0.3), 0.1)
+    return cantilever(box, points, elements, 1, Isotropic(E=1e7, nu=0.3), 0.1)
 
 
 def cantilever(
@@ -126,7 +126,7 @@ def cantilever(
     points: np.ndarray,
     elements: np.ndarray,
     axis: int,
-    material: tuple[float, float],
+    material: Material,
     thickness: float,
 ) -> Linear:
     """A beam clamped at x = 0, with a unit force along `axis` on its other end: mean displacement there.
@@ -249,7 +249,9 @@ def twisted_beam(level: int, plane: bool) -> Linear:
     box, hexes = grid(*lines)
     x, y, z = box[:, 0], box[:, 1] - 0.55, box[:, 2] - 0.16
     c, s = np.cos(0.5 * np.pi * x / 12.0), np.sin(0.5 * np.pi * x / 12.0)
-    return cantilever(box, np.column_stack([x, c * y - s * z, s * y + c * z]), hexes, 2, (29e6, 0.22), 1.0)
+    return cantilever(
+        box, np.column_stack([x, c * y - s * z, s * y + c * z]), hexes, 2, Isotropic(E=29e6, nu=0.22), 1.0
+    )
 
 
 ELEMENTS = {"C3D8I": (False, True), "C3D8": (False, False), "CPS4I": (True, True), "CPS4": (True, False)}

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import swgpar
+from support.markdown import examples
 from support.paths import DRIVERS, ROOT
 from support.scripts import load_script
 from swgpar.input.quantities import Section
@@ -22,11 +23,6 @@ def first_cells(page: Path) -> list[str]:
     """Names in code font in the first column of the tables of a page."""
     lines = page.read_text(encoding="utf-8").splitlines()
     return [name for line in lines if line.startswith("| `") for name in re.findall(r"`(\w+)`", line.split("|")[1])]
-
-
-def examples(page: Path, language: str) -> list[str]:
-    """Blocks of code of a page."""
-    return re.findall(rf"```{language}\n(.*?)```", page.read_text(encoding="utf-8"), flags=re.DOTALL)
 
 
 def keys(section: type[Section]) -> set[str]:
