@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+import re
 import shlex
 import sys
 import tempfile
@@ -94,10 +95,11 @@ def hidden_variables() -> Iterator[None]:
 
 
 @contextmanager
-def accepted_options(comm: MPI.Comm) -> Iterator[None]:
+def accepted_options(comm: MPI.Comm, *, all_errors: bool = False) -> Iterator[None]:
     """Run a block in which PETSc reads options; what it does not accept is an InputError on all ranks. Collective.
 
-    An error of PETSc that is not about options is raised as it is.
+    An error of PETSc that is not about options is raised as it is, unless `all_errors` says that options have led to
+    it; what has no memory always is.
     """
     from petsc4py import PETSc
 
@@ -105,9 +107,9 @@ def accepted_options(comm: MPI.Comm) -> Iterator[None]:
     try:
         yield
     except PETSc.Error as error:
-        if error.ierr not in ABOUT_OPTIONS:
+        if is_out_of_memory(error) or not (all_errors or error.ierr in ABOUT_OPTIONS):
             raise
-        text = str(error).splitlines()[-1].partition("] ")[2]
+        text = re.split(r"^\[\d+\] ", str(error), flags=re.MULTILINE)[-1]
         values = PETSc.Options().getAll()
         named = [f"-{name} {values[name]}: " for name in sorted(_given & set(values)) if values[name] in text.split()]
         failure = "".join(named[:1]) + text

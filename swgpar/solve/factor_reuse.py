@@ -22,25 +22,6 @@ exactness is of no use to the last step."""
 MAX_ITERATIONS = 40
 """Iterations of GMRES after which a factor is made at once."""
 
-INTENSITY = 40.0
-"""Operations on an entry of the factor, of a factorisation that takes as long as a solve with it: 22 to 54 on meshes of
-60,000 to 920,000 unknowns (docs/verification/data/scaling.csv), the most on large ones."""
-
-ANALYSIS = 1.0
-"""Factorisations that cost as much as the analysis of another pattern: 0.8 to 1.4 in the loaded drive on full and
-forces."""
-
-
-def price(operations: float, entries: float, analysed: bool) -> float:
-    """Solves that take as long as a factorisation, from its counts of floating-point operations and of entries.
-
-    analysed : whether its pattern is known
-
-    It comes from counts and not from measured seconds, so that a run makes the same decisions every time.
-    """
-    return operations / (INTENSITY * entries) * (1.0 if analysed else 1.0 + ANALYSIS)
-
-
 Operation = Callable[[PETSc.Vec, PETSc.Vec], None]
 """Computes its second argument from the first."""
 
@@ -53,17 +34,12 @@ class ReusedFactor:
     like : vector of the system
     multiply, solve : with the present system; with the factor
 
-    Attributes
-    ----------
-    price : gives the cost of a factorisation in solves, as the function `price` does
-
     `goal` is the residual's norm that ends Newton's iteration at the latest; `fresh` says that the factor is that of
     the present system, `discarded` that it is to be renewed before its next use; `iterations` are those of all solves.
     """
 
     def __init__(self, like: PETSc.Vec, multiply: Operation, solve: Operation) -> None:
         self.fresh, self.discarded = False, True
-        self.price: Callable[[float, float, bool], float] = price
         self.layout: tuple[int, ...] = ()
         self.iterations: list[int] = []
         self.goal, self.fewest, self.surplus, self.last = 0.0, MAX_ITERATIONS, 0, 0

@@ -33,6 +33,8 @@ from swgpar.solve.active_set_cycles import (
 from swgpar.solve.bordered_system import BorderedSystem
 from swgpar.solve.discrete_problem import DiscreteProblem, ResidualInfo
 from swgpar.solve.line_search import LineSearch
+from swgpar.solve.linear_solver import MatrixKind
+from swgpar.solve.linear_solvers import make_linear_solver
 from swgpar.solve.solve_state import (
     REASONS,
     AcceptableState,
@@ -105,14 +107,9 @@ class NewtonSolver:
         self.last_residual = ResidualInfo(0.0, False)
         self._trial_cache: tuple[np.ndarray, np.ndarray] | None = None
         positions = problem.positions()[: problem.partition.n_own]
-        self.system = BorderedSystem(
-            problem.partition,
-            settings.linear,
-            positions,
-            "stiffness_",
-            symmetric=problem.symmetric,
-            reuse=settings.reuse_factor and settings.linear == "direct",
-        )
+        kind = MatrixKind(problem.partition.comm, positions[:, : problem.partition.dims], problem.symmetric)
+        solver = make_linear_solver(settings.linear, kind, "stiffness_")
+        self.system = BorderedSystem(problem.partition, solver, reuse=settings.reuse_factor)
         self.line_search = LineSearch(self.system, self._trial_residual, problem.x, problem.phases)
         self.snes = self._create_snes()
 
@@ -341,6 +338,7 @@ class NewtonSolver:
         else:
             reason = self.snes.getConvergedReason()
             text = REASONS.get(reason, str(reason)) if reason < 0 else f"{state.iterations} iterations in all"
+            text = self.system.solver.failure or text
             state.result = SolveResult(False, state.iterations, state.residual, text)
 
     def _after_frozen(self, state: SolveState) -> None:

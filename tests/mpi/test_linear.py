@@ -12,12 +12,17 @@ from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from support.stiffness import without_grounding
 from swgpar.checks.design_file import load_design
+from swgpar.errors import InputError
+from swgpar.fem.sparse import fill_matrix
 from swgpar.fem.vectors import create_vector
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.meshing import load_recipe
 from swgpar.model.drive_model import DriveModel, build_drive_model
 from swgpar.petsc import PETSc
-from swgpar.solve.bordered_system import BorderedSystem, mumps_defaults
+from swgpar.solve.bordered_system import BorderedSystem
+from swgpar.solve.factors import NESTED_DISSECTION, QUASI_DENSE
+from swgpar.solve.linear_solver import MatrixKind
+from swgpar.solve.linear_solvers import make_linear_solver
 
 
 def system(overrides: tuple[str, ...], control: str) -> tuple[DriveModel, PETSc.Vec]:
@@ -47,6 +52,14 @@ def system(overrides: tuple[str, ...], control: str) -> tuple[DriveModel, PETSc.
     return model, right
 
 
+def bordered(model: DriveModel, linear: str, prefix: str) -> BorderedSystem:
+    """A bordered system of the model with a linear solver of its own."""
+    partition = model.partition
+    positions = model.problem.positions()[: partition.n_own, : partition.dims]
+    kind = MatrixKind(partition.comm, positions, symmetric=True)
+    return BorderedSystem(partition, make_linear_solver(linear, kind, prefix))
+
+
 @pytest.mark.parametrize(
     "overrides",
     [pytest.param((), marks=pytest.mark.parallel(2)), PLANE, pytest.param(PLANE, marks=pytest.mark.parallel(3))],
@@ -54,10 +67,9 @@ def system(overrides: tuple[str, ...], control: str) -> tuple[DriveModel, PETSc.
 def test_iterative_equals_direct(overrides: tuple[str, ...]) -> None:
     model, right = system(overrides, "rotation")
     solver, problem, partition = model.solver, model.problem, model.partition
-    positions = problem.positions()[: partition.n_own]
     solutions = []
     for linear in ("direct", "iterative"):
-        border = BorderedSystem(partition, linear, positions, f"test_{linear}_")
+        border = bordered(model, linear, f"test_{linear}_")
         solved = solver.system
         border.set_system(problem.matrix, problem.matrix_rows.active, solved.grounding, solved.border, solved.rows)
         pc = solver.snes.getKSP().getPC()
@@ -77,7 +89,7 @@ def test_mumps_out_of_memory(option: str, value: int, word: str) -> None:
     model, right = system(PLANE, "rotation")
     solver, problem, partition = model.solver, model.problem, model.partition
     PETSc.Options()[f"short_{option}_mat_mumps_icntl_{option}"] = value
-    border = BorderedSystem(partition, "direct", problem.positions()[: partition.n_own], f"short_{option}_")
+    border = bordered(model, "direct", f"short_{option}_")
     solved, pc = solver.system, solver.snes.getKSP().getPC()
     border.set_system(problem.matrix, problem.matrix_rows.active, solved.grounding, solved.border, solved.rows)
     x = create_vector(partition)
@@ -88,15 +100,110 @@ def test_mumps_out_of_memory(option: str, value: int, word: str) -> None:
     parallel_assert(len(said.texts) == 1 and word in said.texts[0], str(said.texts))
 
 
+@pytest.mark.parallel([1, 2])
+def test_a_factor_that_is_singular_twice() -> None:
+    """Every failure gives a step that is not finite; the next matrix that has a factor is solved."""
+    model, right = system(PLANE, "rotation")
+    problem, solved = model.problem, model.solver.system
+    border, x = bordered(model, "direct", "singular_"), create_vector(model.partition)
+    border.set_system(problem.matrix, problem.matrix_rows.active, solved.grounding, solved.border, solved.rows)
+    values, norms = problem.rows.values.copy(), []
+    for share in (1.0, 0.0, 0.0, 1.0):
+        problem.rows.values[:] = share * values
+        fill_matrix(problem.matrix, problem.rows, problem.matrix_rows)
+        border.setUp(None)
+        border.apply(None, right, x)
+        norms.append(x.norm())
+        parallel_assert((share == 0.0) == bool(border.solver.failure))
+    assert np.isfinite(norms).tolist() == [True, False, False, True] and norms[3] == pytest.approx(norms[0], rel=1e-9)
+
+
+SOLVED = (
+    {"pc_type": "bjacobi"},
+    {"pc_type": "gamg"},
+    {"pc_type": "lu"},
+    {"pc_type": "asm"},
+    {"pc_type": "redundant"},
+    {"pc_type": "redundant", "ksp_type": "preonly"},
+    {"pc_type": "gamg", "ksp_type": "cg"},
+    {"pc_type": "bjacobi", "ksp_type": "cg"},
+    {"ksp_type": "gmres"},
+    {"ksp_type": "cg"},
+    {"ksp_type": "minres"},
+)
+"""Options with which every PETSc solves on any number of ranks."""
+
+SOLVED_OR_SAID = (
+    {"pc_type": "jacobi"},
+    {"pc_type": "none"},
+    {"pc_type": "sor"},
+    {"pc_type": "icc"},
+    {"pc_type": "ilu"},
+    {"pc_type": "hypre"},
+    {"pc_type": "ml"},
+    {"pc_type": "python"},
+    {"pc_type": "jacobi", "ksp_type": "preonly"},
+    {"pc_type": "jacobi", "ksp_type": "chebyshev"},
+    {"pc_type": "jacobi", "ksp_type": "minres"},
+    {"pc_type": "cholesky", "pc_factor_mat_solver_type": "petsc"},
+    {"pc_type": "cholesky", "pc_factor_mat_solver_type": "superlu_dist"},
+    *({"pc_factor_mat_solver_type": name} for name in ("petsc", "superlu_dist", "superlu", "umfpack", "nonsense")),
+)
+"""Options that a build of PETSc, a number of ranks or the matrix may be unfit for."""
+
+
+@pytest.mark.parametrize("linear", ["direct", "iterative", pytest.param("direct", marks=pytest.mark.parallel(2))])
+def test_options_of_petsc_solve_or_end_in_a_sentence(linear: str) -> None:
+    """Any preconditioner and Krylov method: the step of MUMPS, one that is not finite with a reason, or InputError."""
+    model, right = system(PLANE, "rotation")
+    problem, solved, comm = model.problem, model.solver.system, model.partition.comm
+    reference = create_vector(model.partition)
+    arguments = problem.matrix, problem.matrix_rows.active, solved.grounding, solved.border, solved.rows
+    exact = bordered(model, "direct", "exact_")
+    exact.set_system(*arguments)
+    exact.setUp(None)
+    exact.apply(None, right, reference)
+    for k, chosen in enumerate((*SOLVED, *SOLVED_OR_SAID)):
+        options, x = PETSc.Options(f"{linear}{k}_"), create_vector(model.partition)
+        limit = {} if chosen in SOLVED else {"ksp_max_it": 300}
+        for name, value in {**chosen, **limit}.items():
+            options[name] = value
+        try:
+            border = bordered(model, linear, f"{linear}{k}_")
+            border.set_system(*arguments)
+            border.setUp(None)
+            border.apply(None, right, x)
+        except InputError as error:
+            ends, said = "refused", str(error)
+        else:
+            ends, said = "failed" if border.solver.failure else "solved", border.solver.failure
+            border.destroy()
+        parallel_assert(len(set(comm.allgather((ends, said)))) == 1, f"{chosen}: {ends} {said}")
+        if ends == "solved":
+            x.axpy(-1.0, reference)
+            # GMRES stops at a residual of 1e-6, minres at a preconditioned one
+            assert x.norm() < 1e-2 * reference.norm(), chosen
+        else:
+            assert chosen in SOLVED_OR_SAID and said, (chosen, said)
+            assert ends == "refused" or not np.isfinite(x.norm())
+
+
+def test_symmetric_methods_are_refused_with_friction() -> None:
+    kind = MatrixKind(MPI.COMM_SELF, np.zeros((1, 2)), symmetric=False)
+    for k, (name, value) in enumerate((("pc_type", "cholesky"), ("ksp_type", "cg"))):
+        PETSc.Options(f"unsymmetric{k}_")[name] = value
+        with pytest.raises(InputError, match=f"{value} needs a symmetric tangent"):
+            make_linear_solver("direct", kind, f"unsymmetric{k}_")
+
+
 def test_options_of_one_model_are_not_those_of_the_next() -> None:
     """PETSc keeps options by prefix; what the user has set stays."""
     options = PETSc.Options("both_")
     options["mat_mumps_icntl_13"] = 0
     for overrides, dims in ((PLANE, 2), ((), 3), (PLANE, 2)):
         model, _ = system(overrides, "rotation")
-        place = model.problem.positions()[: model.partition.n_own]
-        BorderedSystem(model.partition, "direct", place, "both_")
-        assert options.getInt("mat_mumps_icntl_7") == mumps_defaults(dims)["mat_mumps_icntl_7"]
+        bordered(model, "direct", "both_")
+        assert options.getInt("mat_mumps_icntl_7") == (QUASI_DENSE if dims == 2 else NESTED_DISSECTION)
         assert options.getInt("mat_mumps_icntl_13") == 0
 
 
@@ -110,7 +217,7 @@ def test_the_loaded_motion_is_bounded(overrides: tuple[str, ...]) -> None:
     output = solved.border[-1]
 
     def step(border: list[PETSc.Vec], rows: list[int], bound: float | None) -> PETSc.Vec:
-        test = BorderedSystem(partition, "direct", problem.positions()[: partition.n_own], "test_")
+        test = bordered(model, "direct", "test_")
         test.set_system(problem.matrix, problem.matrix_rows.active, solved.grounding, border, rows, bound)
         test.setUp(pc)
         x = create_vector(partition)

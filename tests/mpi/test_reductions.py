@@ -87,7 +87,7 @@ def test_a_kept_factor_changes_nothing_in_the_plane() -> None:
 @pytest.mark.parametrize("cost", [0.0, 1e9])
 def test_a_factor_renewed_after_every_solve_or_never_changes_nothing(cost: float, plain: dict[str, float]) -> None:
     def set_price(stepper: LoadStepper) -> None:
-        stepper.solver.system.reused.price = lambda operations, entries, analysed: cost
+        stepper.solver.system.solver.price = lambda matrix: cost
 
     _, row = rotated("solver.far_teeth=modelled", prepare=set_price)
     assert_same(row, plain, 1e-6)

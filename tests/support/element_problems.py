@@ -12,12 +12,14 @@ from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
+from mpi4py import MPI
 
 from support.contact_blocks import block
 from support.element_mesh import ElementMesh
 from swgpar.materials import Isotropic, Material
 from swgpar.petsc import PETSc
-from swgpar.solve.bordered_system import GAMG_DEFAULTS, mumps_defaults, option_defaults
+from swgpar.solve.linear_solver import MatrixKind
+from swgpar.solve.linear_solvers import make_linear_solver
 
 GAMG_RTOL = 1e-9
 """Residual at which GAMG's iteration ends: far below the errors of all meshes."""
@@ -70,29 +72,17 @@ def solve(mesh: ElementMesh, fixed: np.ndarray, load: np.ndarray, linear: str) -
     size = (dims * len(free), dims * len(free))
     matrix = PETSc.Mat().createSBAIJ(size, dims, csr=(*csr, np.ascontiguousarray(values[upper])), comm=PETSc.COMM_SELF)
     matrix.setOption(PETSc.Mat.Option.SPD, True)
-    ksp = PETSc.KSP().create(PETSc.COMM_SELF)
-    ksp.setOptionsPrefix("element_")
-    if linear == "direct":
-        ksp.setType(PETSc.KSP.Type.PREONLY)
-        ksp.getPC().setType(PETSc.PC.Type.CHOLESKY)
-        ksp.getPC().setFactorSolverType("mumps")
-    else:
-        matrix = matrix.convert("aij", out=PETSc.Mat())
-        place = PETSc.Vec().createWithArray(mesh.points[:, :dims].ravel(), bsize=dims, comm=PETSc.COMM_SELF)
-        matrix.setNearNullSpace(PETSc.NullSpace().createRigidBody(place))
-        ksp.setType(PETSc.KSP.Type.GMRES)
-        ksp.getPC().setType(PETSc.PC.Type.GAMG)
-    defaults = mumps_defaults(dims) if linear == "direct" else {**GAMG_DEFAULTS, "ksp_rtol": GAMG_RTOL}
-    option_defaults.set("element_", defaults)
-    ksp.setFromOptions()
-    ksp.setOperators(matrix)
-    right, answer = matrix.createVecs()
-    right.array[:] = np.where(free, load[:, :dims], 0.0).ravel()
-    ksp.solve(right, answer)
-    if ksp.getConvergedReason() < 0:
-        raise ArithmeticError(f"the linear solver ended for PETSc's reason {ksp.getConvergedReason()}")
+    if linear == "iterative":
+        PETSc.Options("element_")["ksp_rtol"] = GAMG_RTOL
+    kind = MatrixKind(MPI.COMM_SELF, mesh.points[:, :dims], symmetric=True)
+    solver = make_linear_solver(linear, kind, "element_")
+    solver.prepare(matrix, np.arange(len(free)))
+    answer = solver.solve(np.where(free, load[:, :dims], 0.0).ravel())
+    if solver.failure:
+        raise ArithmeticError(solver.failure)
+    solver.destroy()
     u = np.zeros_like(load)
-    u[:, :dims] = answer.array_r.reshape(-1, dims)
+    u[:, :dims] = answer.reshape(-1, dims)
     return u
 
 

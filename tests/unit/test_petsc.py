@@ -78,6 +78,12 @@ def test_files_of_the_command_line_are_read(tmp_path: Path) -> None:
         ),
         (1, "-snes_max_it 2.5x", "-snes_max_it 2.5x: Input string 2.5x has no integer value"),
         (2, "-malloc_debug maybe", "Unknown logical value: maybe"),
+        (
+            1,
+            "-stiffness_pc_type jacobi -stiffness_ksp_type preonly",
+            "-stiffness_ksp_type preonly solves with lu or cholesky alone",
+        ),
+        (2, "-stiffness_pc_type ilu", "type ILU and matrix type mpiaij"),
         (1, "-options_file nowhere", "-options_file nowhere: there is no such file"),
     ],
 )
@@ -85,6 +91,25 @@ def test_options_that_cannot_be_used_are_refused(tmp_path: Path, ranks: int, opt
     done = execute(run_command(tmp_path / "run", *option.split(), ranks=ranks), timeout=300.0)
     (sentence,) = done.stderr.splitlines()
     assert done.returncode == 2 and sentence.startswith("swgpar: error: ") and words in sentence
+
+
+@pytest.mark.parametrize(
+    "options",
+    ["-stiffness_pc_factor_mat_solver_type petsc", "-stiffness_ksp_type cg -stiffness_pc_type bjacobi"],
+)
+def test_other_linear_solvers_solve(tmp_path: Path, options: str) -> None:
+    """`tests/mpi/test_linear.py` tries all of them on one system."""
+    short = (*PLANE, "steps.rotation=2.0", "steps.increment=2.0")
+    done = succeed(run_command(tmp_path / "run", *options.split(), overrides=short))
+    assert "nothing has used" not in done.stdout and not done.stderr
+
+
+def test_a_linear_solver_that_fails_is_named(tmp_path: Path) -> None:
+    more = ("solver.max_cutbacks=0",)
+    options = ("-stiffness_pc_type", "jacobi", "-stiffness_ksp_max_it", "100")
+    done = execute(run_command(tmp_path / "run", *options, overrides=(*PLANE, *more)), timeout=300.0)
+    (sentence,) = done.stderr.splitlines()
+    assert done.returncode == 3 and "linear solver (gmres with jacobi): DIVERGED_MAX_IT" in sentence
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
