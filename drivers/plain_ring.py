@@ -35,7 +35,7 @@ REFERENCE_LENGTH = 1.0
 
 
 @dataclass(frozen=True)
-class RingDesign:
+class PlainRingDesign:
     """A ring and how its contact is computed.
 
     outer_diameter, thickness, width : mm;  plane : plane stress instead of a solid
@@ -107,7 +107,7 @@ class RingBody:
     """
 
     def __init__(
-        self, design: RingDesign, counts: RingCounts, comm: MPI.Comm, copies: int, incompatible: bool = True
+        self, design: PlainRingDesign, counts: RingCounts, comm: MPI.Comm, copies: int, incompatible: bool = True
     ) -> None:
         self.design, self.copies = design, copies
         inner, width = design.inner_radius, design.width
@@ -160,7 +160,7 @@ class RingModel:
 
     def __init__(
         self,
-        design: RingDesign,
+        design: PlainRingDesign,
         counts: RingCounts,
         cam: Cam,
         half_angle: float,

@@ -29,7 +29,7 @@ from pathlib import Path
 import numpy as np
 from mpi4py import MPI
 
-from plain_ring import RingCounts, RingDesign, RingModel
+from plain_ring import PlainRingDesign, RingCounts, RingModel
 from swgpar import log
 from swgpar.geometry.cams.simplified import simplified
 from swgpar.log import logger
@@ -75,7 +75,7 @@ def closed_form(angle: float, slenderness: float = 0.0, nu: float = 0.0) -> floa
 
 
 def press(
-    design: RingDesign,
+    design: PlainRingDesign,
     counts: RingCounts,
     travels: np.ndarray,
     support_diameter: float = SUPPORT_DIAMETER,
@@ -170,7 +170,7 @@ def figure(computed: dict[str, dict[str, np.ndarray]]) -> bytes:
 
 
 def checks(
-    designs: dict[str, RingDesign], counts: RingCounts, fine: dict[str, dict[str, np.ndarray]], support: float
+    designs: dict[str, PlainRingDesign], counts: RingCounts, fine: dict[str, dict[str, np.ndarray]], support: float
 ) -> list[str]:
     """Lines on the mesh, the closed form, the width and the supports' radius; fine : readings with halved elements."""
     last, lines = OUTWARD[-1:], []
@@ -216,7 +216,7 @@ def main() -> None:
             arguments.out.mkdir(parents=True, exist_ok=True)
     counts = RingCounts(arguments.sectors, arguments.radial, arguments.axial)
     designs = {
-        kind: RingDesign(OUTER_DIAMETER, THICKNESS, arguments.width, kind == "plane", STEEL)
+        kind: PlainRingDesign(OUTER_DIAMETER, THICKNESS, arguments.width, kind == "plane", STEEL)
         for kind in ("plane", "solid")
     }
     support = arguments.support_diameter

@@ -32,6 +32,7 @@ PURPOSE = {
     "analysis": "a run: starts, load stepping, mesh refinement, recording, restart",
     "presentation": "what a person sees of a drive: figures, report, terminal, view",
     "exchange": "files of other programs: STEP, DXF, VTKHDF, tables of histories, look-up tables, FMU",
+    "vibration": "meshes with backlash, elastic rings, statistical linearisation, random samples",
     "gear_trains": "lumped models of gear trains around strain wave gears",
     "systems": "registry of what can be computed, drives and gear trains, for the interfaces and studies",
     "studies": "many runs: cases, schedule, tables, report",

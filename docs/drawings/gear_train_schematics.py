@@ -11,7 +11,6 @@ from matplotlib.patches import Circle, Rectangle
 
 from swgpar import load_design
 from swgpar.gear_trains.cascade.design import PINIONS
-from swgpar.gear_trains.ring.curved_beam import Ring
 
 WIRE = {"color": INK, "lw": 1.0, "solid_capstyle": "butt"}
 
@@ -177,7 +176,7 @@ def ring() -> Figure:
     """Elastic ring of drivers/ring_moving_load.toml: elements, supports, moving loads and displacements."""
     design = load_design(DRIVERS / "ring_moving_load.toml")
     elements, supports, loads = design.ring.elements, design.supports.count, design.moving_load.loads
-    assert Ring.of(design).size == 3 * elements
+    assert design.elastic_ring().size == 3 * elements
     figure, ax = canvas(8.0, 8.0)
     radius, rim = 3.0, 0.16
     for r in (radius - rim, radius + rim):

@@ -12,7 +12,7 @@ supports.
 import matplotlib.pyplot as plt
 import numpy as np
 from mpi4py import MPI
-from plain_ring import RingCounts, RingDesign, RingModel
+from plain_ring import PlainRingDesign, RingCounts, RingModel
 
 from swgpar.geometry.cams import EllipticalCam, taut_length
 from swgpar.geometry.cams.simplified import simplified
@@ -32,7 +32,7 @@ cam = EllipticalCam(inner_radius + 1.0, inner_radius - 1.0)
 thicknesses = [0.5, 1.0, 1.5, 2.0]
 computed = []
 for thickness in thicknesses:
-    ring = RingDesign(2.0 * (inner_radius + thickness), thickness, 10.0, True, STEEL)
+    ring = PlainRingDesign(2.0 * (inner_radius + thickness), thickness, 10.0, True, STEEL)
     model = RingModel(ring, COUNTS, cam, np.radians(15.0), MPI.COMM_WORLD)
     model.mount()
     computed.append(model.stresses()["s1"])
@@ -56,7 +56,7 @@ axes.legend()
 # deflect a thin ring outwards by
 # P R³ / (E I) (((π/2 - θ) cos θ + sin θ) / 4 - 1/π), θ from the forces.
 
-ring = RingDesign(outer_diameter=136.0, thickness=4.5, width=10.0, plane=True, material=STEEL)
+ring = PlainRingDesign(outer_diameter=136.0, thickness=4.5, width=10.0, plane=True, material=STEEL)
 model = RingModel(
     ring,
     RingCounts(120, 2, 1),

@@ -16,7 +16,7 @@ import numpy as np
 from mpi4py import MPI
 from peer_problems import CAM, CAM_HALF_ANGLE, INNER, OUTER, PENALTY, PROBLEMS, STEEL, WIDTH, Problem, line
 
-from plain_ring import RingBody, RingCounts, RingDesign, RingModel
+from plain_ring import PlainRingDesign, RingBody, RingCounts, RingModel
 from swgpar.constraints.boundary_conditions import DeadLoad
 from swgpar.design.sections import Contact, Solver
 from swgpar.fem.elements import BodyElements
@@ -29,7 +29,9 @@ RTOL = 1e-6
 """Newton's tolerance, that of a drive's default run in the plane. CalculiX accepts 5e-3."""
 
 
-def pinched(design: RingDesign, counts: RingCounts, force: float, copies: int) -> tuple[BodyElements, np.ndarray, int]:
+def pinched(
+    design: PlainRingDesign, counts: RingCounts, force: float, copies: int
+) -> tuple[BodyElements, np.ndarray, int]:
     """The ring under two forces (N): its elements, displacements (n_local, 3) mm and the iterations it took."""
     ring = RingBody(design, counts, MPI.COMM_WORLD, copies=copies)
     nodes, share = line(ring.mesh.coords)
@@ -54,7 +56,7 @@ def main() -> None:
     problem: Problem = PROBLEMS[name]
     counts = RingCounts(*map(int, numbers))
     contact = Contact(wg_penalty_coef=PENALTY, wg_quadrature=7, penetration_tolerance=1e-4)
-    design = RingDesign(2.0 * OUTER, OUTER - INNER, WIDTH, False, STEEL, contact, Solver(rtol=RTOL))
+    design = PlainRingDesign(2.0 * OUTER, OUTER - INNER, WIDTH, False, STEEL, contact, Solver(rtol=RTOL))
     if problem.travel:
         cam = EllipticalCam(*CAM)
         model = RingModel(design, counts, cam, np.radians(CAM_HALF_ANGLE), MPI.COMM_WORLD, copies=copies)

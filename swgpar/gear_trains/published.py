@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -15,29 +15,8 @@ from swgpar.input.quantities import show, show_key
 Quantities = Mapping[str, tuple[str, int]]
 """What a model computes: name -> meaning with its unit, number of values."""
 
-STATISTICS = ("mean", "deviation")
-"""Mean and standard deviation, of results that vary at random."""
-
-RENAMED = {
-    "carrier_u": "carrier_rotation",
-    "contact_v": "ring_contact_radial",
-    "cycles_contact": "dominant_cycles_ring_contact",
-    "cycles_middle_node": "dominant_cycles_middle_node",
-    "cycles_moving_point": "dominant_cycles_moving_point",
-    "cycles_node": "dominant_cycles_ring_node",
-    "dimensionless": "dimensionless_frequencies",
-    "far_flank": "back_flank",
-    "_mesh_": "_mesh_deflection_",
-    "node_w": "ring_node_tangential",
-    "planet_eta": "planet_tangential",
-    "ring_mesh": "ring_mesh_deflection",
-    "sun_mesh": "sun_mesh_deflection",
-    "sun_u": "sun_rotation",
-    "_y1_": "_gear_1_displacement_",
-    "_y2_": "_gear_2_displacement_",
-    "_z_": "_relative_rotation_",
-}
-"""Parts of refused names of quantities -> parts of their present names."""
+STATISTICS = {"mean": "mean", "deviation": "standard deviation"}
+"""Of results that vary at random: part of the names of quantities -> meaning."""
 
 
 def meaning_and_unit(text: str) -> tuple[str, str]:
@@ -51,12 +30,6 @@ def numbered(name: str, count: int) -> list[str]:
     return [name] if count == 1 else [f"{name}[{number}]" for number in range(1, count + 1)]
 
 
-def current_name(name: str, known: Collection[str]) -> str | None:
-    """The present name of a quantity that is known by another one; None if there is none among the known ones."""
-    candidates = (name.replace(old, new) for old, new in RENAMED.items() if old in name)
-    return next((candidate for candidate in candidates if candidate in known), None)
-
-
 def number_label(value: float) -> str:
     """A number in the name of a quantity."""
     return f"{value:g}".replace(".", "p").replace("+", "")
@@ -66,8 +39,6 @@ def check_published(published: Mapping[str, Any], known: Quantities) -> None:
     """Refuse names that are no quantity, and values that are not as many numbers as the quantity has."""
     for name, given in published.items():
         if name not in known:
-            if new_name := current_name(name, known):
-                raise InputError(f"published.{show_key(name)} is not available: this quantity is named {new_name}")
             near = difflib.get_close_matches(name, known, n=1)
             hint = f"did you mean {near[0]}?" if near else f"allowed {', '.join(known)}"
             raise InputError(f"published.{show_key(name)} is not a quantity of this gear train: {hint}")

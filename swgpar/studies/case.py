@@ -132,8 +132,6 @@ def named(name: str, known: Mapping[str, Quantity]) -> list[str]:
 
 def not_known(where: str, known: Mapping[str, Quantity], system: System[Any, Any], name: str) -> InputError:
     """The refusal of a name that is no quantity, with the one most likely meant. where : text in front of the name"""
-    if new_name := system.current_name(name, known):
-        return InputError(f"{where}{name} is not available: this quantity is named {new_name}")
     near = difflib.get_close_matches(name, known, n=1)
     hint = f"did you mean {near[0]}?" if near else f"allowed {system.describe_names(known)}"
     return InputError(f"{where}{show_key(name)} is not a quantity of a run: {hint}")

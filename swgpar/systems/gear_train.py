@@ -12,7 +12,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.gear_trains.common_sections import TrainDesign
-from swgpar.gear_trains.published import current_name, meaning_and_unit, numbered
+from swgpar.gear_trains.published import meaning_and_unit, numbered
 from swgpar.gear_trains.result import TrainResult
 from swgpar.gear_trains.terminal import print_compared
 from swgpar.gear_trains.train import make_train, model_of, open_train, reported_arithmetic, require_finite, run_train
@@ -69,9 +69,6 @@ class GearTrains(System[TrainDesign, TrainResult]):
 
     def describe_names(self, known: Mapping[str, Quantity]) -> str:
         return ", ".join(dict.fromkeys(name.partition("[")[0] for name in known))
-
-    def current_name(self, name: str, known: Mapping[str, Quantity]) -> str | None:
-        return current_name(name, {key.partition("[")[0] for key in known})
 
     def check_published(self, design: TrainDesign, names: Iterable[str]) -> None:
         """A run of a gear train leaves nothing out."""

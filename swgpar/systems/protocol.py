@@ -123,10 +123,6 @@ class System(ABC, Generic[D, R]):
     def describe_names(self, known: Mapping[str, Quantity]) -> str:
         """The names of quantities that are allowed, in words."""
 
-    def current_name(self, name: str, known: Mapping[str, Quantity]) -> str | None:
-        """The present name of a quantity that is known by another one, if there is any."""
-        return None
-
     @abstractmethod
     def check_published(self, design: D, names: Iterable[str]) -> None:
         """Refuse published quantities that a run of this design leaves out, with an InputError."""

@@ -7,7 +7,7 @@ import pytest
 from mpi4py import MPI
 from pytest_mpi import parallel_assert
 
-from plain_ring import RingCounts, RingDesign, RingModel
+from plain_ring import PlainRingDesign, RingCounts, RingModel
 from swgpar.geometry.cams.simplified import simplified
 from swgpar.materials import Isotropic
 
@@ -15,7 +15,7 @@ from swgpar.materials import Isotropic
 @pytest.mark.parametrize("plane", [True, False])
 @pytest.mark.parallel([2, 3])
 def test_ranks_do_not_matter(plane: bool) -> None:
-    design = RingDesign(136.0, 4.5, 10.0, plane, Isotropic(E=206e3, nu=0.29))
+    design = PlainRingDesign(136.0, 4.5, 10.0, plane, Isotropic(E=206e3, nu=0.29))
     readings = []
     for comm in (MPI.COMM_WORLD, MPI.COMM_SELF):
         model = RingModel(design, RingCounts(40, 1, 2), simplified(design.inner_radius, 32.5), np.radians(20.0), comm)

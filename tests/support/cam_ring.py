@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from mpi4py import MPI
 
-from plain_ring import RingCounts, RingDesign, RingModel
+from plain_ring import PlainRingDesign, RingCounts, RingModel
 from swgpar.design.sections import Contact, Solver
 from swgpar.geometry.cams import EllipticalCam
 from swgpar.materials import Isotropic
@@ -72,7 +72,7 @@ def ring_on_cam(
     """
     k = 2**level
     outer = INNER + THICKNESS
-    design = RingDesign(
+    design = PlainRingDesign(
         2.0 * outer, THICKNESS, 1.0, plane, STEEL, Contact(wg_quadrature=quadrature), Solver(linear=linear)
     )
     counts = RingCounts(k * FIRST.sectors, k * FIRST.radial, FIRST.axial)

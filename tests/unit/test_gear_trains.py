@@ -12,11 +12,11 @@ from support.paths import DRIVERS, REFERENCE
 from swgpar import load_design
 from swgpar.errors import ConvergenceError, InputError
 from swgpar.gear_trains.published import check_published, compare
-from swgpar.gear_trains.sampling import block_sizes, random_stream, run_tasks
 from swgpar.gear_trains.train import make_train, model_of
 from swgpar.input.toml_file import read_toml
 from swgpar.results.table import format_columns, read_columns
 from swgpar.systems import system_of_section, system_of_table
+from swgpar.vibration.sampling import block_sizes, random_stream, run_tasks
 
 CASCADE, GEAR_PAIR = DRIVERS / "cascade.toml", DRIVERS / "gear_pair.toml"
 RING, RING_MODES = DRIVERS / "ring_moving_load.toml", DRIVERS / "ring_modes.toml"
@@ -118,22 +118,6 @@ def test_published_beside_computed() -> None:
     assert [row["difference_percent"] for row in rows] == [pytest.approx(10.0), 0.0, None]
 
 
-@pytest.mark.parametrize(
-    ("file", "old", "new"),
-    [
-        (GEAR_PAIR, "error_mean_force_mesh_2", "error_mean_force_mesh_deflection_2"),
-        (GEAR_PAIR, "error_deviation_energy_z_1", "error_deviation_energy_relative_rotation_1"),
-        (PLANETARY, "mean_contact_v_128", "mean_ring_contact_radial_128"),
-        (PLANETARY, "cycles_node", "dominant_cycles_ring_node"),
-        (RING, "cycles_moving_point", "dominant_cycles_moving_point"),
-        (RING_MODES, "dimensionless", "dimensionless_frequencies"),
-    ],
-)
-def test_old_names_of_quantities_are_refused_with_the_present_ones(file: Path, old: str, new: str) -> None:
-    with pytest.raises(InputError, match=rf"published\.{old} is not available: this quantity is named {new}$"):
-        load_design(file, [f"published.{old}=1.0"])
-
-
 def test_streams_are_independent_of_the_order_of_their_use() -> None:
     assert block_sizes(7, 3) == [3, 3, 1]
     first = random_stream(5, 0, 1).standard_normal(4)
@@ -147,7 +131,7 @@ def test_tasks_come_back_in_order_and_their_errors_too() -> None:
     def fail() -> None:
         raise ConvergenceError("no")
 
-    assert run_tasks(MPI.COMM_WORLD, [lambda k=k: k * k for k in range(5)]) == [0, 1, 4, 9, 16]
+    assert run_tasks(MPI.COMM_WORLD, [lambda k=k: k * k for k in range(5)])[0] == [0, 1, 4, 9, 16]
     with pytest.raises(ConvergenceError, match="no"):
         run_tasks(MPI.COMM_WORLD, [lambda: 1, fail])
 

@@ -7,7 +7,7 @@ import pytest
 from mpi4py import MPI
 
 import swgpar
-from plain_ring import RingCounts, RingDesign, RingModel
+from plain_ring import PlainRingDesign, RingCounts, RingModel
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar.errors import InputError
@@ -56,7 +56,7 @@ def test_hysteresis_of_a_ring_between_two_forces() -> None:
     Harmonic n of the moment is 2 P R / pi / (n^2 - 1), so that the torque is 4 P^2 R^3 / (pi E I) times the sum of
     n / (n^2 - 1)^2 over even n. The stress is averaged at the nodes of four elements through the thickness.
     """
-    design = RingDesign(136.0, 2.0, 10.0, plane=True, material=Isotropic(E=E, nu=NU))
+    design = PlainRingDesign(136.0, 2.0, 10.0, plane=True, material=Isotropic(E=E, nu=NU))
     radius = 67.0
     cam = simplified(design.inner_radius, 0.5 * 65.0)
     model = RingModel(design, RingCounts(120, 4, 1), cam, np.radians(30.0), MPI.COMM_SELF)

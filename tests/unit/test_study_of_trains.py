@@ -143,11 +143,6 @@ def test_a_wrong_study_file_is_refused_in_one_sentence(study_file: Write, rest: 
     assert_refused(study_file("cascade", rest, more=more), words)
 
 
-def test_an_old_name_of_a_quantity_is_refused_with_the_present_one(study_file: Write) -> None:
-    words = "study.quantities = far_flank_2 is not available: this quantity is named back_flank_2"
-    assert_refused(study_file("gear_pair", more="quantities = ['far_flank_2']"), words)
-
-
 def test_a_refused_train_is_a_case(study_file: Write) -> None:
     jobs = jobs_of(study_file("cascade", "[study.vary]\nload.peak = [200.0, 247.0]\n"))
     assert jobs[0].case.refusal == "load.forces = 207 is out of range: allowed above 0 to 200 kN (load.peak)"
@@ -168,7 +163,7 @@ def test_figures_and_report(study_file: Write, tmp_path: Path) -> None:
     assert page.count("data:image/png;base64,") == 4 and "Against load.output" in page
     assert (
         "error of the force-based standard deviation of the mesh deflection y1 - y2 + z against Monte Carlo, case 1"
-        "</td><td class=text>%" in page
+        '</td><td class="text">%' in page
     )
 
 

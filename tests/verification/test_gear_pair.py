@@ -11,7 +11,6 @@ from scipy.linalg import eigh, expm, solve_continuous_lyapunov
 
 from support.paths import DRIVERS
 from swgpar import load_design
-from swgpar.gear_trains import backlash
 from swgpar.gear_trains.gear_pair.design import GearPairDesign
 from swgpar.gear_trains.gear_pair.model import (
     DEFLECTION_ROW,
@@ -21,10 +20,11 @@ from swgpar.gear_trains.gear_pair.model import (
     static_equilibrium,
 )
 from swgpar.gear_trains.gear_pair.monte_carlo import simulate
-from swgpar.gear_trains.linearisation import Moments, linearise
-from swgpar.gear_trains.mesh_stiffness import MeshStiffness
-from swgpar.gear_trains.sample_moments import SampleMoments
-from swgpar.gear_trains.sampling import random_stream
+from swgpar.vibration import backlash
+from swgpar.vibration.linearisation import CoordinateMoments, linearise
+from swgpar.vibration.mesh_stiffness import MeshStiffness
+from swgpar.vibration.moments import SampleMoments
+from swgpar.vibration.sampling import random_stream
 
 DRIVER = DRIVERS / "gear_pair.toml"
 STEP, STEPS, EVERY = 1e-5, 300, 30
@@ -38,7 +38,7 @@ def design() -> GearPairDesign:
 
 
 @pytest.fixture(scope="module")
-def moments(design: GearPairDesign) -> dict[tuple[int, str], Moments]:
+def moments(design: GearPairDesign) -> dict[tuple[int, str], CoordinateMoments]:
     return {
         (case, method): linearise(
             gear_pair_system(design, case), static_equilibrium(design, case), STEP, STEPS, EVERY, method
@@ -164,7 +164,7 @@ def test_covariance_in_contact(design: GearPairDesign, method: str) -> None:
         assert np.log2(coarse / fine) == pytest.approx(2.0, abs=0.1)
 
 
-def test_covariance_stays_positive(moments: dict[tuple[int, str], Moments]) -> None:
+def test_covariance_stays_positive(moments: dict[tuple[int, str], CoordinateMoments]) -> None:
     """Of coordinates and velocities at all rows, each over its deviation, as computed: symmetric, no negative one."""
     for found in moments.values():
         size = np.sqrt(np.einsum("tii->ti", found.covariance[1:]))
@@ -228,7 +228,7 @@ def test_simulation_without_noise(design: GearPairDesign) -> None:
     assert off[0] / off[1] > 3.0 and off[1] / off[2] > 3.0
 
 
-def statistics(found: Moments) -> tuple[np.ndarray, np.ndarray]:
+def statistics(found: CoordinateMoments) -> tuple[np.ndarray, np.ndarray]:
     """Means and deviations of the coordinates and the mesh's way over the second half of the time."""
     ways = np.vstack([np.eye(3), DEFLECTION_ROW])
     later = len(found.time) // 2
@@ -238,7 +238,7 @@ def statistics(found: Moments) -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize("method", ["energy", "force"])
 def test_linearisation_without_impact(
-    moments: dict[tuple[int, str], Moments], sums: list[SampleMoments], method: str
+    moments: dict[tuple[int, str], CoordinateMoments], sums: list[SampleMoments], method: str
 ) -> None:
     """Mean and deviation within 2 % of Monte Carlo; 8000 samples know a deviation to 0.8 %."""
     mean, deviation = statistics(moments[0, method])
@@ -248,7 +248,9 @@ def test_linearisation_without_impact(
     assert (sums[0].final > 20e-6).all()
 
 
-def test_errors_grow_towards_impacts(moments: dict[tuple[int, str], Moments], sums: list[SampleMoments]) -> None:
+def test_errors_grow_towards_impacts(
+    moments: dict[tuple[int, str], CoordinateMoments], sums: list[SampleMoments]
+) -> None:
     """Single-sided, then double-sided impact: the deviation of the mesh's way is missed by more and more."""
     assert 0.1 < (sums[1].final < 20e-6).mean() < 0.5 and (sums[1].final > -20e-6).all()
     assert (sums[2].final < 20e-6).mean() > 0.6 and (sums[2].final < -20e-6).any()

@@ -12,17 +12,17 @@ from scipy.integrate import solve_ivp
 from support.paths import DRIVERS
 from swgpar import load_design
 from swgpar.errors import ConvergenceError
-from swgpar.gear_trains.backlash import force
-from swgpar.gear_trains.dominant_cycles import dominant_cycles
 from swgpar.gear_trains.kernel import PlanetaryStepKernel
 from swgpar.gear_trains.planetary.design import PlanetaryDesign
-from swgpar.gear_trains.planetary.linearisation import Moments, linearise
+from swgpar.gear_trains.planetary.linearisation import TrainMoments, linearise
 from swgpar.gear_trains.planetary.model import PlanetaryModel, carrier_index, planet_index, radii, ring_index
 from swgpar.gear_trains.planetary.monitored import MONITORED_NAMES, monitored_rows
 from swgpar.gear_trains.planetary.monte_carlo import simulate
 from swgpar.gear_trains.planetary.time_stepping import ModalStates, TimeStepper
 from swgpar.gear_trains.planetary.wind_load import WindLoad
-from swgpar.gear_trains.sampling import random_stream
+from swgpar.vibration.backlash import force
+from swgpar.vibration.dominant_cycles import dominant_cycles
+from swgpar.vibration.sampling import random_stream
 
 DRIVER = DRIVERS / "planetary.toml"
 
@@ -259,7 +259,7 @@ def test_wind(design: PlanetaryDesign) -> None:
 # --- statistics
 
 
-def moments(design: PlanetaryDesign, h: float, count: int, every: int) -> tuple[TimeStepper, WindLoad, Moments]:
+def moments(design: PlanetaryDesign, h: float, count: int, every: int) -> tuple[TimeStepper, WindLoad, TrainMoments]:
     steps, wind = TimeStepper(PlanetaryModel(design), h, count), WindLoad.of(design, h)
     return steps, wind, linearise(steps, wind, every)
 

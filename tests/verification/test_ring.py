@@ -12,15 +12,15 @@ from scipy.sparse.linalg import eigsh
 from support.element_mesh import ElementMesh
 from support.paths import DRIVERS
 from swgpar import load_design
-from swgpar.gear_trains.dominant_cycles import dominant_cycles
-from swgpar.gear_trains.gear_mesh_system import GearMeshSystem
-from swgpar.gear_trains.ring.curved_beam import BeamSection, Ring, free_frequencies
 from swgpar.gear_trains.ring.design import RingDesign
-from swgpar.gear_trains.ring.modal_stepping import ModalStepper
 from swgpar.gear_trains.ring.moving_load import MovingLoads, middle_node
 from swgpar.gear_trains.ring.run import distinct_frequencies
-from swgpar.gear_trains.sampling import random_stream
 from swgpar.meshing import build_sector_meshes, load_recipe
+from swgpar.vibration.curved_beam import BeamSection, Ring, free_frequencies
+from swgpar.vibration.dominant_cycles import dominant_cycles
+from swgpar.vibration.gear_mesh_system import GearMeshSystem
+from swgpar.vibration.modal_stepping import ModalStepper
+from swgpar.vibration.sampling import random_stream
 
 MOVING, MODES = DRIVERS / "ring_moving_load.toml", DRIVERS / "ring_modes.toml"
 SUPPORTED = DRIVERS / "ring_supported.toml"
@@ -46,7 +46,7 @@ def free(design: RingDesign, elements: int) -> RingDesign:
 
 def test_free_ring(bolted: RingDesign) -> None:
     """Bending modes to 0.1 % of the closed form with 36 elements, at fourth order; three rigid motions."""
-    section, errors = BeamSection.of(bolted), []
+    section, errors = bolted.beam_section(), []
     exact = np.array([free_frequencies(section, n)[0] for n in range(2, 6)]) / (2.0 * np.pi)
     for elements in (18, 36, 72):
         found, _ = distinct_frequencies(free(bolted, elements), 4)
@@ -55,7 +55,7 @@ def test_free_ring(bolted: RingDesign) -> None:
     for coarse, fine in itertools.pairwise(errors):
         # the error of the first mode is near that of the eigenvalue solver
         assert np.log2(coarse / fine)[1:] == pytest.approx(np.full(3, 4.0), abs=0.3)
-    frequencies, _ = Ring.of(free(bolted, 36)).modes()
+    frequencies, _ = free(bolted, 36).elastic_ring().modes()
     assert (frequencies[:3] < 1e-3 * frequencies[3]).all()
 
 
@@ -72,7 +72,7 @@ def test_shape_functions_are_exact_at_rest(bolted: RingDesign) -> None:
     """Two opposite forces on a free ring: the same with 4 elements as with 64, and 0.14878 F R³ / (E I) when thin."""
     found = []
     for elements in (4, 16, 64):
-        ring = Ring.of(changed(free(bolted, elements), "ring", inner_radius=519.0))
+        ring = changed(free(bolted, elements), "ring", inner_radius=519.0).elastic_ring()
         load = ring.interpolation(0.0)[0] + ring.interpolation(np.pi)[0]
         u = np.linalg.lstsq(ring.stiffness, load, rcond=1e-12)[0]
         s = ring.section
@@ -82,7 +82,7 @@ def test_shape_functions_are_exact_at_rest(bolted: RingDesign) -> None:
 
 
 def test_rigid_motions_cost_nothing(bolted: RingDesign) -> None:
-    ring = Ring.of(free(bolted, 12))
+    ring = free(bolted, 12).elastic_ring()
     assert np.abs(ring.stiffness - ring.stiffness.T).max() < 1e-9 * np.abs(ring.stiffness).max()
     angle = 2.0 * np.pi * np.arange(12) / 12
     along_x = np.stack([np.cos(angle), -np.sin(angle), 0.0 * angle], axis=1).ravel()
@@ -98,7 +98,7 @@ def test_rigid_motions_cost_nothing(bolted: RingDesign) -> None:
 def test_supported_ring() -> None:
     """Table 5.2 within 1 %, on supports deduced from it; the mode of three waves is single, the others are pairs."""
     design = load_design(SUPPORTED)
-    section, ring = BeamSection.of(design), Ring.of(design)
+    section, ring = design.beam_section(), design.elastic_ring()
     unit = np.sqrt(section.density * section.area * section.radius**4 / (section.E * section.inertia))
     found, _ = distinct_frequencies(design, 3)
     assert 2.0 * np.pi * found * unit == pytest.approx(design.published["dimensionless_frequencies"], rel=0.01)
@@ -204,7 +204,7 @@ def test_moving_load_against_newmark(bolted: RingDesign) -> None:
     """Mean and covariance by the exact steps against the stochastic Newmark scheme with small ones, second order."""
     design = small(bolted, steps=36, damping_stiffness=1e-4)
     speed = 2000.0  # rad/s: the loads pass a support within a period of the ring
-    loads, ring, load = MovingLoads(design), Ring.of(design), design.moving_load
+    loads, ring, load = MovingLoads(design), design.elastic_ring(), design.moving_load
     fine = MovingLoads(small(bolted, steps=3600, damping_stiffness=1e-4)).respond(speed)
     alpha = np.radians(load.pressure_angle)
     direction = np.array([np.sin(alpha), np.cos(alpha), 0.0])
@@ -293,7 +293,7 @@ def test_patterns_in_a_revolution(bolted: RingDesign) -> None:
     loads = MovingLoads(bolted)
     found = loads.respond(2.8)
     assert [dominant_cycles(column) for column in found.mean.T] == [6.0, 3.0]
-    ring, load, still = Ring.of(bolted), bolted.moving_load, loads.quasi_static(2.8)
+    ring, load, still = bolted.elastic_ring(), bolted.moving_load, loads.quasi_static(2.8)
     h = 2.0 * np.pi / 2.8 / load.steps
     for step in (100, 333, 600):
         force = loads.forces(step, (step + load.steps) * h, 2.8)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from plain_ring import RingCounts, RingDesign
+from plain_ring import PlainRingDesign, RingCounts
 from support.paths import DRIVERS
 from support.scripts import load_script
 
@@ -15,7 +15,7 @@ EXPERIMENT = load_script(DRIVERS / "ring_experiment.py")
 OUTER_DIAMETER, THICKNESS, OUTWARD = EXPERIMENT.OUTER_DIAMETER, EXPERIMENT.THICKNESS, EXPERIMENT.OUTWARD
 STEEL, closed_form, press = EXPERIMENT.STEEL, EXPERIMENT.closed_form, EXPERIMENT.press
 
-PLANE = RingDesign(OUTER_DIAMETER, THICKNESS, 10.0, True, STEEL)
+PLANE = PlainRingDesign(OUTER_DIAMETER, THICKNESS, 10.0, True, STEEL)
 SMALL = np.array([1e-3])  # the ratio at 90 degrees grows by 0.014 per mm of travel
 
 

@@ -13,7 +13,7 @@ from swgpar.gear_trains.cascade.layout import FLYWHEEL, MESHES, rigid_displaceme
 from swgpar.gear_trains.cascade.static_sharing import MESH_COUNTS, static_sharing
 from swgpar.gear_trains.cascade.tolerance_stack_up import standard_deviation
 from swgpar.gear_trains.kernel import MESH_ERROR
-from swgpar.gear_trains.sampling import block_sizes, random_stream
+from swgpar.vibration.sampling import block_sizes, random_stream
 
 BLOCK_SIZE = 25
 STREAM = 1

@@ -24,8 +24,8 @@ from swgpar.gear_trains.cascade.static_sharing import (
 from swgpar.gear_trains.cascade.tolerance_stack_up import contributions, stack_up_tasks
 from swgpar.gear_trains.published import number_label
 from swgpar.gear_trains.result import Table, TrainResult
-from swgpar.gear_trains.sampling import run_tasks
 from swgpar.log import logger
+from swgpar.vibration.sampling import run_tasks
 
 DIRECTIONS: tuple[Direction, ...] = ("B", "A")
 
@@ -45,7 +45,7 @@ def compute(design: CascadeDesign, comm: MPI.Comm) -> TrainResult:
         design.population.gearboxes,
         comm.size,
     )
-    done = run_tasks(comm, [*first, *tolerances, *gearboxes])
+    done, _ = run_tasks(comm, [*first, *tolerances, *gearboxes])
     cycle, braked = done[0], dict(zip(DIRECTIONS, done[1 : len(first)], strict=True))
     stacks = dict(zip(MESH_COUNTS, done[len(first) : len(first) + len(tolerances)], strict=True))
     parts: list[PopulationShares] = done[len(first) + len(tolerances) :]

@@ -22,7 +22,7 @@ from scipy.stats import spearmanr
 
 from swgpar.gear_trains.cascade.design import CascadeDesign
 from swgpar.gear_trains.cascade.static_sharing import MESH_COUNTS
-from swgpar.gear_trains.sampling import block_sizes, random_stream
+from swgpar.vibration.sampling import block_sizes, random_stream
 
 BLOCK_SIZE = 10_000
 STREAM = 0

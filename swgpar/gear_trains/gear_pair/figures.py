@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 from swgpar.gear_trains.drawing import axes
 from swgpar.gear_trains.gear_pair.quantities import VALUES
-from swgpar.gear_trains.linearisation import EQUIVALENT
 from swgpar.gear_trains.result import TrainResult
 from swgpar.results.figure_set import Drawings
+from swgpar.vibration.linearisation import EQUIVALENT
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

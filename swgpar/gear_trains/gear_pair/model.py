@@ -16,9 +16,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import eigh
 
-from swgpar.gear_trains.gear_mesh_system import GearMeshSystem
 from swgpar.gear_trains.gear_pair.design import GearPairDesign
-from swgpar.gear_trains.mesh_stiffness import MeshStiffness
+from swgpar.vibration.gear_mesh_system import GearMeshSystem
+from swgpar.vibration.mesh_stiffness import MeshStiffness
 
 COORDINATES = ("y1", "y2", "z")
 DEFLECTION_ROW = np.array([[1.0, -1.0, 1.0]])

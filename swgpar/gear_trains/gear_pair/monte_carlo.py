@@ -7,12 +7,14 @@ product of a constant matrix with (state, noise, f0, f1) of all samples per step
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
-from swgpar.gear_trains.backlash import dead_zone, force
-from swgpar.gear_trains.gear_mesh_system import GearMeshSystem
 from swgpar.gear_trains.gear_pair.model import DEFLECTION_ROW
-from swgpar.gear_trains.sample_moments import SampleMoments
+from swgpar.vibration.backlash import dead_zone, force
+from swgpar.vibration.gear_mesh_system import GearMeshSystem
+from swgpar.vibration.moments import SampleMoments
 
 BLOCK_SIZE = 2000
 
@@ -39,18 +41,17 @@ def simulate(
     state = np.zeros((2 * n + 4, samples))
     state[:n] = start[:, None]
     q, noise, f0, f1 = state[: 2 * n], state[2 * n : 2 * n + 2], state[-2], state[-1]
-    rows = count // every
-    mean, squares = np.empty((rows, n + 1)), np.empty((rows, n + 1))
     f0[:] = force(system.mesh_stiffness(0.0)[0], float(DEFLECTION_ROW[0] @ start), half_backlash)
-    for number in range(1, count + 1):
-        random.standard_normal(out=noise)
-        k = system.mesh_stiffness(number * h)[0]
-        free_deflection = deflection_of[:-1] @ state[:-1] + DEFLECTION_ROW[0] @ steady[:n]
-        f1[:] = k / (1.0 + compliance * k) * dead_zone(free_deflection, half_backlash)
-        q[:] = step @ state + steady[:, None]
-        f0[:] = f1
-        if number % every == 0:
-            values = np.vstack([q[:n], DEFLECTION_ROW @ q[:n]])
-            mean[number // every - 1] = values.mean(axis=1)
-            squares[number // every - 1] = values.var(axis=1) * samples
-    return SampleMoments(samples, mean, squares, DEFLECTION_ROW[0] @ q[:n])
+
+    def rows() -> Iterator[np.ndarray]:
+        for number in range(1, count + 1):
+            random.standard_normal(out=noise)
+            k = system.mesh_stiffness(number * h)[0]
+            free_deflection = deflection_of[:-1] @ state[:-1] + DEFLECTION_ROW[0] @ steady[:n]
+            f1[:] = k / (1.0 + compliance * k) * dead_zone(free_deflection, half_backlash)
+            q[:] = step @ state + steady[:, None]
+            f0[:] = f1
+            if number % every == 0:
+                yield np.vstack([q[:n], DEFLECTION_ROW @ q[:n]])
+
+    return SampleMoments.of(rows())

@@ -6,8 +6,8 @@ from itertools import product
 
 from swgpar.gear_trains.gear_pair.design import GearPairDesign
 from swgpar.gear_trains.gear_pair.model import mesh_force, natural_modes
-from swgpar.gear_trains.linearisation import EQUIVALENT
 from swgpar.gear_trains.published import STATISTICS, Quantities
+from swgpar.vibration.linearisation import EQUIVALENT
 
 VALUES = {
     "gear_1_displacement": "displacement y1 of gear 1",
@@ -24,8 +24,7 @@ def quantities(design: GearPairDesign) -> Quantities:
     for case in range(1, len(design.load.input) + 1):
         known[f"out_of_contact_{case}"] = (f"share of samples of case {case} out of contact at the end", 1)
         known[f"back_flank_{case}"] = (f"share of samples of case {case} in contact on the back flank at the end", 1)
-        for kind, method, (name, meaning) in product(STATISTICS, EQUIVALENT, VALUES.items()):
-            statistic = "mean" if kind == "mean" else "standard deviation"
+        for (kind, statistic), method, (name, meaning) in product(STATISTICS.items(), EQUIVALENT, VALUES.items()):
             text = f"error of the {method}-based {statistic} of the {meaning} against Monte Carlo, case {case} (%)"
             known[f"error_{kind}_{method}_{name}_{case}"] = (text, 1)
     return known

@@ -1,6 +1,6 @@
 // Implicit steps of the planetary gear train for many states at once.
 //
-// The equations are those of swgpar/gear_trains/planetary/steps.py. States are columns of
+// The equations are those of swgpar/gear_trains/planetary/time_stepping.py. States are columns of
 // (modes, states) arrays; kLanes of them are advanced together through all steps, so that they stay in the L1 cache.
 #pragma once
 

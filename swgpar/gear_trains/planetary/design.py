@@ -9,13 +9,13 @@ from annotated_types import Len
 
 from swgpar.errors import InputError
 from swgpar.gear_trains.common_sections import Damping, GearTrain, MonteCarlo, Output, Positive, TrainDesign
-from swgpar.gear_trains.ring.design import supports_restrain_ring
 from swgpar.input.quantities import Section, quantity
+from swgpar.vibration.curved_beam import BeamSection, Ring, supports_restrain_ring
 
 Thicknesses = Annotated[list[Positive], Len(1)]
 
 
-class PlanetaryModel(GearTrain):
+class Train(GearTrain):
     model: Literal["planetary"] = quantity(text="the gear train")
 
 
@@ -91,7 +91,7 @@ class Time(Section):
 class PlanetaryDesign(TrainDesign):
     """A planetary gear train and its wind. Attributes are the sections of the design file."""
 
-    gear_train: PlanetaryModel
+    gear_train: Train
     sun: Sun
     planet: Planet
     carrier: Carrier
@@ -107,6 +107,13 @@ class PlanetaryDesign(TrainDesign):
     def end(self) -> float:
         """End of the simulation, s."""
         return 2.0 * math.pi / self.carrier.speed * self.time.revolutions
+
+    def elastic_ring(self) -> Ring:
+        """The ring with its supports."""
+        r = self.ring
+        radius, thickness, width = 1e-3 * (r.root_radius + 0.5 * r.rim), 1e-3 * r.rim, 1e-3 * r.face_width
+        section = BeamSection.rectangle(1e9 * r.E, r.density, radius, thickness, width)
+        return Ring(section, r.elements, (r.supports, (r.radial, r.tangential, r.torsional)))
 
 
 def check_fit(design: PlanetaryDesign) -> None:

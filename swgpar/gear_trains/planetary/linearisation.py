@@ -1,6 +1,6 @@
 """Statistical linearisation of the planetary gear train: mean and covariance over time (sections 3.4 and 3.5).
 
-Force-based, as in `swgpar/gear_trains/linearisation.py`, with the steps of `TimeStepper`. A step of the covariance S is
+Force-based, as in `swgpar/vibration/linearisation.py`, with the steps of `TimeStepper`. A step of the covariance S is
 the step of the linear train applied to the columns of S, and then to the columns of the transposed result. Mean,
 covariance and equivalent stiffnesses of a step are solved together.
 """
@@ -12,10 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from swgpar.errors import ConvergenceError
-from swgpar.gear_trains.backlash import mean_force_and_stiffness, mean_stiffness
 from swgpar.gear_trains.planetary.monitored import monitored_rows
 from swgpar.gear_trains.planetary.time_stepping import MeshLaw, ModalStates, TimeStepper
 from swgpar.gear_trains.planetary.wind_load import WindLoad
+from swgpar.vibration.backlash import mean_force_and_stiffness, mean_stiffness
+from swgpar.vibration.moments import Moments
 
 TOLERANCE, MAX_ITERATIONS = 1e-6, 50
 """Relative change of mean forces and equivalent stiffnesses in the last iteration of a step; limit of iterations."""
@@ -28,20 +29,17 @@ CHECKS = 100
 
 
 @dataclass(frozen=True)
-class Moments:
-    """Results of the linearisation.
+class TrainMoments(Moments):
+    """Results of the linearisation: moments of the monitored quantities, m, and
 
     Attributes
     ----------
-    mean, deviation : (rows, monitored) m, mean and standard deviation of the monitored quantities
     force, square : (steps, 2) N and N², mean and mean square of the linearised forces of both meshes of planet 1, after
         every step: the rows may not resolve the tooth cycle
     smallest_eigenvalue, asymmetry : worst values of `_covariance_errors` over the checks of the covariance of all
         2 n + 2 unknowns, before it is made symmetric
     """
 
-    mean: np.ndarray
-    deviation: np.ndarray
     force: np.ndarray
     square: np.ndarray
     smallest_eigenvalue: float
@@ -130,7 +128,7 @@ class _Linearisation:
         return self.forces[meshes], (self.forces**2 + (self.equivalent * self.deviation) ** 2)[meshes]
 
 
-def linearise(stepper: TimeStepper, wind: WindLoad, every: int) -> Moments:
+def linearise(stepper: TimeStepper, wind: WindLoad, every: int) -> TrainMoments:
     """Moments from rest under the steady wind, after every `every` steps."""
     state, rows, forces = _Linearisation(stepper, wind), [], []
     smallest_eigenvalue, asymmetry = np.inf, 0.0
@@ -143,7 +141,7 @@ def linearise(stepper: TimeStepper, wind: WindLoad, every: int) -> Moments:
             rows.append(state.monitored(step))
         forces.append(state.mesh_forces())
     columns = (np.array(column) for table in (rows, forces) for column in zip(*table, strict=True))
-    return Moments(*columns, smallest_eigenvalue, asymmetry)
+    return TrainMoments(*columns, smallest_eigenvalue, asymmetry)
 
 
 def _covariance_errors(covariance: np.ndarray) -> tuple[float, float]:

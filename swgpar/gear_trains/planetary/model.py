@@ -29,9 +29,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import eigh
 
-from swgpar.gear_trains.mesh_stiffness import MeshStiffness
 from swgpar.gear_trains.planetary.design import PlanetaryDesign
-from swgpar.gear_trains.ring.curved_beam import BeamSection, Ring
+from swgpar.vibration.mesh_stiffness import MeshStiffness
 
 SUN = 0
 
@@ -58,15 +57,6 @@ def radii(design: PlanetaryDesign) -> tuple[float, float, float]:
     return sun * cosine, planets * cosine, sun + planets
 
 
-def elastic_ring(design: PlanetaryDesign) -> Ring:
-    """The ring of a design."""
-    r = design.ring
-    thickness, width = 1e-3 * r.rim, 1e-3 * r.face_width
-    radius = 1e-3 * (r.root_radius + 0.5 * r.rim)
-    section = BeamSection(1e9 * r.E, r.density, radius, width * thickness, width * thickness**3 / 12.0)
-    return Ring(section, r.elements, (r.supports, (r.radial, r.tangential, r.torsional)))
-
-
 class PlanetaryModel:
     """The gear train in the modes of all but its meshes.
 
@@ -78,7 +68,7 @@ class PlanetaryModel:
     """
 
     def __init__(self, design: PlanetaryDesign) -> None:
-        self.design, self.ring = design, elastic_ring(design)
+        self.design, self.ring = design, design.elastic_ring()
         self.mass, self.constant = self._matrices()
         squares, self.shapes = eigh(self.constant, self.mass)
         self.stiffness = squares.clip(0.0)

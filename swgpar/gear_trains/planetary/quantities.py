@@ -6,13 +6,13 @@ from itertools import product
 
 import numpy as np
 
-from swgpar.gear_trains.backlash import force
 from swgpar.gear_trains.planetary.design import PlanetaryDesign
-from swgpar.gear_trains.planetary.model import PlanetaryModel, elastic_ring, radii
+from swgpar.gear_trains.planetary.model import PlanetaryModel, radii
 from swgpar.gear_trains.planetary.monitored import MONITORED
 from swgpar.gear_trains.planetary.time_stepping import TimeStepper
 from swgpar.gear_trains.planetary.wind_load import WindLoad
 from swgpar.gear_trains.published import STATISTICS, Quantities, number_label
+from swgpar.vibration.backlash import force
 
 
 def quantities(design: PlanetaryDesign) -> Quantities:
@@ -28,15 +28,13 @@ def quantities(design: PlanetaryDesign) -> Quantities:
         ),
         "out_of_contact": ("share of steps and samples in which a mesh is not in contact on its loaded flank", 1),
     }
-    for kind, (name, meaning) in product(STATISTICS, MONITORED.items()):
-        statistic = "mean" if kind == "mean" else "standard deviation"
+    for (kind, statistic), (name, meaning) in product(STATISTICS.items(), MONITORED.items()):
         known[f"{kind}_{name}"] = (f"largest {statistic} of the {meaning} (m)", 1)
         known[f"error_{kind}_{name}"] = (
             f"error of the linearised {statistic} of the {meaning} against Monte Carlo (%)",
             1,
         )
-    for rim, kind, (name, meaning) in product(design.ring.rims, STATISTICS, MONITORED.items()):
-        statistic = "mean" if kind == "mean" else "standard deviation"
+    for rim, (kind, statistic), (name, meaning) in product(design.ring.rims, STATISTICS.items(), MONITORED.items()):
         text = f"largest {statistic} of the {meaning} with a rim of {rim:g} mm (m)"
         known[f"{kind}_{name}_{number_label(rim)}"] = (text, 1)
     return known
@@ -57,7 +55,7 @@ def derived(design: PlanetaryDesign) -> dict[str, float]:
         "base radius of the sun (mm)": 1e3 * sun,
         "base radius of the planets (mm)": 1e3 * planets,
         "radius of the planet centres (mm)": 1e3 * centres,
-        "radius of the centre line of the ring (mm)": 1e3 * elastic_ring(design).section.radius,
+        "radius of the centre line of the ring (mm)": 1e3 * train.ring.section.radius,
         "carrier period (s)": 2.0 * np.pi / design.carrier.speed,
         "mesh frequency (rad/s)": train.mesh.frequency,
         "time step (s)": step,

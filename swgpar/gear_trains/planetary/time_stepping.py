@@ -1,7 +1,7 @@
 """Implicit time steps of the planetary gear train in modal coordinates, for one state or many at once.
 
-The trapezoidal rule, as in `gear_mesh_system.py`. Each mode q has its own scalar equation. The m meshes couple the
-modes by their elastic forces f and damping forces at the end of the step:
+The trapezoidal rule, as in `swgpar/vibration/gear_mesh_system.py`. Each mode q has its own scalar equation. The m
+meshes couple the modes by their elastic forces f and damping forces at the end of the step:
 
     q1 = D⁻¹ (r - h/2 Wᵀ g),    g = f(d1) + c d1',    D = 2/h + damping + h/2 stiffness,
 
@@ -20,9 +20,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from swgpar.errors import ConvergenceError
-from swgpar.gear_trains.backlash import force
 from swgpar.gear_trains.kernel import PlanetaryStepKernel
 from swgpar.gear_trains.planetary.model import PlanetaryModel
+from swgpar.vibration.backlash import force
 
 MeshLaw = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Linear law of the meshes at the end of a step: solution matrix (1, m, m) of the deflections, stiffnesses (1, m) in

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-import numpy as np
 from annotated_types import Len
 
 from swgpar.errors import InputError
 from swgpar.gear_trains.common_sections import GearTrain, Output, Positive, TrainDesign
 from swgpar.input.quantities import Section, quantity
+from swgpar.vibration.curved_beam import BeamSection, Ring, supports_restrain_ring
 
 Speeds = Annotated[list[Positive], Len(1)]
 
@@ -68,16 +68,22 @@ class RingDesign(TrainDesign):
     moving_load: MovingLoad | None = None
     output: Output = Output()
 
+    def beam_section(self) -> BeamSection:
+        """The rectangular section."""
+        body = self.ring
+        thickness, width = 1e-3 * (body.outer_radius - body.inner_radius), 1e-3 * body.face_width
+        radius = 0.5e-3 * (body.outer_radius + body.inner_radius)
+        return BeamSection.rectangle(1e9 * body.E, body.density, radius, thickness, width)
 
-def supports_restrain_ring(supports: int, radial: float, tangential: float, torsional: float, radius: float) -> bool:
-    """Whether equally spaced supports (N/m, N/m, N·m/rad) hold a ring of some radius (m) against all rigid motions."""
-    angle = 2.0 * np.pi * np.arange(supports) / supports
-    none, one = np.zeros(supports), np.ones(supports)
-    motions = (np.cos(angle), np.sin(angle), none), (-np.sin(angle), np.cos(angle), one), (none, none, one)
-    springs = radial, tangential, torsional / radius**2
-    stiffness = sum(k * np.array(m) @ np.array(m).T for k, m in zip(springs, motions, strict=True))
-    lowest, _, highest = np.linalg.eigvalsh(stiffness)
-    return bool(lowest > 1e-12 * highest)
+    def elastic_ring(self) -> Ring:
+        """The ring with its supports and teeth."""
+        s, t = self.supports, self.teeth
+        return Ring(
+            self.beam_section(),
+            self.ring.elements,
+            (s.count, (s.radial, s.tangential, s.torsional)) if s is not None else None,
+            (t.count, (t.mass, t.mass, t.inertia)) if t is not None else None,
+        )
 
 
 def check_fit(design: RingDesign) -> None:

@@ -14,29 +14,24 @@ vibrations: it is the check of this (tests/verification/test_ring.py).
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from swgpar.gear_trains.ring.curved_beam import Ring
 from swgpar.gear_trains.ring.design import RingDesign
-from swgpar.gear_trains.ring.modal_stepping import ModalStepper
-from swgpar.gear_trains.sample_moments import SampleMoments
+from swgpar.vibration.modal_stepping import ModalStepper
+from swgpar.vibration.moments import Moments, SampleMoments
 
 
 @dataclass(frozen=True)
-class Response:
-    """Outward displacements in the last revolution, at the moving point of the first load and at the middle node.
+class Response(Moments):
+    """Outward displacements (rows, 2) in the last revolution: moving point of the first load, middle node.
 
-    Attributes
-    ----------
     angle : (rows,) rad, of the first load
-    mean, deviation : (rows, 2) m
     """
 
     angle: np.ndarray
-    mean: np.ndarray
-    deviation: np.ndarray
 
 
 def middle_node(design: RingDesign) -> int:
@@ -48,7 +43,7 @@ class MovingLoads:
     """Loads on the modes of a ring."""
 
     def __init__(self, design: RingDesign) -> None:
-        self.load, ring = design.moving_load, Ring.of(design)
+        self.load, ring = design.moving_load, design.elastic_ring()
         self.frequencies, self.shapes = ring.modes()
         alpha, n = np.radians(self.load.pressure_angle), self.load.steps
         direction = np.array([np.sin(alpha), np.cos(alpha), 0.0])
@@ -94,7 +89,7 @@ class MovingLoads:
                 monitored = np.stack([self.outward[step % n], self.middle])
                 mean[row] = monitored @ q
                 deviation[row] = np.sqrt(np.maximum(np.einsum("pi,ij,pj->p", monitored, spread[0, 0], monitored), 0.0))
-        return Response(2.0 * np.pi * np.arange(1, n + 1) / n, mean, deviation)
+        return Response(mean, deviation, 2.0 * np.pi * np.arange(1, n + 1) / n)
 
     def quasi_static(self, speed: float) -> np.ndarray:
         """Mean displacements (rows, 2), m, as in `Response` of a ring without inertia and damping."""
@@ -114,16 +109,17 @@ class MovingLoads:
         root = modes.noise_root()
         force = self.forces(0, 0.0, speed)
         q, v = np.tile(force / modes.k, (samples, 1)), np.zeros((samples, len(force)))
-        mean, squares = np.empty((n, 2)), np.empty((n, 2))
-        for step in range(1, load.revolutions * n + 1):
-            before, force = force, self.forces(step % n, step * h, speed)
-            q, v = modes.step(q, v, before, force)
-            for noise in self.noises(step % n).T:
-                shaken = random.standard_normal((samples, root.shape[1])) @ root.T
-                q += noise * shaken[:, : len(noise)]
-                v += noise * shaken[:, len(noise) :]
-            row = step - (load.revolutions - 1) * n - 1
-            if row >= 0:
-                values = q @ np.stack([self.outward[step % n], self.middle]).T
-                mean[row], squares[row] = values.mean(axis=0), values.var(axis=0) * samples
-        return SampleMoments(samples, mean, squares, values[:, 1])
+
+        def rows() -> Iterator[np.ndarray]:
+            nonlocal q, v, force
+            for step in range(1, load.revolutions * n + 1):
+                before, force = force, self.forces(step % n, step * h, speed)
+                q, v = modes.step(q, v, before, force)
+                for noise in self.noises(step % n).T:
+                    shaken = random.standard_normal((samples, root.shape[1])) @ root.T
+                    q += noise * shaken[:, : len(noise)]
+                    v += noise * shaken[:, len(noise) :]
+                if step > (load.revolutions - 1) * n:
+                    yield np.stack([self.outward[step % n], self.middle]) @ q.T
+
+        return SampleMoments.of(rows())

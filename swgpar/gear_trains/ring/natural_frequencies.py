@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from swgpar.gear_trains.ring.curved_beam import Ring, free_frequencies
 from swgpar.gear_trains.ring.design import RingDesign
+from swgpar.vibration.curved_beam import free_frequencies
 
 RIGID = 1e-3
 """Modes below this share of the first bending frequency of the free ring are rigid motions."""
@@ -19,7 +19,7 @@ BENDING_SHARE = 0.5
 
 def distinct_frequencies(design: RingDesign, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Lowest bending frequencies (count,) in Hz, equal ones once, and a mode of each (unknowns, count)."""
-    ring = Ring.of(design)
+    ring = design.elastic_ring()
     rate, shapes = ring.modes()
     bent = (rate > RIGID * free_frequencies(ring.section, 2)[0]) & (ring.bending_share(shapes) > BENDING_SHARE)
     number = np.flatnonzero(bent)

@@ -7,9 +7,9 @@ from itertools import product
 import numpy as np
 
 from swgpar.gear_trains.published import STATISTICS, Quantities, number_label
-from swgpar.gear_trains.ring.curved_beam import BeamSection, free_frequencies
 from swgpar.gear_trains.ring.design import RingDesign
 from swgpar.gear_trains.ring.natural_frequencies import distinct_frequencies
+from swgpar.vibration.curved_beam import free_frequencies
 
 POINTS = {"moving_point": "ring point under the first load", "middle_node": "node midway between two supports"}
 """Points whose outward displacement is computed: name -> meaning."""
@@ -24,8 +24,7 @@ def quantities(design: RingDesign) -> Quantities:
     load = design.moving_load
     if load is not None:
         for point, meaning in POINTS.items():
-            for speed, kind in product(load.speeds, STATISTICS):
-                statistic = "mean" if kind == "mean" else "standard deviation"
+            for speed, (kind, statistic) in product(load.speeds, STATISTICS.items()):
                 text = f"largest {statistic} of the outward displacement of the {meaning} at {speed:g} rad/s (m)"
                 known[f"{kind}_{point}_{number_label(speed)}"] = (text, 1)
             text = f"largest slow harmonic, in cycles per revolution, of the {meaning} at the first speed"
@@ -39,7 +38,7 @@ def quantities(design: RingDesign) -> Quantities:
 
 def derived(design: RingDesign) -> dict[str, float]:
     """Values derived from the design file, for `swgpar check`."""
-    section = BeamSection.of(design)
+    section = design.beam_section()
     out = {
         "radius of the centre line (mm)": 1e3 * section.radius,
         "mass (kg)": 2.0 * np.pi * section.radius * section.density * section.area,

@@ -9,17 +9,17 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.gear_trains.dominant_cycles import dominant_cycles
 from swgpar.gear_trains.published import number_label
 from swgpar.gear_trains.result import Table, TrainResult
-from swgpar.gear_trains.ring.curved_beam import BeamSection, Ring, free_frequencies
-from swgpar.gear_trains.ring.design import RingDesign
+from swgpar.gear_trains.ring.design import MovingLoad, RingDesign
 from swgpar.gear_trains.ring.moving_load import MovingLoads, Response
 from swgpar.gear_trains.ring.natural_frequencies import distinct_frequencies
 from swgpar.gear_trains.ring.quantities import POINTS
-from swgpar.gear_trains.sample_moments import SampleMoments
-from swgpar.gear_trains.sampling import block_sizes, random_stream, run_tasks
 from swgpar.log import logger
+from swgpar.vibration.curved_beam import free_frequencies
+from swgpar.vibration.dominant_cycles import dominant_cycles
+from swgpar.vibration.moments import HasMoments, Moments, SampleMoments, columns, largest
+from swgpar.vibration.sampling import block_sizes, random_stream, run_tasks
 
 ROWS = 400
 """Of the history of each speed."""
@@ -37,7 +37,7 @@ def compute(design: RingDesign, comm: MPI.Comm) -> TrainResult:
     """All results of a design, the same on all ranks; collective."""
     logger.info("elastic ring: %d elements; %d ranks", design.ring.elements, comm.size)
     frequencies, shapes = distinct_frequencies(design, design.ring.modes)
-    section = BeamSection.of(design)
+    section = design.beam_section()
     unit = np.sqrt(section.density * section.area * section.radius**4 / (section.E * section.inertia))
     values: dict[str, float | list[float]] = {
         "frequencies": frequencies.tolist(),
@@ -49,7 +49,9 @@ def compute(design: RingDesign, comm: MPI.Comm) -> TrainResult:
     if design.moving_load is None:
         return TrainResult(modes, tables, values)
     responses, curve, simulated = _moving(design, comm)
-    values |= _extremes(design.moving_load.speeds, responses) | {"critical_speeds": _peaks(curve)}
+    for speed, response in zip(design.moving_load.speeds, responses, strict=True):
+        values |= largest(response, [f"{point}_{number_label(speed)}" for point in POINTS])
+    values["critical_speeds"] = _peaks(curve)
     values |= {f"dominant_cycles_{point}": dominant_cycles(responses[0].mean[:, k]) for k, point in enumerate(POINTS)}
     tables |= {"critical_speeds": curve, "monte_carlo": simulated}
     return TrainResult(_history(design, responses), tables, values)
@@ -66,7 +68,7 @@ def _moving(design: RingDesign, comm: MPI.Comm) -> tuple[list[Response], Table, 
         partial(loads.simulate, load.speeds[0], size, random_stream(design.gear_train.seed, block))
         for block, size in enumerate(sizes)
     ]
-    done = run_tasks(comm, [*tasks, *simulations])
+    done, _ = run_tasks(comm, [*tasks, *simulations])
     responses, parts = done[: len(load.speeds)], done[len(load.speeds) : len(tasks)]
     curve = {"speed_rad_s": sweep}
     for k, point in enumerate(POINTS):
@@ -76,21 +78,11 @@ def _moving(design: RingDesign, comm: MPI.Comm) -> tuple[list[Response], Table, 
             f"without_inertia_{point}_m": np.array([np.abs(loads.quasi_static(s)[:, k]).max() for s in sweep]),
         }
     sums = reduce(SampleMoments.merged_with, done[len(tasks) :])
-    every = max(1, load.steps // ROWS)
-    rows = slice(every - 1, None, every)
-    simulated = {"angle_rad": responses[0].angle[rows]}
-    for k, point in enumerate(POINTS):
-        simulated |= {f"mean_{point}_m": sums.mean[rows, k], f"deviation_{point}_m": sums.deviation[rows, k]}
-    return responses, curve, simulated
-
-
-def _extremes(speeds: list[float], responses: list[Response]) -> dict[str, float]:
-    out = {}
-    for speed, response in zip(speeds, responses, strict=True):
-        for k, point in enumerate(POINTS):
-            out[f"mean_{point}_{number_label(speed)}"] = float(np.abs(response.mean[:, k]).max())
-            out[f"deviation_{point}_{number_label(speed)}"] = float(response.deviation[:, k].max())
-    return out
+    return (
+        responses,
+        curve,
+        {"angle_rad": responses[0].angle[_rows(load)]} | columns([_thinned(load, sums)], POINTS, "m"),
+    )
 
 
 def _peaks(curve: Table) -> list[float]:
@@ -103,7 +95,7 @@ def _peaks(curve: Table) -> list[float]:
 
 def _shapes(design: RingDesign, shapes: np.ndarray) -> Table:
     """Outward and tangential displacement around the ring, each mode with its largest displacement 1."""
-    ring, angle = Ring.of(design), np.linspace(0.0, 2.0 * np.pi, AROUND)
+    ring, angle = design.elastic_ring(), np.linspace(0.0, 2.0 * np.pi, AROUND)
     values = np.array([ring.interpolation(a)[:2] @ shapes for a in angle])
     values /= np.abs(values).max(axis=(0, 1))
     out = {"angle_rad": angle}
@@ -115,11 +107,16 @@ def _shapes(design: RingDesign, shapes: np.ndarray) -> Table:
 def _history(design: RingDesign, responses: list[Response]) -> Table:
     """Means and standard deviations in the last revolution, in blocks by speed."""
     load = design.moving_load
-    every = max(1, load.steps // ROWS)
-    rows = slice(every - 1, None, every)
-    angle = responses[0].angle[rows]
+    angle = responses[0].angle[_rows(load)]
     out = {"speed_rad_s": np.repeat(load.speeds, len(angle)), "angle_rad": np.tile(angle, len(responses))}
-    for k, point in enumerate(POINTS):
-        out[f"mean_{point}_m"] = np.concatenate([r.mean[rows, k] for r in responses])
-        out[f"deviation_{point}_m"] = np.concatenate([r.deviation[rows, k] for r in responses])
-    return out
+    return out | columns([_thinned(load, response) for response in responses], POINTS, "m")
+
+
+def _rows(load: MovingLoad) -> slice:
+    """The rows of a revolution that tables have."""
+    every = max(1, load.steps // ROWS)
+    return slice(every - 1, None, every)
+
+
+def _thinned(load: MovingLoad, moments: HasMoments) -> Moments:
+    return Moments(moments.mean[_rows(load)], moments.deviation[_rows(load)])

@@ -20,8 +20,9 @@ from typing import Literal
 import numpy as np
 
 from swgpar.errors import ConvergenceError
-from swgpar.gear_trains.backlash import energy_stiffness, mean_force, mean_force_and_stiffness, mean_stiffness
-from swgpar.gear_trains.gear_mesh_system import GearMeshSystem
+from swgpar.vibration.backlash import energy_stiffness, mean_force, mean_force_and_stiffness, mean_stiffness
+from swgpar.vibration.gear_mesh_system import GearMeshSystem
+from swgpar.vibration.moments import Moments
 
 Criterion = Literal["energy", "force"]
 EQUIVALENT: dict[Criterion, Callable[..., np.ndarray]] = {"energy": energy_stiffness, "force": mean_stiffness}
@@ -35,7 +36,7 @@ MEAN_TOLERANCE = 1e-8
 
 
 @dataclass(frozen=True)
-class Moments:
+class CoordinateMoments:
     """time : (rows,) s;  mean : (rows, n) of the coordinates, m
 
     covariance : (rows, 2 n, 2 n) of coordinates and velocities, m and m/s; symmetric up to round-off
@@ -44,6 +45,12 @@ class Moments:
     time: np.ndarray
     mean: np.ndarray
     covariance: np.ndarray
+
+    def of(self, rows: np.ndarray) -> Moments:
+        """Moments without the start of values whose `rows` (values, n) are theirs per coordinate."""
+        n = self.mean.shape[1]
+        variances = np.einsum("ki,tij,kj->tk", rows, self.covariance[1:, :n, :n], rows)
+        return Moments(self.mean[1:] @ rows.T, np.sqrt(np.maximum(variances, 0.0)))
 
 
 @dataclass
@@ -63,7 +70,7 @@ class _MeshState:
 
 def linearise(
     system: GearMeshSystem, start: np.ndarray, h: float, count: int, every: int, criterion: Criterion
-) -> Moments:
+) -> CoordinateMoments:
     """Moments of a system that starts at rest at `start` (n,), after every `every` of `count` steps of h seconds."""
     n, half_backlash, equivalent = system.size, system.half_backlash, EQUIVALENT[criterion]
     q, v, covariance = start.astype(float), np.zeros(n), np.zeros((2 * n, 2 * n))
@@ -83,7 +90,7 @@ def linearise(
         if step % every == 0:
             saved.append((t, q, new))
     time, mean, covariances = (np.array(column) for column in zip(*saved, strict=True))
-    return Moments(time, mean, covariances)
+    return CoordinateMoments(time, mean, covariances)
 
 
 def _step(

@@ -22,8 +22,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eigh
 
-from swgpar.gear_trains.ring.design import RingDesign
-
 QUADRATURE = 8
 """Gauss points of the mass matrix: exact to round-off for elements of up to 60 degrees."""
 
@@ -39,12 +37,9 @@ class BeamSection:
     inertia: float
 
     @classmethod
-    def of(cls, design: RingDesign) -> BeamSection:
-        """The rectangular section of a design."""
-        body = design.ring
-        thickness, width = 1e-3 * (body.outer_radius - body.inner_radius), 1e-3 * body.face_width
-        radius = 0.5e-3 * (body.outer_radius + body.inner_radius)
-        return cls(1e9 * body.E, body.density, radius, width * thickness, width * thickness**3 / 12.0)
+    def rectangle(cls, E: float, density: float, radius: float, thickness: float, width: float) -> BeamSection:
+        """A rectangular section. E : Pa;  density : kg/m³;  radius, thickness, width : m"""
+        return cls(E, density, radius, width * thickness, width * thickness**3 / 12.0)
 
     @property
     def slenderness(self) -> float:
@@ -140,17 +135,6 @@ class Ring:
             if added is not None:
                 self._add(matrix, *added)
 
-    @classmethod
-    def of(cls, design: RingDesign) -> Ring:
-        """The ring of a design."""
-        s, t = design.supports, design.teeth
-        return cls(
-            BeamSection.of(design),
-            design.ring.elements,
-            (s.count, (s.radial, s.tangential, s.torsional)) if s is not None else None,
-            (t.count, (t.mass, t.mass, t.inertia)) if t is not None else None,
-        )
-
     @property
     def size(self) -> int:
         """Unknowns."""
@@ -191,6 +175,17 @@ class Ring:
         for node in range(0, self.elements, self.elements // count):
             indices = 3 * node + np.arange(3)
             matrix[indices, indices] += values
+
+
+def supports_restrain_ring(supports: int, radial: float, tangential: float, torsional: float, radius: float) -> bool:
+    """Whether equally spaced supports (N/m, N/m, N·m/rad) hold a ring of some radius (m) against all rigid motions."""
+    angle = 2.0 * np.pi * np.arange(supports) / supports
+    none, one = np.zeros(supports), np.ones(supports)
+    motions = (np.cos(angle), np.sin(angle), none), (-np.sin(angle), np.cos(angle), one), (none, none, one)
+    springs = radial, tangential, torsional / radius**2
+    stiffness = sum(k * np.array(m) @ np.array(m).T for k, m in zip(springs, motions, strict=True))
+    lowest, _, highest = np.linalg.eigvalsh(stiffness)
+    return bool(lowest > 1e-12 * highest)
 
 
 def free_frequencies(section: BeamSection, waves: int) -> np.ndarray:

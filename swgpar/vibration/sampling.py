@@ -6,6 +6,7 @@ block's number), so that it does not matter who draws it or when.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -26,19 +27,21 @@ def block_sizes(count: int, size: int) -> list[int]:
     return [min(size, count - first) for first in range(0, count, size)]
 
 
-def run_tasks(comm: MPI.Comm, tasks: Sequence[Callable[[], Any]]) -> list[Any]:
-    """Results of all tasks, in order and on every rank; each task runs on one rank only. Collective.
+def run_tasks(comm: MPI.Comm, tasks: Sequence[Callable[[], Any]]) -> tuple[list[Any], list[float]]:
+    """Results of all tasks and their seconds, in order and on every rank; each runs on one rank only. Collective.
 
     A ConvergenceError of a task is raised on all ranks.
     """
     done, reason = {}, None
     try:
         for number in range(comm.rank, len(tasks), comm.size):
-            done[number] = tasks[number]()
+            begin = time.perf_counter()
+            done[number] = tasks[number](), time.perf_counter() - begin
     except ConvergenceError as error:
         reason = str(error)
     reason = first_reason(comm, reason)
     if reason is not None:
         raise ConvergenceError(reason)
     merged = {number: result for part in comm.allgather(done) for number, result in part.items()}
-    return [merged[number] for number in range(len(tasks))]
+    ordered = [merged[number] for number in range(len(tasks))]
+    return [result for result, _ in ordered], [seconds for _, seconds in ordered]
