@@ -13,24 +13,24 @@ import numpy as np
 
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.mesh_refinement import ChosenMesh
-from swgpar.analysis.restart import write_state
+from swgpar.analysis.restart import resume_run, save_run
+from swgpar.analysis.run_record import RunRecord
 from swgpar.drive_results.drive_result import DriveResult, open_fields
 from swgpar.drive_results.drive_tables import DriveTables
 from swgpar.drive_results.summary import Accuracy
-from swgpar.evaluation.bearing_loads import ComplianceShares, ball_rows
+from swgpar.evaluation.bearing_loads import ball_rows
 from swgpar.evaluation.compliance import bearing_shares
 from swgpar.evaluation.contact.contact_pressure import nodal_pressure
 from swgpar.evaluation.contact.pair_contact import PairContact, pair_contacts
 from swgpar.evaluation.housing_values import housing_values, keep_largest
 from swgpar.evaluation.losses import cam_force
-from swgpar.evaluation.place_errors import CoarseStresses, with_errors
+from swgpar.evaluation.place_errors import with_errors
 from swgpar.evaluation.places import Place, find_places
 from swgpar.evaluation.program_results import PointRow, point_rows
 from swgpar.evaluation.ratcheting import tooth_rotation
 from swgpar.evaluation.result_frame import history_rows, nodal_fields
 from swgpar.evaluation.stiffness import loop_rows
 from swgpar.evaluation.stress_cycle import StressCycle
-from swgpar.evaluation.windows.root_stress import RootStress
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.input.toml_file import to_toml
 from swgpar.load.load_program import internal_torque
@@ -40,8 +40,8 @@ from swgpar.meshing import SectorMesh
 from swgpar.model.drive_model import DriveModel
 from swgpar.results import history
 from swgpar.results.atomic import agreed, to_json, write_from_root
-from swgpar.results.field_sources import BodyPart, FieldParts, FlankGrids
-from swgpar.results.fields import FieldWriter
+from swgpar.results.field_sources import FieldParts
+from swgpar.results.fields import BodyPart, FieldWriter, FlankGrids
 from swgpar.results.folder import (
     BALLS,
     CONTACT_LINES,
@@ -66,50 +66,21 @@ class Recorder(ABC):
 
     Attributes
     ----------
-    rows : history of the increments computed so far
-    starts_loaded : whether the history begins with the loaded state, on coarser meshes or from the bent shape
-    accuracy : what was asked for and reached, if an accuracy was asked for
-    root_stress : of the loaded state, once it is resolved
-    places : of the largest stresses under load, by column of the history
-    coarse : largest stresses on a coarser mesh, where a run has one;  stress_errors : by it, as shares, of `places`
-    tooth_rotations : deg, mean rotation of the flexible spline's teeth at every increment, with [ratcheting]
-    pairs, contact_lines : rows of pairs.csv and contact_lines.csv, the contacts of flanks under load
+    record : beside the fields
     cycle : stresses of the sampled period, with [fatigue] or [losses]
-    cam_forces : N, of all increments, with [losses]
-    turns : rows of transmission_error.csv
-    balls : rows of balls.csv, the loads of a bearing's balls
-    race_stress : largest stresses of the outer race under load, MPa
-    housing : largest stresses and radial displacement of the housing under load, by the names of the summary
-    bearing_shares : of the bearing in the compliance of the loaded state
     """
 
     def __init__(self, model: DriveModel, sequence: LoadSequence) -> None:
         self.model, self.comm, self._sequence = model, model.comm, sequence
-        self.rows: list[Row] = []
-        self.starts_loaded = False
-        self.accuracy: Accuracy | None = None
-        self.root_stress: RootStress | None = None
-        self.places: dict[str, Place] = {}
-        self.coarse: CoarseStresses | None = None
-        self.stress_errors: dict[str, float] = {}
-        self.pairs: list[Row] = []
-        self.contact_lines: list[Row] = []
-        design = model.design
-        self.cycle = StressCycle(model) if design.fatigue or design.losses else None
-        self.cam_forces: list[float] = []
-        self.tooth_rotations: list[float] = []
-        self.turns: list[Row] = []
-        self.balls: list[Row] = []
-        self.race_stress: dict[str, float] = {}
-        self.housing: dict[str, float] = {}
-        self.bearing_shares: dict[str, ComplianceShares] = {}
+        self.record = RunRecord()
+        self.cycle = StressCycle(model) if model.design.fatigue or model.design.losses else None
 
     def keep_choice(self, chosen: ChosenMesh, accuracy: float) -> None:
         """Keep the stress that the windows of a mesh chosen for an accuracy gave."""
-        self.accuracy = Accuracy(accuracy, chosen.error, chosen.error <= accuracy)
-        self.root_stress, self.coarse = chosen.root_stress, chosen.coarse
+        self.record.accuracy = Accuracy(accuracy, chosen.error, chosen.error <= accuracy)
+        self.record.root_stress, self.record.coarse = chosen.root_stress, chosen.coarse
 
-    def record(self, stepper: LoadStepper, seconds: float, elapsed: float) -> None:
+    def keep(self, stepper: LoadStepper, seconds: float, elapsed: float) -> None:
         """Keep the state after an increment.
 
         seconds : wall time of the increment;  elapsed : of the whole run, restarts included
@@ -120,20 +91,20 @@ class Recorder(ABC):
         race, housing = (
             {name: values.pop(name) for name in list(values) if name.startswith(part)} for part in ("race_", "housing_")
         )
-        self.rows.append(history.plain_row({**stepper.row(), **values, "wall_s": seconds}))
+        self.record.rows.append(history.plain_row({**stepper.row(), **values, "wall_s": seconds}))
         if model.design.ratcheting:
-            self.tooth_rotations.append(tooth_rotation(model))
+            self.record.tooth_rotations.append(tooth_rotation(model))
         with model.phases("stress"):
             on_edge = self._keep_pairs(stepper.load_state)
             self._keep_places(stepper.load_state, body_fields, on_edge)
             self._keep_balls(stepper.load_state, race)
             if model.design.housing is not None and stepper.load_state.is_periodic:
-                keep_largest(self.housing, housing_values(model, housing))
+                keep_largest(self.record.housing, housing_values(model, housing))
         with model.phases("fatigue and losses"):
             if self.cycle is not None:
                 self.cycle.keep(stepper.load_state, body_fields[FLEXIBLE_SPLINE])
             if model.design.losses:
-                self.cam_forces.append(cam_force(model))
+                self.record.cam_forces.append(cam_force(model))
         with model.phases("output"):
             fields = dict(zip([layout.name for layout in model.partition.layouts], body_fields, strict=True))
             if model.design.output.fields:
@@ -149,44 +120,44 @@ class Recorder(ABC):
         """Find the places of stresses that are the largest under load so far."""
         if state.is_periodic:
             for name, place in find_places(self.model, state, fields, on_edge=on_edge).items():
-                if name not in self.places or place.value > self.places[name].value:
-                    self.places[name] = place
-            if self.coarse is not None and state == self._sequence.loaded:
-                self.stress_errors, self.coarse = self.coarse.errors(self.places), None
+                if name not in self.record.places or place.value > self.record.places[name].value:
+                    self.record.places[name] = place
+            if self.record.coarse is not None and state == self._sequence.loaded:
+                self.record.stress_errors, self.record.coarse = self.record.coarse.errors(self.record.places), None
 
     def places_with_errors(self) -> dict[str, Place]:
         """The places with the errors of their stresses where they are known."""
-        return with_errors(self.places, self.stress_errors, self.root_stress)
+        return with_errors(self.record.places, self.record.stress_errors, self.record.root_stress)
 
     def _keep_pairs(self, state: LoadState) -> bool:
         """Keep the contacts of flanks under load; returns whether one of them lies on the edge of a tooth."""
         contacts: list[PairContact] = []
         if state.is_periodic and not self.model.design.stiffness:
-            row = self.rows[-1]
-            when = {"increment": len(self.rows), "step": row["step"], "wg_angle_deg": row["wg_angle_deg"]}
+            row = self.record.rows[-1]
+            when = {"increment": len(self.record.rows), "step": row["step"], "wg_angle_deg": row["wg_angle_deg"]}
             contacts = pair_contacts(self.model, state)
-            self.pairs += [{**when, **contact.row()} for contact in contacts]
-            self.contact_lines += [{**when, **row} for contact in contacts for row in contact.station_rows()]
+            self.record.pairs += [{**when, **contact.row()} for contact in contacts]
+            self.record.contact_lines += [{**when, **row} for contact in contacts for row in contact.station_rows()]
         return any(contact.edge for contact in contacts)
 
     def _keep_balls(self, state: LoadState, race: Mapping[str, float]) -> None:
         if self.model.design.bearing is not None:
-            self.balls += ball_rows(self.model, state, len(self.rows), self.rows[-1]["step"])
+            self.record.balls += ball_rows(self.model, state, len(self.record.rows), self.record.rows[-1]["step"])
             if state.is_periodic:
-                keep_largest(self.race_stress, race)
+                keep_largest(self.record.race_stress, race)
             if state.stage == Stage.LOAD or self._has_largest_torque(state):
-                self.bearing_shares = bearing_shares(self.model, state)
+                self.record.bearing_shares = bearing_shares(self.model, state)
 
     def _has_largest_torque(self, state: LoadState) -> bool:
         """Whether a point of the load program is the first one with its largest torque."""
-        if state.stage != Stage.PROGRAM or state.control != "torque" or self.bearing_shares:
+        if state.stage != Stage.PROGRAM or state.control != "torque" or self.record.bearing_shares:
             return False
         torques = [abs(point.value) for point in self._sequence.points if point.control == "torque"]
         return abs(state.torque) >= abs(internal_torque(self.model.design.ratio, max(torques))) * (1.0 - 1e-9)
 
     def keep_turns(self, rows: list[Row]) -> None:
         """Keep rows of transmission_error.csv in place of those before."""
-        self.turns = rows
+        self.record.turns = rows
 
     def known_turns(self) -> list[Row]:
         """Rows of transmission_error.csv that the run which is continued has left."""
@@ -199,17 +170,17 @@ class Recorder(ABC):
         rows = history_rows(self.model.design, rows)
         tables = replace(
             tables,
-            pairs=as_columns(self.pairs),
-            contact_lines=as_columns(self.contact_lines),
+            pairs=as_columns(self.record.pairs),
+            contact_lines=as_columns(self.record.contact_lines),
             program=as_columns(self.program_rows()),
-            turns=as_columns(self.turns),
-            balls=as_columns(self.balls),
+            turns=as_columns(self.record.turns),
+            balls=as_columns(self.record.balls),
         )
         return self.comm.bcast((rows, json.loads(to_json(summary)), tables) if self.comm.rank == 0 else None)
 
     def program_rows(self) -> list[PointRow]:
         """Rows of program.csv."""
-        return point_rows(self.model.design, self.rows)
+        return point_rows(self.model.design, self.record.rows)
 
     @abstractmethod
     def begin(self) -> None:
@@ -232,23 +203,12 @@ class MemoryRecorder(Recorder):
         self._parts: FieldParts | None = None
 
     def begin(self) -> None:
-        if not self.model.design.output.fields:
-            return
-        bodies = {}
-        for k, body in enumerate(self.model.elements.bodies):
-            mesh, (first, _) = body.layout.mesh, self.model.partition.owned_sectors(k)
-            bodies[mesh.body] = BodyPart(
-                points=body.positions()[body.owned],
-                cells=mesh.hexes.astype(np.int64),
-                first=first,
-                total=body.layout.count,
-                flanks=_flank_grids(mesh),
-            )
-        self._parts = FieldParts(self.comm, bodies)
+        if self.model.design.output.fields:
+            self._parts = FieldParts(self.comm, _body_parts(self.model))
 
     def _keep(self, stepper: LoadStepper, fields: NodalFields, elapsed: float) -> None:
         if self._parts is not None:
-            self._parts.keep(len(self.rows), self._in_frame(stepper, fields))
+            self._parts.keep(len(self.record.rows), self._in_frame(stepper, fields))
 
     def finish(self, rows: list[Row], summary: dict[str, Any], tables: DriveTables) -> DriveResult:
         return DriveResult(*self._shared(rows, summary, tables), self._parts, self.comm)
@@ -259,7 +219,8 @@ class FolderRecorder(Recorder):
 
     Parameters
     ----------
-    model, sequence : the drive, and the load states of its run
+    model : the drive
+    sequence : its load states
     out : results folder
     identity : of what is computed, for restarts
     """
@@ -267,8 +228,14 @@ class FolderRecorder(Recorder):
     def __init__(self, model: DriveModel, sequence: LoadSequence, out: Path, identity: str) -> None:
         super().__init__(model, sequence)
         self.out, self.identity = out, identity
-        self.names: dict[str, dict[str, int]] = {}
         self._writer = FieldWriter(out, self.comm) if model.design.output.fields else None
+
+    def resume(self, stepper: LoadStepper) -> tuple[tuple[LoadState, ...], float]:
+        """Bring back the state of the checkpoint; returns the states of the run, and the wall seconds spent so far."""
+        saved, states = resume_run(self.out, self.identity, stepper, self._sequence, self.cycle)
+        self.record = saved.record
+        self._write_tables()
+        return states, saved.wall_s
 
     def keep_choice(self, chosen: ChosenMesh, accuracy: float) -> None:
         super().keep_choice(chosen, accuracy)
@@ -276,34 +243,20 @@ class FolderRecorder(Recorder):
 
     def begin(self) -> None:
         write_from_root(self.comm, self.out / history.DESCRIPTION, history.format_description())
-        if self._writer is None:
-            return
-        bodies, extra = {}, {}
-        for k, body in enumerate(self.model.elements.bodies):
-            mesh, (first, _) = body.layout.mesh, self.model.partition.owned_sectors(k)
-            bodies[mesh.body] = (body.positions()[body.owned], mesh.hexes.astype(np.int64), first, body.layout.count)
-            grids = _flank_grids(mesh)
-            if mesh.flanks:
-                extra |= {f"{mesh.body}/flank_{name}": values for name, values in grids._asdict().items()}
-        self._writer.write_mesh(bodies, extra)
+        if self._writer is not None:
+            self._writer.write_mesh(_body_parts(self.model))
 
     def _keep(self, stepper: LoadStepper, fields: NodalFields, elapsed: float) -> None:
         """Write the fields, the history and the checkpoint, in this order: the checkpoint marks all as complete."""
         if self._writer is not None:
-            self.names = {
+            self.record.components = {
                 body: {name: a.shape[2] if a.ndim == 3 else 1 for name, a in values.items()}
                 for body, values in fields.items()
             }
-            ranges = {
-                body.layout.name: (self.model.partition.owned_sectors(k)[0], body.layout.count)
-                for k, body in enumerate(self.model.elements.bodies)
-            }
-            self._writer.write_increment(
-                len(self.rows),
-                {name: (values, *ranges[name]) for name, values in self._in_frame(stepper, fields).items()},
-            )
-        self.write_index()
-        write_state(self, stepper, {body: values["displacement"] for body, values in fields.items()}, elapsed)
+            self._writer.write_increment(len(self.record.rows), self._in_frame(stepper, fields))
+        self._write_tables()
+        displacement = [fields[layout.name]["displacement"] for layout in self.model.partition.layouts]
+        save_run(self.out, self.identity, stepper, self.record, self.cycle, displacement, elapsed)
 
     def keep_turns(self, rows: list[Row]) -> None:
         super().keep_turns(rows)
@@ -321,26 +274,27 @@ class FolderRecorder(Recorder):
             columns = read_columns(path) if present else {}
         return [{**row, "newton_iterations": int(row["newton_iterations"])} for row in as_rows(columns)]
 
-    def write_index(self) -> None:
-        """Write the index of the fields, and the history."""
+    def _write_tables(self) -> None:
+        """Write the index of the fields, the history and the other tables that grow with it."""
+        record = self.record
         if self._writer is not None:
             # increments computed with output.fields = false have no fields, and a restart may ask for them
-            written = [(i, row["wg_angle_deg"]) for i, row in enumerate(self.rows, start=1) if self._writer.has(i)]
-            self._writer.write_index(self.comm.bcast(written), self.names)
-        self._write_history(self.rows)
-        if self.pairs:
-            write_from_root(self.comm, self.out / PAIRS, format_csv(self.pairs))
-        if self.contact_lines:  # none where all contacts lie on edges
-            write_from_root(self.comm, self.out / CONTACT_LINES, format_csv(self.contact_lines))
-        if program := self.program_rows():
-            write_from_root(self.comm, self.out / PROGRAM, format_csv(program))
-            if self.model.design.stiffness:
-                write_from_root(self.comm, self.out / STIFFNESS, format_csv(loop_rows(program)))
-        if self.balls:
-            write_from_root(self.comm, self.out / BALLS, format_csv(self.balls))
+            written = [(i, row["wg_angle_deg"]) for i, row in enumerate(record.rows, start=1) if self._writer.has(i)]
+            self._writer.write_index(self.comm.bcast(written), record.components)
+        self._write_history(record.rows)
+        program = self.program_rows()
+        for name, rows in (
+            (PAIRS, record.pairs),
+            (CONTACT_LINES, record.contact_lines),  # none where all contacts lie on edges
+            (PROGRAM, program),
+            (STIFFNESS, loop_rows(program) if self.model.design.stiffness else []),
+            (BALLS, record.balls),
+        ):
+            if rows:
+                write_from_root(self.comm, self.out / name, format_csv(rows))
 
     def finish(self, rows: list[Row], summary: dict[str, Any], tables: DriveTables) -> DriveResult:
-        if len(rows) > len(self.rows):
+        if len(rows) > len(self.record.rows):
             self._write_history(rows)
         tables.write(self.out, self.comm)
         write_from_root(self.comm, self.out / SUMMARY, to_json(summary))
@@ -348,7 +302,17 @@ class FolderRecorder(Recorder):
         return DriveResult(*self._shared(rows, summary, tables), open_fields(folder, self.comm), self.comm, folder)
 
 
-def _flank_grids(mesh: SectorMesh) -> FlankGrids:
+def _body_parts(model: DriveModel) -> dict[str, BodyPart]:
+    """The undeformed bodies on this rank, by name."""
+    parts = {}
+    for k, body in enumerate(model.elements.bodies):
+        mesh, (first, _) = body.layout.mesh, model.partition.owned_sectors(k)
+        points, cells = body.positions()[body.owned], mesh.hexes.astype(np.int64)
+        parts[mesh.body] = BodyPart(points, cells, first, body.layout.count, _flank_grids(mesh))
+    return parts
+
+
+def _flank_grids(mesh: SectorMesh) -> FlankGrids | None:
     if not mesh.flanks:
-        return FlankGrids(np.zeros((0, 0, 0), dtype=np.int32), np.zeros(0), np.zeros(0))
+        return None
     return FlankGrids(np.array([grid.nodes for grid in mesh.flanks]), mesh.flanks[0].s, mesh.flanks[0].z)

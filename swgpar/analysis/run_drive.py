@@ -17,7 +17,7 @@ from swgpar.analysis.identity import identity
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.mesh_refinement import choose_mesh, compared_stresses, drive_error, least_error, size_ratio
 from swgpar.analysis.recorder import FolderRecorder, MemoryRecorder, Recorder
-from swgpar.analysis.restart import resume
+from swgpar.analysis.run_record import RunRecord
 from swgpar.analysis.shortcuts import MESHES, with_shortcuts
 from swgpar.analysis.start_states import StartStates
 from swgpar.analysis.stiffness_error import stiffness_error
@@ -108,8 +108,8 @@ def run_drive(design: DriveDesign, options: RunOptions) -> DriveResult:
             result = run.finish(recipe_name)
         except SwgparError as error:
             model.destroy()  # collective: all ranks have this error, but perhaps not one of another kind
-            if isinstance(error, (ConvergenceError, TimeLimitError)) and recorder.rows and folder is not None:
-                raise type(error)(f"{error}; {len(recorder.rows)} increments are saved in {folder}") from None
+            if isinstance(error, (ConvergenceError, TimeLimitError)) and recorder.record.rows and folder is not None:
+                raise type(error)(f"{error}; {len(recorder.record.rows)} increments are saved in {folder}") from None
             raise
         model.destroy()
     return result
@@ -160,32 +160,37 @@ class _Run:
         recorder.begin()
 
     @property
+    def record(self) -> RunRecord:
+        """What is kept of the increments."""
+        return self.recorder.record
+
+    @property
     def seconds(self) -> float:
         """Wall seconds of the run, restarts included."""
         return self.earlier_seconds + time.perf_counter() - self.begin
 
     def resume(self) -> Sequence[LoadState]:
         """Bring back the state of the checkpoint; returns all increments that the run consists of."""
-        items, self.earlier_seconds = resume(self.recorder, self.stepper, self.sequence)
-        logger.info("restarted after increment %d", len(self.recorder.rows))
-        if self.model.design.resolves_root_stress and not self.recorder.root_stress:
+        items, self.earlier_seconds = self.recorder.resume(self.stepper)
+        logger.info("restarted after increment %d", len(self.record.rows))
+        if self.model.design.resolves_root_stress and not self.record.root_stress:
             logger.info("the stress at the teeth is resolved only by the run that computes the loaded state")
         return items
 
     def start(self) -> Sequence[LoadState]:
         """Reach the loaded state at once if the design asks for it; returns all increments of the run."""
         sequence = self.sequence
-        if self.recorder.accuracy is not None:  # the model was loaded when its mesh was chosen
+        if self.record.accuracy is not None:  # the model was loaded when its mesh was chosen
             self.stepper.resume_at(sequence.loaded)
             return sequence.from_loaded
-        self.recorder.starts_loaded = start_at_load(self.stepper, self.recipe, sequence, self._keep_coarse, self.kept)
-        return sequence.from_loaded if self.recorder.starts_loaded else sequence.states
+        self.record.starts_loaded = start_at_load(self.stepper, self.recipe, sequence, self._keep_coarse, self.kept)
+        return sequence.from_loaded if self.record.starts_loaded else sequence.states
 
     def _keep_coarse(self, model: DriveModel, recipe: MeshRecipe) -> None:
         """Keep the largest stresses of a coarser mesh of the drive, to see what the mesh changes."""
         loaded = self.sequence.loaded
         places = find_places(model, loaded, model.stresses()[1])
-        self.recorder.coarse = CoarseStresses(places, size_ratio(recipe, self.recipe))
+        self.record.coarse = CoarseStresses(places, size_ratio(recipe, self.recipe))
         if model.design.resolves_root_stress:
             try:
                 self.coarse = recipe, compared_stresses(model, loaded)
@@ -196,11 +201,11 @@ class _Run:
         """Compute and record the increments that are left."""
         stepper, recorder = self.stepper, self.recorder
         loaded = next((item for item in reversed(items) if item.stage == Stage.LOAD), None)
-        with IncrementProgress(self.model.comm, len(items), done=len(recorder.rows), terminal=terminal) as progress:
+        with IncrementProgress(self.model.comm, len(items), done=len(self.record.rows), terminal=terminal) as progress:
             self.model.solver.monitor = lambda state, its, ratio: progress.newton(
                 state.stage.label, np.degrees(state.angle), its, ratio
             )
-            for item in items[len(recorder.rows) :]:
+            for item in items[len(self.record.rows) :]:
                 if has_fallen(self.model.design, recorder.program_rows()):
                     break
                 start = time.perf_counter()
@@ -208,9 +213,9 @@ class _Run:
                     break
                 seconds = time.perf_counter() - start
                 if self.model.design.resolves_root_stress:
-                    recorder.root_stress = self._root_stress(item, item == loaded)
-                recorder.record(stepper, seconds, self.seconds)
-                if len(recorder.rows) == 1:
+                    self.record.root_stress = self._root_stress(item, item == loaded)
+                recorder.keep(stepper, seconds, self.seconds)
+                if len(self.record.rows) == 1:
                     self.kept.remove(self.model.comm)
                 angle = float(np.degrees(item.angle))
                 progress.increment(item.stage.label, angle, stepper.iterations, stepper.residual, seconds)
@@ -232,7 +237,7 @@ class _Run:
 
     def _root_stress(self, state: LoadState, loaded: bool) -> RootStress | None:
         """Largest tensile stress at the teeth by windows; the one known before where a window cannot be computed."""
-        known = self.recorder.root_stress
+        known = self.record.root_stress
         design = self.model.design
         # with friction two periods are computed, of which the first one settles
         further = known is not None and state.stage == Stage.ROTATE and not design.contact.friction
@@ -256,19 +261,23 @@ class _Run:
 
     def _bearing(self) -> dict[str, Any] | None:
         """Entry of the summary for the bearing: over the increments under load."""
-        recorder, design = self.recorder, self.model.design
+        design = self.model.design
         if design.bearing is None:
             return None
-        steps = [int(row["step"]) for row in recorder.rows]
+        steps = [int(row["step"]) for row in self.record.rows]
         loaded = loaded_increments({"step": np.array(steps)})
         return summarise_bearing(
-            design, recorder.balls, [int(k) + 1 for k in loaded], recorder.bearing_shares, recorder.race_stress
+            design,
+            self.record.balls,
+            [int(k) + 1 for k in loaded],
+            self.record.bearing_shares,
+            self.record.race_stress,
         )
 
     def finish(self, recipe_name: str) -> DriveResult:
         """Summarise the run."""
         recorder, design = self.recorder, self.model.design
-        rows = recorder.rows
+        rows = self.record.rows
         with self.model.phases("coarser mesh"):
             error = stiffness_error(design, self.recipe, recorder.program_rows(), self.model.comm)
         if design.deviations is not None:
@@ -279,15 +288,15 @@ class _Run:
             self.model,
             rows,
             recipe_name,
-            recorder.accuracy,
-            recorder.root_stress,
+            self.record.accuracy,
+            self.record.root_stress,
             recorder.places_with_errors(),
-            recorder.pairs,
-            recorder.turns,
+            self.record.pairs,
+            self.record.turns,
             self._bearing(),
-            recorder.housing,
+            self.record.housing,
             self.seconds,
-            tooth_rotations=recorder.tooth_rotations,
+            tooth_rotations=self.record.tooth_rotations,
             stiffness_error=error,
             ended_early=self.ended_early,
         )
@@ -307,12 +316,14 @@ class _Run:
             return tables
         with self.model.phases("fatigue and losses"):
             if design.fatigue:
-                fatigue = evaluate_fatigue(cycle, recorder.root_stress)
+                fatigue = evaluate_fatigue(cycle, self.record.root_stress)
                 summary["fatigue"] = fatigue.summary
                 tables = replace(tables, cycle=fatigue.cycle, sector=fatigue.sector)
             if design.losses:
-                count = len(recorder.rows)
+                count = len(self.record.rows)
                 increments = range(count - design.steps.samples + 1, count + 1)
-                summary["losses"], columns = evaluate_losses(cycle, recorder.pairs, recorder.cam_forces, increments)
+                summary["losses"], columns = evaluate_losses(
+                    cycle, self.record.pairs, self.record.cam_forces, increments
+                )
                 tables = replace(tables, losses=columns)
         return tables

@@ -8,13 +8,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
 from mpi4py import MPI
 
 from swgpar.analysis.identity import identity
+from swgpar.analysis.saved_state import SolvedState, restore_state, state_rows
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import OutputError
-from swgpar.fem.vectors import read_field, write_field
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
 from swgpar.model.drive_model import DriveModel
@@ -42,13 +41,7 @@ class StartStates:
         """Write the model's present state; collective. Raises OutputError."""
         if self.folder is None or self.design.contact.friction:
             return
-        blocks, problem = {}, model.problem
-        for k, layout in enumerate(model.partition.layouts):
-            first, end = model.partition.owned_sectors(k)
-            field = read_field(model.partition, k, np.arange(first, end), problem.x)
-            blocks[layout.name] = field, first, layout.count
-        state = {"multipliers": problem.multipliers().tolist(), "modelled_sectors": problem.modelled_sectors()}
-        write_checkpoint(self.folder, model.comm, blocks, state, name=self._name(recipe))
+        write_checkpoint(self.folder / self._name(recipe), model.comm, state_rows(model), SolvedState.of(model))
 
     def restore(self, model: DriveModel, recipe: MeshRecipe) -> bool:
         """Set the model's x to the state on this mesh; False where there is none. Collective."""
@@ -57,20 +50,12 @@ class StartStates:
         path = self.folder / self._name(recipe)
         if not model.comm.bcast(path.exists() if model.comm.rank == 0 else None):
             return False
-        partition, x = model.partition, model.problem.x
-        owned = [partition.owned_sectors(k) for k in range(len(partition.layouts))]
-        ranges = {layout.name: (a, b - a) for layout, (a, b) in zip(partition.layouts, owned)}
         try:
             require_undamaged(path, model.comm)
-            arrays, state = read_checkpoint(path, model.comm, ranges)
+            restore_state(model, path, read_checkpoint(path, model.comm, SolvedState))
         except OutputError as error:
             logger.info("a loaded state is computed again: %s", error)
             return False
-        for k, layout in enumerate(partition.layouts):
-            write_field(partition, k, np.arange(*owned[k]), arrays[layout.name], x)
-        if model.comm.rank == model.comm.size - 1:
-            x.array[-partition.n_multipliers :] = state["multipliers"]
-        model.problem.resume_sectors(state["modelled_sectors"])
         logger.info("the loaded state on a mesh of %d elements is taken over", model.n_elements())
         return True
 

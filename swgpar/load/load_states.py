@@ -19,7 +19,7 @@ and the torque that this takes is reported. The flexible spline of a pancake dri
 from __future__ import annotations
 
 import enum
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 PIN_RETRACTION = 0.25
@@ -131,12 +131,3 @@ class LoadState:
             inset = PIN_RETRACTION * deflection if target.pin_inset is None else target.pin_inset
             values["pin_inset"] = self.pin_inset + share * (inset - self.pin_inset)
         return replace(target, **values)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Content for a checkpoint; `from_dict` reads it."""
-        return {**asdict(self), "stage": self.stage.name}
-
-    @classmethod
-    def from_dict(cls, content: dict[str, Any]) -> LoadState:
-        """State from the content of a checkpoint."""
-        return cls(**{**content, "stage": Stage[content["stage"]]})

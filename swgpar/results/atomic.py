@@ -10,6 +10,7 @@ import json
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -126,13 +127,15 @@ def write_from_root(comm: MPI.Comm, path: Path, content: bytes) -> None:
 
 
 def to_json(data: dict[str, Any]) -> bytes:
-    """JSON text of a dict that may hold NumPy scalars and arrays."""
+    """JSON text of a dict that may hold NumPy scalars and arrays, paths and dataclasses."""
 
     def plain(value: Any) -> Any:
         if isinstance(value, (np.generic, np.ndarray)):
             return value.tolist()
         if isinstance(value, Path):
             return str(value)
+        if is_dataclass(value):
+            return {each.name: getattr(value, each.name) for each in fields(value)}
         raise TypeError(f"a {type(value).__name__} cannot be written as JSON")
 
     return (json.dumps(data, indent=2, default=plain) + "\n").encode()

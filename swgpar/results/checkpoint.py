@@ -11,79 +11,62 @@ import json
 import zlib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import h5py
 import numpy as np
 from mpi4py import MPI
+from pydantic import TypeAdapter, ValidationError
 
 from swgpar.errors import OutputError
 from swgpar.results import parallel_hdf5
 from swgpar.results.atomic import agreed, sentence, to_json
 from swgpar.results.parallel_hdf5 import Block
 
+T = TypeVar("T")
+
 NAME = "checkpoint.h5"
 
-VERSION = 6
-"""Of the content, the attributes of a run included."""
+VERSION = 7
+"""Of the content, a run's included."""
 
 _ATTRS, _VERSION, _DIGEST = "attrs_json", "version", "attrs_sha256"
-_SUMS = "sums"
+_CONTENT, _SUMS = "content", "sums"
 
 
-def write_checkpoint(
-    out: Path,
-    comm: MPI.Comm,
-    blocks: Mapping[str, tuple[np.ndarray, int, int]],
-    attrs: Mapping[str, Any],
-    *,
-    name: str = NAME,
-) -> None:
-    """Replace the file `name` in `out`. The previous one stays valid until the new one is complete. Collective.
+def write_checkpoint(path: Path, comm: MPI.Comm, blocks: Mapping[str, Block], content: Any) -> None:
+    """Replace a checkpoint. The previous one stays valid until the new one is complete. Collective.
 
     Parameters
     ----------
-    out : results folder
-    blocks : name -> (rows of this rank (n, ...), first row, rows in total)
-    attrs : what else the state is made of, as JSON can hold it (numbers keep all digits); used from rank 0
-    name : of the file
+    path : the file
+    blocks : rows by name
+    content : a dataclass, what else the state is made of, as JSON can hold it (numbers keep all digits); of rank 0
     """
-    rows = {body: Block(np.asarray(array), first, total) for body, (array, first, total) in blocks.items()}
+    rows = dict(blocks)
     sums = {body: comm.allreduce(_sum(block.array, block.first)) for body, block in rows.items()}
     # An HDF5 attribute ends at 64 KiB, the history of a long run does not: the text goes into a data set.
-    text = comm.bcast(to_json({**attrs, _SUMS: sums}) if comm.rank == 0 else None)
+    text = comm.bcast(to_json({_CONTENT: content, _SUMS: sums}) if comm.rank == 0 else None)
     for key, values in (
         (_ATTRS, np.frombuffer(text, dtype=np.uint8)),
         (_DIGEST, np.frombuffer(hashlib.sha256(text).digest(), dtype=np.uint8)),
         (_VERSION, np.array([VERSION])),
     ):
         rows[key] = Block(values if comm.rank == 0 else values[:0], 0, len(values))
-    parallel_hdf5.write(Path(out) / name, comm, rows)
+    parallel_hdf5.write(path, comm, rows)
 
 
-def read_checkpoint(
-    path: Path,
-    comm: MPI.Comm,
-    ranges: Mapping[str, tuple[int, int]] | None = None,
-) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
-    """Read rows of a checkpoint; collective, on any number of ranks.
+def read_checkpoint(path: Path, comm: MPI.Comm, kind: type[T]) -> T:
+    """Read the content of a checkpoint; collective. `parallel_hdf5.read_rows` reads the rows.
 
-    Parameters
-    ----------
-    path : the checkpoint file
-    ranges : name -> (first row, number of rows) wanted by this rank; without it only the attributes are read
-
-    Returns
-    -------
-    arrays : name -> (count, ...)
-    attrs : as given to `write_checkpoint`
+    kind : the dataclass of the content, read by its fields and their annotations
 
     Raises
     ------
     OutputError
         The file cannot be read, is damaged, none of swgpar, or of another version; on all ranks.
     """
-    path, text, failure = Path(path), b"", None
+    text, failure = b"", None
     if comm.rank == 0:
         try:
             text = _read_attrs(path)
@@ -92,15 +75,14 @@ def read_checkpoint(
     failure, text = comm.bcast((failure, text))
     if failure is not None:
         raise failure
-    arrays = parallel_hdf5.read_rows(path, comm, ranges or {})
-    attrs = json.loads(text)
-    attrs.pop(_SUMS)
-    return arrays, attrs
+    try:
+        return TypeAdapter(kind).validate_python(json.loads(text)[_CONTENT])
+    except ValidationError as error:
+        raise _damaged(path, f"{error.errors()[0]['loc'][-1]} is not what a checkpoint has") from None
 
 
 def require_undamaged(path: Path, comm: MPI.Comm) -> None:
     """Read the whole checkpoint, each rank a part of it; raises OutputError on all ranks where it is damaged."""
-    read_checkpoint(path, comm)
     sums: dict[str, int] = {}
     with agreed(comm, path, "read"):
         sums = json.loads(_read_attrs(path))[_SUMS]
@@ -126,10 +108,11 @@ def _read_attrs(path: Path) -> bytes:
                     f"{path} is no checkpoint of swgpar: restore the one of this run, or start again with overwrite = "
                     "true (--overwrite)"
                 )
-            if not {_VERSION, _DIGEST} <= names or file[_VERSION][0] != VERSION:
+            version = int(file[_VERSION][0]) if {_VERSION, _DIGEST} <= names else 0
+            if version != VERSION:
                 raise OutputError(
-                    f"{path} was written by another version of swgpar: continue with that version, or start again "
-                    "with overwrite = true (--overwrite)"
+                    f"{path} was written by another version of swgpar (version {version} of checkpoints, this one "
+                    f"reads {VERSION}): continue with that version, or start again with overwrite = true (--overwrite)"
                 )
             text, digest = file[_ATTRS][:].tobytes(), file[_DIGEST][:].tobytes()
     except (OSError, RuntimeError, ValueError, KeyError, TypeError, IndexError) as error:

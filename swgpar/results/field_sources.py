@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
@@ -13,7 +12,7 @@ from mpi4py import MPI
 
 from swgpar.errors import InputError, OutputError
 from swgpar.results.atomic import sentence
-from swgpar.results.fields import FOLDER, INDEX, MESH, increment_name, stored
+from swgpar.results.fields import FLANKS, FOLDER, INDEX, MESH, BodyPart, FlankGrids, increment_name, stored
 
 
 class BodyMesh(NamedTuple):
@@ -25,18 +24,6 @@ class BodyMesh(NamedTuple):
 
     points: np.ndarray
     cells: np.ndarray
-
-
-class FlankGrids(NamedTuple):
-    """Nodes of the flanks of one tooth sector of a body.
-
-    nodes : (2, n_s, n_z) local node numbers, clockwise flank first
-    s : (n_s,) mm, arc length from the tip;  z : (n_z,) mm, along the face width
-    """
-
-    nodes: np.ndarray
-    s: np.ndarray
-    z: np.ndarray
 
 
 class FieldSource(Protocol):
@@ -81,7 +68,7 @@ class FieldFiles:
         return BodyMesh(*(self._get(MESH, f"{body}/{name}") for name in ("points", "cells")))
 
     def flanks(self, body: str) -> FlankGrids:
-        return FlankGrids(*(self._get(MESH, f"{body}/{name}") for name in ("flank_nodes", "flank_s", "flank_z")))
+        return FlankGrids(*(self._get(MESH, f"{body}/{name}") for name in FLANKS))
 
     def names(self, body: str, increment: int) -> tuple[str, ...]:
         with self._open(increment_name(increment)) as file:
@@ -102,23 +89,6 @@ class FieldFiles:
             return file[name][:]
 
 
-@dataclass
-class BodyPart:
-    """Owned sectors of a body, and the fields that were kept of them.
-
-    points : (n_sectors, n_local, 3) mm;  cells : (n_elem, 8) of one sector
-    first : number of the first owned sector;  total : sectors of the modelled body
-    flanks : grids of one sector;  fields : by increment, then by name, as `stored` gives them
-    """
-
-    points: np.ndarray
-    cells: np.ndarray
-    first: int
-    total: int
-    flanks: FlankGrids
-    fields: dict[int, dict[str, np.ndarray]] = field(default_factory=dict)
-
-
 class FieldParts:
     """Fields in memory: every rank keeps those of the sectors it owns; they are gathered when they are read."""
 
@@ -126,15 +96,16 @@ class FieldParts:
 
     def __init__(self, comm: MPI.Comm, bodies: Mapping[str, BodyPart]) -> None:
         self._comm, self._bodies = comm, bodies
+        self._fields: dict[str, dict[int, dict[str, np.ndarray]]] = {body: {} for body in bodies}
 
     @property
     def increments(self) -> list[int]:
-        return sorted(next(iter(self._bodies.values())).fields)
+        return sorted(next(iter(self._fields.values())))
 
     def keep(self, increment: int, fields: Mapping[str, Mapping[str, np.ndarray]]) -> None:
         """Keep the fields of an increment: body -> name -> (n_sectors, n_local[, n_components]) of this rank."""
         for body, values in fields.items():
-            self._bodies[body].fields[increment] = {name: stored(name, array) for name, array in values.items()}
+            self._fields[body][increment] = {name: stored(name, array) for name, array in values.items()}
 
     def mesh(self, body: str) -> BodyMesh:
         part = self._bodies[body]
@@ -147,11 +118,10 @@ class FieldParts:
         return self._bodies[body].flanks
 
     def names(self, body: str, increment: int) -> tuple[str, ...]:
-        return tuple(sorted(self._bodies[body].fields[increment]))
+        return tuple(sorted(self._fields[body][increment]))
 
     def read(self, body: str, name: str, increment: int) -> np.ndarray:
-        part = self._bodies[body]
-        return self._gather(part, part.fields[increment][name])
+        return self._gather(self._bodies[body], self._fields[body][increment][name])
 
     def _gather(self, part: BodyPart, rows: np.ndarray) -> np.ndarray:
         """All rows of a body on every rank, from the rows of the sectors that each rank owns."""

@@ -7,15 +7,16 @@ by sector, so those between two sectors appear twice, with the same values.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from xml.sax.saxutils import quoteattr
+from typing import NamedTuple
 
 import h5py
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.results import parallel_hdf5
+from swgpar.results import parallel_hdf5, xdmf
 from swgpar.results.atomic import TEMPORARY, agreed, discard, finish, write_from_root
 from swgpar.results.parallel_hdf5 import Block
 
@@ -24,6 +25,8 @@ INDEX = "fields.h5"
 
 FOLDER = "fields"
 MESH = "mesh"
+FLANKS = ("flank_nodes", "flank_s", "flank_z")
+"""Data sets of a body's `FlankGrids`."""
 
 
 def increment_name(index: int) -> str:
@@ -61,6 +64,38 @@ def stored(name: str, values: np.ndarray) -> np.ndarray:
     return np.ascontiguousarray(values.reshape(-1, *values.shape[2:]), dtype=kind)
 
 
+class FlankGrids(NamedTuple):
+    """Nodes of the flanks of one tooth sector of a body.
+
+    nodes : (2, n_s, n_z) local node numbers, clockwise flank first
+    s : (n_s,) mm, arc length from the tip;  z : (n_z,) mm, along the face width
+    """
+
+    nodes: np.ndarray
+    s: np.ndarray
+    z: np.ndarray
+
+
+@dataclass(frozen=True)
+class BodyPart:
+    """The sectors of a body that a rank owns.
+
+    points : (n_sectors, n_local, 3) mm, undeformed;  cells : (n_elem, 8) of one sector
+    first : number of the first owned sector;  total : sectors of the modelled body
+    flanks : nodes of one sector on its flanks; None of a body without teeth
+    """
+
+    points: np.ndarray
+    cells: np.ndarray
+    first: int
+    total: int
+    flanks: FlankGrids | None
+
+    def block(self, rows: np.ndarray, per_sector: int) -> Block:
+        """Rows (n, ...) of the owned sectors among those of all sectors."""
+        return Block(rows, self.first * per_sector, self.total * per_sector)
+
+
 class FieldWriter:
     """Writes mesh and increments below a results folder.
 
@@ -72,44 +107,38 @@ class FieldWriter:
 
     def __init__(self, out: Path, comm: MPI.Comm) -> None:
         self.out, self.comm = out, comm
-        self.shapes: dict[str, tuple[int, int]] = {}
+        self._bodies: Mapping[str, BodyPart] = {}
         with agreed(comm, out / FOLDER):
             if comm.rank == 0:
                 (out / FOLDER).mkdir(exist_ok=True)
                 for left in (out / FOLDER).glob(f"*{TEMPORARY}"):
                     discard(left)
 
-    def write_mesh(
-        self, bodies: Mapping[str, tuple[np.ndarray, np.ndarray, int, int]], extra: Mapping[str, np.ndarray]
-    ) -> None:
-        """Write the undeformed mesh.
-
-        bodies : name -> points (n_sectors, n_local, 3) mm, one sector's cells (n_elem, 8), first sector, all sectors
-        extra : further small data sets, the same on all ranks
-        """
+    def write_mesh(self, bodies: Mapping[str, BodyPart]) -> None:
+        """Write the undeformed mesh of bodies by name."""
+        self._bodies = bodies
         blocks = {}
-        for name, (points, cells, first, total) in bodies.items():
-            n_sectors, n_local = points.shape[:2]
-            sector = np.arange(first, first + n_sectors)[:, None, None] * n_local
-            blocks[f"{name}/points"] = Block(points.reshape(-1, 3), first * n_local, total * n_local)
-            blocks[f"{name}/cells"] = Block((cells + sector).reshape(-1, 8), first * len(cells), total * len(cells))
-            self.shapes[name] = (total * n_local, total * len(cells))
-        for name, array in extra.items():
-            rows = array if self.comm.rank == 0 else array[:0]
-            blocks[name] = Block(np.ascontiguousarray(rows), 0, len(array))
+        for name, part in bodies.items():
+            n_sectors, n_local = part.points.shape[:2]
+            sector = np.arange(part.first, part.first + n_sectors)[:, None, None] * n_local
+            blocks[f"{name}/points"] = part.block(part.points.reshape(-1, 3), n_local)
+            blocks[f"{name}/cells"] = part.block((part.cells + sector).reshape(-1, 8), len(part.cells))
+            if part.flanks is not None:
+                grids = zip(FLANKS, part.flanks, strict=True)
+                blocks |= {f"{name}/{key}": Block.of_root(self.comm, array) for key, array in grids}
         parallel_hdf5.write(self.out / FOLDER / f"{MESH}.h5", self.comm, blocks)
 
     def has(self, index: int) -> bool:
         """Whether the fields of an increment were written; seen from this rank."""
         return (self.out / FOLDER / f"{increment_name(index)}.h5").exists()
 
-    def write_increment(self, index: int, fields: Mapping[str, tuple[Mapping[str, np.ndarray], int, int]]) -> None:
-        """Write nodal fields: body -> name -> (n_sectors, n_local[, n_components]), first sector, sectors in all."""
-        blocks = {}
-        for body, (values, first, total) in fields.items():
-            for name, array in values.items():
-                n_local = array.shape[1]
-                blocks[f"{body}/{name}"] = Block(stored(name, array), first * n_local, total * n_local)
+    def write_increment(self, index: int, fields: Mapping[str, Mapping[str, np.ndarray]]) -> None:
+        """Write nodal fields of the bodies: body -> name -> (n_sectors, n_local[, n_components])."""
+        blocks = {
+            f"{body}/{name}": self._bodies[body].block(stored(name, array), array.shape[1])
+            for body, values in fields.items()
+            for name, array in values.items()
+        }
         parallel_hdf5.write(self.out / FOLDER / f"{increment_name(index)}.h5", self.comm, blocks)
 
     def write_index(self, increments: Sequence[tuple[int, float]], names: Mapping[str, Mapping[str, int]]) -> None:
@@ -125,31 +154,26 @@ class FieldWriter:
         write_from_root(self.comm, self.out / "fields.xdmf", self._xdmf(increments, names).encode())
 
     def _xdmf(self, increments: Sequence[tuple[int, float]], names: Mapping[str, Mapping[str, int]]) -> str:
-        kinds = {1: "Scalar", 3: "Vector", 6: "Tensor6"}
-        lines = ['<?xml version="1.0"?>', '<Xdmf Version="3.0"><Domain>']
         when = times([angle for _, angle in increments]).tolist()
         # a series for each body: VTK adds [1], [2] ... to names that return
-        for body, (n_points, n_cells) in self.shapes.items():
-            lines.append(f'<Grid Name={quoteattr(body)} GridType="Collection" CollectionType="Temporal">')
-            for time, (index, angle) in zip(when, increments, strict=True):
-                lines.append(
-                    f"<Grid Name={quoteattr(f'{body}_{index:04d}')}>"
-                    f'<Time Value="{time!r}"/><Information Name="wg_angle_deg" Value="{angle!r}"/>'
-                    f'<Topology TopologyType="Hexahedron" NumberOfElements="{n_cells}">'
-                    f'<DataItem Format="HDF" NumberType="Int" Precision="8" Dimensions="{n_cells} 8">'
-                    f"{FOLDER}/{MESH}.h5:/{body}/cells</DataItem></Topology>"
-                    f'<Geometry GeometryType="XYZ"><DataItem Format="HDF" NumberType="Float" Precision="8" '
-                    f'Dimensions="{n_points} 3">{FOLDER}/{MESH}.h5:/{body}/points</DataItem></Geometry>'
-                )
-                for name, components in names[body].items():
-                    size = f"{n_points}" if components == 1 else f"{n_points} {components}"
-                    precision = 8 if name == "displacement" else 4
-                    lines.append(
-                        f'<Attribute Name={quoteattr(name)} AttributeType="{kinds[components]}" Center="Node">'
-                        f'<DataItem Format="HDF" NumberType="Float" Precision="{precision}" Dimensions="{size}">'
-                        f"{FOLDER}/{increment_name(index)}.h5:/{body}/{name}</DataItem></Attribute>"
-                    )
-                lines.append("</Grid>")
-            lines.append("</Grid>")
-        lines.append("</Domain></Xdmf>")
-        return "\n".join(lines) + "\n"
+        return xdmf.document(
+            xdmf.series(
+                body,
+                [
+                    xdmf.grid(f"{body}_{index:04d}", self._grid(body, index, angle, time, names[body]))
+                    for time, (index, angle) in zip(when, increments, strict=True)
+                ],
+            )
+            for body in self._bodies
+        )
+
+    def _grid(self, body: str, index: int, angle: float, time: float, names: Mapping[str, int]) -> Iterator[str]:
+        """Content of the grid of a body at an increment. names : components of its fields"""
+        part = self._bodies[body]
+        count = part.total * part.points.shape[1]
+        yield f'<Time Value="{time!r}"/><Information Name="wg_angle_deg" Value="{angle!r}"/>'
+        yield xdmf.hexahedra(f"{FOLDER}/{MESH}.h5:/{body}/cells", part.total * len(part.cells))
+        yield xdmf.points(f"{FOLDER}/{MESH}.h5:/{body}/points", count)
+        for name, components in names.items():
+            place = f"{FOLDER}/{increment_name(index)}.h5:/{body}/{name}"
+            yield xdmf.attribute(name, place, count, components, 8 if name == "displacement" else 4)

@@ -36,6 +36,11 @@ class Block(NamedTuple):
     first: int
     total: int
 
+    @classmethod
+    def of_root(cls, comm: MPI.Comm, array: np.ndarray) -> Block:
+        """Rows (n, ...) that all ranks have, written by rank 0."""
+        return cls(np.ascontiguousarray(array if comm.rank == 0 else array[:0]), 0, len(array))
+
 
 def write(
     path: Path,

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from xml.sax.saxutils import quoteattr
 
 import h5py
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.results import parallel_hdf5
+from swgpar.results import parallel_hdf5, xdmf
 from swgpar.results.atomic import write_from_root
 from swgpar.results.folder import SECTOR, SECTOR_XDMF
 from swgpar.results.parallel_hdf5 import Block
@@ -33,11 +32,7 @@ class SectorFields:
 def write_sector(folder: Path, comm: MPI.Comm, sector: SectorFields) -> None:
     """Write the files from rank 0; collective."""
     arrays = {"points": sector.points, "cells": sector.cells.astype(np.int64), **sector.fields}
-    blocks = {
-        name: Block(np.ascontiguousarray(array if comm.rank == 0 else array[:0]), 0, len(array))
-        for name, array in arrays.items()
-    }
-    parallel_hdf5.write(folder / SECTOR, comm, blocks)
+    parallel_hdf5.write(folder / SECTOR, comm, {name: Block.of_root(comm, array) for name, array in arrays.items()})
     write_from_root(comm, folder / SECTOR_XDMF, _xdmf(sector).encode())
 
 
@@ -51,18 +46,7 @@ def read_sector(folder: Path) -> SectorFields | None:
 
 
 def _xdmf(sector: SectorFields) -> str:
-    n, m = len(sector.points), len(sector.cells)
-
-    def item(name: str, size: str, kind: str = "Float") -> str:
-        start = f'<DataItem Format="HDF" NumberType="{kind}" Precision="8" Dimensions="{size}">'
-        return f"{start}{SECTOR}:/{name}</DataItem>"
-
-    fields = "".join(
-        f'<Attribute Name={quoteattr(name)} AttributeType="Scalar" Center="Node">{item(name, str(n))}</Attribute>\n'
-        for name in sector.fields
-    )
-    return (
-        '<?xml version="1.0"?>\n<Xdmf Version="3.0"><Domain><Grid Name="sector">\n'
-        f'<Topology TopologyType="Hexahedron" NumberOfElements="{m}">{item("cells", f"{m} 8", "Int")}</Topology>\n'
-        f'<Geometry GeometryType="XYZ">{item("points", f"{n} 3")}</Geometry>\n{fields}</Grid></Domain></Xdmf>\n'
-    )
+    n = len(sector.points)
+    items = [xdmf.hexahedra(f"{SECTOR}:/cells", len(sector.cells)), xdmf.points(f"{SECTOR}:/points", n)]
+    items += [xdmf.attribute(name, f"{SECTOR}:/{name}", n) for name in sector.fields]
+    return xdmf.document([xdmf.grid("sector", items)])

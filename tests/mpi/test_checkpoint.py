@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -11,16 +13,42 @@ import pytest
 from mpi4py import MPI
 
 from swgpar.errors import OutputError
-from swgpar.results import checkpoint
+from swgpar.load.load_states import Stage
+from swgpar.results import checkpoint, parallel_hdf5
+from swgpar.results.parallel_hdf5 import Block
 
 ROWS = np.arange(7 * 5 * 3, dtype=float).reshape(7, 5, 3)
-ATTRS = {"identity": "x", "rows": [{"a": 0.1}], "wall_s": 1.5}
+
+
+@dataclass(frozen=True)
+class Inner:
+    """Part of a content."""
+
+    values: Mapping[str, Sequence[float]]
+    pairs: tuple[tuple[float, float], ...] = ()
+
+
+@dataclass(frozen=True)
+class Content:
+    """Content with all kinds of values."""
+
+    name: str
+    rows: list[dict[str, Any]]
+    wall_s: float
+    stage: Stage
+    inner: Inner | None = None
+    by_name: dict[str, Inner] = field(default_factory=dict)
+
+
+INNER = Inner({"a": [0.1, float("inf")]}, ((0.1, 2.0),))
+CONTENT = Content("x", [{"a": 0.1, "b": "c"}], 1.5, Stage.LOAD, INNER, {"one": INNER})
 
 
 def write(folder: Path, comm: MPI.Comm) -> Path:
     first, end = (len(ROWS) * rank // comm.size for rank in (comm.rank, comm.rank + 1))
-    checkpoint.write_checkpoint(folder, comm, {"body": (ROWS[first:end], first, len(ROWS))}, ATTRS)
-    return folder / checkpoint.NAME
+    path = folder / checkpoint.NAME
+    checkpoint.write_checkpoint(path, comm, {"body": Block(ROWS[first:end], first, len(ROWS))}, CONTENT)
+    return path
 
 
 def edit(path: Path, change: Callable[[h5py.File], None]) -> None:
@@ -64,8 +92,21 @@ DAMAGE = {
 def test_what_is_written_is_read(tmp_path: Path) -> None:
     path = write(tmp_path, MPI.COMM_SELF)
     checkpoint.require_undamaged(path, MPI.COMM_SELF)
-    arrays, attrs = checkpoint.read_checkpoint(path, MPI.COMM_SELF, {"body": (2, 3)})
-    assert attrs == ATTRS and (arrays["body"] == ROWS[2:5]).all()
+    assert checkpoint.read_checkpoint(path, MPI.COMM_SELF, Content) == CONTENT
+    assert (parallel_hdf5.read_rows(path, MPI.COMM_SELF, {"body": (2, 3)})["body"] == ROWS[2:5]).all()
+
+
+def test_versions_are_named(tmp_path: Path) -> None:
+    path = write(tmp_path, MPI.COMM_SELF)
+    edit(path, lambda file: file["version"].__setitem__(0, 99))
+    with pytest.raises(OutputError, match=rf"\(version 99 of checkpoints, this one reads {checkpoint.VERSION}\)"):
+        checkpoint.read_checkpoint(path, MPI.COMM_SELF, Content)
+
+
+def test_another_content_is_refused(tmp_path: Path) -> None:
+    path = write(tmp_path, MPI.COMM_SELF)
+    with pytest.raises(OutputError, match="is damaged: values is not what a checkpoint has"):
+        checkpoint.read_checkpoint(path, MPI.COMM_SELF, Inner)
 
 
 @pytest.mark.parametrize("name", DAMAGE)

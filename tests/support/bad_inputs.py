@@ -26,12 +26,14 @@ import swgpar
 from support.paths import DESIGN, DRIVERS, RECIPE, REFERENCE
 from support.small_drive import PLANE
 from swgpar.analysis.forecast import forecast
+from swgpar.analysis.run_record import RunRecord
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import LONGEST, SwgparError
 from swgpar.input.toml_file import apply_overrides, read_toml
 from swgpar.meshing import build_sector_meshes, load_recipe
 from swgpar.meshing.recipe import RECIPES, recipe_path
-from swgpar.results import checkpoint
+from swgpar.results import checkpoint, parallel_hdf5
+from swgpar.results.parallel_hdf5 import Block
 from swgpar.studies.cases import expand
 from swgpar.studies.spec import load_study
 from swgpar.systems import system_of
@@ -202,9 +204,8 @@ def damaged(draw: st.DrawFn, content: bytes) -> tuple[bytes, str]:
 def right_checkpoint(folder: Path) -> bytes:
     """A checkpoint with two data sets and attributes of a run, written into the folder."""
     rng = np.random.default_rng(1)
-    blocks = {"flexible_spline": (rng.random((20, 6, 3)), 0, 20), "ring_gear": (rng.random((21, 4, 3)), 0, 21)}
-    state = {"identity": "x" * 64, "done": 2, "rows": [{"step": 1, "fs_s1": 312.5}] * 2, "wall_s": 1.5}
-    checkpoint.write_checkpoint(folder, MPI.COMM_SELF, blocks, state)
+    blocks = {name: Block(rng.random((rows, n, 3)), 0, rows) for name, rows, n in SHAPES}
+    checkpoint.write_checkpoint(folder / checkpoint.NAME, MPI.COMM_SELF, blocks, RECORD)
     return (folder / checkpoint.NAME).read_bytes()
 
 
@@ -328,16 +329,20 @@ def _use_pitch_file(folder: Path) -> str:
 
 def _use_checkpoint(folder: Path) -> str:
     """A damaged checkpoint is refused, or all that it holds is what was written."""
-    path, ranges = folder / checkpoint.NAME, {"flexible_spline": (0, 20), "ring_gear": (0, 21)}
+    path, ranges = folder / checkpoint.NAME, {name: (0, rows) for name, rows, _ in SHAPES}
     checkpoint.require_undamaged(path, MPI.COMM_SELF)
-    arrays, state = checkpoint.read_checkpoint(path, MPI.COMM_SELF, ranges)
+    record = checkpoint.read_checkpoint(path, MPI.COMM_SELF, RunRecord)
+    arrays = parallel_hdf5.read_rows(path, MPI.COMM_SELF, ranges)
     rng = np.random.default_rng(1)
     same = all(np.array_equal(arrays[name], rng.random((rows, n, 3))) for name, rows, n in SHAPES)
-    return "" if same and state["rows"] == [{"step": 1, "fs_s1": 312.5}] * 2 else "other content than was written"
+    return "" if same and record == RECORD else "other content than was written"
 
 
 SHAPES = (("flexible_spline", 20, 6), ("ring_gear", 21, 4))
 """Data sets of the right checkpoint: name, rows, nodes."""
+
+RECORD = RunRecord(rows=[{"step": 1, "fs_s1": 312.5}] * 2, housing={"vm_MPa": 1.5})
+"""Its content."""
 
 USES: dict[str, Callable[[Path], str]] = {
     "drive": _use_design,

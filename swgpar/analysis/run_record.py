@@ -1,0 +1,57 @@
+"""What a run keeps of its increments beside the fields. All of it is in the checkpoint."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from swgpar.drive_results.summary import Accuracy
+from swgpar.evaluation.bearing_loads import ComplianceShares
+from swgpar.evaluation.place_errors import CoarseStresses
+from swgpar.evaluation.places import Place
+from swgpar.evaluation.windows.root_stress import RootStress
+from swgpar.results.history import Row
+
+
+@dataclass
+class RunRecord:
+    """Record of a run up to the present increment.
+
+    A field has a type that is read back from JSON: numbers, texts, lists, dicts and dataclasses of them.
+
+    Attributes
+    ----------
+    rows : history of the increments computed so far
+    starts_loaded : whether the history begins with the loaded state, on coarser meshes or from the bent shape
+    accuracy : what was asked for and reached, if an accuracy was asked for
+    root_stress : of the loaded state, once it is resolved
+    places : of the largest stresses under load, by column of the history
+    coarse : largest stresses on a coarser mesh, where a run has one, until `places` are compared with them
+    stress_errors : by it, as shares, of `places`
+    pairs, contact_lines : rows of pairs.csv and contact_lines.csv, the contacts of flanks under load
+    cam_forces : N, of all increments, with [losses]
+    tooth_rotations : deg, mean rotation of the flexible spline's teeth at every increment, with [ratcheting]
+    turns : rows of transmission_error.csv
+    balls : rows of balls.csv, the loads of a bearing's balls
+    race_stress : largest stresses of the outer race under load, MPa
+    housing : largest stresses and radial displacement of the housing under load, by the names of the summary
+    bearing_shares : of the bearing in the compliance of the loaded state
+    components : of the nodal fields in files, by body and name
+    """
+
+    rows: list[Row] = field(default_factory=list)
+    starts_loaded: bool = False
+    accuracy: Accuracy | None = None
+    root_stress: RootStress | None = None
+    places: dict[str, Place] = field(default_factory=dict)
+    coarse: CoarseStresses | None = None
+    stress_errors: dict[str, float] = field(default_factory=dict)
+    pairs: list[Row] = field(default_factory=list)
+    contact_lines: list[Row] = field(default_factory=list)
+    cam_forces: list[float] = field(default_factory=list)
+    tooth_rotations: list[float] = field(default_factory=list)
+    turns: list[Row] = field(default_factory=list)
+    balls: list[Row] = field(default_factory=list)
+    race_stress: dict[str, float] = field(default_factory=dict)
+    housing: dict[str, float] = field(default_factory=dict)
+    bearing_shares: dict[str, ComplianceShares] = field(default_factory=dict)
+    components: dict[str, dict[str, int]] = field(default_factory=dict)
