@@ -12,7 +12,7 @@ from swgpar.constraints.supports import Supports
 from swgpar.contact.contact import PenaltyContact
 from swgpar.contact.rigid_surface import RigidContact, SurfacePose, cam_pose, pin_pose
 from swgpar.design import sections
-from swgpar.errors import ConvergenceError
+from swgpar.errors import ConvergenceError, InputError
 from swgpar.evaluation.losses import work_per_cycle
 from swgpar.evaluation.stress_cycle import history_by_renaming, sector_stress
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE, BodyLayout
@@ -24,7 +24,8 @@ from swgpar.geometry.cams import Cam
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import PhaseTimes
 from swgpar.materials import Material
-from swgpar.meshing.ring_sector import AROUND, ring_sector
+from swgpar.meshing.race_sector import annular_sector
+from swgpar.meshing.sector import SectorMesh
 from swgpar.model.drive_model import EDGE, PRESSURE_LIMIT
 from swgpar.solve.discrete_problem import DiscreteProblem
 from swgpar.solve.newton import NewtonSolver
@@ -32,6 +33,34 @@ from swgpar.solve.solve_state import NewtonSettings
 
 REFERENCE_LENGTH = 1.0
 """Length (mm) that penalties and tolerances refer to; a ring has no module."""
+
+
+AROUND = 2
+"""Elements around a sector: even, so that nodes lie on its middle, which for sector 0 is the major axis."""
+
+
+def ring_sector(
+    inner: float, outer: float, width: float, sectors: int, radial: int, axial: int, plane: bool
+) -> SectorMesh:
+    """Sector centred on +y of a ring between two radii, its mid-plane at z = 0.
+
+    Parameters
+    ----------
+    inner, outer, width : float, mm
+    sectors : int
+        Sectors of the whole ring, two elements around each; a multiple of 4 has nodes every 45 degrees.
+    radial, axial : int
+        Elements through the thickness and along the width; the plane model has one layer.
+    plane : bool
+        Quadrilaterals in plane stress instead of hexahedra.
+
+    Faces ``inner`` and ``outer``, node sets ``bore`` (the inner surface) and ``outer``, no flanks.
+    """
+    if not 0.0 < inner < outer:
+        raise InputError(f"inner radius = {inner:g} is out of range: allowed above 0 to below {outer:g} mm (the outer)")
+    angle = np.pi / sectors * np.linspace(-1.0, 1.0, AROUND + 1)
+    z = width * np.linspace(-0.5, 0.5, (1 if plane else axial) + 1)
+    return annular_sector("ring", np.linspace(inner, outer, radial + 1), angle, z, sectors, plane)
 
 
 @dataclass(frozen=True)

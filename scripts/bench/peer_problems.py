@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from plain_ring import ring_sector
 from swgpar.materials import Isotropic
-from swgpar.meshing.ring_sector import ring_sector
 from swgpar.meshing.sector import SectorMesh
 
 INNER, OUTER, WIDTH = 58.2, 59.2, 10.0

@@ -20,7 +20,7 @@ from swgpar.geometry.bearing import ball_lines
 from swgpar.geometry.micro_geometry import crowning
 from swgpar.kernel import ReferenceElements
 from swgpar.materials import contact_modulus
-from swgpar.meshing.ring_sector import opposite_cells, race_grid, race_sector
+from swgpar.meshing.race_sector import opposite_cells, race_grid, race_sector
 from swgpar.meshing.sector import SectorMesh
 
 RADIAL = 1

@@ -1,10 +1,9 @@
-"""A plain ring as a chain of congruent sectors, without teeth: the body of benchmarks, and a bearing's outer race."""
+"""A ring without teeth as a chain of congruent sectors: the outer race of a bearing."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from swgpar.errors import InputError
 from swgpar.meshing.quality import hex_quality
 from swgpar.meshing.sector import SectorMesh
 from swgpar.meshing.sweep import sweep_line, sweep_quads
@@ -14,33 +13,6 @@ OUTER_RACE = "outer_race"
 
 SAME = 1e-9
 """Share of a sector below which coordinates are the same."""
-
-AROUND = 2
-"""Elements around a sector: even, so that nodes lie on its middle, which for sector 0 is the major axis."""
-
-
-def ring_sector(
-    inner: float, outer: float, width: float, sectors: int, radial: int, axial: int, plane: bool
-) -> SectorMesh:
-    """Sector centred on +y of a ring between two radii, its mid-plane at z = 0.
-
-    Parameters
-    ----------
-    inner, outer, width : float, mm
-    sectors : int
-        Sectors of the whole ring, two elements around each; a multiple of 4 has nodes every 45 degrees.
-    radial, axial : int
-        Elements through the thickness and along the width; the plane model has one layer.
-    plane : bool
-        Quadrilaterals in plane stress instead of hexahedra.
-
-    Faces ``inner`` and ``outer``, node sets ``bore`` (the inner surface) and ``outer``, no flanks.
-    """
-    if not 0.0 < inner < outer:
-        raise InputError(f"inner radius = {inner:g} is out of range: allowed above 0 to below {outer:g} mm (the outer)")
-    angle = np.pi / sectors * np.linspace(-1.0, 1.0, AROUND + 1)
-    z = width * np.linspace(-0.5, 0.5, (1 if plane else axial) + 1)
-    return _sector("ring", np.linspace(inner, outer, radial + 1), angle, z, sectors, plane)
 
 
 def race_sector(spline: SectorMesh, outer: float, thickness: float, width: float, radial: int) -> SectorMesh:
@@ -58,7 +30,7 @@ def race_sector(spline: SectorMesh, outer: float, thickness: float, width: float
     if not spline.plane:
         z = np.unique(np.clip(z, -0.5 * width, 0.5 * width))
     radius = np.linspace(outer - thickness, outer, radial + 1)
-    return _sector(OUTER_RACE, radius, angle, z, spline.n_sectors, spline.plane)
+    return annular_sector(OUTER_RACE, radius, angle, z, spline.n_sectors, spline.plane)
 
 
 def race_grid(race: SectorMesh, surface: str) -> np.ndarray:
@@ -95,7 +67,9 @@ def _distinct(values: np.ndarray) -> np.ndarray:
     return ordered[np.append(True, np.diff(ordered) > SAME * np.ptp(ordered))]
 
 
-def _sector(body: str, radius: np.ndarray, angle: np.ndarray, z: np.ndarray, sectors: int, plane: bool) -> SectorMesh:
+def annular_sector(
+    body: str, radius: np.ndarray, angle: np.ndarray, z: np.ndarray, sectors: int, plane: bool
+) -> SectorMesh:
     """Sector with nodes at these radii (mm), angles (rad from +y, counter-clockwise) and z (mm)."""
     z, r, phi = np.meshgrid(z, radius, angle, indexing="ij")
     coords = np.stack([-r * np.sin(phi), r * np.cos(phi), z], axis=-1).reshape(-1, 3)
