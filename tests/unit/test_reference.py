@@ -17,6 +17,7 @@ from swgpar.results import history
 
 DOCS = ROOT / "docs"
 KEY_TABLES = load_script(DOCS / "generators" / "key_tables.py")
+COLUMN_TABLES = load_script(DOCS / "generators" / "column_tables.py")
 
 
 def first_cells(page: Path) -> list[str]:
@@ -44,11 +45,12 @@ def test_the_tables_list_every_key_with_its_meaning(name: str) -> None:
 
 
 def test_history_columns() -> None:
-    lines = (DOCS / "reference" / "history.md").read_text(encoding="utf-8").splitlines()
-    columns = [column for drives in ("all", "wave generator fixed", "pancake") for column in history.columns_of(drives)]
-    assert len(columns) == len(history.COLUMNS)
-    rows = [f"| `{each.name}` | {each.unit} | {each.meaning} |".replace("|  |", "| |") for each in columns]
-    assert [line for line in lines if line.startswith("| `")] == rows
+    """The page includes the generated tables of all columns."""
+    page = (DOCS / "reference" / "history.md").read_text(encoding="utf-8")
+    drives = dict.fromkeys(column.drives for column in history.DECLARED)
+    assert all(f"_generated/columns_{name.replace(' ', '_')}.md" in page for name in drives)
+    rows = [line for name in drives for line in COLUMN_TABLES.table(name).splitlines() if line.startswith("| `")]
+    assert len(rows) == len(history.COLUMNS) and not any(line.endswith("|  |") for line in rows)
 
 
 def test_summary_keys() -> None:

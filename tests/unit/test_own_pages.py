@@ -1,0 +1,105 @@
+"""The how-to pages about own parts: their steps are taken in a copy of the package, and the part works there."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import swgpar
+from support.markdown import examples
+from support.paths import DRIVERS, ROOT
+
+HOWTO = ROOT / "docs" / "howto"
+
+SMALL = """
+import sys
+import numpy as np
+import swgpar
+
+gear = {"tip": 2, "layers": 1, "flank": 2, "root": 2, "under": 1, "rim": 1}
+recipe = {"flexible_spline": gear, "ring_gear": gear}
+plane, folder = sys.argv[1:]
+
+
+def run(overrides={}):
+    design = swgpar.load_design(plane, {"steps.rotation": 0.0, "output.figures": False, **overrides})
+    return swgpar.run(design, mesh=recipe, out=folder, progress=False)
+"""
+"""What the scripts below begin with: a plane drive on a few elements."""
+
+
+def copied_package(folder: Path) -> Path:
+    """A copy of the package in a folder."""
+    ignored = shutil.ignore_patterns("__pycache__")
+    return Path(shutil.copytree(ROOT / "swgpar", folder / "swgpar", ignore=ignored))
+
+
+def insert(path: Path, before: str, text: str) -> None:
+    """Put a text before another one, which the file has once."""
+    content = path.read_text(encoding="utf-8")
+    assert content.count(before) == 1, f"{path.name}: {before}"
+    path.write_text(content.replace(before, text + before), encoding="utf-8")
+
+
+def execute(folder: Path, script: str) -> None:
+    """Run a script with the package of a folder."""
+    command = [sys.executable, "-c", SMALL + script, str(DRIVERS / "plane_half_turn.toml"), str(folder / "out")]
+    environment = os.environ | {"PYTHONPATH": str(folder)}
+    done = subprocess.run(command, env=environment, cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr[-2000:]
+
+
+def test_own_cam(tmp_path: Path) -> None:
+    """Distances and normals are those to the nearest of many points, and a drive runs on the cam."""
+    curve, keys, branch = examples(HOWTO / "own_cam_or_profile.md", "python")
+    cams = copied_package(tmp_path) / "geometry" / "cams"
+    (cams / "superelliptical.py").write_text(curve, encoding="utf-8")
+    insert(cams / "keys.py", "class FourRoller(", f"{keys}\n\n")
+    insert(cams / "keys.py", "FourRoller,\n    Field(", "Superelliptical | ")
+    insert(cams / "__init__.py", '    raise TypeError(f"no curve', branch)
+    insert(cams / "__init__.py", "    WaveGenerator,\n)\n", "    Superelliptical,\n")
+    imported = "from swgpar.geometry.cams.superelliptical import SuperellipticalCam\n"
+    insert(cams / "__init__.py", "\n\nclass Cam(Protocol):", imported)
+    execute(
+        tmp_path,
+        """
+keys = {"type": "superelliptical", "p": 2.05, "C": 0.95, "face_width": 10.0}
+cam = swgpar.load_design(plane, {"wave_generator": keys}).cam()
+dense = cam.outline(200_000)
+points = dense[2500::5000] * np.linspace(0.97, 1.03, 40)[:, None]
+distance, normal, k = cam.evaluate(points)
+away = points[:, None] - dense
+nearest = np.argmin(np.hypot(*away.transpose(2, 0, 1)), axis=1)
+found = dense[nearest]
+# the dense points are 2e-3 mm apart: the nearest one is off by up to half of that along the curve
+assert np.allclose(np.abs(distance), np.hypot(*(points - found).T), atol=5e-5)
+assert np.allclose(points - distance[:, None] * normal, found, atol=1.2e-3)
+step = 1e-4 * normal[:, ::-1] * [-1, 1]
+slope = cam.evaluate(points + step)[1] - cam.evaluate(points - step)[1]
+assert np.allclose(np.hypot(*slope.T) / 2e-4, np.abs(k), rtol=1e-4)
+assert np.isfinite(run({"wave_generator": keys}).history["fs_s1"]).all()
+""",
+    )
+
+
+def test_own_column(tmp_path: Path) -> None:
+    """The column is in the file and the reference, and folders without it open."""
+    declaration, value = examples(HOWTO / "own_column.md", "python")
+    package = copied_package(tmp_path)
+    insert(package / "results" / "history.py", ')\n"""In the order of the file.', declaration)
+    insert(package / "analysis" / "load_stepping.py", '            **dict(zip(("ds_tooth_torque_Nmm",)', value)
+    gear = {"tip": 2, "layers": 1, "flank": 2, "root": 2, "under": 1, "rim": 1}
+    design = swgpar.load_design(DRIVERS / "plane_half_turn.toml", {"steps.rotation": 0.0, "output.figures": False})
+    swgpar.run(design, mesh={"flexible_spline": gear, "ring_gear": gear}, out=tmp_path / "old", progress=False)
+    execute(
+        tmp_path,
+        """
+run()
+residual = swgpar.open_result(folder).history["residual"]
+assert len(residual) and (0.0 < residual).all() and (residual < 1e-3).all()
+assert "residual" not in swgpar.open_result(folder.replace("out", "old")).history
+""",
+    )
