@@ -2,7 +2,7 @@
 
     design = swgpar.load_design("drive.toml", {"load.torque": 10.0})
     result = swgpar.run(design, mesh="coarse")
-    result.history["fs_s1"], result.summary["means"], result.field("vm"), result.plot.stress()
+    result.history["fs_s1"], result.summary["mean.fs_s1"].value, result.field("vm"), result.plot.stress()
 
 Names are imported when they are used: PETSc starts with the first one that needs it.
 """
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
         study,
     )
     from swgpar.design.drive_design import DriveDesign
-    from swgpar.drive_results.drive_result import DriveResult
     from swgpar.errors import (
         ConvergenceError,
         InputError,
@@ -41,6 +40,7 @@ if TYPE_CHECKING:
     from swgpar.meshing.drive_mesh import DriveMesh
     from swgpar.meshing.recipe import MeshRecipe
     from swgpar.optimisation.result import OptimisationResult
+    from swgpar.presentation.drive_result import DriveResult
     from swgpar.studies.study import StudyResult
 
 _MODULES = {
@@ -57,7 +57,7 @@ _MODULES = {
     "DriveDesign": "design.drive_design",
     "MeshRecipe": "meshing.recipe",
     "DriveMesh": "meshing.drive_mesh",
-    "DriveResult": "drive_results.drive_result",
+    "DriveResult": "presentation.drive_result",
     "TrainResult": "gear_trains.result",
     "StudyResult": "studies.study",
     "OptimisationResult": "optimisation.result",

@@ -18,7 +18,6 @@ from swgpar import log
 from swgpar.analysis.shortcuts import MESHES
 from swgpar.checks.starter import CamType, Model, Profile, Request, Shape, as_toml, starter_design
 from swgpar.design.drive_design import DriveDesign
-from swgpar.drive_results.drive_result import DriveResult
 from swgpar.errors import InputError, OutputError, SwgparError
 from swgpar.input.design import Design
 from swgpar.input.toml_file import Overrides, apply_overrides, read_toml
@@ -26,9 +25,10 @@ from swgpar.meshing import MeshRecipe, build_sector_meshes
 from swgpar.meshing import load_recipe as _load_recipe
 from swgpar.meshing.drive_mesh import DriveMesh
 from swgpar.meshing.recipe import make_recipe
+from swgpar.presentation.drive_result import DriveResult
 from swgpar.results.atomic import agreed, on_all, raise_first, sentence, write_file, write_from_root
 from swgpar.results.figure_set import save_figures
-from swgpar.results.folder import REPORT, given_folder, read_summary
+from swgpar.results.folder import REPORT, given_folder, read_design
 from swgpar.run_options import RunOptions
 from swgpar.systems import Result, system_of, system_of_table
 
@@ -228,7 +228,7 @@ def run(
     Examples
     --------
     >>> result = swgpar.run("drivers/plane_half_turn.toml")
-    >>> result.summary["root_stress"]["s1"], result.history["fs_s1"].max()
+    >>> result.summary["root.s1"].value, result.history["fs_s1"].max()
     """
     comm = MPI.COMM_WORLD if comm is None else comm
     terminal, folder = _terminal(progress), given_folder(out)
@@ -260,7 +260,7 @@ def save_report(result: Result, folder: str | Path, comm: MPI.Comm | None = None
     failure: SwgparError | None = None
     if comm.rank == 0:
         try:
-            write_file(path, system_of_table(result.summary["design"]).report(result))
+            write_file(path, system_of_table(result.design_table).report(result))
         except Exception as error:  # whatever a drawing raises
             failure = OutputError(f"cannot write {path}: {sentence(error)}")
     raise_first(comm, failure)
@@ -344,12 +344,12 @@ def open_result(folder: str | Path, comm: MPI.Comm | None = None) -> Result:
 
     Examples
     --------
-    >>> swgpar.open_result("results/plane").summary["means"]["fs_s1"]
+    >>> swgpar.open_result("results/plane").summary["mean.fs_s1"].value
     """
     comm = MPI.COMM_WORLD if comm is None else comm
     folder = Path(folder)
     with agreed(comm, folder, "read"):
-        system = system_of_table(read_summary(folder)["design"])
+        system = system_of_table(read_design(folder))
     return system.open(folder, comm)
 
 

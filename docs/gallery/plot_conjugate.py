@@ -71,10 +71,10 @@ mesh = {"flexible_spline": gear, "ring_gear": gear}
 figure, axes = plt.subplots(figsize=(7.0, 3.8), layout="constrained")
 for name, design in designs.items():
     result = swgpar.run(design, mesh=mesh)
-    sharing, pairs = result.summary["load_sharing"], result.pairs
-    share = 100.0 * sharing["teeth_share"]["mean"]
+    sharing, pairs = result.summary.load_sharing, result.pairs
+    share = 100.0 * sharing.teeth_share.mean
     print(f"{name:14} {share:.2f} % of the teeth in contact", end=", ")
-    print(f"largest force of a pair {sharing['largest_force_N']:.0f} N")
+    print(f"largest force of a pair {sharing.largest_force_N:.0f} N")
     position = (pairs["angle_deg"] + 90.0) % 180.0 - 90.0
     axes.plot(position, pairs["force_N"], "o", label=name)
 axes.set(xlabel="tooth, from the major axis (degrees)", ylabel="normal force (N)", ylim=(0.0, None))

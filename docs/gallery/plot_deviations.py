@@ -36,7 +36,7 @@ plt.show()
 # %%
 # The summary names the causes.
 
-error = result.summary["transmission_error"]
-print(f"{error['peak_to_peak']:.1f} arc seconds peak to peak")
-for line in error["spectrum"][:5]:
-    print(f"order {line['order']:g}: {line['amplitude']:.2f} arc seconds, {line['cause']}")
+error = result.summary.transmission_error
+print(f"{error.peak_to_peak:.1f} arc seconds peak to peak")
+for line in error.spectrum[:5]:
+    print(f"order {line.order:g}: {line.amplitude:.2f} arc seconds, {line.cause}")

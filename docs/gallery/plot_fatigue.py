@@ -17,10 +17,10 @@ design = swgpar.load_design(
     DRIVERS / "plane_half_turn.toml", {"fatigue": {}, "losses": {}, "output.fields": False}
 )
 result = swgpar.run(design)
-found = result.summary["fatigue"]
+found = result.summary.fatigue
 for criterion in ("goodman", "crossland"):
-    place = found[criterion]
-    print(f"{criterion}: {place['safety']:.2f}, {place['region']}, radius {place['radius']:.2f} mm")
+    place = found.least[criterion]
+    print(f"{criterion}: {place.safety:.2f}, {place.region}, radius {place.radius:.2f} mm")
 
 # %%
 # Haigh's diagram of all nodes. Below it the normal stress where the safety is the least: the tooth
@@ -36,5 +36,5 @@ result.plot.safety()
 # %%
 # The losses follow from the same cycle, from the pairs of flanks, and from the force of the cam.
 
-for name, torque in result.summary["losses"]["parts_Nmm"].items():
-    print(f"{name}: {torque:.3g} N mm of input torque")
+for answer in result.summary.losses.answers():
+    print(f"{answer.text}: {answer.value:.3g} {answer.unit}")

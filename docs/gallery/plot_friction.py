@@ -29,7 +29,7 @@ results = [swgpar.run(design.with_values({"contact.friction": mu}), mesh=mesh) f
 
 ideal = 1000.0 * design.load.torque / abs(design.ratio)
 for mu, result in zip(FRICTION, results):
-    torque = result.summary["means"]["wg_torque_Nmm"]
+    torque = result.summary["mean.wg_torque_Nmm"].value
     print(f"friction {mu:.1f}   input torque {torque:6.2f} N·mm   efficiency {ideal / torque:.4f}")
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.8), layout="constrained")
@@ -40,7 +40,7 @@ for mu, result in zip(FRICTION, results):
 left.axhline(ideal, color="0.4", linestyle="--", linewidth=0.8)
 left.set(xlabel="angle of the wave generator (deg)", ylabel="input torque (N·mm)")
 left.legend(loc="center right")
-stress = np.array([[r.summary["means"][n] for r in results] for n in ("fs_s1", "fs_vm")])
+stress = np.array([[r.summary.rotation.means[n] for r in results] for n in ("fs_s1", "fs_vm")])
 right.plot(FRICTION, stress.T, "o-", label=["flexible spline, s1", "flexible spline, von Mises"])
 right.set(
     xlabel="coefficient of friction", ylabel="mean of the largest stress (MPa)", xticks=FRICTION

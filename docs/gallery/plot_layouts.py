@@ -30,9 +30,9 @@ results = {
 # is the first one seen from its wave generator: the stresses are the same.
 
 for layout, result in results.items():
-    means, ratio = result.summary["means"], result.summary["ratio"]
-    driven = result.summary["input"]  # of the ring gear, where the wave generator stands
-    torque = driven["torque_Nmm"] if driven else means["wg_torque_Nmm"]
+    means, ratio = result.summary.rotation.means, result.summary.ratio
+    driven = result.summary.rotation.input  # of the ring gear, where the wave generator stands
+    torque = driven.torque_Nmm if driven else means["wg_torque_Nmm"]
     print(f"{layout:20} ratio {ratio:7.3f}   s1 {means['fs_s1']:6.1f} MPa", end="   ")
     print(f"input torque {torque:8.2f} N·mm, expected {2000.0 / abs(ratio):7.2f} in size")
 
@@ -44,7 +44,7 @@ figure, axes = plt.subplots(1, 2, figsize=(9.0, 3.6), layout="constrained")
 for (layout, result), teeth in zip(results.items(), (122, 120, 122)):
     loaded = result.history["step"].astype(int) >= 3
     periods = result.history["wg_angle_deg"][loaded] * teeth / 360.0
-    expected = result.summary["wg_torque_expected_Nmm"]
+    expected = result.summary.rotation.wg_torque_expected_Nmm
     axes[0].plot(periods, result.history["fs_s1"][loaded], "o-", markersize=3, label=layout)
     axes[1].plot(periods, result.history["wg_torque_Nmm"][loaded] / expected, "o-", markersize=3)
 axes[0].set(xlabel="periods", ylabel="largest s1 of the spline (MPa)")

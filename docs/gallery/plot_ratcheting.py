@@ -36,7 +36,7 @@ plt.show()
 # %%
 # The summary has the peak and what gave way.
 
-found = result.summary["ratcheting"]
-print(f"largest torque: {found['peak_torque_Nm']:.3g} N·m, found: {found['is_peak']}")
-print(f"at {found['peak_rotation_pitches']:.2f} pitches of the output")
-print(f"what gives way: {found['gave_way']}; the run ended because: {found['ended']}")
+found = result.summary.ratcheting
+print(f"largest torque: {found.peak_torque_Nm:.3g} N·m, found: {found.is_peak}")
+print(f"at {found.peak_rotation_pitches:.2f} pitches of the output")
+print(f"what gives way: {found.gave_way}; the run ended because: {found.ended}")

@@ -31,9 +31,10 @@ mesh = {"flexible_spline": gear, "ring_gear": gear}
 
 result = swgpar.run(design.with_values({"contact.friction": 0.1}), mesh=mesh)
 for name, unit in {"K1": "N·m/rad", "K2": "N·m/rad", "K3": "N·m/rad"}.items():
-    found = result.stiffness
-    print(f"{name}  {found[name]:9.0f} {unit}, spread over positions {found['spread'][name]:.0f}")
-print(f"lost motion {found['lost_motion']:.4f}, hysteresis {found['hysteresis']:.4f} arc minutes")
+    found = result.summary.stiffness
+    value, spread = getattr(found, name), getattr(found.spread, name)
+    print(f"{name}  {value:9.0f} {unit}, spread over positions {spread:.0f}")
+print(f"lost motion {found.lost_motion:.4f}, hysteresis {found.hysteresis:.4f} arc minutes")
 
 figure = result.plot.torque_against_rotation()
 

@@ -33,7 +33,7 @@ plt.show()
 
 short = design.with_values({"steps.rotation": 3.0, "output.root_stress": False})
 result = swgpar.run(short, mesh="plane_coarse")
-print(f"the model is one of {result.summary['copies']} equal parts of the drive")
+print(f"the model is one of {result.summary.copies} equal parts of the drive")
 result.plot.stress()
 plt.show()
 

@@ -35,7 +35,7 @@ labels = {
     "rg_vm": "ring gear, von Mises",
 }
 for name, label in labels.items():
-    axes.plot(TORQUES, [r.summary["means"][name] for r in results], "o-", label=label)
+    axes.plot(TORQUES, [r.summary.rotation.means[name] for r in results], "o-", label=label)
 axes.set(xlabel="output torque (N·m)", ylabel="stress (MPa)", ylim=(0.0, None))
 axes.legend(fontsize=8)
 
@@ -43,7 +43,7 @@ axes.legend(fontsize=8)
 # The mean input torque is that of the energy balance. More teeth share a higher torque.
 
 figure, axes = plt.subplots(figsize=(7.0, 3.8), layout="constrained")
-input_torque = [r.summary["means"]["wg_torque_Nmm"] for r in results]
+input_torque = [r.summary["mean.wg_torque_Nmm"].value for r in results]
 axes.plot(TORQUES, input_torque, "o", label="computed")
 axes.plot(TORQUES, 1000.0 * np.array(TORQUES) / abs(design.ratio), "--", label="torque / ratio")
 axes.set(xlabel="output torque (N·m)", ylabel="mean input torque (N·mm)")

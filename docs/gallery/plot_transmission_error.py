@@ -44,8 +44,8 @@ for axes in (upper, lower):
 # The summary has the peak-to-peak value, and the ripple of the input torque as a share of its
 # mean.
 
-print(f"transmission error {result.summary['transmission_error_arcsec']:.3f} arc seconds")
-print(f"torque ripple      {100.0 * result.summary['torque_ripple']:.2f} %")
+print(f"transmission error {result.summary.rotation.transmission_error_arcsec:.3f} arc seconds")
+print(f"torque ripple      {100.0 * result.summary.rotation.torque_ripple:.2f} %")
 
 # %%
 # The amplitudes by harmonics of the period.

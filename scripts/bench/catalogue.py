@@ -66,7 +66,7 @@ def measure(name: str, on_balls: bool, options: argparse.Namespace) -> dict[str,
     summary = run(folder, DRIVES / f"{name}.toml", overrides, options.ranks, options.mesh, plain=False)
     found, share = summary["stiffness"], (summary["bearing"] or {}).get("torsional_share")
     row = {"drive": name, "wave_generator": KINDS[on_balls], "mesh": options.mesh, "elements": summary["elements"]}
-    row |= {"wall_s": round(summary["wall_s"], 1), "share": share and share["bearing"]}
+    row |= {"wall_s": round(summary["wall_s"], 1), "share": share and share["balls"] + share["race"]}
     row |= {key: found[key] for key in (*NAMES, "lost_motion")}
     for key in ("K1", "K3"):
         row |= {f"{key}_error": (found["mesh_error"] or {}).get(key), f"{key}_spread": found["spread"][key]}

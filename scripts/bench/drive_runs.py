@@ -25,7 +25,7 @@ def run(folder: Path, design: str, mesh: str | Path, overrides: list[str], ranks
     return {
         "unknowns": summary["dofs"],
         "elements": summary["elements"],
-        "values": summary["means"] | {f"last.{key}": float(value) for key, value in last.items()},
+        "values": summary["rotation"]["means"] | {f"last.{key}": float(value) for key, value in last.items()},
         "exact": {},
         "seconds": summary["wall_s"],
         "memory_MB": sum(summary["peak_memory_MB_per_rank"]),

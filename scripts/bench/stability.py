@@ -150,8 +150,8 @@ def energy(path: Path) -> Row:
     if not path.exists():
         return {}
     summary = json.loads(path.read_text(encoding="utf-8"))
-    out: Row = {"flagged": 1} if summary["jammed"] else {}
-    expected, angles = summary["wg_torque_expected_Nmm"], summary["design"]["steps"]
+    out: Row = {"flagged": 1} if summary["rotation"]["jammed"] else {}
+    expected, angles = summary["rotation"]["wg_torque_expected_Nmm"], summary["design"]["steps"]
     if expected and angles["rotation"] > 4.9 * angles["increment"] and not summary["design"]["contact"]["friction"]:
         rows = history.read_history(path.with_name(history.NAME))[-4:]
         out["energy"] = abs(sum(row["wg_torque_Nmm"] for row in rows) / len(rows) / expected - 1.0)

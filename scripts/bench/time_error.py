@@ -92,7 +92,8 @@ def measure(run: Run, ranks: int, other: Path | None, true: float, uncertain: fl
         loaded = next(row for row in csv.DictReader(file) if int(row["step"]) >= 3)
     s1, stated = float(loaded["fs_s1"]), None
     if way == WAYS[0]:
-        s1, stated = summary["root_stress"]["s1"], summary["root_stress"]["total_error"]
+        root = next(answer for answer in summary["answers"] if answer["name"] == "root.s1")
+        s1, stated = root["value"], root["error"]
     row = {"model": model, "way": way, "run": label, "wall_s": round(seconds, 1), "s1": round(s1, 2)}
     return {**row, "stated": stated and round(stated, 2), "error": max(abs(s1 - true), uncertain) / true}
 

@@ -7,7 +7,6 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -15,9 +14,10 @@ from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.mesh_refinement import ChosenMesh
 from swgpar.analysis.restart import resume_run, save_run
 from swgpar.analysis.run_record import RunRecord
-from swgpar.drive_results.drive_result import DriveResult, open_fields
+from swgpar.drive_results.drive_data import DriveData, open_fields
 from swgpar.drive_results.drive_tables import DriveTables
-from swgpar.drive_results.summary import Accuracy
+from swgpar.drive_results.summary import DriveSummary
+from swgpar.drive_results.summary_file import summary_from, summary_to_json
 from swgpar.evaluation.bearing_loads import ball_rows
 from swgpar.evaluation.compliance import bearing_shares
 from swgpar.evaluation.contact.contact_pressure import nodal_pressure
@@ -31,6 +31,7 @@ from swgpar.evaluation.ratcheting import tooth_rotation
 from swgpar.evaluation.result_frame import history_rows, nodal_fields
 from swgpar.evaluation.stiffness import loop_rows
 from swgpar.evaluation.stress_cycle import StressCycle
+from swgpar.evaluation.windows.accuracy import Accuracy
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.input.toml_file import to_toml
 from swgpar.load.load_program import internal_torque
@@ -39,7 +40,7 @@ from swgpar.load.load_states import LoadState, Stage
 from swgpar.meshing import SectorMesh
 from swgpar.model.drive_model import DriveModel
 from swgpar.results import history
-from swgpar.results.atomic import agreed, to_json, write_from_root
+from swgpar.results.atomic import agreed, write_from_root
 from swgpar.results.field_sources import FieldParts
 from swgpar.results.fields import BodyPart, FieldWriter, FlankGrids
 from swgpar.results.folder import (
@@ -164,19 +165,20 @@ class Recorder(ABC):
         return []
 
     def _shared(
-        self, rows: list[Row], summary: dict[str, Any], tables: DriveTables
-    ) -> tuple[list[Row], dict[str, Any], DriveTables]:
+        self, rows: list[Row], summary: DriveSummary, tables: DriveTables
+    ) -> tuple[list[Row], DriveSummary, DriveTables]:
         """History, summary and tables of rank 0 on every rank, as files hold them; collective."""
-        rows = history_rows(self.model.design, rows)
-        tables = replace(
-            tables,
-            pairs=as_columns(self.record.pairs),
-            contact_lines=as_columns(self.record.contact_lines),
-            program=as_columns(self.program_rows()),
-            turns=as_columns(self.record.turns),
-            balls=as_columns(self.record.balls),
-        )
-        return self.comm.bcast((rows, json.loads(to_json(summary)), tables) if self.comm.rank == 0 else None)
+        if self.comm.rank == 0:
+            tables = replace(
+                tables,
+                pairs=as_columns(self.record.pairs),
+                contact_lines=as_columns(self.record.contact_lines),
+                program=as_columns(self.program_rows()),
+                turns=as_columns(self.record.turns),
+                balls=as_columns(self.record.balls),
+            )
+            summary = summary_from(json.loads(summary_to_json(summary)), rows, tables.pairs)
+        return self.comm.bcast((rows, summary, tables) if self.comm.rank == 0 else None)
 
     def program_rows(self) -> list[PointRow]:
         """Rows of program.csv."""
@@ -191,8 +193,8 @@ class Recorder(ABC):
         """Keep the last of `rows`, and the fields if the design asks for them."""
 
     @abstractmethod
-    def finish(self, rows: list[Row], summary: dict[str, Any], tables: DriveTables) -> DriveResult:
-        """The result, with the whole history `rows`, the summary and what was evaluated at the end."""
+    def finish(self, rows: list[Row], summary: DriveSummary, tables: DriveTables) -> DriveData:
+        """The result, with all rows of history.csv, the summary and what was evaluated at the end."""
 
 
 class MemoryRecorder(Recorder):
@@ -210,8 +212,8 @@ class MemoryRecorder(Recorder):
         if self._parts is not None:
             self._parts.keep(len(self.record.rows), self._in_frame(stepper, fields))
 
-    def finish(self, rows: list[Row], summary: dict[str, Any], tables: DriveTables) -> DriveResult:
-        return DriveResult(*self._shared(rows, summary, tables), self._parts, self.comm)
+    def finish(self, rows: list[Row], summary: DriveSummary, tables: DriveTables) -> DriveData:
+        return DriveData(*self._shared(rows, summary, tables), self._parts, self.comm)
 
 
 class FolderRecorder(Recorder):
@@ -263,10 +265,6 @@ class FolderRecorder(Recorder):
         if rows:
             write_from_root(self.comm, self.out / TRANSMISSION_ERROR, format_csv(rows))
 
-    def _write_history(self, rows: list[Row]) -> None:
-        shown = history_rows(self.model.design, rows)
-        write_from_root(self.comm, self.out / history.NAME, history.format_rows(shown))
-
     def known_turns(self) -> list[Row]:
         path = self.out / TRANSMISSION_ERROR
         present = self.comm.bcast(path.exists() if self.comm.rank == 0 else None)
@@ -281,7 +279,8 @@ class FolderRecorder(Recorder):
             # increments computed with output.fields = false have no fields, and a restart may ask for them
             written = [(i, row["wg_angle_deg"]) for i, row in enumerate(record.rows, start=1) if self._writer.has(i)]
             self._writer.write_index(self.comm.bcast(written), record.components)
-        self._write_history(record.rows)
+        shown = history_rows(self.model.design, record.rows)
+        write_from_root(self.comm, self.out / history.NAME, history.format_rows(shown))
         program = self.program_rows()
         for name, rows in (
             (PAIRS, record.pairs),
@@ -293,13 +292,13 @@ class FolderRecorder(Recorder):
             if rows:
                 write_from_root(self.comm, self.out / name, format_csv(rows))
 
-    def finish(self, rows: list[Row], summary: dict[str, Any], tables: DriveTables) -> DriveResult:
+    def finish(self, rows: list[Row], summary: DriveSummary, tables: DriveTables) -> DriveData:
         if len(rows) > len(self.record.rows):
-            self._write_history(rows)
+            write_from_root(self.comm, self.out / history.NAME, history.format_rows(rows))
         tables.write(self.out, self.comm)
-        write_from_root(self.comm, self.out / SUMMARY, to_json(summary))
+        write_from_root(self.comm, self.out / SUMMARY, summary_to_json(summary))
         folder = self.out.absolute()  # the fields are read later
-        return DriveResult(*self._shared(rows, summary, tables), open_fields(folder, self.comm), self.comm, folder)
+        return DriveData(*self._shared(rows, summary, tables), open_fields(folder, self.comm), self.comm, folder)
 
 
 def _body_parts(model: DriveModel) -> dict[str, BodyPart]:

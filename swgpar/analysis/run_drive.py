@@ -5,12 +5,12 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from swgpar.analysis.accuracy import require_refinable, with_accuracy
 from swgpar.analysis.coarse_start import start_at_load
+from swgpar.analysis.evaluate_run import evaluate_run
 from swgpar.analysis.follow_turns import follow_turns
 from swgpar.analysis.forecast import forecast, reported_memory, require_memory
 from swgpar.analysis.identity import identity
@@ -23,17 +23,14 @@ from swgpar.analysis.start_states import StartStates
 from swgpar.analysis.stiffness_error import stiffness_error
 from swgpar.checks.remarks import torque_remark
 from swgpar.design.drive_design import DriveDesign
-from swgpar.drive_results.drive_result import DriveResult
-from swgpar.drive_results.drive_tables import DriveTables
-from swgpar.drive_results.summary import summarise
+from swgpar.drive_results.drive_data import DriveData
 from swgpar.errors import ConvergenceError, InputError, SwgparError, TimeLimitError
-from swgpar.evaluation.bearing_loads import summarise_bearing
-from swgpar.evaluation.fatigue import evaluate_fatigue
-from swgpar.evaluation.losses import evaluate_losses
 from swgpar.evaluation.period import continued, require_samples
 from swgpar.evaluation.place_errors import CoarseStresses
 from swgpar.evaluation.places import find_places
 from swgpar.evaluation.ratcheting import has_fallen
+from swgpar.evaluation.result_frame import history_rows
+from swgpar.evaluation.rotation import sampled_rows
 from swgpar.evaluation.transmission_error import period_rows
 from swgpar.evaluation.windows.root_stress import RootStress, resolve_root_stress, with_angle
 from swgpar.load.load_sequence import LoadSequence, load_sequence, negligible_torque
@@ -44,14 +41,13 @@ from swgpar.model.drive_model import DriveModel, build_drive_model
 from swgpar.petsc import warn_of_unused_options
 from swgpar.results.atomic import on_all
 from swgpar.results.folder import RECIPE, open_log, prepare
-from swgpar.results.history import loaded_increments
 from swgpar.results.lock import releasing
 from swgpar.run_options import RunOptions
 from swgpar.solve.time_limit import limited
 
 
 @releasing
-def run_drive(design: DriveDesign, options: RunOptions) -> DriveResult:
+def run_drive(design: DriveDesign, options: RunOptions) -> DriveData:
     """Run a design; collective.
 
     Raises
@@ -259,22 +255,7 @@ class _Run:
         least = least_error(self.model, state)
         return replace(found, drive_error=drive_error(levels, found, size_ratio(coarse, self.recipe), least))
 
-    def _bearing(self) -> dict[str, Any] | None:
-        """Entry of the summary for the bearing: over the increments under load."""
-        design = self.model.design
-        if design.bearing is None:
-            return None
-        steps = [int(row["step"]) for row in self.record.rows]
-        loaded = loaded_increments({"step": np.array(steps)})
-        return summarise_bearing(
-            design,
-            self.record.balls,
-            [int(k) + 1 for k in loaded],
-            self.record.bearing_shares,
-            self.record.race_stress,
-        )
-
-    def finish(self, recipe_name: str) -> DriveResult:
+    def finish(self, recipe_name: str) -> DriveData:
         """Summarise the run."""
         recorder, design = self.recorder, self.model.design
         rows = self.record.rows
@@ -284,46 +265,17 @@ class _Run:
             follow_turns(design, self.recipe, recorder)
         else:
             recorder.keep_turns(period_rows(design, rows))
-        summary = summarise(
-            self.model,
+        if design.steps.samples and sampled_rows(design, rows):
+            rows = continued(design, rows)
+        rows = history_rows(design, rows)
+        summary, tables = evaluate_run(
+            recorder,
             rows,
             recipe_name,
-            self.record.accuracy,
-            self.record.root_stress,
-            recorder.places_with_errors(),
-            self.record.pairs,
-            self.record.turns,
-            self._bearing(),
-            self.record.housing,
             self.seconds,
-            tooth_rotations=self.record.tooth_rotations,
             stiffness_error=error,
             ended_early=self.ended_early,
         )
-        tables = self._evaluate_cycle(summary)
-        if summary["jammed"]:
-            logger.warning("%s", summary["jammed"])
-        if design.steps.samples and summary["means"]:
-            rows = continued(design, rows)
+        if summary.rotation.jammed:
+            logger.warning("%s", summary.rotation.jammed)
         return recorder.finish(rows, summary, tables)
-
-    def _evaluate_cycle(self, summary: dict[str, Any]) -> DriveTables:
-        """Fatigue and losses over the sampled period, also into the summary."""
-        recorder, design, tables = self.recorder, self.model.design, DriveTables()
-        cycle = recorder.cycle
-        summary |= {"fatigue": None, "losses": None}
-        if cycle is None or not cycle.complete:
-            return tables
-        with self.model.phases("fatigue and losses"):
-            if design.fatigue:
-                fatigue = evaluate_fatigue(cycle, self.record.root_stress)
-                summary["fatigue"] = fatigue.summary
-                tables = replace(tables, cycle=fatigue.cycle, sector=fatigue.sector)
-            if design.losses:
-                count = len(self.record.rows)
-                increments = range(count - design.steps.samples + 1, count + 1)
-                summary["losses"], columns = evaluate_losses(
-                    cycle, self.record.pairs, self.record.cam_forces, increments
-                )
-                tables = replace(tables, losses=columns)
-        return tables

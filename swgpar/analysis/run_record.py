@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from swgpar.drive_results.summary import Accuracy
 from swgpar.evaluation.bearing_loads import ComplianceShares
 from swgpar.evaluation.place_errors import CoarseStresses
 from swgpar.evaluation.places import Place
+from swgpar.evaluation.windows.accuracy import Accuracy
 from swgpar.evaluation.windows.root_stress import RootStress
 from swgpar.results.history import Row
 
@@ -33,7 +33,7 @@ class RunRecord:
     turns : rows of transmission_error.csv
     balls : rows of balls.csv, the loads of a bearing's balls
     race_stress : largest stresses of the outer race under load, MPa
-    housing : largest stresses and radial displacement of the housing under load, by the names of the summary
+    housing : largest stresses and radial displacement of the housing under load, by fields of `HousingStresses`
     bearing_shares : of the bearing in the compliance of the loaded state
     components : of the nodal fields in files, by body and name
     """

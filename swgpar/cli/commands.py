@@ -149,7 +149,7 @@ def _report(arguments: argparse.Namespace) -> None:
 
 def _view(arguments: argparse.Namespace) -> None:
     from swgpar import api
-    from swgpar.drive_results.drive_result import DriveResult
+    from swgpar.presentation.drive_result import DriveResult
 
     result = api.open_result(arguments.out)
     if not isinstance(result, DriveResult):

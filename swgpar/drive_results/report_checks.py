@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.drive_results.summary import BodySizes, DriveSummary
+from swgpar.evaluation.contact.largest_contact import LargestContact
+from swgpar.evaluation.numerics import BALANCE, Numerics
+from swgpar.evaluation.places import APART, LargestStresses
+from swgpar.evaluation.rotation import Rotation
+from swgpar.evaluation.windows.accuracy import Accuracy
+from swgpar.evaluation.windows.root_stress import RootStress
 from swgpar.results.history import loaded_increments
-
-BALANCE = 1e-4
-"""Largest torque that may be left over, over the largest torque of the teeth."""
 
 ENERGY = 0.05
 """Largest difference between the mean input torque of a drive without friction and T / ratio, relative.
@@ -34,35 +38,36 @@ class Check(NamedTuple):
     text: str
 
 
-def checks(design: DriveDesign, summary: Mapping[str, Any], history: Mapping[str, np.ndarray]) -> list[Check]:
-    """All checks of a run, from its design, summary and history."""
+def checks(summary: DriveSummary, history: Mapping[str, np.ndarray]) -> list[Check]:
+    """All checks of a run, from its summary and history."""
+    design = summary.design
     return [
-        _balance(summary, history),
-        _energy(design, summary),
+        _balance(summary.numerics),
+        _energy(design, summary.rotation),
         _penetration(design, history),
         _clearance(design),
-        _edge(summary),
-        _resolution(summary),
-        _meshed(summary),
-        _elements(summary),
+        _edge(summary.contact),
+        _resolution(summary.root_stress, summary.accuracy),
+        _meshed(summary.stresses),
+        _elements(summary.bodies),
     ]
 
 
-def _balance(summary: Mapping[str, Any], history: Mapping[str, np.ndarray]) -> Check:
-    left, largest = summary["balance_error_Nmm"], float(np.abs(history["tooth_torque_Nmm"]).max(initial=0.0))
+def _balance(found: Numerics) -> Check:
+    left, largest, allowed = found.balance_error_Nmm, found.largest_tooth_torque_Nmm, found.largest_balance_Nmm
     if largest == 0.0:
         return Check("balance of torques", None, "the teeth carry no torque")
     text = f"{left:.2g} N·mm are left over of {largest:.4g} N·mm at the teeth; good up to {BALANCE:g} of it"
-    return Check("balance of torques", left <= BALANCE * largest, text)
+    return Check("balance of torques", left <= allowed, text)
 
 
-def _energy(design: DriveDesign, summary: Mapping[str, Any]) -> Check:
-    name, expected = "energy", summary["wg_torque_expected_Nmm"]
-    if summary["jammed"]:
-        return Check(name, False, summary["jammed"])
+def _energy(design: DriveDesign, rotation: Rotation) -> Check:
+    name, expected = "energy", rotation.wg_torque_expected_Nmm
+    if rotation.jammed:
+        return Check(name, False, rotation.jammed)
     if design.is_bolted:
         return Check(name, None, "a drive on bolts does not repeat after a pitch")
-    mean = summary["means"].get("wg_torque_Nmm")
+    mean = rotation.means.get("wg_torque_Nmm")
     covered = design.steps.samples or design.steps.rotation >= 0.999999 * np.degrees(design.period_angle)
     if mean is None or not expected or not covered:
         return Check(name, None, "needs a torque, and a rotation over a period of the motion or more")
@@ -91,30 +96,26 @@ def _clearance(design: DriveDesign) -> Check:
     return Check("clearance of the flanks", clearance >= least, text)
 
 
-def _edge(summary: Mapping[str, Any]) -> Check:
-    contact = summary["contact"]
-    if not contact:
+def _edge(contact: LargestContact | None) -> Check:
+    if contact is None:
         return Check("edge contact", None, "no contact under load is known")
-    text = (
-        "lies on an edge: stress and pressure there grow with every finer mesh" if contact["edge"] else "lies off edges"
-    )
-    return Check("edge contact", not contact["edge"], f"the largest contact {text}")
+    text = "lies on an edge: stress and pressure there grow with every finer mesh" if contact.edge else "lies off edges"
+    return Check("edge contact", not contact.edge, f"the largest contact {text}")
 
 
-def _resolution(summary: Mapping[str, Any]) -> Check:
-    root, asked = summary["root_stress"], summary["accuracy"]
-    if not root:
+def _resolution(root: RootStress | None, accuracy: Accuracy | None) -> Check:
+    if root is None:
         text = "the stress at the teeth is not resolved by windows: nodal averages have no error (output.root_stress)"
         return Check("resolution", None, text)
-    share = root["total_error"] / abs(root["s1"]) if root["s1"] else np.inf
-    limit = asked["asked"] if asked else RESOLUTION
+    share = root.total_error / abs(root.s1) if root.s1 else np.inf
+    limit = accuracy.asked if accuracy else RESOLUTION
     text = f"error of the largest tension at the teeth {100 * share:.2g} %; good up to {100 * limit:.3g} %"
-    return Check("resolution", share <= limit and (not asked or asked["reached"]), text)
+    return Check("resolution", share <= limit and (accuracy is None or accuracy.reached), text)
 
 
-def _meshed(summary: Mapping[str, Any]) -> Check:
-    doubtful = [name for name, place in summary["places"].items() if place["warning"] and not name.endswith("_apart")]
-    if not summary["places"]:
+def _meshed(stresses: LargestStresses) -> Check:
+    doubtful = [name for name, place in stresses.places.items() if place.warning and not name.endswith(APART)]
+    if not stresses.places:
         return Check("places of the stresses", None, "there is no increment under load")
     if not doubtful:
         return Check("places of the stresses", True, "no largest stress lies where the mesh determines it")
@@ -122,7 +123,7 @@ def _meshed(summary: Mapping[str, Any]) -> Check:
     return Check("places of the stresses", None, text)
 
 
-def _elements(summary: Mapping[str, Any]) -> Check:
-    worst = {body: sizes["quality"]["min_scaled_jacobian"] for body, sizes in summary["bodies"].items()}
+def _elements(bodies: Mapping[str, BodySizes]) -> Check:
+    worst = {body: sizes.quality["min_scaled_jacobian"] for body, sizes in bodies.items()}
     text = ", ".join(f"{body.replace('_', ' ')} {value:.2g}" for body, value in worst.items())
     return Check("elements", min(worst.values()) >= QUALITY, f"least scaled Jacobian: {text}; good from {QUALITY:g}")

@@ -1,14 +1,14 @@
-"""Loads of the balls of a drive's bearing: rows of balls.csv, and what the summary says of them."""
+"""Loads of the balls of a drive's bearing: rows of balls.csv, and what follows from them."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind
 from swgpar.evaluation.bearing_life import BearingSeries, million_turns
 from swgpar.load.load_states import LoadState
 from swgpar.model.drive_model import DriveModel
@@ -26,6 +26,116 @@ class ComplianceShares:
 
     balls: float
     race: float
+
+    @property
+    def bearing(self) -> float:
+        """Share of balls and race."""
+        return self.balls + self.race
+
+
+@dataclass(frozen=True)
+class BearingLife:
+    """Rating life of a bearing.
+
+    load_rating_N : basic dynamic load rating;  load_rating_given : whether it is that of the design file
+    equivalent_load_N : load that gives the same life
+    L10_turns : of the wave generator, None without load;  L10_hours : at `load.input_speed`
+    """
+
+    load_rating_N: float
+    load_rating_given: bool
+    equivalent_load_N: float
+    L10_turns: float | None
+    L10_hours: float | None
+
+
+@dataclass(frozen=True)
+class BallLoads(AnswerGroup):
+    """Loads of the balls over the increments under load.
+
+    largest_load_N, largest_pressure_MPa, largest_approach_um : of a ball;  wg_angle_deg, cam_angle_deg : where, angles
+    of the wave generator and from the major axis
+    mean_load_N : over all balls;  unloaded_balls : largest number of balls without load
+    cage_speed : of the cage over that of the wave generator
+    balls_fixed_to_cam : whether `steps.samples` has fixed the balls to the cam
+    ball_passing_deg : rotation after which the next ball is at the same place of the cam, None if fixed to it
+    covers_ball_passing : whether the run covers it
+    load_ripple : range of the largest ball load over its mean, None without load
+    torsional_share, radial_share : in the compliance of the loaded drive, None without a torque
+    race_s1_MPa, race_s3_MPa, race_vm_MPa : largest stresses of the outer race
+    life : rating life
+    """
+
+    largest_load_N: float
+    largest_pressure_MPa: float
+    largest_approach_um: float
+    wg_angle_deg: float
+    cam_angle_deg: float
+    mean_load_N: float
+    unloaded_balls: int
+    cage_speed: float
+    balls_fixed_to_cam: bool
+    ball_passing_deg: float | None
+    covers_ball_passing: bool
+    load_ripple: float | None
+    torsional_share: ComplianceShares | None
+    radial_share: ComplianceShares | None
+    life: BearingLife
+    race_s1_MPa: float | None = None
+    race_s3_MPa: float | None = None
+    race_vm_MPa: float | None = None
+
+    TITLE = "ball loads and life of the bearing"
+    ASKED_BY = "[wave_generator.bearing]"
+    SECTION = "bearing"
+    KINDS = (
+        AnswerKind("bearing.largest_load", "largest ball load under load", "N", "largest_load_N"),
+        AnswerKind("bearing.pressure", "largest pressure of a ball on a race", "MPa", "largest_pressure_MPa"),
+        AnswerKind("bearing.approach", "largest approach of the races at a ball", "µm", "largest_approach_um"),
+        AnswerKind("bearing.mean_load", "mean ball load under load", "N", "mean_load_N"),
+        AnswerKind("bearing.unloaded_balls", "largest number of balls without load", detail=True),
+        AnswerKind("bearing.load_ripple", "range of the largest ball load over its mean"),
+        AnswerKind(
+            "bearing.torsional_share",
+            "share of the bearing in the torsional compliance",
+            path="torsional_share.bearing",
+        ),
+        AnswerKind(
+            "bearing.torsional_share_of_balls",
+            "share of the balls in the torsional compliance",
+            path="torsional_share.balls",
+        ),
+        AnswerKind(
+            "bearing.radial_share", "share of the bearing in the radial compliance", path="radial_share.bearing"
+        ),
+        AnswerKind(
+            "bearing.radial_share_of_balls", "share of the balls in the radial compliance", path="radial_share.balls"
+        ),
+        AnswerKind("bearing.race_s1", "largest tension in the outer race under load", "MPa", "race_s1_MPa"),
+        AnswerKind("bearing.race_s3", "largest compression in the outer race under load", "MPa", "race_s3_MPa"),
+        AnswerKind("bearing.race_vm", "largest von Mises stress in the outer race under load", "MPa", "race_vm_MPa"),
+        AnswerKind("bearing.load_rating", "basic dynamic load rating", "N", "life.load_rating_N"),
+        AnswerKind("bearing.equivalent_load", "load that gives the same life", "N", "life.equivalent_load_N"),
+        AnswerKind(
+            "bearing.life_turns",
+            "rating life L10 of the bearing, turns of the wave generator",
+            path="life.L10_turns",
+        ),
+        AnswerKind("bearing.life_hours", "rating life L10 of the bearing", "h", "life.L10_hours"),
+    )
+
+    def answers(self) -> Iterator[Answer]:
+        for answer in super().answers():
+            at_ball = answer.name in ("bearing.largest_load", "bearing.pressure", "bearing.approach")
+            place = f"{self.cam_angle_deg:.0f} degrees from the major axis" if at_ball else ""
+            yield replace(answer, place=place)
+
+    def remarks(self) -> Iterator[str]:
+        yield "with the bearing the stress at the teeth is not resolved by windows: it is that of nodal averages"
+        if self.balls_fixed_to_cam:
+            yield "the balls are fixed to the cam: ball passing is left out"
+        elif not self.covers_ball_passing:
+            yield f"a ball passes every {self.ball_passing_deg:.3g} degrees: the run covers less than that"
 
 
 def ball_rows(model: DriveModel, state: LoadState, increment: int, step: int) -> list[Row]:
@@ -57,14 +167,14 @@ def ball_rows(model: DriveModel, state: LoadState, increment: int, step: int) ->
     return rows
 
 
-def summarise_bearing(
+def evaluate_bearing(
     design: DriveDesign,
     rows: Sequence[Row],
     increments: Sequence[int],
     shares: Mapping[str, ComplianceShares],
     race_stress: Mapping[str, float],
-) -> dict[str, Any]:
-    """Entry `bearing` of the summary.
+) -> BallLoads:
+    """The loads over the increments under load.
 
     rows : of balls.csv;  increments : under load, as in their column `increment`
     shares : in the torsional and the radial compliance of the loaded state, where they were computed
@@ -76,33 +186,27 @@ def summarise_bearing(
     peaks = loads.max(axis=1)
     passing = design.ball_passing_angle
     span = np.radians(np.ptp([row["wg_angle_deg"] for row in loaded]))
-    return {
-        "largest_load_N": largest["load_N"],
-        "largest_pressure_MPa": max(largest["inner_pressure_MPa"], largest["outer_pressure_MPa"]),
-        "largest_approach_um": largest["approach_um"],
-        "wg_angle_deg": largest["wg_angle_deg"],
-        "cam_angle_deg": largest["cam_angle_deg"],
-        "mean_load_N": float(loads.mean()),
-        "unloaded_balls": int((loads <= 0.0).sum(axis=1).max()),
-        "cage_speed": design.cage_speed,
-        "balls_fixed_to_cam": bool(np.isinf(passing)),
-        "ball_passing_deg": None if np.isinf(passing) else float(np.degrees(passing)),
-        "covers_ball_passing": bool(span >= passing * (1.0 - 1e-6)),
-        "load_ripple": float(np.ptp(peaks) / peaks.mean()) if peaks.any() else None,
-        "torsional_share": _share(shares.get("torsional")),
-        "radial_share": _share(shares.get("radial")),
+    return BallLoads(
+        largest_load_N=largest["load_N"],
+        largest_pressure_MPa=max(largest["inner_pressure_MPa"], largest["outer_pressure_MPa"]),
+        largest_approach_um=largest["approach_um"],
+        wg_angle_deg=largest["wg_angle_deg"],
+        cam_angle_deg=largest["cam_angle_deg"],
+        mean_load_N=float(loads.mean()),
+        unloaded_balls=int((loads <= 0.0).sum(axis=1).max()),
+        cage_speed=design.cage_speed,
+        balls_fixed_to_cam=bool(np.isinf(passing)),
+        ball_passing_deg=None if np.isinf(passing) else float(np.degrees(passing)),
+        covers_ball_passing=bool(span >= passing * (1.0 - 1e-6)),
+        load_ripple=float(np.ptp(peaks) / peaks.mean()) if peaks.any() else None,
+        torsional_share=shares.get("torsional"),
+        radial_share=shares.get("radial"),
+        life=bearing_life(design, loads),
         **{f"{name}_MPa": value for name, value in race_stress.items()},
-        "life": bearing_life(design, loads),
-    }
+    )
 
 
-def _share(share: ComplianceShares | None) -> dict[str, float] | None:
-    if share is None:
-        return None
-    return {"balls": share.balls, "race": share.race, "bearing": share.balls + share.race}
-
-
-def bearing_life(design: DriveDesign, loads: np.ndarray) -> dict[str, Any]:
+def bearing_life(design: DriveDesign, loads: np.ndarray) -> BearingLife:
     """Rating life from the loads (n, n_balls) N of all balls; the wave generator's speed is that of the design."""
     bearing = design.bearing
     series = BearingSeries(
@@ -118,10 +222,10 @@ def bearing_life(design: DriveDesign, loads: np.ndarray) -> dict[str, Any]:
     outer = 0.0 if design.output_gear == "ring_gear" else 1.0 / design.ratio
     turns = 1e6 * million / abs(1.0 - outer)
     finite = np.isfinite(turns)
-    return {
-        "load_rating_N": rating,
-        "load_rating_given": bearing.load_rating is not None,
-        "equivalent_load_N": rating / million ** (1.0 / 3.0) if finite else 0.0,
-        "L10_turns": turns if finite else None,
-        "L10_hours": turns / (60.0 * design.load.input_speed) if finite else None,
-    }
+    return BearingLife(
+        load_rating_N=rating,
+        load_rating_given=bearing.load_rating is not None,
+        equivalent_load_N=rating / million ** (1.0 / 3.0) if finite else 0.0,
+        L10_turns=turns if finite else None,
+        L10_hours=turns / (60.0 * design.load.input_speed) if finite else None,
+    )

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from mpi4py import MPI
 
+from swgpar.design.drive_design import DriveDesign
+from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind, place_text
 from swgpar.evaluation.fatigue_criteria import (
     CriticalPlane,
     critical_plane,
@@ -45,14 +47,141 @@ SAME = 1e-6
 
 
 @dataclass(frozen=True)
+class LeastSafety:
+    """The node with the least safety by a criterion.
+
+    safety : the factor
+    amplitude_MPa, mean_MPa : of the normal stress on Goodman's critical plane
+    region, radius, z : mm, as of a `Place`;  angle_deg : from the middle of its tooth, counter-clockwise
+    """
+
+    safety: float
+    amplitude_MPa: float
+    mean_MPa: float
+    region: str
+    radius: float
+    z: float
+    angle_deg: float
+
+
+@dataclass(frozen=True)
+class RegionSafety:
+    """Least safety factors of a region.
+
+    safety : by criterion
+    amplitude_MPa, mean_MPa : where the safety by Goodman is the least;  warning : why it depends on the mesh
+    """
+
+    safety: Mapping[str, float]
+    amplitude_MPa: float
+    mean_MPa: float
+    warning: str
+
+
+@dataclass(frozen=True)
+class Life:
+    """Damage and life by Basquin, in turns of the wave generator or in passages of the load program.
+
+    Values of the other kind are None. Without damage the life is None, without end. Where the stress exceeds the
+    tensile strength, the life is 0 and the damage None.
+    """
+
+    damage_per_turn: float | None = None
+    life_turns: float | None = None
+    life_hours: float | None = None
+    cycles_per_turn: float | None = None
+    damage_per_program: float | None = None
+    life_programs: float | None = None
+
+
+@dataclass(frozen=True)
+class SafetyAndLife(AnswerGroup):
+    """Least safety factors of the flexible spline and its life.
+
+    least : by criterion, of `CRITERIA`;  regions : of every region by its name
+    normal : (3,) of the critical plane, in the frame of the tooth (y radial)
+    mesh_error : of Goodman's safety by the windows, None apart from tooth roots
+    sampling_error : its change by half as many angles, None for an odd number of them
+    root_factor, root_factor_error : on stresses in the tooth root, None without windows
+    windows : whether windows resolve the stress at the teeth where the design asks for it
+    life : by Basquin;  phases : of a cycle, or points of the load program
+    fatigue_limit_of_the_part_MPa : with surface and size factors
+    """
+
+    least: Mapping[str, LeastSafety]
+    regions: Mapping[str, RegionSafety]
+    normal: tuple[float, float, float]
+    mesh_error: float | None
+    sampling_error: float | None
+    root_factor: float | None
+    root_factor_error: float | None
+    windows: bool
+    life: Life
+    phases: int
+    fatigue_limit_of_the_part_MPa: float
+
+    TITLE = "safety and life of the flexible spline"
+    ASKED_BY = "[fatigue]"
+    SECTION = "fatigue"
+    KINDS = (
+        AnswerKind("fatigue.goodman", "least safety factor by Goodman", path="least.goodman.safety"),
+        AnswerKind("fatigue.crossland", "least safety factor by Crossland", path="least.crossland.safety"),
+        AnswerKind("fatigue.yield", "least safety factor against yield", path="least.yield.safety"),
+        AnswerKind(
+            "fatigue.amplitude",
+            "amplitude of the normal stress where Goodman's safety is the least",
+            "MPa",
+            "least.goodman.amplitude_MPa",
+        ),
+        AnswerKind("fatigue.mean", "its mean", "MPa", "least.goodman.mean_MPa"),
+        AnswerKind("fatigue.life_turns", "life by Basquin, turns of the wave generator", path="life.life_turns"),
+        AnswerKind("fatigue.life_hours", "life by Basquin", "h", "life.life_hours"),
+        AnswerKind("fatigue.life_programs", "life by Basquin, passages of the load program", path="life.life_programs"),
+        AnswerKind("fatigue.root_factor", "factor of windows on stresses in the tooth root"),
+        AnswerKind(
+            "fatigue.limit_of_the_part",
+            "fatigue limit with surface and size factors",
+            "MPa",
+            "fatigue_limit_of_the_part_MPa",
+            detail=True,
+        ),
+    )
+
+    @classmethod
+    def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
+        left_out = ("_turns", "_hours") if design.has_program else ("_programs",)
+        return tuple(kind for kind in super().kinds(design) if not kind.name.endswith(left_out))
+
+    def answers(self) -> Iterator[Answer]:
+        for answer in super().answers():
+            name = answer.name.partition(".")[2]
+            if name == "root_factor":
+                answer = replace(answer, error=self.root_factor_error)
+            if name in self.least:
+                at = self.least[name]
+                answer = replace(answer, place=place_text(at.region, None, at.radius, at.z))
+            if name == "goodman" and self.mesh_error is not None:  # that of the angles alone says little
+                answer = replace(answer, error=float(np.hypot(self.mesh_error, self.sampling_error or 0.0)))
+            yield answer
+
+    def remarks(self) -> Iterator[str]:
+        if self.life.life_turns is None and self.life.life_programs is None:
+            yield "life by Basquin: without end"
+        if not self.root_factor:
+            missing = ": set output.root_stress = true" if self.windows else ": there are no windows in this run"
+            yield f"stresses in the tooth root are nodal averages, up to 25 % low{missing}"
+        yield WARNING
+
+
+@dataclass(frozen=True)
 class FatigueResult:
     """Fatigue of a run.
 
-    summary : entry ``fatigue`` of summary.json;  sector : nodal fields
+    found : safety factors and life;  sector : nodal fields
     cycle : columns of fatigue_cycle.csv, the stress where Goodman's safety is the least
     """
 
-    summary: dict[str, Any]
+    found: SafetyAndLife
     sector: SectorFields
     cycle: dict[str, np.ndarray]
 
@@ -87,44 +216,37 @@ def evaluate_fatigue(cycle: StressCycle, root_stress: RootStress | None) -> Fati
     values = normal_stress(history[:, None], normal[None])[:, 0]
     half = _change_by_half(values, cycle, 1.0 / nodal["goodman"][least["goodman"]])
     at_root = scale[least["goodman"]] != 1.0
-    summary = {
-        **{name: _place(cycle, name, least[name], nodal, regions) for name in CRITERIA},
-        "regions": _by_region(nodal, regions, warnings),
-        "normal": normal.tolist(),
-        "mesh_error": factor_error / factor / nodal["goodman"][least["goodman"]] if at_root else None,
-        "sampling_error": half,
-        "root_factor": factor if root_stress else None,
-        "root_factor_error": factor_error if root_stress else None,
-        **_life(cycle, damage(values, fatigue)),
-        "phases": len(values),
-        "fatigue_limit_of_the_part_MPa": fatigue_limits(fatigue)[0],
-        "warning": WARNING,
-    }
-    table = {**_when(cycle, len(values)), **dict(zip(COMPONENTS, history.T, strict=True)), "normal_stress_MPa": values}
-    return FatigueResult(summary, _sector(cycle, nodal, regions), table)
-
-
-def _life(cycle: StressCycle, damage_of_cycle: float) -> dict[str, float | None]:
-    """Damage and life in turns of the wave generator, or in passages of the load program.
-
-    Without damage the life is None, without end. Above the tensile strength it is 0 and the damage None.
-    """
-    design = cycle.model.design
-    found: dict[str, float | None] = dict.fromkeys(
-        ("damage_per_turn", "life_turns", "life_hours", "cycles_per_turn", "damage_per_program", "life_programs")
+    found = SafetyAndLife(
+        least={name: _place(cycle, name, least[name], nodal, regions) for name in CRITERIA},
+        regions=_by_region(nodal, regions, warnings),
+        normal=tuple(normal.tolist()),
+        mesh_error=float(factor_error / factor / nodal["goodman"][least["goodman"]]) if at_root else None,
+        sampling_error=half,
+        root_factor=factor if root_stress else None,
+        root_factor_error=factor_error if root_stress else None,
+        windows=model.design.bearing is None and not model.design.has_program,
+        life=_life(cycle, damage(values, fatigue)),
+        phases=len(values),
+        fatigue_limit_of_the_part_MPa=float(fatigue_limits(fatigue)[0]),
     )
+    table = {**_when(cycle, len(values)), **dict(zip(COMPONENTS, history.T, strict=True)), "normal_stress_MPa": values}
+    return FatigueResult(found, _sector(cycle, nodal, regions), table)
+
+
+def _life(cycle: StressCycle, damage_of_cycle: float) -> Life:
+    design = cycle.model.design
     life = 1.0 / damage_of_cycle if damage_of_cycle > 0.0 else None
     finite = np.isfinite(damage_of_cycle)
     if design.has_program:
-        return found | {"damage_per_program": damage_of_cycle if finite else None, "life_programs": life}
+        return Life(damage_per_program=damage_of_cycle if finite else None, life_programs=life)
     speed = 2.0 * np.pi / cycle.angle
     turns = None if life is None else life / speed
-    return found | {
-        "damage_per_turn": speed * damage_of_cycle if finite else None,
-        "life_turns": turns,
-        "life_hours": turns / (60.0 * design.load.input_speed) if turns is not None else None,
-        "cycles_per_turn": speed,
-    }
+    return Life(
+        damage_per_turn=speed * damage_of_cycle if finite else None,
+        life_turns=turns,
+        life_hours=turns / (60.0 * design.load.input_speed) if turns is not None else None,
+        cycles_per_turn=speed,
+    )
 
 
 def _when(cycle: StressCycle, count: int) -> dict[str, np.ndarray]:
@@ -220,42 +342,42 @@ def _change_by_half(values: np.ndarray, cycle: StressCycle, safety: float) -> fl
 
 def _place(
     cycle: StressCycle, criterion: str, k: int, nodal: dict[str, np.ndarray], regions: np.ndarray
-) -> dict[str, Any]:
-    """Safety by a criterion at a node and where it is; `angle_deg` from the middle of its tooth, counter-clockwise."""
+) -> LeastSafety:
+    """Safety by a criterion at a node and where it is."""
     mesh = cycle.body.layout.mesh
     x, y, z = mesh.coords[cycle.nodes[k]]
-    return {
-        "safety": _safety(nodal[criterion][k]),
-        "amplitude_MPa": float(nodal["amplitude"][k]),
-        "mean_MPa": float(nodal["mean"][k]),
-        "region": str(regions[k]),
-        "radius": float(np.hypot(x, y)),
-        "z": 0.0 if mesh.plane else float(z),
-        "angle_deg": float(np.degrees(np.arctan2(-x, y))),
-    }
+    return LeastSafety(
+        safety=_safety(nodal[criterion][k]),
+        amplitude_MPa=float(nodal["amplitude"][k]),
+        mean_MPa=float(nodal["mean"][k]),
+        region=str(regions[k]),
+        radius=float(np.hypot(x, y)),
+        z=0.0 if mesh.plane else float(z),
+        angle_deg=float(np.degrees(np.arctan2(-x, y))),
+    )
 
 
 def _safety(utilisation: float) -> float:
     return float(min(LARGEST, 1.0 / max(utilisation, 1e-300)))
 
 
-def _by_region(nodal: dict[str, np.ndarray], regions: np.ndarray, warnings: np.ndarray) -> dict[str, dict[str, Any]]:
+def _by_region(nodal: dict[str, np.ndarray], regions: np.ndarray, warnings: np.ndarray) -> dict[str, RegionSafety]:
     """Least safety factors of every region, with the warnings that belong to it."""
     found = {}
     for region in dict.fromkeys(regions.tolist()):
         here = np.flatnonzero(regions == region)
         at = here[_first_largest(nodal["goodman"][here])]
-        found[region] = {
-            **{name: _safety(nodal[name][here].max()) for name in CRITERIA},
-            "amplitude_MPa": float(nodal["amplitude"][at]),
-            "mean_MPa": float(nodal["mean"][at]),
-            "warning": str(warnings[at]),
-        }
+        found[region] = RegionSafety(
+            safety={name: _safety(nodal[name][here].max()) for name in CRITERIA},
+            amplitude_MPa=float(nodal["amplitude"][at]),
+            mean_MPa=float(nodal["mean"][at]),
+            warning=str(warnings[at]),
+        )
     return found
 
 
 def _sector(cycle: StressCycle, nodal: dict[str, np.ndarray], regions: np.ndarray) -> SectorFields:
-    """Fields of all nodes of the sector. `region` numbers the regions in the order of the summary."""
+    """Fields of all nodes of the sector. `region` numbers the regions in the order of `SafetyAndLife.regions`."""
     mesh = cycle.body.layout.mesh
     index = np.zeros(len(mesh.coords), dtype=int)
     index[cycle.nodes] = np.arange(len(cycle.nodes))

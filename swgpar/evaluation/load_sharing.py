@@ -3,16 +3,71 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
+from swgpar.design.drive_design import DriveDesign
+from swgpar.evaluation.answers import AnswerGroup, AnswerKind
 from swgpar.results.history import Row
+
+
+@dataclass(frozen=True)
+class Spread:
+    """Mean, smallest and largest of a number over the increments."""
+
+    mean: float
+    smallest: float
+    largest: float
+
+
+@dataclass(frozen=True)
+class LoadSharing(AnswerGroup):
+    """Numbers of touching pairs of flanks and their largest shares of the load over the rotation.
+
+    pairs : touching pairs;  teeth_share : share of the flexible spline's teeth that touch
+    largest_force_share : of one tooth in the forces of all pairs
+    largest_force_N, largest_line_load_Nmm : of one pair; the line load in N/mm, None where no contact is known
+    opposing_torque_share : torque of the pairs that push against the others, over the sum of all absolute values, mean
+    torque_error : largest difference between the sum of the pairs' torques and that of the teeth, over the sum of
+    their absolute values
+    """
+
+    pairs: Spread
+    teeth_share: Spread
+    largest_force_share: float
+    largest_force_N: float
+    largest_line_load_Nmm: float | None
+    opposing_torque_share: float
+    torque_error: float
+
+    TITLE = "load sharing over the rotation"
+    KINDS = (
+        AnswerKind("sharing.pairs", "pairs of flanks in contact, mean over the rotation", path="pairs.mean"),
+        AnswerKind("sharing.largest_pairs", "pairs of flanks in contact, most over the rotation", path="pairs.largest"),
+        AnswerKind(
+            "sharing.smallest_pairs", "pairs of flanks in contact, fewest over the rotation", path="pairs.smallest"
+        ),
+        AnswerKind(
+            "sharing.teeth_share",
+            "share of the flexible spline's teeth in contact, mean over the rotation",
+            path="teeth_share.mean",
+        ),
+        AnswerKind("sharing.largest_force_share", "largest share of one tooth in the force of all pairs"),
+        AnswerKind("sharing.largest_force", "largest force of one pair", "N", "largest_force_N"),
+        AnswerKind("sharing.largest_line_load", "largest line load of one pair", "N/mm", "largest_line_load_Nmm"),
+        AnswerKind("sharing.opposing_torque_share", "share of torques that push against the others", detail=True),
+        AnswerKind("sharing.torque_error", "relative difference of the torques of pairs and teeth", detail=True),
+    )
+
+    @classmethod
+    def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
+        return () if design.has_program else cls.KINDS
 
 
 def load_sharing(
     pairs: Sequence[Row], tooth_torque: Sequence[float], increments: Sequence[int], teeth: int, copies: int
-) -> dict[str, Any] | None:
+) -> LoadSharing | None:
     """Numbers of pairs and largest shares over increments; None without pairs in them.
 
     Parameters
@@ -21,15 +76,6 @@ def load_sharing(
     tooth_torque : N mm, of all teeth on the flexible spline, for all increments of the history
     increments : numbers of those that count, from 1
     teeth : of the flexible spline;  copies : how many times the modelled part makes the whole drive
-
-    Returns
-    -------
-    dict
-        ``pairs`` and ``teeth_share`` (share of the teeth of the flexible spline that touch), each with ``mean``,
-        ``smallest`` and ``largest``; ``largest_force_share`` of one tooth in the forces of all; ``largest_force_N`` and
-        ``largest_line_load_Nmm`` of one pair; ``opposing_torque_share``, the torque of the pairs that push against the
-        others over the sum of all absolute values, mean; ``torque_error``, the largest difference between the sum of
-        the torques of the pairs and that of the teeth, over the sum of their absolute values
     """
     counts, touching, shares, opposing, errors = [], [], [], [], []
     chosen = [pair for pair in pairs if pair["increment"] in set(increments)]
@@ -47,16 +93,16 @@ def load_sharing(
     if not chosen:
         return None
     loads = np.array([pair["line_load_Nmm"] for pair in chosen])
-    return {
-        "pairs": _spread(counts),
-        "teeth_share": _spread(touching),
-        "largest_force_share": max(shares),
-        "largest_force_N": max(pair["force_N"] for pair in chosen),
-        "largest_line_load_Nmm": float(loads[np.isfinite(loads)].max()) if np.isfinite(loads).any() else None,
-        "opposing_torque_share": float(np.mean(opposing)),
-        "torque_error": max(errors),
-    }
+    return LoadSharing(
+        pairs=_spread(counts),
+        teeth_share=_spread(touching),
+        largest_force_share=max(shares),
+        largest_force_N=max(pair["force_N"] for pair in chosen),
+        largest_line_load_Nmm=float(loads[np.isfinite(loads)].max()) if np.isfinite(loads).any() else None,
+        opposing_torque_share=float(np.mean(opposing)),
+        torque_error=max(errors),
+    )
 
 
-def _spread(values: Sequence[float]) -> dict[str, float]:
-    return {"mean": float(np.mean(values)), "smallest": float(min(values)), "largest": float(max(values))}
+def _spread(values: Sequence[float]) -> Spread:
+    return Spread(float(np.mean(values)), float(min(values)), float(max(values)))

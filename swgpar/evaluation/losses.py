@@ -6,12 +6,13 @@ The loss torque is the input torque that the losses take: their work per turn ov
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from dataclasses import astuple, dataclass
 
 import numpy as np
 from mpi4py import MPI
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.evaluation.answers import AnswerGroup, AnswerKind
 from swgpar.evaluation.stress_cycle import StressCycle, elements_of_rank
 from swgpar.fem.body_layout import BodyLayout
 from swgpar.log import logger
@@ -24,6 +25,53 @@ SMALL_SHARE = 0.01
 
 CHUNK = 256
 """Elements whose harmonics are combined at once."""
+
+
+@dataclass(frozen=True)
+class LossParts:
+    """Parts of the loss torque, N mm."""
+
+    flank_friction: float
+    hysteresis: float
+    bearing: float
+
+
+@dataclass(frozen=True)
+class DriveLosses(AnswerGroup):
+    """Losses over a turn of the wave generator.
+
+    loss_torque_Nmm : input torque that the losses take;  parts_Nmm : its parts
+    work_per_turn_J, power_W : of all losses, at `load.input_speed`
+    efficiency : None without a torque;  no_load_torque_Nmm : None with one
+    cam_force_N : pressure of the cam, integrated, or sum of the loads of all balls; mean
+    flank_friction_coefficient : between the flanks
+    """
+
+    loss_torque_Nmm: float
+    parts_Nmm: LossParts
+    work_per_turn_J: float
+    power_W: float
+    efficiency: float | None
+    no_load_torque_Nmm: float | None
+    cam_force_N: float
+    flank_friction_coefficient: float
+
+    TITLE = "losses and efficiency"
+    ASKED_BY = "[losses]"
+    SECTION = "losses"
+    KINDS = (
+        AnswerKind("losses.torque", "input torque that the losses take", "N·mm", "loss_torque_Nmm"),
+        AnswerKind("losses.flank_friction", "its part by friction of the flanks", "N·mm", "parts_Nmm.flank_friction"),
+        AnswerKind("losses.hysteresis", "its part by hysteresis of the spline", "N·mm", "parts_Nmm.hysteresis"),
+        AnswerKind(
+            "losses.bearing", "its part by friction of the wave generator's bearing", "N·mm", "parts_Nmm.bearing"
+        ),
+        AnswerKind("losses.efficiency", "efficiency"),
+        AnswerKind("losses.no_load_torque", "input torque without a load", "N·mm", "no_load_torque_Nmm"),
+        AnswerKind("losses.work_per_turn", "work of all losses per turn", "J", "work_per_turn_J", detail=True),
+        AnswerKind("losses.power", "power of all losses", "W", "power_W"),
+        AnswerKind("losses.cam_force", "force of the wave generator, mean", "N", "cam_force_N", detail=True),
+    )
 
 
 def cam_force(model: DriveModel) -> float:
@@ -41,8 +89,8 @@ def cam_force(model: DriveModel) -> float:
 
 def evaluate_losses(
     cycle: StressCycle, pairs: Sequence[Row], cam_forces: Sequence[float], increments: Sequence[int]
-) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
-    """Entry ``losses`` of summary.json and the columns of losses.csv; collective.
+) -> tuple[DriveLosses, dict[str, np.ndarray]]:
+    """The losses, and the columns of losses.csv; collective.
 
     pairs : rows of pairs.csv;  increments : numbers of those of the sampled period, from 1
     cam_forces : (n,) N, `cam_force` of all increments
@@ -57,34 +105,30 @@ def evaluate_losses(
     relative = 1.0 if design.output_gear == "ring_gear" else 1.0 - 1.0 / design.ratio
     bearing = losses.bearing_friction * forces * arm * relative
     hysteresis = losses.loss_factor * hysteresis_work(cycle) / (2.0 * np.pi)
-    parts = {
-        "flank_friction": float(sliding.mean()),
-        "hysteresis": hysteresis,
-        "bearing": float(bearing.mean()),
-    }
+    parts = LossParts(float(sliding.mean()), hysteresis, float(bearing.mean()))
     if (missing := force_without_sliding(pairs, increments)) > SMALL_SHARE:
         logger.warning(
             "the friction of the flanks leaves out %.3g %% of their force: the contacts of these pairs are not known",
             100.0 * missing,
         )
-    total, useful = sum(parts.values()), 1000.0 * design.load.torque / abs(design.input_ratio)
-    summary = {
-        "loss_torque_Nmm": total,
-        "parts_Nmm": parts,
-        "work_per_turn_J": 2e-3 * np.pi * total,
-        "power_W": 1e-3 * total * omega,
-        "efficiency": useful / (useful + total) if useful else None,
-        "no_load_torque_Nmm": None if useful else total,
-        "cam_force_N": float(forces.mean()),
-        "flank_friction_coefficient": flank_coefficient(design),
-    }
+    total, useful = sum(astuple(parts)), 1000.0 * design.load.torque / abs(design.input_ratio)
+    found = DriveLosses(
+        loss_torque_Nmm=total,
+        parts_Nmm=parts,
+        work_per_turn_J=2e-3 * np.pi * total,
+        power_W=1e-3 * total * omega,
+        efficiency=useful / (useful + total) if useful else None,
+        no_load_torque_Nmm=None if useful else total,
+        cam_force_N=float(forces.mean()),
+        flank_friction_coefficient=flank_coefficient(design),
+    )
     table = {
         "increment": np.array(increments),
         "flank_friction_Nmm": sliding,
         "bearing_Nmm": bearing,
         "cam_force_N": forces,
     }
-    return summary, table
+    return found, table
 
 
 def _bearing_diameter(design: DriveDesign) -> float:

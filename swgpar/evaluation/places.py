@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind, place_text
 from swgpar.evaluation.contact.contact_pressure import nodal_pressure
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.load.load_states import LoadState
@@ -56,6 +57,64 @@ class Place:
     in_root: float = 0.0
     root_spacing: float = 0.0
     error: float | None = None
+
+    @property
+    def text(self) -> str:
+        """Words for the place."""
+        return place_text(self.region, self.tooth, self.radius, self.z, self.angle_deg)
+
+
+STRESSES = {"s1": "tension s1", "s3": "compression |s3|", "vm": "von Mises stress"}
+BODIES = {"fs": "flexible spline", "rg": "ring gear", "ds": "dynamic spline"}
+
+
+@dataclass(frozen=True)
+class LargestStresses(AnswerGroup):
+    """Largest nodal stresses under load.
+
+    places : by column of the history, and with `APART`;  regions : by names with `OF_REGION`
+    """
+
+    places: Mapping[str, Place]
+    regions: Mapping[str, Place]
+
+    TITLE = "largest nodal averages of stress under load"
+    KINDS = tuple(
+        AnswerKind(f"largest.{body}_{stress}{ending}", f"{BODIES[body]}, {STRESSES[stress]}{words}", "MPa")
+        for body in ("fs", "rg")
+        for stress in STRESSES
+        for ending, words in (("", ""), (APART, ", apart from the contact"))
+        if not (ending and stress == "s1")
+    )
+    OF_REGIONS = tuple(
+        AnswerKind(f"largest.{body}_{stress}{OF_REGION}", f"{BODIES[body]}, {STRESSES[stress]} in ", "MPa", detail=True)
+        for body in ("fs", "rg")
+        for stress in ("s1", "vm")
+    )
+
+    @classmethod
+    def of(cls, places: Mapping[str, Place]) -> LargestStresses:
+        """From places by the names of `find_places`."""
+        return cls(
+            {name: place for name, place in places.items() if OF_REGION not in name},
+            {name: place for name, place in places.items() if OF_REGION in name},
+        )
+
+    def answers(self) -> Iterator[Answer]:
+        kinds = {kind.name.partition(".")[2]: kind for kind in self.KINDS + self.OF_REGIONS}
+        for name, place in (*self.places.items(), *self.regions.items()):
+            stress, within, region = name.partition(OF_REGION)
+            kind = kinds[stress + within]
+            yield Answer(
+                name=f"largest.{name}",
+                value=place.value,
+                unit=kind.unit,
+                text=f"{kind.text}{region}",
+                error=place.error,
+                place=place.text,
+                remark=place.warning,
+                detail=kind.detail,
+            )
 
 
 def find_places(

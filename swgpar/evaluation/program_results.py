@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind
 from swgpar.load.load_program import program_points, torque_direction
 from swgpar.load.load_states import Stage
 from swgpar.results.history import Row, wrapped
@@ -58,6 +60,44 @@ def work_by_torque(rows: Sequence[PointRow]) -> float:
     return float((0.5 * (torque[1:] + torque[:-1]) * np.diff(rotation)).sum())
 
 
-def summarise_program(rows: Sequence[PointRow]) -> dict[str, Any] | None:
-    """Entry of the summary: the last point of every stage by its name; None without a load program."""
-    return {row["stage"]: {name: row[name] for name in COLUMNS if name != "stage"} for row in rows} or None
+@dataclass(frozen=True)
+class ProgramStages(AnswerGroup):
+    """The last point of every stage of a load program.
+
+    stages : by the name of the stage, values by the columns of program.csv, without that of the stage
+    """
+
+    stages: Mapping[str, Mapping[str, float]]
+
+    TITLE = "ends of the stages of the load program"
+    ASKED_BY = "load.program"
+    KINDS = tuple(
+        AnswerKind(f"program.STAGE.{name}", f"{name} at the end of the stage STAGE", unit)
+        for name, unit in COLUMNS.items()
+        if name not in ("step", "stage")
+    )
+
+    @classmethod
+    def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
+        return cls.kinds_of(stage.name for stage in design.load.program)
+
+    @classmethod
+    def kinds_of(cls, stages: Iterable[str]) -> tuple[AnswerKind, ...]:
+        """The kinds for stages with these names."""
+        return tuple(
+            replace(kind, name=kind.name.replace("STAGE", stage), text=kind.text.replace("the stage STAGE", stage))
+            for stage in stages
+            for kind in cls.KINDS
+        )
+
+    def answers(self) -> Iterator[Answer]:
+        for stage, values in self.stages.items():
+            for kind in self.kinds_of((stage,)):
+                yield Answer(kind.name, float(values[kind.name.rpartition(".")[2]]), kind.unit, kind.text)
+
+
+def stage_ends(design: DriveDesign, rows: Sequence[PointRow]) -> ProgramStages | None:
+    """The last point of every stage from the rows of program.csv; None without a load program in the design."""
+    if not design.load.program or not rows:
+        return None
+    return ProgramStages({row["stage"]: {name: row[name] for name in COLUMNS if name != "stage"} for row in rows})

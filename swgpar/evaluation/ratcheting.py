@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from mpi4py import MPI
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind
 from swgpar.evaluation.program_results import PointRow
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.load.load_program import pitch_angle, torque_direction
@@ -17,6 +18,45 @@ from swgpar.model.drive_model import DriveModel
 AT_TEETH, IN_SPLINE, NOTHING = "teeth jump over", "flexible spline buckles", "nothing"
 """What gives way: the teeth move on with the output; they stay, and the spline yields between them and the output;
 nothing up to the end of the run."""
+
+
+@dataclass(frozen=True)
+class RatchetingTorque(AnswerGroup):
+    """The largest torque of the output under a prescribed rotation, and what gave way.
+
+    peak_torque_Nm : largest torque;  peak_error_Nm : difference from the points beside it
+    peak_rotation_deg, peak_rotation_pitches : rotation of the output there;  peak_step : its point of the program
+    last_torque_Nm, last_step : of the last point
+    is_peak : whether the torque fell after it;  gave_way : `AT_TEETH`, `IN_SPLINE` or `NOTHING`;  ended : why
+    """
+
+    peak_torque_Nm: float
+    peak_error_Nm: float
+    peak_rotation_deg: float
+    peak_rotation_pitches: float
+    peak_step: int
+    last_torque_Nm: float
+    last_step: int
+    is_peak: bool
+    gave_way: str
+    ended: str
+
+    TITLE = "ratcheting torque"
+    ASKED_BY = "[ratcheting]"
+    SECTION = "ratcheting"
+    KINDS = (
+        AnswerKind("ratcheting.peak_torque_Nm", "largest torque of the output", "N·m"),
+        AnswerKind("ratcheting.peak_rotation_deg", "rotation of the output there", "deg"),
+        AnswerKind("ratcheting.peak_rotation_pitches", "rotation of the output there, in pitches"),
+    )
+
+    def answers(self) -> Iterator[Answer]:
+        torque, *others = super().answers()
+        yield replace(torque, error=self.peak_error_Nm, remark="" if self.is_peak else "no peak: it still grows")
+        yield from others
+
+    def remarks(self) -> Iterator[str]:
+        yield f"what gives way: {self.gave_way}; end of the run: {self.ended}"
 
 
 def tooth_rotation(model: DriveModel) -> float:
@@ -58,10 +98,10 @@ def what_gave_way(design: DriveDesign, rows: Sequence[PointRow], teeth: Sequence
     return AT_TEETH if between_teeth > 0.5 * output else IN_SPLINE
 
 
-def summarise_ratcheting(
+def evaluate_ratcheting(
     design: DriveDesign, rows: Sequence[PointRow], teeth: Sequence[float], *, ended_early: bool
-) -> dict[str, Any] | None:
-    """Entry of the summary; None where the design asks for none.
+) -> RatchetingTorque | None:
+    """The largest torque from the rows of program.csv; None where the design asks for none.
 
     teeth : (n,) deg, rotation of the flexible spline's teeth at every row
     ended_early : whether no equilibrium was found behind the last row
@@ -70,15 +110,15 @@ def summarise_ratcheting(
         return None
     top, fallen = peak(rows), has_fallen(design, rows)
     beside = [rows[k]["torque_Nm"] for k in (top - 1, top + 1) if 0 <= k < len(rows)]
-    return {
-        "peak_torque_Nm": rows[top]["torque_Nm"],
-        "peak_error_Nm": max((rows[top]["torque_Nm"] - torque for torque in beside), default=0.0),
-        "peak_rotation_deg": rows[top]["rotation_arcmin"] / 60.0,
-        "peak_rotation_pitches": rows[top]["rotation_arcmin"] / 60.0 / pitch_angle(design),
-        "peak_step": rows[top]["step"],
-        "last_torque_Nm": rows[-1]["torque_Nm"],
-        "last_step": rows[-1]["step"],
-        "is_peak": top < len(rows) - 1,
-        "gave_way": what_gave_way(design, rows, teeth),
-        "ended": "no equilibrium found" if ended_early else "torque fell" if fallen else "limit reached",
-    }
+    return RatchetingTorque(
+        peak_torque_Nm=rows[top]["torque_Nm"],
+        peak_error_Nm=max((rows[top]["torque_Nm"] - torque for torque in beside), default=0.0),
+        peak_rotation_deg=rows[top]["rotation_arcmin"] / 60.0,
+        peak_rotation_pitches=rows[top]["rotation_arcmin"] / 60.0 / pitch_angle(design),
+        peak_step=rows[top]["step"],
+        last_torque_Nm=rows[-1]["torque_Nm"],
+        last_step=rows[-1]["step"],
+        is_peak=top < len(rows) - 1,
+        gave_way=what_gave_way(design, rows, teeth),
+        ended="no equilibrium found" if ended_early else "torque fell" if fallen else "limit reached",
+    )

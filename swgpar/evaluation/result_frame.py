@@ -9,7 +9,7 @@ In the other layouts nothing changes.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -83,18 +83,27 @@ def rotated_stress(stress: np.ndarray, angle: float) -> np.ndarray:
     )
 
 
-def summarise_input(design: DriveDesign, rows: Sequence[Row]) -> dict[str, Any] | None:
-    """Entry `input` of the summary, over the increments `rows` of the rotation; None where the wave generator drives.
+@dataclass(frozen=True)
+class InputTorque:
+    """Torque (N mm) of a ring gear that is driven, over the rotation.
 
-    `torque_ripple` is the largest less the smallest torque, over the mean. The expected torque follows from
-    T_in theta_in + T_out theta_out = 0.
+    torque_Nmm : mean;  torque_expected_Nmm : by the energy balance, T_in theta_in + T_out theta_out = 0
+    torque_ripple : largest less smallest, over the mean; None for a mean of 0
     """
+
+    torque_Nmm: float
+    torque_expected_Nmm: float
+    torque_ripple: float | None = None
+
+
+def input_torque(design: DriveDesign, rows: Sequence[Row]) -> InputTorque | None:
+    """Over the increments `rows` of the rotation; None where the wave generator drives."""
     if not design.wave_generator_is_fixed or not rows:
         return None
     torque = column(rows, "tooth_torque_Nmm")
     mean = float(torque.mean())
-    return {
-        "torque_Nmm": mean,
-        "torque_expected_Nmm": -internal_torque(design.ratio, design.load.torque) / design.input_ratio,
-        "torque_ripple": float(np.ptp(torque)) / abs(mean) if mean else None,
-    }
+    return InputTorque(
+        torque_Nmm=mean,
+        torque_expected_Nmm=-internal_torque(design.ratio, design.load.torque) / design.input_ratio,
+        torque_ripple=float(np.ptp(torque)) / abs(mean) if mean else None,
+    )

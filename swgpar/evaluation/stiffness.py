@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, fields
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
+from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind
 from swgpar.evaluation.program_results import PointRow, work_by_torque
 from swgpar.load.load_program import (
     BRANCHES,
@@ -63,6 +64,55 @@ class Stiffness:
 
 
 NAMES = tuple(field.name for field in fields(Stiffness))
+
+
+@dataclass(frozen=True)
+class StiffnessAtAngle(Stiffness):
+    """The stiffness at an angle (degrees) of the wave generator."""
+
+    wg_angle_deg: float
+
+
+@dataclass(frozen=True)
+class TorsionalStiffness(Stiffness, AnswerGroup):
+    """Means of the torsional stiffness over angles of the wave generator.
+
+    torque_Nm, rated_torque_Nm : largest torque of the loop, and the rated one;  break_points : shares of the largest
+    spread : largest less smallest over the positions
+    mesh_error : of each value by the mesh, None where it is not known
+    positions : the stiffness at every angle of the wave generator
+    """
+
+    torque_Nm: float
+    rated_torque_Nm: float
+    break_points: tuple[float, ...]
+    spread: Stiffness
+    mesh_error: Mapping[str, float] | None
+    positions: tuple[StiffnessAtAngle, ...]
+
+    TITLE = "torsional stiffness, lost motion, hysteresis"
+    ASKED_BY = "[stiffness]"
+    SECTION = "stiffness"
+    KINDS = (
+        AnswerKind("stiffness.K1", "torsional stiffness up to the first break point", "N·m/rad"),
+        AnswerKind("stiffness.K2", "torsional stiffness between the break points", "N·m/rad"),
+        AnswerKind("stiffness.K3", "torsional stiffness above the second break point", "N·m/rad"),
+        AnswerKind("stiffness.lost_motion", "lost motion", "arc minutes"),
+        AnswerKind("stiffness.hysteresis", "width of the loop at zero torque", "arc minutes"),
+        AnswerKind("stiffness.backlash", "rotation without torque between the flanks", "arc minutes"),
+        AnswerKind("stiffness.loop_work", "area of the loop", "N·mm"),
+    )
+
+    def answers(self) -> Iterator[Answer]:
+        for answer in super().answers():
+            name = answer.name.partition(".")[2]
+            spread = f"spread over the positions {getattr(self.spread, name):.2g}"
+            yield replace(answer, error=(self.mesh_error or {}).get(name), remark=spread)
+
+    def remarks(self) -> Iterator[str]:
+        yield f"means over {len(self.positions)} positions of the wave generator, up to {self.torque_Nm:g} N·m"
+        if self.mesh_error is None:
+            yield "the error of the stiffness by the mesh is not known"
 
 
 class Branch:
@@ -181,10 +231,10 @@ def rows_by_position(design: DriveDesign, rows: Sequence[PointRow]) -> dict[floa
     return found
 
 
-def summarise_stiffness(
+def torsional_stiffness(
     design: DriveDesign, rows: Sequence[PointRow], error: Mapping[str, float] | None
-) -> dict[str, Any] | None:
-    """Entry of the summary; None where the design asks for none.
+) -> TorsionalStiffness | None:
+    """The stiffness from all rows of program.csv; None where the design asks for none.
 
     error : of every value by the mesh, None where it is not known
     """
@@ -192,12 +242,12 @@ def summarise_stiffness(
         return None
     found = by_position(design, rows)
     table = {name: np.array([getattr(one, name) for one in found.values()]) for name in NAMES}
-    return {
-        "torque_Nm": stiffness_torque(design),
-        "rated_torque_Nm": rated_torque(design),
-        "break_points": list(design.stiffness.break_points),
+    return TorsionalStiffness(
         **{name: float(values.mean()) for name, values in table.items()},
-        "spread": {name: float(np.ptp(values)) for name, values in table.items()},
-        "mesh_error": None if error is None else dict(error),
-        "positions": [{"wg_angle_deg": angle, **asdict(one)} for angle, one in found.items()],
-    }
+        torque_Nm=stiffness_torque(design),
+        rated_torque_Nm=rated_torque(design),
+        break_points=tuple(design.stiffness.break_points),
+        spread=Stiffness(**{name: float(np.ptp(values)) for name, values in table.items()}),
+        mesh_error=error,
+        positions=tuple(StiffnessAtAngle(**asdict(one), wg_angle_deg=angle) for angle, one in found.items()),
+    )

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from swgpar.design.deviations import TiltedOffset
 from swgpar.design.drive_design import DriveDesign
+from swgpar.evaluation.answers import AnswerGroup, AnswerKind
 from swgpar.evaluation.period import of_period
 from swgpar.evaluation.result_frame import shown_output
 from swgpar.results.history import Row, column, transmission_error
@@ -25,7 +25,10 @@ COLUMNS = (
 """Columns of transmission_error.csv."""
 
 LARGEST = 12
-"""Orders of a spectrum that the summary names."""
+"""Orders of a spectrum that are named."""
+
+SHOWN = 5
+"""Orders that the remarks name."""
 
 NEGLIGIBLE = 1e-9
 """Amplitudes below this share of the largest one are round-off."""
@@ -44,6 +47,72 @@ class TurnPoint:
     output_angle: float
     wg_torque: float
     iterations: int
+
+
+@dataclass(frozen=True)
+class SpectrumLine:
+    """An order of the input's turn, its amplitude and its cause."""
+
+    order: float
+    amplitude: float
+    cause: str
+
+
+@dataclass(frozen=True)
+class TorqueOverTurns:
+    """Torque of the wave generator over the same angles, N mm; `ripple` is peak to peak over the mean."""
+
+    mean: float
+    peak_to_peak: float
+    ripple: float | None
+    spectrum: tuple[SpectrumLine, ...]
+
+
+@dataclass(frozen=True)
+class TransmissionError(AnswerGroup):
+    """Transmission error over whole turns with deviations, or over the sampled period of the ideal drive.
+
+    turns, angles : turns of the wave generator, and angles that stand for them
+    peak_to_peak, amplitude (half of it), mean : arc seconds;  spectrum : its largest orders, arc seconds
+    torque : of the wave generator
+    """
+
+    turns: float
+    angles: int
+    peak_to_peak: float
+    amplitude: float
+    mean: float
+    spectrum: tuple[SpectrumLine, ...]
+    torque: TorqueOverTurns
+
+    TITLE = "transmission error over a period, or with deviations over whole turns"
+    ASKED_BY = "steps.samples or [deviations]"
+    KINDS = (
+        AnswerKind("transmission_error.peak_to_peak", "transmission error, peak to peak", "arcsec"),
+        AnswerKind("transmission_error.amplitude", "transmission error, half of peak to peak", "arcsec", detail=True),
+        AnswerKind("transmission_error.mean", "transmission error, mean", "arcsec", detail=True),
+        AnswerKind(
+            "transmission_error.torque_mean",
+            "torque of the wave generator over the same angles, mean",
+            "N·mm",
+            "torque.mean",
+        ),
+        AnswerKind(
+            "transmission_error.torque_peak_to_peak",
+            "torque of the wave generator over the same angles, peak to peak",
+            "N·mm",
+            "torque.peak_to_peak",
+        ),
+    )
+
+    @classmethod
+    def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
+        return () if design.has_program else cls.KINDS
+
+    def remarks(self) -> Iterator[str]:
+        yield f"{self.turns:.0f} turns with deviations" if self.turns >= 1.0 else "one period of the ideal drive"
+        for line in self.spectrum[:SHOWN]:
+            yield f"order {line.order:.3f}: {line.amplitude:.3g} arc seconds, {line.cause}"
 
 
 def turn_row(point: TurnPoint, design: DriveDesign) -> Row:
@@ -149,28 +218,28 @@ def _kinds(design: DriveDesign, part: str) -> list[str]:
     return kinds
 
 
-def summarise_turns(design: DriveDesign, rows: Sequence[Row]) -> dict[str, Any] | None:
-    """The entry `transmission_error` of the summary, from the rows of transmission_error.csv; None without rows."""
+def evaluate_turns(design: DriveDesign, rows: Sequence[Row]) -> TransmissionError | None:
+    """The transmission error from the rows of transmission_error.csv; None without rows."""
     if not rows:
         return None
     turns = len(rows) * _step(design) / (2.0 * np.pi)
     error, torque = column(rows, "transmission_error_arcsec"), column(rows, "wg_torque_Nmm")
     mean = float(torque.mean())
     causes = Causes(design, turns)
-    return {
-        "turns": turns,
-        "angles": len(rows),
-        "peak_to_peak": float(np.ptp(error)),
-        "amplitude": 0.5 * float(np.ptp(error)),
-        "mean": float(error.mean()),
-        "spectrum": _named(error, turns, causes),
-        "torque": {
-            "mean": mean,
-            "peak_to_peak": float(np.ptp(torque)),
-            "ripple": float(np.ptp(torque)) / abs(mean) if mean else None,
-            "spectrum": _named(torque, turns, causes),
-        },
-    }
+    return TransmissionError(
+        turns=turns,
+        angles=len(rows),
+        peak_to_peak=float(np.ptp(error)),
+        amplitude=0.5 * float(np.ptp(error)),
+        mean=float(error.mean()),
+        spectrum=_named(error, turns, causes),
+        torque=TorqueOverTurns(
+            mean=mean,
+            peak_to_peak=float(np.ptp(torque)),
+            ripple=float(np.ptp(torque)) / abs(mean) if mean else None,
+            spectrum=_named(torque, turns, causes),
+        ),
+    )
 
 
 def _step(design: DriveDesign) -> float:
@@ -179,22 +248,22 @@ def _step(design: DriveDesign) -> float:
     return design.period_angle / count
 
 
-def _named(values: np.ndarray, turns: float, causes: Causes) -> list[dict[str, Any]]:
+def _named(values: np.ndarray, turns: float, causes: Causes) -> tuple[SpectrumLine, ...]:
     """The largest orders of a spectrum with their causes."""
     order, amplitude = spectrum(values, turns)
     largest = np.argsort(-amplitude, kind="stable")[:LARGEST]
     floor = NEGLIGIBLE * max(float(np.abs(values).max(initial=0.0)), 1e-300)
-    return [
-        {"order": float(order[k]), "amplitude": float(amplitude[k]), "cause": causes.of(float(order[k]))}
+    return tuple(
+        SpectrumLine(float(order[k]), float(amplitude[k]), causes.of(float(order[k])))
         for k in largest
         if amplitude[k] > floor
-    ]
+    )
 
 
-def orders(summary: Mapping[str, Any], rows: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def orders(turns: float, rows: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Orders (m,) and amplitudes (m,) of the transmission error (arc seconds) and of the input torque (N mm).
 
-    summary : its entry `transmission_error`;  rows : columns of transmission_error.csv
+    turns : of the wave generator, of `TransmissionError`;  rows : columns of transmission_error.csv
     """
-    order, error = spectrum(rows["transmission_error_arcsec"], summary["turns"])
-    return order, error, spectrum(rows["wg_torque_Nmm"], summary["turns"])[1]
+    order, error = spectrum(rows["transmission_error_arcsec"], turns)
+    return order, error, spectrum(rows["wg_torque_Nmm"], turns)[1]

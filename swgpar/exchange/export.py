@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.drive_results.drive_result import DriveResult
+from swgpar.drive_results.drive_data import DriveData
 from swgpar.errors import InputError
 from swgpar.exchange.calculix import write_calculix
 from swgpar.exchange.dxf import write_dxf
@@ -25,7 +25,7 @@ OF_DESIGN: Mapping[str, Callable[[DriveDesign, Path], list[Path]]] = {"step": wr
 ON_MESH: Mapping[str, Callable[[DriveDesign, MeshRecipe, Path], list[Path]]] = {"inp": write_calculix}
 """Formats of a design on a mesh: a job of another program."""
 
-OF_RESULT: Mapping[str, Callable[[DriveResult, Path], list[Path]]] = {
+OF_RESULT: Mapping[str, Callable[[DriveData, Path], list[Path]]] = {
     "vtkhdf": write_vtkhdf,
     "xdmf": write_xdmf,
     "parquet": write_parquet,
@@ -36,12 +36,12 @@ OF_RESULT: Mapping[str, Callable[[DriveResult, Path], list[Path]]] = {
 
 
 def export_files(
-    source: DriveDesign | DriveResult,
+    source: DriveDesign | DriveData,
     folder: Path,
     formats: Sequence[str],
     *,
     recipe: MeshRecipe | None = None,
-    ripple: DriveResult | None = None,
+    ripple: DriveData | None = None,
 ) -> list[Path]:
     """Write the files of the formats into a folder, which is made; call it on one rank.
 

@@ -29,7 +29,7 @@ from swgpar.log import logger
 from swgpar.version import __version__
 
 if TYPE_CHECKING:
-    from swgpar.drive_results.drive_result import DriveResult
+    from swgpar.drive_results.drive_data import DriveData
 
 NAME = "strain_wave_spring"
 """Of the FMU, its C file and its binary."""
@@ -72,7 +72,7 @@ UNITS: dict[str, dict[str, str]] = {
 """Exponents of SI units."""
 
 
-def write_fmu(result: DriveResult, folder: Path, periodic: DriveResult | None = None) -> list[Path]:
+def write_fmu(result: DriveData, folder: Path, periodic: DriveData | None = None) -> list[Path]:
     """Write strain_wave_spring.fmu; call it on one rank.
 
     result : with [stiffness];  periodic : see `spring_model`

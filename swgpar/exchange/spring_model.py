@@ -12,7 +12,7 @@ from swgpar.errors import InputError
 from swgpar.exchange.tables import ripple_table, spring_table
 
 if TYPE_CHECKING:
-    from swgpar.drive_results.drive_result import DriveResult
+    from swgpar.drive_results.drive_data import DriveData
 
 FEWEST = 4
 """Angles of a period from which the kinematic error is interpolated."""
@@ -52,7 +52,7 @@ class SpringModel:
         return float(self.ripple[-1, 0] - self.ripple[0, 0])
 
 
-def spring_model(result: DriveResult, periodic: DriveResult | None) -> SpringModel:
+def spring_model(result: DriveData, periodic: DriveData | None) -> SpringModel:
     """The model from a run with [stiffness] and from one of the same drive over a period.
 
     periodic : with steps.samples or [deviations], for the kinematic error; with [losses] also for the loss torque;
@@ -63,16 +63,17 @@ def spring_model(result: DriveResult, periodic: DriveResult | None) -> SpringMod
     InputError
         A result has not what is needed, or both are of drives with different ratios.
     """
-    if not (result.program and result.stiffness):
+    found = result.summary
+    if not (result.program and found.stiffness):
         raise InputError(
             "the format fmu needs a run with [stiffness]: the kinematic error comes from a second run, --ripple FOLDER"
         )
-    layout = result.summary["design"]["drive"]["layout"]
-    if layout == "wave_generator_fixed":  # the columns of both runs count the rotation of the wave generator
+    if found.design.wave_generator_is_fixed:  # the columns of both runs count the rotation of the wave generator
         raise InputError(
-            f'drive.layout = "{layout}" is not available with the format fmu: allowed "ring_fixed" or "spline_fixed"'
+            f'drive.layout = "{found.design.drive.layout}" is not available with the format fmu: allowed "ring_fixed" '
+            'or "spline_fixed"'
         )
-    ratio = float(result.summary["ratio"])
+    ratio = found.ratio
     table = spring_table(result)
     direction = -np.sign(ratio)  # a positive torque of the table acts against the motion of the output
     torque, windup = direction * table["torque_Nm"], direction * table["windup_rad"]
@@ -88,24 +89,25 @@ def spring_model(result: DriveResult, periodic: DriveResult | None) -> SpringMod
     loss = 0.0
     ripple = np.array([[0.0, 0.0, 0.0], [2.0 * np.pi, 0.0, 0.0]])
     if periodic is not None:
-        if not np.isclose(periodic.summary["ratio"], ratio, rtol=1e-12):
+        if not np.isclose(periodic.summary.ratio, ratio, rtol=1e-12):
             raise InputError(
-                f"--ripple has the ratio {periodic.summary['ratio']:.9g}: allowed a run of the same drive, {ratio:.9g}"
+                f"--ripple has the ratio {periodic.summary.ratio:.9g}: allowed a run of the same drive, {ratio:.9g}"
             )
         ripple = _ripple_knots(periodic)
-        loss = (periodic.summary.get("losses") or {}).get("loss_torque_Nmm", 0.0) / 1000.0
+        if periodic.summary.losses:
+            loss = periodic.summary.losses.loss_torque_Nmm / 1000.0
     return SpringModel(
         ratio=ratio,
         spring=np.column_stack([windup, torque, slopes]),
         ripple=ripple,
-        friction_torque=max(0.0, result.stiffness["loop_work"]) / (2000.0 * reach),
+        friction_torque=max(0.0, found.stiffness.loop_work) / (2000.0 * reach),
         friction_speed=SHARE * reach,
         loss_torque=loss,
-        loss_speed=SHARE * result.summary["design"]["load"]["input_speed"] * np.pi / 30.0,
+        loss_speed=SHARE * found.design.load.input_speed * np.pi / 30.0,
     )
 
 
-def _ripple_knots(result: DriveResult) -> np.ndarray:
+def _ripple_knots(result: DriveData) -> np.ndarray:
     """Knots (n + 1, 3) of the periodic cubic spline through a kinematic error at n even angles."""
     if not result.transmission_error:
         raise InputError("--ripple needs a run with steps.samples or [deviations]: this one has no transmission error")

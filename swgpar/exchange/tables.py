@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.evaluation.stiffness import Loop, rows_by_position
 from swgpar.load.load_program import stiffness_torques
 from swgpar.results.table import format_columns
 
 if TYPE_CHECKING:
-    from swgpar.drive_results.drive_result import DriveResult
+    from swgpar.drive_results.drive_data import DriveData
 
 TABLES = (
     "history",
@@ -26,14 +25,14 @@ TABLES = (
     "fatigue_cycle",
     "balls",
 )
-"""Attributes of a `DriveResult` that are tables."""
+"""Attributes of a `DriveData` that are tables."""
 
 ARCSEC = np.pi / 648000.0
 
 SPRING, RIPPLE = "spring.csv", "ripple.csv"
 
 
-def write_parquet(result: DriveResult, folder: Path) -> list[Path]:
+def write_parquet(result: DriveData, folder: Path) -> list[Path]:
     """Write every table of a result as NAME.parquet; raises InputError without the package pyarrow."""
     try:
         import pyarrow
@@ -49,7 +48,7 @@ def write_parquet(result: DriveResult, folder: Path) -> list[Path]:
     return paths
 
 
-def write_look_up(result: DriveResult, folder: Path) -> list[Path]:
+def write_look_up(result: DriveData, folder: Path) -> list[Path]:
     """Write the drive as a torsional spring with ripple: what a multibody program interpolates in.
 
     `spring.csv` has the torque (N·m) on the output and its wind-up (rad), from the stiffness loops: of the rising and
@@ -62,7 +61,7 @@ def write_look_up(result: DriveResult, folder: Path) -> list[Path]:
         The run has neither a stiffness loop nor a transmission error.
     """
     paths = []
-    if result.program and result.stiffness:
+    if result.program and result.summary.stiffness:
         paths.append(folder / SPRING)
         paths[-1].write_bytes(format_columns(spring_table(result)))
     if result.transmission_error:
@@ -76,9 +75,9 @@ def write_look_up(result: DriveResult, folder: Path) -> list[Path]:
     return paths
 
 
-def spring_table(result: DriveResult) -> dict[str, np.ndarray]:
+def spring_table(result: DriveData) -> dict[str, np.ndarray]:
     """Columns of spring.csv of a run with [stiffness]: wind-up at the torques of its loops, mean over the positions."""
-    design = DriveDesign.model_validate(result.summary["design"])
+    design = result.summary.design
     rows = [dict(zip(result.program, values, strict=True)) for values in zip(*result.program.values(), strict=True)]
     loops = [Loop(here) for here in rows_by_position(design, rows).values()]
     torques = np.array(stiffness_torques(design))

@@ -16,7 +16,7 @@ from swgpar.results.fields import times
 from swgpar.results.parallel_hdf5 import h5py
 
 if TYPE_CHECKING:
-    from swgpar.drive_results.drive_result import DriveResult
+    from swgpar.drive_results.drive_data import DriveData
 
 HEXAHEDRON = 12
 """Of VTK's cell types."""
@@ -27,18 +27,18 @@ TENSOR = [0, 3, 5, 1, 4, 2]
 NAME = "fields.vtkhdf"
 
 
-def require_fields(result: DriveResult, name: str) -> None:
+def require_fields(result: DriveData, name: str) -> None:
     """Raise InputError where a run kept no fields for the format with this name."""
     if not result.increments:
         raise InputError(f"the format {name} needs fields, and this run kept none: allowed with output.fields = true")
 
 
-def step_times(result: DriveResult) -> np.ndarray:
+def step_times(result: DriveData) -> np.ndarray:
     """Times (n,), degrees, of the increments with fields."""
     return times(result.history["wg_angle_deg"][np.asarray(result.field_increments) - 1])
 
 
-def write_vtkhdf(result: DriveResult, folder: Path) -> list[Path]:
+def write_vtkhdf(result: DriveData, folder: Path) -> list[Path]:
     """Write all increments with fields, with all teeth; call it on one rank of a result from a folder."""
     require_fields(result, "vtkhdf")
     whole = result.grid(0, whole=True)

@@ -16,12 +16,12 @@ import numpy as np
 from swgpar.exchange.vtkhdf import require_fields, step_times
 
 if TYPE_CHECKING:
-    from swgpar.drive_results.drive_result import DriveResult
+    from swgpar.drive_results.drive_data import DriveData
 
 NAME = "drive.xdmf"
 
 
-def write_xdmf(result: DriveResult, folder: Path) -> list[Path]:
+def write_xdmf(result: DriveData, folder: Path) -> list[Path]:
     """Write all increments with fields, with all teeth; call it on one rank of a result from a folder."""
     require_fields(result, "xdmf")
     path = folder / NAME

@@ -7,12 +7,13 @@ import numpy as np
 from swgpar.gear_trains.published import numbered
 from swgpar.gear_trains.result import TrainResult
 from swgpar.results.page import Row, Table
-from swgpar.results.result_page import result_page
+from swgpar.results.result_page import RunFacts, result_page
 
 
 def train_report(result: TrainResult) -> bytes:
     """The whole page; reads the figures in the results folder. Call it on one rank."""
-    title = f"Gear train: {str(result.summary['design']['gear_train']['model']).replace('_', ' ')}"
+    summary, design = result.summary, result.design_table
+    title = f"Gear train: {str(design['gear_train']['model']).replace('_', ' ')}"
     rows = [
         Row([name, float(value)])
         for key, found in result.quantities.items()
@@ -22,7 +23,7 @@ def train_report(result: TrainResult) -> bytes:
     return result_page(
         "gear_trains/train_report.html.j2",
         title,
-        result.summary,
+        RunFacts(design, summary["versions"], summary.get("ranks"), summary.get("wall_s")),
         result.folder,
         result.plot.names,
         answers=Table(["quantity", "value"], rows),

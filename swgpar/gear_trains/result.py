@@ -52,6 +52,11 @@ class TrainResult:
     folder: Path | None = None
     plot: NamedFigures = field(default_factory=lambda: NamedFigures({}, MPI.COMM_SELF), repr=False)
 
+    @property
+    def design_table(self) -> Mapping[str, Any]:
+        """The whole design, defaults included."""
+        return self.summary["design"]
+
 
 def write(result: TrainResult, out: Path, comm: MPI.Comm) -> None:
     """Write all tables, the summary last; collective."""

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from swgpar.drive_results.summary import DriveSummary
 from swgpar.presentation.off_screen import off_screen_plotter
 from swgpar.results.sector_fields import SectorFields
 
@@ -16,29 +17,29 @@ SHOWN = (0.5, 20.0)
 """Safety factors at the ends of the colour scale, which is logarithmic."""
 
 
-def draw_haigh(sector: SectorFields, cycle: dict[str, np.ndarray], summary: dict[str, Any], angle: str) -> Figure:
+def draw_haigh(sector: SectorFields, cycle: dict[str, np.ndarray], summary: DriveSummary, angle: str) -> Figure:
     """Amplitude over mean (MPa) of all nodes by region with the lines of Goodman and of yield, above the worst cycle.
 
-    summary : of the run;  angle : title of the axis with the angle of the wave generator
+    summary : of a run with [fatigue];  angle : title of the axis with the angle of the wave generator
     """
     from matplotlib.figure import Figure
 
-    found, strengths = summary["fatigue"], summary["design"]["fatigue"]
+    found, strengths = summary.fatigue, summary.design.fatigue
     figure = Figure(figsize=(7.5, 7.5), layout="constrained")
     axes, below = figure.subplots(2, 1, height_ratios=[1.6, 1.0])
     fields = sector.fields
-    for number, region in enumerate(found["regions"]):
+    for number, region in enumerate(found.regions):
         here = fields["region"] == number
-        hollow = bool(found["regions"][region]["warning"])
+        hollow = bool(found.regions[region].warning)
         label = region + (" (depends on the mesh)" if hollow else "")
         axes.plot(fields["mean"][here], fields["amplitude"][here], "x" if hollow else ".", ms=4, label=label)
-    limit, tensile = found["fatigue_limit_of_the_part_MPa"], strengths["tensile_strength"]
-    most = strengths["yield_strength"]
+    limit, tensile = found.fatigue_limit_of_the_part_MPa, strengths.tensile_strength
+    most = strengths.yield_strength
     low = min(0.0, 1.05 * float(fields["mean"].min()))
     axes.plot([low, 0.0, tensile], [limit, limit, 0.0], "k-", label="Goodman, safety 1")
     axes.plot([max(low, -most), 0.0, most], [most + max(low, -most), most, 0.0], "k--", lw=0.8, label="yield")
-    worst = found["goodman"]
-    axes.plot(worst["mean_MPa"], worst["amplitude_MPa"], "r*", ms=12, label=f"least safety {worst['safety']:.3g}")
+    worst = found.least["goodman"]
+    axes.plot(worst.mean_MPa, worst.amplitude_MPa, "r*", ms=12, label=f"least safety {worst.safety:.3g}")
     axes.set(xlabel="mean of the normal stress (MPa)", ylabel="amplitude (MPa)")
     axes.set(xlim=(low, 1.05 * tensile), ylim=(0.0, 1.1 * max(limit, float(fields["amplitude"].max()))))
     axes.set_title("Haigh's diagram, on the critical plane of every node", fontsize=10)
@@ -47,7 +48,7 @@ def draw_haigh(sector: SectorFields, cycle: dict[str, np.ndarray], summary: dict
     below.plot(cycle["step" if of_program else "wg_angle_deg"], cycle["normal_stress_MPa"], ".-" if of_program else "-")
     what = "point of the load program (step)" if of_program else angle
     below.set(xlabel=what, ylabel="normal stress (MPa)")
-    below.set_title(f"cycle where the safety is the least: {worst['region']}", fontsize=10)
+    below.set_title(f"cycle where the safety is the least: {worst.region}", fontsize=10)
     for panel in (axes, below):
         panel.grid(alpha=0.3)
     return figure

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from swgpar.drive_results.drive_result import DriveResult
+    from swgpar.drive_results.drive_data import DriveData
 
 STRESSES = ("fs_s1", "fs_s3", "fs_vm", "rg_vm")
 """Columns of the history in the figure of stresses."""
@@ -46,7 +46,7 @@ class DriveFigures(FigureSet):
 
     exact_size = ("deformed_drive", "loaded_teeth", "cup_section", "safety")
 
-    def __init__(self, result: DriveResult, comm: MPI.Comm, *, gathered: bool) -> None:
+    def __init__(self, result: DriveData, comm: MPI.Comm, *, gathered: bool) -> None:
         super().__init__(comm, gathered=gathered)
         self._result = result
 
@@ -79,9 +79,9 @@ class DriveFigures(FigureSet):
         figure, (axes,) = self._panels(1)
         for name in STRESSES:
             self._draw(axes, name, COLUMNS[name].label)
-        root = self._result.summary.get("root_stress")
-        if root and root["period"]:
-            angle, value = np.array(root["period"]).T
+        root = self._result.summary.root_stress
+        if root and root.period:
+            angle, value = np.array(root.period).T
             axes.plot(angle, value, "k^--", ms=4, lw=0.8, label="flexible spline, s1 at the teeth by windows")
         axes.set(ylabel="stress (MPa)", title="largest stresses (nodal averages)" + self._over_period())
         axes.set_ylim(bottom=0.0)
@@ -114,19 +114,19 @@ class DriveFigures(FigureSet):
         """
         from matplotlib.figure import Figure
 
-        rows, summary = self._result.transmission_error, self._result.summary["transmission_error"]
-        if not rows:
+        rows, found = self._result.transmission_error, self._result.summary.transmission_error
+        if not rows or found is None:
             raise InputError("this run has no transmission error: allowed with steps.samples or [deviations]")
         figure = Figure(figsize=(7.0, 6.0), layout="constrained")
         upper, lower = figure.subplots(2, 1)
         error = rows["transmission_error_arcsec"]
         upper.plot(rows["wg_angle_deg"], error - error.mean(), lw=1.0, marker="o" if len(error) < 40 else None, ms=3)
         upper.set(xlabel=self._angle, ylabel="arc seconds", title="transmission error less its mean")
-        order, amplitude, _ = orders(summary, rows)
+        order, amplitude, _ = orders(found.turns, rows)
         lower.vlines(order, 0.0, amplitude, lw=1.2)
-        named = summary["spectrum"][:4]
+        named = found.spectrum[:4]
         for line in named:
-            lower.plot(line["order"], line["amplitude"], "o", ms=4, label=f"{line['order']:.4g}: {line['cause']}")
+            lower.plot(line.order, line.amplitude, "o", ms=4, label=f"{line.order:.4g}: {line.cause}")
         lower.set(xlabel="order of the input's turn", ylabel="amplitude (arc seconds)", ylim=(0.0, None))
         if named:
             lower.legend(fontsize=7)
@@ -135,12 +135,13 @@ class DriveFigures(FigureSet):
         return figure
 
     def _draw_torque(self, axes: Axes) -> None:
-        driven = self._result.summary.get("input")
+        rotation = self._result.summary.rotation
+        driven = rotation.input
         if driven:
             self._draw(axes, "input_torque_Nmm", "ring gear")
         else:
             self._draw(axes, "wg_torque_Nmm", "wave generator")
-        expected = driven["torque_expected_Nmm"] if driven else self._result.summary["wg_torque_expected_Nmm"]
+        expected = driven.torque_expected_Nmm if driven else rotation.wg_torque_expected_Nmm
         axes.axhline(expected, color="0.4", ls="--", label="energy balance, T / ratio")
         axes.set(ylabel="torque (N·mm)", title="input torque" + self._over_period())
         axes.legend(fontsize=8)
@@ -183,7 +184,7 @@ class DriveFigures(FigureSet):
 
     @property
     def _lobes(self) -> int:
-        return int(self._result.summary["design"]["wave_generator"]["lobes"])
+        return self._design.lobes
 
     def _pairs(self) -> dict[str, np.ndarray]:
         if not self._result.pairs:
@@ -206,7 +207,7 @@ class DriveFigures(FigureSet):
     @property
     def _angle(self) -> str:
         """Title of the axis with the column `wg_angle_deg`."""
-        fixed = self._result.summary["design"]["drive"]["layout"] == "wave_generator_fixed"
+        fixed = self._design.wave_generator_is_fixed
         return ANGLE_AGAINST_RING if fixed else ANGLE
 
     def _panels(self, count: int) -> tuple[Figure, list[Axes]]:
@@ -221,13 +222,13 @@ class DriveFigures(FigureSet):
         return figure, panels
 
     def _over_period(self) -> str:
-        return ", over one period" if self._result.summary["design"]["steps"]["samples"] else ""
+        return ", over one period" if self._design.steps.samples else ""
 
     def ball_loads(self) -> Figure:
         """Loads of a bearing's balls (N) over the angle from the major axis, and the largest during the rotation."""
         from matplotlib.figure import Figure
 
-        balls, bearing = self._result.balls, self._result.summary["bearing"]
+        balls, bearing = self._result.balls, self._result.summary.bearing
         if not balls:
             raise InputError("this run has no balls: allowed with wave_generator.bearing")
         loaded = balls["step"] >= Stage.LOAD
@@ -245,7 +246,7 @@ class DriveFigures(FigureSet):
         upper.set_title(f"loads of {len(shown['ball']) // len(increments)} balls at {len(increments)} angles")
         peaks = shown["load_N"].reshape(len(increments), -1).max(axis=1)
         lower.plot(angles, peaks, "o-", ms=4)
-        fixed = ", balls fixed to the cam" if bearing["balls_fixed_to_cam"] else ""
+        fixed = ", balls fixed to the cam" if bearing and bearing.balls_fixed_to_cam else ""
         lower.set(xlabel=self._angle, ylabel="largest ball load (N)" + fixed)
         for axes in (upper, lower):
             axes.set_ylim(bottom=0.0)
@@ -264,7 +265,7 @@ class DriveFigures(FigureSet):
 
         Parameters
         ----------
-        increment : among those with fields, as in `DriveResult.field`
+        increment : among those with fields, as in `DriveData.field`
         magnification : of the displacements; above 1 bodies may seem to cross
         """
         return draw_deformed(
@@ -275,7 +276,7 @@ class DriveFigures(FigureSet):
         """Close-up of the pair of flanks with the largest force and the cam below it, by von Mises stress.
 
         A cup drive is cut across its axis where the pressure of this pair is the largest. Without a pair in contact
-        the teeth at the major axis are shown. increment : as in `DriveResult.field`
+        the teeth at the major axis are shown. increment : as in `DriveData.field`
         """
         result, row = self._result, self._row(increment)
         cam_angle = self._cam_angle(row)
@@ -290,7 +291,7 @@ class DriveFigures(FigureSet):
     def cup_section(self, increment: int = -1) -> Figure:
         """Sections of the deformed cup along its axis, through the major and the minor axis, by von Mises stress.
 
-        increment : as in `DriveResult.field`
+        increment : as in `DriveData.field`
         """
         if not self._has_cup:
             raise InputError(f'drive.model = "{self._design.drive.model}" has no cup: allowed with "cup"')
@@ -300,26 +301,26 @@ class DriveFigures(FigureSet):
     def stress_around(self, increment: int = -1) -> Figure:
         """Largest s1 and von Mises stress (MPa) of every tooth's sector of the flexible spline, around it.
 
-        increment : as in `DriveResult.field`
+        increment : as in `DriveData.field`
         """
         result, body = self._result, "flexible_spline"
-        counts, design = result.summary["bodies"][body], self._design
+        sizes, design = result.summary.bodies[body], self._design
         return draw_circumference(
             design,
             result.mesh(body).points,
             {name: result.field(name, increment, body) for name in FIELDS},
-            counts["elements"] // (counts["elements_whole"] // design.drive.teeth_fs),
+            sizes.elements // (sizes.elements_whole // design.drive.teeth_fs),
             float(np.radians(result.history["wg_angle_deg"][self._row(increment)])),
             self._when(increment),
         )
 
     @property
     def _has_cup(self) -> bool:
-        return self._result.summary["design"]["drive"]["model"] == "cup"
+        return self._design.drive.model == "cup"
 
     @property
     def _design(self) -> DriveDesign:
-        return DriveDesign.model_validate(self._result.summary["design"])
+        return self._result.summary.design
 
     def _grids(self, increment: int) -> list[pyvista.UnstructuredGrid]:
         """Both whole bodies with their fields; collective where these are gathered. What follows is not."""

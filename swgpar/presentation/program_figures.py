@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+from swgpar.drive_results.summary import DriveSummary
+from swgpar.evaluation.stiffness import TorsionalStiffness
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 
-def torque_against_rotation(program: Mapping[str, np.ndarray], summary: Mapping[str, Any]) -> Figure:
+def torque_against_rotation(program: Mapping[str, np.ndarray], summary: DriveSummary) -> Figure:
     """Torque on the output (N·m) against its rotation (arc minutes), a line for every stage, or every position.
 
     program : columns of program.csv;  summary : of the run
@@ -21,31 +24,30 @@ def torque_against_rotation(program: Mapping[str, np.ndarray], summary: Mapping[
 
     figure = Figure(figsize=(7.0, 5.0), layout="constrained")
     axes = figure.subplots()
-    groups = program["wg_angle_deg"] if summary["stiffness"] else program["stage"]
+    groups = program["wg_angle_deg"] if summary.stiffness else program["stage"]
     for value in dict.fromkeys(groups):
         here = groups == value
         first = max(0, int(np.flatnonzero(here)[0]) - 1)
-        if not summary["stiffness"]:  # a stage begins where the one before has ended
+        if not summary.stiffness:  # a stage begins where the one before has ended
             here[first] = True
-        label = f"wave generator at {value:.3g}°" if summary["stiffness"] else str(value)
+        label = f"wave generator at {value:.3g}°" if summary.stiffness else str(value)
         axes.plot(program["rotation_arcmin"][here], program["torque_Nm"][here], "o-", ms=3, lw=1.0, label=label)
-    if summary["stiffness"]:
-        _mark_chords(axes, program, summary["stiffness"])
-    if summary["ratcheting"]:
-        found = summary["ratcheting"]
-        axes.plot(60.0 * found["peak_rotation_deg"], found["peak_torque_Nm"], "k*", ms=12, label="largest torque")
+    if summary.stiffness:
+        _mark_chords(axes, program, summary.stiffness)
+    if found := summary.ratcheting:
+        axes.plot(60.0 * found.peak_rotation_deg, found.peak_torque_Nm, "k*", ms=12, label="largest torque")
     axes.set(xlabel="rotation of the output by the torque (arc minutes)", ylabel="torque on the output (N·m)")
-    axes.set_title("torque against rotation, wave generator locked" if summary["stiffness"] else "load program")
+    axes.set_title("torque against rotation, wave generator locked" if summary.stiffness else "load program")
     axes.axhline(0.0, color="0.6", lw=0.6)
     axes.grid(alpha=0.3)
     axes.legend(fontsize=8)
     return figure
 
 
-def _mark_chords(axes: Axes, program: Mapping[str, np.ndarray], found: Mapping[str, Any]) -> None:
+def _mark_chords(axes: Axes, program: Mapping[str, np.ndarray], found: TorsionalStiffness) -> None:
     """Mark the torques at which the chords of K1, K2 and K3 end."""
-    for share in found["break_points"]:
-        axes.axhline(share * found["torque_Nm"], color="0.4", ls=":", lw=0.8)
-    words = "\n".join(f"{name} = {found[name]:.4g} N·m/rad" for name in ("K1", "K2", "K3"))
-    words += f"\nlost motion {found['lost_motion']:.3g}′, hysteresis {abs(found['hysteresis']):.2g}′"
+    for share in found.break_points:
+        axes.axhline(share * found.torque_Nm, color="0.4", ls=":", lw=0.8)
+    words = "\n".join(f"{name} = {getattr(found, name):.4g} N·m/rad" for name in ("K1", "K2", "K3"))
+    words += f"\nlost motion {found.lost_motion:.3g}′, hysteresis {abs(found.hysteresis):.2g}′"
     axes.text(0.02, 0.98, words, transform=axes.transAxes, va="top", fontsize=9)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from swgpar.drive_results.drive_result import DriveResult
+    from swgpar.drive_results.drive_data import DriveData
 
 MOST_NODES = 400_000
 """Nodes of the surface up to which it goes into a report; it then has some 7 MB."""
@@ -52,7 +52,7 @@ def sector_surface(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
     return np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
 
 
-def scene(result: DriveResult) -> Scene | None:
+def scene(result: DriveData) -> Scene | None:
     """The view of the last increment with fields; None without fields, or where it would be too large.
 
     Reads files only: one rank may call it alone.
@@ -69,7 +69,7 @@ def scene(result: DriveResult) -> Scene | None:
     radius = float(np.abs([low[:2], high[:2]]).max())
     content = {
         "bodies": bodies,
-        "copies": result.summary["copies"],
+        "copies": result.summary.copies,
         "plane": result.is_plane,
         "radius": radius,
         "centre": [0.0, 0.0, float(0.5 * (low[2] + high[2]))],
@@ -77,12 +77,12 @@ def scene(result: DriveResult) -> Scene | None:
     return Scene(content, [body.replace("_", " ") for body in result.gears], limit)
 
 
-def _body(result: DriveResult, body: str, values: np.ndarray) -> dict[str, Any]:
+def _body(result: DriveData, body: str, values: np.ndarray) -> dict[str, Any]:
     """Surface of a body in the form that the drawer reads."""
     points, cells = result.mesh(body)
-    counts = result.summary["bodies"][body]
-    teeth = result.summary["design"]["drive"]["teeth_rg" if body == "ring_gear" else "teeth_fs"]
-    per_sector = counts["elements_whole"] // teeth
+    drive = result.summary.design.drive
+    teeth = drive.teeth_rg if body == "ring_gear" else drive.teeth_fs
+    per_sector = result.summary.bodies[body].elements_whole // teeth
     sectors = len(cells) // per_sector
     stride = len(points) // sectors
     triangles = sector_surface(points[:stride], cells[:per_sector])

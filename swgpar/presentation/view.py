@@ -13,7 +13,7 @@ from swgpar.presentation.off_screen import errors_only, has_display
 if TYPE_CHECKING:
     import pyvista
 
-    from swgpar.drive_results.drive_result import DriveResult
+    from swgpar.drive_results.drive_data import DriveData
 
 COLOURED = {"vm": "von Mises, MPa", "s1": "s1, MPa", "s3": "s3, MPa"}
 """Fields that the keys 1, 2 and 3 show, with the titles of their colour ranges."""
@@ -34,7 +34,7 @@ def require_display() -> None:
         )
 
 
-def view_plotter(result: DriveResult, *, off_screen: bool = False) -> pyvista.Plotter:
+def view_plotter(result: DriveData, *, off_screen: bool = False) -> pyvista.Plotter:
     """Both gears with all teeth, at the last increment with fields, coloured by von Mises stress.
 
     Sliders choose the increment and the magnification of displacements. The keys 1, 2 and 3 colour by von Mises stress,

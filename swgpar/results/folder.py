@@ -149,3 +149,8 @@ def read_summary(folder: Path) -> dict[str, Any]:
         return json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise OutputError(f"cannot read {folder / SUMMARY}: {sentence(error)}") from None
+
+
+def read_design(folder: Path) -> dict[str, Any]:
+    """The design of a finished run, as in its summary.json; raises OutputError as `read_summary`."""
+    return read_summary(folder)["design"]

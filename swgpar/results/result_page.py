@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -11,10 +12,25 @@ from swgpar.results.figure_set import FOLDER
 from swgpar.results.page import Picture, Row, Table, page
 
 
+@dataclass(frozen=True)
+class RunFacts:
+    """What a report says of the program and the inputs.
+
+    design : the whole design, defaults included;  versions : by program
+    ranks : MPI ranks;  wall_s : time, s;  memory_MB : largest of every rank. None or empty where it is not known
+    """
+
+    design: Mapping[str, Any]
+    versions: Mapping[str, str]
+    ranks: int | None = None
+    wall_s: float | None = None
+    memory_MB: Sequence[float] = ()
+
+
 def result_page(
     template: str,
     title: str,
-    summary: Mapping[str, Any],
+    facts: RunFacts,
     folder: Path | None,
     figures: Iterable[str],
     *,
@@ -31,16 +47,17 @@ def result_page(
     pictures = [
         Picture(path.read_bytes(), path.stem.replace("_", " "), path.stem in wide) for path in paths if path.exists()
     ]
-    common = {"figures": pictures, "inputs": to_toml(summary["design"]), "versions": _versions(summary)}
+    common = {"figures": pictures, "inputs": to_toml(facts.design), "versions": _versions(facts)}
     return page(template, title, scripts=scripts, **common, **values)
 
 
-def _versions(summary: Mapping[str, Any]) -> Table:
+def _versions(facts: RunFacts) -> Table:
     """Versions, ranks, time and memory of a run."""
-    rows = [Row([name, str(value)]) for name, value in summary["versions"].items()]
-    for name, text, unit in (("ranks", "MPI ranks", ""), ("wall_s", "time", "s")):
-        if summary.get(name) is not None:
-            rows.append(Row([text, f"{summary[name]:.4g} {unit}".strip()]))
-    if memory := summary.get("peak_memory_MB_per_rank"):
-        rows.append(Row(["largest memory of a rank", f"{max(memory):.0f} MB"]))
+    rows = [Row([name, str(value)]) for name, value in facts.versions.items()]
+    if facts.ranks is not None:
+        rows.append(Row(["MPI ranks", f"{facts.ranks}"]))
+    if facts.wall_s is not None:
+        rows.append(Row(["time", f"{facts.wall_s:.4g} s"]))
+    if facts.memory_MB:
+        rows.append(Row(["largest memory of a rank", f"{max(facts.memory_MB):.0f} MB"]))
     return Table(["", "version or amount"], rows)

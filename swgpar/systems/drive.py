@@ -14,14 +14,15 @@ from swgpar.checks.derived_geometry import derived_geometry
 from swgpar.checks.design_file import make_drive
 from swgpar.checks.remarks import remarks
 from swgpar.design.drive_design import DriveDesign
-from swgpar.drive_results.drive_result import DriveResult, open_drive
+from swgpar.drive_results.drive_data import open_data
 from swgpar.errors import InputError
 from swgpar.input.toml_file import apply_overrides
 from swgpar.load.load_sequence import load_sequence
 from swgpar.meshing import MeshRecipe
+from swgpar.presentation.drive_result import DriveResult
 from swgpar.presentation.terminal import print_drive
 from swgpar.run_options import RunOptions
-from swgpar.systems.drive_quantities import describe_names, main_quantities, measured, quantities
+from swgpar.systems.drive_quantities import describe_names, main_quantities, quantities
 from swgpar.systems.protocol import Measured, Quantity, System
 
 
@@ -41,10 +42,10 @@ class Drives(System[DriveDesign, DriveResult]):
         return remarks(design, derived)
 
     def run(self, design: DriveDesign, options: RunOptions) -> DriveResult:
-        return run_drive(design, options)
+        return DriveResult.of(run_drive(design, options))
 
     def open(self, folder: Path, comm: MPI.Comm) -> DriveResult:
-        return open_drive(folder, comm)
+        return DriveResult.of(open_data(folder, comm))
 
     def print(self, result: DriveResult) -> None:
         print_drive(result.history, result.summary)
@@ -89,10 +90,10 @@ class Drives(System[DriveDesign, DriveResult]):
     def measure(self, result: DriveResult) -> Measured:
         summary = result.summary
         return Measured(
-            values=measured(summary, result.history, result.pairs),
-            wall_s=summary["wall_s"],
-            elements=summary["elements"],
-            newton_mean=summary["newton_iterations_mean"],
+            values={name: answer.value for name, answer in summary.items()},
+            wall_s=summary.wall_s,
+            elements=summary.elements,
+            newton_mean=summary.rotation.newton_iterations_mean,
             history=result.history,
         )
 

@@ -26,7 +26,11 @@ class Result(Protocol):
 
     @property
     def summary(self) -> Mapping[str, Any]:
-        """Content of summary.json."""
+        """What the run gives, by name."""
+
+    @property
+    def design_table(self) -> Mapping[str, Any]:
+        """The whole design, defaults included."""
 
     @property
     def folder(self) -> Path | None:

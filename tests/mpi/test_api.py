@@ -22,7 +22,7 @@ def numbers(result: swgpar.DriveResult) -> list[np.ndarray]:
     """History without times and iterations, means, mesh and fields."""
     columns = [v for k, v in result.history.items() if k not in ("wall_s", "newton_iterations", "torque_balance_Nmm")]
     fields = [result.field(name) for name in ("displacement", "vm", "pressure")]
-    means = np.array(list(result.summary["means"].values()))
+    means = np.array(list(result.summary.rotation.means.values()))
     return [*columns, means, *result.mesh("flexible_spline"), *fields, result.field("s1", 0, "ring_gear")]
 
 
@@ -39,7 +39,7 @@ def test_every_rank_has_the_result_of_one() -> None:
     for value, reference in zip(found, expected, strict=True):
         np.testing.assert_allclose(value, reference, rtol=1e-5, atol=1e-6 * np.abs(reference).max())
     summaries = comm.allgather(together.summary)
-    assert all(summary == summaries[0] for summary in summaries) and together.summary["ranks"] == comm.size
+    assert all(summary == summaries[0] for summary in summaries) and together.summary.ranks == comm.size
 
 
 @pytest.fixture

@@ -178,10 +178,10 @@ def test_run_and_restart(tmp_path) -> None:
     continued = swgpar.run(design, mesh=str(RECIPE), out=part, restart=True)
     for name, values in whole.balls.items():
         assert continued.balls[name] == pytest.approx(values, rel=1e-4, abs=1e-6)
-    bearing = whole.summary["bearing"]
-    assert bearing["largest_load_N"] == whole.balls["load_N"].max() > 0.0
+    bearing = whole.summary.bearing
+    assert bearing.largest_load_N == whole.balls["load_N"].max() > 0.0
     assert len(whole.balls["ball"]) == 20 * len(whole.history["step"])
-    assert continued.summary["bearing"]["torsional_share"] == bearing["torsional_share"]
+    assert continued.summary.bearing.torsional_share == bearing.torsional_share
     assert {"ball_loads"} <= set(whole.plot.names)
     assert len(whole.plot.ball_loads().axes) == 2
     assert whole.field("vm", body="outer_race").max() > 0.0

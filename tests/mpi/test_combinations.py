@@ -13,14 +13,14 @@ from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from support.stepping import WORLD, load_stepper, small
 from swgpar.analysis.deviating_drive import DeviatingDrive, TurnPoint
-from swgpar.drive_results.drive_result import DriveResult
 from swgpar.errors import InputError
-from swgpar.evaluation.fatigue import evaluate_fatigue
+from swgpar.evaluation.fatigue import SafetyAndLife, evaluate_fatigue
 from swgpar.evaluation.stress_cycle import StressCycle
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
 from swgpar.load.load_sequence import load_sequence
 from swgpar.log import console
 from swgpar.meshing import load_recipe
+from swgpar.presentation.drive_result import DriveResult
 from swgpar.presentation.terminal import print_drive
 
 SAMPLED = ("steps.samples=2", "steps.rotation=9.0")
@@ -30,7 +30,7 @@ WEAK = (
     "fatigue.basquin_coefficient=400",
     "fatigue.tensile_strength=4000",
 )
-"""Fatigue limits that the small drive exceeds; a tensile strength that it does not, or its life would be 0."""
+"""SafetyAndLife limits that the small drive exceeds; a tensile strength that it does not, or its life would be 0."""
 
 UP, DOWN = '{name="up", torque=0.2}', '{name="down", torque=-0.2}'
 AGAIN = ', {name="up again", torque=0.2}, {name="down again", torque=-0.2}'
@@ -44,15 +44,15 @@ def run(*overrides: str) -> DriveResult:
 def test_fatigue_over_a_program() -> None:
     """The program twice does twice the damage with the same safety; the stress is that of every sector."""
     results = [run(*WEAK, f"load.program=[{UP}, {DOWN}{more}]") for more in ("", AGAIN)]
-    one, two = (result.summary["fatigue"] for result in results)
-    assert (one["phases"], two["phases"]) == (2, 4)
+    one, two = (result.summary.fatigue for result in results)
+    assert (one.phases, two.phases) == (2, 4)
     assert results[1].fatigue_cycle["step"].tolist() == [3, 4, 5, 6]
     assert len(results[1].plot.haigh().axes) == 2
     for name in ("goodman", "crossland", "yield"):
-        assert two[name]["safety"] == pytest.approx(one[name]["safety"], rel=1e-3), name
-    assert 0.0 < one["damage_per_program"] < np.inf and one["life_turns"] is None
-    assert two["damage_per_program"] == pytest.approx(2.0 * one["damage_per_program"], rel=0.02)
-    assert two["life_programs"] == pytest.approx(0.5 * one["life_programs"], rel=0.02)
+        assert two.least[name].safety == pytest.approx(one.least[name].safety, rel=1e-3), name
+    assert 0.0 < one.life.damage_per_program < np.inf and one.life.life_turns is None
+    assert two.life.damage_per_program == pytest.approx(2.0 * one.life.damage_per_program, rel=0.02)
+    assert two.life.life_programs == pytest.approx(0.5 * one.life.life_programs, rel=0.02)
 
 
 @pytest.mark.parallel([1, 2, 3])
@@ -60,34 +60,35 @@ def test_fatigue_over_a_program_on_any_ranks() -> None:
     """Every rank has the histories of its sectors; the worst of them is that of one rank with all."""
     design = small("plane", *WEAK, f"load.program=[{UP}, {DOWN}]")
 
-    def found(comm: MPI.Comm) -> dict:
+    def found(comm: MPI.Comm) -> SafetyAndLife:
         stepper = load_stepper(design, comm)
         cycle = StressCycle(stepper.model)
         for state in load_sequence(design).states:
             stepper.advance(state)
             cycle.keep(stepper.load_state, stepper.model.stresses()[1][FLEXIBLE_SPLINE])
         assert cycle.complete
-        values = evaluate_fatigue(cycle, None).summary
+        values = evaluate_fatigue(cycle, None).found
         stepper.model.destroy()
         return values
 
     several, alone = found(WORLD), found(MPI.COMM_SELF)
     for name in ("goodman", "crossland"):
         for key in ("safety", "radius", "angle_deg"):
-            parallel_assert(several[name][key] == pytest.approx(alone[name][key], rel=1e-6), f"{name} {key}")
-    parallel_assert(several["life_programs"] == pytest.approx(alone["life_programs"], rel=1e-5))
+            a, b = getattr(several.least[name], key), getattr(alone.least[name], key)
+            parallel_assert(a == pytest.approx(b, rel=1e-6), f"{name} {key}")
+    parallel_assert(several.life.life_programs == pytest.approx(alone.life.life_programs, rel=1e-5))
 
 
 @pytest.mark.parallel(1)
 def test_losses_and_fatigue_with_a_bearing() -> None:
     """The balls' loads act at the circle of their centres; the terminal names both results and what is missing."""
     result = run(*BEARING, *SAMPLED, "losses.bearing_friction=0.002", "fatigue.size_factor=1.0")
-    losses, loads = result.summary["losses"], result.balls["load_N"].reshape(-1, 20)[-2:]
-    assert losses["cam_force_N"] == pytest.approx(loads.sum(axis=1).mean(), rel=1e-9)
+    losses, loads = result.summary.losses, result.balls["load_N"].reshape(-1, 20)[-2:]
+    assert losses.cam_force_N == pytest.approx(loads.sum(axis=1).mean(), rel=1e-9)
     centres = 18.6 - 0.5 - 1.0
     expected = 0.002 * loads.sum(axis=1).mean() * centres * (1.0 + 2.0 / 40.0)
-    assert losses["parts_Nmm"]["bearing"] == pytest.approx(expected, rel=1e-9)
-    assert result.summary["fatigue"]["goodman"]["safety"] > 0.0 and result.summary["bearing"]["balls_fixed_to_cam"]
+    assert losses.parts_Nmm.bearing == pytest.approx(expected, rel=1e-9)
+    assert result.summary.fatigue.least["goodman"].safety > 0.0 and result.summary.bearing.balls_fixed_to_cam
     with console.capture() as captured:
         print_drive(result.history, result.summary)
     shown = " ".join(captured.get().split())
@@ -101,11 +102,11 @@ def test_friction_with_a_bearing() -> None:
     turned = ("steps.rotation=2.0", "steps.increment=2.0", "steps.samples=0")
     rough, smooth = (run(*BEARING, *turned, f"contact.friction={mu}") for mu in (0.1, 0.0))
     gained = rough.history["wg_torque_Nmm"][-1] - smooth.history["wg_torque_Nmm"][-1]
-    assert 0.0 < gained < 0.2 * smooth.summary["wg_torque_expected_Nmm"]
-    assert rough.summary["balance_error_Nmm"] < 1e-4
+    assert 0.0 < gained < 0.2 * smooth.summary.rotation.wg_torque_expected_Nmm
+    assert rough.summary.numerics.balance_error_Nmm < 1e-4
     last = [result.balls["load_N"][-20:] for result in (rough, smooth)]
     assert np.abs(last[0] - last[1]).max() < 0.05 * last[1].max()
-    assert rough.summary["bearing"]["torsional_share"]["bearing"] > 0.05
+    assert rough.summary.bearing.torsional_share.bearing > 0.05
 
 
 @pytest.mark.parallel(1)
@@ -116,10 +117,10 @@ def test_stiffness_with_a_bearing() -> None:
     """
     values = ("stiffness.positions=1", "stiffness.points=1", "stiffness.mesh_error=false")
     soft, rigid = run(*BEARING, *values), run(*values)
-    share = soft.summary["bearing"]["torsional_share"]["bearing"]
-    print(share, soft.stiffness["K3"], rigid.stiffness["K3"])
+    share = soft.summary.bearing.torsional_share.bearing
+    print(share, soft.summary.stiffness.K3, rigid.summary.stiffness.K3)
     assert 0.1 < share < 0.5
-    assert (1.0 - share) / soft.stiffness["K3"] > 1.0 / rigid.stiffness["K3"]
+    assert (1.0 - share) / soft.summary.stiffness.K3 > 1.0 / rigid.summary.stiffness.K3
 
 
 def turn_points(*overrides: str, indices: tuple[int, ...] = (0, 1)) -> dict[int, TurnPoint]:

@@ -18,7 +18,6 @@ from support.stepping import load_stepper, small
 from swgpar.analysis.run_drive import run_drive
 from swgpar.contact.clearance import LOADED_SIDE
 from swgpar.design.drive_design import DriveDesign
-from swgpar.drive_results.drive_result import DriveResult
 from swgpar.errors import InputError
 from swgpar.evaluation.program_results import PointRow, point_rows, work_by_torque
 from swgpar.evaluation.ratcheting import AT_TEETH
@@ -26,6 +25,7 @@ from swgpar.load.load_program import FIRST_LOADING, NO_TORQUE, pitch_angle
 from swgpar.load.load_sequence import load_sequence
 from swgpar.load.load_states import Stage
 from swgpar.meshing import load_recipe
+from swgpar.presentation.drive_result import DriveResult
 from swgpar.run_options import RunOptions
 
 TORQUE = 0.2
@@ -62,26 +62,26 @@ def test_a_loop_without_friction() -> None:
     """With the major axis on a tooth and a slot: theta(-T) = -theta(T), no area, and the way back is the same."""
     design = small("plane").with_values({"stiffness.positions": 1})
     result = run(design, plain=True)
-    found = result.stiffness
+    found = result.summary.stiffness
     unloading, loading = branches(result, "positive unloading"), branches(result, "positive loading")
     down, back = branches(result, "negative loading"), branches(result, "negative unloading")
     assert np.allclose(unloading[1], loading[1][:-1][::-1], rtol=1e-7)
     assert np.allclose(-down[0][:-1], unloading[0][::-1]) and np.allclose(-down[1][:-1], unloading[1][::-1], rtol=1e-7)
     assert np.allclose(back[1], down[1][:-1][::-1], rtol=1e-7)
-    span = 1000.0 * TORQUE * np.radians(found["lost_motion"] / 60.0)
-    assert abs(found["loop_work"]) < 1e-6 * span
-    assert found["hysteresis"] == pytest.approx(found["backlash"], rel=1e-7)
+    span = 1000.0 * TORQUE * np.radians(found.lost_motion / 60.0)
+    assert abs(found.loop_work) < 1e-6 * span
+    assert found.hysteresis == pytest.approx(found.backlash, rel=1e-7)
     # the shortcuts go one way, and find the same to their tolerance: the elastic rotation is a thousandth of all
-    short = run(design).stiffness
+    short = run(design).summary.stiffness
     for name, rel in (("K1", 2e-3), ("K2", 2e-3), ("K3", 2e-3), ("lost_motion", 1e-5), ("backlash", 1e-5)):
-        assert short[name] == pytest.approx(found[name], rel=rel), name
+        assert getattr(short, name) == pytest.approx(getattr(found, name), rel=rel), name
 
 
 @pytest.mark.parametrize("layout", ["ring_fixed", "spline_fixed"])
 def test_torque_turns_the_output_in_its_direction(layout: str) -> None:
     values = {"stiffness.positions": 2, "stiffness.mesh_error": False}
-    found = run(small("plane", f"drive.layout={layout}").with_values(values)).stiffness
-    assert found["K1"] > 0.0 and found["lost_motion"] > 0.0 and len(found["positions"]) == 2
+    found = run(small("plane", f"drive.layout={layout}").with_values(values)).summary.stiffness
+    assert found.K1 > 0.0 and found.lost_motion > 0.0 and len(found.positions) == 2
 
 
 def test_the_loop_with_friction_is_the_work_of_friction() -> None:
@@ -108,12 +108,12 @@ def test_the_loop_with_friction_is_the_work_of_friction() -> None:
 def test_the_cup_with_friction() -> None:
     """The loop of the small cup with friction has an area, and is wider at zero torque than its backlash."""
     values = {"stiffness.torque": 10.0, "stiffness.positions": 1, "stiffness.points": 1, "stiffness.mesh_error": False}
-    found = run(small("cup", "contact.friction=0.2").with_values(values)).stiffness
-    span = 2e4 * np.radians((found["lost_motion"] - found["backlash"]) / 60.0)
+    found = run(small("cup", "contact.friction=0.2").with_values(values)).summary.stiffness
+    span = 2e4 * np.radians((found.lost_motion - found.backlash) / 60.0)
     print(found, span)
-    assert found["loop_work"] > 1e-3 * span > 0.0
-    assert found["hysteresis"] > found["backlash"] > 0.0
-    assert found["K1"] > 0.0 and found["K3"] > 0.0
+    assert found.loop_work > 1e-3 * span > 0.0
+    assert found.hysteresis > found.backlash > 0.0
+    assert found.K1 > 0.0 and found.K3 > 0.0
 
 
 def test_lost_motion_of_a_stiff_drive_is_its_clearance() -> None:
@@ -122,8 +122,8 @@ def test_lost_motion_of_a_stiff_drive_is_its_clearance() -> None:
     The drive is stiff for its torque: the rotation by it is a 20,000th of the clearance.
     """
     stiff = small("plane")
-    found = run(stiff.with_values({"stiffness.positions": 1, "stiffness.mesh_error": False})).stiffness
-    half = 0.5 * found["lost_motion"] / 60.0
+    found = run(stiff.with_values({"stiffness.positions": 1, "stiffness.mesh_error": False})).summary.stiffness
+    half = 0.5 * found.lost_motion / 60.0
     turned = [{"name": "turn", "output_rotation": 0.98 * half}, {"name": "on", "output_rotation": 0.99 * half}]
     design = stiff.with_values({"load.program": turned})
     stepper, gap = load_stepper(design), []
@@ -170,12 +170,12 @@ def test_the_wave_generator_turns_within_a_program() -> None:
 
 def test_ratcheting_ends_by_itself() -> None:
     result = run(small("plane").with_values({**LOW_TEETH, "ratcheting.increment": 0.01}))
-    found, torque = result.ratcheting, result.program["torque_Nm"]
-    assert found["ended"] == "torque fell" and found["gave_way"] == AT_TEETH and found["is_peak"]
-    assert found["peak_torque_Nm"] == torque.max() > 0.0 and torque[-1] < 0.9 * torque.max()
+    found, torque = result.summary.ratcheting, result.program["torque_Nm"]
+    assert found.ended == "torque fell" and found.gave_way == AT_TEETH and found.is_peak
+    assert found.peak_torque_Nm == torque.max() > 0.0 and torque[-1] < 0.9 * torque.max()
     assert np.all(torque[:-1] >= 0.9 * np.maximum.accumulate(torque)[:-1])
-    assert result.program["step"][torque.argmax()] == found["peak_step"]
-    assert 0.0 < found["peak_rotation_pitches"] < 0.2
+    assert result.program["step"][torque.argmax()] == found.peak_step
+    assert 0.0 < found.peak_rotation_pitches < 0.2
 
 
 def test_the_torque_repeats_after_a_jump() -> None:
@@ -212,11 +212,12 @@ def test_restart(tmp_path: Path, friction: float) -> None:
     rest = run(design, out=tmp_path / "parts", restart=True)
     for name in ("torque_Nm", "rotation_arcmin"):
         assert np.allclose(rest.program[name], whole.program[name], rtol=1e-6)
-    assert rest.stiffness["K1"] == pytest.approx(whole.stiffness["K1"], rel=1e-6)
+    assert rest.summary.stiffness.K1 == pytest.approx(whole.summary.stiffness.K1, rel=1e-6)
     header = (tmp_path / "parts" / "stiffness.csv").read_text().partition("\n")[0]
     assert header == "position_deg,branch,torque_Nm,rotation_arcmin"
     opened = swgpar.open_result(tmp_path / "parts")
-    assert opened.stiffness == rest.stiffness and np.array_equal(opened.program["stage"], rest.program["stage"])
+    assert opened.summary.stiffness == rest.summary.stiffness
+    assert np.array_equal(opened.program["stage"], rest.program["stage"])
     assert "torque_against_rotation" in opened.plot.names
     opened.plot.torque_against_rotation()
 
@@ -234,10 +235,10 @@ def test_restart_of_ratcheting(tmp_path: Path) -> None:
     with pytest.raises(Stopped):
         run(design, out=tmp_path, on_increment=stop)
     rest = run(design, out=tmp_path, restart=True)
-    assert rest.ratcheting["gave_way"] == whole.ratcheting["gave_way"]
-    assert rest.ratcheting["peak_torque_Nm"] == pytest.approx(whole.ratcheting["peak_torque_Nm"], rel=1e-6)
+    assert rest.summary.ratcheting.gave_way == whole.summary.ratcheting.gave_way
+    assert rest.summary.ratcheting.peak_torque_Nm == pytest.approx(whole.summary.ratcheting.peak_torque_Nm, rel=1e-6)
     # a finished run has nothing left to compute
-    assert run(design, out=tmp_path, restart=True).summary["increments"] == rest.summary["increments"]
+    assert run(design, out=tmp_path, restart=True).summary.increments == rest.summary.increments
 
 
 @pytest.mark.parallel([2])
@@ -245,8 +246,8 @@ def test_ranks() -> None:
     design = small("plane").with_values({"stiffness.positions": 2, "stiffness.points": 1})
     several, one = run(design), run(design, comm=MPI.COMM_SELF)
     for name in ("K1", "K3", "lost_motion"):
-        same = several.stiffness[name] == pytest.approx(one.stiffness[name], rel=1e-6)
-        parallel_assert(same, f"{name}: {several.stiffness[name]} and {one.stiffness[name]}")
+        a, b = (getattr(run.summary.stiffness, name) for run in (several, one))
+        parallel_assert(a == pytest.approx(b, rel=1e-6), f"{name}: {a} and {b}")
 
 
 def test_studies_vary_programs_and_take_their_results(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ import swgpar
 from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from swgpar.checks.design_file import load_design
-from swgpar.drive_results.drive_result import DriveResult
+from swgpar.presentation.drive_result import DriveResult
 
 STEEL, SOFT = {"E": 210e3, "nu": 0.29}, {"E": 120e3, "nu": 0.33}
 HOUSING = "ring_gear.housing.thickness=3"

@@ -13,10 +13,10 @@ from pytest_mpi import parallel_assert
 import swgpar
 from support.paths import DESIGN, RECIPE
 from support.small_drive import NO_SHORTCUTS, PLANE
-from swgpar.drive_results.drive_result import DriveResult
 from swgpar.errors import InputError
 from swgpar.evaluation.result_frame import rotated_stress
 from swgpar.geometry.rotation import rotated
+from swgpar.presentation.drive_result import DriveResult
 
 SAMPLES = 24
 FIXED = "drive.layout=wave_generator_fixed"
@@ -36,13 +36,13 @@ def test_stresses_and_transmission_error_are_those_with_the_ring_gear_fixed() ->
     ring, wave = run(), run(FIXED)
     for name in (*STRESSES, "wg_angle_deg", "wg_torque_Nmm", "tooth_torque_Nmm", "output_torque_Nmm"):
         assert wave.history[name] == pytest.approx(ring.history[name], rel=1e-12), name
-    error = ring.summary["transmission_error_arcsec"]
-    assert wave.summary["transmission_error_arcsec"] == pytest.approx(error, rel=1e-9)
+    error = ring.summary.rotation.transmission_error_arcsec
+    assert wave.summary.rotation.transmission_error_arcsec == pytest.approx(error, rel=1e-9)
     assert set(wave.history) - set(ring.history) == {"input_angle_deg", "input_torque_Nmm"}
     # from the columns alone: the output's angle less the input's over the ratio
     loaded = wave.history["step"] >= 3
     angle, output = (wave.history[name][loaded] for name in ("input_angle_deg", "output_angle_deg"))
-    deviation = 3600.0 * (output - angle / wave.summary["ratio"])
+    deviation = 3600.0 * (output - angle / wave.summary.ratio)
     assert np.ptp(deviation[1:]) == pytest.approx(error, rel=1e-6)
     drawn = wave.curves().values["transmission_error"]
     assert drawn == pytest.approx(ring.curves().values["transmission_error"], abs=1e-7)
@@ -52,7 +52,7 @@ def test_kinematics_balance_and_energy() -> None:
     """Torques on the drive from outside add up to zero, and over a period so does their work."""
     wave = run(FIXED)
     h = wave.history
-    assert wave.summary["ratio"] == pytest.approx(TEETH_FS / TEETH_RG)
+    assert wave.summary.ratio == pytest.approx(TEETH_FS / TEETH_RG)
     assert swgpar.check(swgpar.load_design(DESIGN, [*PLANE, FIXED]))["ratio (ring gear / output)"] == pytest.approx(
         TEETH_FS / TEETH_RG
     )
@@ -67,12 +67,12 @@ def test_kinematics_balance_and_energy() -> None:
     work_out = TORQUE * (output[-1] - output[0])
     assert work_in > 0.0 > work_out
     assert work_in + work_out == pytest.approx(0.0, abs=1e-3 * work_in)
-    driven = wave.summary["input"]
-    assert driven["torque_expected_Nmm"] == pytest.approx(-TORQUE * TEETH_RG / TEETH_FS)
-    assert driven["torque_Nmm"] == pytest.approx(driven["torque_expected_Nmm"], rel=1e-3)
-    ripple = np.ptp(h["input_torque_Nmm"][loaded][1:]) / abs(driven["torque_Nmm"])
-    assert wave.summary["torque_ripple"] == pytest.approx(ripple)
-    assert run().summary["input"] is None
+    driven = wave.summary.rotation.input
+    assert driven.torque_expected_Nmm == pytest.approx(-TORQUE * TEETH_RG / TEETH_FS)
+    assert driven.torque_Nmm == pytest.approx(driven.torque_expected_Nmm, rel=1e-3)
+    ripple = np.ptp(h["input_torque_Nmm"][loaded][1:]) / abs(driven.torque_Nmm)
+    assert wave.summary.rotation.torque_ripple == pytest.approx(ripple)
+    assert run().summary.rotation.input is None
 
 
 def test_fields_are_those_of_a_standing_wave_generator() -> None:
@@ -121,7 +121,7 @@ def test_losses_refer_to_the_input() -> None:
     """The same power is lost at the same speed of the input, of a power that is larger by the ratios."""
     overrides = (*PLANE, "losses.bearing_diameter=30", "steps.samples=4", "steps.rotation=10", "output.fields=false")
     ring, wave = (
-        swgpar.run(swgpar.load_design(DESIGN, [*overrides, *layout]), RECIPE, progress=False).summary["losses"]
+        swgpar.run(swgpar.load_design(DESIGN, [*overrides, *layout]), RECIPE, progress=False).summary.losses
         for layout in ((), (FIXED,))
     )
     assert wave["loss_torque_Nmm"] == pytest.approx(ring["loss_torque_Nmm"], rel=1e-9)

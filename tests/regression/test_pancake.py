@@ -29,7 +29,7 @@ def test_driver(tmp_path: Path) -> None:
     out = tmp_path / "driver"
     succeed(run(DRIVER, out, "--set", "steps.rotation=0"))
     result = swgpar.open_result(out)
-    assert result.summary["balance_error_Nmm"] < 1e-4 * 20_000.0
+    assert result.summary.numerics.balance_error_Nmm < 1e-4 * 20_000.0
     torque = {name: result.history[f"{name}_torque_Nmm"][-1] for name in ("wg", "tooth", "ds_tooth")}
     assert np.isclose(torque["ds_tooth"], 20_000.0, rtol=1e-5) and torque["wg"] > 0.0
     assert abs(sum(torque.values())) < 1e-4 * 20_000.0

@@ -20,7 +20,7 @@ def test_result_files(plain: Path) -> None:
     rows = history.read_history(plain / "history.csv")
     assert [r["step"] for r in rows] == [1, 2, 3, 4, 5]
     summary = json.loads((plain / "summary.json").read_text(encoding="utf-8"))
-    assert summary["balance_error_Nmm"] < 1e-6 * 200.0
+    assert summary["numerics"]["balance_error_Nmm"] < 1e-6 * 200.0
     recipe = load_recipe(RECIPE).flexible_spline
     for body in summary["bodies"].values():
         # half of the drive is modelled; two unknowns a node, on the ring gear none on its outer circle

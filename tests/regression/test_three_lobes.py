@@ -21,8 +21,8 @@ def test_the_design_file_in_drivers(tmp_path: Path) -> None:
     quick = ("steps.rotation=3", "output.root_stress=false", "output.figures=false")
     succeed(program("run", design, "--mesh", RECIPE, "--out", out, "--set", *quick))
     summary = swgpar.open_result(out).summary
-    assert summary["copies"] == 3
-    assert abs(summary["balance_error_Nmm"]) < 1e-2
+    assert summary.copies == 3
+    assert abs(summary.numerics.balance_error_Nmm) < 1e-2
 
 
 def test_restart_on_other_ranks_and_fields_of_the_whole(tmp_path: Path) -> None:

@@ -25,17 +25,17 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_a_turn_with_deviations(folder: Path) -> None:
     result = swgpar.open_result(folder)
-    rows, summary = result.transmission_error, result.summary["transmission_error"]
-    assert len(rows["wg_angle_deg"]) == TEETH_RG == summary["angles"] and summary["turns"] == pytest.approx(1.0)
+    rows, summary = result.transmission_error, result.summary.transmission_error
+    assert len(rows["wg_angle_deg"]) == TEETH_RG == summary.angles and summary.turns == pytest.approx(1.0)
     assert rows["wg_angle_deg"] == pytest.approx(360.0 / TEETH_RG * np.arange(TEETH_RG))
     error = 3600.0 * (rows["output_angle_deg"] - rows["wg_angle_deg"] / RATIO)
     assert rows["transmission_error_arcsec"] == pytest.approx(error, abs=1e-6)
-    assert summary["peak_to_peak"] == pytest.approx(np.ptp(error)) == pytest.approx(2.0 * summary["amplitude"])
+    assert summary.peak_to_peak == pytest.approx(np.ptp(error)) == pytest.approx(2.0 * summary.amplitude)
     # an oval ring gear repeats after half a turn: the second half is known
     assert (rows["newton_iterations"][TEETH_RG // 2 :] == 0).all()
-    first = summary["spectrum"][0]
-    assert (first["order"], first["cause"]) == (2.0, "ring gear (ovality), 2 per turn against it")
-    assert summary["torque"]["mean"] == pytest.approx(rows["wg_torque_Nmm"].mean())
+    first = summary.spectrum[0]
+    assert (first.order, first.cause) == (2.0, "ring gear (ovality), 2 per turn against it")
+    assert summary.torque.mean == pytest.approx(rows["wg_torque_Nmm"].mean())
     assert "transmission_error_spectrum" in result.plot.names
     assert result.plot.transmission_error_spectrum() is not None
 
@@ -56,11 +56,11 @@ def test_an_interrupted_turn_is_continued(folder: Path) -> None:
 def test_the_period_of_an_ideal_drive() -> None:
     design = swgpar.load_design(DESIGN, [*PLANE, "steps.bent_start=true", "steps.samples=4", "steps.rotation=9"])
     result = swgpar.run(design, mesh=RECIPE, plain=True)
-    summary = result.summary["transmission_error"]
-    assert summary["peak_to_peak"] == pytest.approx(result.summary["transmission_error_arcsec"])
-    assert summary["torque"]["ripple"] == pytest.approx(result.summary["torque_ripple"])
-    assert sorted(line["order"] for line in summary["spectrum"]) == pytest.approx([42.0, 84.0])
-    assert summary["spectrum"][0]["cause"].startswith("mesh of the teeth")
+    summary = result.summary.transmission_error
+    assert summary.peak_to_peak == pytest.approx(result.summary.rotation.transmission_error_arcsec)
+    assert summary.torque.ripple == pytest.approx(result.summary.rotation.torque_ripple)
+    assert sorted(line.order for line in summary.spectrum) == pytest.approx([42.0, 84.0])
+    assert summary.spectrum[0].cause.startswith("mesh of the teeth")
 
 
 def test_a_study_over_deviations(tmp_path: Path) -> None:

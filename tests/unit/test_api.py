@@ -127,28 +127,28 @@ def test_history_and_summary(result: swgpar.DriveResult) -> None:
     table = pandas.DataFrame(result.history)
     rotation = table[table["step"] >= 4]
     summary = result.summary
-    assert summary["means"]["fs_s1"] == pytest.approx(rotation["fs_s1"].mean(), rel=1e-14)
-    assert summary["maxima"]["fs_s1"] == rotation["fs_s1"].max()
+    assert summary["mean.fs_s1"].value == pytest.approx(rotation["fs_s1"].mean(), rel=1e-14)
+    assert summary["maximum.fs_s1"].value == rotation["fs_s1"].max()
     torque = rotation["wg_torque_Nmm"]
-    assert summary["torque_ripple"] == pytest.approx((torque.max() - torque.min()) / torque.mean(), rel=1e-12)
-    error = 3600.0 * (rotation["output_angle_deg"] - rotation["wg_angle_deg"] / summary["ratio"])
-    assert summary["transmission_error_arcsec"] == pytest.approx(error.max() - error.min(), abs=1e-9)
+    assert summary.rotation.torque_ripple == pytest.approx((torque.max() - torque.min()) / torque.mean(), rel=1e-12)
+    error = 3600.0 * (rotation["output_angle_deg"] - rotation["wg_angle_deg"] / summary.ratio)
+    assert summary.rotation.transmission_error_arcsec == pytest.approx(error.max() - error.min(), abs=1e-9)
 
 
 def test_the_stress_at_the_teeth_is_resolved_where_it_is_asked_for(
     design: DriveDesign, result: swgpar.DriveResult, tmp_path: Path
 ) -> None:
     """Once, in the loaded state; a restart keeps it."""
-    assert result.summary["root_stress"] is None
+    assert result.summary.root_stress is None
     asked = design.with_values({"output.root_stress": True, "output.fields": False, "steps.rotation": 2.0})
     found = swgpar.run(asked, RECIPE, tmp_path / "run")
-    root = found.summary["root_stress"]
+    root = found.summary.root_stress
     (loaded,) = np.flatnonzero(found.history["step"] == 3)
-    assert root["on_mesh"] == pytest.approx(found.history["fs_s1"][loaded], rel=1e-9)
-    assert root["levels"][-1] == root["s1"] > root["on_mesh"] and 0.0 < root["error"] < 0.05 * root["s1"]
+    assert root.on_mesh == pytest.approx(found.history["fs_s1"][loaded], rel=1e-9)
+    assert root.levels[-1] == root.s1 > root.on_mesh and 0.0 < root.error < 0.05 * root.s1
     longer = swgpar.run(asked.with_values({"steps.rotation": 4.0}), RECIPE, tmp_path / "run", restart=True)
-    assert longer.summary["places"]["fs_s1"]["value"] >= found.summary["places"]["fs_s1"]["value"] > 0.0
-    assert longer.summary["root_stress"] == root and longer.summary["phases_s"]["windows"] > 0.0
+    assert longer.summary.stresses.places["fs_s1"].value >= found.summary.stresses.places["fs_s1"].value > 0.0
+    assert longer.summary.root_stress == root and longer.summary.phases_s["windows"] > 0.0
 
 
 def test_fields(result: swgpar.DriveResult) -> None:
@@ -314,7 +314,7 @@ def test_a_study_in_memory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
 def test_figures_of_what_a_run_does_not_have(name: str) -> None:
     """One sentence that says when there is such a figure."""
     tables = dict.fromkeys(("pairs", "contact_lines", "balls", "program", "transmission_error", "history"), {})
-    summary = {"bearing": None, "transmission_error": None}
+    summary = SimpleNamespace(bearing=None, transmission_error=None)
     result = SimpleNamespace(**tables, fatigue=None, fatigue_cycle={}, summary=summary, is_plane=True, increments=0)
     plot = DriveFigures(result, MPI.COMM_SELF, gathered=False)
     with pytest.raises(swgpar.InputError, match=r"^this run has no .*: allowed with "):

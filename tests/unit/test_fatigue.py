@@ -11,11 +11,11 @@ from support.small_drive import PLANE
 from swgpar.checks.design_file import load_design
 from swgpar.design.sections import Fatigue
 from swgpar.errors import InputError
-from swgpar.evaluation.fatigue import _life
+from swgpar.evaluation.fatigue import SafetyAndLife, _life
 from swgpar.evaluation.fatigue_criteria import critical_plane, crossland, damage, fatigue_limits, goodman, smallest_ball
+from swgpar.evaluation.losses import DriveLosses
 from swgpar.evaluation.stress_cycle import rotated_tensor
 from swgpar.systems.drive import DRIVE
-from swgpar.systems.drive_quantities import FATIGUE, LOSSES
 
 STEEL = Fatigue()
 PHASE = 2.0 * np.pi * np.arange(360) / 360
@@ -105,9 +105,9 @@ class OneCycle:
 )
 def test_life_without_end_and_without_any(of_cycle: float, damaged: float | None, turns: float | None) -> None:
     found = _life(OneCycle(), of_cycle)
-    assert found["damage_per_turn"] == (damaged if damaged is None else pytest.approx(damaged))
-    assert found["life_turns"] == (turns if turns is None else pytest.approx(turns))
-    assert (found["life_hours"] is None) == (turns is None)
+    assert found.damage_per_turn == (damaged if damaged is None else pytest.approx(damaged))
+    assert found.life_turns == (turns if turns is None else pytest.approx(turns))
+    assert (found.life_hours is None) == (turns is None)
 
 
 def test_rainflow_counts_every_cycle() -> None:
@@ -151,21 +151,23 @@ def test_a_run_has_figures_and_quantities() -> None:
     sampled = [*PLANE, "steps.samples=2", "steps.rotation=9", "fatigue.size_factor=1.0", "losses.loss_factor=1e-3"]
     design = swgpar.load_design(DESIGN, sampled)
     result = swgpar.run(design, RECIPE)
-    found, fields = result.summary["fatigue"], result.fatigue.fields
-    names = list(found["regions"])
-    sound = np.isin(fields["region"], [k for k, name in enumerate(names) if not found["regions"][name]["warning"]])
+    found, fields = result.summary.fatigue, result.fatigue.fields
+    names = list(found.regions)
+    sound = np.isin(fields["region"], [k for k, name in enumerate(names) if not found.regions[name].warning])
     for criterion in ("goodman", "crossland", "yield"):
-        place = found[criterion]
+        place = found.least[criterion]
         values = fields[f"safety_{criterion}"][sound]
-        assert values.min() == pytest.approx(place["safety"])
-        assert fields["region"][sound][values.argmin()] == names.index(place["region"])
-    worst, values = found["goodman"], result.fatigue_cycle["normal_stress_MPa"]
-    assert worst["amplitude_MPa"] == pytest.approx(0.5 * np.ptp(values))
-    assert worst["mean_MPa"] == pytest.approx(0.5 * (values.max() + values.min()))
-    assert found["phases"] == len(values) == 2 * 20
-    assert found["cycles_per_turn"] == pytest.approx(2.0 * 42.0 / 40.0)
-    assert found["root_factor"] is None and found["warning"].startswith("the strengths in [fatigue]")
-    assert {*FATIGUE, *LOSSES} <= set(DRIVE.measure(result).values) & set(DRIVE.quantities(design))
+        assert values.min() == pytest.approx(place.safety)
+        assert fields["region"][sound][values.argmin()] == names.index(place.region)
+    worst, values = found.least["goodman"], result.fatigue_cycle["normal_stress_MPa"]
+    assert worst.amplitude_MPa == pytest.approx(0.5 * np.ptp(values))
+    assert worst.mean_MPa == pytest.approx(0.5 * (values.max() + values.min()))
+    assert found.phases == len(values) == 2 * 20
+    assert found.life.cycles_per_turn == pytest.approx(2.0 * 42.0 / 40.0)
+    assert found.root_factor is None and list(found.remarks())[-1].startswith("the strengths in [fatigue]")
+    absent = {"fatigue.root_factor", "losses.no_load_torque"}  # without windows, and with a load
+    known = {kind.name for kind in (*SafetyAndLife.kinds(design), *DriveLosses.KINDS)}
+    assert known - absent <= set(DRIVE.measure(result).values) & set(DRIVE.quantities(design))
     assert {"haigh", "safety"} <= set(result.plot.names)
     assert len(result.plot.haigh().axes) == 2 and result.plot.safety().axes
 
@@ -178,10 +180,11 @@ def test_windows_scale_the_tooth_root() -> None:
         swgpar.run(swgpar.load_design(DESIGN, [*sampled, f"output.root_stress={flag}"]), RECIPE).summary
         for flag in ("false", "true")
     )
-    root, factor = scaled["root_stress"], scaled["fatigue"]["root_factor"]
-    assert factor == pytest.approx(root["s1"] / root["on_mesh"]) and factor > 1.0
-    for region, values in plain["fatigue"]["regions"].items():
+    root, factor = scaled.root_stress, scaled.fatigue.root_factor
+    assert factor == pytest.approx(root.s1 / root.on_mesh) and factor > 1.0
+    for region, values in plain.fatigue.regions.items():
         by = factor if region == "tooth root" else 1.0
-        assert scaled["fatigue"]["regions"][region]["goodman"] == pytest.approx(values["goodman"] / by, rel=1e-5)
-    relative = scaled["fatigue"]["mesh_error"] / scaled["fatigue"]["goodman"]["safety"]
-    assert relative == pytest.approx(root["total_error"] / root["s1"])
+        found = scaled.fatigue.regions[region].safety["goodman"]
+        assert found == pytest.approx(values.safety["goodman"] / by, rel=1e-5)
+    relative = scaled.fatigue.mesh_error / scaled.fatigue.least["goodman"].safety
+    assert relative == pytest.approx(root.total_error / root.s1)

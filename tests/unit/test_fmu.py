@@ -7,6 +7,7 @@ import subprocess
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from support.paths import DESIGN, RECIPE
 from support.small_drive import PLANE
 from support.stepping import small
 from swgpar.errors import InputError, OutputError
-from swgpar.evaluation.stiffness import summarise_stiffness
+from swgpar.evaluation.stiffness import torsional_stiffness
 from swgpar.exchange.fmu import VARIABLES, write_fmu
 from swgpar.exchange.tables import ripple_table, spring_table
 from swgpar.load.load_program import program_points
@@ -56,8 +57,8 @@ class StiffnessRun:
         angle = np.array([point.angle for point in points])
         self.program = {"stage": stage, "wg_angle_deg": angle, "torque_Nm": torque, "rotation_arcmin": rotation}
         rows = [dict(zip(self.program, values)) for values in zip(*self.program.values())]
-        self.stiffness = summarise_stiffness(self.design, rows, None)
-        self.summary = {"ratio": self.design.ratio, "design": self.design.model_dump()}
+        stiffness = torsional_stiffness(self.design, rows, None)
+        self.summary = SimpleNamespace(ratio=self.design.ratio, design=self.design, stiffness=stiffness)
 
 
 def windup(torque: np.ndarray) -> np.ndarray:
@@ -69,7 +70,6 @@ class SampledRun:
     """A sampled period with losses of 50 N·mm."""
 
     program: dict[str, np.ndarray] = {}
-    stiffness = None
 
     def __init__(self, samples: int = 12, ratio: float = RATIO) -> None:
         angle = PITCH * np.arange(samples) / samples + 2.0 * PITCH
@@ -78,7 +78,7 @@ class SampledRun:
             "wg_angle_deg": angle,
             "transmission_error_arcsec": 20.0 + 4.0 * np.cos(phase) + 1.5 * np.sin(2.0 * phase),
         }
-        self.summary = {"ratio": ratio, "losses": {"loss_torque_Nmm": 50.0}}
+        self.summary = SimpleNamespace(ratio=ratio, stiffness=None, losses=SimpleNamespace(loss_torque_Nmm=50.0))
 
 
 class Unit:
@@ -224,8 +224,8 @@ def test_a_cycle_with_friction_takes_the_area_of_the_loop(fmu: Path) -> None:
     output = middle + half * np.cos(CYCLE)
     wave = np.zeros(len(CYCLE))
     found = path_of(fmu, wave, output, "CoSimulation", friction_speed=1e-6)
-    assert StiffnessRun().stiffness["loop_work"] > 0.0
-    assert 1000.0 * work(found) == pytest.approx(StiffnessRun().stiffness["loop_work"], rel=1e-5)
+    assert StiffnessRun().summary.stiffness.loop_work > 0.0
+    assert 1000.0 * work(found) == pytest.approx(StiffnessRun().summary.stiffness.loop_work, rel=1e-5)
 
 
 def test_the_input_torque_averages_to_the_output_torque_over_the_ratio(fmu: Path, tmp_path: Path) -> None:
@@ -317,7 +317,7 @@ def test_what_the_results_must_have(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     with pytest.raises(InputError, match="the wind-up does not grow between"):
         write_fmu(slack, tmp_path)
     standing = StiffnessRun()
-    standing.summary["design"]["drive"]["layout"] = "wave_generator_fixed"
+    standing.summary.design = small("plane", "drive.layout=wave_generator_fixed")
     with pytest.raises(InputError, match='"wave_generator_fixed" is not available with the format fmu'):
         write_fmu(standing, tmp_path)
     monkeypatch.setenv("CC", "false")
@@ -335,11 +335,11 @@ def test_the_drive_of_two_runs(layout: str, tmp_path: Path) -> None:
     swgpar.run(swgpar.load_design(DESIGN, shared).with_values(period), RECIPE, tmp_path / "period")
     (path,) = swgpar.export(tmp_path / "stiffness", tmp_path, ["fmu"], ripple=tmp_path / "period")
     found, losses = (
-        swgpar.open_result(tmp_path / name).summary[entry]
+        getattr(swgpar.open_result(tmp_path / name).summary, entry)
         for name, entry in (("stiffness", "stiffness"), ("period", "losses"))
     )
     with instance(path, tmp_path / "unit") as unit:
-        assert unit.get("friction_torque", "loss_torque") == [0.0, losses["loss_torque_Nmm"] / 1000.0]
+        assert unit.get("friction_torque", "loss_torque") == [0.0, losses.loss_torque_Nmm / 1000.0]
 
         def windup_under(torque: float) -> float:
             def left(angle: float) -> float:
@@ -348,12 +348,12 @@ def test_the_drive_of_two_runs(layout: str, tmp_path: Path) -> None:
 
             return brentq(left, -0.1, 0.1, xtol=1e-15)
 
-        top, last = found["torque_Nm"], found["break_points"][-1] * found["torque_Nm"]
+        top, last = found.torque_Nm, found.break_points[-1] * found.torque_Nm
         for sign in (1.0, -1.0):
             chord = sign * (top - last) / (windup_under(sign * top) - windup_under(sign * last))
-            assert chord == pytest.approx(found["K3"], rel=1e-5)
+            assert chord == pytest.approx(found.K3, rel=1e-5)
         both = (windup_under(top) - windup_under(-top)) / ARCMIN
-        assert both > found["backlash"] > 1.0
+        assert both > found.backlash > 1.0
 
 
 def test_the_table_of_a_given_loop() -> None:

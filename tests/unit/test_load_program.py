@@ -12,8 +12,8 @@ from support.stepping import small
 from swgpar.analysis.shortcuts import with_shortcuts
 from swgpar.errors import InputError
 from swgpar.evaluation.program_results import work_by_torque
-from swgpar.evaluation.ratcheting import AT_TEETH, IN_SPLINE, NOTHING, has_fallen, summarise_ratcheting
-from swgpar.evaluation.stiffness import ARC_MINUTE, by_position, summarise_stiffness
+from swgpar.evaluation.ratcheting import AT_TEETH, IN_SPLINE, NOTHING, evaluate_ratcheting, has_fallen
+from swgpar.evaluation.stiffness import ARC_MINUTE, by_position, torsional_stiffness
 from swgpar.load.load_program import (
     NO_TORQUE,
     POSITIVE_UNLOADING,
@@ -176,9 +176,9 @@ def test_stiffness_of_a_given_loop(points: int) -> None:
         assert one.backlash == pytest.approx(BACKLASH, rel=1e-9)
         # two triangles; the torque that stands for zero cuts off their last corners
         assert one.loop_work == pytest.approx(1000.0 * TORQUE * WIDTH * ARC_MINUTE, rel=2.5 * NO_TORQUE)
-    summary = summarise_stiffness(design, rows, None)
-    assert summary["K1"] == pytest.approx(CHORDS[0]) and summary["spread"]["K1"] == pytest.approx(0.0, abs=1e-6)
-    assert summary["mesh_error"] is None and len(summary["positions"]) == 2
+    summary = torsional_stiffness(design, rows, None)
+    assert summary.K1 == pytest.approx(CHORDS[0]) and summary.spread.K1 == pytest.approx(0.0, abs=1e-6)
+    assert summary.mesh_error is None and len(summary.positions) == 2
 
 
 def test_one_way_of_the_loop_stands_for_both() -> None:
@@ -208,12 +208,12 @@ def test_what_gives_way_is_where_the_rotation_goes(teeth: float, gave_way: str) 
     ]
     assert not has_fallen(design, rows[:3]) and has_fallen(design, rows)
     moved = [0.0, 0.5, 0.5 + teeth, 0.5 + 2.0 * teeth]
-    found = summarise_ratcheting(design, rows, moved, ended_early=False)
-    assert found["gave_way"] == gave_way and found["ended"] == "torque fell"
-    assert (found["peak_torque_Nm"], found["peak_step"], found["peak_error_Nm"]) == (3.0, 4, 2.0)
-    assert found["peak_rotation_pitches"] == pytest.approx(1.0 / pitch_angle(design))
-    rising = summarise_ratcheting(design, rows[:2], moved[:2], ended_early=True)
-    assert rising["gave_way"] == NOTHING and not rising["is_peak"] and rising["ended"] == "no equilibrium found"
+    found = evaluate_ratcheting(design, rows, moved, ended_early=False)
+    assert found.gave_way == gave_way and found.ended == "torque fell"
+    assert (found.peak_torque_Nm, found.peak_step, found.peak_error_Nm) == (3.0, 4, 2.0)
+    assert found.peak_rotation_pitches == pytest.approx(1.0 / pitch_angle(design))
+    rising = evaluate_ratcheting(design, rows[:2], moved[:2], ended_early=True)
+    assert rising.gave_way == NOTHING and not rising.is_peak and rising.ended == "no equilibrium found"
 
 
 def test_first_branch_begins_where_the_one_before_ended() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
+
 import numpy as np
 import pytest
 from mpi4py import MPI
@@ -72,18 +74,18 @@ def test_hysteresis_of_a_ring_between_two_forces() -> None:
 def test_losses_of_a_run() -> None:
     """They add up, follow their coefficients, and need a sampled period."""
     sampled = [*PLANE, "steps.samples=2", "steps.rotation=9"]
-    one = swgpar.run(swgpar.load_design(DESIGN, [*sampled, "losses.loss_factor=1e-3"]), RECIPE).summary["losses"]
+    one = swgpar.run(swgpar.load_design(DESIGN, [*sampled, "losses.loss_factor=1e-3"]), RECIPE).summary.losses
     more = ["losses.loss_factor=2e-3", "losses.bearing_friction=0.003", "losses.flank_friction=0.1"]
-    other = swgpar.run(swgpar.load_design(DESIGN, [*sampled, *more]), RECIPE).summary["losses"]
-    assert one["loss_torque_Nmm"] == pytest.approx(sum(one["parts_Nmm"].values()))
-    assert min(one["parts_Nmm"].values()) > 0.0
-    for name, value in one["parts_Nmm"].items():
-        assert other["parts_Nmm"][name] == pytest.approx(2.0 * value, rel=1e-6), name
+    other = swgpar.run(swgpar.load_design(DESIGN, [*sampled, *more]), RECIPE).summary.losses
+    assert one.loss_torque_Nmm == pytest.approx(sum(asdict(one.parts_Nmm).values()))
+    assert min(asdict(one.parts_Nmm).values()) > 0.0
+    for name, value in asdict(one.parts_Nmm).items():
+        assert getattr(other.parts_Nmm, name) == pytest.approx(2.0 * value, rel=1e-6), name
     useful = 200.0 * 2.0 / 40.0
-    assert one["efficiency"] == pytest.approx(useful / (useful + one["loss_torque_Nmm"]))
-    assert one["no_load_torque_Nmm"] is None
-    free = swgpar.run(swgpar.load_design(DESIGN, [*sampled, "load.torque=0", *more]), RECIPE).summary["losses"]
-    assert free["efficiency"] is None and free["no_load_torque_Nmm"] == free["loss_torque_Nmm"] > 0.0
+    assert one.efficiency == pytest.approx(useful / (useful + one.loss_torque_Nmm))
+    assert one.no_load_torque_Nmm is None
+    free = swgpar.run(swgpar.load_design(DESIGN, [*sampled, "load.torque=0", *more]), RECIPE).summary.losses
+    assert free.efficiency is None and free.no_load_torque_Nmm == free.loss_torque_Nmm > 0.0
     with pytest.raises(InputError, match=r"\[losses\] is not available with steps.samples = 0"):
         swgpar.run(swgpar.load_design(DESIGN, [*PLANE, *more]), RECIPE, plain=True)
 
@@ -98,6 +100,6 @@ def test_friction_of_the_flanks_is_what_the_input_torque_gains() -> None:
     means = {}
     for friction in (0.0, 0.1):
         found = swgpar.run(swgpar.load_design(DESIGN, [*sampled, f"contact.friction={friction}"]), RECIPE).summary
-        means[friction] = found["means"]["wg_torque_Nmm"]
-        assert found["losses"]["flank_friction_coefficient"] == 0.1
-    assert found["losses"]["parts_Nmm"]["flank_friction"] == pytest.approx(means[0.1] - means[0.0], rel=0.03)
+        means[friction] = found["mean.wg_torque_Nmm"].value
+        assert found.losses.flank_friction_coefficient == 0.1
+    assert found.losses.parts_Nmm.flank_friction == pytest.approx(means[0.1] - means[0.0], rel=0.03)

@@ -12,9 +12,9 @@ from support.paths import DESIGN, RECIPE, REFERENCE
 from support.small_drive import PLANE
 from swgpar.checks.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
-from swgpar.drive_results.summary import STRESSES
 from swgpar.evaluation.place_errors import CoarseStresses, with_errors
 from swgpar.evaluation.places import APART, Place, inside_teeth, root_nodes
+from swgpar.evaluation.rotation import GEAR_STRESSES
 from swgpar.evaluation.windows.local_problem import tooth_nodes
 from swgpar.evaluation.windows.root_stress import BETWEEN, RootStress
 from swgpar.meshing import SectorMesh, load_recipe
@@ -82,19 +82,19 @@ def test_regions_of_the_ring_gear() -> None:
 def test_a_run_says_where_its_largest_stresses_are() -> None:
     design = load_design(DESIGN, [*PLANE, "steps.rotation=4", "steps.increment=2"])
     result = swgpar.run(design, RECIPE)
-    places, loaded = result.summary["places"], result.history["step"] >= 3
-    apart = {f"{name}{APART}" for name in STRESSES if not name.endswith("s1")}
-    assert set(places) == set(STRESSES) | apart
+    places, loaded = result.summary.stresses.places, result.history["step"] >= 3
+    apart = {f"{name}{APART}" for name in GEAR_STRESSES if not name.endswith("s1")}
+    assert set(places) == set(GEAR_STRESSES) | apart
     for name in apart:
-        assert 0.0 < places[name]["value"] <= places[name.removesuffix(APART)]["value"]
-        assert places[name]["region"] != "flank under contact"
+        assert 0.0 < places[name].value <= places[name.removesuffix(APART)].value
+        assert places[name].region != "flank under contact"
     places = {name: place for name, place in places.items() if name not in apart}
     for name, place in places.items():
-        assert place["value"] == pytest.approx(result.history[name][loaded].max(), rel=1e-12)
-        assert place["body"] == ("flexible_spline" if name.startswith("fs") else "ring_gear")
-        assert (place["warning"] == AVERAGE) == (place["region"] == "flank under contact")
-    assert places["fs_s1"]["region"] in ("tooth root", "rim inside")
-    assert design.inner_radius - 0.1 < places["fs_s1"]["radius"] < 0.5 * design.drive.teeth_rg
+        assert place.value == pytest.approx(result.history[name][loaded].max(), rel=1e-12)
+        assert place.body == ("flexible_spline" if name.startswith("fs") else "ring_gear")
+        assert (place.warning == AVERAGE) == (place.region == "flank under contact")
+    assert places["fs_s1"].region in ("tooth root", "rim inside")
+    assert design.inner_radius - 0.1 < places["fs_s1"].radius < 0.5 * design.drive.teeth_rg
 
 
 def test_the_error_of_a_stress_follows_from_two_meshes() -> None:
@@ -161,10 +161,10 @@ def test_roots_are_where_the_region_says_it(cup: tuple[DriveDesign, SectorMesh])
 def test_a_start_on_a_coarser_mesh_gives_errors() -> None:
     values = [*PLANE, "steps.rotation=4", "steps.increment=2", "steps.start_levels=1", "steps.bent_start=true"]
     summary = swgpar.run(load_design(DESIGN, values), swgpar.load_mesh("plane_coarse"), plain=True).summary
-    errors = {name: place["error"] for name, place in summary["places"].items()}
-    for name, place in summary["places"].items():
-        assert (errors[name] is None) == bool(place["warning"]), name
-        assert errors[name] is None or 0.0 < errors[name] < 0.5 * place["value"]
-    for name, error in summary["mesh_error"].items():
-        share = errors[name] / summary["places"][name]["value"]
-        assert error == pytest.approx(share * summary["means"][name])
+    errors = {name: place.error for name, place in summary.stresses.places.items()}
+    for name, place in summary.stresses.places.items():
+        assert (errors[name] is None) == bool(place.warning), name
+        assert errors[name] is None or 0.0 < errors[name] < 0.5 * place.value
+    for name, error in summary.rotation.mesh_error.items():
+        share = errors[name] / summary.stresses.places[name].value
+        assert error == pytest.approx(share * summary.rotation.means[name])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
+from dataclasses import fields
 from pathlib import Path
 
 import pytest
@@ -12,10 +13,12 @@ import swgpar
 from support.markdown import examples
 from support.paths import DRIVERS, ROOT
 from support.scripts import load_script
+from swgpar.drive_results.summary import ANSWER_GROUPS, DriveSummary, known_answers
 from swgpar.input.quantities import Section
 from swgpar.results import history
 
 DOCS = ROOT / "docs"
+ANSWER_TABLES = load_script(DOCS / "generators" / "answer_tables.py")
 KEY_TABLES = load_script(DOCS / "generators" / "key_tables.py")
 COLUMN_TABLES = load_script(DOCS / "generators" / "column_tables.py")
 
@@ -53,11 +56,26 @@ def test_history_columns() -> None:
     assert len(rows) == len(history.COLUMNS) and not any(line.endswith("|  |") for line in rows)
 
 
-def test_summary_keys() -> None:
+def test_summary_entries() -> None:
+    entries = {field.name for field in fields(DriveSummary)} | {"format", "answers"}
+    assert set(first_cells(DOCS / "reference" / "summary.md")) == entries
+
+
+def test_every_answer_is_in_the_tables_with_its_unit_and_meaning() -> None:
+    """The tables come from the kinds; a run has no other answers, and has those that its design promises."""
+    rows = re.findall(r"^\| `([^`]+)` \| (.*?) \| (.*) \|$", "\n".join(ANSWER_TABLES.tables()), flags=re.MULTILINE)
+    kinds = [kind for name in ANSWER_GROUPS for kind in ANSWER_TABLES.kinds_of(name)]
+    assert rows == [(kind.name, kind.unit, kind.text.replace("|", "\\|")) for kind in kinds]
     gear = {"tip": 2, "layers": 1, "flank": 2, "root": 2, "under": 1, "rim": 1}
-    design = swgpar.load_design(DRIVERS / "plane_half_turn.toml", {"steps.rotation": 0.0})
-    result = swgpar.run(design, mesh={"flexible_spline": gear, "ring_gear": gear}, progress=False)
-    assert set(first_cells(DOCS / "reference" / "summary.md")) == set(result.summary)
+    design = swgpar.load_design(DRIVERS / "plane_half_turn.toml", {"steps.rotation": 3.0, "steps.samples": 2})
+    summary = swgpar.run(design, mesh={"flexible_spline": gear, "ring_gear": gear}, progress=False).summary
+    names = {name for name, *_ in rows}
+    found = {name for name in summary if not name.startswith("step") and " in " not in name}
+    assert found <= names
+    for name, kind in known_answers(design).items():
+        if name in summary:
+            assert (summary[name].unit, summary[name].text) == (kind.unit, kind.text)
+    assert {"mean.fs_s1", "sharing.pairs", "transmission_error.peak_to_peak", "largest.fs_s1"} <= found
 
 
 def test_the_own_drive_and_the_own_recipe_are_accepted() -> None:

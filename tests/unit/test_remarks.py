@@ -32,7 +32,7 @@ def test_check_names_interference() -> None:
 def test_a_jammed_drive_is_named() -> None:
     with Messages() as messages:
         result = swgpar.run(design("ring_gear.c_P=1.04", *PERIOD), RECIPE, plain=True)
-    remark = result.summary["jammed"]
+    remark = result.summary.rotation.jammed
     assert "N·mm is far from the 10 N·mm of the energy balance: the teeth may jam" in remark
     assert messages.texts.count(remark) == 1
 
@@ -69,4 +69,4 @@ def test_small_torques_converge_or_count_as_none(share: float) -> None:
     counts_as_none = [text for text in messages.texts if "counts as none" in text]
     assert len(counts_as_none) == (1 if share < 1.0 else 0)
     held = result.history["output_angle_deg"][-1]  # without a torque the output is held at its kinematic angle
-    assert (abs(held - 2.0 / result.summary["ratio"]) < 1e-9) == (share < 1.0)
+    assert (abs(held - 2.0 / result.summary.ratio) < 1e-9) == (share < 1.0)

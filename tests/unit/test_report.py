@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,11 +17,12 @@ from support.small_drive import PLANE, SHORT
 from swgpar.design.sections import GEARS
 from swgpar.drive_results.report_checks import checks
 from swgpar.errors import InputError
+from swgpar.evaluation.transmission_error import TorqueOverTurns, TransmissionError
+from swgpar.evaluation.windows.root_stress import BETWEEN, RootStress
 from swgpar.geometry.rotation import rotated
 from swgpar.meshing import build_sector_meshes, load_recipe
 from swgpar.presentation.deformed_figures import deformed
 from swgpar.presentation.drive_drawing import draw_drive
-from swgpar.presentation.drive_report import answers
 from swgpar.presentation.off_screen import off_screen_plotter
 from swgpar.presentation.scene import sector_surface
 from swgpar.presentation.view import view_plotter
@@ -39,52 +41,53 @@ def test_a_run_leaves_one_page_that_needs_nothing_else(folder: Path) -> None:
     page = assert_needs_nothing_else(text)
     assert page.tags.count("svg") == 2 and "canvas" in page.tags
     summary = swgpar.open_result(folder).summary
-    for name, value, *_ in answers(summary):
-        assert f"{value:.5g}" in text, name
-    assert "balance of torques" in text and summary["versions"]["petsc"] in text
-    assert f"teeth_fs = {summary['design']['drive']['teeth_fs']}" in text
+    for name, answer in summary.items():
+        assert f"{answer.value:.5g}" in text, name
+    assert "balance of torques" in text and summary.versions["petsc"] in text
+    assert f"teeth_fs = {summary.design.drive.teeth_fs}" in text
 
 
 def test_the_transmission_error_with_deviations_is_an_answer(folder: Path) -> None:
     summary = swgpar.open_result(folder).summary
-    summary["design"]["deviations"] = {"turns": 1}
-    summary["transmission_error"] = {"peak_to_peak": 44.55}
-    found = {name: value for name, value, *_ in answers(summary)}
-    assert found["the same with deviations, over whole turns"] == 44.55
-    assert found["transmission error, peak to peak, of the ideal drive"] == summary["transmission_error_arcsec"]
+    torque = TorqueOverTurns(1.0, 0.0, 0.0, ())
+    summary = replace(summary, transmission_error=TransmissionError(1.0, 8, 44.55, 22.3, 0.0, (), torque))
+    assert summary["transmission_error.peak_to_peak"].value == 44.55
+    assert summary["rotation.transmission_error"].value == summary.rotation.transmission_error_arcsec
+    assert "1 turns with deviations" in list(summary.transmission_error.remarks())
 
 
 def test_the_largest_of_the_regions_is_the_largest_of_the_body(folder: Path) -> None:
     summary = swgpar.open_result(folder).summary
     for stress in ("fs_s1", "fs_vm", "rg_vm"):
-        regions = {name: place for name, place in summary["regions"].items() if name.startswith(f"{stress} in ")}
-        name, place = max(regions.items(), key=lambda item: item[1]["value"])
-        largest = summary["places"][stress]
-        assert place == largest | {"in_root": place["in_root"]} and name.endswith(f" in {largest['region']}")
-        assert len(regions) > 3 and all(place["region"] == name.split(" in ", 1)[1] for name, place in regions.items())
+        regions = {name: place for name, place in summary.stresses.regions.items() if name.startswith(f"{stress} in ")}
+        name, place = max(regions.items(), key=lambda item: item[1].value)
+        largest = summary.stresses.places[stress]
+        assert place == replace(largest, in_root=place.in_root) and name.endswith(f" in {largest.region}")
+        assert len(regions) > 3 and all(place.region == name.split(" in ", 1)[1] for name, place in regions.items())
     text = (folder / "report.html").read_text(encoding="utf-8")
-    assert "ring gear, outer surface" in text and "Not asked for: torsional stiffness" in text
+    assert "ring gear, von Mises stress in outer surface" in text and "Not asked for: torsional stiffness" in text
 
 
 def test_verdicts_follow_the_numbers(folder: Path) -> None:
     result = swgpar.open_result(folder)
-    design = swgpar.DriveDesign.model_validate(result.summary["design"])
+    summary = result.summary
 
     def verdicts(**changed: object) -> dict[str, bool | None]:
-        return {c.name: c.good for c in checks(design, {**result.summary, **changed}, result.history)}
+        return {c.name: c.good for c in checks(replace(summary, **changed), result.history)}
 
     assert verdicts()["balance of torques"] and verdicts()["elements"]
     largest = float(np.abs(result.history["tooth_torque_Nmm"]).max())
-    assert verdicts(balance_error_Nmm=0.01 * largest)["balance of torques"] is False
-    assert verdicts(jammed="the teeth may jam")["energy"] is False
-    contact = dict.fromkeys(("edge",), 1)
-    assert verdicts(contact=contact)["edge contact"] is False
+    numerics = replace(summary.numerics, balance_error_Nmm=0.01 * largest)
+    assert verdicts(numerics=numerics)["balance of torques"] is False
+    assert verdicts(rotation=replace(summary.rotation, jammed="the teeth may jam"))["energy"] is False
+    assert verdicts(contact=replace(summary.contact, edge=1))["edge contact"] is False
     assert verdicts(contact=None)["edge contact"] is None
-    root = {"s1": 100.0, "total_error": 20.0}
+    root = RootStress(100.0, 20.0, 90.0, "tooth root", "", 1, 20.0, 0.0, 0.0, BETWEEN, {BETWEEN: [100.0]}, 1000)
     assert verdicts(root_stress=root)["resolution"] is False
-    assert verdicts(root_stress={**root, "total_error": 2.0})["resolution"] is True
-    deep = {**result.history, "max_penetration_mm": 0.0 * result.history["max_penetration_mm"] + design.drive.module}
-    assert {c.name: c.good for c in checks(design, result.summary, deep)}["penetration"] is False
+    assert verdicts(root_stress=replace(root, error=2.0))["resolution"] is True
+    module = np.full(len(result.history["step"]), summary.design.drive.module)
+    deep = {**result.history, "max_penetration_mm": module}
+    assert {c.name: c.good for c in checks(summary, deep)}["penetration"] is False
 
 
 @pytest.mark.parametrize("name", ["cup_45deg", "plane_half_turn"])
@@ -145,7 +148,7 @@ def test_the_stress_around_the_spline_is_that_of_the_history(folder: Path) -> No
 
 def test_the_close_up_shows_a_spline_that_lies_on_the_cam(folder: Path) -> None:
     result = swgpar.open_result(folder)
-    design = swgpar.DriveDesign.model_validate(result.summary["design"])
+    design = result.summary.design
     wg_angle = np.radians(result.history["wg_angle_deg"][-1])
     spline, _ = deformed([result.grid(-1, body, whole=True) for body in GEARS], 1.0)
     distance = design.cam_surface().evaluate(rotated(np.asarray(spline.points), -wg_angle))[0]

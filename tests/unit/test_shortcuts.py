@@ -72,7 +72,7 @@ def test_a_run_with_shortcuts_ends_in_the_same_states() -> None:
     with Messages() as messages:
         fast = swgpar.run(design, RECIPE)
     assert any("left out: " in text and "step by step" in text for text in messages.texts)
-    assert len(fast.history["step"]) == 1 + 3 * samples // 2 and fast.summary["increments"] == samples
+    assert len(fast.history["step"]) == 1 + 3 * samples // 2 and fast.summary.increments == samples
     for name in ("fs_s1", "wg_torque_Nmm", "output_angle_deg"):
         assert np.allclose(fast.history[name], plain[name][2:], rtol=1e-6)
     curves = fast.curves()

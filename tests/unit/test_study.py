@@ -15,8 +15,9 @@ from mpi4py import MPI
 from support.paths import DATA, DESIGN, RECIPE, ROOT
 from support.study_files import assert_refused, jobs_of
 from swgpar.analysis.error_estimate import estimate
-from swgpar.drive_results.drive_result import DriveResult
 from swgpar.errors import InputError
+from swgpar.evaluation.step_values import step_values
+from swgpar.presentation.drive_result import DriveResult
 from swgpar.results.table import format_csv
 from swgpar.run_options import RunOptions
 from swgpar.studies.case import Outcome
@@ -27,7 +28,6 @@ from swgpar.studies.spec import load_study
 from swgpar.studies.study import queue
 from swgpar.studies.table import compare, study_rows
 from swgpar.systems.drive import Drives
-from swgpar.systems.drive_quantities import values
 
 MESHES = f'meshes = ["{RECIPE}"]'
 Write = Callable[..., Path]
@@ -212,7 +212,8 @@ def outcome(fs_s1: float, elements: int) -> Outcome:
     stresses = {"fs_s1": np.array([2.0, 3.0, 2.0, 2.0]) * fs_s1, "fs_s3": np.ones(4), "fs_vm": np.ones(4)}
     columns = {"step": np.array([1, 1, 3, 4]), "wg_angle_deg": np.array([0.0, 0.0, 0.0, 2.0]), **stresses}
     means = dict.fromkeys(("fs_s1", "fs_s3", "fs_vm", "rg_s1", "rg_s3", "rg_vm", "wg_torque_Nmm"), fs_s1)
-    found = values(means, columns)
+    rows = [dict(zip(columns, row)) for row in zip(*(values.tolist() for values in columns.values()))]
+    found = {f"mean.{name}": value for name, value in means.items()} | dict(step_values(rows).values)
     return Outcome("finished", values=found, elements=elements, newton_mean=5.0, wall_s=1.0, history=columns)
 
 

@@ -8,12 +8,14 @@ leaves. The error of the drive's displacements and forces is another part (docs/
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from swgpar.design.drive_design import DriveDesign
+from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind, place_text
 from swgpar.evaluation.places import root_nodes
 from swgpar.evaluation.windows.local_problem import SECTORS, LocalProblem, WindowStress, tooth_nodes
 from swgpar.fem.body_layout import FLEXIBLE_SPLINE
@@ -88,7 +90,21 @@ PARTS = BETWEEN, ENDS = "between the ends", "ends"
 
 
 @dataclass(frozen=True)
-class RootStress:
+class OverPeriod:
+    """s1 (MPa) over the sampled period.
+
+    mean_error : by the meshes, in proportion to that of the loaded state
+    sampling_error : change of the mean by half as many angles, None for an odd number of them
+    """
+
+    mean: float
+    mean_error: float
+    sampling_error: float | None
+    maximum: float
+
+
+@dataclass(frozen=True)
+class RootStress(AnswerGroup):
     """Largest tensile stress at the teeth.
 
     s1 : MPa;  error : MPa, estimated, of the window's mesh
@@ -119,6 +135,36 @@ class RootStress:
     drive_error: float | None = None
     period: tuple[tuple[float, float], ...] = ()
 
+    TITLE = "tension at the teeth, by windows"
+    ASKED_BY = "output.root_stress"
+    KINDS = (
+        AnswerKind("root.s1", "largest tension at the teeth under load, by windows", "MPa"),
+        AnswerKind("root.s1_error", "its error by the windows and by the mesh of the drive", "MPa", "total_error"),
+        AnswerKind("root.s1_on_mesh", "the same by nodal averages of the drive's mesh", "MPa", "on_mesh"),
+        AnswerKind("root.mean_s1", "the same over one period, mean", "MPa", "over_period.mean"),
+        AnswerKind("root.maximum_s1", "the same over one period, largest", "MPa", "over_period.maximum"),
+    )
+
+    @classmethod
+    def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
+        return cls.KINDS if design.resolves_root_stress else ()
+
+    def answers(self) -> Iterator[Answer]:
+        over = self.over_period
+        for answer in super().answers():
+            if answer.name == "root.s1":
+                where = place_text(self.region, self.tooth, self.radius, self.z, self.angle_deg)
+                answer = replace(answer, error=self.total_error, place=where, remark=self.warning)
+            elif answer.name == "root.mean_s1" and over is not None:
+                answer = replace(answer, error=over.mean_error)
+            yield answer
+
+    def remarks(self) -> Iterator[str]:
+        if (over := self.over_period) is not None:
+            half = over.sampling_error
+            change = "" if half is None else f": half as many change the mean by {half:.1f} MPa"
+            yield f"{len(self.period)} angles of the period, one window at each further one{change}"
+
     @property
     def levels(self) -> Sequence[float]:
         """s1 (MPa) on the windows, coarse to fine."""
@@ -137,23 +183,15 @@ class RootStress:
         s1 = self.s1 if self.region == TOOTH_ROOT else self.by_part[BETWEEN][-1]
         return (abs(s1 - self.in_root) + self.total_error) / self.in_root
 
-    def over_period(self) -> dict[str, float | None]:
-        """Mean and maximum of s1 (MPa) over the sampled period, and errors of the mean; empty where it is not sampled.
-
-        `mean_error` is that by the meshes, in proportion to that of the loaded state; `sampling_error` is the change
-        of the mean by half as many angles, None for an odd number of them.
-        """
+    @property
+    def over_period(self) -> OverPeriod | None:
+        """Mean and maximum of s1 over the sampled period; None where it is not sampled."""
         if len(self.period) < 2:
-            return {}
+            return None
         values = np.array([value for _, value in self.period])
         half = abs(float(values.mean() - values[::2].mean())) if len(values) % 2 == 0 else None
         mean = float(values.mean())
-        return {
-            "mean": mean,
-            "mean_error": self.total_error * mean / self.s1,
-            "sampling_error": half,
-            "maximum": float(values.max()),
-        }
+        return OverPeriod(mean, self.total_error * mean / self.s1, half, float(values.max()))
 
 
 def window_recipe(model: str, level: int) -> MeshRecipe:

@@ -1,4 +1,4 @@
-"""Result of a drive: history, summary, mesh and fields, in memory or from the files of a run."""
+"""Data of a run of a drive: history, summary, mesh and fields, in memory or from the files of a run."""
 
 from __future__ import annotations
 
@@ -11,14 +11,15 @@ from mpi4py import MPI
 
 from swgpar.design.sections import GearName
 from swgpar.drive_results.drive_tables import DriveTables, read_tables
+from swgpar.drive_results.summary import DriveSummary
+from swgpar.drive_results.summary_file import summary_from
 from swgpar.errors import InputError
 from swgpar.geometry.rotation import SIXTHS, sixths_of_turn
-from swgpar.presentation.figures import DriveFigures
 from swgpar.results import history
 from swgpar.results.atomic import agreed
 from swgpar.results.field_sources import BodyMesh, FieldFiles, FieldSource, chosen_increment
 from swgpar.results.fields import INDEX
-from swgpar.results.folder import read_summary
+from swgpar.results.folder import SUMMARY, read_summary
 from swgpar.results.history import Curves, Row
 from swgpar.results.sector_fields import SectorFields
 
@@ -43,8 +44,8 @@ class FlankPressure(NamedTuple):
     pressure: np.ndarray
 
 
-class DriveResult:
-    """What a run of a drive gives; the same on every rank.
+class DriveData:
+    """What a run of a drive gives, without figures; the same on every rank.
 
     Every rank calls the methods together: fields that are in memory are gathered.
 
@@ -53,9 +54,10 @@ class DriveResult:
     history : dict of (n,) arrays
         Columns of history.csv, a value for every increment, for example ``history["fs_s1"]`` in MPa.
         ``pandas.DataFrame(result.history)`` makes a table of it.
-    summary : dict
-        Content of summary.json, among it ``means`` and ``maxima`` over the rotation, ``torque_ripple`` (of the input
-        torque, relative) and ``transmission_error_arcsec`` (peak to peak).
+    summary : DriveSummary
+        A mapping of all answers by name: ``summary["mean.fs_s1"].value``, with their units, errors and places. Its
+        attributes are what the answers are made of: ``summary.root_stress``, ``summary.stiffness``,
+        ``summary.fatigue``, ``summary.design`` and so on; None for what the run does not have.
     pairs : dict of (n,) arrays
         Columns of pairs.csv, a value for every pair of flanks in contact at every computed increment under load.
     contact_lines : dict of (n,) arrays
@@ -70,29 +72,23 @@ class DriveResult:
         Columns of program.csv, a value for every point of a load program: torque and rotation of the output.
     transmission_error : dict of (n,) arrays
         Columns of transmission_error.csv: angles of input and output, transmission error and input torque over the
-        sampled period, or with ``[deviations]`` over whole turns. ``summary["transmission_error"]`` has what follows.
+        sampled period, or with ``[deviations]`` over whole turns. ``summary.transmission_error`` has what follows.
     balls : dict of (n,) arrays
         Columns of balls.csv, a value for every ball of a bearing at every computed increment; empty without a bearing.
     folder : Path or None
         The results folder; None when the run was in memory.
-
-    Examples
-    --------
-    >>> result = swgpar.run(design, mesh="plane_coarse")
-    >>> result.history["wg_torque_Nmm"].mean(), result.summary["transmission_error_arcsec"]
-    >>> stress = result.field("vm", body="flexible_spline")
-    >>> result.plot.stress().savefig("stress.png")
     """
 
     def __init__(
         self,
         rows: Sequence[Row],
-        summary: dict[str, Any],
+        summary: DriveSummary,
         tables: DriveTables,
         fields: FieldSource | None,
         comm: MPI.Comm,
         folder: Path | None = None,
     ) -> None:
+        self.rows, self.tables = rows, tables
         self.history: dict[str, np.ndarray] = history.columns(rows)
         self.summary = summary
         self.pairs, self.contact_lines = dict(tables.pairs), dict(tables.contact_lines)
@@ -102,63 +98,47 @@ class DriveResult:
         self.transmission_error: dict[str, np.ndarray] = dict(tables.turns)
         self.balls: dict[str, np.ndarray] = dict(tables.balls)
         self.folder = folder
-        self._fields, self._comm = fields, comm
+        self.fields, self.comm = fields, comm
 
     def __repr__(self) -> str:
         where = f" in {self.folder}" if self.folder else ""
-        return f"<DriveResult of {len(self.history['step'])} increments, {self.increments} with fields{where}>"
+        return (
+            f"<{type(self).__name__} of {len(self.history['step'])} increments, {self.increments} with fields{where}>"
+        )
 
     @property
     def increments(self) -> int:
         """Number of increments with fields; 0 with ``output.fields = false``."""
-        return len(self._fields.increments) if self._fields is not None else 0
+        return len(self.fields.increments) if self.fields is not None else 0
 
     @property
     def field_increments(self) -> tuple[int, ...]:
         """Numbers of the increments with fields: their rows in the history, from 1."""
-        return tuple(self._fields.increments) if self._fields is not None else ()
+        return tuple(self.fields.increments) if self.fields is not None else ()
+
+    @property
+    def design_table(self) -> dict[str, Any]:
+        """The whole design, defaults included."""
+        return self.summary.design.model_dump()
 
     @property
     def is_plane(self) -> bool:
         """Whether the drive is a plane model."""
-        return self.summary["design"]["drive"]["model"] == "plane"
+        return self.summary.design.drive.model == "plane"
 
     @property
     def gears(self) -> tuple[GearName, ...]:
         """The gears, flexible spline first."""
-        return tuple(name for name in get_args(GearName) if name in self.summary["bodies"])
-
-    @property
-    def stiffness(self) -> dict[str, Any] | None:
-        """Torsional stiffness: K1, K2, K3 (N m / rad), lost motion, hysteresis, backlash (arc minutes) and more.
-
-        None for a design without the section [stiffness]. It is the entry ``stiffness`` of the summary.
-        """
-        return self.summary["stiffness"]
-
-    @property
-    def ratcheting(self) -> dict[str, Any] | None:
-        """The torque's peak under a prescribed rotation of the output, and what gave way.
-
-        None for a design without the section [ratcheting]. It is the entry ``ratcheting`` of the summary.
-        """
-        return self.summary["ratcheting"]
+        return tuple(name for name in get_args(GearName) if name in self.summary.bodies)
 
     def curves(self) -> Curves:
         """Columns of the history under load, over one period where the rotation was sampled."""
-        design = self.summary["design"]
-        drive = design["drive"]
-        standing = drive["teeth_fs"] if drive["layout"] == "spline_fixed" else drive["teeth_rg"]
+        design = self.summary.design
+        drive = design.drive
+        standing = drive.teeth_fs if drive.layout == "spline_fixed" else drive.teeth_rg
         # the wave generator turns against the ring gear as the ring gear turns against it, the other way round
-        ratio = self.summary["ratio"] * (-1.0 if drive["layout"] == "wave_generator_fixed" else 1.0)
-        return history.curves(
-            self.history, design["steps"]["samples"], self.summary["increments"], 360.0 / standing, ratio
-        )
-
-    @property
-    def plot(self) -> DriveFigures:
-        """The figures: ``plot.stress()`` and so on return matplotlib figures, ``plot.names`` lists them."""
-        return DriveFigures(self, self._comm, gathered=self._fields is not None and self._fields.gathered)
+        ratio = self.summary.ratio * (-1.0 if design.wave_generator_is_fixed else 1.0)
+        return history.curves(self.history, design.steps.samples, self.summary.increments, 360.0 / standing, ratio)
 
     def mesh(self, body: GearName = SPLINE) -> BodyMesh:
         """Undeformed mesh of the modelled part of a body.
@@ -224,8 +204,8 @@ class DriveResult:
         """
         pressure = self.field("pressure", increment)
         grids = self._source(SPLINE).flanks(SPLINE)
-        counts, design = self.summary["bodies"][SPLINE], self.summary["design"]
-        teeth = counts["elements"] // (counts["elements_whole"] // design["drive"]["teeth_fs"])
+        sizes, design = self.summary.bodies[SPLINE], self.summary.design
+        teeth = sizes.elements // (sizes.elements_whole // design.drive.teeth_fs)
         return FlankPressure(grids.s, grids.z, pressure.reshape(teeth, -1)[:, grids.nodes])
 
     def grid(
@@ -249,7 +229,7 @@ class DriveResult:
         bodies = self.gears if body is None else (body,)
         parts = [self._part(name, increment) for name in bodies]
         if whole:
-            copies = self.summary["copies"]
+            copies = self.summary.copies
             turns = SIXTHS[sixths_of_turn(copies, np.arange(1, copies))]
             parts += [_rotated(*part, turn) for turn in turns for part in parts]
             bodies = bodies * copies
@@ -268,30 +248,17 @@ class DriveResult:
         grid.cell_data["body"] = np.concatenate(numbers)
         return grid
 
-    def view(self) -> None:
-        """Open a window that shows the deformed drive; call it on one rank, of a result from a folder.
-
-        Raises
-        ------
-        InputError
-            There is no display, or the run kept no fields.
-        """
-        from swgpar.presentation.view import require_display, view_plotter
-
-        require_display()
-        view_plotter(self).show()
-
     def _part(self, body: GearName, increment: int) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
         points, cells = self.mesh(body)
         return points, cells, {name: self.field(name, increment, body) for name in self.names(body, increment)}
 
     def _source(self, body: GearName) -> FieldSource:
-        bodies = list(self.summary["bodies"])
+        bodies = list(self.summary.bodies)
         if body not in bodies:
             raise InputError(f"body {body!r} is not available: allowed {' or '.join(bodies)}")
-        if self._fields is None or not self._fields.increments:
+        if self.fields is None or not self.fields.increments:
             raise InputError("this run kept no fields: allowed with output.fields = true")
-        return self._fields
+        return self.fields
 
 
 def _rotated(
@@ -311,13 +278,14 @@ def _rotated(
     return points @ rotation.T, cells, out
 
 
-def open_drive(folder: Path, comm: MPI.Comm) -> DriveResult:
-    """Result of a finished run from its folder; collective, every rank reads the files."""
+def open_data(folder: Path, comm: MPI.Comm) -> DriveData:
+    """Data of a finished run from its folder; collective, every rank reads the files."""
     folder = folder.absolute()  # the fields are read later
     with agreed(comm, folder, "read"):
-        summary, rows = read_summary(folder), history.read_history(folder / history.NAME)
+        content, rows = read_summary(folder), history.read_history(folder / history.NAME)
         tables = read_tables(folder)
-    return DriveResult(rows, summary, tables, open_fields(folder, comm), comm, folder)
+        summary = summary_from(content, rows, tables.pairs, folder / SUMMARY)
+    return DriveData(rows, summary, tables, open_fields(folder, comm), comm, folder)
 
 
 def open_fields(folder: Path, comm: MPI.Comm) -> FieldFiles | None:

@@ -1,0 +1,138 @@
+"""All evaluations of a run at its end: the summary, and the tables that come with fatigue and losses."""
+
+from __future__ import annotations
+
+import platform
+import resource
+from collections.abc import Mapping
+
+import numpy as np
+
+from swgpar.analysis.recorder import Recorder
+from swgpar.drive_results.drive_tables import DriveTables
+from swgpar.drive_results.summary import BodySizes, DriveSummary
+from swgpar.evaluation.bearing_loads import BallLoads, evaluate_bearing
+from swgpar.evaluation.contact.largest_contact import largest_contact
+from swgpar.evaluation.fatigue import FatigueResult, evaluate_fatigue
+from swgpar.evaluation.housing_values import HousingStresses
+from swgpar.evaluation.load_sharing import LoadSharing, load_sharing
+from swgpar.evaluation.losses import DriveLosses, evaluate_losses
+from swgpar.evaluation.numerics import evaluate_numerics
+from swgpar.evaluation.places import LargestStresses
+from swgpar.evaluation.program_results import stage_ends
+from swgpar.evaluation.ratcheting import evaluate_ratcheting
+from swgpar.evaluation.rotation import evaluate_rotation, sampled_rows
+from swgpar.evaluation.step_values import step_values
+from swgpar.evaluation.stiffness import torsional_stiffness
+from swgpar.evaluation.transmission_error import evaluate_turns
+from swgpar.petsc import PETSc
+from swgpar.results.history import Row, loaded_increments
+from swgpar.version import __version__
+
+RING = "ring_gear"
+"""The ring gear whose load sharing is evaluated."""
+
+
+def evaluate_run(
+    recorder: Recorder,
+    shown: list[Row],
+    recipe_name: str,
+    seconds: float,
+    *,
+    stiffness_error: Mapping[str, float] | None,
+    ended_early: bool,
+) -> tuple[DriveSummary, DriveTables]:
+    """Evaluate what a run has recorded; collective.
+
+    shown : rows of history.csv;  recipe_name : the mesh recipe as the user named it
+    seconds : wall time of the run, restarts included
+    stiffness_error : of the torsional stiffness by the mesh, if it is known
+    ended_early : whether a load program has ended before its last point
+    """
+    model, design, record = recorder.model, recorder.model.design, recorder.record
+    rows = record.rows
+    program, places = recorder.program_rows(), recorder.places_with_errors()
+    fatigue, losses, losses_table = _cycle_results(recorder)
+    bodies = {name: BodySizes(**counts) for name, counts in model.counts().items()}
+    memory = model.comm.allgather(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0)
+    summary = DriveSummary(
+        recipe=recipe_name,
+        bodies=bodies,
+        nodes=sum(body.nodes_whole for body in bodies.values()),
+        elements=model.n_elements(),
+        dofs=sum(body.dofs for body in bodies.values()),
+        copies=model.copies,
+        increments=len(rows),
+        ranks=model.comm.size,
+        versions={
+            "swgpar": __version__,
+            "python": platform.python_version(),
+            "numpy": np.__version__,
+            "petsc": ".".join(map(str, PETSc.Sys.getVersion())),
+        },
+        wall_s=seconds,
+        phases_s={name: round(value, 3) for name, value in model.phases.slowest(model.comm).items()},
+        peak_memory_MB_per_rank=tuple(round(value, 1) for value in memory),
+        ratio=design.input_ratio,
+        design=design,
+        rotation=evaluate_rotation(design, rows, record.root_stress, places),
+        stresses=LargestStresses.of(places),
+        steps=step_values(shown),
+        numerics=evaluate_numerics(rows, model.omitted_bending_stress() if design.solver.condensed_sectors else None),
+        accuracy=record.accuracy,
+        root_stress=record.root_stress,
+        contact=largest_contact(record.pairs),
+        load_sharing=_load_sharing(recorder),
+        transmission_error=evaluate_turns(design, record.turns),
+        stiffness=torsional_stiffness(design, program, stiffness_error),
+        ratcheting=evaluate_ratcheting(design, program, record.tooth_rotations, ended_early=ended_early),
+        program=stage_ends(design, program),
+        fatigue=fatigue and fatigue.found,
+        losses=losses,
+        bearing=_bearing(recorder),
+        housing=HousingStresses(**record.housing) if record.housing else None,
+    )
+    tables = DriveTables(losses=losses_table)
+    if fatigue is not None:
+        tables = DriveTables(losses=losses_table, cycle=fatigue.cycle, sector=fatigue.sector)
+    return summary, tables
+
+
+def _load_sharing(recorder: Recorder) -> LoadSharing | None:
+    rows, design = recorder.record.rows, recorder.model.design
+    # without a rotation the loaded state stands for it
+    count = max(len(sampled_rows(design, rows)), 1)
+    return load_sharing(
+        [pair for pair in recorder.record.pairs if pair.get("ring", RING) == RING],
+        [row["tooth_torque_Nmm"] for row in rows],
+        range(len(rows) - count + 1, len(rows) + 1),
+        design.drive.teeth_fs,
+        recorder.model.copies,
+    )
+
+
+def _bearing(recorder: Recorder) -> BallLoads | None:
+    """Over the increments under load."""
+    design = recorder.model.design
+    if design.bearing is None:
+        return None
+    loaded = loaded_increments({"step": np.array([int(row["step"]) for row in recorder.record.rows])})
+    increments = [int(k) + 1 for k in loaded]
+    return evaluate_bearing(
+        design, recorder.record.balls, increments, recorder.record.bearing_shares, recorder.record.race_stress
+    )
+
+
+def _cycle_results(recorder: Recorder) -> tuple[FatigueResult | None, DriveLosses | None, Mapping[str, np.ndarray]]:
+    """SafetyAndLife, losses and the columns of losses.csv over the sampled period."""
+    cycle, model = recorder.cycle, recorder.model
+    design = model.design
+    if cycle is None or not cycle.complete:
+        return None, None, {}
+    with model.phases("fatigue and losses"):
+        fatigue = evaluate_fatigue(cycle, recorder.record.root_stress) if design.fatigue else None
+        if not design.losses:
+            return fatigue, None, {}
+        count = len(recorder.record.rows)
+        increments = range(count - design.steps.samples + 1, count + 1)
+        return fatigue, *evaluate_losses(cycle, recorder.record.pairs, recorder.record.cam_forces, increments)

@@ -1,0 +1,45 @@
+"""Summaries of format 1, which had no number: the same values under other keys."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, fields
+from typing import Any
+
+import numpy as np
+
+from swgpar.evaluation.fatigue import CRITERIA, Life
+from swgpar.evaluation.numerics import evaluate_numerics
+from swgpar.evaluation.rotation import Rotation
+from swgpar.evaluation.step_values import step_values
+from swgpar.results.history import Row
+
+
+def from_first_format(
+    content: Mapping[str, Any], rows: Sequence[Row], pairs: Mapping[str, np.ndarray]
+) -> dict[str, Any]:
+    """The content as it would stand in the present format.
+
+    rows : of history.csv;  pairs : columns of pairs.csv. They have what the summary lacked.
+    """
+    found = dict(content)
+    computed = rows[: content["increments"]]
+    found["rotation"] = {field.name: content[field.name] for field in fields(Rotation)}
+    found["stresses"] = {name: content[name] for name in ("places", "regions")}
+    found["steps"] = asdict(step_values(rows))
+    found["numerics"] = asdict(evaluate_numerics(computed, content["condensed_MPa"]))
+    found["program"] = {"stages": content["program"]} if content["design"]["load"]["program"] else None
+    if contact := content["contact"]:
+        found["contact"] = {**contact, "on_edge": bool(np.any(pairs["edge"]))}
+    if fatigue := content["fatigue"]:
+        found["fatigue"] = {
+            **fatigue,
+            "least": {name: fatigue[name] for name in CRITERIA},
+            "regions": {
+                name: {**region, "safety": {criterion: region[criterion] for criterion in CRITERIA}}
+                for name, region in fatigue["regions"].items()
+            },
+            "windows": content["bearing"] is None and content["program"] is None,
+            "life": {field.name: fatigue[field.name] for field in fields(Life)},
+        }
+    return found

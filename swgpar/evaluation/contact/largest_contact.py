@@ -1,0 +1,89 @@
+"""The contact of flanks with the largest pressure under load."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from swgpar.design.drive_design import DriveDesign
+from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind
+from swgpar.results.history import Row
+
+EDGE = "lies on an edge: no property of the drive, and the stress at the teeth may be off by more than its error"
+
+
+@dataclass(frozen=True)
+class LargestContact(AnswerGroup):
+    """A row of pairs.csv: the one with the largest pressure, of those off an edge if there are any.
+
+    increment, step, wg_angle_deg : when;  tooth, flank, ring_tooth : which
+    angle_deg, radius_mm, z_mm : where
+    force_N, line_load_Nmm : of the pair, N and N/mm
+    pressure_MPa, half_width_mm, shear_MPa : of the line contact; shear is the largest below the surface
+    edge : 1 where it lies on an edge;  on_edge : whether any contact under load lies on one
+    ring : the ring gear, in a pancake drive
+    """
+
+    increment: int
+    step: int
+    wg_angle_deg: float
+    tooth: int
+    flank: str
+    ring_tooth: int
+    angle_deg: float
+    radius_mm: float
+    z_mm: float
+    force_N: float
+    line_load_Nmm: float
+    pressure_MPa: float
+    half_width_mm: float
+    shear_MPa: float
+    edge: int
+    on_edge: bool
+    ring: str | None = None
+
+    TITLE = "contact of the flanks under load"
+    KINDS = (
+        AnswerKind(
+            "contact.pressure", "largest pressure of the flanks under load, off edges", "MPa", "pressure_off_edges"
+        ),
+        AnswerKind("contact.on_edge", "whether a contact under load lies on an edge: 1 or 0"),
+        AnswerKind("contact.pressure_on_edge", "largest pressure of the flanks under load", "MPa", "pressure_on_edges"),
+        AnswerKind("contact.line_load", "line load there", "N/mm", "line_load_Nmm"),
+        AnswerKind("contact.half_width", "half width of the contact there", "mm", "half_width_mm"),
+        AnswerKind("contact.shear", "largest shear stress below the surface there", "MPa", "shear_MPa"),
+    )
+
+    @classmethod
+    def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
+        return cls.KINDS if design.resolves_root_stress else ()
+
+    @property
+    def pressure_off_edges(self) -> float | None:
+        """The pressure (MPa) where it does not lie on an edge."""
+        return None if self.edge else self.pressure_MPa
+
+    @property
+    def pressure_on_edges(self) -> float | None:
+        """The pressure (MPa) where it lies on an edge."""
+        return self.pressure_MPa if self.edge else None
+
+    def answers(self) -> Iterator[Answer]:
+        on = f" on the {self.ring.replace('_', ' ')}" if self.ring else ""
+        place = f"tooth {self.tooth}, {self.flank} flank{on}, radius {self.radius_mm:.2f}, z {self.z_mm:.2f} mm"
+        for answer in super().answers():
+            if answer.name.startswith("contact.pressure"):
+                answer = replace(answer, place=place, remark=EDGE if self.edge else "")
+            yield answer
+
+
+def largest_contact(pairs: Sequence[Row]) -> LargestContact | None:
+    """The contact of the rows of pairs.csv; None where no pressure is known."""
+    known = [pair for pair in pairs if np.isfinite(pair["pressure_MPa"])]
+    if not known:
+        return None
+    largest = max(known, key=lambda pair: (not pair["edge"], pair["pressure_MPa"]))
+    names = set(LargestContact.__dataclass_fields__) & set(largest)
+    return LargestContact(**{name: largest[name] for name in names}, on_edge=any(pair["edge"] for pair in pairs))

@@ -1,0 +1,50 @@
+"""What is left over and left out by the solution of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind
+from swgpar.results.history import Row
+
+BALANCE = 1e-4
+"""Largest torque that may be left over, over the largest torque of the teeth."""
+
+
+@dataclass(frozen=True)
+class Numerics(AnswerGroup):
+    """Residues of a run.
+
+    balance_error_Nmm : largest torque that is left over in an increment
+    largest_tooth_torque_Nmm : largest torque of the teeth
+    condensed_MPa : bending stress that condensed sectors leave out, None without them
+    """
+
+    balance_error_Nmm: float
+    largest_tooth_torque_Nmm: float
+    condensed_MPa: float | None
+
+    TITLE = "torque balance and reductions"
+    KINDS = (
+        AnswerKind("residue.torque", "torque that is left over in an increment, largest", "N·mm", "balance_error_Nmm"),
+        AnswerKind("residue.condensed", "bending stress that condensed sectors leave out", "MPa", "condensed_MPa"),
+    )
+
+    @property
+    def largest_balance_Nmm(self) -> float:
+        """Torque (N mm) that may be left over."""
+        return BALANCE * self.largest_tooth_torque_Nmm
+
+    def answers(self) -> Iterator[Answer]:
+        for answer in super().answers():
+            yield replace(answer, limit=self.largest_balance_Nmm if answer.name == "residue.torque" else None)
+
+
+def evaluate_numerics(rows: Sequence[Row], condensed: float | None) -> Numerics:
+    """From the rows of the history. condensed : MPa, as in `Numerics`"""
+    return Numerics(
+        balance_error_Nmm=max((row["torque_balance_Nmm"] for row in rows), default=0.0),
+        largest_tooth_torque_Nmm=max((abs(row["tooth_torque_Nmm"]) for row in rows), default=0.0),
+        condensed_MPa=condensed,
+    )

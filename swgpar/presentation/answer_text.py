@@ -1,0 +1,30 @@
+"""Words and numbers of an answer, on the terminal and in the report."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from swgpar.evaluation.answers import Answer
+from swgpar.results.page import number
+
+NOTHING = 1e-9
+"""Size below which a value is round-off and 0 is shown."""
+
+
+def value_text(value: float) -> str:
+    """A value with five digits."""
+    return number(0.0 if abs(value) < NOTHING else float(value))
+
+
+def error_text(error: float | None) -> str:
+    """An error with two digits, without a power of ten and without a break of the line; empty where it is unknown."""
+    if error is None:
+        return ""
+    digits = 1 - int(np.floor(np.log10(error))) if 0.0 < error < np.inf else 0
+    return f"±\u00a0{round(error, digits):.{max(digits, 0)}f}"
+
+
+def remark_text(answer: Answer) -> str:
+    """What to know about an answer, with its limit."""
+    limit = "" if answer.limit is None else f"good up to {number(answer.limit)}"
+    return "; ".join(filter(None, (answer.remark, limit)))
