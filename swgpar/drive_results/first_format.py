@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from copy import deepcopy
 from dataclasses import asdict, fields
 from typing import Any
 
@@ -24,6 +25,7 @@ def from_first_format(
     """
     found = dict(content)
     computed = rows[: content["increments"]]
+    found["design"] = _with_materials(content["design"])
     found["rotation"] = {field.name: content[field.name] for field in fields(Rotation)}
     found["stresses"] = {name: content[name] for name in ("places", "regions")}
     found["steps"] = asdict(step_values(rows))
@@ -42,4 +44,16 @@ def from_first_format(
             "windows": content["bearing"] is None and content["program"] is None,
             "life": {field.name: fatigue[field.name] for field in fields(Life)},
         }
+    return found
+
+
+def _with_materials(design: Mapping[str, Any]) -> dict[str, Any]:
+    """The design with sections of materials in place of E and nu of the housing and of the bearing."""
+    found = deepcopy(dict(design))
+    general = found["material"]
+    for section in (found["ring_gear"].get("housing"), found["wave_generator"].get("bearing")):
+        if section:
+            own = {name: section.pop(name, None) for name in ("E", "nu")}
+            given = {name: value for name, value in own.items() if value is not None}
+            section["material"] = {**general, **given} if given else None
     return found
