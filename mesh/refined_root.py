@@ -10,7 +10,7 @@ import argparse
 from pathlib import Path
 
 import swgpar
-from swgpar.meshing.recipe import to_toml
+from swgpar.input.toml_file import to_toml
 
 DESIGN = Path(__file__).parents[1] / "drivers" / "plane_half_turn.toml"
 
@@ -32,7 +32,7 @@ def main() -> None:
     for body, values in mesh.quality.items():
         print(f"{body}: {values['elements']} elements, scaled Jacobian {values['min_scaled_jacobian']:.3f} and more")
     arguments.out.parent.mkdir(parents=True, exist_ok=True)
-    arguments.out.write_text(to_toml(recipe), encoding="utf-8")
+    arguments.out.write_text(to_toml(recipe.model_dump()), encoding="utf-8")
 
 
 if __name__ == "__main__":
