@@ -64,7 +64,6 @@ def test_imports_come_from_the_same_room_or_from_those_before_it(room: str) -> N
     assert not wrong
 
 
-@pytest.mark.xfail(reason="results and their figures, the recorder and the restart import each other")
 def test_no_files_import_each_other_in_a_circle() -> None:
     assert graph.circles(graph.file_graph(ROOT)) == []
 
