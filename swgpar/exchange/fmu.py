@@ -18,7 +18,6 @@ from importlib.resources import files
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, NamedTuple
-from xml.etree import ElementTree
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 import numpy as np
@@ -26,6 +25,7 @@ import numpy as np
 from swgpar.errors import OutputError
 from swgpar.exchange.spring_model import SpringModel, spring_model
 from swgpar.log import logger
+from swgpar.results.page import render
 from swgpar.version import __version__
 
 if TYPE_CHECKING:
@@ -132,46 +132,10 @@ def _knots(name: str, knots: np.ndarray) -> str:
 
 def model_description(guid: str, starts: dict[str, float]) -> bytes:
     """Text of modelDescription.xml."""
-    root = ElementTree.Element(
-        "fmiModelDescription",
-        fmiVersion="2.0",
-        modelName=NAME,
-        guid=guid,
-        description="strain wave gear: torsional spring with kinematic error and friction",
-        license="BSD-3-Clause",
-        generationTool=f"swgpar {__version__}",
-        variableNamingConvention="flat",
-        numberOfEventIndicators="0",
-    )
-    common = {"modelIdentifier": NAME, "canNotUseMemoryManagementFunctions": "true"}
-    for kind, further in (("ModelExchange", {}), ("CoSimulation", {"canHandleVariableCommunicationStepSize": "true"})):
-        sources = ElementTree.SubElement(ElementTree.SubElement(root, kind, common | further), "SourceFiles")
-        ElementTree.SubElement(sources, "File", name=f"{NAME}.c")
-    units = ElementTree.SubElement(root, "UnitDefinitions")
-    for unit, exponents in UNITS.items():
-        ElementTree.SubElement(ElementTree.SubElement(units, "Unit", name=unit), "BaseUnit", exponents)
-    variables = ElementTree.SubElement(root, "ModelVariables")
-    for number, one in enumerate(VARIABLES):
-        entry = ElementTree.SubElement(
-            variables,
-            "ScalarVariable",
-            name=one.name,
-            valueReference=str(number),
-            description=one.text,
-            causality=one.causality,
-            variability="tunable" if one.causality == "parameter" else "continuous",
-        )
-        real = ElementTree.SubElement(entry, "Real", unit=one.unit)
-        if one.name in starts:
-            real.set("start", repr(starts[one.name]))
-    structure = ElementTree.SubElement(root, "ModelStructure")
-    outputs = [str(k) for k, one in enumerate(VARIABLES, 1) if one.causality == "output"]
-    for kind in ("Outputs", "InitialUnknowns"):
-        unknowns = ElementTree.SubElement(structure, kind)
-        for index in outputs:
-            ElementTree.SubElement(unknowns, "Unknown", index=index)
-    ElementTree.indent(root)
-    return ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
+    outputs = [index for index, one in enumerate(VARIABLES, start=1) if one.causality == "output"]
+    values = {"name": NAME, "guid": guid, "version": __version__, "units": UNITS}
+    text = render("exchange/model_description.xml.j2", **values, variables=VARIABLES, starts=starts, outputs=outputs)
+    return text.encode()
 
 
 def compiled(source: str, body: str) -> bytes | None:

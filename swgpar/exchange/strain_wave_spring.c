@@ -100,6 +100,10 @@ static void evaluate(Spring* spring) {
   spring->is_current = 1;
 }
 
+/* A function that only answers */
+#define ANSWER(Name, answer, ...) \
+  EXPORTED fmi2Status fmi2##Name(__VA_ARGS__) { return answer; }
+
 /* Life of an instance */
 
 EXPORTED const char* fmi2GetTypesPlatform(void) { return "default"; }
@@ -115,10 +119,8 @@ EXPORTED fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2Strin
 
 EXPORTED void fmi2FreeInstance(fmi2Component c) { free(c); }
 
-EXPORTED fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerance_given, fmi2Real tolerance,
-                                        fmi2Real start, fmi2Boolean stop_given, fmi2Real stop) {
-  return fmi2OK;
-}
+ANSWER(SetupExperiment, fmi2OK, fmi2Component c, fmi2Boolean tolerance_given, fmi2Real tolerance, fmi2Real start,
+       fmi2Boolean stop_given, fmi2Real stop)
 
 EXPORTED fmi2Status fmi2Reset(fmi2Component c) {
   Spring* spring = c;
@@ -127,13 +129,11 @@ EXPORTED fmi2Status fmi2Reset(fmi2Component c) {
   return fmi2OK;
 }
 
-EXPORTED fmi2Status fmi2EnterInitializationMode(fmi2Component c) { return fmi2OK; }
-EXPORTED fmi2Status fmi2ExitInitializationMode(fmi2Component c) { return fmi2OK; }
-EXPORTED fmi2Status fmi2Terminate(fmi2Component c) { return fmi2OK; }
+ANSWER(EnterInitializationMode, fmi2OK, fmi2Component c)
+ANSWER(ExitInitializationMode, fmi2OK, fmi2Component c)
+ANSWER(Terminate, fmi2OK, fmi2Component c)
 
-EXPORTED fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t n, const fmi2String categories[]) {
-  return fmi2OK;
-}
+ANSWER(SetDebugLogging, fmi2OK, fmi2Component c, fmi2Boolean on, size_t n, const fmi2String categories[])
 
 /* Variables: all are real numbers */
 
@@ -159,56 +159,36 @@ EXPORTED fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference refere
   return fmi2OK;
 }
 
-#define NONE_OF(Type)                                                                                \
-  EXPORTED fmi2Status fmi2Get##Type(fmi2Component c, const fmi2ValueReference reference[], size_t n, \
-                                    fmi2##Type value[]) {                                            \
-    return n ? fmi2Error : fmi2OK;                                                                   \
-  }                                                                                                  \
-  EXPORTED fmi2Status fmi2Set##Type(fmi2Component c, const fmi2ValueReference reference[], size_t n, \
-                                    const fmi2##Type value[]) {                                      \
-    return n ? fmi2Error : fmi2OK;                                                                   \
-  }
+#define NONE_OF(Type)                                                                                                \
+  ANSWER(Get##Type, n ? fmi2Error : fmi2OK, fmi2Component c, const fmi2ValueReference r[], size_t n, fmi2##Type v[]) \
+  ANSWER(Set##Type, n ? fmi2Error : fmi2OK, fmi2Component c, const fmi2ValueReference r[], size_t n,                 \
+         const fmi2##Type v[])
 NONE_OF(Integer)
 NONE_OF(Boolean)
 NONE_OF(String)
 
 /* What modelDescription.xml says is not available */
 
-EXPORTED fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) { return fmi2Error; }
-EXPORTED fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) { return fmi2Error; }
-EXPORTED fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* state) { return fmi2Error; }
-EXPORTED fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t* size) { return fmi2Error; }
-EXPORTED fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte byte[], size_t size) {
-  return fmi2Error;
-}
-EXPORTED fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte byte[], size_t size, fmi2FMUstate* state) {
-  return fmi2Error;
-}
-EXPORTED fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[], size_t n_unknown,
-                                                 const fmi2ValueReference known[], size_t n_known,
-                                                 const fmi2Real change[], fmi2Real derivative[]) {
-  return fmi2Error;
-}
+ANSWER(GetFMUstate, fmi2Error, fmi2Component c, fmi2FMUstate* state)
+ANSWER(SetFMUstate, fmi2Error, fmi2Component c, fmi2FMUstate state)
+ANSWER(FreeFMUstate, fmi2Error, fmi2Component c, fmi2FMUstate* state)
+ANSWER(SerializedFMUstateSize, fmi2Error, fmi2Component c, fmi2FMUstate state, size_t* size)
+ANSWER(SerializeFMUstate, fmi2Error, fmi2Component c, fmi2FMUstate state, fmi2Byte byte[], size_t size)
+ANSWER(DeSerializeFMUstate, fmi2Error, fmi2Component c, const fmi2Byte byte[], size_t size, fmi2FMUstate* state)
+ANSWER(GetDirectionalDerivative, fmi2Error, fmi2Component c, const fmi2ValueReference unknown[], size_t n_unknown,
+       const fmi2ValueReference known[], size_t n_known, const fmi2Real change[], fmi2Real derivative[])
 
 /* Co-simulation: outputs at the end of a step belong to the inputs there */
 
-EXPORTED fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean no_set_state_prior) {
-  return fmi2OK;
-}
-EXPORTED fmi2Status fmi2CancelStep(fmi2Component c) { return fmi2Error; }
-EXPORTED fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference reference[], size_t n,
-                                                const fmi2Integer order[], const fmi2Real value[]) {
-  return n ? fmi2Error : fmi2OK;
-}
-EXPORTED fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference reference[], size_t n,
-                                                 const fmi2Integer order[], fmi2Real value[]) {
-  return n ? fmi2Error : fmi2OK;
-}
+ANSWER(DoStep, fmi2OK, fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean no_set_state_prior)
+ANSWER(CancelStep, fmi2Error, fmi2Component c)
+ANSWER(SetRealInputDerivatives, n ? fmi2Error : fmi2OK, fmi2Component c, const fmi2ValueReference reference[], size_t n,
+       const fmi2Integer order[], const fmi2Real value[])
+ANSWER(GetRealOutputDerivatives, n ? fmi2Error : fmi2OK, fmi2Component c, const fmi2ValueReference reference[],
+       size_t n, const fmi2Integer order[], fmi2Real value[])
 
-#define NO_STATUS(Name, Type)                                                                        \
-  EXPORTED fmi2Status fmi2Get##Name(fmi2Component c, const fmi2StatusKind kind, fmi2##Type* value) { \
-    return fmi2Discard;                                                                              \
-  }
+#define NO_STATUS(Name, Type) \
+  ANSWER(Get##Name, fmi2Discard, fmi2Component c, const fmi2StatusKind kind, fmi2##Type* value)
 NO_STATUS(Status, Status)
 NO_STATUS(RealStatus, Real)
 NO_STATUS(IntegerStatus, Integer)
@@ -217,28 +197,20 @@ NO_STATUS(StringStatus, String)
 
 /* Model exchange: neither states nor events */
 
-EXPORTED fmi2Status fmi2EnterEventMode(fmi2Component c) { return fmi2OK; }
+ANSWER(EnterEventMode, fmi2OK, fmi2Component c)
 EXPORTED fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* info) {
   memset(info, 0, sizeof(*info));
   return fmi2OK;
 }
-EXPORTED fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) { return fmi2OK; }
+ANSWER(EnterContinuousTimeMode, fmi2OK, fmi2Component c)
 EXPORTED fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean no_set_state_prior, fmi2Boolean* event,
                                                 fmi2Boolean* terminate) {
   *event = *terminate = fmi2False;
   return fmi2OK;
 }
-EXPORTED fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time) { return fmi2OK; }
-EXPORTED fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n) {
-  return n ? fmi2Error : fmi2OK;
-}
-EXPORTED fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real derivative[], size_t n) {
-  return n ? fmi2Error : fmi2OK;
-}
-EXPORTED fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real indicator[], size_t n) {
-  return n ? fmi2Error : fmi2OK;
-}
-EXPORTED fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t n) { return n ? fmi2Error : fmi2OK; }
-EXPORTED fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real x[], size_t n) {
-  return n ? fmi2Error : fmi2OK;
-}
+ANSWER(SetTime, fmi2OK, fmi2Component c, fmi2Real time)
+ANSWER(SetContinuousStates, n ? fmi2Error : fmi2OK, fmi2Component c, const fmi2Real x[], size_t n)
+ANSWER(GetDerivatives, n ? fmi2Error : fmi2OK, fmi2Component c, fmi2Real derivative[], size_t n)
+ANSWER(GetEventIndicators, n ? fmi2Error : fmi2OK, fmi2Component c, fmi2Real indicator[], size_t n)
+ANSWER(GetContinuousStates, n ? fmi2Error : fmi2OK, fmi2Component c, fmi2Real x[], size_t n)
+ANSWER(GetNominalsOfContinuousStates, n ? fmi2Error : fmi2OK, fmi2Component c, fmi2Real x[], size_t n)

@@ -60,7 +60,12 @@ def page(template: str, title: str, *, scripts: Sequence[str] = (), **values: An
     hashes = [base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in sources]
     allowed = " ".join(f"'sha256-{text}'" for text in hashes) or "'none'"
     shown = {"title": title, "scripts": [Markup(text) for text in sources], "allowed_scripts": Markup(allowed)}
-    return _environment().get_template(template).render(**shown, **values).encode()
+    return render(template, **shown, **values).encode()
+
+
+def render(template: str, **values: Any) -> str:
+    """The text of a template of the package, every value escaped; a path below the package, and what it shows."""
+    return _environment().get_template(template).render(**values)
 
 
 @cache
