@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -119,7 +120,14 @@ def _copy(value: Any) -> Any:
 
 def to_toml(table: Mapping[str, Any]) -> str:
     """The text of a TOML file with this content; keys without a value (None) are left out."""
-    return tomli_w.dumps(_without_none(table))
+    text = tomli_w.dumps(_without_none(table))
+    # plain lists on one line; line ends inside of texts are escaped
+    return re.sub(r"\[\n((?: +[^\[\]\n]+,\n)+) *\]", _on_one_line, text)
+
+
+def _on_one_line(found: re.Match[str]) -> str:
+    items = found[1].split(",\n")[:-1]
+    return f"[{', '.join(item.strip() for item in items)}]"
 
 
 def _without_none(table: Mapping[str, Any]) -> dict[str, Any]:

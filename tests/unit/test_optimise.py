@@ -88,5 +88,8 @@ def test_toml_that_is_written_reads_the_same() -> None:
     table: dict[str, Any] = {
         "a": {"x": 1.5e-7, "y": [1, 2], "text": 'quoted "ä"', "on": True, "inner": {"z": -3}},
         "load": {"program": [{"name": "up", "torque": 2.0}, {"name": "down", "torque": 0.0}]},
+        "lists": {"texts": ["a  b", "c, d,", "e\nf"], "more": ["[", "x],"], "nested": [[1, 2], [3.0]], "none": []},
     }
     assert tomllib.loads(to_toml(table)) == table
+    assert tomllib.loads(to_toml({**table, "left_out": None})) == table
+    assert "y = [1, 2]\n" in to_toml(table)

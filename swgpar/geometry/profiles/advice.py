@@ -6,7 +6,7 @@ flank, so that it is the range that passes.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -74,7 +74,9 @@ def working_range(key: str, value: float, builds: Builds, unit: float) -> Workin
         return None
     middle = int(np.abs(samples - value).argmin()) if value <= 0.0 else SAMPLES // 2
     nearest = int(np.flatnonzero(works)[np.abs(np.flatnonzero(works) - middle).argmin()])
-    first, last = _run(works, nearest)
+    # the samples around it that all work
+    bad = np.flatnonzero(~works)
+    first, last = bad[bad < nearest].max(initial=-1) + 1, bad[bad > nearest].min(initial=SAMPLES) - 1
     low = samples[0] if first == 0 else _end(builds, samples[first - 1], samples[first])
     high = samples[-1] if last == SAMPLES - 1 else _end(builds, samples[last + 1], samples[last])
     # a few digits, rounded into the range
@@ -86,16 +88,6 @@ def working_range(key: str, value: float, builds: Builds, unit: float) -> Workin
     example = near * (far / near) ** 0.1 if min(near, far) > 0.0 else near + 0.1 * (far - near)
     example = _inward(example, low, high, up=far > near)
     return WorkingRange(key, value, low, high, example if builds(example) else float(samples[nearest]))
-
-
-def _run(works: Sequence[bool] | np.ndarray, index: int) -> tuple[int, int]:
-    """First and last index of the samples around `index` that all work."""
-    first = last = index
-    while first > 0 and works[first - 1]:
-        first -= 1
-    while last < len(works) - 1 and works[last + 1]:
-        last += 1
-    return first, last
 
 
 def _end(builds: Builds, bad: float, good: float) -> float:
