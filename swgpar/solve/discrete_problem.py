@@ -306,7 +306,19 @@ class DiscreteProblem:
         return ResidualInfo(float(contact_force), collapsed)
 
     def tangent(self, u: np.ndarray, state: LoadState) -> np.ndarray:
-        """Fill `matrix` at displacement u (n_local, 3) mm; collective.
+        """Fill `matrix`, the grounded tangent K' = K + B B^T, at displacement u (n_local, 3) mm; collective.
+
+        Symmetric: without friction, where residual and tangent are derivatives of a potential (`symmetric`). With it
+        all blocks are stored, also where nothing slips.
+
+        Definite: K is singular where contacts or multipliers alone hold a body; the grounding B makes K' positive
+        definite where K is semi-definite, as in the undeformed drive. Geometric terms make K' indefinite: those of
+        elements where a thin rim under compression gives way between contacts, those of pressures on curved surfaces
+        and of balls. That happens in early iterations; the line search then reverses the step. PETSc is told that a
+        symmetric K' is positive definite, so that MUMPS factorises it without pivoting whether it is or not.
+
+        It lacks the second variation of a coupling's rotation, the motion of the cuts between segments, and pressures
+        beyond the bound of the geometric terms. The multipliers couple through the border (`BorderedSystem`).
 
         Returns keys (n,) of contact blocks on this rank that have no room in it.
         """

@@ -28,8 +28,8 @@ class LineSearch:
     the sign of its slip changes in every step instead. With `descending` the search ends only where the potential still
     decreases, with trials down to the last digit, see `swgpar.solve.active_set_cycles`.
 
-    The tangent is indefinite where a thin rim gives way between contacts. A step along which the potential grows is
-    then reversed, unless the residual halves along it all the same, as it does near a solution.
+    The tangent may be indefinite (`DiscreteProblem.tangent`). A step along which the potential grows is then reversed,
+    unless the residual halves along it all the same, as it does near a solution.
 
     Parameters
     ----------

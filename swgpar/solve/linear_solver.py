@@ -48,7 +48,7 @@ class MatrixKind:
 
     comm : communicator
     positions : (n_own, 2 or 3) mm, of this rank's nodes; a matrix has as many unknowns per node
-    symmetric : whether the matrices are
+    symmetric : whether the matrices are; `DiscreteProblem.tangent` says what else they are
     """
 
     comm: MPI.Comm

@@ -21,16 +21,9 @@ from swgpar.fem.vectors import create_vector
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import logger
 from swgpar.petsc import PETSc, accepted_options, errors_of_callbacks
-from swgpar.solve.active_set_cycles import (
-    MAX_ITERATIONS_FACTOR,
-    MIN_DECREASE,
-    PATIENCE,
-    VisitedSets,
-    fingerprint,
-    is_decreasing,
-    is_exhausted,
-)
+from swgpar.solve.active_set_cycles import MAX_ITERATIONS_FACTOR, VisitedSets
 from swgpar.solve.bordered_system import BorderedSystem
+from swgpar.solve.convergence_test import ConvergenceTest, Decision, Verdict
 from swgpar.solve.discrete_problem import DiscreteProblem, ResidualInfo
 from swgpar.solve.line_search import LineSearch
 from swgpar.solve.linear_solver import MatrixKind
@@ -45,35 +38,15 @@ from swgpar.solve.solve_state import (
     SolveResult,
     SolveState,
 )
-from swgpar.solve.time_limit import passed
 
-SOFT_PENALTIES, SOFT_TOLERANCE = (1e-3, 3e-2), 1e-2
-"""Shares of the penalty, and residual over contact force, of the first rough runs while contact is established."""
-
-FREEZING_POWER = 0.6
-"""Power of the tolerance that gives the residual over contact force below which segments are frozen.
-
-Newton's iteration is then quadratic: the next step or the one after it is the last. With segments frozen at 1e-3 the
-input torque depends on the path to the solution by 4e-5 where teeth are wedged, at 1e-4 by 1e-6. Frozen later, a solve
-takes some iterations more."""
+SOFT_PENALTIES = (1e-3, 3e-2)
+"""Shares of the penalty of the first rough runs, while contact is established."""
 
 MAX_FURTHER_SEARCHES = 3
 """Further contact searches of a solve, in states where flanks touch that the last search left out."""
 
-MAX_REPEATED_SEARCHES = 12
-"""Contact searches of a solve because nodes have moved: each begins the iteration anew, with its patience."""
-
-SEARCH_DISTANCE = 0.25
-"""Displacement (modules) of a node since the last contact search after which a Newton iteration searches again."""
-
 MAX_NODE_STEP = 0.2
 """Largest displacement (modules) of a node in a Newton step while flanks may touch: the tangent ignores clearances."""
-
-ROUND_OFF_SHARE = 0.05
-"""Share of the round-off below which a residual counts as zero; runs reach 0.01 to 0.06 of it."""
-
-STALL = 0.3
-"""Ratio of two residuals above which the iteration has stalled close to the round-off."""
 
 SETTLED = 0.1
 """Residual over the contact force above which contacts change too much, before the rotation, for an old factor."""
@@ -81,6 +54,16 @@ SETTLED = 0.1
 MAX_FRICTION_ROUNDS, FRICTION_AGREEMENT = 20, 1e-3
 """Largest number of problems with given friction bounds, and the relative agreement of the last two."""
 
+
+PETSC_REASONS = {
+    Verdict.GO_ON: None,
+    Verdict.CONVERGED: PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE,
+    Verdict.INTERRUPTED: PETSc.SNES.ConvergedReason.CONVERGED_ITS,
+    Verdict.EXHAUSTED: PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT,
+    Verdict.COLLAPSED: PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN,
+    Verdict.OUT_OF_TIME: PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT,
+}
+"""SNES's reason for each verdict, None to go on."""
 
 IterationMonitor = Callable[[LoadState, int, float], None]
 """Called after every Newton iteration with load state, iteration and residual over the contact force."""
@@ -101,6 +84,7 @@ class NewtonSolver:
 
     def __init__(self, problem: DiscreteProblem, settings: NewtonSettings) -> None:
         self.problem, self.settings = problem, settings
+        self.convergence_test = ConvergenceTest(problem, settings)
         self.monitor: IterationMonitor | None = None
         self.state: SolveState | None = None
         self.visited_sets: Callable[[], VisitedSets] = VisitedSets
@@ -179,53 +163,31 @@ class NewtonSolver:
     def _test_convergence(self, snes: PETSc.SNES, its: int, norms: tuple[float, float, float]) -> int | None:
         """Convergence test of SNES: its reason, or None to go on."""
         state, norm = self.state, norms[2]
-        reference = max(self.last_residual.contact_force, self.problem.force_floor)
-        ratio = norm / reference
-        state.residuals.append(ratio)
+        state.residuals.append(norm / self.convergence_test.reference(self.last_residual))
         if self.monitor is not None:
-            self.monitor(state.load_state, its, ratio)
-        state.time_limit = passed(self.problem.partition.comm)
-        if state.time_limit is not None:
-            return PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT
-        if self.last_residual.collapsed or not np.isfinite(norm):
-            return PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN
-        softened, rtol = state.phase is Phase.SOFTENED, self.settings.rtol
-        tolerance = SOFT_TOLERANCE if softened else rtol
-        self.system.set_goal(reference * tolerance)
-        if ratio < rtol**FREEZING_POWER and not softened:
+            self.monitor(state.load_state, its, state.residual)
+        decision = self.convergence_test.decide(
+            state,
+            its,
+            norm,
+            self.last_residual,
+            descending=self.line_search.descending,
+            bounded=bool(np.isfinite(self.line_search.max_node_step)),
+        )
+        self._act(decision, its)
+        return PETSC_REASONS[decision.verdict]
+
+    def _act(self, decision: Decision, its: int) -> None:
+        """Do what has been decided after Newton iteration `its`, before the next one."""
+        self.state.time_limit = decision.time_limit
+        self.state.outdated_search = decision.search_is_outdated
+        if decision.goal is not None:
+            self.system.set_goal(decision.goal)
+        if decision.near_solution:
             self.problem.freeze_segments()
-        if ratio <= tolerance or self._is_round_off(its, norm):
-            return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
-        if its > 0 and (state.incomplete_pattern or self._search_is_outdated(state)):
-            return PETSc.SNES.ConvergedReason.CONVERGED_ITS
-        if is_exhausted(state.residuals, self.settings.max_iterations):
-            return PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT
-        if not self.line_search.descending and self._is_cycling(ratio):
+        if decision.cycles:
             logger.info("   contacts do not settle in Newton iteration %d: descending line search", its)
             self._break_cycle()
-        return None
-
-    def _search_is_outdated(self, state: SolveState) -> bool:
-        """Whether the nodes have moved so far since the last contact search that other flanks may meet; collective."""
-        if state.breaker.solution is not None or state.repeated_searches == MAX_REPEATED_SEARCHES:
-            return False
-        if not np.isfinite(self.line_search.max_node_step):
-            return False
-        state.outdated_search = self.problem.moved_since_search() > SEARCH_DISTANCE * self.problem.module
-        return state.outdated_search
-
-    def _is_round_off(self, its: int, norm: float) -> bool:
-        """Whether a residual is round-off: that of positions with 16 digits, or one near it that does not decrease."""
-        residuals = self.state.residuals
-        stalled = its > 1 and residuals[-1] > STALL * residuals[-2]
-        return norm <= (1.0 if stalled else ROUND_OFF_SHARE) * self.problem.round_off
-
-    def _is_cycling(self, ratio: float) -> bool:
-        """Whether an active set returns, or the residual does not decrease."""
-        state = self.state
-        sets = self.problem.active_sets(state.load_state)
-        returns = state.visited.returns(fingerprint(self.problem.partition.comm, sets), ratio)
-        return returns or not is_decreasing(state.residuals, PATIENCE, MIN_DECREASE)
 
     def _break_cycle(self) -> None:
         """Search descending, and once per solve with frozen segments and friction bounds."""
