@@ -36,12 +36,12 @@ if TYPE_CHECKING:
         SwgparError,
         TimeLimitError,
     )
-    from swgpar.gear_trains.result import TrainResult
     from swgpar.meshing.drive_mesh import DriveMesh
     from swgpar.meshing.recipe import MeshRecipe
     from swgpar.optimisation.result import OptimisationResult
     from swgpar.presentation.drive_result import DriveResult
     from swgpar.studies.study import StudyResult
+    from swgpar.systems.gear_train import TrainResult
 
 _MODULES = {
     "new": "api",
@@ -58,7 +58,7 @@ _MODULES = {
     "MeshRecipe": "meshing.recipe",
     "DriveMesh": "meshing.drive_mesh",
     "DriveResult": "presentation.drive_result",
-    "TrainResult": "gear_trains.result",
+    "TrainResult": "systems.gear_train",
     "StudyResult": "studies.study",
     "OptimisationResult": "optimisation.result",
     "SwgparError": "errors",

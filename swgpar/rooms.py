@@ -12,6 +12,7 @@ PURPOSE = {
     "watch": "signals that end a command, and its signs of life",
     "log": "log of rank 0, progress, wall seconds by phase",
     "petsc": "start of PETSc and its options",
+    "tasks": "tasks shared by the ranks",
     "input": "quantities with units and ranges, TOML files, sentences that refuse bad values",
     "materials": "laws of materials: what bodies are made of",
     "geometry": "exact cams and tooth profiles, crowning and slope, from numbers",

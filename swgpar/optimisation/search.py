@@ -12,7 +12,7 @@ from swgpar.errors import InputError, OutputError, SwgparError
 from swgpar.optimisation.problem import Evaluation, Problem
 from swgpar.optimisation.spec import OptimiseSection, Variable
 from swgpar.results.atomic import on_all, sentence
-from swgpar.studies.schedule import Counter, Reports
+from swgpar.tasks import Send, share_tasks
 
 if TYPE_CHECKING:
     import optuna
@@ -145,16 +145,14 @@ class Search:
             for _ in range(max(left, 0)):
                 self._together(receive)
             return
-        own = self.comm.Dup()
-        counter, reports = Counter(own), Reports(own, receive)
-        while counter.take() < left:
-            trial = self.study.ask(self._distributions)
-            found = self.problem.evaluate(trial.params, MPI.COMM_SELF)
-            self._tell(trial, found)
-            reports.send((trial.number, found))
-        reports.end()
-        counter.free()
-        own.Free()
+        share_tasks(self.comm, max(left, 0), self._alone, receive)
+
+    def _alone(self, _: int, send: Send) -> None:
+        """Try one design on this rank."""
+        trial = self.study.ask(self._distributions)
+        found = self.problem.evaluate(trial.params, MPI.COMM_SELF)
+        self._tell(trial, found)
+        send((trial.number, found))
 
     def _together(self, receive: Receive) -> None:
         """Try one design on all ranks."""

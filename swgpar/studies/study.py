@@ -23,10 +23,10 @@ from swgpar.studies.case import Job, Outcome
 from swgpar.studies.cases import expand
 from swgpar.studies.job import STATUS, read_status, run_planned
 from swgpar.studies.report import make_report
-from swgpar.studies.schedule import Counter, Reports
 from swgpar.studies.spec import Study, load_study, make_study
 from swgpar.studies.table import Comparison, Result, compare, complete, published_rows, study_rows
 from swgpar.studies.terminal import StudyProgress
+from swgpar.tasks import share_tasks
 
 Report = Callable[[tuple[int, Outcome | None]], None]
 """Takes a job's number with its outcome, or None after an increment."""
@@ -180,7 +180,7 @@ def _run_all(
     receive: Report = book.receive if book is not None else lambda _: None
     try:
         if study.section.parallel == "cases":
-            _cases_at_once(order, comm, receive, run)
+            share_tasks(comm, len(order), lambda index, send: run(order[index], MPI.COMM_SELF, send), receive)
         else:
             for number in order:
                 run(number, comm, receive)
@@ -246,16 +246,6 @@ def _run_one(
         on_increment=lambda: report((number, None)),
     )
     report((number, run_planned(job.planned, options)))
-
-
-def _cases_at_once(order: Sequence[int], comm: MPI.Comm, receive: Report, run: Run) -> None:
-    own = comm.Dup()
-    counter, reports = Counter(own), Reports(own, receive)
-    while (index := counter.take()) < len(order):
-        run(order[index], MPI.COMM_SELF, reports.send)
-    reports.end()
-    counter.free()
-    own.Free()
 
 
 def _write(study: Study, results: Sequence[Result], out: Path, comm: MPI.Comm, missing: int = 0) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.errors import ConvergenceError
-from swgpar.results.atomic import first_reason
+from swgpar.tasks import Send, share_tasks
 
 
 def random_stream(seed: int, *key: int) -> np.random.Generator:
@@ -32,16 +32,20 @@ def run_tasks(comm: MPI.Comm, tasks: Sequence[Callable[[], Any]]) -> tuple[list[
 
     A ConvergenceError of a task is raised on all ranks.
     """
-    done, reason = {}, None
-    try:
-        for number in range(comm.rank, len(tasks), comm.size):
-            begin = time.perf_counter()
-            done[number] = tasks[number](), time.perf_counter() - begin
-    except ConvergenceError as error:
-        reason = str(error)
-    reason = first_reason(comm, reason)
-    if reason is not None:
-        raise ConvergenceError(reason)
-    merged = {number: result for part in comm.allgather(done) for number, result in part.items()}
-    ordered = [merged[number] for number in range(len(tasks))]
+    done: dict[int, tuple[Any, float]] = {}
+
+    def run(number: int, send: Send) -> None:
+        begin = time.perf_counter()
+        try:
+            result = tasks[number]()
+        except ConvergenceError as error:
+            result = error
+        send((number, (result, time.perf_counter() - begin)))
+
+    share_tasks(comm, len(tasks), run, lambda message: done.update([message]))
+    done = comm.bcast(done)
+    ordered = [done[number] for number in range(len(tasks))]
+    for result, _ in ordered:
+        if isinstance(result, ConvergenceError):
+            raise result
     return [result for result, _ in ordered], [seconds for _, seconds in ordered]

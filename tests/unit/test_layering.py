@@ -12,6 +12,7 @@ import swgpar
 from support.paths import ROOT as CHECKOUT
 from support.scripts import load_script
 from swgpar.rooms import PURPOSE, ROOMS
+from swgpar.systems import SYSTEMS
 
 graph = load_script(CHECKOUT / "scripts" / "import_graph.py")
 
@@ -66,6 +67,18 @@ def test_imports_come_from_the_same_room_or_from_those_before_it(room: str) -> N
 
 def test_no_files_import_each_other_in_a_circle() -> None:
     assert graph.circles(graph.file_graph(ROOT)) == []
+
+
+def test_gear_trains_are_reached_through_the_registry() -> None:
+    outside = {
+        str(module)
+        for module in MODULES
+        if room_of(module) != "gear_trains"
+        for name in graph.imported_names(ROOT / module, ROOT)
+        if name.startswith("swgpar.gear_trains")
+    }
+    adapter, _, _ = SYSTEMS["gear_train"].removeprefix("swgpar.").rpartition(".")
+    assert outside == {f"{adapter.replace('.', '/')}.py"}
 
 
 def test_public_functions_are_annotated() -> None:

@@ -1,4 +1,4 @@
-"""Distribution of jobs over the ranks without a rank that only serves the others, and reports to rank 0."""
+"""Tasks shared by the ranks, without a rank that only serves the others, and their reports to rank 0."""
 
 from __future__ import annotations
 
@@ -12,8 +12,30 @@ from mpi4py import MPI
 PAUSE = 0.05
 """Seconds between two looks of a rank that has nothing left to do; MPI's own waiting would take a whole core."""
 
+Send = Callable[[Any], None]
+"""Takes a message to rank 0."""
 
-class Counter:
+
+def share_tasks(comm: MPI.Comm, count: int, run: Callable[[int, Send], None], receive: Send) -> None:
+    """Run tasks by their numbers 0 to count - 1, each on one rank: a rank that is free takes the next one. Collective.
+
+    run : called with a number, and with what sends a message to rank 0
+    receive : called on rank 0 with every message
+    """
+    if comm.size == 1:
+        for number in range(count):
+            run(number, receive)
+        return
+    own = comm.Dup()
+    counter, reports = _Counter(own), _Reports(own, receive)
+    while (number := counter.take()) < count:
+        run(number, reports.send)
+    reports.end()
+    counter.free()
+    own.Free()
+
+
+class _Counter:
     """The numbers 0, 1, 2, ... of which each rank takes the next one; the counter is in the memory of rank 0.
 
     Creation and `free` are collective, `take` is not.
@@ -41,14 +63,14 @@ class Counter:
         self._window.Free()
 
 
-class Reports:
+class _Reports:
     """Messages of all ranks to rank 0, which looks at them between its own increments.
 
     comm : used by this object alone
     receive : called on rank 0 with every message
     """
 
-    def __init__(self, comm: MPI.Comm, receive: Callable[[Any], None]) -> None:
+    def __init__(self, comm: MPI.Comm, receive: Send) -> None:
         self._comm, self._receive = comm, receive
         self._sent: list[MPI.Request] = []
         self._ended = 0
