@@ -6,6 +6,7 @@ file system has no locks, a file with the owner decides.
 
 from __future__ import annotations
 
+import errno
 import functools
 import os
 import platform
@@ -24,6 +25,9 @@ NAME = "swgpar.lock"
 
 OWNER = "swgpar.owner"
 """The same where the file system has no locks."""
+
+WITHOUT_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP)
+"""Error numbers of file systems that have no locks."""
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -45,7 +49,9 @@ def acquire(folder: Path) -> None:
         path.write_text(f"{os.getpid()}\n{platform.node()}\n", encoding="utf-8")
     except Timeout:
         raise OutputError(_refusal(folder, path)) from None
-    except OSError:  # a file system without locks
+    except OSError as error:
+        if error.errno not in WITHOUT_LOCKS:
+            raise
         lock = SoftFileLock(owner, timeout=0.0)
         try:
             lock.acquire()

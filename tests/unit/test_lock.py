@@ -99,6 +99,15 @@ def test_without_locks_the_record_decides(
         use(tmp_path)
 
 
+def test_a_lock_file_that_cannot_be_opened_is_no_missing_lock(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def forbidden(*_: object) -> None:
+        raise PermissionError(errno.EPERM, "Operation not permitted")
+
+    monkeypatch.setattr(fcntl, "flock", forbidden)
+    with pytest.raises(PermissionError):
+        use(tmp_path)
+
+
 def test_records_of_anything_are_read(tmp_path: Path) -> None:
     for text in ("", "[1]", "\x00\xff", "x\ny\n", 5000 * "{"):
         (tmp_path / lock.NAME).write_text(text, encoding="latin-1")
