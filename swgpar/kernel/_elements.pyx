@@ -1,11 +1,11 @@
 # cython: language_level=3, boundscheck=False, wraparound=False
-"""Cython layer of the element kernels: checks shapes, releases the GIL, calls, raises."""
+"""Cython layer of the element kernels: checks arrays, releases the GIL, calls, raises."""
 
 from typing import NamedTuple
 
-import numpy as np
-
 from libc.stdint cimport int32_t, int64_t, uint8_t
+
+include "arrays.pxi"
 
 
 cdef extern from "element_batch.hpp" namespace "swgpar" nogil:
@@ -60,17 +60,17 @@ def reference_elements(coords, elasticity, double thickness=0.0, bint incompatib
     incompatible : False leaves the incompatible modes out, which gives C3D8 and CPS4, for comparison
     Raises ValueError naming the first element with a non-positive Jacobian.
     """
-    cdef double[:, :, ::1] x = np.ascontiguousarray(coords, dtype=np.float64)
-    if x.shape[1] not in (4, 8) or x.shape[2] != 3:
-        raise ValueError("reference_elements: coords must have shape (n, 8, 3) or (n, 4, 3)")
-    if x.shape[1] == 4 and not thickness > 0.0:
-        raise ValueError("reference_elements: quadrilaterals need a thickness above 0")
-    cdef double[:, ::1] d = np.ascontiguousarray(elasticity, dtype=np.float64)
-    cdef int64_t n = x.shape[0], m = x.shape[1], size = 3 if m == 4 else 6, bad
-    if d.shape[0] != size or d.shape[1] != size:
-        raise ValueError(f"reference_elements: elasticity must have shape ({size}, {size})")
+    name = "reference_elements"
+    coords = np.ascontiguousarray(coords, dtype=DOUBLE)
+    cdef int64_t m = 4 if coords.ndim == 3 and coords.shape[1] == 4 else 8, size = 3 if m == 4 else 6, bad
+    cdef const double[:, :, ::1] x = checked(name, "coords", coords, DOUBLE, (ANY, m, 3))
+    elasticity = np.ascontiguousarray(elasticity, dtype=DOUBLE)
+    cdef const double[:, ::1] d = checked(name, "elasticity", elasticity, DOUBLE, (size, size))
+    cdef int64_t n = x.shape[0]
+    if m == 4 and not thickness > 0.0:
+        raise ValueError(f"{name}: thickness is {thickness}; expected a thickness above 0 of quadrilaterals")
     out = ReferenceElements(np.empty((n, 3 * m, 3 * m)), np.empty((n, 6 * m, 3 * m)), np.empty((n, m, 3)),
-                            np.asarray(x), np.empty(n))
+                            coords, np.empty(n))
     if n == 0:
         return out
     cdef double[:, :, ::1] k = out.stiffness, s = out.recovery, g = out.gradient
@@ -86,32 +86,37 @@ def reference_elements(coords, elasticity, double thickness=0.0, bint incompatib
     return out
 
 
-cdef ElementBatch batch(const double[:, :, ::1] stiffness, const double[:, :, ::1] gradient,
-                        const double[:, :, ::1] coords, const int32_t[::1] ref_of, const double[:, ::1] rotation,
-                        const int32_t[:, ::1] conn, const uint8_t[:, ::1] sixths) except *:
-    if not (rotation.shape[0] == conn.shape[0] == sixths.shape[0] == ref_of.shape[0] and rotation.shape[1] == 2
-            and conn.shape[1] == sixths.shape[1] == coords.shape[1]):
-        raise ValueError("element arrays: shapes disagree")
-    return ElementBatch(conn.shape[0], conn.shape[1], &stiffness[0, 0, 0], &gradient[0, 0, 0], &coords[0, 0, 0], &ref_of[0],
-                        &rotation[0, 0], &conn[0, 0], &sixths[0, 0])
+cdef ElementBatch batch(str function, ref, ref_of, rotation, conn, sixths, nodes, int64_t n_local) except *:
+    """Elements whose indices lie within the arrays. nodes : of an element, or ANY"""
+    cdef const int32_t[:, ::1] node = indices(function, "conn", conn, INT32, (ANY, nodes), None, n_local)
+    cdef int64_t n = node.shape[0], m = node.shape[1]
+    cdef const uint8_t[:, ::1] image = indices(function, "sixths", sixths, UINT8, (n, m), None, SIXTHS)
+    cdef const double[:, ::1] turn = checked(function, "rotation", rotation, DOUBLE, (n, 2))
+    cdef const double[:, :, ::1] stiffness = checked(function, "ref.stiffness", ref.stiffness, DOUBLE, (ANY, 3 * m, 3 * m))
+    cdef int64_t n_ref = stiffness.shape[0]
+    cdef const double[:, :, ::1] gradient = checked(function, "ref.gradient", ref.gradient, DOUBLE, (n_ref, m, 3))
+    cdef const double[:, :, ::1] coords = checked(function, "ref.coords", ref.coords, DOUBLE, (n_ref, m, 3))
+    cdef const int32_t[::1] row = indices(function, "ref_of", ref_of, INT32, (n,), 0, n_ref)
+    return ElementBatch(
+        n, m, &stiffness[0, 0, 0], &gradient[0, 0, 0], &coords[0, 0, 0], &row[0], &turn[0, 0], &node[0, 0], &image[0, 0]
+    )
 
 
-def assemble_elements(ref, const int32_t[::1] ref_of, const double[:, ::1] rotation, const int32_t[:, ::1] conn,
-                      const uint8_t[:, ::1] sixths, const double[:, ::1] u, residual, slot, values):
+def assemble_elements(ref, ref_of, rotation, conn, sixths, u, residual, slot, values):
     """Add forces and tangent blocks of corotated elements; returns their strain energy (N mm).
 
-    ref_of : (n,) row of `ref`;  rotation : (n, 2) cosine and sine of the sector's angle
+    ref : ReferenceElements;  ref_of : (n,) row of `ref`;  rotation : (n, 2) cosine and sine of the sector's angle
     conn : (n, m) local nodes, -1 fixed;  sixths : (n, m), sixths of a turn by which images are rotated
     u : (n_local, 3) mm;  residual : (n_local, 3) N or None
     slot : (n, m * m) int64 block of each node pair, -1 to skip;  values : (n_blocks, 3, 3) N/mm, entry (k, l) of
     block p at values[p, l, k]; both None to skip the tangent
-    Raises ValueError for shapes that disagree, FloatingPointError for an element that has collapsed.
+    Raises ValueError for arrays that do not fit each other, FloatingPointError for an element that has collapsed.
     """
-    cdef int64_t bad
+    name = "assemble_elements"
+    cdef const double[:, ::1] displacement = checked(name, "u", u, DOUBLE, (ANY, 3))
+    cdef int64_t n_local = displacement.shape[0], bad
+    cdef ElementBatch e = batch(name, ref, ref_of, rotation, conn, sixths, ANY, n_local)
     cdef double energy = 0.0
-    if conn.shape[0] == 0:
-        return 0.0
-    cdef ElementBatch e = batch(ref.stiffness, ref.gradient, ref.coords, ref_of, rotation, conn, sixths)
     cdef double[:, ::1] r
     cdef double[:, :, ::1] v
     cdef const int64_t[:, ::1] p
@@ -119,45 +124,44 @@ def assemble_elements(ref, const int32_t[::1] ref_of, const double[:, ::1] rotat
     cdef double* pv = NULL
     cdef const int64_t* pp = NULL
     if residual is not None:
-        r = residual
+        r = checked(name, "residual", residual, DOUBLE, (n_local, 3), True)
         pr = &r[0, 0]
     if values is not None:
-        v, p = values, slot
-        if p.shape[0] != e.n or p.shape[1] != conn.shape[1] * conn.shape[1]:
-            raise ValueError("assemble_elements: slot must have a column for each pair of nodes")
+        v = checked(name, "values", values, DOUBLE, (ANY, 3, 3), True)
+        p = indices(name, "slot", slot, INT64, (e.n, e.nodes * e.nodes), None, v.shape[0])
         pv, pp = &v[0, 0, 0], &p[0, 0]
     with nogil:
-        if conn.shape[1] == 4:
-            bad = assemble4(e, &u[0, 0], pr, pp, pv, &energy)
-        elif conn.shape[1] == 8:
-            bad = assemble8(e, &u[0, 0], pr, pp, pv, &energy)
+        if e.nodes == 4:
+            bad = assemble4(e, &displacement[0, 0], pr, pp, pv, &energy)
+        elif e.nodes == 8:
+            bad = assemble8(e, &displacement[0, 0], pr, pp, pv, &energy)
         else:
-            bad = assemble_any(e, &u[0, 0], pr, pp, pv, &energy)
+            bad = assemble_any(e, &displacement[0, 0], pr, pp, pv, &energy)
     if bad >= 0:
         raise FloatingPointError(f"element {bad} has collapsed")
     return energy
 
 
-def recover_stress(ref, const int32_t[::1] ref_of, const double[:, ::1] rotation, const int32_t[:, ::1] conn,
-                   const uint8_t[:, ::1] sixths, const double[:, ::1] u):
+def recover_stress(ref, ref_of, rotation, conn, sixths, u):
     """Stress extrapolated to the nodes of each element; (n, m, 6) MPa, global axes, xx yy zz xy yz zx.
 
-    Parameters as for `assemble_elements`. Raises ValueError for shapes that disagree, FloatingPointError for an element
-    that has collapsed.
+    Parameters as for `assemble_elements`, of elements with 4 or 8 nodes. Raises ValueError for arrays that do not fit
+    each other, FloatingPointError for an element that has collapsed.
     """
-    cdef int64_t bad
-    if conn.shape[1] not in (4, 8):
-        raise ValueError("recover_stress: elements have 4 or 8 nodes")
-    out = np.empty((conn.shape[0], conn.shape[1], 6))
-    if conn.shape[0] == 0:
-        return out
-    cdef ElementBatch e = batch(ref.stiffness, ref.gradient, ref.coords, ref_of, rotation, conn, sixths)
-    cdef double[:, :, ::1] o = out, s = ref.recovery
+    name = "recover_stress"
+    cdef const double[:, ::1] displacement = checked(name, "u", u, DOUBLE, (ANY, 3))
+    cdef int64_t m = 4 if np.shape(conn)[1:] == (4,) else 8, bad
+    cdef ElementBatch e = batch(name, ref, ref_of, rotation, conn, sixths, m, displacement.shape[0])
+    cdef const double[:, :, ::1] s = checked(
+        name, "ref.recovery", ref.recovery, DOUBLE, (ref.stiffness.shape[0], 6 * m, 3 * m)
+    )
+    out = np.empty((e.n, m, 6))
+    cdef double[:, :, ::1] o = out
     with nogil:
-        if conn.shape[1] == 4:
-            bad = stress4(e, &s[0, 0, 0], &u[0, 0], &o[0, 0, 0])
+        if m == 4:
+            bad = stress4(e, &s[0, 0, 0], &displacement[0, 0], &o[0, 0, 0])
         else:
-            bad = stress8(e, &s[0, 0, 0], &u[0, 0], &o[0, 0, 0])
+            bad = stress8(e, &s[0, 0, 0], &displacement[0, 0], &o[0, 0, 0])
     if bad >= 0:
         raise FloatingPointError(f"element {bad} has collapsed")
     return out

@@ -17,15 +17,20 @@ import numpy as np
 import pytest
 
 from support.contact_blocks import Rows, master
+from support.element_mesh import ElementMesh
 from swgpar.contact.flank_pairs import Faces
 from swgpar.gear_trains.kernel import MESH, MESH_ERROR, SHAFT, GearboxKernel, PlanetaryStepKernel
-from swgpar.kernel import add_face_blocks, contact_flanks
+from swgpar.kernel import add_face_blocks, assemble_elements, contact_flanks, recover_stress, reference_elements
+from swgpar.materials import Isotropic
 from swgpar.watch import _watch
 
 Values = dict[str, Any]
 
 OTHER_TYPE = {"f": np.float32, "i": np.float64, "u": np.int32, "V": np.float64}
 """A wrong type for arrays of each kind."""
+
+N_BLOCKS = 112
+"""Pairs of nodes that two hexahedra with a common face have."""
 
 N_OWN = 6
 """Rows of the tangent, fewer than nodes."""
@@ -38,6 +43,7 @@ class Call:
     written : arrays that the kernel changes;  optional : arrays that may be None
     indices : the values from the first to below the second that an array of indices may have
     free : axes on which no other argument depends: more entries are valid there
+    converted : arrays that may be lists, of another type or in another order
     """
 
     name: str
@@ -47,6 +53,7 @@ class Call:
     optional: tuple[str, ...] = ()
     indices: dict[str, tuple[int, int]] = field(default_factory=dict)
     free: tuple[tuple[str, int], ...] = ()
+    converted: tuple[str, ...] = ()
 
 
 def flank() -> Values:
@@ -100,6 +107,41 @@ def face_blocks() -> Values:
         "blocks": np.ones((1, 3, 3, 3, 3)),
         "rows": Rows(N_OWN, n_local=9),
     }
+
+
+def box() -> ElementMesh:
+    """Two hexahedra along z."""
+    points = np.array([[x, y, z] for z in (0.0, 1.0, 2.0) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))], dtype=float)
+    return ElementMesh(points, np.array([np.arange(8), np.arange(4, 12)]), Isotropic(E=1.0, nu=0.3))
+
+
+def undeformed() -> Values:
+    return {"coords": box().reference.coords, "elasticity": np.eye(6)}
+
+
+def elements(*more: str) -> Values:
+    """more : fields of the reference elements that a function reads beside those that all read"""
+    mesh = box()
+    ref_of, rotation, conn, sixths = mesh.arrays
+    read = {name: getattr(mesh.reference, name) for name in ("stiffness", "gradient", "coords", *more)}
+    return {
+        "ref": SimpleNamespace(**read),
+        "ref_of": ref_of,
+        "rotation": rotation,
+        "conn": conn,
+        "sixths": sixths,
+        "u": np.zeros((12, 3)),
+    }
+
+
+def assembly() -> Values:
+    slot = np.ascontiguousarray(box().slot)
+    tangent = {"slot": slot, "values": np.zeros((slot.max() + 1, 3, 3))}
+    return elements() | {"residual": np.zeros((12, 3))} | tangent
+
+
+def recovery() -> Values:
+    return elements("recovery")
 
 
 def gearbox() -> Values:
@@ -182,6 +224,29 @@ CALLS = [
         indices={"conn": (-1, 9), "sixths": (0, 6)},
         free=(("rows.number", 0),),
     ),
+    Call(
+        "reference_elements",
+        reference_elements,
+        undeformed,
+        free=(("coords", 0),),
+        converted=("coords", "elasticity"),
+    ),
+    Call(
+        "assemble_elements",
+        assemble_elements,
+        assembly,
+        ("residual", "values"),
+        ("residual", "values"),
+        {"conn": (-1, 12), "sixths": (0, 6), "ref_of": (0, 2), "slot": (-1, N_BLOCKS)},
+        (("u", 0), ("values", 0)),
+    ),
+    Call(
+        "recover_stress",
+        recover_stress,
+        recovery,
+        indices={"conn": (-1, 12), "sixths": (0, 6), "ref_of": (0, 2)},
+        free=(("u", 0),),
+    ),
     Call("GearboxKernel", GearboxKernel, gearbox),
     Call("GearboxKernel.forces", of_gearbox("forces"), motion),
     Call("GearboxKernel.matrices", of_gearbox("matrices"), motion),
@@ -221,14 +286,16 @@ def wrong_arrays(call: Call, path: str, array: np.ndarray) -> Iterator[tuple[str
     """What is tried instead of a valid array, with its name."""
     if path not in call.optional:
         yield "none", None
-    yield "list", array.tolist()
-    yield "type", np.zeros(array.shape, OTHER_TYPE[array.dtype.kind])
+    if path not in call.converted:
+        yield "list", array.tolist()
+        yield "type", np.zeros(array.shape, OTHER_TYPE[array.dtype.kind])
     yield "more dimensions", array[None]
     yield "fewer dimensions", array[..., 0].copy()
-    for axis in [axis for axis in range(array.ndim) if array.shape[axis] > 1][-1:]:
+    for axis in [axis for axis in range(array.ndim) if array.shape[axis] > 1 and path not in call.converted][-1:]:
         yield "order", np.repeat(array, 2, axis)[(slice(None),) * axis + (slice(None, None, 2),)]
     for axis in range(array.ndim):
-        yield f"axis {axis} too small", np.ascontiguousarray(np.delete(array, -1, axis))
+        if (path, axis) not in call.free or path not in call.converted:
+            yield f"axis {axis} too small", np.ascontiguousarray(np.delete(array, -1, axis))
         if (path, axis) not in call.free:
             yield f"axis {axis} too large", np.concatenate([array, np.take(array, [-1], axis)], axis)
     if path in call.written:
