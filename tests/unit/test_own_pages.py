@@ -44,6 +44,22 @@ def insert(path: Path, before: str, text: str) -> None:
     path.write_text(content.replace(before, text + before), encoding="utf-8")
 
 
+def patch(path: Path, difference: str) -> None:
+    """Add the lines with a plus to the place that the other lines show, which the file has once."""
+    lines = difference.splitlines(keepends=True)
+    before = "".join(line[1:] for line in lines if line[0] == " ")
+    content = path.read_text(encoding="utf-8")
+    assert content.count(before) == 1, f"{path.name}: {before}"
+    path.write_text(content.replace(before, "".join(line[1:] for line in lines)), encoding="utf-8")
+
+
+def small_run(folder: Path) -> None:
+    """Results of the package as it is."""
+    gear = {"tip": 2, "layers": 1, "flank": 2, "root": 2, "under": 1, "rim": 1}
+    design = swgpar.load_design(DRIVERS / "plane_half_turn.toml", {"steps.rotation": 0.0, "output.figures": False})
+    swgpar.run(design, mesh={"flexible_spline": gear, "ring_gear": gear}, out=folder, progress=False)
+
+
 def execute(folder: Path, script: str) -> None:
     """Run a script with the package of a folder."""
     command = [sys.executable, "-c", SMALL + script, str(DRIVERS / "plane_half_turn.toml"), str(folder / "out")]
@@ -86,14 +102,12 @@ assert np.isfinite(run({"wave_generator": keys}).history["fs_s1"]).all()
 
 
 def test_own_column(tmp_path: Path) -> None:
-    """The column is in the file and the reference, and folders without it open."""
-    declaration, value = examples(HOWTO / "own_column.md", "python")
+    """The column is in the history and in its file, and folders without it open."""
+    declaration, value = examples(HOWTO / "own_column.md", "diff")
     package = copied_package(tmp_path)
-    insert(package / "results" / "history.py", ')\n"""In the order of the file.', declaration)
-    insert(package / "analysis" / "load_stepping.py", '            **dict(zip(("ds_tooth_torque_Nmm",)', value)
-    gear = {"tip": 2, "layers": 1, "flank": 2, "root": 2, "under": 1, "rim": 1}
-    design = swgpar.load_design(DRIVERS / "plane_half_turn.toml", {"steps.rotation": 0.0, "output.figures": False})
-    swgpar.run(design, mesh={"flexible_spline": gear, "ring_gear": gear}, out=tmp_path / "old", progress=False)
+    patch(package / "results" / "history.py", declaration)
+    patch(package / "analysis" / "load_stepping.py", value)
+    small_run(tmp_path / "old")
     execute(
         tmp_path,
         """
@@ -101,5 +115,36 @@ run()
 residual = swgpar.open_result(folder).history["residual"]
 assert len(residual) and (0.0 < residual).all() and (residual < 1e-3).all()
 assert "residual" not in swgpar.open_result(folder.replace("out", "old")).history
+""",
+    )
+
+
+def test_own_answer(tmp_path: Path) -> None:
+    """Both answers are in the summary, in its file, among the quantities and in the report; earlier results open."""
+    field, kind, value, type_import, group, attribute, function_import, call = examples(HOWTO / "own_answer.md", "diff")
+    (evaluation,) = examples(HOWTO / "own_answer.md", "python")
+    package = copied_package(tmp_path)
+    for difference in (field, kind, value):
+        patch(package / "evaluation" / "numerics.py", difference)
+    (package / "evaluation" / "time_shares.py").write_text(evaluation, encoding="utf-8")
+    for difference in (type_import, group, attribute):
+        patch(package / "drive_results" / "summary.py", difference)
+    for difference in (function_import, call):
+        patch(package / "analysis" / "evaluate_run.py", difference)
+    small_run(tmp_path / "old")
+    execute(
+        tmp_path,
+        """
+from swgpar.systems import system_of
+
+run()
+found = swgpar.open_result(folder)
+system, design = system_of(found.summary.design), found.summary.design
+iterations = found.summary["residue.iterations"]
+assert iterations.value == found.history["newton_iterations"].sum() > 0
+assert 0.0 < found.summary["time.increments"].value <= 1.0
+assert {"residue.iterations", "time.increments"} <= set(system.quantities(design))
+assert "Newton iterations of the run" in system.report(found).decode()
+assert "time.increments" not in swgpar.open_result(folder.replace("out", "old")).summary
 """,
     )
