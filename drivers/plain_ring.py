@@ -15,8 +15,8 @@ from swgpar.design import sections
 from swgpar.errors import ConvergenceError, InputError
 from swgpar.evaluation.losses import work_per_cycle
 from swgpar.evaluation.stress_cycle import history_by_renaming, sector_stress
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE, BodyLayout
-from swgpar.fem.element_matrices import element_matrices
+from swgpar.fem.body import Body
+from swgpar.fem.body_layout import BodyLayout
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
 from swgpar.fem.stress import body_fields, maxima
@@ -142,11 +142,11 @@ class RingBody:
         inner, width = design.inner_radius, design.width
         mesh = ring_sector(inner, design.outer_radius, width, counts.sectors, counts.radial, counts.axial, design.plane)
         count, fixed = counts.sectors // copies, np.zeros(0, dtype=np.int32)
-        layout = BodyLayout(mesh=mesh, first_tooth=0, count=count, closed=True, copies=copies, fixed=fixed)
+        body = Body(mesh, (design.material,), width, incompatible)
+        layout = BodyLayout(body=body, first_tooth=0, count=count, closed=True, copies=copies, fixed=fixed)
         self.mesh, self.partition = mesh, Partition([layout], comm)
-        reference = element_matrices(mesh.coords[mesh.elements], design.material, width, incompatible)
-        self.elements = Elements(self.partition, [reference])
-        self.body = self.elements.bodies[FLEXIBLE_SPLINE]
+        self.elements = Elements(self.partition)
+        self.body = self.elements.bodies[body.name]
 
     def solver(self, contact: PenaltyContact) -> NewtonSolver:
         """Solver of the ring with one contact."""

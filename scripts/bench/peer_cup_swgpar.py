@@ -18,7 +18,6 @@ from mpi4py import MPI
 from swgpar.checks.design_file import load_design
 from swgpar.constraints.boundary_conditions import PrescribedDisplacement
 from swgpar.constraints.supports import Supports
-from swgpar.fem.element_matrices import element_matrices
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
 from swgpar.fem.stress import body_fields
@@ -27,7 +26,7 @@ from swgpar.log import PhaseTimes
 from swgpar.meshing import load_recipe
 from swgpar.meshing.export import sector_numbers
 from swgpar.meshing.tooth_sector import build_sector
-from swgpar.model.drive_model import build_layout, newton_settings
+from swgpar.model.drive_model import build_gear, build_layout, newton_settings
 from swgpar.solve.discrete_problem import DiscreteProblem
 from swgpar.solve.line_search import LineSearch
 from swgpar.solve.newton import NewtonSolver
@@ -42,11 +41,10 @@ def main() -> None:
     name, held, out = sys.argv[1:]
     comm, design = MPI.COMM_WORLD, load_design(Path(DESIGN), ["solver.rtol=1e-5"])
     mesh, material = build_sector(design, load_recipe(name), BODY), design.material_of(BODY)
-    layout = build_layout(design, mesh)
+    layout = build_layout(design, build_gear(design, mesh))
     partition = Partition([layout], comm)
-    reference = element_matrices(mesh.coords[mesh.elements], material, design.drive.face_width)
-    elements = Elements(partition, [reference])
-    body = elements.bodies[0]
+    elements = Elements(partition)
+    body = elements.bodies[BODY]
     with np.load(held) as file:
         known = np.full((int(sector_numbers(mesh).max()) + 1, 3), np.nan)
         known[file["nodes"]] = file["displacement"]

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE, OUTER_RACE
+from swgpar.fem.body import FLEXIBLE_SPLINE, OUTER_RACE
 from swgpar.fem.vectors import write_field
 from swgpar.geometry.neutral_line import bent_ring
 from swgpar.geometry.rotation import rotated
@@ -169,7 +169,7 @@ def bend(model: DriveModel) -> None:
     inset = penetration
     if design.bearing is not None:
         inset = design.bearing.clearance + BALL_APPROACH * design.bearing.ball_diameter
-    fields: dict[int, BentSpline | BentRace] = {}
+    fields: dict[str, BentSpline | BentRace] = {}
     if design.bearing is not None:
         fields[OUTER_RACE] = BentRace(design, inset)
         inset += penetration

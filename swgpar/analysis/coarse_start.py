@@ -32,7 +32,7 @@ from swgpar.petsc import PETSc
 
 def transfer(coarse: DriveModel, x: PETSc.Vec, fine: DriveModel, y: PETSc.Vec) -> None:
     """Set y of the fine model to the state x of the coarse one; both on the same ranks, sector by sector."""
-    for body, layout in enumerate(fine.partition.layouts):
+    for body, layout in fine.partition.layouts.items():
         first, end = fine.partition.owned_sectors(body)
         sectors = np.arange(first, end)
         angle = layout.sector_angle(layout.first_tooth + sectors)

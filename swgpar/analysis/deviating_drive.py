@@ -17,6 +17,7 @@ from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.shortcuts import finds_contacts
 from swgpar.constraints.distributing_coupling import TILT_X, TILT_Y, X, Y
+from swgpar.constraints.supports import SPLINE_COUPLING
 from swgpar.contact.flank_deviations import flank_deviations
 from swgpar.contact.flank_state import SearchRange
 from swgpar.contact.rigid_surface import SurfacePose, cam_pose
@@ -26,7 +27,7 @@ from swgpar.design.sections import GEARS
 from swgpar.errors import ConvergenceError
 from swgpar.evaluation.torques import torques
 from swgpar.evaluation.transmission_error import TurnPoint
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR
+from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.partition import split
 from swgpar.geometry.rotation import rotated
 from swgpar.load.load_sequence import load_sequence
@@ -121,7 +122,7 @@ class DeviatingDrive:
         gears = [gear_deviations(self.deviations, gear, design.teeth(gear)) for gear in GEARS]
         layouts = self.model.partition.layouts
         self.tables = flank_deviations(layouts[FLEXIBLE_SPLINE], layouts[RING_GEAR], *gears, design.axial_travel)
-        bore = problem.supports.couplings[FLEXIBLE_SPLINE]
+        bore = problem.supports.couplings[SPLINE_COUPLING]
         self.bore_z = float(bore.sum(bore.weight * bore.reference[:, 2]))
         spline, ring = self.tables.periods()
         cup = self.deviations.cup
@@ -192,8 +193,8 @@ class DeviatingDrive:
         if self.design.output_gear == "flexible_spline":
             turn += state.angle / self.design.ratio
         lean = share * rotated(part.lean, turn)
-        offsets[FLEXIBLE_SPLINE, [X, Y]] = share * rotated(part.shift, turn) + self.bore_z * lean
-        offsets[FLEXIBLE_SPLINE, [TILT_X, TILT_Y]] = -lean[1], lean[0]
+        offsets[SPLINE_COUPLING, [X, Y]] = share * rotated(part.shift, turn) + self.bore_z * lean
+        offsets[SPLINE_COUPLING, [TILT_X, TILT_Y]] = -lean[1], lean[0]
 
     def _point(self, index: int, pitch: int, state: LoadState, ideal: PETSc.Vec, guess: PETSc.Vec) -> TurnPoint:
         """The state at a phase of a pitch, from a guess, or from the ideal one by shares of the deviations."""

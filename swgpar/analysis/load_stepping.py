@@ -10,7 +10,7 @@ from swgpar.analysis.bent_start import bend
 from swgpar.analysis.predictor import KnownState, predict
 from swgpar.errors import ConvergenceError
 from swgpar.evaluation.torques import torques
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.load.load_sequence import start_state
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import logger

@@ -67,21 +67,21 @@ def interpolation_points(shifts: list[float]) -> list[InterpolationPoint]:
 
 def predict(
     partition: Partition,
-    fixed_body: int,
+    fixed_body: str,
     known: list[KnownState],
     x: PETSc.Vec,
     angle: float,
     output_rotation: float = 0.0,
-    resting: Collection[int] = (),
+    resting: Collection[str] = (),
 ) -> None:
     """Set x to the state at an angle of the wave generator (rad), from states at others; collective.
 
-    fixed_body : index of the gear that does not rotate
+    fixed_body : name of the gear that does not rotate
     output_rotation : rad, further rotation in its deformed pattern of what is not `resting`
-    resting : indices of bodies
+    resting : names of bodies
     """
     new = []
-    for body, layout in enumerate(partition.layouts):
+    for body, layout in partition.layouts.items():
         first, end = partition.owned_sectors(body)
         own = np.arange(first, end)
         moved = _pattern(partition, fixed_body, body, known, angle, 0.0 if body in resting else output_rotation)
@@ -92,7 +92,7 @@ def predict(
 
 
 def _pattern(
-    partition: Partition, fixed_body: int, body: int, known: list[KnownState], angle: float, rotation: float
+    partition: Partition, fixed_body: str, body: str, known: list[KnownState], angle: float, rotation: float
 ) -> np.ndarray:
     """Displacements (n_sectors, n_nodes, 3) mm of the owned sectors of a body, each in the frame of its tooth."""
     layout = partition.layouts[body]

@@ -32,7 +32,7 @@ from swgpar.evaluation.result_frame import history_rows, nodal_fields
 from swgpar.evaluation.stiffness import loop_rows
 from swgpar.evaluation.stress_cycle import StressCycle
 from swgpar.evaluation.windows.accuracy import Accuracy
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.input.toml_file import to_toml
 from swgpar.load.load_program import internal_torque
 from swgpar.load.load_sequence import LoadSequence
@@ -107,10 +107,10 @@ class Recorder(ABC):
             if model.design.losses:
                 self.record.cam_forces.append(cam_force(model))
         with model.phases("output"):
-            fields = dict(zip([layout.name for layout in model.partition.layouts], body_fields, strict=True))
+            fields = dict(body_fields)
             if model.design.output.fields:
                 spline = model.elements.bodies[FLEXIBLE_SPLINE]
-                fields[spline.layout.name]["pressure"] = nodal_pressure(model.problem, stepper.load_state, spline)
+                fields[FLEXIBLE_SPLINE]["pressure"] = nodal_pressure(model.problem, stepper.load_state, spline)
             self._keep(stepper, fields, elapsed)
 
     def _in_frame(self, stepper: LoadStepper, fields: NodalFields) -> NodalFields:
@@ -257,7 +257,7 @@ class FolderRecorder(Recorder):
             }
             self._writer.write_increment(len(self.record.rows), self._in_frame(stepper, fields))
         self._write_tables()
-        displacement = [fields[layout.name]["displacement"] for layout in self.model.partition.layouts]
+        displacement = {name: values["displacement"] for name, values in fields.items()}
         save_run(self.out, self.identity, stepper, self.record, self.cycle, displacement, elapsed)
 
     def keep_turns(self, rows: list[Row]) -> None:
@@ -304,8 +304,8 @@ class FolderRecorder(Recorder):
 def _body_parts(model: DriveModel) -> dict[str, BodyPart]:
     """The undeformed bodies on this rank, by name."""
     parts = {}
-    for k, body in enumerate(model.elements.bodies):
-        mesh, (first, _) = body.layout.mesh, model.partition.owned_sectors(k)
+    for name, body in model.elements.bodies.items():
+        mesh, (first, _) = body.layout.mesh, model.partition.owned_sectors(name)
         points, cells = body.positions()[body.owned], mesh.hexes.astype(np.int64)
         parts[mesh.body] = BodyPart(points, cells, first, body.layout.count, _flank_grids(mesh))
     return parts

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,7 +13,7 @@ from swgpar.analysis.run_record import RunRecord
 from swgpar.analysis.saved_state import SolvedState, restore_state, state_rows
 from swgpar.errors import InputError
 from swgpar.evaluation.stress_cycle import StressCycle
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.load.load_sequence import LoadSequence
 from swgpar.load.load_states import LoadState
 from swgpar.model.drive_model import DriveModel
@@ -45,7 +45,7 @@ def save_run(
     stepper: LoadStepper,
     record: RunRecord,
     cycle: StressCycle | None,
-    displacement: Sequence[np.ndarray],
+    displacement: Mapping[str, np.ndarray],
     elapsed: float,
 ) -> None:
     """Write the checkpoint of the present state; collective.

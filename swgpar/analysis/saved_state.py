@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from swgpar.contact import friction
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.vectors import read_field, write_field
 from swgpar.model.drive_model import DriveModel
 from swgpar.results import parallel_hdf5
@@ -33,34 +33,34 @@ class SolvedState:
         return cls(model.problem.multipliers().tolist(), model.problem.modelled_sectors())
 
 
-def state_rows(model: DriveModel, displacement: Sequence[np.ndarray] | None = None) -> dict[str, Block]:
+def state_rows(model: DriveModel, displacement: Mapping[str, np.ndarray] | None = None) -> dict[str, Block]:
     """Displacements of all bodies by name, and with friction the tractions of the flanks; collective.
 
-    displacement : of all bodies, (n_sectors, n_local, 3) mm of the owned sectors; None reads those of the model's x
+    displacement : by body, (n_sectors, n_local, 3) mm of the owned sectors; None reads those of the model's x
     """
     blocks, partition = {}, model.partition
-    for k, layout in enumerate(partition.layouts):
-        first, end = partition.owned_sectors(k)
+    for name, layout in partition.layouts.items():
+        first, end = partition.owned_sectors(name)
         if displacement is None:
-            values = read_field(partition, k, np.arange(first, end), model.problem.x)
+            values = read_field(partition, name, np.arange(first, end), model.problem.x)
         else:
-            values = np.ascontiguousarray(displacement[k])
-        blocks[layout.name] = Block(values, first, layout.count)
+            values = np.ascontiguousarray(displacement[name])
+        blocks[name] = Block(values, first, layout.count)
     if model.design.contact.friction:
         first, end = partition.owned_sectors(FLEXIBLE_SPLINE)
-        for name, values in model.problem.flanks[0].traction_rows(first, end).items():
-            blocks[name] = Block(values, first, partition.layouts[FLEXIBLE_SPLINE].count)
+        for row, values in model.problem.flanks[0].traction_rows(first, end).items():
+            blocks[row] = Block(values, first, partition.layouts[FLEXIBLE_SPLINE].count)
     return blocks
 
 
 def restore_state(model: DriveModel, path: Path, solved: SolvedState) -> None:
     """Bring back a state from the rows in the file, on any number of ranks; collective."""
     partition, problem = model.partition, model.problem
-    owned = [partition.owned_sectors(k) for k in range(len(partition.layouts))]
-    ranges = {layout.name: (first, end - first) for layout, (first, end) in zip(partition.layouts, owned)}
+    owned = {name: partition.owned_sectors(name) for name in partition.layouts}
+    ranges = {name: (first, end - first) for name, (first, end) in owned.items()}
     arrays = parallel_hdf5.read_rows(path, model.comm, ranges)
-    for k, layout in enumerate(partition.layouts):
-        write_field(partition, k, np.arange(*owned[k]), arrays[layout.name], problem.x)
+    for name, sectors in owned.items():
+        write_field(partition, name, np.arange(*sectors), arrays[name], problem.x)
     if model.comm.rank == model.comm.size - 1:
         problem.x.array[-partition.n_multipliers :] = solved.multipliers
     problem.resume_sectors(solved.modelled_sectors)

@@ -8,7 +8,6 @@ from mpi4py import MPI
 from swgpar.constraints.distributing_coupling import N_COUPLED, ROTATION, Coupling, NodeMeans, RadialGuide
 from swgpar.constraints.race_coupling import RaceCoupling
 from swgpar.constraints.rigid_attachment import RigidAttachment
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.partition import Partition
 from swgpar.fem.sparse import BlockRows, add_diagonal
 from swgpar.fem.vectors import create_vector
@@ -65,7 +64,7 @@ class Supports:
     partition : ownership
     couplings : six multipliers each, in this order at the end of the vector; none where contacts hold the body, no
         second one where the ring gear is clamped
-    output : index of the gear that is the output
+    output : index of the coupling of the output
     guide : around the ring gear, or None
     scale : unit of the multipliers and of the grounding: E times the module, N/mm
     share : modelled share of the drive: 1, or 1 over the number of lobes
@@ -83,7 +82,7 @@ class Supports:
         partition: Partition,
         couplings: list[NodeMeans],
         *,
-        output: int = FLEXIBLE_SPLINE,
+        output: int = SPLINE_COUPLING,
         guide: RadialGuide | None = None,
         scale: float,
         share: float,
@@ -133,7 +132,7 @@ class Supports:
     @property
     def ring_floats(self) -> bool:
         """Whether the ring gear has a coupling, and is not clamped."""
-        return self._gears > RING_GEAR
+        return self._gears > RING_COUPLING
 
     def prescribed(self, state: LoadState) -> list[tuple[int, int]]:
         """Pairs (coupling, coupled quantity) that the load state prescribes."""

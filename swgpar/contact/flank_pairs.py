@@ -10,7 +10,7 @@ import numpy as np
 from swgpar.contact.flank_deviations import FlankDeviations
 from swgpar.contact.search import FlankPair
 from swgpar.contact.segments import MIRROR, FlankFaces, Segments, bilinear, lagrange
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.local_nodes import LocalNodes
 from swgpar.fem.partition import Partition
@@ -106,7 +106,7 @@ class FlankPairs:
 
     Parameters
     ----------
-    partition, spline, ring : ownership and the elements of both bodies;  ring_body : index of the ring gear
+    partition, spline, ring : ownership and the elements of both bodies
     slaves : faces of the flexible spline's flanks by side;  masters : grids of the ring gear's flanks by side
     pairs : pairs of flanks;  local : local nodes, those of the pairs among them
 
@@ -121,13 +121,12 @@ class FlankPairs:
         partition: Partition,
         spline: BodyElements,
         ring: BodyElements,
-        ring_body: int,
         slaves: Mapping[int, FlankFaces],
         masters: Mapping[int, FlankGrid],
         pairs: list[FlankPair],
         local: LocalNodes,
     ) -> None:
-        self.partition, self.spline, self.ring, self.ring_body = partition, spline, ring, ring_body
+        self.partition, self.spline, self.ring = partition, spline, ring
         self.pairs, self.local = pairs, local
         self.masters = self._master_flanks(masters)
         placed = [self._placed(slaves[p.side], p, k) for k, p in enumerate(pairs)]
@@ -169,7 +168,7 @@ class FlankPairs:
             flanks.orientation[k] = np.sign(np.sum(right * profile.normal(grid.s) * mirror))
             angle = self.ring.layout.sector_angle(np.array(p.ring_tooth))
             flanks.rotation[k] = np.cos(angle), np.sin(angle)
-            number, sixths = self.partition.node_numbers(self.ring_body, np.array([p.ring]), grid.nodes.ravel())
+            number, sixths = self.partition.node_numbers(self.ring.layout.name, np.array([p.ring]), grid.nodes.ravel())
             flanks.conn[k] = self.local.index(number).reshape(grid.nodes.shape)
             flanks.sixths[k] = np.where(number >= 0, (sixths + p.ring_sixths) % 6, 0).reshape(grid.nodes.shape)
         return flanks

@@ -26,7 +26,7 @@ from swgpar.contact.flank_state import ActiveSegments, Crowning, FrictionStart, 
 from swgpar.contact.friction import Friction, PairKey
 from swgpar.contact.search import FlankPair
 from swgpar.contact.segments import cut_faces, flank_faces
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.local_nodes import LocalNodes
 from swgpar.fem.partition import Partition
@@ -47,7 +47,7 @@ class FlankContact:
 
     Parameters
     ----------
-    partition, spline, ring : ownership and the elements of both bodies;  ring_body : index of the ring gear
+    partition, spline, ring : ownership and the elements of both bodies
     ring_motion : rotation of the ring gear as a whole
     order : Gauss points per direction on a segment of a slave face
     crowning : of the flexible spline's flanks
@@ -68,7 +68,6 @@ class FlankContact:
         partition: Partition,
         spline: BodyElements,
         ring: BodyElements,
-        ring_body: int,
         ring_motion: RingMotion,
         *,
         order: int,
@@ -78,7 +77,7 @@ class FlankContact:
         pressure_limit: float,
         friction_coefficient: float,
     ) -> None:
-        self.partition, self.spline, self.ring, self.ring_body = partition, spline, ring, ring_body
+        self.partition, self.spline, self.ring = partition, spline, ring
         self.ring_motion = ring_motion
         self.full_penalty = self.penalty = penalty
         self.max_gap, self.pressure_limit = max_gap, pressure_limit
@@ -114,7 +113,7 @@ class FlankContact:
     def takes_part(self, pair: FlankPair) -> bool:
         """Whether this rank owns one of the pair's teeth."""
         owner = self.partition.owner_of_sector
-        owners = owner(FLEXIBLE_SPLINE, np.array(pair.sector)), owner(self.ring_body, np.array(pair.ring))
+        owners = owner(FLEXIBLE_SPLINE, np.array(pair.sector)), owner(self.ring.layout.name, np.array(pair.ring))
         return self.partition.comm.rank in owners
 
     def node_numbers(self, pairs: list[FlankPair]) -> np.ndarray:
@@ -123,7 +122,7 @@ class FlankContact:
         for p in pairs:
             slave, master = self.slaves[p.side].corners.ravel(), self.masters[-p.side].nodes.ravel()
             found.append(numbers(FLEXIBLE_SPLINE, np.array([p.sector]), slave)[0].ravel())
-            found.append(numbers(self.ring_body, np.array([p.ring]), master)[0].ravel())
+            found.append(numbers(self.ring.layout.name, np.array([p.ring]), master)[0].ravel())
         return np.concatenate(found)
 
     def search(
@@ -141,9 +140,7 @@ class FlankContact:
 
         Returns keys row * n_global + column (n,) of the tangent's blocks that may couple.
         """
-        self.found = found = FlankPairs(
-            self.partition, self.spline, self.ring, self.ring_body, self.slaves, self.masters, pairs, local
-        )
+        self.found = found = FlankPairs(self.partition, self.spline, self.ring, self.slaves, self.masters, pairs, local)
         self._near_faces, self._near_pairs = np.zeros((2, 0), dtype=np.int64)
         self._friction_start = None
         self.reset()

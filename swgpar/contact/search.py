@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE, BodyLayout
+from swgpar.fem.body import FLEXIBLE_SPLINE
+from swgpar.fem.body_layout import BodyLayout
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.partition import Partition
 

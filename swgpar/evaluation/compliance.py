@@ -13,7 +13,7 @@ from mpi4py import MPI
 
 from swgpar.contact.contact import largest
 from swgpar.evaluation.bearing_loads import ComplianceShares
-from swgpar.fem.body_layout import OUTER_RACE
+from swgpar.fem.body import OUTER_RACE
 from swgpar.fem.vectors import create_vector
 from swgpar.load.load_states import LoadState
 from swgpar.model.drive_model import DriveModel

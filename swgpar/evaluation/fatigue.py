@@ -22,7 +22,7 @@ from swgpar.evaluation.fatigue_criteria import (
 from swgpar.evaluation.places import APART_DISTANCE, near_contact
 from swgpar.evaluation.stress_cycle import StressCycle
 from swgpar.evaluation.windows.root_stress import RootStress
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.stress import principal
 from swgpar.load.load_program import program_points
 from swgpar.load.load_states import Stage

@@ -9,7 +9,7 @@ import numpy as np
 
 from swgpar.contact.contact import largest
 from swgpar.evaluation.answers import AnswerGroup, AnswerKind
-from swgpar.fem.body_layout import RING_GEAR
+from swgpar.fem.body import RING_GEAR
 from swgpar.model.drive_model import DriveModel
 
 MICROMETRES = 1000.0

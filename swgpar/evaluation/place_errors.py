@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from swgpar.design.sections import GEARS
 from swgpar.evaluation.places import Place
 from swgpar.evaluation.windows.root_stress import RootStress
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.model.regions import TOOTH_ROOT
 
 NODAL_ORDER = 1
@@ -52,7 +51,7 @@ def with_errors(
     spacing = {place.body: place.root_spacing for place in places.values()}
     share = root_stress.lost_in_root if root_stress is not None else None
     if share is not None and places:
-        of_spline = spacing[GEARS[FLEXIBLE_SPLINE]]
+        of_spline = spacing[FLEXIBLE_SPLINE]
         lost = {body: share * (length / of_spline) ** NODAL_ORDER for body, length in spacing.items()}
     return {
         name: replace(place, error=_error(place, shares.get(name), lost.get(place.body)))
@@ -65,7 +64,7 @@ def _error(place: Place, share: float | None, lost: float | None) -> float | Non
     if place.warning:
         return None
     in_root = lost is not None and place.region == TOOTH_ROOT
-    if in_root and (share is None or place.body == GEARS[FLEXIBLE_SPLINE]):
+    if in_root and (share is None or place.body == FLEXIBLE_SPLINE):
         share = lost
     if share is None:
         return None

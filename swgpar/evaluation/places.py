@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind, place_text
 from swgpar.evaluation.contact.contact_pressure import nodal_pressure
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.load.load_states import LoadState
 from swgpar.meshing.sector import SectorMesh
 from swgpar.model.drive_model import DriveModel
@@ -118,7 +118,7 @@ class LargestStresses(AnswerGroup):
 
 
 def find_places(
-    model: DriveModel, state: LoadState, fields: Sequence[Mapping[str, np.ndarray]], *, on_edge: bool = False
+    model: DriveModel, state: LoadState, fields: Mapping[str, Mapping[str, np.ndarray]], *, on_edge: bool = False
 ) -> dict[str, Place]:
     """Places of the largest s1, |s3| and von Mises stress of both bodies, by column of the history; collective.
 
@@ -132,19 +132,19 @@ def find_places(
     pressed = pressed_nodes(model, state)  # those of the spline; any flank of the ring gear may be touched
     found, design = {}, model.design
     distance, on_rollers = APART_DISTANCE * design.drive.module, design.wave_generator.type == "four_roller"
-    for k, prefix in enumerate(("fs", "rg")):
-        body = model.elements.bodies[k]
-        ring = k != FLEXIBLE_SPLINE
-        touched = np.ones(fields[k]["s3"].shape, dtype=bool) if ring else pressed
+    for name, prefix in ((FLEXIBLE_SPLINE, "fs"), (RING_GEAR, "rg")):
+        body = model.elements.bodies[name]
+        ring = name == RING_GEAR
+        touched = np.ones(fields[name]["s3"].shape, dtype=bool) if ring else pressed
         # every sector of the ring gear is alike: one stands for all
         near = near_contact(body.layout.mesh, touched[:1] if ring else touched, distance)
         near |= inside_teeth(design, body.layout.mesh)
         apart = np.broadcast_to(~near, touched.shape)
-        regions = model.regions[k]
+        regions = model.regions[name]
         beyond = np.ones(touched.shape[1], dtype=bool)  # nodes of the housing
         beyond[body.layout.mesh.nodes_of(0)] = False
         for stress in ("s1", "s3", "vm"):
-            values = -fields[k][stress] if stress == "s3" else fields[k][stress]
+            values = -fields[name][stress] if stress == "s3" else fields[name][stress]
             values = np.where(beyond, -np.inf, values)
             # s1 below a contact is compressive or small; of the ring gear any flank may be touched
             below = near if stress != "s1" else np.zeros_like(touched) if ring else touched
@@ -154,15 +154,15 @@ def find_places(
                 names[f"{prefix}_{stress}{APART}"] = np.where(apart, values, -np.inf), np.zeros_like(touched)
             if stress != "s3":
                 names |= _by_region(f"{prefix}_{stress}", regions, values, below)
-            for name, of in names.items():
-                place = _largest(model, k, *of)
-                if OF_REGION in name and place.value <= 0.0:
+            for column, of in names.items():
+                place = _largest(model, name, *of)
+                if OF_REGION in column and place.value <= 0.0:
                     continue
                 if on_rollers and stress != "s1" and place.region == "rim inside":
                     place = replace(place, warning=ROLLER)
                 if on_edge and ring and not place.warning:
                     place = replace(place, warning=CORNER)
-                found[name] = place
+                found[column] = place
     return found
 
 
@@ -225,19 +225,19 @@ def root_spacing(mesh: SectorMesh) -> float:
     return float((s[-1] - begin) / max(np.count_nonzero(s > begin + 1e-9 * s[-1]), 1))
 
 
-def _largest(model: DriveModel, k: int, values: np.ndarray, touched: np.ndarray) -> Place:
-    """Place of the largest of values (n_sectors, n_node) MPa of body k; collective. touched : nodes under contact"""
-    body = model.elements.bodies[k]
+def _largest(model: DriveModel, name: str, values: np.ndarray, touched: np.ndarray) -> Place:
+    """Place of the largest of values (n_sectors, n_node) MPa of a body; collective. touched : nodes under contact"""
+    body = model.elements.bodies[name]
     best: tuple[float, int, int, bool] = (-np.inf, 0, 0, False)
     if values.size:
         sector, node = np.unravel_index(values.argmax(), values.shape)
-        first, _ = model.partition.owned_sectors(k)
+        first, _ = model.partition.owned_sectors(name)
         best = (float(values[sector, node]), first + int(sector), int(node), bool(touched[sector, node]))
     mine = float(values[:, root_nodes(model.design, body.layout.mesh)].max(initial=0.0))
     in_root = max(model.comm.allgather(mine))
     value, sector, node, pressed = max(model.comm.allgather(best), key=lambda one: one[0])
     x, y, z = point = body.layout.mesh.coords[node]
-    region = str(model.regions[k][pressed][node])
+    region = str(model.regions[name][pressed][node])
     tooth = body.layout.first_tooth + sector
     angle = float(body.layout.sector_angle(np.array(tooth)) - np.arctan2(x, y))
     return Place(

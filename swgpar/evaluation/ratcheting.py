@@ -11,7 +11,7 @@ from mpi4py import MPI
 from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind
 from swgpar.evaluation.program_results import PointRow
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.load.load_program import pitch_angle, torque_direction
 from swgpar.model.drive_model import DriveModel
 

@@ -55,10 +55,10 @@ def nodal_fields(
     if not model.design.wave_generator_is_fixed:
         return dict(fields)
     found = {}
-    for body in model.elements.bodies:
-        values, position = fields[body.layout.name], body.positions()[body.owned]
+    for name, body in model.elements.bodies.items():
+        values, position = fields[name], body.positions()[body.owned]
         back = np.full((len(position), 1), model.design.in_frame_of_result(0.0, angle))
-        found[body.layout.name] = {
+        found[name] = {
             **values,
             "displacement": rotated(position + values["displacement"], back) - position,
             "stress": rotated_stress(values["stress"], float(model.design.in_frame_of_result(0.0, angle))),

@@ -16,7 +16,8 @@ from mpi4py import MPI
 
 from swgpar.evaluation.period import sample_of
 from swgpar.evaluation.places import pressed_nodes
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE, BodyLayout
+from swgpar.fem.body import FLEXIBLE_SPLINE
+from swgpar.fem.body_layout import BodyLayout
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.partition import split
 from swgpar.load.load_program import program_points

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from mpi4py import MPI
 
+from swgpar.constraints.supports import RING_COUPLING, SPLINE_COUPLING
 from swgpar.contact.contact import Contact
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR
+from swgpar.fem.body import FLEXIBLE_SPLINE, OUTER_RACE
 from swgpar.load.load_states import LoadState
 from swgpar.solve.discrete_problem import DiscreteProblem
 
@@ -34,9 +35,10 @@ class Torques:
 def torques(problem: DiscreteProblem, state: LoadState) -> Torques:
     """Torques of the present x, which is in equilibrium under `state`; collective."""
     u, supports, comm = problem.displacement(), problem.supports, problem.partition.comm
-    bodies, race = problem.elements.bodies, 1 + len(problem.flanks)
+    bodies = problem.elements.bodies
     spline = np.zeros(len(u), dtype=bool)
-    for body in (bodies[FLEXIBLE_SPLINE], *bodies[race:]):  # the race and the spline press on each other
+    # the race and the spline press on each other
+    for body in (bodies[name] for name in (FLEXIBLE_SPLINE, OUTER_RACE) if name in bodies):
         spline[body.local[body.local >= 0]] = True
     x = problem.positions() + u
 
@@ -53,8 +55,8 @@ def torques(problem: DiscreteProblem, state: LoadState) -> Torques:
         reactions[supports.output_gear] = state.torque
     output, wave_generator = float(reactions[supports.output_gear]), moment(problem.wave_generator_contacts)
     teeth = tuple(moment([flanks]) for flanks in problem.flanks)
-    balance = abs(wave_generator + sum(teeth) + float(reactions[FLEXIBLE_SPLINE]))
+    balance = abs(wave_generator + sum(teeth) + float(reactions[SPLINE_COUPLING]))
     if supports.ring_floats:
         of_ring = sum(torque for flanks, torque in zip(problem.flanks, teeth) if flanks.ring_motion.floats)
-        balance = max(balance, abs(float(reactions[RING_GEAR]) - of_ring))
+        balance = max(balance, abs(float(reactions[RING_COUPLING]) - of_ring))
     return Torques(wave_generator, teeth, output, balance)

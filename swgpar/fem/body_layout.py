@@ -14,15 +14,10 @@ from functools import cached_property
 
 import numpy as np
 
+from swgpar.fem.body import Body
 from swgpar.fem.condensed_parts import CondensedPart
 from swgpar.geometry.rotation import sixths_of_turn
 from swgpar.meshing.sector import SectorMesh
-
-FLEXIBLE_SPLINE, RING_GEAR, DYNAMIC_SPLINE, OUTER_RACE = 0, 1, 2, 2
-"""Indices of the bodies of a drive, in partitions, elements and layouts.
-
-The third one is the dynamic spline of a pancake drive, or the race of a drive with a bearing; no drive has both.
-"""
 
 
 @dataclass(frozen=True)
@@ -58,7 +53,7 @@ class SectorNumbering:
 class BodyLayout:
     """The modelled sectors of one body.
 
-    mesh : the congruent sector
+    body : what is known of the body, with the mesh of the congruent sector
     first_tooth, count : modelled teeth first_tooth .. first_tooth + count - 1
     closed : the chain closes on itself, with a rotation by its own length where the model is a part of the drive
     copies : how many times the model makes the whole: 1, 2 or 3
@@ -67,7 +62,7 @@ class BodyLayout:
     tooth : the tooth as one element, for sectors whose flanks nothing touches; None where it is not used
     """
 
-    mesh: SectorMesh
+    body: Body
     first_tooth: int
     count: int
     closed: bool
@@ -104,9 +99,14 @@ class BodyLayout:
         return SectorNumbering(previous, owned_nodes, row, end_row, n_end, without_unknowns)
 
     @property
+    def mesh(self) -> SectorMesh:
+        """The congruent sector."""
+        return self.body.mesh
+
+    @property
     def name(self) -> str:
         """Name of the body, as in the design file."""
-        return self.mesh.body
+        return self.body.name
 
     @property
     def teeth_per_period(self) -> int:

@@ -35,7 +35,7 @@ class AssembledElements:
     sixths: np.ndarray
 
 
-def sectors_seen(partition: Partition, body: int) -> np.ndarray:
+def sectors_seen(partition: Partition, body: str) -> np.ndarray:
     """Indices (n,) in the chain of the sectors whose elements a rank needs: its own and one on either side.
 
     The owned rows need the sector before them, nodal averages of stress need both; none where the rank owns none.
@@ -51,8 +51,7 @@ class BodyElements:
 
     Parameters
     ----------
-    partition, body : ownership, and index of the body
-    reference : matrices of the elements of a sector
+    partition, body : ownership, and name of the body
     local : nodes of this rank
 
     Attributes
@@ -67,10 +66,10 @@ class BodyElements:
     assembled : elements of the active sectors that this rank assembles, of every kind
     """
 
-    def __init__(self, partition: Partition, body: int, reference: ReferenceElements, local: LocalNodes) -> None:
+    def __init__(self, partition: Partition, body: str, local: LocalNodes) -> None:
         layout = partition.layouts[body]
-        self.layout, self.reference, condensed = layout, reference, layout.condensed
-        self._kinds = [(reference, layout.mesh.elements)]
+        self.layout, self.reference, condensed = layout, layout.body.elements, layout.condensed
+        self._kinds = [(self.reference, layout.mesh.elements)]
         if condensed is not None:
             self._kinds = [(condensed.reference, condensed.outer[None])]
         elif layout.tooth is not None:
@@ -232,23 +231,22 @@ class Elements:
     Parameters
     ----------
     partition : ownership
-    references : of each body, matrices of the elements of a sector
     symmetric : keep the tangent's upper triangle only
 
     Attributes
     ----------
     local : nodes of this rank that its elements, multipliers and averages of stress need
-    bodies : elements of each body;  pattern : of the tangent for the active sectors
+    bodies : elements of each body by its name;  pattern : of the tangent for the active sectors
     """
 
-    def __init__(self, partition: Partition, references: list[ReferenceElements], symmetric: bool = True) -> None:
+    def __init__(self, partition: Partition, symmetric: bool = True) -> None:
         self.partition, self.symmetric = partition, symmetric
         needed = [
             partition.node_numbers(k, sectors_seen(partition, k), np.arange(len(layout.mesh.coords)))[0].ravel()
-            for k, layout in enumerate(partition.layouts)
+            for k, layout in partition.layouts.items()
         ]
         self.local = LocalNodes(partition, np.concatenate([*needed, partition.multiplier_nodes]))
-        self.bodies = [BodyElements(partition, k, r, self.local) for k, r in enumerate(references)]
+        self.bodies = {name: BodyElements(partition, name, self.local) for name in partition.layouts}
         self.pattern = self._pattern()
 
     def renew_pattern(self) -> None:
@@ -258,13 +256,13 @@ class Elements:
     def _pattern(self) -> TangentPattern:
         partition, local = self.partition, self.local
         touched = np.zeros(local.n_own, dtype=bool)
-        for elements in (part for body in self.bodies for part in body.assembled):
+        for elements in (part for body in self.bodies.values() for part in body.assembled):
             conn = elements.conn
             touched[conn[(conn >= 0) & (conn < local.n_own)]] = True
         multipliers = partition.multiplier_nodes
         own = multipliers - local.row_start
         touched[own[(own >= 0) & (own < local.n_own)]] = True
-        blocks = [[self.block_keys(part.conn) for part in body.assembled] for body in self.bodies]
+        blocks = [[self.block_keys(part.conn) for part in body.assembled] for body in self.bodies.values()]
         diagonal = local.row_start + np.flatnonzero(touched)
         keys = [*(block.ravel() for body in blocks for block in body), diagonal * partition.n_global + diagonal]
         if local.n_own and local.row_start + local.n_own == partition.n_global:
@@ -317,7 +315,7 @@ class Elements:
         u : (n_local, 3) mm;  positions : of the element blocks in `rows`, as `rows` gives them
         Raises FloatingPointError where an element has collapsed.
         """
-        for k, body in enumerate(self.bodies):
+        for k, body in enumerate(self.bodies.values()):
             body.assemble(
                 u, residual, None if positions is None else positions[k], None if rows is None else rows.values
             )

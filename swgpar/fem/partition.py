@@ -27,22 +27,25 @@ class Partition:
 
     Parameters
     ----------
-    layouts : the bodies, flexible spline first
+    layouts : the bodies in the order in which each rank numbers their nodes
     comm : communicator; each rank owns a contiguous range of sectors of every body
 
-    `dims` is the number of unknowns per node that the tangent has: 2 in the plane, where vectors keep a zero z.
+    Attributes
+    ----------
+    layouts : bodies by name
+    dims : unknowns per node that the tangent has: 2 in the plane, where vectors keep a zero z
     """
 
     def __init__(self, layouts: list[BodyLayout], comm: MPI.Comm) -> None:
         self.comm = comm
-        self.layouts = layouts
+        self.layouts = {layout.name: layout for layout in layouts}
         self.dims = 2 if layouts[0].mesh.plane else 3
-        self._first = [split(b.count, comm.size) for b in layouts]
+        self._first = {b.name: split(b.count, comm.size) for b in layouts}
         sizes = np.array(
             [
                 [
                     np.diff(s)[r] * len(b.numbering.owned_nodes) + (b.numbering.n_end if r == comm.size - 1 else 0)
-                    for s, b in zip(self._first, layouts)
+                    for s, b in zip(self._first.values(), layouts)
                 ]
                 for r in range(comm.size)
             ]
@@ -50,29 +53,30 @@ class Partition:
         appended = MULTIPLIER_NODES * sum(len(b.fixed) == 0 for b in layouts)
         sizes[-1, -1] += appended
         flat = np.concatenate([[0], np.cumsum(sizes.ravel())])
-        self._base = flat[:-1].reshape(sizes.shape)
+        base = flat[:-1].reshape(sizes.shape)
+        self._base = {b.name: base[:, k] for k, b in enumerate(layouts)}
         self.n_global = int(flat[-1])
-        self.row_start = int(self._base[comm.rank, 0])
+        self.row_start = int(base[comm.rank, 0])
         self.n_own = int(sizes[comm.rank].sum())
         self.multiplier_nodes = self.n_global - appended + np.arange(appended)
         self.n_multipliers = 3 * appended
 
-    def owned_sectors(self, body: int) -> tuple[int, int]:
+    def owned_sectors(self, body: str) -> tuple[int, int]:
         """Range (first, end) of the indices in the chain of the sectors that this rank owns."""
         return int(self._first[body][self.comm.rank]), int(self._first[body][self.comm.rank + 1])
 
-    def owner_of_sector(self, body: int, index: np.ndarray) -> np.ndarray:
+    def owner_of_sector(self, body: str, index: np.ndarray) -> np.ndarray:
         """Ranks (n,) that own the sectors of the indices (n,) in the chain."""
         return np.searchsorted(self._first[body], index, side="right") - 1
 
-    def _into_chain(self, body: int, index: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _into_chain(self, body: str, index: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Indices in 0 .. count - 1 of a closed chain, and the flags of the sectors."""
         b = self.layouts[body]
         index = np.asarray(index)
         periods, rest = np.divmod(index, b.count)
         return rest, sixths_of_turn(b.copies, periods)
 
-    def node_numbers(self, body: int, index: np.ndarray, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def node_numbers(self, body: str, index: np.ndarray, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Global block numbers of local nodes of sectors.
 
         Parameters
@@ -105,6 +109,6 @@ class Partition:
             + numbering.end_row[local],
             (k - self._first[body][rank]) * len(numbering.owned_nodes) + numbering.row[local],
         )
-        number = self._base[rank, body] + offset
+        number = self._base[body][rank] + offset
         absent = np.broadcast_to(numbering.without_unknowns[nodes], k.shape)
         return np.where(absent, -1, number), np.where(absent, 0, sixths).astype(np.uint8)

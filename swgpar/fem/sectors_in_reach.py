@@ -14,7 +14,7 @@ from abc import ABC, abstractmethod
 
 import numpy as np
 
-from swgpar.fem.body_layout import RING_GEAR
+from swgpar.fem.body import RING_GEAR
 from swgpar.fem.elements import BodyElements, Elements
 
 
@@ -85,14 +85,14 @@ class RingSectors(SectorsInReach):
 
 
 class WholeTeeth(SectorsInReach):
-    """Teeth of a body that are not one element; no flank of the others may touch. `body` : its index
+    """Teeth of a body that are not one element; no flank of the others may touch. `body` : its name
 
     The choice follows from the shape at the search alone, so that one that repeats after a period has the same teeth.
     """
 
     LEAST, MARGIN, MOST = 1, 1, 1
 
-    def __init__(self, count: int, body: int) -> None:
+    def __init__(self, count: int, body: str) -> None:
         super().__init__(count)
         self.body = body
 

@@ -41,7 +41,7 @@ class Exchange:
         return self.target.array_r.reshape(-1, 3).copy()
 
 
-def read_field(partition: Partition, body: int, sectors: np.ndarray, vector: PETSc.Vec) -> np.ndarray:
+def read_field(partition: Partition, body: str, sectors: np.ndarray, vector: PETSc.Vec) -> np.ndarray:
     """Nodal values (n_sectors, n_local_nodes, 3) of any sectors of a body, images rotated; collective."""
     number, sixths = partition.node_numbers(body, sectors, np.arange(len(partition.layouts[body].mesh.coords)))
     needed, position = np.unique(number, return_inverse=True)
@@ -53,7 +53,7 @@ def read_field(partition: Partition, body: int, sectors: np.ndarray, vector: PET
     return partition.layouts[body].with_inner_nodes(sectors, to_images(values, sixths))
 
 
-def write_field(partition: Partition, body: int, sectors: np.ndarray, values: np.ndarray, vector: PETSc.Vec) -> None:
+def write_field(partition: Partition, body: str, sectors: np.ndarray, values: np.ndarray, vector: PETSc.Vec) -> None:
     """Set the owned entries of `vector` from nodal values (n_sectors, n_local_nodes, 3) of owned sectors."""
     number, sixths = partition.node_numbers(body, sectors, np.arange(len(partition.layouts[body].mesh.coords)))
     own = (number >= partition.row_start) & (number < partition.row_start + partition.n_own) & (sixths == 0)

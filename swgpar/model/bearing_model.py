@@ -12,13 +12,11 @@ from swgpar.contact.ball_contact import LARGEST_REACH, BallContact, BallSet
 from swgpar.contact.point_contact import ball_spring
 from swgpar.contact.race_contact import RaceContact
 from swgpar.design.drive_design import DriveDesign
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE, OUTER_RACE
-from swgpar.fem.element_matrices import element_matrices
+from swgpar.fem.body import FLEXIBLE_SPLINE, OUTER_RACE, Body
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
 from swgpar.geometry.bearing import ball_lines
 from swgpar.geometry.micro_geometry import crowning
-from swgpar.kernel import ReferenceElements
 from swgpar.materials import contact_modulus
 from swgpar.meshing.race_sector import opposite_cells, race_grid, race_sector
 from swgpar.meshing.sector import SectorMesh
@@ -27,15 +25,10 @@ RADIAL = 1
 """Elements through the thickness of the outer race: with incompatible modes one is exact in bending."""
 
 
-def build_race_mesh(design: DriveDesign, spline: SectorMesh) -> SectorMesh:
-    """A sector of the outer race, opposite a tooth sector of the flexible spline."""
-    thickness = design.bearing.race_thickness
-    return race_sector(spline, design.inner_radius, thickness, design.race_width, RADIAL)
-
-
-def race_reference(design: DriveDesign, mesh: SectorMesh) -> ReferenceElements:
-    """Elements of a sector of the race."""
-    return element_matrices(mesh.coords[mesh.elements], design.material_of("bearing"), design.race_width)
+def build_race(design: DriveDesign, spline: SectorMesh) -> Body:
+    """The outer race. Its sectors lie opposite to those of the flexible spline."""
+    mesh = race_sector(spline, design.inner_radius, design.bearing.race_thickness, design.race_width, RADIAL)
+    return Body(mesh, (design.material_of("bearing"),), design.race_width)
 
 
 def build_balls(design: DriveDesign) -> BallSet:

@@ -11,29 +11,27 @@ from mpi4py import MPI
 
 from swgpar.constraints.distributing_coupling import DistributingCoupling, NodeMeans, RadialGuide
 from swgpar.constraints.rigid_attachment import RigidAttachment, face_sides
-from swgpar.constraints.supports import RING_COUPLING, FixedRing, FloatingRing, Supports
+from swgpar.constraints.supports import RING_COUPLING, SPLINE_COUPLING, FixedRing, FloatingRing, Supports
 from swgpar.contact.ball_contact import BallContact
 from swgpar.contact.contact import NO_KEYS, PenaltyContact, largest
 from swgpar.contact.flank_state import Crowning, SearchRange
 from swgpar.contact.flanks import FlankContact
 from swgpar.contact.rigid_surface import RigidContact, cam_pose, pin_pose
 from swgpar.design.drive_design import DriveDesign
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR, BodyLayout
+from swgpar.fem.body import FLEXIBLE_SPLINE, OUTER_RACE, RING_GEAR, Body
+from swgpar.fem.body_layout import BodyLayout
 from swgpar.fem.condensed_parts import condense_sector, condense_tooth, relative_end_rotation
-from swgpar.fem.element_matrices import element_matrices
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
 from swgpar.fem.sectors_in_reach import RingSectors, WholeTeeth
 from swgpar.fem.stress import body_fields, part_maxima
-from swgpar.kernel import ReferenceElements
 from swgpar.log import PhaseTimes, logger
 from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes
 from swgpar.model.bearing_model import (
     build_ball_contact,
+    build_race,
     build_race_contact,
-    build_race_mesh,
     race_coupling,
-    race_reference,
 )
 from swgpar.model.regions import sector_regions
 from swgpar.solve.discrete_problem import ContactSearch, DiscreteProblem
@@ -119,9 +117,9 @@ class DriveModel:
         return {1: "", 2: " (half of it, by symmetry)", 3: " (a third of it, by symmetry)"}[self.copies]
 
     @property
-    def fixed_body(self) -> int:
-        """Index of the gear that does not rotate in the frame in which the drive is computed."""
-        return self.design.gears.index(self.design.standing_gear)
+    def fixed_body(self) -> str:
+        """Name of the gear that does not rotate in the frame in which the drive is computed."""
+        return self.design.standing_gear
 
     def omitted_bending_stress(self) -> float:
         """Stress (MPa) that condensed sectors leave out in the present state: E theta^2 / 8 where they bend most."""
@@ -135,10 +133,9 @@ class DriveModel:
         return largest(self.comm, self.design.modulus_of("flexible_spline") * float((theta**2).max(initial=0.0)) / 8.0)
 
     @cached_property
-    def regions(self) -> list[dict[bool, np.ndarray]]:
-        """Regions of the nodes of a sector of flexible spline and ring gear, see `sector_regions`."""
-        bodies = (self.elements.bodies[k] for k in (FLEXIBLE_SPLINE, RING_GEAR))
-        return [sector_regions(self.design, body.layout.mesh) for body in bodies]
+    def regions(self) -> dict[str, dict[bool, np.ndarray]]:
+        """Regions of the nodes of a sector of flexible spline and ring gear by name, see `sector_regions`."""
+        return {name: sector_regions(self.design, self.meshes[name]) for name in (FLEXIBLE_SPLINE, RING_GEAR)}
 
     def n_elements(self) -> int:
         """Elements of the whole drive."""
@@ -146,16 +143,15 @@ class DriveModel:
 
     def counts(self) -> dict[str, Any]:
         """Nodes, elements and unknowns per body, modelled and of the whole drive."""
-        return {layout.name: body_counts(layout) for layout in self.partition.layouts}
+        return {name: body_counts(layout) for name, layout in self.partition.layouts.items()}
 
-    def stresses(self) -> tuple[dict[str, float], list[dict[str, np.ndarray]]]:
-        """Largest stresses (MPa) by body and kind ("fs_s1", "race_vm", …), and the nodal fields of all bodies."""
+    def stresses(self) -> tuple[dict[str, float], dict[str, dict[str, np.ndarray]]]:
+        """Largest stresses (MPa) by body and kind ("fs_s1", "race_vm", …), and the nodal fields by body."""
         u = self.problem.displacement()
-        values, fields = {}, []
-        for body in self.elements.bodies:
-            field, prefixes = body_fields(body, u), PREFIXES[body.layout.name]
-            fields.append(field)
-            for prefix, largest_of in zip(prefixes, part_maxima(self.comm, body, u, field)):
+        values, fields = {}, {}
+        for name, body in self.elements.bodies.items():
+            fields[name] = body_fields(body, u)
+            for prefix, largest_of in zip(PREFIXES[name], part_maxima(self.comm, body, u, fields[name])):
                 values.update({f"{prefix}_{k}": v for k, v in largest_of.items()})
         return values, fields
 
@@ -183,16 +179,13 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
     with phases("mesh"):
         meshes = build_sector_meshes(design, recipe)
     with phases("elements"):
-        references = {name: sector_elements(design, mesh) for name, mesh in meshes.items()}
-        layouts = [build_layout(design, mesh, references[name]) for name, mesh in meshes.items()]
+        layouts = [build_layout(design, build_gear(design, mesh)) for mesh in meshes.values()]
         if design.bearing is not None:
-            race = build_race_mesh(design, meshes["flexible_spline"])
-            references[race.body] = race_reference(design, race)
-            layouts.append(build_layout(design, race))
+            layouts.append(build_layout(design, build_race(design, meshes[FLEXIBLE_SPLINE])))
     partition = Partition(layouts, comm)
     with phases("elements"):
         symmetric = design.contact.friction == 0.0
-        elements = Elements(partition, list(references.values()), symmetric=symmetric)
+        elements = Elements(partition, symmetric=symmetric)
     supports = build_supports(design, partition=partition, elements=elements)
     surface_contacts, balls, coupling_keys = build_wave_generator_contacts(design, elements=elements)
     problem = DiscreteProblem(
@@ -204,8 +197,8 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
         flanks=build_flank_contacts(design, partition=partition, elements=elements, supports=supports),
         contact_search=contact_search(design),
         module=design.drive.module,
-        ring_sectors=RingSectors(layouts[RING_GEAR].count) if _leaves_out_sectors(design) else None,
-        whole_teeth=[WholeTeeth(layout.count, k) for k, layout in enumerate(layouts) if layout.tooth is not None],
+        ring_sectors=RingSectors(partition.layouts[RING_GEAR].count) if _leaves_out_sectors(design) else None,
+        whole_teeth=[WholeTeeth(layout.count, layout.name) for layout in layouts if layout.tooth is not None],
         coupling_keys=coupling_keys,
         phases=phases,
     )
@@ -222,30 +215,25 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
     )
 
 
-def sector_elements(design: DriveDesign, mesh: SectorMesh) -> ReferenceElements:
-    """Matrices of the elements of a sector of a gear, those of its housing of the housing's material."""
-    width, coords = design.drive.face_width, mesh.coords[mesh.elements]
-    elements = element_matrices(coords, design.material_of(mesh.body), width)
-    if len(mesh.housing):
-        of_housing = element_matrices(coords[mesh.housing], design.material_of("housing"), width)
-        for matrices, other in zip(elements, of_housing):
-            matrices[mesh.housing] = other
-    return elements
+def build_gear(design: DriveDesign, mesh: SectorMesh) -> Body:
+    """A gear, with its housing where the mesh has one."""
+    parts = (mesh.body, "housing")[: len(mesh.parts)]
+    return Body(mesh, tuple(map(design.material_of, parts)), design.drive.face_width)
 
 
-def build_layout(design: DriveDesign, mesh: SectorMesh, reference: ReferenceElements | None = None) -> BodyLayout:
-    """Modelled sectors of a body. reference : elements of one sector, needed where sectors are condensed"""
-    copies = copies_of_model(design)
+def build_layout(design: DriveDesign, body: Body) -> BodyLayout:
+    """Modelled sectors of a body; a race has no sectors that are condensed."""
+    copies, mesh, race = copies_of_model(design), body.mesh, body.name == OUTER_RACE
     standing = mesh.body == design.standing_gear != "flexible_spline"
     clamped = standing and design.frame_is_rigid
     fixed = mesh.node_sets["outer"] if clamped else np.zeros(0, dtype=np.int32)
     condensed = tooth = None
-    if reference is not None and design.solver.condensed_sectors:
-        condensed = condense_sector(mesh, reference)
-    elif reference is not None and len(mesh.tooth) and _condenses_teeth(design):
-        tooth = condense_tooth(mesh, reference)
+    if not race and design.solver.condensed_sectors:
+        condensed = condense_sector(mesh, body.elements)
+    elif not race and len(mesh.tooth) and _condenses_teeth(design):
+        tooth = condense_tooth(mesh, body.elements)
     return BodyLayout(
-        mesh=mesh,
+        body=body,
         first_tooth=0,
         count=mesh.n_sectors // copies,
         closed=True,
@@ -291,7 +279,7 @@ def build_supports(design: DriveDesign, *, partition: Partition, elements: Eleme
     else:
         couplings.append(DistributingCoupling(partition, spline, "bore", copies > 1, centred))
     if rotates or not design.frame_is_rigid:
-        ring = elements.bodies[design.gears.index(design.output_gear) if rotates else RING_GEAR]
+        ring = elements.bodies[design.output_gear if rotates else RING_GEAR]
         couplings.append(DistributingCoupling(partition, ring, "outer", copies > 1))
     if rotates and design.frame_is_rigid:
         outer = float(np.hypot(*couplings[-1].reference[:, :2].T).max(initial=0.0))
@@ -306,7 +294,7 @@ def build_supports(design: DriveDesign, *, partition: Partition, elements: Eleme
     return Supports(
         partition,
         couplings,
-        output=len(couplings) - 1 if rotates else FLEXIBLE_SPLINE,
+        output=len(couplings) - 1 if rotates else SPLINE_COUPLING,
         guide=guide,
         scale=scale,
         share=1.0 / copies,
@@ -360,14 +348,13 @@ def build_flank_contacts(
 ) -> list[FlankContact]:
     """Contacts of the flexible spline's flanks, one with each ring gear."""
     contacts = []
-    for ring, name in enumerate(design.gears[1:], RING_GEAR):
-        fixed = len(partition.layouts[ring].fixed) > 0
+    for name in design.gears[1:]:
+        fixed = len(partition.layouts[name].fixed) > 0
         contacts.append(
             FlankContact(
                 partition,
                 elements.bodies[FLEXIBLE_SPLINE],
-                elements.bodies[ring],
-                ring,
+                elements.bodies[name],
                 FixedRing() if fixed else FloatingRing(supports.couplings[RING_COUPLING], partition.comm),
                 order=design.contact.quadrature,
                 crowning=flank_crowning(design),

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.constraints.supports import Supports
+from swgpar.constraints.supports import SPLINE_COUPLING, Supports
 from swgpar.contact.ball_contact import BallContact
 from swgpar.contact.clearance import LOADED_SIDE, FlankClearance
 from swgpar.contact.contact import NO_KEYS, Contact, ForceTerm, PenaltyContact, largest
@@ -19,7 +19,7 @@ from swgpar.contact.flank_state import ActiveSegments, SearchRange
 from swgpar.contact.flanks import FlankContact
 from swgpar.contact.friction import PairKey
 from swgpar.contact.search import FlankPair, facing_flanks
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR
+from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
 from swgpar.fem.sectors_in_reach import RingSectors, SectorsInReach, WholeTeeth
@@ -156,7 +156,7 @@ class DiscreteProblem:
     def positions(self) -> np.ndarray:
         """Undeformed positions (n_local, 3) mm as their owners see them; zero for the multipliers."""
         out = np.zeros((len(self.local), 3))
-        for body in self.elements.bodies:
+        for body in self.elements.bodies.values():
             seen, position = body.local >= 0, to_owners(body.positions(), body.sixths)
             out[body.local[seen]] = position[seen]
         return out
@@ -228,13 +228,14 @@ class DiscreteProblem:
 
     def _choose_modelled_sectors(self) -> None:
         """Leave out sectors of the ring gear, and condense teeth, that are out of reach; collective."""
-        within: dict[int, list[np.ndarray]] = {}
-        near: dict[int, np.ndarray] = {}
+        within: dict[str, list[np.ndarray]] = {}
+        near: dict[str, np.ndarray] = {}
         for flanks in self.flanks:
             parts = self.partition.comm.allgather(flanks.sectors_in_reach())
-            spline, ring, near[flanks.ring_body] = (np.concatenate(part) for part in zip(*parts))
+            name = flanks.ring.layout.name
+            spline, ring, near[name] = (np.concatenate(part) for part in zip(*parts))
             within.setdefault(FLEXIBLE_SPLINE, []).append(spline)
-            within[flanks.ring_body] = [ring]
+            within[name] = [ring]
         changed = [teeth.update(np.concatenate(within[teeth.body]), self.elements) for teeth in self.whole_teeth]
         if self.ring_sectors is not None:
             changed.append(self.ring_sectors.update(near[RING_GEAR], self.elements))
@@ -365,7 +366,7 @@ class DiscreteProblem:
 
     def _is_output(self, flanks: FlankContact) -> bool:
         """Whether the ring gear of these flanks is the output."""
-        return self.supports.output_gear != FLEXIBLE_SPLINE and flanks.ring_motion.floats
+        return self.supports.output_gear != SPLINE_COUPLING and flanks.ring_motion.floats
 
     def _loaded_side(self, flanks: FlankContact, state: LoadState) -> int:
         """Side of the flanks that carry the torque of `state`, on the flexible spline or on the ring gear."""

@@ -17,7 +17,7 @@ from swgpar.analysis.bent_start import bend
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.evaluation.bearing_loads import ball_rows
 from swgpar.evaluation.compliance import bearing_shares
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE, OUTER_RACE
+from swgpar.fem.body import FLEXIBLE_SPLINE, OUTER_RACE
 from swgpar.load.load_sequence import load_sequence
 
 NAMES = ("fs_s1", "fs_s3", "fs_vm", "output_angle_deg")

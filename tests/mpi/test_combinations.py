@@ -16,7 +16,7 @@ from swgpar.analysis.deviating_drive import DeviatingDrive, TurnPoint
 from swgpar.errors import InputError
 from swgpar.evaluation.fatigue import SafetyAndLife, evaluate_fatigue
 from swgpar.evaluation.stress_cycle import StressCycle
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.load.load_sequence import load_sequence
 from swgpar.log import console
 from swgpar.meshing import load_recipe

@@ -22,7 +22,7 @@ from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import PhaseTimes
 from swgpar.meshing import load_recipe
 from swgpar.meshing.tooth_sector import build_sector
-from swgpar.model.drive_model import build_layout, newton_settings, sector_elements
+from swgpar.model.drive_model import build_gear, build_layout, newton_settings
 from swgpar.solve.discrete_problem import DiscreteProblem
 from swgpar.solve.newton import NewtonSolver
 from swgpar.systems.drive import DRIVE
@@ -188,9 +188,9 @@ def test_a_housing_under_two_opposite_radial_loads(halved: bool) -> None:
     )
     mesh = build_sector(design, load_recipe(RECIPE), "ring_gear")
     width = design.drive.face_width
-    partition = Partition([build_layout(design, mesh)], MPI.COMM_SELF)
-    body_elements = Elements(partition, [sector_elements(design, mesh)])
-    body = body_elements.bodies[0]
+    partition = Partition([build_layout(design, build_gear(design, mesh))], MPI.COMM_SELF)
+    body_elements = Elements(partition)
+    body = body_elements.bodies["ring_gear"]
     coupling = DistributingCoupling(partition, body, "outer", halved)
     arm = coupling.arm / design.outer_radius
     loaded_nodes = np.flatnonzero(np.abs(arm[:, 0]) < 1e-9)

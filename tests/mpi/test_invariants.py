@@ -15,7 +15,7 @@ from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.contact.contact import NO_KEYS
 from swgpar.contact.flank_state import ActiveSegments
 from swgpar.evaluation.contact.contact_pressure import nodal_pressure
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.stress import body_fields
 from swgpar.load.load_states import LoadState
 from swgpar.petsc import PETSc

@@ -15,7 +15,7 @@ from support.stepping import WORLD, loaded, small
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.evaluation.windows.local_problem import MARGIN, SECTORS, LocalProblem
 from swgpar.evaluation.windows.root_stress import HIGHEST_ORDER, error_of, resolve_root_stress
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.stress import principal
 from swgpar.meshing import MeshRecipe, load_recipe
 from swgpar.model.regions import END

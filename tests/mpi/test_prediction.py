@@ -31,8 +31,8 @@ def wave(model: DriveModel, angle: float, slip: float = 0.0) -> PETSc.Vec:
     """
     partition = model.partition
     x = create_vector(partition)
-    teeth = [layout.mesh.n_sectors for layout in partition.layouts]
-    for body, layout in enumerate(partition.layouts):
+    teeth = {name: layout.mesh.n_sectors for name, layout in partition.layouts.items()}
+    for body, layout in partition.layouts.items():
         own = np.arange(*partition.owned_sectors(body))
         coords = np.repeat(layout.mesh.coords[None], len(own), axis=0)
         turn = 0.0 if body == model.fixed_body else angle * (1.0 - teeth[model.fixed_body] / teeth[body]) + slip
@@ -52,7 +52,7 @@ def error(model: DriveModel, known: list[float], angle: float, slip: float = 0.0
     states = [KnownState(at, wave(model, at)) for at in known]
     predict(model.partition, model.fixed_body, states, x, angle, slip, resting={model.fixed_body})
     exact, worst = wave(model, angle, slip), 0.0
-    for body in range(len(model.partition.layouts)):
+    for body in model.partition.layouts:
         own = np.arange(*model.partition.owned_sectors(body))
         gap = read_field(model.partition, body, own, x) - read_field(model.partition, body, own, exact)
         worst = max(worst, float(np.abs(gap).max(initial=0.0)))
@@ -68,7 +68,7 @@ def test_whole_pitches_are_exact(model: DriveModel, pitches: int) -> None:
 @pytest.mark.parametrize("teeth", [1, -2])
 @pytest.mark.parallel([1, 2, 3])
 def test_a_slip_by_whole_teeth_is_exact(model: DriveModel, teeth: int) -> None:
-    moving = model.partition.layouts[1 - model.fixed_body].mesh.n_sectors
+    (moving,) = (layout.mesh.n_sectors for name, layout in model.partition.layouts.items() if name != model.fixed_body)
     assert error(model, [0.0], 0.0, 2.0 * np.pi * teeth / moving) < 1e-11
 
 

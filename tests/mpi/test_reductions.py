@@ -179,7 +179,7 @@ def test_condensed_teeth_change_little(overrides: tuple[str, ...]) -> None:
     assert rows < 0.9 * all_rows
     assert_same(row, plain, 1e-3)
     # everywhere, inside too
-    for fields, others in zip(stepper.model.stresses()[1], plain_stepper.model.stresses()[1]):
+    for fields, others in zip(stepper.model.stresses()[1].values(), plain_stepper.model.stresses()[1].values()):
         assert np.abs(fields["displacement"] - others["displacement"]).max() < 1e-4 * stepper.design.deflection
         if "s1" in fields and not overrides:
             assert np.abs(fields["s1"] - others["s1"]).max() < 4e-3 * plain["fs_vm"]
@@ -193,7 +193,7 @@ def test_condensed_teeth_on_any_number_of_ranks() -> None:
     assert_same(row, alone, 1e-7)
     model = stepper.model
     u = model.problem.displacement()
-    for k, body in enumerate(model.elements.bodies):
+    for k, body in model.elements.bodies.items():
         field = read_field(model.partition, k, body.sectors, model.problem.x)
         parallel_assert(np.abs(field - body.displacement(u)).max(initial=0.0) < 1e-14)
 
@@ -227,7 +227,7 @@ def test_condensed_sectors_in_the_plane_leave_out_the_bend_of_a_sector(overrides
     assert 1e-3 < share < 0.015
     assert_same(condensed, plain, share)
     # everywhere, inside too
-    for fields, others in zip(condensed_stepper.model.stresses()[1], stepper.model.stresses()[1]):
+    for fields, others in zip(condensed_stepper.model.stresses()[1].values(), stepper.model.stresses()[1].values()):
         assert np.abs(fields["displacement"] - others["displacement"]).max(initial=0.0) < 2e-3 * design.deflection
         for name in ("s1", "s3", "vm"):
             assert np.abs(fields[name] - others[name]).max(initial=0.0) < share * plain["fs_vm"], name
@@ -239,7 +239,7 @@ def test_what_is_read_of_condensed_sectors_is_complete() -> None:
     stepper, _ = rotated(*CONDENSED)
     model = stepper.model
     u = model.problem.displacement()
-    for k, body in enumerate(model.elements.bodies):
+    for k, body in model.elements.bodies.items():
         parallel_assert(np.abs(body.displacement(u)).max(initial=0.0) > 0.0)
         field = read_field(model.partition, k, body.sectors, model.problem.x)
         parallel_assert(np.abs(field - body.displacement(u)).max(initial=0.0) < 1e-14)

@@ -14,7 +14,7 @@ import swgpar
 from support.paths import RECIPE
 from support.stepping import WORLD, loaded, rotate, small
 from swgpar.evaluation.stress_cycle import StressCycle, sector_stress
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.body import FLEXIBLE_SPLINE
 
 SAMPLED = ("steps.samples=2", "steps.rotation=9.0")
 WITH = ("fatigue.size_factor=1.0", "losses.loss_factor=3e-4")

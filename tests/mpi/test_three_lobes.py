@@ -16,7 +16,7 @@ from swgpar.analysis.bent_start import bend
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.checks.design_file import load_design
 from swgpar.design.drive_design import DriveDesign
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE, RING_GEAR
+from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.vectors import read_field
 from swgpar.load.load_sequence import load_sequence
 from swgpar.load.load_states import Stage

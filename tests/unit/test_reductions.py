@@ -13,7 +13,7 @@ from swgpar.analysis.coarse_start import levels
 from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError
 from swgpar.evaluation.period import continued
-from swgpar.fem.body_layout import RING_GEAR
+from swgpar.fem.body import RING_GEAR
 from swgpar.fem.sectors_in_reach import RingSectors
 from swgpar.load.load_sequence import load_sequence, rotation_angles
 from swgpar.meshing import build_sector_meshes, load_recipe

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from swgpar.contact.flanks import FlankContact
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.vectors import create_vector, read_field
 from swgpar.load.load_states import LoadState
 from swgpar.meshing.sector import FlankGrid, SectorMesh

@@ -20,7 +20,7 @@ from swgpar.evaluation.contact.flank_loads import LineLoad, flank_forces, line_l
 from swgpar.evaluation.contact.line_contact import LineContact, line_contact
 from swgpar.evaluation.contact.moved_teeth import MovedTooth
 from swgpar.evaluation.contact.patch_contact import PatchContact, patch_contact
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.vectors import read_field
 from swgpar.geometry.rotation import SIXTHS, rotated
 from swgpar.load.load_states import LoadState
@@ -195,13 +195,13 @@ def moved_teeth(
     spline, ring = model.partition.layouts[FLEXIBLE_SPLINE], flanks.ring.layout
     around, x = np.arange(-1, 2), model.problem.x
 
-    def fields(body: int, sectors: list[int]) -> np.ndarray:
+    def fields(body: str, sectors: list[int]) -> np.ndarray:
         every = (np.array(sectors, dtype=np.int64)[:, None] + around).ravel()
         return read_field(model.partition, body, every, x).reshape(
             len(sectors), 3, len(model.partition.layouts[body].mesh.coords), 3
         )
 
-    u, ring_u = fields(FLEXIBLE_SPLINE, [p.sector for p in pairs]), fields(flanks.ring_body, [p.ring for p in pairs])
+    u, ring_u = fields(FLEXIBLE_SPLINE, [p.sector for p in pairs]), fields(ring.name, [p.ring for p in pairs])
     crowned = flank_crowning(model.design)
     moved, facing = [], []
     for k, pair in enumerate(pairs):

@@ -19,8 +19,8 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError
 from swgpar.evaluation.contact.flank_loads import flank_forces, line_loads, nodal_forces
 from swgpar.evaluation.torques import torques
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE, BodyLayout
-from swgpar.fem.element_matrices import element_matrices
+from swgpar.fem.body import FLEXIBLE_SPLINE, Body
+from swgpar.fem.body_layout import BodyLayout
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
 from swgpar.fem.stress import principal
@@ -110,7 +110,7 @@ class LocalProblem:
         first = tooth - SECTORS // 2
         mesh = window_mesh(design, recipe)
         self.layout = BodyLayout(
-            mesh=mesh,
+            body=Body(mesh, (design.material_of(mesh.body),), design.drive.face_width),
             first_tooth=first,
             count=SECTORS,
             closed=False,
@@ -118,15 +118,13 @@ class LocalProblem:
             fixed=np.zeros(0, dtype=np.int32),
         )
         self.partition = Partition([self.layout], model.comm)
-        material, width = design.material_of("flexible_spline"), design.drive.face_width
-        reference = element_matrices(mesh.coords[mesh.elements], material, width)
-        self.elements = Elements(self.partition, [reference])
+        self.elements = Elements(self.partition)
         self.body = self.elements.bodies[FLEXIBLE_SPLINE]
         teeth = first + np.arange(SECTORS)
         drive_mesh = model.partition.layouts[FLEXIBLE_SPLINE].mesh
         self.loads = line_loads(drive_mesh, flank_forces(model, state, teeth, model.problem.flanks[0]))
         displacement = self._of_the_drive(teeth)
-        scale = material.modulus * design.drive.module
+        scale = design.modulus_of(mesh.body) * design.drive.module
         problem = DiscreteProblem(
             partition=self.partition,
             elements=self.elements,
@@ -140,8 +138,9 @@ class LocalProblem:
             problem, replace(newton_settings(design), rtol=RTOL[design.drive.model], linear="direct", reuse_factor=True)
         )
         self.problem = problem
-        own_first, own_end = self.partition.owned_sectors(0)
-        write_field(self.partition, 0, np.arange(own_first, own_end), displacement[own_first:own_end], problem.x)
+        own_first, own_end = self.partition.owned_sectors(FLEXIBLE_SPLINE)
+        own = displacement[own_first:own_end]
+        write_field(self.partition, FLEXIBLE_SPLINE, np.arange(own_first, own_end), own, problem.x)
 
     def _of_the_drive(self, teeth: np.ndarray) -> np.ndarray:
         """Displacement (n_teeth, n_node, 3) mm of the drive at the nodes of the window; collective."""
@@ -156,7 +155,7 @@ class LocalProblem:
     def _numbers(self, sectors: np.ndarray, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Own local indices (n_sectors, n) of nodes, and whether this rank owns them."""
         partition = self.partition
-        number, _ = partition.node_numbers(0, sectors, nodes)
+        number, _ = partition.node_numbers(FLEXIBLE_SPLINE, sectors, nodes)
         own = (number >= partition.row_start) & (number < partition.row_start + partition.n_own)
         return number - partition.row_start, own
 
@@ -228,7 +227,7 @@ class LocalProblem:
 
     def stress(self) -> tuple[np.ndarray, np.ndarray]:
         """Stress (n, n_node, 6) MPa at the nodes of owned sectors inside of the margin, and their indices (n,)."""
-        first, end = self.partition.owned_sectors(0)
+        first, end = self.partition.owned_sectors(FLEXIBLE_SPLINE)
         sectors = np.arange(first, end)
         inside = (sectors >= MARGIN) & (sectors < SECTORS - MARGIN)
         return self.body.nodal_stress(self.problem.displacement())[inside], sectors[inside]

@@ -18,7 +18,7 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind, place_text
 from swgpar.evaluation.places import root_nodes
 from swgpar.evaluation.windows.local_problem import SECTORS, LocalProblem, WindowStress, tooth_nodes
-from swgpar.fem.body_layout import FLEXIBLE_SPLINE
+from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.stress import principal
 from swgpar.load.load_states import LoadState
 from swgpar.log import logger

@@ -1,0 +1,47 @@
+"""A body of the drive: its name, the mesh of one of its congruent sectors, and what it is made of."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from swgpar.fem.element_matrices import element_matrices
+from swgpar.kernel import ReferenceElements
+from swgpar.materials import Material
+from swgpar.meshing.sector import SectorMesh
+
+FLEXIBLE_SPLINE, RING_GEAR, DYNAMIC_SPLINE, OUTER_RACE = "flexible_spline", "ring_gear", "dynamic_spline", "outer_race"
+"""Names of the bodies of a drive, by what they do. A drive has at most one of each."""
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """What is known of a body before it is distributed over ranks.
+
+    mesh : the congruent sector, which has the name of the body
+    materials : of the parts of the mesh (`SectorMesh.parts`): of a gear, and of the housing around it
+    thickness : mm, of the plane model
+    incompatible : whether the elements have incompatible modes; without them for comparison only
+    """
+
+    mesh: SectorMesh
+    materials: tuple[Material, ...]
+    thickness: float
+    incompatible: bool = True
+
+    @property
+    def name(self) -> str:
+        """Name of the body, as in the design file."""
+        return self.mesh.body
+
+    @cached_property
+    def elements(self) -> ReferenceElements:
+        """Matrices of the elements of the sector."""
+        mesh, first = self.mesh, self.materials[0]
+        coords = mesh.coords[mesh.elements]
+        elements = element_matrices(coords, first, self.thickness, self.incompatible)
+        for part, material in zip(mesh.parts[1:], self.materials[1:], strict=True):
+            others = element_matrices(coords[part], material, self.thickness, self.incompatible)
+            for matrices, other in zip(elements, others):
+                matrices[part] = other
+        return elements
