@@ -307,7 +307,7 @@ def _body_parts(model: DriveModel) -> dict[str, BodyPart]:
     for name, body in model.elements.bodies.items():
         mesh, (first, _) = body.layout.mesh, model.partition.owned_sectors(name)
         points, cells = body.positions()[body.owned], mesh.hexes.astype(np.int64)
-        parts[mesh.body] = BodyPart(points, cells, first, body.layout.count, _flank_grids(mesh))
+        parts[name] = BodyPart(points, cells, first, body.layout.count, _flank_grids(mesh))
     return parts
 
 
