@@ -80,6 +80,8 @@ def _energy(design: DriveDesign, rotation: Rotation) -> Check:
 
 def _penetration(design: DriveDesign, history: Mapping[str, np.ndarray]) -> Check:
     loaded = loaded_increments(history)
+    if "max_penetration_mm" not in history:  # a result of another version
+        return Check("penetration", None, "the history does not have it")
     values = history["max_penetration_mm"][loaded] if len(loaded) else history["max_penetration_mm"]
     most, allowed = float(values.max(initial=0.0)), design.contact.penetration_tolerance * design.drive.module
     text = f"flanks penetrate each other by up to {1000 * most:.2g} µm; good up to {1000 * allowed:.2g} µm"

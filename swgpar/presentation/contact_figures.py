@@ -72,7 +72,8 @@ def draw_load_sharing(pairs: Columns, history: Columns, title: str, lobes: int =
     upper.set_title("force of a pair over that of all pairs of its ring gear, at all computed angles", fontsize=10)
     figure.legend(loc="outside lower center", ncols=3, fontsize=8)
     rows = np.unique(pairs["increment"]).astype(int) - 1
-    lower.step(history["wg_angle_deg"][rows], history["pairs_in_contact"][rows], "o-", where="mid", ms=4)
+    if "pairs_in_contact" in history:  # not in a result of another version
+        lower.step(history["wg_angle_deg"][rows], history["pairs_in_contact"][rows], "o-", where="mid", ms=4)
     lower.set(xlabel=title, ylabel="pairs in contact")
     for axes in (upper, lower):
         axes.set_ylim(bottom=0.0)

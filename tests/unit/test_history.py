@@ -11,7 +11,11 @@ import pytest
 import swgpar
 from support.paths import RECIPE
 from support.stepping import small
+from swgpar.api import save_report
+from swgpar.drive_results.report_checks import checks
 from swgpar.results import history
+
+OF_ALL = [column.name for column in history.columns_of("all")]
 
 OLD = b"""step,wg_angle_deg,output_angle_deg,fs_s1,pairs_in_contact,wall_s,strain_energy,remark
 3,0.0,0.25,101.5,8,0.5,2.5,first
@@ -54,19 +58,35 @@ def test_a_value_needs_a_declared_column() -> None:
         history.plain_row({"step": 3, "strain_energy": 2.5})
 
 
-@pytest.mark.parametrize("missing", ["fs_s3", "wg_torque_Nmm", "output_angle_deg", "rg_vm"])
-def test_a_result_without_a_column_has_figures(tmp_path_factory: pytest.TempPathFactory, missing: str) -> None:
-    run = tmp_path_factory.getbasetemp() / "history_run"
-    if not run.exists():
-        swgpar.run(small("plane"), RECIPE, run, progress=False)
-    folder = tmp_path_factory.mktemp(missing)
-    shutil.copytree(run, folder, dirs_exist_ok=True)
-    (folder / history.DESCRIPTION).unlink()
-    header, *lines = (folder / history.NAME).read_text(encoding="utf-8").splitlines()
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("run")
+    swgpar.run(small("plane"), RECIPE, folder, progress=False)
+    return folder
+
+
+@pytest.mark.parametrize("missing", [name for name in OF_ALL if name not in history.REQUIRED])
+def test_a_result_without_a_column_has_figures_and_a_report(run: Path, tmp_path: Path, missing: str) -> None:
+    shutil.copytree(run, tmp_path, dirs_exist_ok=True)
+    (tmp_path / history.DESCRIPTION).unlink()
+    header, *lines = (tmp_path / history.NAME).read_text(encoding="utf-8").splitlines()
     index = header.split(",").index(missing)
     kept = [",".join(cell for k, cell in enumerate(line.split(",")) if k != index) for line in (header, *lines)]
-    (folder / history.NAME).write_text("\n".join(kept) + "\n", encoding="utf-8")
-    result = swgpar.open_result(folder)
+    (tmp_path / history.NAME).write_text("\n".join(kept) + "\n", encoding="utf-8")
+    result = swgpar.open_result(tmp_path)
     assert missing not in result.history
-    assert len(result.plot.stress().axes[0].lines) >= 6
+    curves = 2 * len({"fs_s1", "fs_s3", "fs_vm", "rg_vm"} - {missing})
+    assert len(result.plot.stress().axes[0].lines) == curves
     result.plot.torque_and_transmission_error()
+    result.plot.load_sharing()
+    checks(result.summary, result.history)
+
+
+def test_a_report_without_a_column(run: Path, tmp_path: Path) -> None:
+    """`swgpar report` on a folder of the first version: no description, and a column less."""
+    shutil.copytree(run, tmp_path, dirs_exist_ok=True)
+    (tmp_path / history.DESCRIPTION).unlink()
+    text = (tmp_path / history.NAME).read_text(encoding="utf-8")
+    (tmp_path / history.NAME).write_text(text.replace("max_penetration_mm", "other"), encoding="utf-8")
+    save_report(swgpar.open_result(tmp_path), tmp_path)
+    assert "the history does not have it" in (tmp_path / "report.html").read_text(encoding="utf-8")
