@@ -10,7 +10,6 @@ from mpi4py import MPI
 
 from swgpar.analysis.deviating_drive import DeviatingDrive
 from swgpar.analysis.recorder import Recorder
-from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError
 from swgpar.evaluation.transmission_error import TurnPoint, turn_row
 from swgpar.log import logger
@@ -27,7 +26,7 @@ REPORTS = 10
 """Lines of the log in all."""
 
 
-def follow_turns(design: DriveDesign, recipe: MeshRecipe, recorder: Recorder) -> None:
+def follow_turns(recipe: MeshRecipe, recorder: Recorder) -> None:
     """Compute the angles of the turns that the recorder does not know, and let it keep them; collective.
 
     The states do not depend on each other. In the plane, where every rank has room for the whole drive, the ranks share
@@ -35,6 +34,7 @@ def follow_turns(design: DriveDesign, recipe: MeshRecipe, recorder: Recorder) ->
 
     recipe : of the run's mesh. Raises ConvergenceError; the rows up to then are kept.
     """
+    design = recorder.model.design
     step = design.period_angle / design.deviations.angles_per_pitch
     known = {_index(row, step): row for row in recorder.known_turns()}
     comm, shared = recorder.comm, design.drive.model == "plane"

@@ -3,42 +3,25 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
-
-import numpy as np
+from collections.abc import Sequence
 
 from swgpar.analysis.accuracy import require_refinable, with_accuracy
-from swgpar.analysis.coarse_start import start_at_load
-from swgpar.analysis.evaluate_run import evaluate_run
-from swgpar.analysis.follow_turns import follow_turns
+from swgpar.analysis.drive_run import DriveRun
 from swgpar.analysis.forecast import forecast, reported_memory, require_memory
 from swgpar.analysis.identity import identity
-from swgpar.analysis.load_stepping import LoadStepper
-from swgpar.analysis.mesh_refinement import choose_mesh, compared_stresses, drive_error, least_error, size_ratio
-from swgpar.analysis.recorder import FolderRecorder, MemoryRecorder, Recorder
-from swgpar.analysis.run_record import RunRecord
+from swgpar.analysis.mesh_refinement import choose_mesh
+from swgpar.analysis.recorder import FolderRecorder, MemoryRecorder
 from swgpar.analysis.shortcuts import MESHES, with_shortcuts
 from swgpar.analysis.start_states import StartStates
-from swgpar.analysis.stiffness_error import stiffness_error
 from swgpar.checks.remarks import torque_remark
 from swgpar.design.drive_design import DriveDesign
 from swgpar.drive_results.drive_data import DriveData
-from swgpar.errors import ConvergenceError, InputError, SwgparError, TimeLimitError
-from swgpar.evaluation.period import continued, require_samples
-from swgpar.evaluation.place_errors import CoarseStresses
-from swgpar.evaluation.places import find_places
-from swgpar.evaluation.ratcheting import has_fallen
-from swgpar.evaluation.result_frame import history_rows
-from swgpar.evaluation.rotation import sampled_rows
-from swgpar.evaluation.transmission_error import period_rows
-from swgpar.evaluation.windows.root_stress import RootStress, resolve_root_stress, with_angle
-from swgpar.load.load_sequence import LoadSequence, load_sequence, negligible_torque
-from swgpar.load.load_states import LoadState, Stage
-from swgpar.log import IncrementProgress, logger
-from swgpar.meshing import MeshRecipe, load_recipe, require_sections
-from swgpar.model.drive_model import DriveModel, build_drive_model
-from swgpar.petsc import warn_of_unused_options
+from swgpar.errors import ConvergenceError, SwgparError, TimeLimitError
+from swgpar.evaluation.period import require_samples
+from swgpar.load.load_sequence import load_sequence, negligible_torque
+from swgpar.log import logger
+from swgpar.meshing import load_recipe, require_sections
+from swgpar.model.drive_model import build_drive_model
 from swgpar.results.atomic import on_all
 from swgpar.results.folder import RECIPE, open_log, prepare
 from swgpar.results.lock import releasing
@@ -79,7 +62,7 @@ def run_drive(design: DriveDesign, options: RunOptions) -> DriveData:
     open_log(folder, comm)
     _log_remarks(design, left_out)
     with reported_memory(needs), limited(design.solver.time_limit):
-        kept = StartStates(folder, design)
+        kept = StartStates(folder)
         if not options.restart:
             kept.remove(comm)
         elif not resumed:
@@ -98,7 +81,7 @@ def run_drive(design: DriveDesign, options: RunOptions) -> DriveData:
         try:
             if chosen is not None:
                 recorder.keep_choice(chosen, options.accuracy)
-            run = _Run(model, recipe, sequence, recorder, kept, options.on_increment, begin)
+            run = DriveRun(model, recipe, sequence, recorder, kept, options.on_increment, begin)
             items = run.resume() if resumed else run.start()
             run.go_through(items, options.terminal)
             result = run.finish(recipe_name)
@@ -120,162 +103,3 @@ def _log_remarks(design: DriveDesign, left_out: Sequence[str]) -> None:
     if design.output.root_stress and not design.has_program and not design.resolves_root_stress:
         reason = "a bearing" if design.bearing is not None else "two ring gears"
         logger.info("the stress at the teeth is not resolved by windows: not available with %s", reason)
-
-
-class _Run:
-    """One run: start or restart, all increments, end.
-
-    recipe : of the model's mesh;  sequence : load states of the run;  kept : those on the meshes of the start
-    begin : time.perf_counter() at the run's start
-    """
-
-    def __init__(
-        self,
-        model: DriveModel,
-        recipe: MeshRecipe,
-        sequence: LoadSequence,
-        recorder: Recorder,
-        kept: StartStates,
-        on_increment: Callable[[], None],
-        begin: float,
-    ) -> None:
-        self.sequence, self.kept = sequence, kept
-        self.model, self.recipe, self.recorder, self.stepper = model, recipe, recorder, LoadStepper(model)
-        self.on_increment, self.begin = on_increment, begin
-        self.earlier_seconds, self.ended_early = 0.0, False
-        self.coarse: tuple[MeshRecipe, Mapping[str, Sequence[float]]] | None = None
-        counts = model.counts()
-        logger.info(
-            "%d elements, %d nodes in the whole drive; %d unknowns modelled%s; %d ranks",
-            model.n_elements(),
-            sum(b["nodes_whole"] for b in counts.values()),
-            sum(b["dofs"] for b in counts.values()),
-            model.part_remark,
-            model.comm.size,
-        )
-        recorder.begin()
-
-    @property
-    def record(self) -> RunRecord:
-        """What is kept of the increments."""
-        return self.recorder.record
-
-    @property
-    def seconds(self) -> float:
-        """Wall seconds of the run, restarts included."""
-        return self.earlier_seconds + time.perf_counter() - self.begin
-
-    def resume(self) -> Sequence[LoadState]:
-        """Bring back the state of the checkpoint; returns all increments that the run consists of."""
-        items, self.earlier_seconds = self.recorder.resume(self.stepper)
-        logger.info("restarted after increment %d", len(self.record.rows))
-        if self.model.design.resolves_root_stress and not self.record.root_stress:
-            logger.info("the stress at the teeth is resolved only by the run that computes the loaded state")
-        return items
-
-    def start(self) -> Sequence[LoadState]:
-        """Reach the loaded state at once if the design asks for it; returns all increments of the run."""
-        sequence = self.sequence
-        if self.record.accuracy is not None:  # the model was loaded when its mesh was chosen
-            self.stepper.resume_at(sequence.loaded)
-            return sequence.from_loaded
-        self.record.starts_loaded = start_at_load(self.stepper, self.recipe, sequence, self._keep_coarse, self.kept)
-        return sequence.from_loaded if self.record.starts_loaded else sequence.states
-
-    def _keep_coarse(self, model: DriveModel, recipe: MeshRecipe) -> None:
-        """Keep the largest stresses of a coarser mesh of the drive, to see what the mesh changes."""
-        loaded = self.sequence.loaded
-        places = find_places(model, loaded, model.stresses()[1])
-        self.record.coarse = CoarseStresses(places, size_ratio(recipe, self.recipe))
-        if model.design.resolves_root_stress:
-            try:
-                self.coarse = recipe, compared_stresses(model, loaded)
-            except (ConvergenceError, InputError) as error:
-                logger.info("the error by the mesh of the drive is not known: %s", error)
-
-    def go_through(self, items: Sequence[LoadState], terminal: bool) -> None:
-        """Compute and record the increments that are left."""
-        stepper, recorder = self.stepper, self.recorder
-        loaded = next((item for item in reversed(items) if item.stage == Stage.LOAD), None)
-        with IncrementProgress(self.model.comm, len(items), done=len(self.record.rows), terminal=terminal) as progress:
-            self.model.solver.monitor = lambda state, its, ratio: progress.newton(
-                state.stage.label, np.degrees(state.angle), its, ratio
-            )
-            for item in items[len(self.record.rows) :]:
-                if has_fallen(self.model.design, recorder.program_rows()):
-                    break
-                start = time.perf_counter()
-                if item != stepper.load_state and not self._advance(item):  # a start at once ends with the first one
-                    break
-                seconds = time.perf_counter() - start
-                if self.model.design.resolves_root_stress:
-                    self.record.root_stress = self._root_stress(item, item == loaded)
-                recorder.keep(stepper, seconds, self.seconds)
-                if len(self.record.rows) == 1:
-                    self.kept.remove(self.model.comm)
-                angle = float(np.degrees(item.angle))
-                progress.increment(item.stage.label, angle, stepper.iterations, stepper.residual, seconds)
-                self.on_increment()
-                if terminal:
-                    warn_of_unused_options()
-
-    def _advance(self, item: LoadState) -> bool:
-        """Compute an increment; False where the output is rotated beyond the strength and finds no equilibrium."""
-        try:
-            self.stepper.advance(item)
-            return True
-        except ConvergenceError as error:
-            if self.model.design.ratcheting is None or item.stage != Stage.PROGRAM or not self.recorder.program_rows():
-                raise
-            logger.warning("the rotation of the output ends here: %s", error)
-            self.ended_early = True
-            return False
-
-    def _root_stress(self, state: LoadState, loaded: bool) -> RootStress | None:
-        """Largest tensile stress at the teeth by windows; the one known before where a window cannot be computed."""
-        known = self.record.root_stress
-        design = self.model.design
-        # with friction two periods are computed, of which the first one settles
-        further = known is not None and state.stage == Stage.ROTATE and not design.contact.friction
-        try:
-            with self.model.phases("windows"):
-                if loaded:
-                    return known or self._resolve_loaded(state)
-                return with_angle(known, self.model, state) if further and design.steps.samples else known
-        except (ConvergenceError, InputError) as error:
-            angle = np.degrees(state.angle)
-            logger.warning("the stress at the teeth is not resolved at %.4g degrees: %s", angle, error)
-            return known
-
-    def _resolve_loaded(self, state: LoadState) -> RootStress:
-        found = resolve_root_stress(self.model, state)
-        if self.coarse is None:
-            return found
-        coarse, levels = self.coarse
-        least = least_error(self.model, state)
-        return replace(found, drive_error=drive_error(levels, found, size_ratio(coarse, self.recipe), least))
-
-    def finish(self, recipe_name: str) -> DriveData:
-        """Summarise the run."""
-        recorder, design = self.recorder, self.model.design
-        rows = self.record.rows
-        with self.model.phases("coarser mesh"):
-            error = stiffness_error(design, self.recipe, recorder.program_rows(), self.model.comm)
-        if design.deviations is not None:
-            follow_turns(design, self.recipe, recorder)
-        else:
-            recorder.keep_turns(period_rows(design, rows))
-        if design.steps.samples and sampled_rows(design, rows):
-            rows = continued(design, rows)
-        rows = history_rows(design, rows)
-        summary, tables = evaluate_run(
-            recorder,
-            rows,
-            recipe_name,
-            self.seconds,
-            stiffness_error=error,
-            ended_early=self.ended_early,
-        )
-        if summary.rotation.jammed:
-            logger.warning("%s", summary.rotation.jammed)
-        return recorder.finish(rows, summary, tables)

@@ -12,7 +12,6 @@ from mpi4py import MPI
 
 from swgpar.analysis.identity import identity
 from swgpar.analysis.saved_state import SolvedState, restore_state, state_rows
-from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import OutputError
 from swgpar.log import logger
 from swgpar.meshing import MeshRecipe
@@ -28,26 +27,27 @@ class StartStates:
     Parameters
     ----------
     folder : results folder; None keeps nothing
-    design : of the run
     """
 
-    def __init__(self, folder: Path | None, design: DriveDesign) -> None:
-        self.folder, self.design = folder, design
+    def __init__(self, folder: Path | None) -> None:
+        self.folder = folder
 
-    def _name(self, recipe: MeshRecipe) -> str:
-        return START_STATES.replace("*", identity(self.design, recipe, None)[:12])
+    def _path(self, model: DriveModel, recipe: MeshRecipe) -> Path | None:
+        """File of the model's loaded state on the mesh of this recipe; None where none is kept."""
+        if self.folder is None or model.design.contact.friction:  # a state with friction depends on the path to it
+            return None
+        return self.folder / START_STATES.replace("*", identity(model.design, recipe, None)[:12])
 
     def save(self, model: DriveModel, recipe: MeshRecipe) -> None:
         """Write the model's present state; collective. Raises OutputError."""
-        if self.folder is None or self.design.contact.friction:
-            return
-        write_checkpoint(self.folder / self._name(recipe), model.comm, state_rows(model), SolvedState.of(model))
+        if (path := self._path(model, recipe)) is not None:
+            write_checkpoint(path, model.comm, state_rows(model), SolvedState.of(model))
 
     def restore(self, model: DriveModel, recipe: MeshRecipe) -> bool:
         """Set the model's x to the state on this mesh; False where there is none. Collective."""
-        if self.folder is None or self.design.contact.friction:  # the state is more than the displacements
+        path = self._path(model, recipe)
+        if path is None:
             return False
-        path = self.folder / self._name(recipe)
         if not model.comm.bcast(path.exists() if model.comm.rank == 0 else None):
             return False
         try:

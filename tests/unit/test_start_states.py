@@ -25,7 +25,7 @@ def test_a_loaded_state_is_taken_over(tmp_path: Path) -> None:
     values = [*PLANE, "steps.rotation=0", "steps.bent_start=true", "solver.keep_factor=false"]
     design = load_design(DESIGN, values)
     recipe, sequence, comm = load_recipe("plane_coarse"), load_sequence(design), MPI.COMM_SELF
-    kept = StartStates(tmp_path, design)
+    kept = StartStates(tmp_path)
 
     def solve() -> tuple[np.ndarray, str]:
         with Messages() as messages:
