@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import difflib
-import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -11,18 +10,10 @@ import numpy as np
 
 from swgpar.errors import InputError
 from swgpar.input.quantities import show, show_key
-
-Quantities = Mapping[str, tuple[str, int]]
-"""What a model computes: name -> meaning with its unit, number of values."""
+from swgpar.results.quantity import Quantity
 
 STATISTICS = {"mean": "mean", "deviation": "standard deviation"}
 """Of results that vary at random: part of the names of quantities -> meaning."""
-
-
-def meaning_and_unit(text: str) -> tuple[str, str]:
-    """Meaning of a quantity without its unit, and the unit, which stands at the end in brackets; empty for a number."""
-    found = re.fullmatch(r"(.*) \(([^()]*)\)", text)
-    return (found[1], found[2]) if found else (text, "")
 
 
 def numbered(name: str, count: int) -> list[str]:
@@ -35,7 +26,7 @@ def number_label(value: float) -> str:
     return f"{value:g}".replace(".", "p").replace("+", "")
 
 
-def check_published(published: Mapping[str, Any], known: Quantities) -> None:
+def check_published(published: Mapping[str, Any], known: Mapping[str, Quantity]) -> None:
     """Refuse names that are no quantity, and values that are not as many numbers as the quantity has."""
     for name, given in published.items():
         if name not in known:
@@ -44,13 +35,13 @@ def check_published(published: Mapping[str, Any], known: Quantities) -> None:
             raise InputError(f"published.{show_key(name)} is not a quantity of this gear train: {hint}")
         values = given if isinstance(given, list) else [given]
         numbers = all(isinstance(v, (int, float)) and not isinstance(v, bool) and np.isfinite(v) for v in values)
-        if not numbers or len(values) != known[name][1]:
-            wanted = "one number" if known[name][1] == 1 else f"a list of {known[name][1]} numbers"
-            raise InputError(f"published.{name} = {show(given)} is not {wanted}: allowed {known[name][0]}")
+        if not numbers or len(values) != known[name].count:
+            wanted = "one number" if known[name].count == 1 else f"a list of {known[name].count} numbers"
+            raise InputError(f"published.{name} = {show(given)} is not {wanted}: allowed {known[name].text}")
 
 
 def compare(
-    published: Mapping[str, Any], computed: Mapping[str, float | Sequence[float]], known: Quantities
+    published: Mapping[str, Any], computed: Mapping[str, float | Sequence[float]], known: Mapping[str, Quantity]
 ) -> list[dict[str, Any]]:
     """Rows of published.csv; the difference is in percent of the published value, empty where that is 0."""
     rows = []
@@ -60,7 +51,7 @@ def compare(
             rows.append(
                 {
                     "quantity": title,
-                    "meaning": known[name][0],
+                    "meaning": known[name].text,
                     "published": float(old),
                     "computed": float(new),
                     "difference_percent": 100.0 * (new - old) / abs(old) if old else None,

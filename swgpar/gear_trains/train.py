@@ -18,7 +18,7 @@ from mpi4py import MPI
 from swgpar.errors import InputError
 from swgpar.gear_trains import cascade, gear_pair, planetary, ring
 from swgpar.gear_trains.common_sections import TrainDesign
-from swgpar.gear_trains.published import Quantities, check_published, compare
+from swgpar.gear_trains.published import check_published, compare
 from swgpar.gear_trains.result import TrainResult, read, write
 from swgpar.input.quantities import show
 from swgpar.input.toml_file import validate
@@ -27,6 +27,7 @@ from swgpar.results.atomic import agreed, sentence
 from swgpar.results.figure_set import Drawings, NamedFigures
 from swgpar.results.folder import open_log, prepare
 from swgpar.results.lock import releasing
+from swgpar.results.quantity import Quantity
 from swgpar.run_options import RunOptions
 from swgpar.version import __version__
 
@@ -45,7 +46,7 @@ class TrainModel:
 
     design: type[TrainDesign]
     check_fit: Callable[[Any], None]
-    quantities: Callable[[Any], Quantities]
+    quantities: Callable[[Any], Mapping[str, Quantity]]
     derived: Callable[[Any], dict[str, float]]
     compute: Callable[[Any, MPI.Comm], TrainResult]
     drawings: Callable[[TrainResult], Drawings]

@@ -10,7 +10,7 @@ import numpy as np
 
 from swgpar.optimisation.problem import Problem
 from swgpar.optimisation.result import OptimisationResult
-from swgpar.results.page import with_unit
+from swgpar.results.quantity import with_unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

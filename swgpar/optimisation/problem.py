@@ -18,10 +18,11 @@ from swgpar.input.toml_file import apply_overrides, read_toml, with_value
 from swgpar.meshing import MeshRecipe, load_recipe
 from swgpar.meshing.recipe import is_recipe_name
 from swgpar.optimisation.spec import OptimiseSection, Specification
+from swgpar.results.quantity import Quantity
 from swgpar.run_options import RunOptions
 from swgpar.studies.case import PlannedRun, not_known
 from swgpar.studies.job import run_planned
-from swgpar.systems import Quantity, System, system_of_table
+from swgpar.systems import System, system_of_table
 
 FAILED = 100.0
 """Violation of a design that is refused or whose run fails: those of limits are about 1 where a value is twice one."""

@@ -10,7 +10,8 @@ from swgpar.optimisation.problem import Problem
 from swgpar.optimisation.result import OptimisationResult
 from swgpar.optimisation.spec import Specification
 from swgpar.results.figure_set import import_matplotlib
-from swgpar.results.page import RANK, Picture, Row, Table, page, with_unit
+from swgpar.results.page import RANK, Picture, Row, Table, page
+from swgpar.results.quantity import with_unit
 from swgpar.version import __version__
 
 STATUS = ("feasible", "infeasible", "failed")

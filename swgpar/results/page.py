@@ -87,11 +87,6 @@ def _source(name: str) -> str:
     return environment.loader.get_source(environment, name)[0]
 
 
-def with_unit(name: str, unit: str) -> str:
-    """A heading: the name and, where there is one, the unit."""
-    return f"{name} ({unit})" if unit else name
-
-
 def number(value: Any) -> str:
     """A value in a table: five digits, nothing for None."""
     if value is None:

@@ -14,8 +14,9 @@ from swgpar.errors import InputError
 from swgpar.input.design import Design
 from swgpar.input.quantities import show_key
 from swgpar.meshing import MeshRecipe
+from swgpar.results.quantity import Quantity
 from swgpar.studies.spec import CaseSection, folder_name
-from swgpar.systems import Measured, Quantity, System
+from swgpar.systems import Measured, System
 
 
 @dataclass(frozen=True)

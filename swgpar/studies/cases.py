@@ -14,9 +14,10 @@ from swgpar.input.quantities import show
 from swgpar.input.toml_file import apply_overrides, read_toml, with_value
 from swgpar.meshing import MeshRecipe, load_recipe
 from swgpar.meshing.recipe import is_recipe_name
+from swgpar.results.quantity import Quantity
 from swgpar.studies.case import Case, Job, named, not_known
 from swgpar.studies.spec import CaseSection, Study, folder_name
-from swgpar.systems import Quantity, System, system_of_table
+from swgpar.systems import System, system_of_table
 
 
 def expand(study: Study) -> list[Job]:

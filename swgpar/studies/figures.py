@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from swgpar.results.history import COLUMNS, loaded_increments
-from swgpar.results.page import with_unit
+from swgpar.results.quantity import with_unit
 from swgpar.studies.case import Case, Outcome
 from swgpar.studies.table import by_case, shown, shown_quantities, units_of_keys
 

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from swgpar.results.figure_set import import_matplotlib
-from swgpar.results.page import RANK, Picture, Row, Table, page, with_unit
+from swgpar.results.page import RANK, Picture, Row, Table, page
+from swgpar.results.quantity import with_unit
 from swgpar.studies import figures
 from swgpar.studies.spec import Study
 from swgpar.studies.table import (

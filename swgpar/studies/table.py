@@ -9,8 +9,8 @@ from typing import Any
 from swgpar.analysis.error_estimate import Estimate, estimate
 from swgpar.input.quantities import unit_of_key
 from swgpar.input.toml_file import toml_value
+from swgpar.results.quantity import Quantity
 from swgpar.studies.case import Case, Job, Outcome
-from swgpar.systems import Quantity
 
 Result = tuple[Job, Outcome]
 

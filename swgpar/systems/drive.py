@@ -21,9 +21,10 @@ from swgpar.load.load_sequence import load_sequence
 from swgpar.meshing import MeshRecipe
 from swgpar.presentation.drive_result import DriveResult
 from swgpar.presentation.terminal import print_drive
+from swgpar.results.quantity import Quantity
 from swgpar.run_options import RunOptions
 from swgpar.systems.drive_quantities import describe_names, main_quantities, quantities
-from swgpar.systems.protocol import Measured, Quantity, System
+from swgpar.systems.protocol import Measured, System
 
 
 class Drives(System[DriveDesign, DriveResult]):

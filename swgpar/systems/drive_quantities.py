@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.drive_results.summary import known_answers
-from swgpar.systems.protocol import Quantity
+from swgpar.results.quantity import Quantity
 
 MAIN = ("mean.fs_s1", "mean.fs_s3", "mean.fs_vm", "mean.rg_vm", "mean.wg_torque_Nmm")
 """Those that tables and figures show."""

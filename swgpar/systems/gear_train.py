@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,15 +13,16 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.gear_trains.common_sections import TrainDesign
-from swgpar.gear_trains.published import meaning_and_unit, numbered
+from swgpar.gear_trains.published import numbered
 from swgpar.gear_trains.result import TrainResult
 from swgpar.gear_trains.terminal import print_compared
 from swgpar.gear_trains.train import make_train, model_of, open_train, reported_arithmetic, require_finite, run_train
 from swgpar.input.toml_file import apply_overrides
 from swgpar.meshing import MeshRecipe
 from swgpar.results.atomic import to_json
+from swgpar.results.quantity import Quantity
 from swgpar.run_options import RunOptions
-from swgpar.systems.protocol import Measured, Quantity, System
+from swgpar.systems.protocol import Measured, System
 
 
 class GearTrains(System[TrainDesign, TrainResult]):
@@ -59,9 +61,9 @@ class GearTrains(System[TrainDesign, TrainResult]):
 
     def quantities(self, design: TrainDesign) -> dict[str, Quantity]:
         return {
-            number: Quantity(*meaning_and_unit(text))
-            for name, (text, count) in model_of(design).quantities(design).items()
-            for number in numbered(name, count)
+            number: replace(quantity, count=1)
+            for name, quantity in model_of(design).quantities(design).items()
+            for number in numbered(name, quantity.count)
         }
 
     def main_quantities(self, known: Mapping[str, Quantity]) -> tuple[str, ...]:

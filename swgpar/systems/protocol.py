@@ -14,6 +14,7 @@ from mpi4py import MPI
 from swgpar.input.design import Design
 from swgpar.meshing import MeshRecipe
 from swgpar.results.figure_set import FigureSet
+from swgpar.results.quantity import Quantity
 from swgpar.run_options import RunOptions
 
 
@@ -39,14 +40,6 @@ class Result(Protocol):
     @property
     def plot(self) -> FigureSet:
         """The figures."""
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """A number that a run gives. meaning : without its unit;  unit : empty for a pure number"""
-
-    meaning: str
-    unit: str
 
 
 @dataclass(frozen=True)

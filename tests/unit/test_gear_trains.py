@@ -14,6 +14,7 @@ from swgpar.errors import ConvergenceError, InputError
 from swgpar.gear_trains.published import check_published, compare
 from swgpar.gear_trains.train import make_train, model_of
 from swgpar.input.toml_file import read_toml
+from swgpar.results.quantity import Quantity
 from swgpar.results.table import format_columns, read_columns
 from swgpar.systems import system_of_section, system_of_table
 from swgpar.vibration.sampling import block_sizes, random_stream, run_tasks
@@ -110,7 +111,7 @@ def test_derived_values_are_finite(file: Path) -> None:
 
 
 def test_published_beside_computed() -> None:
-    known = {"share": ("shares", 2), "count": ("a count", 1)}
+    known = {"share": Quantity("shares", count=2), "count": Quantity("a count")}
     published = {"share": [0.5, 0.25], "count": 0}
     check_published(published, known)
     rows = compare(published, {"share": [0.55, 0.25], "count": 1.0}, known)

@@ -8,7 +8,8 @@ from swgpar.gear_trains.cascade.flex_unit import FlexUnits
 from swgpar.gear_trains.cascade.layout import DOFS, FLYWHEEL, masses, rigid_displacements
 from swgpar.gear_trains.cascade.static_sharing import MESH_COUNTS, path_gap_angles
 from swgpar.gear_trains.cascade.tolerance_stack_up import standard_deviation
-from swgpar.gear_trains.published import Quantities, number_label
+from swgpar.gear_trains.published import number_label
+from swgpar.results.quantity import Quantity
 
 RANKED_TOLERANCES = (
     "pitch deviation pinion",
@@ -21,45 +22,43 @@ RANKED_TOLERANCES = (
 """Tolerances of the rack and the pinions, in the order of Table 2."""
 
 
-def quantities(design: CascadeDesign) -> Quantities:
+def quantities(design: CascadeDesign) -> dict[str, Quantity]:
     """Results that can be compared with published values."""
     known = {
-        "spearman_rack_pinion": (
+        "spearman_rack_pinion": Quantity(
             f"Spearman's rank correlations of the stack-up of rack and pinion with {', '.join(RANKED_TOLERANCES)}",
-            len(RANKED_TOLERANCES),
+            count=len(RANKED_TOLERANCES),
         ),
-        "largest_error_rack_pinion": ("largest sample of the tolerance stack-up of rack and pinion (µm)", 1),
-        "largest_error_g1_g1": ("largest sample of the tolerance stack-up of two gears G1 (µm)", 1),
-        "first_crossing_static": (
-            "lowest rack force at which the load shares of two pinions are equal, at rest, direction B (kN)",
-            1,
+        "largest_error_rack_pinion": Quantity("largest sample of the tolerance stack-up of rack and pinion", "µm"),
+        "largest_error_g1_g1": Quantity("largest sample of the tolerance stack-up of two gears G1", "µm"),
+        "first_crossing_static": Quantity(
+            "lowest rack force at which the load shares of two pinions are equal, at rest, direction B", "kN"
         ),
-        "first_crossing_dynamic": (
-            "lowest rack force at which the load shares of two pinions are equal, in motion, direction B (kN)",
-            1,
+        "first_crossing_dynamic": Quantity(
+            "lowest rack force at which the load shares of two pinions are equal, in motion, direction B", "kN"
         ),
-        "braked_B": ("load shares with the flywheel braked, direction B", PINIONS),
-        "braked_A": ("load shares with the flywheel braked, direction A", PINIONS),
-        "overloaded_static": ("number of gearboxes overloaded at rest", 1),
-        "overloaded_dynamic": ("number of gearboxes overloaded at any time at constant rack force", 1),
-        "largest_static_share": ("largest load share at rest of all gearboxes with errors", 1),
-        "largest_dynamic_mean_share": ("largest mean load share in motion of all gearboxes with errors", 1),
-        "largest_dynamic_share": (
-            "largest load share at any time at constant rack force, all gearboxes with errors",
-            1,
+        "braked_B": Quantity("load shares with the flywheel braked, direction B", count=PINIONS),
+        "braked_A": Quantity("load shares with the flywheel braked, direction A", count=PINIONS),
+        "overloaded_static": Quantity("number of gearboxes overloaded at rest"),
+        "overloaded_dynamic": Quantity("number of gearboxes overloaded at any time at constant rack force"),
+        "largest_static_share": Quantity("largest load share at rest of all gearboxes with errors"),
+        "largest_dynamic_mean_share": Quantity("largest mean load share in motion of all gearboxes with errors"),
+        "largest_dynamic_share": Quantity(
+            "largest load share at any time at constant rack force, all gearboxes with errors"
         ),
-        "natural_frequencies": ("natural frequencies, the first of the free rotation (Hz)", DOFS),
+        "natural_frequencies": Quantity("natural frequencies, the first of the free rotation", "Hz", count=DOFS),
     }
     for force in design.load.forces:
         name = number_label(force)
-        known[f"static_B_{name}"] = (f"load shares at rest at {force:g} kN, direction B", PINIONS)
-        known[f"static_A_{name}"] = (f"load shares at rest at {force:g} kN, direction A", PINIONS)
-        known[f"static_equal_B_{name}"] = (
-            f"load shares at rest at {force:g} kN, odd and even pinions, equal flexible units",
-            2,
+        known[f"static_B_{name}"] = Quantity(f"load shares at rest at {force:g} kN, direction B", count=PINIONS)
+        known[f"static_A_{name}"] = Quantity(f"load shares at rest at {force:g} kN, direction A", count=PINIONS)
+        known[f"static_equal_B_{name}"] = Quantity(
+            f"load shares at rest at {force:g} kN, odd and even pinions, equal flexible units", count=2
         )
-        known[f"dynamic_B_{name}"] = (f"load shares in motion at {force:g} kN, direction B", PINIONS)
-        known[f"dynamic_mean_B_{name}"] = (f"load shares in motion at {force:g} kN, means of odd and even pinions", 2)
+        known[f"dynamic_B_{name}"] = Quantity(f"load shares in motion at {force:g} kN, direction B", count=PINIONS)
+        known[f"dynamic_mean_B_{name}"] = Quantity(
+            f"load shares in motion at {force:g} kN, means of odd and even pinions", count=2
+        )
     return known
 
 

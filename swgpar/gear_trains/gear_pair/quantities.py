@@ -6,7 +6,8 @@ from itertools import product
 
 from swgpar.gear_trains.gear_pair.design import GearPairDesign
 from swgpar.gear_trains.gear_pair.model import mesh_force, natural_modes
-from swgpar.gear_trains.published import STATISTICS, Quantities
+from swgpar.gear_trains.published import STATISTICS
+from swgpar.results.quantity import Quantity
 from swgpar.vibration.linearisation import EQUIVALENT
 
 VALUES = {
@@ -18,15 +19,18 @@ VALUES = {
 """Coordinates and the mesh deflection, all along the line of action: name -> meaning; all in m."""
 
 
-def quantities(design: GearPairDesign) -> Quantities:
+def quantities(design: GearPairDesign) -> dict[str, Quantity]:
     """Results that can be compared with published values."""
-    known = {}
+    known: dict[str, Quantity] = {}
     for case in range(1, len(design.load.input) + 1):
-        known[f"out_of_contact_{case}"] = (f"share of samples of case {case} out of contact at the end", 1)
-        known[f"back_flank_{case}"] = (f"share of samples of case {case} in contact on the back flank at the end", 1)
+        known[f"out_of_contact_{case}"] = Quantity(f"share of samples of case {case} out of contact at the end")
+        known[f"back_flank_{case}"] = Quantity(
+            f"share of samples of case {case} in contact on the back flank at the end"
+        )
         for (kind, statistic), method, (name, meaning) in product(STATISTICS.items(), EQUIVALENT, VALUES.items()):
-            text = f"error of the {method}-based {statistic} of the {meaning} against Monte Carlo, case {case} (%)"
-            known[f"error_{kind}_{method}_{name}_{case}"] = (text, 1)
+            known[f"error_{kind}_{method}_{name}_{case}"] = Quantity(
+                f"error of the {method}-based {statistic} of the {meaning} against Monte Carlo, case {case}", "%"
+            )
     return known
 
 

@@ -11,32 +11,31 @@ from swgpar.gear_trains.planetary.model import PlanetaryModel, radii
 from swgpar.gear_trains.planetary.monitored import MONITORED
 from swgpar.gear_trains.planetary.time_stepping import TimeStepper
 from swgpar.gear_trains.planetary.wind_load import WindLoad
-from swgpar.gear_trains.published import STATISTICS, Quantities, number_label
+from swgpar.gear_trains.published import STATISTICS, number_label
+from swgpar.results.quantity import Quantity
 from swgpar.vibration.backlash import force
 
 
-def quantities(design: PlanetaryDesign) -> Quantities:
+def quantities(design: PlanetaryDesign) -> dict[str, Quantity]:
     """Results that can be compared with published values."""
     known = {
-        "dominant_cycles_ring_contact": (
-            "largest slow harmonic, in cycles per carrier revolution, of the outward ring displacement at planet 1",
-            1,
+        "dominant_cycles_ring_contact": Quantity(
+            "largest slow harmonic, in cycles per carrier revolution, of the outward ring displacement at planet 1"
         ),
-        "dominant_cycles_ring_node": (
-            "largest slow harmonic, in cycles per carrier revolution, of the tangential displacement of a ring node",
-            1,
+        "dominant_cycles_ring_node": Quantity(
+            "largest slow harmonic, in cycles per carrier revolution, of the tangential displacement of a ring node"
         ),
-        "out_of_contact": ("share of steps and samples in which a mesh is not in contact on its loaded flank", 1),
+        "out_of_contact": Quantity("share of steps and samples in which a mesh is not in contact on its loaded flank"),
     }
     for (kind, statistic), (name, meaning) in product(STATISTICS.items(), MONITORED.items()):
-        known[f"{kind}_{name}"] = (f"largest {statistic} of the {meaning} (m)", 1)
-        known[f"error_{kind}_{name}"] = (
-            f"error of the linearised {statistic} of the {meaning} against Monte Carlo (%)",
-            1,
+        known[f"{kind}_{name}"] = Quantity(f"largest {statistic} of the {meaning}", "m")
+        known[f"error_{kind}_{name}"] = Quantity(
+            f"error of the linearised {statistic} of the {meaning} against Monte Carlo", "%"
         )
     for rim, (kind, statistic), (name, meaning) in product(design.ring.rims, STATISTICS.items(), MONITORED.items()):
-        text = f"largest {statistic} of the {meaning} with a rim of {rim:g} mm (m)"
-        known[f"{kind}_{name}_{number_label(rim)}"] = (text, 1)
+        known[f"{kind}_{name}_{number_label(rim)}"] = Quantity(
+            f"largest {statistic} of the {meaning} with a rim of {rim:g} mm", "m"
+        )
     return known
 
 

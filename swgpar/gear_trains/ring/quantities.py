@@ -6,32 +6,38 @@ from itertools import product
 
 import numpy as np
 
-from swgpar.gear_trains.published import STATISTICS, Quantities, number_label
+from swgpar.gear_trains.published import STATISTICS, number_label
 from swgpar.gear_trains.ring.design import RingDesign
 from swgpar.gear_trains.ring.natural_frequencies import distinct_frequencies
+from swgpar.results.quantity import Quantity
 from swgpar.vibration.curved_beam import free_frequencies
 
 POINTS = {"moving_point": "ring point under the first load", "middle_node": "node midway between two supports"}
 """Points whose outward displacement is computed: name -> meaning."""
 
 
-def quantities(design: RingDesign) -> Quantities:
+def quantities(design: RingDesign) -> dict[str, Quantity]:
     """Results that can be compared with published values."""
     known = {
-        "frequencies": ("natural frequencies of in-plane bending, equal ones once (Hz)", design.ring.modes),
-        "dimensionless_frequencies": ("the same times 2 pi sqrt(density A R⁴ / (E I))", design.ring.modes),
+        "frequencies": Quantity(
+            "natural frequencies of in-plane bending, equal ones once", "Hz", count=design.ring.modes
+        ),
+        "dimensionless_frequencies": Quantity(
+            "the same times 2 pi sqrt(density A R⁴ / (E I))", count=design.ring.modes
+        ),
     }
     load = design.moving_load
     if load is not None:
         for point, meaning in POINTS.items():
             for speed, (kind, statistic) in product(load.speeds, STATISTICS.items()):
-                text = f"largest {statistic} of the outward displacement of the {meaning} at {speed:g} rad/s (m)"
-                known[f"{kind}_{point}_{number_label(speed)}"] = (text, 1)
-            text = f"largest slow harmonic, in cycles per revolution, of the {meaning} at the first speed"
-            known[f"dominant_cycles_{point}"] = (text, 1)
-        known["critical_speeds"] = (
-            "speeds of the five highest peaks of the mean of the middle node, ascending (rad/s)",
-            5,
+                known[f"{kind}_{point}_{number_label(speed)}"] = Quantity(
+                    f"largest {statistic} of the outward displacement of the {meaning} at {speed:g} rad/s", "m"
+                )
+            known[f"dominant_cycles_{point}"] = Quantity(
+                f"largest slow harmonic, in cycles per revolution, of the {meaning} at the first speed"
+            )
+        known["critical_speeds"] = Quantity(
+            "speeds of the five highest peaks of the mean of the middle node, ascending", "rad/s", count=5
         )
     return known
 

@@ -1,0 +1,27 @@
+"""What a run gives by name, for tables, figures and comparisons."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+def with_unit(name: str, unit: str) -> str:
+    """A heading: the name and, where there is one, the unit."""
+    return f"{name} ({unit})" if unit else name
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number that a run gives, or a list of `count` numbers.
+
+    meaning : without its unit;  unit : empty for a pure number
+    """
+
+    meaning: str
+    unit: str = ""
+    count: int = 1
+
+    @property
+    def text(self) -> str:
+        """Meaning and unit."""
+        return with_unit(self.meaning, self.unit)
