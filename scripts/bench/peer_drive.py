@@ -117,7 +117,7 @@ def compare(name: str, out: Path, cores: int) -> dict[str, object]:
     rows = [line.split() for line in (folder / "drive.sta").read_text().splitlines()[2:]]
     return {
         "case": name,
-        "elements": result.summary["elements"],
+        "elements": result.summary.elements,
         "swgpar_rotation_deg": last["output_angle_deg"],
         "ccx_rotation_deg": float(np.degrees(rotation)),
         "swgpar_cam_torque_Nmm": last["wg_torque_Nmm"],

@@ -124,9 +124,9 @@ def test_losses_refer_to_the_input() -> None:
         swgpar.run(swgpar.load_design(DESIGN, [*overrides, *layout]), RECIPE, progress=False).summary.losses
         for layout in ((), (FIXED,))
     )
-    assert wave["loss_torque_Nmm"] == pytest.approx(ring["loss_torque_Nmm"], rel=1e-9)
+    assert wave.loss_torque_Nmm == pytest.approx(ring.loss_torque_Nmm, rel=1e-9)
     useful = TORQUE * TEETH_RG / TEETH_FS
-    assert wave["efficiency"] == pytest.approx(useful / (useful + wave["loss_torque_Nmm"]))
+    assert wave.efficiency == pytest.approx(useful / (useful + wave.loss_torque_Nmm))
 
 
 @pytest.mark.parallel(2)
