@@ -62,7 +62,7 @@ class BodySizes:
     quality: Mapping[str, float]
 
 
-@dataclass(frozen=True, eq=True)
+@dataclass(frozen=True)
 class DriveSummary(Mapping[str, Answer]):
     """What a whole run gives: a mapping of answers by name, and what they are made of.
 
