@@ -17,7 +17,6 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutOfMemoryError
 from swgpar.meshing import MeshRecipe
 from swgpar.meshing.sector_counts import sector_counts
-from swgpar.model.drive_model import copies_of_model
 from swgpar.petsc import is_out_of_memory
 
 
@@ -56,13 +55,13 @@ def forecast(design: DriveDesign, recipe: MeshRecipe) -> Forecast:
 
     Nothing is meshed. Raises InputError where the recipe lacks a section.
     """
-    plane, copies = design.drive.model == "plane", copies_of_model(design)
+    plane = design.drive.model == "plane"
     elements = unknowns = 0
     for gear, counts in sector_counts(design, recipe).items():
         fixed = counts.outer if gear == design.standing_gear and design.frame_is_rigid else 0
         free = counts.nodes - counts.shared - fixed
         elements += counts.elements * counts.n_sectors
-        unknowns += (2 if plane else 3) * free * (counts.n_sectors // copies)
+        unknowns += (2 if plane else 3) * free * (counts.n_sectors // design.copies)
     growth, size = GROWTH[design.drive.model], unknowns / 1e5
     return Forecast(
         elements=elements,

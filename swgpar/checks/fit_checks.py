@@ -36,15 +36,24 @@ OUTLINE_POINTS = 2000
 def check_fit(design: DriveDesign) -> None:
     """Raise InputError for the first size that does not fit the others."""
     check_conjugate(design)
-    _check_wave_generator(design)
-    _check_teeth(design)
-    _check_steps(design)
     check_pancake(design)
     if design.has_cup:
         check_cup(design)
+    _check_sizes(design)
+    check_program(design)
+    if design.deviations is not None:
+        check_deviations(design, design.deviations)
+    if design.bearing is not None:
+        check_bearing(design)
+
+
+def _check_sizes(design: DriveDesign) -> None:
+    """Sizes of wave generator, teeth, steps, torque, fatigue and micro-geometry."""
+    _check_wave_generator(design)
+    _check_teeth(design)
+    _check_steps(design)
     _check_torque(design)
     _check_fatigue(design)
-    check_program(design)
     if design.wave_generator.face_width > design.drive.face_width:
         width = design.drive.face_width
         _refuse(
@@ -57,15 +66,11 @@ def check_fit(design: DriveDesign) -> None:
             f'solver.linear = "iterative" is not available with contact.friction = {design.contact.friction:g}: '
             'allowed "direct" with friction'
         )
-    if design.deviations is not None:
-        check_deviations(design, design.deviations)
     if design.drive.model == "plane":
         _check_plane(design)
     else:
         _check_micro_geometry(design)
     _check_outline(design)
-    if design.bearing is not None:
-        check_bearing(design)
 
 
 def _refuse(key: str, value: float, allowed: str) -> None:

@@ -186,6 +186,20 @@ class DriveDesign(Design):
         return self.has_attachment and self.cup.attachment == "bolted"
 
     @property
+    def copies(self) -> int:
+        """How many times the model makes the whole drive.
+
+        The number of lobes where the drive equals itself rotated by one of them and the design allows it, else 1.
+        """
+        counts = [self.drive.teeth_fs, self.drive.teeth_rg]
+        if self.bearing is not None:
+            counts.append(self.bearing.balls)
+        if self.is_bolted:
+            counts.append(self.cup.bolts)
+        symmetric = all(count % self.lobes == 0 for count in counts)
+        return self.lobes if symmetric and self.solver.symmetry else 1
+
+    @property
     def periods(self) -> int:
         """Periods that are computed with `steps.samples`: two with friction, whose state settles in the first."""
         return 2 if self.contact.friction else 1

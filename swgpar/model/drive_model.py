@@ -60,20 +60,6 @@ EDGE = 1.0 + 1e-9
 """Factor on the width of a rigid surface: points on its edge belong to it."""
 
 
-def copies_of_model(design: DriveDesign) -> int:
-    """How many times the model makes the whole drive.
-
-    The number of lobes where the drive equals itself rotated by one of them and the design allows it, else 1.
-    """
-    counts = [design.drive.teeth_fs, design.drive.teeth_rg]
-    if design.bearing is not None:
-        counts.append(design.bearing.balls)
-    if design.is_bolted:
-        counts.append(design.cup.bolts)
-    symmetric = all(count % design.lobes == 0 for count in counts)
-    return design.lobes if symmetric and design.solver.symmetry else 1
-
-
 def search_distance(design: DriveDesign, share: float = NEAR) -> float:
     """Distance (mm) within which flanks are followed: under torque all those that the backlash may bring together.
 
@@ -109,7 +95,7 @@ class DriveModel:
     @property
     def copies(self) -> int:
         """How many times the model makes the whole drive: 2 where it is half of it, 3 where it is a third."""
-        return copies_of_model(self.design)
+        return self.design.copies
 
     @property
     def part_remark(self) -> str:
@@ -223,7 +209,7 @@ def build_gear(design: DriveDesign, mesh: SectorMesh) -> Body:
 
 def build_layout(design: DriveDesign, body: Body) -> BodyLayout:
     """Modelled sectors of a body; a race has no sectors that are condensed."""
-    copies, mesh, race = copies_of_model(design), body.mesh, body.name == OUTER_RACE
+    copies, mesh, race = design.copies, body.mesh, body.name == OUTER_RACE
     standing = mesh.body == design.standing_gear != "flexible_spline"
     clamped = standing and design.frame_is_rigid
     fixed = mesh.node_sets["outer"] if clamped else np.zeros(0, dtype=np.int32)
@@ -257,7 +243,7 @@ def _condenses_teeth(design: DriveDesign) -> bool:
 def build_supports(design: DriveDesign, *, partition: Partition, elements: Elements) -> Supports:
     """Couplings of the spline, of a ring gear that is not clamped and of a bearing; the guide of a rotating ring."""
     spline = elements.bodies[FLEXIBLE_SPLINE]
-    copies = copies_of_model(design)
+    copies = design.copies
     # a plane section with deviations is centred by its cam alone: the wall of the cup gives way
     centred = design.has_cup or (design.drive.model == "plane" and design.deviations is None)
     rotates, guide = design.output_gear != "flexible_spline", None
