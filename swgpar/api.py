@@ -309,10 +309,10 @@ def export(
     from swgpar.exchange.export import export_files  # CAD kernels and tables are for this alone
 
     if isinstance(source, (str, Path)) and Path(source).is_dir():
-        source = open_result(source)  # type: ignore[assignment]
+        source = open_result(source)
     found = source if isinstance(source, DriveResult) else load_design(source)
     if isinstance(ripple, (str, Path)):
-        ripple = open_result(ripple)  # type: ignore[assignment]
+        ripple = open_result(ripple)
     if not isinstance(found, DriveDesign | DriveResult) or not isinstance(ripple, DriveResult | None):
         raise InputError("export is available for drives: a gear train has no geometry and no fields")
     recipe = None if mesh is None else load_mesh(mesh)

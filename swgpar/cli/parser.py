@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from typing import NoReturn
+from typing import NoReturn, TypeAlias
 
 from swgpar.errors import InputError
 from swgpar.version import __version__
@@ -103,7 +103,7 @@ REPORT_EXAMPLES = """example:
 MESH_HELP = "mesh recipe: coarse, forces, medium, full, plane_coarse, plane, plane_fine, or the path of a file (TOML)"
 
 
-_Commands = "argparse._SubParsersAction[argparse.ArgumentParser]"
+_Commands: TypeAlias = "argparse._SubParsersAction[_Parser]"
 
 
 class _Parser(argparse.ArgumentParser):

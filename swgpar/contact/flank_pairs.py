@@ -9,11 +9,12 @@ import numpy as np
 
 from swgpar.contact.flank_deviations import FlankDeviations
 from swgpar.contact.search import FlankPair
-from swgpar.contact.segments import MIRROR, FlankFaces, Segments, bilinear, lagrange
+from swgpar.contact.segments import FlankFaces, Segments, bilinear, lagrange
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.local_nodes import LocalNodes
 from swgpar.fem.partition import Partition
+from swgpar.geometry.rotation import MIRROR
 from swgpar.meshing.sector import FlankGrid
 
 LINE_WINDOW = (1, 1)

@@ -227,5 +227,5 @@ def _polygon(mesh: SectorMesh) -> ToothProfile:
     points = mesh.coords[flank.nodes[:, int(np.abs(flank.z).argmin())], :2]
     lines = np.diff(points, axis=0)
     angle, length = np.arctan2(lines[:, 1], lines[:, 0]), np.hypot(*lines.T)
-    segments = [Segment("facet", tuple(p), a, 0.0, s) for p, a, s in zip(points, angle, length, strict=False)]
+    segments = [Segment("facet", (p[0], p[1]), a, 0.0, s) for p, a, s in zip(points, angle, length, strict=False)]
     return replace(mesh.profile, segments=tuple(segments))

@@ -129,7 +129,8 @@ class _Meridian:
     """Curves of a section in the plane of r and z, one after the other; `at` is the tag of the last point."""
 
     def __init__(self, gmsh: ModuleType, r: float, z: float) -> None:
-        self.occ, self.curves, self.place = gmsh.model.occ, [], (r, z)
+        self.occ, self.place = gmsh.model.occ, (r, z)
+        self.curves: list[int] = []
         self.first = self.at = self.occ.addPoint(r, 0.0, z)
 
     def _end(self, r: float, z: float) -> int:

@@ -35,7 +35,7 @@ class Section(BaseModel):
         return value
 
 
-def quantity(default: Any = ..., *, unit: str = "", text: str, **limits: float) -> Any:
+def quantity(default: Any = ..., *, unit: str = "", text: str, **limits: Any) -> Any:
     """Declare a field of a `Section` with its meaning, its unit and its allowed range.
 
     Parameters
@@ -46,7 +46,7 @@ def quantity(default: Any = ..., *, unit: str = "", text: str, **limits: float) 
         Unit of the value in the file; empty for a pure number.
     text : str
         Meaning of the field, without the unit.
-    **limits : float
+    **limits
         Any of ``gt``, ``ge``, ``lt``, ``le``.
     """
     description = f"{text} ({unit})" if unit else text

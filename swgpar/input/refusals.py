@@ -15,7 +15,11 @@ from swgpar.input.quantities import MAGNITUDE, WHOLE_SECTION, Section, allowed, 
 RANGE_FINDINGS = ("greater_than", "greater_than_equal", "less_than", "less_than_equal")
 """Kinds of pydantic's findings for numbers beyond the limits of their field."""
 
-NOUNS = {list[str]: "a list of texts", dict[str, float]: "a table of numbers", dict[str, Any]: "a table"}
+NOUNS: dict[Any, str] = {
+    list[str]: "a list of texts",
+    dict[str, float]: "a table of numbers",
+    dict[str, Any]: "a table",
+}
 """Nouns for the values of fields that hold several."""
 
 
@@ -80,7 +84,8 @@ def sentence(model: type[Section], error: ValidationError) -> str:
     findings = error.errors(include_url=False)
     findings.sort(key=lambda item: item["type"] != "extra_forbidden")
     finding = findings[0]
-    kind, path, value = finding["type"], finding["loc"], finding.get("input")
+    kind, value = finding["type"], finding.get("input")
+    path: Sequence[int | str] = finding["loc"]
     if not path:
         return "the design file has to be a table of sections"
     owner, field, path = _locate(model, path)

@@ -92,7 +92,8 @@ def whole_drive(meshes: dict[str, SectorMesh]) -> meshio.Mesh:
 
     A housing counts as a body here, the last one.
     """
-    points, cells, names, point_sets = [], [], [], {}
+    points, cells, names = [], [], []
+    point_sets: dict[str, np.ndarray] = {}
     offset = 0
     for mesh in meshes.values():
         coords, elements = whole_body(mesh)

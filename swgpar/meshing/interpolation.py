@@ -42,7 +42,7 @@ def _cells(mesh: Delaunay, known: np.ndarray, sought: np.ndarray) -> np.ndarray:
     cell = mesh.find_simplex(sought, tol=1e-9)
     volume = np.abs(np.linalg.det(known[mesh.simplices[:, 1:]] - known[mesh.simplices[:, :1]]))
     usable = volume > FLAT * np.median(volume)
-    at_node = [[] for _ in known]
+    at_node: list[list[int]] = [[] for _ in known]
     for k in np.flatnonzero(usable):
         for node in mesh.simplices[k]:
             at_node[node].append(k)

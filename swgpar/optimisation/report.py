@@ -69,7 +69,7 @@ def _variables(problem: Problem) -> Table:
 
 
 def _quantities(problem: Problem) -> Table:
-    wanted = [(o.quantity, o.goal) for o in problem.section.objective]
+    wanted: list[tuple[str, str]] = [(o.quantity, o.goal) for o in problem.section.objective]
     for c in problem.section.constraint:
         limits = (("at most", c.at_most), ("at least", c.at_least))
         wanted.append((c.quantity, ", ".join(f"{word} {limit:g}" for word, limit in limits if limit is not None)))

@@ -281,7 +281,7 @@ class DriveFigures(FigureSet):
         result, row = self._result, self._row(increment)
         cam_angle = self._cam_angle(row)
         angle, z, pairs = cam_angle, 0.0, result.pairs
-        here = np.flatnonzero(pairs["increment"] == row + 1) if pairs else []
+        here = np.flatnonzero(pairs["increment"] == row + 1) if pairs else np.zeros(0, dtype=np.int64)
         if len(here):
             largest = here[np.argmax(pairs["force_N"][here])]
             angle = cam_angle + float(np.radians(pairs["angle_deg"][largest]))

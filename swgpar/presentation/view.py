@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -51,7 +51,7 @@ def view_plotter(result: DriveData, *, off_screen: bool = False) -> pyvista.Plot
         raise InputError("this run kept no fields: allowed with output.fields = true")
     with errors_only():
         plotter = pyvista.Plotter(off_screen=off_screen, title="swgpar", window_size=(1300, 950))
-    shown = {"increment": result.increments - 1, "factor": 1.0, "field": "vm"}
+    shown: dict[str, Any] = {"increment": result.increments - 1, "factor": 1.0, "field": "vm"}
     surfaces: dict[str, pyvista.PolyData] = {}
     places: dict[str, np.ndarray] = {}
     actors = {}

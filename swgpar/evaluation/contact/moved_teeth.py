@@ -6,11 +6,10 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from swgpar.contact.flank_state import Crowning
-from swgpar.contact.segments import MIRROR
 from swgpar.fem.body_layout import BodyLayout
 from swgpar.geometry.micro_geometry import crowning
 from swgpar.geometry.profiles import ToothProfile
-from swgpar.geometry.rotation import rotated
+from swgpar.geometry.rotation import MIRROR, rotated
 from swgpar.meshing.sector import FlankGrid
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from annotated_types import Len
 
@@ -13,7 +13,7 @@ from swgpar.input.quantities import Section, quantity
 PINIONS = 8
 Ratios = Annotated[list[Positive], Len(PINIONS, PINIONS)]
 Forces = Annotated[list[Positive], Len(1)]
-GRADES = {"ge": 0.0, "le": 12.0}
+GRADES: dict[str, Any] = {"ge": 0.0, "le": 12.0}
 
 
 class Train(GearTrain):

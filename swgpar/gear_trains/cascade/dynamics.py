@@ -21,6 +21,7 @@ Further deviations from print:
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -31,7 +32,7 @@ from swgpar.gear_trains.cascade.design import PINIONS, CascadeDesign
 from swgpar.gear_trains.cascade.layout import DOFS, FLYWHEEL, MESHES, RACK, masses, meshes, shafts
 from swgpar.gear_trains.kernel import MESH_ERROR, GearboxKernel
 
-Force = Callable[[np.ndarray], np.ndarray]
+Force = Callable[[Any], Any]
 """Rack forces in N at times in s, any shape."""
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -20,11 +21,11 @@ STYLES = {"monte_carlo": ("k-", "Monte Carlo"), "energy": ("C0--", "energy-based
 def drawings(result: TrainResult) -> Drawings:
     """All figures of a run."""
     load, half = result.summary["design"]["load"], result.summary["half_backlash_um"]
-    found = {}
+    figures: dict[str, Callable[[], Figure]] = {}
     for case, torque in enumerate(load["input"], start=1):
-        found |= {f"case_{case}_{value}": partial(_moments, result, case, torque, value) for value in VALUES}
-        found[f"case_{case}_density"] = partial(_density, result, case, torque, half)
-    return found
+        figures |= {f"case_{case}_{value}": partial(_moments, result, case, torque, value) for value in VALUES}
+        figures[f"case_{case}_density"] = partial(_density, result, case, torque, half)
+    return figures
 
 
 def _moments(result: TrainResult, case: int, torque: float, value: str) -> Figure:

@@ -180,9 +180,9 @@ class Envelope:
 
         return CurvedSegment("conjugate", evaluate)
 
-    def pieces(self, low: float, high: float) -> list[FlankSegment]:
+    def pieces(self, low: float, high: float) -> list[Segment | CurvedSegment]:
         """Segments between two arc lengths, mm, of the given flank, from the tip to the root of the envelope."""
-        found: list[FlankSegment] = []
+        found: list[Segment | CurvedSegment] = []
         for index in range(len(self.given.segments) - 1, -1, -1):
             begin, end = self.given.breaks[index : index + 2]
             first, last = max(begin, low) - begin, min(end, high) - begin
@@ -232,10 +232,10 @@ class _Maker:
             self.undercut()
         return float(brentq(beyond, low, high, xtol=1e-13))
 
-    def build(self, low: float, high: float) -> list[FlankSegment]:
+    def build(self, low: float, high: float) -> list[Segment | CurvedSegment]:
         """Segments from tip to root; `low`, `high` : arc lengths of the given flank that may touch."""
         top = self.crossing(self.tip, low, high)
-        base: list[FlankSegment] = []
+        base: list[Segment | CurvedSegment] = []
         if self.keys.relief:
             height = self.keys.relief_height * self.module
             top, relief = self._relief(self.crossing(self.tip - self.sign * height, low, top), top)
@@ -270,7 +270,7 @@ class _Maker:
         start = center + (1.0 if convex else -1.0) * radius * self.normal(begin)
         return Segment(name, _start(start), begin, curvature, turn / curvature)
 
-    def _root(self, low: float, top: float) -> tuple[float, list[FlankSegment]]:
+    def _root(self, low: float, top: float) -> tuple[float, list[Segment | CurvedSegment]]:
         """Where the envelope ends, and the tangent and the arc from there to the dedendum circle."""
         radius, reach = self.keys.r_root, self.root + self.sign * self.keys.r_root
 
@@ -297,7 +297,7 @@ class _Maker:
         middle += length * line
         outward = self.sign * middle / abs(middle)
         end = float(np.angle(outward / (self.sign * 1j)))
-        ending: list[FlankSegment] = [self._arc("root", radius, angle, end, False, middle)]
+        ending: list[Segment | CurvedSegment] = [self._arc("root", radius, angle, end, False, middle)]
         if length > 1e-9 * self.module:
             ending.insert(0, Segment("tangent", _start(self.envelope.point(bottom)[0]), angle, 0.0, length))
         return bottom, ending
@@ -308,12 +308,12 @@ class _Maker:
             "the dedendum circle from the flank"
         )
 
-    def _rounded(self, base: list[FlankSegment]) -> list[FlankSegment]:
+    def _rounded(self, base: list[Segment | CurvedSegment]) -> list[Segment | CurvedSegment]:
         """The segments with their tip edge replaced by an arc that is tangent to the addendum circle."""
         radius = self.keys.r_tip
         for index, segment in enumerate(base):
 
-            def short(s: float, segment: FlankSegment = segment) -> float:
+            def short(s: float, segment: Segment | CurvedSegment = segment) -> float:
                 (x, y), angle = segment.point(np.array([s]))[0], float(segment.angle(np.array([s]))[0])
                 return self.sign * (abs(x + 1j * y - radius * self.normal(angle)) - self.tip) + radius
 
@@ -332,12 +332,14 @@ class _Maker:
         )
 
 
-def _shortened(segment: FlankSegment, cut: float) -> FlankSegment:
+def _shortened(segment: Segment | CurvedSegment, cut: float) -> Segment | CurvedSegment:
     """The segment without its first part of the length `cut`, mm."""
     if isinstance(segment, Segment):
         start = segment.point(np.array([cut]))[0]
         direction = float(segment.angle(np.array([cut]))[0])
-        return Segment(segment.name, tuple(map(float, start)), direction, segment.curvature, segment.length - cut)
+        return Segment(
+            segment.name, (float(start[0]), float(start[1])), direction, segment.curvature, segment.length - cut
+        )
     first = float(segment.parameter(np.array([cut]))[0])
 
     def evaluate(t: Floats) -> CurvePoints:

@@ -17,8 +17,13 @@ from swgpar.geometry.arrays import Floats
 class FlankSegment(Protocol):
     """A smooth piece of a flank, run through from the tip towards the root; local arc lengths s in mm."""
 
-    name: str
-    length: float
+    @property
+    def name(self) -> str:
+        """Name of the piece."""
+
+    @property
+    def length(self) -> float:
+        """Arc length, mm."""
 
     def point(self, s: Floats) -> Floats:
         """Points (n, 2), mm, at `s` : (n,)."""
