@@ -97,7 +97,7 @@ def new(
     cam = cam or ("elliptical" if lobes == 2 else "harmonic")
     request = Request(ratio, torque, diameter, bore, profile, cam, layout, model, shape, lobes)
     design, table = starter_design(request)
-    build_sector_meshes(design, _load_recipe(MESHES[model]))
+    build_sector_meshes(design.geometry, _load_recipe(MESHES[model]))
     if out is not None:
         path, comm = Path(out), MPI.COMM_WORLD
         with agreed(comm, path):
@@ -498,7 +498,7 @@ def _needs(design: Design, recipe: MeshRecipe) -> dict[str, float]:
         raise InputError(f"{system_of(design).noun} has no mesh: allowed are drives")
     needs = forecast(design, recipe)
     require_memory(needs, design.solver.memory_limit)
-    build_sector_meshes(design, recipe)  # or the reason why the recipe gives no mesh
+    build_sector_meshes(design.geometry, recipe)  # or the reason why the recipe gives no mesh
     return {
         "elements of the drive": needs.elements,
         "unknowns modelled": needs.unknowns,
@@ -550,7 +550,8 @@ def _drive_mesh(design: DesignLike, mesh: MeshLike) -> DriveMesh:
     checked = load_design(design)
     if not isinstance(checked, DriveDesign):
         raise InputError(f"{system_of(checked).noun} has no mesh: allowed are drives")
-    return DriveMesh(checked, build_sector_meshes(checked, load_mesh(mesh)))
+    sectors = build_sector_meshes(checked.geometry, load_mesh(mesh))
+    return DriveMesh(sectors, checked.materials, checked.drive.face_width)
 
 
 def _require(name: str, value: Any) -> None:

@@ -66,7 +66,7 @@ def offset() -> Figure:
     """The exact, crowned flank over the facets of a coarse mesh, and the Hermite curve of the master."""
     design = reference("plane_half_turn")
     recipe = load_recipe("coarse")
-    mesh = build_sector_meshes(design, recipe)["flexible_spline"]
+    mesh = build_sector_meshes(design.geometry, recipe)["flexible_spline"]
     grid = mesh.flanks[0]
     profile = design.profile("flexible_spline")
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.5, 4.6), gridspec_kw={"width_ratios": [1.0, 1.25]})

@@ -39,7 +39,7 @@ CASES: dict[str, dict[str, Any]] = {
 
 def section(ax: Axes, design: DriveDesign, title: str) -> None:
     """Half section with the teeth and what is attached."""
-    lines = meridian(design, CupRecipe(cylinder=60, fillet=24, closed_end=1))
+    lines = meridian(design.geometry.cup, CupRecipe(cylinder=60, fillet=24, closed_end=1))
     half, profile = 0.5 * design.drive.face_width, design.profile("flexible_spline")
     wall = np.concatenate([[(design.inner_radius, -half)], lines.inner, lines.outer[::-1]])
     teeth = np.array([(profile.r_tip_circle, half), (profile.r_tip_circle, -half)])

@@ -41,7 +41,7 @@ def fill(ax: Axes, points: np.ndarray, colour: str, **style) -> None:
 def parts(design: DriveDesign) -> dict[str, np.ndarray]:
     """Outlines (n, 2) in the plane of z and r, mm, of the undeformed drive; teeth are cut along a tooth's middle."""
     recipe = load_recipe("full")
-    lines = meridian(design, recipe.cup)
+    lines = meridian(design.geometry.cup, recipe.cup)
     inner, outer = lines.inner, lines.outer
     spline, ring = (design.profile(gear) for gear in ("flexible_spline", "ring_gear"))
     half, cam_half = 0.5 * design.drive.face_width, 0.5 * design.wave_generator.face_width

@@ -42,7 +42,7 @@ def draw_sector(ax: Axes, mesh: SectorMesh, colour: str, title: str) -> None:
 def sectors() -> Figure:
     """One sector of both gears, plane model."""
     design = reference("plane_half_turn")
-    meshes = build_sector_meshes(design, load_recipe("plane_coarse"))
+    meshes = build_sector_meshes(design.geometry, load_recipe("plane_coarse"))
     figure, axes = canvas(9.0, 5.6, 1, 2)
     draw_sector(axes[0], meshes["flexible_spline"], SPLINE, "sector of the flexible spline (plane_coarse)")
     draw_sector(axes[1], meshes["ring_gear"], RING, "sector of the ring gear (plane_coarse)")

@@ -94,7 +94,7 @@ def compare(name: str, out: Path, cores: int) -> list[str]:
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     design = load_design(Path(DESIGN), LOADED)
-    mesh = build_sector_meshes(design, load_recipe(name))[BODY]
+    mesh = build_sector_meshes(design.geometry, load_recipe(name))[BODY]
     coords, elements = whole_body(mesh)
     run(name, folder, cores)
     u, s1, pressure = fields(folder, coords)

@@ -40,7 +40,7 @@ STIFFNESS = 1e3
 def main() -> None:
     name, held, out = sys.argv[1:]
     comm, design = MPI.COMM_WORLD, load_design(Path(DESIGN), ["solver.rtol=1e-5"])
-    mesh, material = build_sector(design, load_recipe(name), BODY), design.material_of(BODY)
+    mesh, material = build_sector(design.geometry, load_recipe(name), BODY), design.material_of(BODY)
     layout = build_layout(design, build_gear(design, mesh))
     partition = Partition([layout], comm)
     elements = Elements(partition)

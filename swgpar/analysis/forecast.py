@@ -57,7 +57,7 @@ def forecast(design: DriveDesign, recipe: MeshRecipe) -> Forecast:
     """
     plane = design.drive.model == "plane"
     elements = unknowns = 0
-    for gear, counts in sector_counts(design, recipe).items():
+    for gear, counts in sector_counts(design.geometry, recipe).items():
         fixed = counts.outer if gear == design.standing_gear and design.frame_is_rigid else 0
         free = counts.nodes - counts.shared - fixed
         elements += counts.elements * counts.n_sectors

@@ -194,7 +194,7 @@ class Refinement:
             needs = forecast(self.design, finer)
             if needs.elements > self.largest or not fits(needs, self.design.solver.memory_limit, self.comm):
                 return False
-            build_sector_meshes(self.design, finer)
+            build_sector_meshes(self.design.geometry, finer)
         except InputError:
             return False
         earlier = self.coarse, self.ratio, self.found, self.coarse_places

@@ -47,7 +47,7 @@ def run_drive(design: DriveDesign, options: RunOptions) -> DriveData:
     if recipe is None:
         recipe_name = MESHES[design.drive.model]
         recipe = load_recipe(recipe_name)
-    require_sections(design, recipe)
+    require_sections(design.drive.model, recipe)
     if options.accuracy is not None:
         require_refinable(design, options.accuracy)
         design = with_accuracy(design, options.accuracy)

@@ -28,15 +28,6 @@ class RingMotion(Protocol):
 
 
 @dataclass(frozen=True)
-class Crowning:
-    """Crowning of the flexible spline's flanks: mm at |z| = width / 2, mm, curve ("parabolic" or "circular")."""
-
-    amount: float
-    width: float
-    shape: str
-
-
-@dataclass(frozen=True)
 class SearchRange:
     """Distances (mm) of a search.
 

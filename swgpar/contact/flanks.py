@@ -22,7 +22,7 @@ from swgpar.contact.contact import NO_KEYS, FacePressure
 from swgpar.contact.enforcement import penetration
 from swgpar.contact.flank_deviations import FlankDeviations
 from swgpar.contact.flank_pairs import Faces, FlankPairs
-from swgpar.contact.flank_state import ActiveSegments, Crowning, FrictionStart, RingMotion, SearchRange
+from swgpar.contact.flank_state import ActiveSegments, FrictionStart, RingMotion, SearchRange
 from swgpar.contact.friction import Friction, PairKey
 from swgpar.contact.search import FlankPair
 from swgpar.contact.segments import cut_faces, flank_faces
@@ -31,6 +31,7 @@ from swgpar.fem.elements import BodyElements
 from swgpar.fem.local_nodes import LocalNodes
 from swgpar.fem.partition import Partition
 from swgpar.fem.sparse import BlockRows
+from swgpar.geometry.drive_geometry import FlankCrowning
 from swgpar.kernel import contact_flanks
 from swgpar.load.load_states import LoadState
 
@@ -71,7 +72,7 @@ class FlankContact:
         ring_motion: RingMotion,
         *,
         order: int,
-        crowning: Crowning,
+        crowning: FlankCrowning,
         penalty: float,
         max_gap: float,
         pressure_limit: float,

@@ -31,6 +31,7 @@ from swgpar.design.sections import (
 from swgpar.geometry.bearing import BearingSizes
 from swgpar.geometry.cams import Bearing, Cam, FourRoller, WaveGenerator, make_cam
 from swgpar.geometry.cup_wall import CupWall, rounded_lines
+from swgpar.geometry.drive_geometry import CupGeometry, DriveGeometry, FlankCrowning, GearGeometry
 from swgpar.geometry.micro_geometry import WaveGeneratorSurface
 from swgpar.geometry.neutral_line import NeutralLine, neutral_line
 from swgpar.geometry.profiles import Conjugate, RackInvolute, Teeth, ToothMotion, ToothProfile, make_profile
@@ -391,6 +392,40 @@ class DriveDesign(Design):
     def wg_penalty(self) -> float:
         """Penalty of the contact of cam and pins, MPa / mm."""
         return self.contact.wg_penalty_coef * self.modulus_of("flexible_spline") / self.drive.module
+
+    @property
+    def materials(self) -> dict[str, Material]:
+        """Materials of the gears, and of the housing if there is one, by name."""
+        bodies: tuple[DesignBody, ...] = self.gears if self.housing is None else (*self.gears, "housing")
+        return {body: self.material_of(body) for body in bodies}
+
+    @property
+    def crowning(self) -> FlankCrowning:
+        """Crowning of the flexible spline's flanks."""
+        micro = self.micro_geometry
+        return FlankCrowning(micro.fs_crowning, self.drive.face_width, micro.crowning_shape)
+
+    @property
+    def geometry(self) -> DriveGeometry:
+        """Sizes from which meshes are made. Raises InputError where keys of a profile give no flank."""
+        drive, cup = self.drive, None
+        if self.has_cup:
+            section = self.cup
+            cup = CupGeometry(self.cup_wall, section.thickness_coef, section.back_fillet, section.clamping_radius)
+        return DriveGeometry(
+            model=drive.model,
+            gears={
+                gear: GearGeometry(self.profile(gear), getattr(self, gear).rim, self.axial_range(gear))
+                for gear in self.gears
+            },
+            module=drive.module,
+            face_width=drive.face_width,
+            cam_width=self.wave_generator.face_width,
+            inner_radius=self.inner_radius,
+            crowning=self.crowning,
+            cup=cup,
+            housing=self.housing.thickness if self.housing else 0.0,
+        )
 
     def teeth(self, gear: GearName) -> Teeth:
         """Number and sizes of the teeth of a gear.

@@ -19,7 +19,6 @@ import numpy as np
 
 from swgpar.analysis.bent_start import BentSpline
 from swgpar.design.drive_design import DriveDesign
-from swgpar.design.sections import GEARS
 from swgpar.errors import InputError
 from swgpar.exchange.calculix_model import JobModel, Surface, Term
 from swgpar.exchange.cam_facets import OUTER_FACE, CamFacets, cam_facets
@@ -54,8 +53,7 @@ def write_calculix(design: DriveDesign, recipe: MeshRecipe, folder: Path) -> lis
     _check(design)
     model = JobModel(design, recipe)
     mesh, job = folder / MESH, folder / JOB
-    materials = {gear: design.material_of(gear) for gear in GEARS}
-    write_inp(mesh, model.drive, model.surfaces, materials, design.drive.face_width, plane_stress=model.plane)
+    write_inp(mesh, model.drive, model.surfaces, design.materials, design.drive.face_width, plane_stress=model.plane)
     half = 0.5 * design.wave_generator.face_width
     if model.plane:
         half = (0.5 + CAM_OVERHANG) * design.drive.face_width

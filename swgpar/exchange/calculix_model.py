@@ -26,7 +26,6 @@ from swgpar.load.load_program import torque_direction
 from swgpar.meshing import MeshRecipe, SectorMesh, build_sector_meshes
 from swgpar.meshing.export import sector_numbers, whole_body, whole_drive
 from swgpar.meshing.inp import element_faces
-from swgpar.model.drive_model import flank_crowning
 
 SIDES = {1: "clockwise", -1: "counter_clockwise"}
 """Of the flanks of a tooth."""
@@ -63,7 +62,7 @@ class JobModel:
 
     def __init__(self, design: DriveDesign, recipe: MeshRecipe) -> None:
         self.design, self.plane = design, design.drive.model == "plane"
-        self.flat = build_sector_meshes(design, recipe)
+        self.flat = build_sector_meshes(design.geometry, recipe)
         self.meshes = {name: replace(mesh, lower_nodes=None) for name, mesh in self.flat.items()}
         self.drive: meshio.Mesh = whole_drive(self.meshes)
         self.n_spline = len(whole_body(self.spline)[0])
@@ -134,7 +133,7 @@ class JobModel:
 
     def flank_gap(self) -> float:
         """Largest distance (mm) between a facet and the exact, crowned flank of a gear."""
-        crowning, gap = flank_crowning(self.design), 0.0
+        crowning, gap = self.design.crowning, 0.0
         for mesh in self.meshes.values():
             removed = crowning.amount if mesh is self.spline else 0.0
             faces = flank_faces(mesh, mesh.flanks[0], removed, crowning.width, crowning.shape)

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from swgpar.design.drive_design import DriveDesign
 from swgpar.geometry.arrays import Floats, Ints
 from swgpar.geometry.cup_wall import with_station
+from swgpar.geometry.drive_geometry import CupGeometry, DriveGeometry
 from swgpar.meshing.cross_section import CrossSection
 from swgpar.meshing.recipe import CupRecipe
 from swgpar.meshing.sweep import sweep_line, sweep_quads, symmetric_steps
@@ -59,21 +59,21 @@ class Meridian:
     end: int
 
 
-def meridian(design: DriveDesign, recipe: CupRecipe, layers: int = 1) -> Meridian:
+def meridian(cup: CupGeometry, recipe: CupRecipe, layers: int = 1) -> Meridian:
     """Return the stations of the wall.
 
     layers : elements along the half of the fillet at the back of the teeth that belongs to the wall
 
     The sizes of the cup are those of a checked design (`swgpar.checks.cup_checks`).
     """
-    wall, back_fillet = design.cup_wall, design.cup.back_fillet
+    wall, back_fillet = cup.wall, cup.back_fillet
     r_center, z_center = wall.center
     s = wall.stations(cylinder_stations(wall.length, recipe, back_fillet, layers), back_fillet * (1.0 + 1e-9))
     angle = np.linspace(0.0, 0.5 * np.pi, recipe.fillet + 1)[1:]
     side = -1.0 if wall.outwards else 1.0
     share = symmetric_steps(recipe.closed_end, recipe.end_ratio)
-    if design.cup.clamping_radius is not None:
-        share = with_station(share, (design.cup.clamping_radius - r_center) / (wall.edge - r_center), share[[0, -1]])
+    if cup.clamping_radius is not None:
+        share = with_station(share, (cup.clamping_radius - r_center) / (wall.edge - r_center), share[[0, -1]])
     r = r_center + (wall.edge - r_center) * share[1:]
     lines = []
     for line, (along_r, along_z), face in zip((wall.inner, wall.outer), wall.sizes, wall.faces, strict=True):
@@ -143,18 +143,19 @@ def wall_grid(section: CrossSection, attached: NDArray[np.bool_]) -> Ints:
     return np.array(rows, dtype=np.int32)
 
 
-def rounded_back(design: DriveDesign, section: CrossSection, back: Floats) -> Floats:
+def rounded_back(drive: DriveGeometry, section: CrossSection, back: Floats) -> Floats:
     """Nodes (n_section, 3), mm, of the back of the teeth, those near the corner with the wall moved onto its fillet.
 
     The layer of nodes below the root that is nearest to the end of the fillet becomes its end. Without such a layer the
     fillet has a node in its middle only.
     """
-    cup, thickness = design.cup, design.cup_thickness
+    cup, rim_thickness = drive.cup, drive.gears["flexible_spline"].rim
+    thickness = cup.thickness_coef * rim_thickness
     if cup.back_fillet == 0.0:
         return back
     rows = wall_grid(section, attached_quads(section, root_too=True))
     rim = len(wall_grid(section, attached_quads(section, root_too=False))) - 1  # the row of the corner
-    step, under = design.flexible_spline.rim - thickness, len(rows) - 1 - rim
+    step, under = rim_thickness - thickness, len(rows) - 1 - rim
     last = under
     if cup.back_fillet < step * (1.0 - 1e-9):
         last = min(max(1, round(under * cup.back_fillet / step)), under - 1)
@@ -162,9 +163,9 @@ def rounded_back(design: DriveDesign, section: CrossSection, back: Floats) -> Fl
     up, along = fillet_points(np.arange(min(last, under - 1) + 1) / max(last, 1), cup.back_fillet)
     radius = np.hypot(back[rows, 0], back[rows, 1])
     moved, z = radius.copy(), back[rows, 2]
-    moved[rim : rim + len(up)] = (design.inner_radius + thickness + up)[:, None]
+    moved[rim : rim + len(up)] = (drive.inner_radius + thickness + up)[:, None]
     z[rim : rim + len(up)] += along[:, None]
-    inside = (radius[:rim] - design.inner_radius) / thickness  # in the rim in proportion to the distance from inside
+    inside = (radius[:rim] - drive.inner_radius) / thickness  # in the rim in proportion to the distance from inside
     moved[:rim] += inside * up[0]
     z[:rim] += inside * along[0]
     new = back.copy()
@@ -207,16 +208,16 @@ def transition(below: Ints, above: Ints, between: Ints, groups: list[int]) -> In
     return np.concatenate((faces[:-1], faces[1:]), axis=-1).reshape(-1, 8).astype(np.int32)
 
 
-def transition_station(design: DriveDesign, recipe: CupRecipe, layers: int) -> int:
+def transition_station(drive: DriveGeometry, recipe: CupRecipe, layers: int) -> int:
     """Station after which columns are joined: of the cylinder, a pitch or more behind the teeth if there is one."""
-    lines = meridian(design, recipe, layers)
+    lines = meridian(drive.cup, recipe, layers)
     z = lines.inner[: lines.wall, 1]
-    behind = np.flatnonzero(z - z[0] >= np.pi * design.drive.module)
+    behind = np.flatnonzero(z - z[0] >= np.pi * drive.module)
     return int(behind[0]) if len(behind) else len(z) - 1
 
 
 def cup_slice(
-    design: DriveDesign, recipe: CupRecipe, section: CrossSection, root_too: bool, back: Ints, first: int, layers: int
+    drive: DriveGeometry, recipe: CupRecipe, section: CrossSection, root_too: bool, back: Ints, first: int, layers: int
 ) -> CupSlice:
     """Return the cup beyond the back of the teeth.
 
@@ -228,9 +229,10 @@ def cup_slice(
     """
     attached = attached_quads(section, root_too)
     grid = wall_grid(section, attached)
-    lines = meridian(design, recipe, layers)
+    lines = meridian(drive.cup, recipe, layers)
     inner, outer = lines.inner, lines.outer
-    fraction = depth_fractions(section, grid, design.inner_radius, design.cup_thickness)
+    spline = drive.gears["flexible_spline"]
+    fraction = depth_fractions(section, grid, drive.inner_radius, drive.cup.thickness_coef * spline.rim)
     angle = np.arctan2(*section.coords.T)
     if recipe.joined_columns:
         angle[grid] = angle[grid[0]]  # radial columns, below the root too
@@ -243,7 +245,7 @@ def cup_slice(
     number = np.full((len(inner), len(section.coords)), -1, dtype=np.int32)
     number[0] = back
     columns = np.unique(grid)
-    last = len(inner) - 1 if not recipe.joined_columns else transition_station(design, recipe, layers)
+    last = len(inner) - 1 if not recipe.joined_columns else transition_station(drive, recipe, layers)
     number[1 : last + 1, columns] = first + np.arange(last * len(columns)).reshape(last, -1)
     coords = [positions(inner[1 : last + 1], outer[1 : last + 1], columns).reshape(-1, 3)]
     hexes = [sweep_quads(section.quads[attached], number[: last + 1])]
@@ -257,7 +259,7 @@ def cup_slice(
         between = first + np.arange(grid[:, dropped].size, dtype=np.int32).reshape(len(grid), -1)
         # as far from the joined columns as a column is wide, where the elements are long
         length = inner[last + 1, 1] - inner[last, 1]
-        width = 2.0 * np.pi * design.inner_radius / design.drive.teeth_fs / (grid.shape[1] - 1)
+        width = 2.0 * np.pi * drive.inner_radius / spline.profile.n_teeth / (grid.shape[1] - 1)
         share = 1.0 - min(0.5, width / length)
         ring = [line[last : last + 1] + share * (line[last + 1] - line[last]) for line in (inner, outer)]
         coords.append(positions(*ring, grid[:, dropped].ravel()).reshape(-1, 3))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from swgpar.design.drive_design import DriveDesign
+from swgpar.materials import Material
 from swgpar.meshing.export import FORMATS, mesh_report, whole_body, write_mesh
 from swgpar.meshing.sector import SectorMesh
 
@@ -31,8 +31,8 @@ class DriveMesh:
 
     Attributes
     ----------
-    design : the drive
     sectors : one tooth sector of every body, by its name
+    materials : of every body and of a housing, by name;  thickness : mm, of the plane model
 
     Examples
     --------
@@ -43,8 +43,9 @@ class DriveMesh:
     >>> mesh.write("results/mesh", formats=("vtu", "inp"))
     """
 
-    design: DriveDesign
     sectors: dict[str, SectorMesh]
+    materials: Mapping[str, Material]
+    thickness: float
 
     @cached_property
     def bodies(self) -> dict[str, WholeBody]:
@@ -70,7 +71,7 @@ class DriveMesh:
         OutputError
             The folder cannot be written.
         """
-        return write_mesh(self.design, self.sectors, folder, formats)
+        return write_mesh(self.sectors, self.materials, self.thickness, folder, formats)
 
     def grid(self) -> pyvista.UnstructuredGrid:
         """The mesh for PyVista; the cell data "body" is 0 for the flexible spline and 1 for the ring gear."""

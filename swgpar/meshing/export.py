@@ -5,15 +5,15 @@ The plane model is written as quadrilaterals at z = 0.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import meshio
 import numpy as np
 
-from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError, OutputError
 from swgpar.geometry.arrays import Floats, Ints
+from swgpar.materials import Material
 from swgpar.meshing.inp import element_faces, write_inp
 from swgpar.meshing.quality import hex_volumes
 from swgpar.meshing.sector import SectorMesh
@@ -136,8 +136,9 @@ def _as_msh(drive: meshio.Mesh) -> meshio.Mesh:
 
 
 def write_mesh(
-    design: DriveDesign,
     meshes: dict[str, SectorMesh],
+    materials: Mapping[str, Material],
+    thickness: float,
     directory: str | Path,
     formats: Sequence[str] = FORMATS,
 ) -> list[Path]:
@@ -145,9 +146,11 @@ def write_mesh(
 
     Parameters
     ----------
-    design : DriveDesign
-        Gives the tooth numbers in the names of the files.
     meshes : dict of SectorMesh
+    materials : dict of Material
+        Of every body and of a housing.
+    thickness : float, mm
+        Of the plane model.
     directory : str or Path
         Made when it does not exist.
     formats : sequence of str
@@ -162,19 +165,19 @@ def write_mesh(
         if name not in FORMATS:
             raise InputError(f'mesh format = "{name}" is not available: allowed {", ".join(FORMATS)}')
     drive = whole_drive(meshes)
+    teeth = "_".join(str(meshes[gear].n_sectors) for gear in ("flexible_spline", "ring_gear"))
     folder = Path(directory)
     written = []
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for name in formats:
-            path = folder / f"drive_{design.drive.teeth_fs}_{design.drive.teeth_rg}.{name}"
+            path = folder / f"drive_{teeth}.{name}"
             if name == "vtu":
                 meshio.vtu.write(path, _as_vtu(drive), compression="zlib")
             elif name == "msh":
                 meshio.gmsh.write(path, _as_msh(drive), fmt_version="2.2", binary=True)
             else:
-                materials = {body: design.material_of(body) for body in drive.cell_sets}
-                write_inp(path, drive, named_surfaces(meshes), materials, design.drive.face_width)
+                write_inp(path, drive, named_surfaces(meshes), materials, thickness)
             written.append(path)
     except OSError as error:
         raise OutputError(f"the mesh cannot be written to {folder}: {error.strerror or error}") from None

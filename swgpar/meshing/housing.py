@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from swgpar.design.drive_design import DriveDesign
 from swgpar.geometry.arrays import Floats
+from swgpar.geometry.drive_geometry import GearGeometry
 from swgpar.meshing.cross_section import CrossSection
 from swgpar.meshing.recipe import ToothRecipe
 
@@ -15,15 +15,15 @@ GROWTH = 1.6
 """Ratio of the thicknesses of successive layers."""
 
 
-def housing_radii(design: DriveDesign, recipe: ToothRecipe) -> Floats:
-    """Radii (n + 1,), mm, of the circles between the layers of the housing; one circle where there is no housing.
+def housing_radii(ring: GearGeometry, thickness: float, recipe: ToothRecipe) -> Floats:
+    """Radii (n + 1,), mm, of the circles between the layers of the housing; one circle where its thickness is 0.
 
     The first layer is about as thick as those of the ring gear's rim, each of the others `GROWTH` times the one before.
     """
-    inner = design.ring_outer_radius
-    if design.housing is None:
+    inner = ring.profile.r_root_circle + ring.rim
+    if thickness == 0.0:
         return np.array([inner])
-    thickness, first = design.housing.thickness, design.ring_gear.rim / (recipe.rim + recipe.under)
+    first = ring.rim / (recipe.rim + recipe.under)
     layers = max(1, round(np.log1p((GROWTH - 1.0) * thickness / first) / np.log(GROWTH)))
     ends = np.concatenate(([0.0], np.cumsum(GROWTH ** np.arange(layers))))
     return inner + thickness * ends / ends[-1]

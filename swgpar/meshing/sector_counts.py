@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from swgpar.design.drive_design import DriveDesign
-from swgpar.design.sections import GearName
+from swgpar.geometry.drive_geometry import DriveGeometry
 from swgpar.meshing.cup import joined_columns, meridian, transition_station
 from swgpar.meshing.housing import housing_radii
 from swgpar.meshing.recipe import MeshRecipe, ToothRecipe
@@ -42,35 +41,35 @@ def section_counts(recipe: ToothRecipe) -> tuple[int, int, int]:
     return 2 * (tooth + around * depth), 2 * half - middle, depth + 1
 
 
-def sector_counts(design: DriveDesign, recipe: MeshRecipe) -> dict[GearName, SectorCounts]:
-    """Counts of the tooth sectors that `build_sector_meshes` makes of a design and a recipe."""
-    require_sections(design, recipe)
-    return {gear: _counts(design, recipe, gear) for gear in design.gears}
+def sector_counts(drive: DriveGeometry, recipe: MeshRecipe) -> dict[str, SectorCounts]:
+    """Counts of the tooth sectors that `build_sector_meshes` makes of a drive and a recipe."""
+    require_sections(drive.model, recipe)
+    return {gear: _counts(drive, recipe, gear) for gear in drive.gears}
 
 
-def _counts(design: DriveDesign, recipe: MeshRecipe, gear: GearName) -> SectorCounts:
+def _counts(drive: DriveGeometry, recipe: MeshRecipe, gear: str) -> SectorCounts:
     teeth = tooth_recipe(recipe, gear)
     external = gear == "flexible_spline"
     quads, nodes, side = section_counts(teeth)
     around = 2 * (teeth.tip + teeth.layers + teeth.root)
-    n_sectors = design.teeth(gear).n_teeth
+    n_sectors = drive.gears[gear].profile.n_teeth
     if gear == "ring_gear":
-        housing = len(housing_radii(design, teeth)) - 1
+        housing = len(housing_radii(drive.gears[gear], drive.housing, teeth)) - 1
         quads, nodes, side = quads + housing * around, nodes + housing * (around + 1), side + housing
-    if design.drive.model == "plane":
+    if drive.model == "plane":
         return SectorCounts(n_sectors, quads, nodes, side, 0 if external else around)
     layers = recipe.face_width.elements
-    if external and design.drive.model == "pancake":
-        layers = 2 * layers + gap_elements(design, recipe)
+    if external and drive.model == "pancake":
+        layers = 2 * layers + gap_elements(drive, recipe)
     elements, nodes, side = quads * layers, nodes * (layers + 1), side * (layers + 1)
-    if external and design.has_cup:
+    if external and drive.cup is not None:
         cup = recipe.cup
-        stations = len(meridian(design, cup, teeth.under).inner) - 1
-        depth = teeth.rim + (teeth.under if continues_root(design) else 0)
+        stations = len(meridian(drive.cup, cup, teeth.under).inner) - 1
+        depth = teeth.rim + (teeth.under if continues_root(drive) else 0)
         with_all, joined, threes = stations, around, 0
         if cup.joined_columns:
             groups = joined_columns(around)
-            with_all, joined, threes = transition_station(design, cup, teeth.under), len(groups), groups.count(3)
+            with_all, joined, threes = transition_station(drive, cup, teeth.under), len(groups), groups.count(3)
             elements += (around + threes) * depth  # of the transition
             nodes += 2 * threes * (depth + 1)
         behind = stations - with_all

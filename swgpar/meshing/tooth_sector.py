@@ -1,4 +1,4 @@
-"""The tooth sectors of both gears, from a design and a recipe."""
+"""The tooth sectors of all gears, from the sizes of a drive and a recipe."""
 
 from __future__ import annotations
 
@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from swgpar.checks.cup_checks import THICK_CUP
-from swgpar.design.drive_design import DriveDesign
-from swgpar.design.sections import GearName
 from swgpar.errors import InputError
 from swgpar.geometry.arrays import Floats, Ints
+from swgpar.geometry.drive_geometry import DriveGeometry, FlankCrowning
 from swgpar.geometry.micro_geometry import crowning
 from swgpar.geometry.profiles import ToothProfile
 from swgpar.meshing.cross_section import CrossSection, cross_section
@@ -25,23 +24,23 @@ from swgpar.meshing.sector import FlankGrid, SectorMesh
 from swgpar.meshing.sweep import axial_stations, sweep_line, sweep_quads, symmetric_steps
 
 
-def continues_root(design: DriveDesign) -> bool:
+def continues_root(drive: DriveGeometry) -> bool:
     """Whether the cup of the flexible spline continues the layers below the root as well."""
-    return design.has_cup and design.cup.thickness_coef > THICK_CUP
+    return drive.cup is not None and drive.cup.thickness_coef > THICK_CUP
 
 
-def _radii(design: DriveDesign, gear: GearName, recipe: ToothRecipe, r_root: float) -> tuple[float, float, bool]:
+def _radii(drive: DriveGeometry, gear: str, recipe: ToothRecipe) -> tuple[float, float, bool]:
     """Return interface and free radius, mm, and whether the cup takes in the layers below the root."""
-    rim = getattr(design, gear).rim
+    rim, r_root = drive.gears[gear].rim, drive.gears[gear].profile.r_root_circle
     # layers of equal thickness from the root to the free surface (section 4.11.2 of the source)
     lower = rim * recipe.rim / (recipe.rim + recipe.under)
     if gear != "flexible_spline":
         return r_root + rim - lower, r_root + rim, False
-    if design.drive.model != "cup":
-        return design.inner_radius + lower, design.inner_radius, False
-    if continues_root(design):
-        return design.inner_radius + lower, design.inner_radius, True
-    return design.inner_radius + design.cup_thickness, design.inner_radius, False
+    if drive.cup is None:
+        return drive.inner_radius + lower, drive.inner_radius, False
+    if continues_root(drive):
+        return drive.inner_radius + lower, drive.inner_radius, True
+    return drive.inner_radius + drive.cup.thickness_coef * rim, drive.inner_radius, False
 
 
 def _swept(section: CrossSection, z: Floats, relief: Floats, amount: Floats) -> Floats:
@@ -90,14 +89,14 @@ def _toothed_part(section: CrossSection, z: Floats, relief: Floats, amount: Floa
 
 
 def _with_cup(
-    design: DriveDesign, recipe: MeshRecipe, section: CrossSection, teeth: Swept, root_too: bool
+    drive: DriveGeometry, recipe: MeshRecipe, section: CrossSection, teeth: Swept, root_too: bool
 ) -> tuple[Swept, Ints, Ints]:
     """The sector with the slice of the cup behind its teeth, nodes (n,) of the bore, faces (n, 4) of the closed end."""
     back = teeth.rows[-1]
     layers = recipe.flexible_spline.under
-    cup = cup_slice(design, recipe.cup, section, root_too, back, len(teeth.coords), layers)
+    cup = cup_slice(drive, recipe.cup, section, root_too, back, len(teeth.coords), layers)
     toothed = teeth.coords.copy()
-    toothed[back] = rounded_back(design, section, toothed[back])
+    toothed[back] = rounded_back(drive, section, toothed[back])
     whole = Swept(
         np.concatenate((toothed, cup.coords)),
         np.concatenate((teeth.hexes, cup.hexes)),
@@ -109,13 +108,12 @@ def _with_cup(
 
 
 def _relief(
-    design: DriveDesign, gear: GearName, section: CrossSection, profile: ToothProfile, z: Floats
+    crowned: FlankCrowning | None, section: CrossSection, profile: ToothProfile, z: Floats
 ) -> tuple[Floats, Floats]:
     """Crowning (n_z + 1,) mm along the width, and the displacement (n_section, 2) of the section per unit of it."""
-    micro = design.micro_geometry
-    if gear != "flexible_spline" or micro.fs_crowning == 0.0:
+    if crowned is None or crowned.amount == 0.0:
         return np.zeros_like(z), np.zeros_like(section.coords)
-    amount = crowning(micro.fs_crowning, z, design.drive.face_width, micro.crowning_shape)[0]
+    amount = crowning(crowned.amount, z, crowned.width, crowned.shape)[0]
     return np.asarray(amount), relief_field(section, profile)
 
 
@@ -124,69 +122,68 @@ def _elements(quads: NDArray[np.bool_], layers: int) -> Ints:
     return (np.flatnonzero(quads) + len(quads) * np.arange(layers)[:, None]).ravel().astype(np.int32)
 
 
-def tooth_recipe(recipe: MeshRecipe, gear: GearName) -> ToothRecipe:
+def tooth_recipe(recipe: MeshRecipe, gear: str) -> ToothRecipe:
     """Elements of half a tooth of a gear; both ring gears of a pancake drive have the same."""
     return recipe.flexible_spline if gear == "flexible_spline" else recipe.ring_gear
 
 
-def gap_elements(design: DriveDesign, recipe: MeshRecipe) -> int:
+def gap_elements(drive: DriveGeometry, recipe: MeshRecipe) -> int:
     """Elements along the gap between both ring gears of a pancake drive: as long as the others, one at least."""
-    gap = design.dynamic_spline.gap
-    return max(1, round(gap / (design.drive.face_width - gap) * 2 * recipe.face_width.elements))
+    gap = drive.gears["dynamic_spline"].ends[0] - drive.gears["ring_gear"].ends[1]
+    return max(1, round(gap / (drive.face_width - gap) * 2 * recipe.face_width.elements))
 
 
-def _stations(design: DriveDesign, recipe: MeshRecipe, gear: GearName) -> Floats:
+def _stations(drive: DriveGeometry, recipe: MeshRecipe, gear: str) -> Floats:
     """Coordinates z (n,) mm of the nodes along the face width of a gear.
 
     In a pancake drive each ring gear has the recipe's elements along its own width, and the flexible spline has the
     stations of both.
     """
     number, ratio = recipe.face_width.elements, recipe.face_width.end_ratio
-    if design.has_cup:
-        return axial_stations(design.drive.face_width, number, ratio, design.wave_generator.face_width)
+    if drive.cup is not None:
+        return axial_stations(drive.face_width, number, ratio, drive.cam_width)
 
-    def along(ring: GearName) -> Floats:
-        low, high = design.axial_range(ring)
+    def along(ring: str) -> Floats:
+        low, high = drive.gears[ring].ends
         return low + symmetric_steps(number, ratio) * (high - low)
 
     if gear != "flexible_spline":
         return along(gear)
     first, second = along("ring_gear"), along("dynamic_spline")
-    between = np.linspace(first[-1], second[0], gap_elements(design, recipe) + 1)[1:-1]
+    between = np.linspace(first[-1], second[0], gap_elements(drive, recipe) + 1)[1:-1]
     return np.concatenate((first, between, second))
 
 
-def build_sector(design: DriveDesign, recipe: MeshRecipe, gear: GearName) -> SectorMesh:
+def build_sector(drive: DriveGeometry, recipe: MeshRecipe, gear: str) -> SectorMesh:
     """Mesh the tooth sector of a gear; one layer of it for the plane model.
 
     Raises InputError for a recipe or a profile that gives elements with a Jacobian that is not above 0.
     """
     counts = tooth_recipe(recipe, gear)
-    profile = design.profile(gear)
-    interface, free, root_too = _radii(design, gear, counts, profile.r_root_circle)
+    profile = drive.gears[gear].profile
+    interface, free, root_too = _radii(drive, gear, counts)
     try:
         section = cross_section(profile, counts, interface, free)
     except MeshError:
         raise InputError(_no_mesh(gear, counts, "cannot be meshed")) from None
     if gear == "ring_gear":
-        section = with_housing(section, housing_radii(design, counts))
-    width = design.drive.face_width
-    plane = design.drive.model == "plane"
+        section = with_housing(section, housing_radii(drive.gears[gear], drive.housing, counts))
+    plane = drive.model == "plane"
     if plane:
-        z = np.array([-0.5, 0.5]) * width
+        z = np.array([-0.5, 0.5]) * drive.face_width
     else:
-        z = _stations(design, recipe, gear)
-    amount, relief = _relief(design, gear, section, profile, z)
+        z = _stations(drive, recipe, gear)
+    amount, relief = _relief(drive.crowning if gear == "flexible_spline" else None, section, profile, z)
     sector = _toothed_part(section, z, relief, amount)
     rows = sector.rows
     if gear == "flexible_spline":
         faces = {"inner": sweep_line(section.free, rows)}
         # in the plane the torque acts on the inner surface, of which the lower layer stands for both
         node_sets = {"bore": np.sort(rows[0, section.free])}
-        if design.drive.model == "pancake":
+        if drive.model == "pancake":
             node_sets["bore"] = np.unique(faces["inner"])
         elif not plane:
-            sector, node_sets["bore"], faces["end"] = _with_cup(design, recipe, section, sector, root_too)
+            sector, node_sets["bore"], faces["end"] = _with_cup(drive, recipe, section, sector, root_too)
     else:
         faces = {"outer": sweep_line(section.free[::-1], rows)}
         node_sets = {"outer": np.unique(rows[:1, section.free] if plane else faces["outer"])}
@@ -215,14 +212,14 @@ def build_sector(design: DriveDesign, recipe: MeshRecipe, gear: GearName) -> Sec
     )
 
 
-def require_sections(design: DriveDesign, recipe: MeshRecipe) -> None:
+def require_sections(model: str, recipe: MeshRecipe) -> None:
     """Raise InputError where the recipe lacks a section that the model needs."""
     for name, models in (("face_width", ("cup", "pancake")), ("cup", ("cup",))):
-        if design.drive.model in models and getattr(recipe, name) is None:
-            raise InputError(f'[{name}] is missing in the mesh recipe: drive.model = "{design.drive.model}" needs it')
+        if model in models and getattr(recipe, name) is None:
+            raise InputError(f'[{name}] is missing in the mesh recipe: drive.model = "{model}" needs it')
 
 
-def build_sector_meshes(design: DriveDesign, recipe: MeshRecipe) -> dict[str, SectorMesh]:
+def build_sector_meshes(drive: DriveGeometry, recipe: MeshRecipe) -> dict[str, SectorMesh]:
     """Mesh one tooth sector of each gear.
 
     Returns
@@ -231,5 +228,5 @@ def build_sector_meshes(design: DriveDesign, recipe: MeshRecipe) -> dict[str, Se
         Keys ``flexible_spline`` (with its slice of the cup), ``ring_gear`` and, in a pancake drive,
         ``dynamic_spline``.
     """
-    require_sections(design, recipe)
-    return {gear: build_sector(design, recipe, gear) for gear in design.gears}
+    require_sections(drive.model, recipe)
+    return {gear: build_sector(drive, recipe, gear) for gear in drive.gears}

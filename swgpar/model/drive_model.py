@@ -14,7 +14,7 @@ from swgpar.constraints.rigid_attachment import RigidAttachment, face_sides
 from swgpar.constraints.supports import RING_COUPLING, SPLINE_COUPLING, FixedRing, FloatingRing, Supports
 from swgpar.contact.ball_contact import BallContact
 from swgpar.contact.contact import NO_KEYS, PenaltyContact, largest
-from swgpar.contact.flank_state import Crowning, SearchRange
+from swgpar.contact.flank_state import SearchRange
 from swgpar.contact.flanks import FlankContact
 from swgpar.contact.rigid_surface import RigidContact, cam_pose, pin_pose
 from swgpar.design.drive_design import DriveDesign
@@ -163,7 +163,7 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
     """
     phases = PhaseTimes()
     with phases("mesh"):
-        meshes = build_sector_meshes(design, recipe)
+        meshes = build_sector_meshes(design.geometry, recipe)
     with phases("elements"):
         layouts = [build_layout(design, build_gear(design, mesh)) for mesh in meshes.values()]
         if design.bearing is not None:
@@ -323,12 +323,6 @@ def build_rigid_contacts(design: DriveDesign, *, elements: Elements) -> list[Rig
     ]
 
 
-def flank_crowning(design: DriveDesign) -> Crowning:
-    """Crowning of the flexible spline's flanks."""
-    micro = design.micro_geometry
-    return Crowning(micro.fs_crowning, design.drive.face_width, micro.crowning_shape)
-
-
 def build_flank_contacts(
     design: DriveDesign, *, partition: Partition, elements: Elements, supports: Supports
 ) -> list[FlankContact]:
@@ -343,7 +337,7 @@ def build_flank_contacts(
                 elements.bodies[name],
                 FixedRing() if fixed else FloatingRing(supports.couplings[RING_COUPLING], partition.comm),
                 order=design.contact.quadrature,
-                crowning=flank_crowning(design),
+                crowning=design.crowning,
                 penalty=design.penalty("flexible_spline", name),
                 max_gap=max(FOOT_REACH * design.drive.module, search_distance(design)),
                 pressure_limit=PRESSURE_LIMIT * design.modulus_of("flexible_spline", name),

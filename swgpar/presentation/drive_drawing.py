@@ -218,7 +218,7 @@ def _meridian(design: DriveDesign) -> Sheet:
     top = max(outer, wall.edge)
     scale = min((SIZE - 150.0) / length, 420.0 / top)
     sheet = Sheet(scale, 60.0 + scale * back, 55.0 + scale * top, 100.0 + scale * top)
-    lines = meridian(design, CupRecipe(cylinder=48 if cup.contour else 1, fillet=24, closed_end=1))
+    lines = meridian(design.geometry.cup, CupRecipe(cylinder=48 if cup.contour else 1, fillet=24, closed_end=1))
     inner_line, outer_line = lines.inner, lines.outer
     tooth = np.array([[spline.r_tip_circle, back], [spline.r_tip_circle, -back], [design.inner_radius, -back]])
     body = np.concatenate([inner_line, outer_line[::-1], tooth])

@@ -186,7 +186,7 @@ def test_a_housing_under_two_opposite_radial_loads(halved: bool) -> None:
         "load.torque=0",
         f"solver.symmetry={str(halved).lower()}",
     )
-    mesh = build_sector(design, load_recipe(RECIPE), "ring_gear")
+    mesh = build_sector(design.geometry, load_recipe(RECIPE), "ring_gear")
     width = design.drive.face_width
     partition = Partition([build_layout(design, build_gear(design, mesh))], MPI.COMM_SELF)
     body_elements = Elements(partition)

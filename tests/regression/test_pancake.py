@@ -55,7 +55,7 @@ def test_mesh_and_exchange(tmp_path: Path) -> None:
     counted = {name: quality["elements"] for name, quality in mesh.quality.items()}
     assert counted == {name: len(body.cells) for name, body in mesh.bodies.items()}
     design, recipe = swgpar.load_design(DATA / "pancake.toml"), swgpar.load_mesh(RECIPE)
-    for name, counts in sector_counts(design, recipe).items():
+    for name, counts in sector_counts(design.geometry, recipe).items():
         sector = mesh.sectors[name]
         assert (counts.n_sectors, counts.elements) == (sector.n_sectors, len(sector.hexes))
         assert (counts.nodes, counts.shared) == (len(sector.coords), len(sector.ccw_nodes))

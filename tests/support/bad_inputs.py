@@ -303,7 +303,7 @@ def _use_mesh(design: DriveDesign, recipe: swgpar.MeshRecipe) -> str:
         return f"forecast {needs}"
     if needs.elements > MESHED * design.drive.teeth_fs:
         return ""
-    meshes = build_sector_meshes(design, recipe)
+    meshes = build_sector_meshes(design.geometry, recipe)
     for mesh in meshes.values():
         if not (np.isfinite(mesh.coords).all() and mesh.quality["min_jacobian"] > 0.0):
             return f"mesh of {mesh.body}: {mesh.quality}"

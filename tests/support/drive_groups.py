@@ -165,7 +165,7 @@ def random_designs(count: int, seed: int, model: str = "plane") -> Cases:
         drawn += 1
         case = _draw(rng, model)
         try:
-            build_sector_meshes(make_drive(table_of(PLANE, case)), recipe)
+            build_sector_meshes(make_drive(table_of(PLANE, case)).geometry, recipe)
         except InputError:
             continue
         cases[f"r{drawn:04d}"] = case

@@ -32,7 +32,7 @@ shapes = pytest.mark.parametrize("shape", list(SHAPES))
 
 
 def spline(case: DriveDesign, recipe: str = "full") -> SectorMesh:
-    return build_sector(case, load_recipe(recipe), "flexible_spline")
+    return build_sector(case.geometry, load_recipe(recipe), "flexible_spline")
 
 
 @pytest.mark.parametrize("recipe", ["coarse", "medium", "full"])
@@ -50,7 +50,7 @@ def test_volume_behind_the_teeth_tends_to_that_of_the_solid_of_revolution(shape:
         counts = {name: factor * getattr(recipe.cup, name) for name in ("cylinder", "fillet", "closed_end")}
         cup = recipe.cup.model_copy(update=counts | {"joined_columns": False})
         finer = recipe.model_copy(update={"cup": cup})
-        mesh = build_sector(case, finer, "flexible_spline")
+        mesh = build_sector(case.geometry, finer, "flexible_spline")
         behind = mesh.coords[mesh.hexes, 2].min(axis=1) > 0.5 * case.drive.face_width * (1.0 - 1e-9)
         volume = mesh.n_sectors * hex_volumes(mesh.coords, mesh.hexes[behind]).sum()
         errors.append(abs(volume / wall_volume(case) - 1.0))
@@ -108,7 +108,7 @@ def test_torques_balance(shape: str) -> None:
 def test_the_bent_start_is_continuous_where_the_plate_begins(shape: str) -> None:
     """The plate has the wall's deflection; the shape has no jump larger than its slope explains."""
     case = shaped(SHAPES[shape])
-    bent, lines = BentSpline(case), meridian(case, load_recipe("full").cup)
+    bent, lines = BentSpline(case), meridian(case.geometry.cup, load_recipe("full").cup)
     path = 0.5 * (lines.inner + lines.outer)
     dense = np.concatenate([np.linspace(a, b, 50) for a, b in zip(path[:-1], path[1:])])
     moved = bent.displacement(np.column_stack([0.0 * dense[:, 0], dense]))
@@ -128,7 +128,7 @@ def test_corners_that_are_close_to_each_other_are_in_the_mesh() -> None:
     contour = [{"distance": distance, "thickness": thickness} for distance, thickness in corners]
     case = shaped({"contour": contour})
     for name in ("coarse", "medium"):
-        lines = meridian(case, load_recipe(name).cup)
+        lines = meridian(case.geometry.cup, load_recipe(name).cup)
         distance = lines.outer[:, 1] - 0.5 * case.drive.face_width
         thickness = np.hypot(*(lines.outer - lines.inner).T)
         for at, expected in corners:

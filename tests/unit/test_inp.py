@@ -28,8 +28,8 @@ HOUSING = ("ring_gear.housing.thickness=3", "ring_gear.housing.material={E=70e3,
 def small(model: str, directory: Path, housing: tuple[str, ...] = ()) -> tuple[dict[str, SectorMesh], Path]:
     """Meshes of the small drive, and its file as `swgpar mesh` writes it."""
     design = load_design(DESIGN, [*(PLANE if model == "plane" else ()), *housing])
-    meshes = build_sector_meshes(design, load_recipe(RECIPE))
-    return meshes, write_mesh(design, meshes, directory, ("inp",))[0]
+    meshes = build_sector_meshes(design.geometry, load_recipe(RECIPE))
+    return meshes, write_mesh(meshes, design.materials, design.drive.face_width, directory, ("inp",))[0]
 
 
 def solved(path: Path, lines: list[str]) -> dict[int, np.ndarray]:

@@ -63,7 +63,7 @@ def plane_design(*overrides: str) -> DriveDesign:
 
 @lru_cache
 def meshes(recipe: Path, *overrides: str) -> dict[str, SectorMesh]:
-    return build_sector_meshes(design(*overrides), load_recipe(recipe))
+    return build_sector_meshes(design(*overrides).geometry, load_recipe(recipe))
 
 
 CASES = [pytest.param(name, (), id=name) for name in CUP_RECIPES]
@@ -128,8 +128,8 @@ def cup_volume(case: DriveDesign) -> float:
 def test_fillet_at_the_back_of_the_teeth(recipe: str, radius: float) -> None:
     """Its nodes lie on an arc that is tangent to the back and to the wall; it adds its volume."""
     case = load_design(REFERENCE, [f"cup.back_fillet={radius}"])
-    mesh = build_sector(case, load_recipe(recipe), "flexible_spline")
-    plain = build_sector(load_design(REFERENCE), load_recipe(recipe), "flexible_spline")
+    mesh = build_sector(case.geometry, load_recipe(recipe), "flexible_spline")
+    plain = build_sector(load_design(REFERENCE).geometry, load_recipe(recipe), "flexible_spline")
     assert mesh.quality["min_scaled_jacobian"] > 0.3
     back, wall = 0.5 * case.drive.face_width, case.inner_radius + case.cup_thickness
     r, z = np.hypot(*mesh.coords[:, :2].T), mesh.coords[:, 2]
@@ -290,7 +290,7 @@ def test_volumes_match_closed_forms(thickness_coef: float) -> None:
     for factor in (1, 2):
         recipe = refined(load_recipe("full"), factor)
         error = []
-        for gear, mesh in build_sector_meshes(case, recipe).items():
+        for gear, mesh in build_sector_meshes(case.geometry, recipe).items():
             volume = mesh.n_sectors * hex_volumes(mesh.coords, mesh.hexes).sum()
             exact = mesh.n_sectors * section_area(case, gear) * case.drive.face_width
             exact += cup_volume(case) if gear == "flexible_spline" else 0.0
@@ -302,7 +302,7 @@ def test_volumes_match_closed_forms(thickness_coef: float) -> None:
 def test_joined_columns_leave_the_teeth_and_the_surfaces_of_the_wall() -> None:
     recipe = load_recipe("medium")
     cup = recipe.cup.model_copy(update={"joined_columns": False})
-    plain = build_sector_meshes(design(), recipe.model_copy(update={"cup": cup}))["flexible_spline"]
+    plain = build_sector_meshes(design().geometry, recipe.model_copy(update={"cup": cup}))["flexible_spline"]
     joined = meshes("medium")["flexible_spline"]
     assert 0.7 < len(joined.coords) / len(plain.coords) < 0.8
     behind = 0.5 * design().drive.face_width + np.pi * design().drive.module
@@ -465,9 +465,9 @@ def test_a_cup_needs_all_sections_of_a_recipe(tmp_path: Path, section: str, text
     recipe = load_recipe(path)
     assert getattr(recipe, section) is None
     with pytest.raises(InputError) as caught:
-        build_sector_meshes(design(*SMALL), recipe)
+        build_sector_meshes(design(*SMALL).geometry, recipe)
     assert f"[{section}] is missing" in str(caught.value) and "\n" not in str(caught.value)
-    build_sector_meshes(plane_design(*SMALL), recipe)
+    build_sector_meshes(plane_design(*SMALL).geometry, recipe)
 
 
 def test_unreadable_recipe(tmp_path: Path) -> None:
@@ -478,13 +478,13 @@ def test_unreadable_recipe(tmp_path: Path) -> None:
 @pytest.mark.parametrize("override", ["cup.length=1.5", "cup.inner_radius=58.0"])
 def test_a_cup_that_does_not_close_is_refused(override: str) -> None:
     with pytest.raises(InputError, match=override.partition("=")[0]):
-        meridian(design(override), load_recipe(RECIPE).cup)
+        meridian(design(override).geometry.cup, load_recipe(RECIPE).cup)
 
 
 def test_exports_read_back(tmp_path: Path) -> None:
     both = meshes(RECIPE, *SMALL)
     drive = whole_drive(both)
-    files = write_mesh(design(*SMALL), both, tmp_path / "mesh")
+    files = write_mesh(both, design(*SMALL).materials, 10.0, tmp_path / "mesh")
     assert [path.suffix for path in files] == [".vtu", ".msh", ".inp"]
     for path in files[:2]:
         back = meshio.read(path)
@@ -503,9 +503,9 @@ def test_export_failures_are_clear(tmp_path: Path) -> None:
     blocked = tmp_path / "file"
     blocked.write_text("")
     with pytest.raises(OutputError, match="cannot be written"):
-        write_mesh(design(*SMALL), both, blocked)
+        write_mesh(both, design(*SMALL).materials, 10.0, blocked)
     with pytest.raises(InputError, match='"stl"'):
-        write_mesh(design(*SMALL), both, tmp_path, ("stl",))
+        write_mesh(both, design(*SMALL).materials, 10.0, tmp_path, ("stl",))
 
 
 def test_report_counts_the_full_drive() -> None:
@@ -519,7 +519,7 @@ def test_report_counts_the_full_drive() -> None:
 
 @lru_cache
 def plane_meshes(recipe: Path, *overrides: str) -> dict[str, SectorMesh]:
-    return build_sector_meshes(plane_design(*overrides), load_recipe(recipe))
+    return build_sector_meshes(plane_design(*overrides).geometry, load_recipe(recipe))
 
 
 PLANE_CASES = [pytest.param(RECIPE, SMALL, id="tiny")]
@@ -565,7 +565,7 @@ def test_quality_of_a_trapezium() -> None:
 @pytest.mark.parametrize("rim", [0.2, 1.0, 5.0, 20.0, 100.0])
 def test_rims_of_any_thickness_are_meshed(rim: float) -> None:
     """In modules, of the ring gear; the module is 1 mm."""
-    mesh = build_sector_meshes(plane_design(f"ring_gear.rim={rim}"), load_recipe("plane_coarse"))["ring_gear"]
+    mesh = build_sector_meshes(plane_design(f"ring_gear.rim={rim}").geometry, load_recipe("plane_coarse"))["ring_gear"]
     assert mesh.quality["min_scaled_jacobian"] > 0.5
 
 
@@ -578,14 +578,14 @@ def coarsest(**counts: float) -> MeshRecipe:
 def test_an_inverted_quadrilateral_is_refused() -> None:
     """Forty layers below the flank reach into a row of elements of a hundredth of the rim."""
     with pytest.raises(InputError, match=r"^flexible_spline has an element .* \(Jacobian -.* mm2\), with tip = 2"):
-        build_sector_meshes(plane_design(), coarsest(layers=40, rim=100))
+        build_sector_meshes(plane_design().geometry, coarsest(layers=40, rim=100))
 
 
 def test_what_gmsh_cannot_mesh_is_refused() -> None:
     """The thinnest of the layers is 3^-40 of the thickest one."""
     with pytest.raises(InputError, match=r"^flexible_spline cannot be meshed, with .* layer_ratio = 3, .*: allowed"):
-        build_sector_meshes(plane_design(), coarsest(layers=40, layer_ratio=3.0))
-    build_sector_meshes(plane_design(), coarsest())
+        build_sector_meshes(plane_design().geometry, coarsest(layers=40, layer_ratio=3.0))
+    build_sector_meshes(plane_design().geometry, coarsest())
 
 
 @pytest.mark.parametrize(("name", "low", "high"), [("plane", 45_000, 49_000), ("plane_coarse", 22_000, 24_000)])
@@ -613,7 +613,7 @@ def test_plane_exports_read_back(tmp_path: Path) -> None:
     both = plane_meshes(RECIPE, *SMALL)
     drive = whole_drive(both)
     assert set(drive.cells_dict) == {"quad"}
-    files = write_mesh(plane_design(*SMALL), both, tmp_path / "mesh")
+    files = write_mesh(both, plane_design(*SMALL).materials, 10.0, tmp_path / "mesh")
     for path in files[:2]:
         back = meshio.read(path)
         assert np.allclose(back.points, drive.points, rtol=0.0, atol=1e-12)

@@ -25,7 +25,7 @@ from swgpar.model.regions import AVERAGE, BACK, region_of
 @pytest.fixture(scope="module")
 def cup() -> tuple[DriveDesign, SectorMesh]:
     design = load_design(REFERENCE)
-    return design, build_sector(design, load_recipe("coarse"), "flexible_spline")
+    return design, build_sector(design.geometry, load_recipe("coarse"), "flexible_spline")
 
 
 def regions(cup: tuple[DriveDesign, SectorMesh], nodes: np.ndarray, touched: bool = False) -> set[str]:
@@ -62,7 +62,7 @@ def test_regions_of_a_tooth(cup: tuple[DriveDesign, SectorMesh]) -> None:
 
 def test_a_fillet_takes_the_place_of_the_notch() -> None:
     design = load_design(REFERENCE, ["cup.back_fillet=0.2"])
-    mesh = build_sector(design, load_recipe("full"), "flexible_spline")
+    mesh = build_sector(design.geometry, load_recipe("full"), "flexible_spline")
     r, z = np.hypot(*mesh.coords[:, :2].T), mesh.coords[:, 2]
     wall = design.inner_radius + design.cup_thickness
     on = np.flatnonzero((np.abs(np.hypot(r - wall - 0.2, z - 5.2) - 0.2) < 1e-9) & (r <= wall + 0.2) & (z <= 5.2))
@@ -74,7 +74,7 @@ def test_a_fillet_takes_the_place_of_the_notch() -> None:
 
 def test_regions_of_the_ring_gear() -> None:
     design = load_design(REFERENCE)
-    mesh = build_sector(design, load_recipe("coarse"), "ring_gear")
+    mesh = build_sector(design.geometry, load_recipe("coarse"), "ring_gear")
     found = {region_of(design, mesh, int(node), False) for node in np.unique(mesh.faces["outer"])}
     assert found == {"outer surface"}
 
@@ -146,7 +146,7 @@ def test_errors_in_roots_are_those_of_the_tension_there() -> None:
 @pytest.mark.parametrize("body", ["flexible_spline", "ring_gear"])
 def test_nodes_inside_of_teeth_are_on_no_surface(cup: tuple[DriveDesign, SectorMesh], body: str) -> None:
     design = cup[0]
-    mesh = build_sector(design, load_recipe("coarse"), body)
+    mesh = build_sector(design.geometry, load_recipe("coarse"), body)
     inside = np.flatnonzero(inside_teeth(design, mesh))
     assert len(inside) > 50
     faces = {node for name in mesh.faces for node in np.unique(mesh.faces[name])}

@@ -43,8 +43,8 @@ def test_coarser_recipes_halve_down_to_the_smallest() -> None:
 def test_linear_fields_survive_the_interpolation(gear: str, overrides: tuple[str, ...]) -> None:
     """A field linear in angle, radius and z is exact, inside the coarse mesh as outside, where it is extrapolated."""
     design = load_design(DESIGN, overrides)
-    fine = build_sector_meshes(design, load_recipe(RECIPE))[gear]
-    coarse = build_sector_meshes(design, coarser(load_recipe(RECIPE)))[gear]
+    fine = build_sector_meshes(design.geometry, load_recipe(RECIPE))[gear]
+    coarse = build_sector_meshes(design.geometry, coarser(load_recipe(RECIPE)))[gear]
     matrix = interpolation(coarse, fine)
 
     def fields(points: np.ndarray) -> np.ndarray:
@@ -57,7 +57,7 @@ def test_linear_fields_survive_the_interpolation(gear: str, overrides: tuple[str
 
 def test_nodes_without_tetrahedra_are_refused() -> None:
     """The run then starts without coarser meshes."""
-    sector = build_sector_meshes(load_design(DESIGN), load_recipe(RECIPE))["ring_gear"]
+    sector = build_sector_meshes(load_design(DESIGN).geometry, load_recipe(RECIPE))["ring_gear"]
     flat = replace(sector, coords=sector.coords * (1.0, 1.0, 0.0))
     with pytest.raises(InputError, match="no state can be taken from the other mesh: QH6"):
         interpolation(flat, sector)

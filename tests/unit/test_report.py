@@ -105,7 +105,7 @@ def test_drawings_have_the_dimensions(name: str) -> None:
 
 @pytest.mark.parametrize("gear", ["flexible_spline", "ring_gear"])
 def test_the_surface_of_all_sectors_is_that_of_the_body(gear: str) -> None:
-    mesh = build_sector_meshes(swgpar.load_design(DESIGN), load_recipe(RECIPE))[gear]
+    mesh = build_sector_meshes(swgpar.load_design(DESIGN).geometry, load_recipe(RECIPE))[gear]
     triangles = sector_surface(mesh.coords, mesh.hexes)
     a, b, c = (mesh.coords[triangles[:, k]] for k in range(3))
     area = mesh.n_sectors * 0.5 * float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())

@@ -36,7 +36,7 @@ def test_geometry(path: Path) -> None:
     assert all(words in refused[case] for case, words in meant.items())
     for job in jobs:
         if job.case.design is not None and job.recipe is not None:
-            assert len(build_sector_meshes(job.case.design, job.recipe)) == 2
+            assert len(build_sector_meshes(job.case.design.geometry, job.recipe)) == 2
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)

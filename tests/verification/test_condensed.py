@@ -21,7 +21,7 @@ Sector = tuple[SectorMesh, ReferenceElements, CondensedPart]
 @pytest.fixture(scope="module", params=["flexible_spline", "ring_gear"])
 def sector(request) -> Sector:
     design = load_design(DESIGN, PLANE)
-    mesh = build_sector_meshes(design, load_recipe(RECIPE))[request.param]
+    mesh = build_sector_meshes(design.geometry, load_recipe(RECIPE))[request.param]
     elements = element_matrices(mesh.coords[mesh.elements], design.material, design.drive.face_width)
     return mesh, elements, condense_sector(mesh, elements)
 

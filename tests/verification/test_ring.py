@@ -136,7 +136,7 @@ def toothed_ring(design: RingDesign, recipe: str) -> np.ndarray:
             f"material.E={1e3 * body.E}", "material.nu=0.3", "load.torque=0",
         ],
     )  # fmt: skip
-    sector = build_sector_meshes(drive, load_recipe(recipe))["ring_gear"]
+    sector = build_sector_meshes(drive.geometry, load_recipe(recipe))["ring_gear"]
     flat = np.flatnonzero(sector.lower_nodes == np.arange(len(sector.coords)))
     count, number = sector.n_sectors, np.full(len(sector.coords), -1)
     # nodes on the clockwise side belong to the sector before: that one's counter-clockwise side is the same line

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from swgpar.contact.flank_state import Crowning
 from swgpar.fem.body_layout import BodyLayout
+from swgpar.geometry.drive_geometry import FlankCrowning
 from swgpar.geometry.micro_geometry import crowning
 from swgpar.geometry.profiles import ToothProfile
 from swgpar.geometry.rotation import MIRROR, rotated
@@ -27,7 +27,7 @@ class MovedTooth:
     """
 
     def __init__(
-        self, layout: BodyLayout, tooth: int, side: int, u: np.ndarray, crowned: Crowning | None = None
+        self, layout: BodyLayout, tooth: int, side: int, u: np.ndarray, crowned: FlankCrowning | None = None
     ) -> None:
         self.profile: ToothProfile = layout.mesh.profile
         self.mirror = MIRROR if side < 0 else np.ones(2)

@@ -26,7 +26,7 @@ from swgpar.geometry.rotation import SIXTHS, rotated
 from swgpar.load.load_states import LoadState
 from swgpar.log import logger
 from swgpar.materials import contact_modulus
-from swgpar.model.drive_model import DriveModel, flank_crowning
+from swgpar.model.drive_model import DriveModel
 
 SMALLEST = 0.02
 """Line load, over the largest one, below which the pressure of a pair is not computed."""
@@ -202,7 +202,7 @@ def moved_teeth(
         )
 
     u, ring_u = fields(FLEXIBLE_SPLINE, [p.sector for p in pairs]), fields(ring.name, [p.ring for p in pairs])
-    crowned = flank_crowning(model.design)
+    crowned = model.design.crowning
     moved, facing = [], []
     for k, pair in enumerate(pairs):
         tooth = spline.first_tooth + pair.sector + around

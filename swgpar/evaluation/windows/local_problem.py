@@ -77,7 +77,7 @@ class WindowStress:
 
 def window_mesh(design: DriveDesign, recipe: MeshRecipe) -> SectorMesh:
     """The sector of a window: the toothed part and the beginning of the cup's wall, which ends in the set ``cut``."""
-    mesh = build_sector(design, recipe, "flexible_spline")
+    mesh = build_sector(design.geometry, recipe, "flexible_spline")
     if mesh.plane:
         return mesh
     end = 0.5 * design.drive.face_width + CUP_LENGTH * np.sqrt(design.inner_radius * design.cup_thickness)
