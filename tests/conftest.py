@@ -50,7 +50,7 @@ def pytest_configure(config: pytest.Config) -> None:
     if ranks.rank != 0:
         reporter = config.pluginmanager.get_plugin("terminalreporter")
         if reporter is not None:
-            reporter._tw._file = open(os.devnull, "w")
+            reporter._tw._file = open(os.devnull, "w")  # noqa: SIM115  # until the process ends
 
 
 @pytest.hookimpl(hookwrapper=True)

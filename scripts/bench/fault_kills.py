@@ -105,7 +105,7 @@ def kill(name: str, command: Command, reference: Path, out: Path, way: str, seco
         cwd=DATA,
         env=environment(),
         start_new_session=True,
-        preexec_fn=_hear_all,
+        preexec_fn=_hear_all,  # noqa: PLW1509  # this process has one thread
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
         text=True,
@@ -113,13 +113,13 @@ def kill(name: str, command: Command, reference: Path, out: Path, way: str, seco
     time.sleep(seconds)
     ended = process.poll() is not None
     if not ended:
-        _send(process.pid, way, command.ranks)
+        _send(process.pid, way)
     begin, fault, stderr = time.monotonic(), "", ""
     try:
         _, stderr = process.communicate(timeout=LONGEST)
     except subprocess.TimeoutExpired:
         fault = f"still there {LONGEST:.0f} s after {way}"
-        _send(process.pid, "kill all", command.ranks)
+        _send(process.pid, "kill all")
         process.wait()
     late = time.monotonic() - begin
     if "Traceback" in stderr:
@@ -140,7 +140,7 @@ def _hear_all() -> None:
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
-def _send(leader: int, way: str, ranks: int) -> None:
+def _send(leader: int, way: str) -> None:
     """Signals to a command whose session has this leader."""
     members = [pid for pid in of_session(leader) if is_rank(pid)]
     if way == "kill all":

@@ -16,7 +16,18 @@ __all__ = ["main", "parser"]
 SOLVING = ("run", "study", "optimise")
 """Commands that compute on all ranks, with options of PETSc."""
 
-OPTIONS = tuple("--set --mesh --accuracy --plain --out --restart --overwrite --format --help --version".split())
+OPTIONS = (
+    "--set",
+    "--mesh",
+    "--accuracy",
+    "--plain",
+    "--out",
+    "--restart",
+    "--overwrite",
+    "--format",
+    "--help",
+    "--version",
+)
 
 
 def _check_rest(rest: Sequence[str], petsc: bool) -> None:

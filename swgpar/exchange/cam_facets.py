@@ -52,7 +52,7 @@ def cam_facets(design: DriveDesign, half_width: float, inset: float) -> CamFacet
             part = part[::-1]
         _, normal, _ = design.cam().evaluate(part)
         n = len(part)
-        # nodes (station, layer, point)
+        # of nodes: station, layer, point
         grid = np.empty((stations + 1, 2, n, 3))
         grid[..., :2], grid[..., 2] = part, z[:, None, None]
         for _ in range(3):

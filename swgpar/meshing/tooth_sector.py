@@ -169,10 +169,7 @@ def build_sector(drive: DriveGeometry, recipe: MeshRecipe, gear: str) -> SectorM
     if gear == "ring_gear":
         section = with_housing(section, housing_radii(drive.gears[gear], drive.housing, counts))
     plane = drive.model == "plane"
-    if plane:
-        z = np.array([-0.5, 0.5]) * drive.face_width
-    else:
-        z = _stations(drive, recipe, gear)
+    z = np.array([-0.5, 0.5]) * drive.face_width if plane else _stations(drive, recipe, gear)
     amount, relief = _relief(drive.crowning if gear == "flexible_spline" else None, section, profile, z)
     sector = _toothed_part(section, z, relief, amount)
     rows = sector.rows

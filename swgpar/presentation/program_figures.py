@@ -33,7 +33,7 @@ def torque_against_rotation(program: Mapping[str, np.ndarray], summary: DriveSum
         label = f"wave generator at {value:.3g}°" if summary.stiffness else str(value)
         axes.plot(program["rotation_arcmin"][here], program["torque_Nm"][here], "o-", ms=3, lw=1.0, label=label)
     if summary.stiffness:
-        _mark_chords(axes, program, summary.stiffness)
+        _mark_chords(axes, summary.stiffness)
     if found := summary.ratcheting:
         axes.plot(60.0 * found.peak_rotation_deg, found.peak_torque_Nm, "k*", ms=12, label="largest torque")
     axes.set(xlabel="rotation of the output by the torque (arc minutes)", ylabel="torque on the output (N·m)")
@@ -44,7 +44,7 @@ def torque_against_rotation(program: Mapping[str, np.ndarray], summary: DriveSum
     return figure
 
 
-def _mark_chords(axes: Axes, program: Mapping[str, np.ndarray], found: TorsionalStiffness) -> None:
+def _mark_chords(axes: Axes, found: TorsionalStiffness) -> None:
     """Mark the torques at which the chords of K1, K2 and K3 end."""
     for share in found.break_points:
         axes.axhline(share * found.torque_Nm, color="0.4", ls=":", lw=0.8)

@@ -87,12 +87,11 @@ def require_undamaged(path: Path, comm: MPI.Comm) -> None:
     with agreed(comm, path, "read"):
         sums = json.loads(_read_attrs(path))[_SUMS]
     found: dict[str, int] = {}
-    with agreed(comm, path, "read"):
-        with h5py.File(path, "r") as file:
-            for name in sums:
-                rows = file[name].shape[0] if name in file else 0
-                first, end = (rows * rank // comm.size for rank in (comm.rank, comm.rank + 1))
-                found[name] = _sum(file[name][first:end], first) if rows else 0
+    with agreed(comm, path, "read"), h5py.File(path, "r") as file:
+        for name in sums:
+            rows = file[name].shape[0] if name in file else 0
+            first, end = (rows * rank // comm.size for rank in (comm.rank, comm.rank + 1))
+            found[name] = _sum(file[name][first:end], first) if rows else 0
     for name, expected in sums.items():
         if comm.allreduce(found[name]) != expected:
             raise _damaged(path, f"{name} is not what was written")

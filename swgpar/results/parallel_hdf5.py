@@ -139,12 +139,11 @@ def _write_rows(file: MPI.File, begin: int, array: np.ndarray, first: int) -> No
 def read_rows(path: Path, comm: MPI.Comm, ranges: Mapping[str, tuple[int, int]]) -> dict[str, np.ndarray]:
     """Rows first .. first + count - 1 of data sets; each rank reads its own, errors are raised on all."""
     arrays: dict[str, np.ndarray] = {}
-    with agreed(comm, path, "read"):
-        with h5py.File(path, "r") as file:
-            for name, (first, count) in ranges.items():
-                if name not in file:
-                    raise ValueError(f"it has no data set {name!r}")
-                if first + count > file[name].shape[0]:
-                    raise ValueError(f"{name!r} has {file[name].shape[0]} rows, {first + count} are needed")
-                arrays[name] = file[name][first : first + count]
+    with agreed(comm, path, "read"), h5py.File(path, "r") as file:
+        for name, (first, count) in ranges.items():
+            if name not in file:
+                raise ValueError(f"it has no data set {name!r}")
+            if first + count > file[name].shape[0]:
+                raise ValueError(f"{name!r} has {file[name].shape[0]} rows, {first + count} are needed")
+            arrays[name] = file[name][first : first + count]
     return arrays

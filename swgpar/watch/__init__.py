@@ -47,7 +47,7 @@ _command = _Command()
 
 
 def _set_command(command: _Command) -> None:
-    global _command
+    global _command  # noqa: PLW0603  # a signal has one receiver in a process
     _command = command
 
 

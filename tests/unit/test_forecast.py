@@ -79,12 +79,11 @@ def test_a_run_that_does_not_fit_is_refused_before_it_is_meshed(tmp_path: Path) 
 def test_an_allocation_that_fails_is_one_sentence() -> None:
     needs = forecast(load_design(DESIGN), load_recipe(RECIPE))
     for error in (MemoryError(), PETSc.Error(55)):
-        with pytest.raises(OutOfMemoryError, match="not enough memory: [0-9,]* unknowns need about .* GB on all ranks"):
-            with reported_memory(needs):
-                raise error
-    with pytest.raises(ValueError, match="^other$"):
-        with reported_memory(needs):
-            raise ValueError("other")
+        message = "not enough memory: [0-9,]* unknowns need about .* GB on all ranks"
+        with pytest.raises(OutOfMemoryError, match=message), reported_memory(needs):
+            raise error
+    with pytest.raises(ValueError, match="^other$"), reported_memory(needs):
+        raise ValueError("other")
 
 
 def test_a_check_with_a_mesh_prints_the_needs() -> None:

@@ -25,7 +25,14 @@ def replace(path: Path, pattern: str, text: str) -> None:
 def test_a_preconditioner_in_python_needs_no_change(tmp_path: Path) -> None:
     """The diagonal alone is too weak for a drive: the sentence says that it was used."""
     (tmp_path / "mine.py").write_text(examples(PAGE, "python")[0], encoding="utf-8")
-    options = "-stiffness_pc_type python -stiffness_pc_python_type mine.Diagonal -stiffness_ksp_max_it 50".split()
+    options = [
+        "-stiffness_pc_type",
+        "python",
+        "-stiffness_pc_python_type",
+        "mine.Diagonal",
+        "-stiffness_ksp_max_it",
+        "50",
+    ]
     command = run_command(tmp_path / "run", *options, overrides=(*PLANE, *SHORT, "solver.max_cutbacks=0"))
     done = execute(command, timeout=300.0, PYTHONPATH=f"{ROOT}:{tmp_path}")
     assert done.returncode == 3 and "linear solver (gmres with python)" in done.stderr, done.stderr

@@ -20,8 +20,8 @@ from swgpar.geometry.profiles.pitch_point import PitchPointFrame
 from swgpar.geometry.profiles.quadruple_arc import quadruple_arc
 
 ALPHA = np.radians(20.0)
-IMPROVED = dict(r_tip=0.5, r_addendum=1.0, straight_l=0.0, r_dedendum=20.0, r_root=0.6)
-INITIAL = dict(r_tip=0.3, r_addendum=1.0, straight_l=0.2, r_dedendum=2.0, r_root=0.3)
+IMPROVED = {"r_tip": 0.5, "r_addendum": 1.0, "straight_l": 0.0, "r_dedendum": 20.0, "r_root": 0.6}
+INITIAL = {"r_tip": 0.3, "r_addendum": 1.0, "straight_l": 0.2, "r_dedendum": 2.0, "r_root": 0.3}
 GEARS = [(120, True), (122, False)]
 SPLINE = Cutter(120, 1.0, ALPHA, 0.6, 0.8, True, 0.2, 0.0)
 RING = Cutter(122, 1.0, ALPHA, 0.6, 0.8, False, 0.2, 0.0, 80)

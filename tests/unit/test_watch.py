@@ -6,7 +6,6 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import pytest
 
@@ -81,7 +80,7 @@ def test_ignored_signals_stay_ignored() -> None:
     assert process.communicate(timeout=20)[1] == "" and process.returncode == 0
 
 
-def test_handlers_are_restored(tmp_path: Path) -> None:
+def test_handlers_are_restored() -> None:
     code = (
         "import signal\nfrom swgpar import watch\nwith watch.armed():\n    pass\nwatch.rearm()\n"
         "try:\n    signal.raise_signal(signal.SIGINT)\nexcept KeyboardInterrupt:\n    print('interrupted')"

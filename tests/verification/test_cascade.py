@@ -233,7 +233,7 @@ def test_implicit_steps_are_of_second_order(design: CascadeDesign) -> None:
 
     closed = {kind: getattr(calm, kind).model_copy(update={"gap_A": 0.0, "gap_B": 0.0}) for kind in MESH_COUNTS}
     gearbox = Gearbox(calm.model_copy(update=closed))
-    start, end = steady_velocities(calm, gearbox), 0.02
+    start, end = steady_velocities(calm), 0.02
     x, v = gearbox.integrate(force, start, np.array([0.0, end]), rtol=1e-10)
     off = []
     for count in (200, 400, 800):

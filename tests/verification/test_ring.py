@@ -59,7 +59,7 @@ def test_free_ring(bolted: RingDesign) -> None:
     assert (frequencies[:3] < 1e-3 * frequencies[3]).all()
 
 
-def test_free_ring_is_the_thin_ring(bolted: RingDesign) -> None:
+def test_free_ring_is_the_thin_ring() -> None:
     """Without stretching and rotary inertia: n (n² - 1) / sqrt(n² + 1) times sqrt(E I / (density A R⁴)) (Hoppe)."""
     thin = BeamSection(1.0, 1.0, 1.0, 1.0, 1e-10)
     for n in (2, 3, 4):

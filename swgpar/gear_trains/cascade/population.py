@@ -50,7 +50,7 @@ def static_shares(design: CascadeDesign, errors: np.ndarray) -> np.ndarray:
     return static_sharing(design, "B", errors=by_kind).shares(np.full(len(errors), 1e3 * design.load.peak))
 
 
-def steady_velocities(design: CascadeDesign, gearbox: Gearbox) -> np.ndarray:
+def steady_velocities(design: CascadeDesign) -> np.ndarray:
     """Velocities (23,) in m/s at which the generator balances the largest rack force."""
     displacements = rigid_displacements(design)
     generator = design.flywheel.generator / design.radius("g4") ** 2
@@ -65,7 +65,7 @@ def block_shares(design: CascadeDesign, block: int, count: int) -> PopulationSha
     section, errors, gearbox = design.population, random_errors(design, block, count), Gearbox(design)
     rising, holding = (int(np.ceil(t / section.step)) for t in (section.ramp, section.hold))
     force = ramp(1e3 * design.load.peak, rising * section.step)
-    start = steady_velocities(design, gearbox)
+    start = steady_velocities(design)
     means, largest = np.empty((count, PINIONS)), np.empty((count, PINIONS))
     for k in range(count):
         carried, _, _ = gearbox.simulate(force, start, section.step, rising + holding, errors=errors[k])
