@@ -46,6 +46,6 @@ bearing = result.summary.bearing
 share = bearing.torsional_share
 print(f"largest ball load: {bearing.largest_load_N:.0f} N")
 print(f"its pressure: {bearing.largest_pressure_MPa:.0f} MPa")
-print(f"share of the torsional compliance: {100 * share['bearing']:.0f} %")
-print(f"of it the balls: {100 * share['balls']:.0f} %")
+print(f"share of the torsional compliance: {100 * share.bearing:.0f} %")
+print(f"of it the balls: {100 * share.balls:.0f} %")
 print(f"rating life L10: {bearing.life.L10_hours:.3g} h")

@@ -29,5 +29,5 @@ plt.show()
 # %%
 # The summary counts.
 
-sharing = result.summary.load_sharing
-print({key: value for key, value in sharing.items() if not isinstance(value, dict)})
+for answer in result.summary.load_sharing.answers():
+    print(f"{answer.text}: {answer.value:.4g} {answer.unit}")
