@@ -33,9 +33,9 @@ def main() -> None:
     arguments = options.parse_args()
     design = load_design(arguments.design, ["solver.symmetry=false"])
     model = build_drive_model(design, load_recipe(arguments.mesh), comm=MPI.COMM_SELF)
-    problem, local, elements = model.problem, model.problem.local, model.elements
+    problem, local, elements = model.problem, model.problem.local_nodes, model.elements
     problem.set_pattern(np.zeros(0, dtype=np.int64))
-    rows, slots, matrix = problem.rows, problem.slots, problem.matrix
+    rows, blocks, matrix = problem.rows, problem.element_blocks, problem.matrix
 
     def insert() -> None:
         fill_matrix(matrix, rows, problem.matrix_rows)
@@ -46,7 +46,7 @@ def main() -> None:
 
     def both() -> None:
         rows.values[:] = 0.0
-        elements.assemble(u, residual, rows, slots)
+        elements.assemble(u, residual, rows, blocks)
 
     insert()  # the first insertion is not the one that repeats
     count = sum(b["elements"] for b in model.counts().values())

@@ -123,7 +123,7 @@ class DeviatingDrive:
         layouts = self.model.partition.layouts
         self.tables = flank_deviations(layouts[FLEXIBLE_SPLINE], layouts[RING_GEAR], *gears, design.axial_travel)
         bore = problem.supports.couplings[SPLINE_COUPLING]
-        self.bore_z = float(bore.sum(bore.weight * bore.reference[:, 2]))
+        self.bore_z = float(bore.sum(bore.weight * bore.undeformed[:, 2]))
         spline, ring = self.tables.periods()
         cup = self.deviations.cup
         self.periods = (design.drive.teeth_fs if cup.eccentricity or cup.tilt else spline, ring)

@@ -79,7 +79,7 @@ class NodeMeans:
     Parameters
     ----------
     partition : ownership
-    nodes : (n,) local nodes that this rank owns, each once;  reference : (n, 3) mm, undeformed
+    nodes : (n,) local nodes that this rank owns, each once;  undeformed : (n, 3) mm, their places
     weight : (n,) of the nodes in the means, of any sum
     images : the model is a part of the drive; then only z and the rotation can be non-zero
     fixed_axis : the rotation is that about the drive's axis, and not about the mean place of the nodes
@@ -93,7 +93,7 @@ class NodeMeans:
         self,
         partition: Partition,
         nodes: np.ndarray,
-        reference: np.ndarray,
+        undeformed: np.ndarray,
         weight: np.ndarray,
         *,
         images: bool,
@@ -101,12 +101,12 @@ class NodeMeans:
     ) -> None:
         self.comm = partition.comm
         self.images, self.fixed_axis = images, fixed_axis
-        self.nodes, self.reference = nodes, reference
+        self.nodes, self.undeformed = nodes, undeformed
         self.total = float(self.sum(weight))
         self.weight = weight / self.total
-        center = np.zeros(3) if fixed_axis else self.sum(self.weight[:, None] * self.reference)
-        center[2] = self.sum(self.weight * self.reference[:, 2])
-        self.arm = self.reference - center
+        center = np.zeros(3) if fixed_axis else self.sum(self.weight[:, None] * self.undeformed)
+        center[2] = self.sum(self.weight * self.undeformed[:, 2])
+        self.arm = self.undeformed - center
         self.radius2 = float(self.sum(self.weight * (self.arm[:, 0] ** 2 + self.arm[:, 1] ** 2)))
         self.solid = partition.dims == 3
 
@@ -212,7 +212,7 @@ class RadialGuide:
     """
 
     def __init__(self, coupling: DistributingCoupling, area: float, penalty: float) -> None:
-        self.nodes, self.position = coupling.nodes, coupling.reference[:, :2]
+        self.nodes, self.position = coupling.nodes, coupling.undeformed[:, :2]
         self.radius = np.hypot(*self.position.T)
         self.stiffness = penalty * area * coupling.weight
 

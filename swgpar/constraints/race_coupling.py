@@ -33,5 +33,5 @@ class RaceCoupling:
 
     def supports(self) -> np.ndarray:
         """Directions that support the race."""
-        found = self.race.supports()
-        return np.concatenate([found, np.zeros((len(found), len(self.spline.nodes), 3))], axis=1)
+        directions = self.race.supports()
+        return np.concatenate([directions, np.zeros((len(directions), len(self.spline.nodes), 3))], axis=1)

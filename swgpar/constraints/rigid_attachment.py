@@ -50,13 +50,13 @@ def area_shares(mesh: SectorMesh, surface: str, angle: float, inside: Inside, wi
     a, b = (v.ravel()[:, None] for v in np.meshgrid(at_a, at_b, indexing="ij"))
     shape = 0.25 * (1 + a * CORNERS[:, 0]) * (1 + b * CORNERS[:, 1])
     along_a, along_b = 0.25 * CORNERS[:, 0] * (1 + b * CORNERS[:, 1]), 0.25 * CORNERS[:, 1] * (1 + a * CORNERS[:, 0])
-    found = np.zeros(len(mesh.coords))
+    areas = np.zeros(len(mesh.coords))
     for face, points in zip(faces, corners, strict=True):
         within = inside(shape @ points)
         da, db = along_a[within] @ points, along_b[within] @ points
         area = np.abs(da[:, 0] * db[:, 1] - da[:, 1] * db[:, 0]) * 4.0 / len(shape)
-        found[face] += area @ shape[within]
-    return found
+        areas[face] += area @ shape[within]
+    return areas
 
 
 class RigidAttachment(NodeMeans):
@@ -115,9 +115,9 @@ class RigidAttachment(NodeMeans):
         rotation = self.evaluate(u).value[ROTATION]
         shift = np.tile(offset[[X, Y, Z]], (len(self.nodes), 1))
         tilt = np.array([offset[TILT_X], offset[TILT_Y], 0.0])
-        moved = self.reference + u[self.nodes]
-        moved[:, :2] -= rotated(self.reference[:, :2], rotation)
-        moved[:, 2] -= self.reference[:, 2]
+        moved = self.undeformed + u[self.nodes]
+        moved[:, :2] -= rotated(self.undeformed[:, :2], rotation)
+        moved[:, 2] -= self.undeformed[:, 2]
         return moved - shift - np.cross(tilt, self.arm)
 
     def add_forces(self, u: np.ndarray, offset: np.ndarray, residual: np.ndarray) -> None:
@@ -130,8 +130,8 @@ class RigidAttachment(NodeMeans):
 
     def free_rotation(self, u: np.ndarray) -> np.ndarray:
         """Vector B (n, 3) of the part -B B^T of the tangent: the flange rotates freely."""
-        moved = self.reference[:, :2] + u[self.nodes, :2]
-        x, y = self.reference[:, :2].T
+        moved = self.undeformed[:, :2] + u[self.nodes, :2]
+        x, y = self.undeformed[:, :2].T
         parts = np.column_stack([x * moved[:, 1] - y * moved[:, 0], x * moved[:, 0] + y * moved[:, 1]])
         reach = np.hypot(*self.sum(self.stiffness[:, None] * parts))
         return np.sqrt(reach) * self.evaluate(u).gradient[ROTATION]

@@ -117,12 +117,12 @@ class Supports:
 
         One for each supported direction, and one for the free rotation of each rigid attachment.
         """
-        found = list(self._ground_vectors)
+        vectors = list(self._ground_vectors)
         for _, attachment in self._attached:
             vector = create_vector(self.partition)
             vector.array.reshape(-1, 3)[attachment.nodes] = attachment.free_rotation(u)
-            found.append(vector)
-        return found
+            vectors.append(vector)
+        return vectors
 
     @property
     def output(self) -> Coupling:

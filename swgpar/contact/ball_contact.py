@@ -222,8 +222,8 @@ class BallContact:
             at = place + away
             piece = np.clip(np.searchsorted(self.angle, at, side="right") - 1, 1, len(self.angle) - 3)
             length = self.angle[piece + 1] - self.angle[piece]
-            found = shape_functions(self.polynomials[piece - 1], (at - self.angle[piece]) / length)
-            for order, (total, weights) in enumerate(zip(out, found)):
+            at_place = shape_functions(self.polynomials[piece - 1], (at - self.angle[piece]) / length)
+            for order, (total, weights) in enumerate(zip(out, at_place)):
                 for k in range(NODES):
                     total[ball, piece - 1 + k] += weight * weights[:, k] / length**order
         return out

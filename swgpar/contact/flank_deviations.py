@@ -57,10 +57,10 @@ class FlankDeviations:
         """Heights (n_pair * n_face, n, n) mm of the flexible spline's faces of pairs. first_tooth : of sector 0"""
         side = [SIDES.index(pair.side) for pair in pairs]
         tooth = np.array([first_tooth + pair.sector for pair in pairs]) % len(self.heights)
-        found = self.heights[tooth, side]
+        heights = self.heights[tooth, side]
         if self.leans is not None:
-            found = found + self.leans[[pair.ring_tooth % len(self.leans) for pair in pairs], side]
-        return found.reshape(-1, *found.shape[2:])
+            heights = heights + self.leans[[pair.ring_tooth % len(self.leans) for pair in pairs], side]
+        return heights.reshape(-1, *heights.shape[2:])
 
     def master_shifts(self, pairs: Sequence[FlankPair]) -> tuple[np.ndarray, np.ndarray]:
         """Shifts of points and changes of tangents (n_pair, n_s + 1, 2) of the ring gear's flanks of pairs."""
@@ -97,8 +97,8 @@ def flank_deviations(
     ring_grids = {grid.side: grid for grid in ring.mesh.flanks}
     for side in SIDES:
         s, z = face_samples(spline_grids[side])
-        found = of_spline.heights(profile, s.ravel(), z.ravel(), angle, side)
-        heights.append(found.reshape(len(teeth), *s.shape))
+        of_tooth = of_spline.heights(profile, s.ravel(), z.ravel(), angle, side)
+        heights.append(of_tooth.reshape(len(teeth), *s.shape))
         moved, turned = of_ring.flank_shift(ring_profile, ring_grids[side].s, ring_angle, side)
         points.append(moved)
         tangents.append(turned)

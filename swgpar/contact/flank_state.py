@@ -57,13 +57,13 @@ class FrictionStart:
 class ActiveSegments:
     """Segments of the faces near the master, with the results of the last evaluation.
 
-    found : pairs and faces of the search that they belong to
+    flank_pairs : pairs and faces of the search that they belong to
     faces, segments : quadrature points and their position in the parent faces
     friction : law and tractions at the points, None without friction
     multiplier, gap, pressure : (n_segment, n_q) MPa, mm, MPa
     """
 
-    found: FlankPairs
+    flank_pairs: FlankPairs
     faces: Faces
     segments: Segments
     friction: Friction | None

@@ -60,7 +60,7 @@ class FlankContact:
     ----------
     tractions : tangential tractions of the last accepted state by flank pair
     frozen : whether the segments are frozen
-    found : pairs and faces of the last search, None before the first one
+    flank_pairs : pairs and faces of the last search, None before the first one
     deviations : of the flanks, None where they are ideal
     """
 
@@ -91,7 +91,7 @@ class FlankContact:
         self.n_face = len(self.slaves[1].corners)
         self.tractions: dict[PairKey, np.ndarray] = {}
         self.frozen = False
-        self.found: FlankPairs | None = None
+        self.flank_pairs: FlankPairs | None = None
         self.deviations: FlankDeviations | None = None
         self._near_faces, self._near_pairs = np.zeros((2, 0), dtype=np.int64)
         self._friction_start: FrictionStart | None = None
@@ -109,7 +109,7 @@ class FlankContact:
     @property
     def pairs(self) -> list[FlankPair]:
         """Pairs of the last search that this rank takes part in."""
-        return [] if self.found is None else self.found.pairs
+        return [] if self.flank_pairs is None else self.flank_pairs.pairs
 
     def takes_part(self, pair: FlankPair) -> bool:
         """Whether this rank owns one of the pair's teeth."""
@@ -119,12 +119,12 @@ class FlankContact:
 
     def node_numbers(self, pairs: list[FlankPair]) -> np.ndarray:
         """Global numbers (n,) of the flank nodes of pairs."""
-        numbers, found = self.partition.node_numbers, [np.zeros(0, dtype=np.int64)]
+        numbers, parts = self.partition.node_numbers, [np.zeros(0, dtype=np.int64)]
         for p in pairs:
             slave, master = self.slaves[p.side].corners.ravel(), self.masters[-p.side].nodes.ravel()
-            found.append(numbers(FLEXIBLE_SPLINE, np.array([p.sector]), slave)[0].ravel())
-            found.append(numbers(self.ring.layout.name, np.array([p.ring]), master)[0].ravel())
-        return np.concatenate(found)
+            parts.append(numbers(FLEXIBLE_SPLINE, np.array([p.sector]), slave)[0].ravel())
+            parts.append(numbers(self.ring.layout.name, np.array([p.ring]), master)[0].ravel())
+        return np.concatenate(parts)
 
     def search(
         self,
@@ -141,25 +141,27 @@ class FlankContact:
 
         Returns keys row * n_global + column (n,) of the tangent's blocks that may couple.
         """
-        self.found = found = FlankPairs(self.partition, self.spline, self.ring, self.slaves, self.masters, pairs, local)
+        self.flank_pairs = flank_pairs = FlankPairs(
+            self.partition, self.spline, self.ring, self.slaves, self.masters, pairs, local
+        )
         self._near_faces, self._near_pairs = np.zeros((2, 0), dtype=np.int64)
         self._friction_start = None
         self.reset()
         self._ring_rotation = self.ring_motion.ring_rotation(u)
-        if found.faces is None:
+        if flank_pairs.faces is None:
             return NO_KEYS
         if self.deviations is not None:
-            found.deviate(self.deviations)
+            flank_pairs.deviate(self.deviations)
         gap, foot_point = self._gaps_at_centers(u)
         near = np.flatnonzero(gap < distances.near)
         closest = np.full(len(pairs), np.inf)
-        np.minimum.at(closest, found.faces.patch, gap)
-        self._near_faces = near[closest[found.faces.patch[near]] < distances.reach]
-        self._near_pairs = np.unique(found.faces.patch[near])
+        np.minimum.at(closest, flank_pairs.faces.patch, gap)
+        self._near_faces = near[closest[flank_pairs.faces.patch[near]] < distances.reach]
+        self._near_pairs = np.unique(flank_pairs.faces.patch[near])
         if accepted is not None:
             self._friction_start = FrictionStart(accepted, self._stored_tractions())
         touching = np.flatnonzero(gap < distances.touch)
-        return found.block_keys(touching, foot_point[touching], self.symmetric)
+        return flank_pairs.block_keys(touching, foot_point[touching], self.symmetric)
 
     def reset(self) -> None:
         """Forget the segments with their multipliers, gaps and pressures."""
@@ -168,8 +170,8 @@ class FlankContact:
     def deviate(self, deviations: FlankDeviations) -> None:
         """Let the flanks deviate from now on, also those of the last search, which begin with new segments."""
         self.deviations = deviations
-        if self.found is not None:
-            self.found.deviate(deviations)
+        if self.flank_pairs is not None:
+            self.flank_pairs.deviate(deviations)
         self.reset()
 
     def _stored_tractions(self) -> np.ndarray:
@@ -180,9 +182,9 @@ class FlankContact:
 
     def sectors_in_reach(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Sectors (n,) by the last search: of both gears with evaluated faces, of the ring gear with near ones."""
-        if self.found is None or self.found.faces is None:
+        if self.flank_pairs is None or self.flank_pairs.faces is None:
             return tuple(np.zeros((3, 0), dtype=np.int64))
-        evaluated = [self.pairs[k] for k in np.unique(self.found.faces.patch[self._near_faces])]
+        evaluated = [self.pairs[k] for k in np.unique(self.flank_pairs.faces.patch[self._near_faces])]
         return (
             np.array([pair.sector for pair in evaluated], dtype=np.int64),
             np.array([pair.ring for pair in evaluated], dtype=np.int64),
@@ -191,13 +193,9 @@ class FlankContact:
 
     def _gaps_at_centers(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Gap (n_face,) mm at the middle of every face and its foot point (n_face, 2) mm on the master."""
-        faces = self.found.faces.centers()
+        faces = self.flank_pairs.faces.centers()
         gap, _, foot_point, _ = self._call_kernel(faces, u, np.zeros((len(faces.conn), 1)), 0.0)
         return gap[:, 0], foot_point[:, 0]
-
-    def foot_points(self, faces: Faces, u: np.ndarray) -> np.ndarray:
-        """Foot points (n_face, n_q, 2) mm, arc length and z on the master, at displacement u (n_local, 3) mm."""
-        return self._call_kernel(faces, u, np.zeros_like(faces.weight), 0.0)[2]
 
     def overlooked(self, pairs: list[FlankPair], u: np.ndarray, state: LoadState) -> bool:
         """Whether the last search missed pairs, or faces that are now in contact; on this rank.
@@ -206,7 +204,7 @@ class FlankContact:
         """
         if not set(pairs) <= set(self.pairs):
             return True
-        if self.found is None or self.found.faces is None:
+        if self.flank_pairs is None or self.flank_pairs.faces is None:
             return False
         gap, _ = self._gaps_at_centers(u)
         return bool(np.delete(gap + state.flank_clearance < 0.0, self._near_faces).any())
@@ -248,19 +246,19 @@ class FlankContact:
         active.gap, active.pressure, foot_point, missing = self._call_kernel(
             active.faces, u, active.multiplier, clearance, residual, rows, active.friction, moment=moments
         )
-        moment = 0.0 if residual is None else float(moments[self.found.owned[active.faces.patch]].sum())
+        moment = 0.0 if residual is None else float(moments[self.flank_pairs.owned[active.faces.patch]].sum())
         if not missing:
             return moment, NO_KEYS
         acts = active.pressure > 0.0
         if active.friction is not None and active.friction.lagged is not None:
             acts |= (active.friction.lagged > 0.0) & np.isfinite(foot_point[..., 0])
         face, point = np.nonzero(acts)
-        keys = self.found.block_keys(active.segments.parent[face], foot_point[face, point], self.symmetric)
+        keys = self.flank_pairs.block_keys(active.segments.parent[face], foot_point[face, point], self.symmetric)
         return moment, keys
 
     def _cut(self, u: np.ndarray) -> ActiveSegments:
         """Cut the faces for displacement u; without multipliers, which would belong to other points."""
-        all_faces, masters = self.found.faces, self.found.masters
+        all_faces, masters = self.flank_pairs.faces, self.flank_pairs.masters
         corners = all_faces.corners(self._near_faces)
         zero = np.zeros(corners.weight.shape)
         foot_point = self._call_kernel(corners, u, zero, 0.0, beyond=CONTINUATION)[2]
@@ -275,7 +273,7 @@ class FlankContact:
             traction = friction.interpolated(start.tractions, segments)
             law = friction.begin(self.friction_coefficient, foot_point, gap, traction)
         return ActiveSegments(
-            self.found, faces, segments, law, multiplier, np.full_like(multiplier, np.inf), multiplier.copy()
+            self.flank_pairs, faces, segments, law, multiplier, np.full_like(multiplier, np.inf), multiplier.copy()
         )
 
     def _call_kernel(
@@ -291,14 +289,14 @@ class FlankContact:
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
         """Gaps, pressures, foot points and the number of missing blocks; see `swgpar.kernel.contact_flanks`."""
         settings = self.penalty, clearance, self.max_gap, self.pressure_limit, residual, rows, law, self._ring_rotation
-        return contact_flanks(self.found.masters, faces, u, multiplier, *settings, **more)
+        return contact_flanks(self.flank_pairs.masters, faces, u, multiplier, *settings, **more)
 
     def add_owned_forces(self, u: np.ndarray, state: LoadState, residual: np.ndarray) -> None:
         """Add the forces of the pairs whose flexible-spline tooth this rank owns to residual (n_local, 3) N."""
         active = self._active
         if state.flank_clearance is None or active is None:
             return
-        mine = self.found.owned[active.faces.patch]
+        mine = self.flank_pairs.owned[active.faces.patch]
         law = None if active.friction is None else active.friction.subset(mine)
         multiplier = np.ascontiguousarray(active.multiplier[mine])
         self._call_kernel(active.faces.subset(mine), u, multiplier, state.flank_clearance, residual, None, law)
@@ -345,7 +343,7 @@ class FlankContact:
 
         Raises ValueError for segments of an earlier search: their local nodes are others.
         """
-        if saved is not None and saved.found is not self.found:
+        if saved is not None and saved.flank_pairs is not self.flank_pairs:
             raise ValueError("the segments belong to an earlier contact search")
         self._active = saved
         if saved is not None:
@@ -406,7 +404,7 @@ class FlankContact:
         if active is None:
             return 0
         touching = np.unique(active.faces.patch[(active.pressure > 0.0).any(axis=1)])
-        return int(self.found.owned[touching].sum())
+        return int(self.flank_pairs.owned[touching].sum())
 
     def smallest_gap(self, side: int) -> float:
         """Smallest gap (mm) of the flanks on one side (+1, -1) in the last evaluation on this rank; inf without any."""
@@ -425,5 +423,5 @@ class FlankContact:
         active = self._active
         if active is None:
             return None
-        own, faces = self.found.owned[active.faces.patch], active.faces
+        own, faces = self.flank_pairs.owned[active.faces.patch], active.faces
         return FacePressure(faces.conn[own], faces.shape[own], faces.weight[own], active.pressure[own])

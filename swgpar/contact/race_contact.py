@@ -194,7 +194,7 @@ class RaceContact(PressedPoints):
         factors[..., 0, 0] = np.where(self.pressure[faces] > 0.0, self.penalty * self.weight[faces], 0.0)
         n, n_nodes = self.conn[faces].shape
         flat = vectors.reshape(*vectors.shape[:2], 2 * n_nodes, 3)
-        found = np.einsum("fqmk,fqkl,fqnl->fmn", flat, factors, flat, optimize=True)
+        plane = np.einsum("fqmk,fqkl,fqnl->fmn", flat, factors, flat, optimize=True)
         blocks = np.zeros((n, n_nodes, n_nodes, 3, 3))
-        blocks[..., :2, :2] = found.reshape(n, n_nodes, 2, n_nodes, 2).transpose(0, 1, 3, 2, 4)
+        blocks[..., :2, :2] = plane.reshape(n, n_nodes, 2, n_nodes, 2).transpose(0, 1, 3, 2, 4)
         add_face_blocks(self.conn[faces], self.sixths[faces], blocks, rows)

@@ -3,8 +3,9 @@
 
 #include <cstdint>
 
-#include "contact.hpp"
 #include "corotation.hpp"
+#include "hex8i.hpp"
+#include "images.hpp"
 #include "quad4i.hpp"
 
 namespace swgpar {

@@ -8,26 +8,12 @@
 #include <array>
 #include <cmath>
 
+#include "trilinear.hpp"
+
 namespace swgpar {
 
 using Mat24 = Eigen::Matrix<double, 24, 24>;
-using Mat8x3 = Eigen::Matrix<double, 8, 3>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
-
-constexpr double kCorner[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
-                                  {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
-
-// dN_a/d(xi, eta, zeta), one row per node.
-inline Mat8x3 shape_gradient(double xi, double eta, double zeta) {
-  Mat8x3 g;
-  for (int a = 0; a < 8; ++a) {
-    const double* c = kCorner[a];
-    g(a, 0) = 0.125 * c[0] * (1 + eta * c[1]) * (1 + zeta * c[2]);
-    g(a, 1) = 0.125 * c[1] * (1 + xi * c[0]) * (1 + zeta * c[2]);
-    g(a, 2) = 0.125 * c[2] * (1 + xi * c[0]) * (1 + eta * c[1]);
-  }
-  return g;
-}
 
 // Strain (xx, yy, zz, xy, yz, zx; engineering shear) of a vector shape with gradient g times unit axis c.
 inline void strain_column(Eigen::Ref<Eigen::Matrix<double, 6, 1>> col, const Eigen::Vector3d& g, int c) {

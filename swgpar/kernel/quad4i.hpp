@@ -3,7 +3,11 @@
 // hexahedron, of which the third has no stiffness, so that corotation, assembly and contact are the same.
 #pragma once
 
-#include "hex8i.hpp"
+#include <Eigen/Dense>
+#include <array>
+#include <cmath>
+
+#include "trilinear.hpp"
 
 namespace swgpar {
 

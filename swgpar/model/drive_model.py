@@ -268,7 +268,7 @@ def build_supports(design: DriveDesign, *, partition: Partition, elements: Eleme
         ring = elements.bodies[design.output_gear if rotates else RING_GEAR]
         couplings.append(DistributingCoupling(partition, ring, "outer", copies > 1))
     if rotates and design.frame_is_rigid:
-        outer = float(np.hypot(*couplings[-1].reference[:, :2].T).max(initial=0.0))
+        outer = float(np.hypot(*couplings[-1].undeformed[:, :2].T).max(initial=0.0))
         low, high = design.axial_range(design.output_gear)
         area = 2.0 * np.pi * outer * (high - low) / copies
         guide = RadialGuide(couplings[-1], area, design.penalty(design.output_gear))

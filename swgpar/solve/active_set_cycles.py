@@ -72,9 +72,9 @@ class VisitedSets:
         self.best: dict[int, float] = {}
         self.last: int | None = None
 
-    def returns(self, found: int, residual: float) -> bool:
-        """Whether the set `found` was left meanwhile and returns without a smaller residual."""
-        before = self.best.get(found, np.inf)
-        returned = found != self.last and residual >= before < np.inf
-        self.best[found], self.last = min(before, residual), found
+    def returns(self, active_set: int, residual: float) -> bool:
+        """Whether the set `active_set` was left meanwhile and returns without a smaller residual."""
+        before = self.best.get(active_set, np.inf)
+        returned = active_set != self.last and residual >= before < np.inf
+        self.best[active_set], self.last = min(before, residual), active_set
         return returned

@@ -120,12 +120,12 @@ class DiscreteProblem:
         self.ring_sectors, self.whole_teeth = ring_sectors, whole_teeth
         self.scale, self.coupling_keys = supports.scale, coupling_keys
         self.x, self.accepted = create_vector(partition), create_vector(partition)
-        self.local = elements.local
-        self.exchange = Exchange(partition, self.local.number)
+        self.local_nodes = elements.local
+        self.exchange = Exchange(partition, self.local_nodes.number)
         self.pattern: np.ndarray | None = None
         self.rows: BlockRows | None = None
         self.matrix_rows: MatrixRows | None = None
-        self.slots: list[list[np.ndarray]] = []
+        self.element_blocks: list[list[np.ndarray]] = []
         self.matrix: PETSc.Mat | None = None
         self._extent = largest(partition.comm, float(np.abs(self.positions()).max(initial=0.0)))
         self.round_off = 0.0
@@ -155,7 +155,7 @@ class DiscreteProblem:
 
     def positions(self) -> np.ndarray:
         """Undeformed positions (n_local, 3) mm as their owners see them; zero for the multipliers."""
-        out = np.zeros((len(self.local), 3))
+        out = np.zeros((len(self.local_nodes), 3))
         for body in self.elements.bodies.values():
             seen, position = body.local >= 0, to_owners(body.positions(), body.sixths)
             out[body.local[seen]] = position[seen]
@@ -180,9 +180,9 @@ class DiscreteProblem:
             self._searched = self.x.array_r.copy()
             pairs = [self._facing_pairs(flanks, state, self.contact_search.tip_margin) for flanks in self.flanks]
             further = [flanks.node_numbers(facing) for flanks, facing in zip(self.flanks, pairs)]
-            self.local = self.elements.local.extended(np.concatenate([np.zeros(0, dtype=np.int64), *further]))
+            self.local_nodes = self.elements.local.extended(np.concatenate([np.zeros(0, dtype=np.int64), *further]))
             self.exchange.destroy()
-            self.exchange = Exchange(self.partition, self.local.number)
+            self.exchange = Exchange(self.partition, self.local_nodes.number)
             pattern = self.coupling_keys
             if self.flanks:
                 accepted = None
@@ -190,8 +190,8 @@ class DiscreteProblem:
                     accepted = self.displacement(self.accepted)
                 u = self.displacement()
                 for flanks, facing in zip(self.flanks, pairs):
-                    found = flanks.search(facing, self.local, u, self.contact_search.distances, accepted)
-                    pattern = np.union1d(pattern, found)
+                    keys = flanks.search(facing, self.local_nodes, u, self.contact_search.distances, accepted)
+                    pattern = np.union1d(pattern, keys)
                 self._choose_modelled_sectors()
         for contact in self.surface_contacts:
             contact.reset()
@@ -253,22 +253,22 @@ class DiscreteProblem:
         with self.phases("search"):
             self.complete()
             u = self.displacement()
-            found = [flanks.overlooked(self._facing_pairs(flanks, state, 0.0), u, state) for flanks in self.flanks]
-        return bool(self.partition.comm.allreduce(int(any(found)), op=MPI.MAX))
+            overlooked = [flanks.overlooked(self._facing_pairs(flanks, state, 0.0), u, state) for flanks in self.flanks]
+        return bool(self.partition.comm.allreduce(int(any(overlooked)), op=MPI.MAX))
 
     def set_pattern(self, pattern: np.ndarray) -> None:
         """Make room in the tangent for contact blocks, keys row * n_global + column (n,), where they are other ones."""
         with self.phases("pattern"):
             changed = self.pattern is None or not np.array_equal(pattern, self.pattern)
             if not self.partition.comm.allreduce(int(changed), op=MPI.MAX):
-                self.rows.number = self.local.number
+                self.rows.number = self.local_nodes.number
                 return
             self.pattern = pattern
-            self.rows, self.slots = self.elements.rows(pattern, self.local.number)
+            self.rows, self.element_blocks = self.elements.rows(pattern, self.local_nodes.number)
             if self.matrix is not None:
                 self.matrix.destroy()
             work = self.x.duplicate()
-            self.matrix_rows = matrix_rows(self.rows, self.local, self.exchange, work)
+            self.matrix_rows = matrix_rows(self.rows, self.local_nodes, self.exchange, work)
             work.destroy()
             self.matrix = create_matrix(self.partition, self.rows, self.matrix_rows)
 
@@ -325,7 +325,7 @@ class DiscreteProblem:
         """
         with self.phases("tangent"):
             self.rows.values[:] = 0.0
-            self.elements.assemble(u, None, self.rows, self.slots)
+            self.elements.assemble(u, None, self.rows, self.element_blocks)
             missing = self._evaluate_terms(u, state, None, self.rows)
             self.supports.add_blocks(u, self.rows)
             add_unit_diagonal(self.rows, self.partition, self.scale)

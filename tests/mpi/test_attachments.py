@@ -39,7 +39,7 @@ def test_torques_balance_and_the_attached_area_is_rigid(name: str) -> None:
     assert isinstance(coupling, RigidAttachment)
     rotation = coupling.evaluate(u).value[ROTATION]
     assert rotation == pytest.approx(np.radians(row["output_angle_deg"]), rel=1e-12)
-    moved = coupling.reference + u[coupling.nodes] - rotated(coupling.reference, rotation)
+    moved = coupling.undeformed + u[coupling.nodes] - rotated(coupling.undeformed, rotation)
     # nodes carry with the area that is attached: those of elements wider than a washer move beside it
     mean = np.sqrt(coupling.sum(coupling.weight * (moved**2).sum(axis=1)))
     print(f"{name}: mean displacement from the rigid flange {1000.0 * mean:.3f} um")

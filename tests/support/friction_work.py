@@ -8,7 +8,10 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.analysis.load_stepping import LoadStepper
+from swgpar.contact.flank_pairs import Faces
+from swgpar.contact.flanks import FlankContact
 from swgpar.contact.segments import Segments
+from swgpar.kernel import contact_flanks
 
 
 @dataclass
@@ -21,6 +24,13 @@ class Forces:
     foot_point: np.ndarray
 
 
+def foot_points(flanks: FlankContact, faces: Faces, u: np.ndarray) -> np.ndarray:
+    """Foot points (n_face, n_q, 2) mm, arc length and z on the master, at displacement u (n_local, 3) mm."""
+    rotation = flanks.ring_motion.ring_rotation(u)
+    settings = flanks.penalty, 0.0, flanks.max_gap, flanks.pressure_limit, None, None, None, rotation
+    return contact_flanks(flanks.flank_pairs.masters, faces, u, np.zeros_like(faces.weight), *settings)[2]
+
+
 def forces(stepper: LoadStepper) -> tuple[Forces, float]:
     """Forces of the present state, and their work over the slip since the one before; metric taken as one."""
     flanks, u = stepper.problem.flanks[0], stepper.problem.displacement()
@@ -28,9 +38,9 @@ def forces(stepper: LoadStepper) -> tuple[Forces, float]:
     if active is None or active.friction is None:
         none = np.zeros((0, 4, 2))
         return Forces([], Segments(np.zeros(0, dtype=np.int64), *np.zeros((3, 0, 4))), none, none), 0.0
-    place = flanks.foot_points(active.faces, u)
+    place = foot_points(flanks, active.faces, u)
     force = active.faces.weight[..., None] * active.friction.current
-    force[~flanks.found.owned[active.faces.patch]] = 0.0
+    force[~flanks.flank_pairs.owned[active.faces.patch]] = 0.0
     work = float(np.nansum(force * (place - active.friction.foot_point)))
     return Forces([p.key for p in flanks.pairs], active.segments, force, place), work
 
@@ -45,7 +55,7 @@ def onward(stepper: LoadStepper, old: Forces) -> float:
     if not len(keep):
         return 0.0
     part = Segments(np.arange(len(keep)), *(getattr(old.segments, n)[keep] for n in ("a", "b", "share")))
-    place = flanks.foot_points(flanks.found.faces.cut(new[keep] * flanks.n_face + local[keep], part), u)
+    place = foot_points(flanks, flanks.flank_pairs.faces.cut(new[keep] * flanks.n_face + local[keep], part), u)
     return float(np.nansum(old.force[keep] * (place - old.foot_point[keep])))
 
 

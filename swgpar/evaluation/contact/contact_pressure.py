@@ -17,14 +17,14 @@ def nodal_pressure(problem: DiscreteProblem, state: LoadState, body: BodyElement
 
     Area-weighted by the shape functions over the faces of the last evaluation; collective.
     """
-    n = len(problem.local)
+    n = len(problem.local_nodes)
     sums = np.zeros((n, 3))  # force and area, as two components of a vector of the model
     for contact in problem.penalty_contacts:
         faces = contact.owned_pressure() if contact.is_active(state) else None
         if faces is not None:
             _add_nodal(faces, sums)
     total = create_vector(problem.partition)
-    total.setValuesBlocked(problem.local.number, sums, addv=PETSc.InsertMode.ADD_VALUES)
+    total.setValuesBlocked(problem.local_nodes.number, sums, addv=PETSc.InsertMode.ADD_VALUES)
     total.assemble()
     force, area, _ = problem.exchange(total).T
     total.destroy()

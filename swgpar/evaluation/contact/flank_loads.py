@@ -40,10 +40,10 @@ class LineLoad:
 def nodal_flank_forces(model: DriveModel, state: LoadState, flanks: FlankContact) -> PETSc.Vec:
     """Nodal contact forces (N) of the flanks by their last evaluation; collective. Each pair counts on one rank."""
     problem = model.problem
-    local = np.zeros((len(problem.local), 3))
+    local = np.zeros((len(problem.local_nodes), 3))
     flanks.add_owned_forces(problem.displacement(), state, local)
     total = create_vector(model.partition)
-    total.setValuesBlocked(problem.local.number, -local, addv=PETSc.InsertMode.ADD_VALUES)
+    total.setValuesBlocked(problem.local_nodes.number, -local, addv=PETSc.InsertMode.ADD_VALUES)
     total.assemble()
     return total
 
