@@ -96,7 +96,7 @@ def solve_to_load(
             kept.save(stepper.model, recipe)
             _settle(stepper, loaded)  # so that the forces are those of a run that takes this state over
     except SwgparError:
-        for model in (coarse, stepper and stepper.model):
+        for model in (coarse, None if stepper is None else stepper.model):
             if model is not None:
                 model.destroy()
         raise

@@ -13,7 +13,7 @@ from swgpar.analysis.evaluate_run import evaluate_run
 from swgpar.analysis.follow_turns import follow_turns
 from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.analysis.mesh_refinement import compared_stresses, drive_error, least_error, size_ratio
-from swgpar.analysis.recorder import Recorder
+from swgpar.analysis.recorder import FolderRecorder, Recorder
 from swgpar.analysis.run_record import RunRecord
 from swgpar.analysis.start_states import StartStates
 from swgpar.analysis.stiffness_error import stiffness_error
@@ -80,6 +80,7 @@ class DriveRun:
 
     def resume(self) -> Sequence[LoadState]:
         """Bring back the state of the checkpoint; returns all increments that the run consists of."""
+        assert isinstance(self.recorder, FolderRecorder)  # a run in memory leaves no checkpoint
         items, self.earlier_seconds = self.recorder.resume(self.stepper)
         logger.info("restarted after increment %d", len(self.record.rows))
         if self.model.design.resolves_root_stress and not self.record.root_stress:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -117,7 +117,7 @@ class Recorder(ABC):
         """The fields as they are shown: in the frame of the fixed member."""
         return nodal_fields(self.model, stepper.load_state.angle, fields)
 
-    def _keep_places(self, state: LoadState, fields: Sequence[Mapping[str, np.ndarray]], on_edge: bool) -> None:
+    def _keep_places(self, state: LoadState, fields: NodalFields, on_edge: bool) -> None:
         """Find the places of stresses that are the largest under load so far."""
         if state.is_periodic:
             for name, place in find_places(self.model, state, fields, on_edge=on_edge).items():

@@ -71,8 +71,7 @@ class Problem:
     @property
     def names(self) -> list[str]:
         """Quantities of objectives and constraints."""
-        every = [*self.section.objective, *self.section.constraint]
-        return list(dict.fromkeys(entry.quantity for entry in every))
+        return self.section.quantities
 
     @property
     def identity(self) -> str:
@@ -156,14 +155,12 @@ def _make(section: OptimiseSection, folder: Path, screen: bool) -> Problem:
         raise InputError(f"optimise.mesh has no meaning for {system.noun}: leave it out")
     design = system.load(quiet)
     known, derived = dict(system.quantities(design)), set()
-    for entry in (*section.objective, *section.constraint):
-        if entry.quantity not in known:
-            checked = system.check(design)
-            if entry.quantity not in checked:
-                raise not_known("optimise: ", known, system, entry.quantity)
-            known[entry.quantity] = Quantity("by swgpar check", "")
-        if entry.quantity not in system.quantities(design):
-            derived.add(entry.quantity)
+    for name in section.quantities:
+        if name not in known:
+            if name not in system.check(design):
+                raise not_known("optimise: ", known, system, name)
+            known[name] = Quantity("by swgpar check", "")
+            derived.add(name)
     units = {variable.name: unit_of_key(design, variable.name) for variable in section.variable}
     problem = Problem(section, system, table, quiet, mesh, recipe, units, known, frozenset(derived))
     for variable in section.variable:

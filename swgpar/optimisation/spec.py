@@ -84,6 +84,12 @@ class OptimiseSection(Section):
     objective: list[Objective] = quantity([], text="the objectives")
     constraint: list[Constraint] = quantity([], text="the constraints")
 
+    @property
+    def quantities(self) -> list[str]:
+        """Names of the quantities of objectives and constraints."""
+        names = [objective.quantity for objective in self.objective]
+        return list(dict.fromkeys(names + [constraint.quantity for constraint in self.constraint]))
+
 
 class _File(Section):
     optimise: OptimiseSection
