@@ -111,12 +111,13 @@ class DriveRun:
         """Compute and record the increments that are left."""
         stepper, recorder = self.stepper, self.recorder
         loaded = next((item for item in reversed(items) if item.stage == Stage.LOAD), None)
+        ratcheting = self.model.design.ratcheting
         with IncrementProgress(self.model.comm, len(items), done=len(self.record.rows), terminal=terminal) as progress:
             self.model.solver.monitor = lambda state, its, ratio: progress.newton(
                 state.stage.label, np.degrees(state.angle), its, ratio
             )
             for item in items[len(self.record.rows) :]:
-                if has_fallen(self.model.design, recorder.program_rows()):
+                if ratcheting is not None and has_fallen(ratcheting.drop, recorder.program_rows()):
                     break
                 start = time.perf_counter()
                 if item != stepper.load_state and not self._advance(item):  # a start at once ends with the first one
@@ -173,8 +174,10 @@ class DriveRun:
         """Summarise the run."""
         recorder, design = self.recorder, self.model.design
         rows = self.record.rows
-        with self.model.phases("coarser mesh"):
-            error = stiffness_error(design, self.recipe, recorder.program_rows(), self.model.comm)
+        error = None
+        if design.stiffness is not None and design.stiffness.mesh_error:
+            with self.model.phases("coarser mesh"):
+                error = stiffness_error(design, self.recipe, recorder.program_rows(), self.model.comm)
         if design.deviations is not None:
             follow_turns(self.recipe, recorder)
         else:

@@ -84,9 +84,13 @@ def evaluate_run(
         contact=largest_contact(record.pairs),
         load_sharing=_load_sharing(recorder),
         transmission_error=evaluate_turns(design, record.turns),
-        stiffness=torsional_stiffness(design, program, stiffness_error),
-        ratcheting=evaluate_ratcheting(design, program, record.tooth_rotations, ended_early=ended_early),
-        program=stage_ends(design, program),
+        stiffness=torsional_stiffness(design, program, stiffness_error) if design.stiffness else None,
+        ratcheting=(
+            evaluate_ratcheting(design, program, record.tooth_rotations, ended_early=ended_early)
+            if design.ratcheting
+            else None
+        ),
+        program=stage_ends(program) if design.load.program and program else None,
         fatigue=fatigue and fatigue.found,
         losses=losses,
         bearing=_bearing(recorder),

@@ -182,7 +182,7 @@ class Recorder(ABC):
 
     def program_rows(self) -> list[PointRow]:
         """Rows of program.csv."""
-        return point_rows(self.model.design, self.record.rows)
+        return point_rows(self._sequence.points, self.model.design.ratio, self.record.rows)
 
     @abstractmethod
     def begin(self) -> None:

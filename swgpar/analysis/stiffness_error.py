@@ -23,12 +23,10 @@ from swgpar.meshing.recipe_counts import RATIO, resized
 def stiffness_error(
     design: DriveDesign, recipe: MeshRecipe, rows: Sequence[PointRow], comm: MPI.Comm
 ) -> dict[str, float] | None:
-    """Error of every value of `Stiffness` on the mesh of `recipe`; None where it is not asked for or not known.
+    """Error of every value of `Stiffness` on the mesh of `recipe`; None where it is not known.
 
     rows : of program.csv on that mesh. Collective.
     """
-    if design.stiffness is None or not design.stiffness.mesh_error:
-        return None
     coarse = resized(recipe, 1.0 / RATIO)
     if not finds_contacts(coarse):
         logger.info("the error of the stiffness by the mesh is not known: a coarser one would not find the contacts")
@@ -62,4 +60,4 @@ def _stiffness_on(design: DriveDesign, recipe: MeshRecipe, comm: MPI.Comm) -> St
             rows.append(stepper.row())
     finally:
         model.destroy()
-    return by_position(design, point_rows(design, rows))[0.0]
+    return by_position(design, point_rows(sequence.points, design.ratio, rows))[0.0]

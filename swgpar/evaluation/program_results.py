@@ -10,7 +10,7 @@ import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind
-from swgpar.load.load_program import program_points, torque_direction
+from swgpar.load.load_program import ProgramPoint, torque_direction
 from swgpar.load.load_states import Stage
 from swgpar.results.history import Row, wrapped
 
@@ -30,15 +30,14 @@ COLUMNS = {
 the output by it, beyond what the ratio makes of the wave generator's angle."""
 
 
-def point_rows(design: DriveDesign, rows: Sequence[Row]) -> list[PointRow]:
-    """Rows of program.csv from those of the history; none without a load program."""
-    points, direction = program_points(design), torque_direction(design.ratio)
-    found = []
+def point_rows(points: Sequence[ProgramPoint], ratio: float, rows: Sequence[Row]) -> list[PointRow]:
+    """Rows of program.csv from those of the history. ratio : speed of the wave generator over that of the output"""
+    direction, found = torque_direction(ratio), []
     for row in rows:
         index = int(row["step"]) - Stage.LOAD
         if not 0 <= index < len(points):
             continue
-        rotation = wrapped(row["output_angle_deg"] - row["wg_angle_deg"] / design.ratio)
+        rotation = wrapped(row["output_angle_deg"] - row["wg_angle_deg"] / ratio)
         found.append(
             {
                 "step": int(row["step"]),
@@ -96,8 +95,6 @@ class ProgramStages(AnswerGroup):
                 yield Answer(kind.name, float(values[kind.name.rpartition(".")[2]]), kind.unit, kind.text)
 
 
-def stage_ends(design: DriveDesign, rows: Sequence[PointRow]) -> ProgramStages | None:
-    """The last point of every stage from the rows of program.csv; None without a load program in the design."""
-    if not design.load.program or not rows:
-        return None
+def stage_ends(rows: Sequence[PointRow]) -> ProgramStages:
+    """The last point of every stage from the rows of program.csv."""
     return ProgramStages({row["stage"]: {name: row[name] for name in COLUMNS if name != "stage"} for row in rows})

@@ -76,12 +76,12 @@ def peak(rows: Sequence[PointRow]) -> int:
     return int(np.argmax([row["torque_Nm"] for row in rows]))
 
 
-def has_fallen(design: DriveDesign, rows: Sequence[PointRow]) -> bool:
-    """Whether the torque of the last row has fallen clearly below its peak."""
-    if design.ratcheting is None or not rows:
+def has_fallen(drop: float, rows: Sequence[PointRow]) -> bool:
+    """Whether the torque of the last row has fallen clearly below its peak. drop : share of the peak"""
+    if not rows:
         return False
     top = rows[peak(rows)]["torque_Nm"]
-    return top > 0.0 and rows[-1]["torque_Nm"] < (1.0 - design.ratcheting.drop) * top
+    return top > 0.0 and rows[-1]["torque_Nm"] < (1.0 - drop) * top
 
 
 def what_gave_way(design: DriveDesign, rows: Sequence[PointRow], teeth: Sequence[float]) -> str:
@@ -100,15 +100,13 @@ def what_gave_way(design: DriveDesign, rows: Sequence[PointRow], teeth: Sequence
 
 def evaluate_ratcheting(
     design: DriveDesign, rows: Sequence[PointRow], teeth: Sequence[float], *, ended_early: bool
-) -> RatchetingTorque | None:
-    """The largest torque from the rows of program.csv; None where the design asks for none.
+) -> RatchetingTorque:
+    """The largest torque from the rows of program.csv of a design with [ratcheting].
 
     teeth : (n,) deg, rotation of the flexible spline's teeth at every row
     ended_early : whether no equilibrium was found behind the last row
     """
-    if design.ratcheting is None:
-        return None
-    top, fallen = peak(rows), has_fallen(design, rows)
+    top, fallen = peak(rows), has_fallen(design.ratcheting.drop, rows)
     beside = [rows[k]["torque_Nm"] for k in (top - 1, top + 1) if 0 <= k < len(rows)]
     return RatchetingTorque(
         peak_torque_Nm=rows[top]["torque_Nm"],

@@ -233,13 +233,11 @@ def rows_by_position(design: DriveDesign, rows: Sequence[PointRow]) -> dict[floa
 
 def torsional_stiffness(
     design: DriveDesign, rows: Sequence[PointRow], error: Mapping[str, float] | None
-) -> TorsionalStiffness | None:
-    """The stiffness from all rows of program.csv; None where the design asks for none.
+) -> TorsionalStiffness:
+    """The stiffness from all rows of program.csv of a design with [stiffness].
 
     error : of every value by the mesh, None where it is not known
     """
-    if design.stiffness is None:
-        return None
     found = by_position(design, rows)
     table = {name: np.array([getattr(one, name) for one in found.values()]) for name in NAMES}
     return TorsionalStiffness(

@@ -21,7 +21,7 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
 from swgpar.evaluation.program_results import PointRow, point_rows, work_by_torque
 from swgpar.evaluation.ratcheting import AT_TEETH
-from swgpar.load.load_program import FIRST_LOADING, NO_TORQUE, pitch_angle
+from swgpar.load.load_program import FIRST_LOADING, NO_TORQUE, pitch_angle, program_points
 from swgpar.load.load_sequence import load_sequence
 from swgpar.load.load_states import Stage
 from swgpar.meshing import load_recipe
@@ -96,7 +96,7 @@ def test_the_loop_with_friction_is_the_work_of_friction() -> None:
         stepper.advance(state)
         rows.append(stepper.row())
         done.append(work.total if work else 0.0)
-    points = point_rows(design, rows)
+    points = point_rows(program_points(design), design.ratio, rows)
     first = max(k for k, point in enumerate(points) if point["stage"] == FIRST_LOADING)
     dissipated = done[-1] - done[-len(points) + first]
     area = work_by_torque(points[first:])
@@ -141,7 +141,7 @@ def follow(design: DriveDesign) -> list[PointRow]:
     for state in load_sequence(design).states:
         stepper.advance(state)
         rows.append(stepper.row())
-    return point_rows(design, rows)
+    return point_rows(program_points(design), design.ratio, rows)
 
 
 def test_a_program_changes_between_torque_and_rotation() -> None:

@@ -206,7 +206,7 @@ def test_what_gives_way_is_where_the_rotation_goes(teeth: float, gave_way: str) 
         {"step": 3 + k, "torque_Nm": torque, "rotation_arcmin": 60.0 * k, "stage": "ratcheting"}
         for k, torque in enumerate(torques)
     ]
-    assert not has_fallen(design, rows[:3]) and has_fallen(design, rows)
+    assert not has_fallen(design.ratcheting.drop, rows[:3]) and has_fallen(design.ratcheting.drop, rows)
     moved = [0.0, 0.5, 0.5 + teeth, 0.5 + 2.0 * teeth]
     found = evaluate_ratcheting(design, rows, moved, ended_early=False)
     assert found.gave_way == gave_way and found.ended == "torque fell"
