@@ -23,7 +23,11 @@ from swgpar.input.toml_file import read_toml
 ROOT = Path(__file__).resolve().parents[2]
 DRIVERS = ROOT / "drivers"
 
-SPLINE, RING, CAM, INK, NOTE = "#4c78a8", "#9d9d9d", "#f2a65a", "#222222", "#b03030"
+SPLINE = "#4c78a8"
+RING = "#9d9d9d"
+CAM = "#f2a65a"
+INK = "#222222"
+NOTE = "#b03030"
 """Colours of flexible spline, ring gear, wave generator, lines and dimensions."""
 
 Point = tuple[float, float]

@@ -34,7 +34,10 @@ from swgpar.geometry.cams.parabolic import Side, parabolic, solve_quarter
 from swgpar.geometry.cams.piecewise import Parabola
 from swgpar.geometry.cams.simplified import simplified
 
-R_FS, D, A, B = 10.0, 4.0, 12.0, 8.0
+R_FS = 10.0
+D = 4.0
+A = 12.0
+B = 8.0
 """Inner radius of the spline, deflection and semi-axes (mm) of the drawings: proportions are exaggerated."""
 
 PARTS = {"parabola": "#8c4fb0", "connector": "#2d9a57", "lateral": "#d07a20"}

@@ -144,7 +144,10 @@ def cascade() -> Figure:
             mesh(ax, (x - 0.55, 3.5), (x - 1.65, 3.5), 0.11)
     leader(ax, (1.6, 2.4), "flexible unit", (0.75, 2.4), color=INK)
     leader(ax, (3.9, 2.4), "backlash of\ndirection B", (1.85, 3.25))
-    g2, g3, g4, wheel = (3.9, 5.0), (6.0, 5.0), (8.3, 5.0), (10.4, 5.0)
+    g2 = (3.9, 5.0)
+    g3 = (6.0, 5.0)
+    g4 = (8.3, 5.0)
+    wheel = (10.4, 5.0)
     for k, target in ((0, (3.45, 4.85)), (2, (4.0, 4.62))):
         mesh(ax, (0.6 + 2.2 * k + (0.45 if k == 0 else -0.25), 3.85 if k == 0 else 4.0), target, 0.11)
     for center, radius, name, color in (

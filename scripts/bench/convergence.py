@@ -71,7 +71,10 @@ def order(values: list[float], sizes: list[float]) -> float | None:
 def measure(family: str) -> list[Row]:
     """Rows of one family; collective."""
     path, name, ratios = FAMILIES[family]
-    design, model, levels, elements = load_design(path, LOADED), None, [], []
+    design = load_design(path, LOADED)
+    model = None
+    levels = []
+    elements = []
     for ratio in ratios:
         recipe = resized(load_recipe(name), ratio)
         model = solve_to_load(design, recipe, load_sequence(design), MPI.COMM_WORLD, model)

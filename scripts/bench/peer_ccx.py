@@ -41,7 +41,10 @@ def cam(facets: int, first_node: int, first_element: int) -> list[str]:
     """Both halves of the cam as a layer of elements below the ellipse, one along the axis; their surface is CAM."""
     a, b = CAM
     angle = np.radians(CAM_HALF_ANGLE) * np.linspace(-1.0, 1.0, facets + 1)
-    lines, nodes, elements, sets = [], [], [], []
+    lines = []
+    nodes = []
+    elements = []
+    sets = []
     for half, sign in (("UPPER", 1.0), ("LOWER", -1.0)):
         start = first_node + len(nodes)
         outline = np.column_stack([-b * np.sin(angle), a * np.cos(angle)]) * sign

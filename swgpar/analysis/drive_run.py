@@ -53,7 +53,10 @@ class DriveRun:
         begin: float,
     ) -> None:
         self.sequence, self.kept = sequence, kept
-        self.model, self.recipe, self.recorder, self.stepper = model, recipe, recorder, LoadStepper(model)
+        self.model = model
+        self.recipe = recipe
+        self.recorder = recorder
+        self.stepper = LoadStepper(model)
         self.on_increment, self.begin = on_increment, begin
         self.earlier_seconds, self.ended_early = 0.0, False
         self.coarse: tuple[MeshRecipe, Mapping[str, Sequence[float]]] | None = None

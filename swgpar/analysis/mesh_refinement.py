@@ -122,7 +122,10 @@ class Refinement:
         kept: StartStates | None = None,
         levels: int | None = None,
     ) -> None:
-        self.design, self.sequence, self.comm, self.largest = design, sequence, comm, largest
+        self.design = design
+        self.sequence = sequence
+        self.comm = comm
+        self.largest = largest
         self.kind, self.kept = design.drive.model, kept
         self.levels = levels or LEVELS[self.kind]
         coarse = resized(recipe, 1.0 / RATIO)

@@ -58,7 +58,10 @@ def with_shortcuts(design: DriveDesign, recipe: MeshRecipe, *, levels: bool = Tr
 
     levels : whether the run may start on coarser meshes;  with `--accuracy` it has meshes of its own
     """
-    steps, solver, changes, left_out = design.steps, design.solver, {}, []
+    steps = design.steps
+    solver = design.solver
+    changes = {}
+    left_out = []
     points = program_points(design)
     stiffness = design.stiffness
 

@@ -63,16 +63,16 @@ def _cup(design: DriveDesign) -> dict[str, float]:
     if design.drive.model != "cup":
         return {}
     cup, thinnest = design.cup, min(thickness for _, _, thickness, _ in design.wall_points)
-    found = {"cup thickness (mm)": design.cup_thickness}
+    sizes = {"cup thickness (mm)": design.cup_thickness}
     if thinnest != design.cup_thickness:
-        found["thinnest place of the wall (mm)"] = thinnest
+        sizes["thinnest place of the wall (mm)"] = thinnest
     if design.end_thickness != design.cup_thickness:
-        found[f"thickness of the {'flange' if cup.shape == 'hat' else 'closed end'} (mm)"] = design.end_thickness
+        sizes[f"thickness of the {'flange' if cup.shape == 'hat' else 'closed end'} (mm)"] = design.end_thickness
     if cup.attachment == "clamped":
-        found["attached area, one side (mm2)"] = np.pi * abs(cup.edge**2 - cup.clamping_radius**2)
+        sizes["attached area, one side (mm2)"] = np.pi * abs(cup.edge**2 - cup.clamping_radius**2)
     if cup.attachment == "bolted":
-        found["attached area, one side (mm2)"] = 0.25 * np.pi * cup.washer_diameter**2 * cup.bolts
-    return found
+        sizes["attached area, one side (mm2)"] = 0.25 * np.pi * cup.washer_diameter**2 * cup.bolts
+    return sizes
 
 
 def _dynamic_spline(design: DriveDesign) -> dict[str, float]:

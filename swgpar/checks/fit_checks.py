@@ -119,7 +119,10 @@ def _check_wave_generator(design: DriveDesign) -> None:
 
 def _check_concave(design: DriveDesign) -> None:
     """Bores so far from a concave part of a harmonic cam that points of them have several feet on it."""
-    a, b, bore, order = design.major_semi_axis, design.minor_semi_axis, design.inner_radius, design.lobes**2
+    a = design.major_semi_axis
+    b = design.minor_semi_axis
+    bore = design.inner_radius
+    order = design.lobes**2
 
     def room(b: float) -> float:
         return 1.0 + (b - 0.5 * order * (a - b)) / b**2 * (bore - b) - UNIQUE

@@ -32,9 +32,9 @@ def torque_remark(torque: float, negligible: float) -> str | None:
 def remarks(design: DriveDesign, derived: Mapping[str, float]) -> list[str]:
     """Sentences about what is allowed and may not be meant. derived : of `derived_geometry`"""
     allowed = design.contact.penetration_tolerance * design.drive.module
-    found = [
+    overlaps = [
         f"interference: {name} = {derived[name]:.3g}: teeth overlap before they are loaded, and the drive may jam"
         for name in CLEARANCES
         if derived.get(name, 0.0) < -allowed
     ]
-    return [*found, *filter(None, [torque_remark(design.load.torque, negligible_torque(design))])]
+    return [*overlaps, *filter(None, [torque_remark(design.load.torque, negligible_torque(design))])]

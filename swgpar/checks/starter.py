@@ -38,7 +38,11 @@ Shape = Literal["cup", "short", "hat"]
 LEAST_RATIO, LARGEST_RATIO = 15.0, 320.0
 """Ratios for which the rules give a drive that can be built and meshed."""
 
-RING_RIM, FACE_WIDTH, LENGTH, FILLET, BORE = 0.04, 0.17, 0.5, 0.02, 0.17
+RING_RIM = 0.04
+FACE_WIDTH = 0.17
+LENGTH = 0.5
+FILLET = 0.02
+BORE = 0.17
 """Over the pitch diameter: rim of the ring gear, face width, length, fillet and bore radius of the cup."""
 
 SHORT_LENGTH, FLANGE, FLANGE_THICKNESS = 0.25, 0.68, 0.016

@@ -174,7 +174,10 @@ class BallContact:
         tau, nu = np.einsum("bni,bi->bn", away, along), np.einsum("bni,bi->bn", away, normal)
         from_axis = nu + np.einsum("bi,bi->b", centre, normal)[:, None]
         ball, piece = self._crossed(tau, from_axis)
-        tau, nu, n, t = tau[ball], nu[ball], normal[ball], along[ball]
+        tau = tau[ball]
+        nu = nu[ball]
+        n = normal[ball]
+        t = along[ball]
         place = self.angle[piece]
         for _ in range(STEPS):
             value, rate, _ = self._shape_functions(place)

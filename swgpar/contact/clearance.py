@@ -27,7 +27,10 @@ class FlankClearance:
     """
 
     def __init__(self, flanks: FlankContact, comm: MPI.Comm, *, module: float, outer_radius: float) -> None:
-        self.flanks, self.comm, self.module, self.outer_radius = flanks, comm, module, outer_radius
+        self.flanks = flanks
+        self.comm = comm
+        self.module = module
+        self.outer_radius = outer_radius
 
     def gap(self, side: int) -> float:
         """Smallest gap (mm) of the loaded flanks; inf where none is near."""

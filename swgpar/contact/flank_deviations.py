@@ -90,7 +90,10 @@ def flank_deviations(
     """
     profile, teeth = spline.mesh.profile, np.arange(spline.mesh.n_sectors)
     angle = spline.sector_angle(teeth)
-    heights, points, tangents, leans = [], [], [], []
+    heights = []
+    points = []
+    tangents = []
+    leans = []
     ring_profile, ring_teeth = ring.mesh.profile, np.arange(ring.mesh.n_sectors)
     ring_angle = ring.sector_angle(ring_teeth)
     spline_grids = {grid.side: grid for grid in spline.mesh.flanks}

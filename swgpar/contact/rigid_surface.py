@@ -112,7 +112,10 @@ class RigidContact(PressedPoints):
         self.pressure_limit = pressure_limit
         points = FaceQuadrature(body, "inner", radius, n_quadrature)
         super().__init__(points.weight.shape, penalty)
-        self.conn, self.sixths, self.coords, self.owned = points.conn, points.sixths, points.coords, points.owned
+        self.conn = points.conn
+        self.sixths = points.sixths
+        self.coords = points.coords
+        self.owned = points.owned
         self.shape, self.weight, self.offset = points.shape, points.weight, points.offset
         x = points.position
         self.inside = np.abs(x[..., 2]) <= half_width

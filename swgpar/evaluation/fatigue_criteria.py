@@ -164,7 +164,10 @@ def smallest_ball(points: np.ndarray) -> np.ndarray:
         chosen = np.where(towards, far, near)
         weight[chosen, at] = np.clip(weight[chosen, at] + step, 0.0, None)
         if not going.all():
-            active, weight, p, size = active[going], weight[:, going], p[:, going], size[:, going]
+            active = active[going]
+            weight = weight[:, going]
+            p = p[:, going]
+            size = size[:, going]
     return out
 
 

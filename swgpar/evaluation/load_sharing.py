@@ -77,7 +77,11 @@ def load_sharing(
     increments : numbers of those that count, from 1
     teeth : of the flexible spline;  copies : how many times the modelled part makes the whole drive
     """
-    counts, touching, shares, opposing, errors = [], [], [], [], []
+    counts = []
+    touching = []
+    shares = []
+    opposing = []
+    errors = []
     chosen = [pair for pair in pairs if pair["increment"] in set(increments)]
     for increment in increments:
         here = [pair for pair in chosen if pair["increment"] == increment]

@@ -63,17 +63,18 @@ def spring_model(result: DriveData, periodic: DriveData | None) -> SpringModel:
     InputError
         A result has not what is needed, or both are of drives with different ratios.
     """
-    found = result.summary
-    if not (result.program and found.stiffness):
+    summary = result.summary
+    if not (result.program and summary.stiffness):
         raise InputError(
             "the format fmu needs a run with [stiffness]: the kinematic error comes from a second run, --ripple FOLDER"
         )
-    if found.design.wave_generator_is_fixed:  # the columns of both runs count the rotation of the wave generator
+    if summary.design.wave_generator_is_fixed:  # the columns of both runs count the rotation of the wave generator
         raise InputError(
-            f'drive.layout = "{found.design.drive.layout}" is not available with the format fmu: allowed "ring_fixed" '
+            f'drive.layout = "{summary.design.drive.layout}" is not available with the format fmu: '
+            'allowed "ring_fixed" '
             'or "spline_fixed"'
         )
-    ratio = found.ratio
+    ratio = summary.ratio
     table = spring_table(result)
     direction = -np.sign(ratio)  # a positive torque of the table acts against the motion of the output
     torque, windup = direction * table["torque_Nm"], direction * table["windup_rad"]
@@ -100,10 +101,10 @@ def spring_model(result: DriveData, periodic: DriveData | None) -> SpringModel:
         ratio=ratio,
         spring=np.column_stack([windup, torque, slopes]),
         ripple=ripple,
-        friction_torque=max(0.0, found.stiffness.loop_work) / (2000.0 * reach),
+        friction_torque=max(0.0, summary.stiffness.loop_work) / (2000.0 * reach),
         friction_speed=SHARE * reach,
         loss_torque=loss,
-        loss_speed=SHARE * found.design.load.input_speed * np.pi / 30.0,
+        loss_speed=SHARE * summary.design.load.input_speed * np.pi / 30.0,
     )
 
 

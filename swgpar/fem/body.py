@@ -10,7 +10,10 @@ from swgpar.kernel import ReferenceElements
 from swgpar.materials import Material
 from swgpar.meshing.sector import SectorMesh
 
-FLEXIBLE_SPLINE, RING_GEAR, DYNAMIC_SPLINE, OUTER_RACE = "flexible_spline", "ring_gear", "dynamic_spline", "outer_race"
+FLEXIBLE_SPLINE = "flexible_spline"
+RING_GEAR = "ring_gear"
+DYNAMIC_SPLINE = "dynamic_spline"
+OUTER_RACE = "outer_race"
 """Names of the bodies of a drive, by what they do. A drive has at most one of each."""
 
 

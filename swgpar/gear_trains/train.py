@@ -94,7 +94,10 @@ def run_train(design: TrainDesign, options: RunOptions) -> TrainResult:
     InputError, OutputError, ConvergenceError
         On all ranks.
     """
-    folder, comm, begin, model = options.out, options.comm, time.perf_counter(), model_of(design)
+    folder = options.out
+    comm = options.comm
+    begin = time.perf_counter()
+    model = model_of(design)
     if folder is not None:
         prepare(folder, comm, False, options.overwrite)
     open_log(folder, comm)

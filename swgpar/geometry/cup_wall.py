@@ -64,21 +64,21 @@ class RoundedLine:
 
     def arcs(self) -> list[Arc]:
         """The rounded corners."""
-        found = (self._arc(k) for k in range(1, len(self.points) - 1))
-        return [arc for arc in found if arc is not None]
+        corners = (self._arc(k) for k in range(1, len(self.points) - 1))
+        return [arc for arc in corners if arc is not None]
 
     def pieces(self) -> list[tuple[Floats, Floats, Floats | None]]:
         """Start, end and centre (2,) of straight pieces, without a centre, and of arcs, one after the other."""
-        found: list[tuple[Floats, Floats, Floats | None]] = []
+        pieces: list[tuple[Floats, Floats, Floats | None]] = []
         at = self.points[0]
         for k, turning in enumerate(self.turning(), 1):
             arc = self._arc(k)
             if turning != 0.0:
-                found.append((at, self.points[k] if arc is None else arc.start, None))
+                pieces.append((at, self.points[k] if arc is None else arc.start, None))
                 at = self.points[k] if arc is None else arc.end
             if arc is not None:
-                found.append((arc.start, arc.end, arc.center))
-        return [piece for piece in [*found, (at, self.points[-1], None)] if piece[1][0] - piece[0][0] > SAME]
+                pieces.append((arc.start, arc.end, arc.center))
+        return [piece for piece in [*pieces, (at, self.points[-1], None)] if piece[1][0] - piece[0][0] > SAME]
 
     def corners(self) -> Floats:
         """Distances (n,) mm of the points at which the line turns."""
@@ -161,12 +161,12 @@ class CupWall:
         arcs = [arc for line in (self.inner, self.outer) for arc in line.arcs()]
         ends = np.array([point[0] for arc in arcs for point in (arc.start, arc.end)])
         keep = np.concatenate([usual[usual <= first], usual[-1:], corners])
-        found = usual
+        stations = usual
         for at in corners:  # all of them: between two that are close the wall may change its thickness
-            found = with_station(found, at, keep, room=0.0)
+            stations = with_station(stations, at, keep, room=0.0)
         for at in ends:
-            found = with_station(found, at, keep)
-        return found
+            stations = with_station(stations, at, keep)
+        return stations
 
 
 def with_station(stations: Floats, at: float, keep: Floats, room: float = 0.25) -> Floats:

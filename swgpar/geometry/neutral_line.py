@@ -45,20 +45,20 @@ def bent_ring(cam: Cam, inner_radius: float, radius: float, lobes: int = 2) -> n
     cosines, sines = np.cos(np.outer(theta, order)), np.sin(np.outer(theta, order))
     waves, energy = np.hstack([cosines, -sines]), np.tile((order**2 - 1.0) ** 2, 2)
     penalty = PENALTY * energy[0]
-    found, shrink = np.zeros(2 * HARMONICS), 0.0
+    amplitudes, shrink = np.zeros(2 * HARMONICS), 0.0
     for _ in range(ROUNDS):
-        place = theta - np.hstack([sines, cosines]) @ (found / np.tile(order, 2)) / radius
+        place = theta - np.hstack([sines, cosines]) @ (amplitudes / np.tile(order, 2)) / radius
         needed = np.interp(place, polar, distance, period=2.0 * np.pi) - inner_radius - shrink
         touches = np.zeros(POINTS, dtype=bool)
         for _ in range(MAX_CHANGES):
-            inside = waves @ found < needed
+            inside = waves @ amplitudes < needed
             if np.array_equal(inside, touches):
                 break
             touches = inside
             pressed = penalty * waves[touches]
-            found = np.linalg.solve(np.diag(energy) + pressed.T @ waves[touches], pressed.T @ needed[touches])
-        shrink = -float((np.sqrt(energy) * found**2).sum()) / (4.0 * radius)
-    return np.append(shrink, found[:HARMONICS] + 1j * found[HARMONICS:])
+            amplitudes = np.linalg.solve(np.diag(energy) + pressed.T @ waves[touches], pressed.T @ needed[touches])
+        shrink = -float((np.sqrt(energy) * amplitudes**2).sum()) / (4.0 * radius)
+    return np.append(shrink, amplitudes[:HARMONICS] + 1j * amplitudes[HARMONICS:])
 
 
 @dataclass(frozen=True)

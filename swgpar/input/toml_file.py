@@ -125,8 +125,8 @@ def to_toml(table: Mapping[str, Any]) -> str:
     return re.sub(r"\[\n((?: +[^\[\]\n]+,\n)+) *\]", _on_one_line, text)
 
 
-def _on_one_line(found: re.Match[str]) -> str:
-    items = found[1].split(",\n")[:-1]
+def _on_one_line(match: re.Match[str]) -> str:
+    items = match[1].split(",\n")[:-1]
     return f"[{', '.join(item.strip() for item in items)}]"
 
 

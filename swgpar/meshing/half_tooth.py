@@ -97,7 +97,10 @@ class HalfTooth:
     """
 
     def __init__(self, profile: ToothProfile, recipe: ToothRecipe, interface: float, free: float) -> None:
-        self.profile, self.recipe, self.interface, self.free = profile, recipe, interface, free
+        self.profile = profile
+        self.recipe = recipe
+        self.interface = interface
+        self.free = free
         self.half_pitch = np.pi / profile.n_teeth
         s_k, s_q = block_ends(profile)
         s_tip, self.tip = self._tip(s_k)

@@ -57,7 +57,7 @@ class MappedBlocks:
 
     def add_points(self, xy: Floats) -> list[int]:
         """Return the indices of the points `xy` (n, 2), mm; new ones are added."""
-        found = []
+        indices = []
         for x, y in np.asarray(xy, dtype=np.float64):
             key = (round(x / self.scale / self.tolerance), round(y / self.scale / self.tolerance))
             # a coordinate that falls on the border of a rounding cell may end up in either of two cells
@@ -66,8 +66,8 @@ class MappedBlocks:
             if hit is None:
                 hit = self._index[key] = len(self.points)
                 self.points.append((float(x), float(y)))
-            found.append(hit)
-        return found
+            indices.append(hit)
+        return indices
 
     def add_block(self, bottom: Floats, right: Floats, top: Floats, left: Floats) -> None:
         """Add a block: `bottom` and `top` (n, 2) run left to right, `left` and `right` (m, 2) upwards."""

@@ -41,7 +41,10 @@ from swgpar.solve.solve_state import NewtonSettings
 PRESSURE_LIMIT = 0.02
 """Bound of contact pressures in the tangent's geometric terms, as a share of E: above any real pressure."""
 
-NEAR, REACH, TOUCH, TIP_MARGIN = 0.25, 0.1, 0.01, 0.1
+NEAR = 0.25
+REACH = 0.1
+TOUCH = 0.01
+TIP_MARGIN = 0.1
 """Distances of the contact search over the module: faces that are evaluated, those of a flank one of which is closer
 than the second distance; faces with blocks in the tangent's pattern; radial distance of the tips."""
 

@@ -24,7 +24,10 @@ class OptimiseProgress:
     def __init__(
         self, name: str, section: OptimiseSection, known: Mapping[int, Evaluation], wanted: int, terminal: bool
     ) -> None:
-        self._name, self._objectives, self._wanted, self._shown = name, section.objective, wanted, terminal
+        self._name = name
+        self._objectives = section.objective
+        self._wanted = wanted
+        self._shown = terminal
         self._done, self._best = 0, {}
         for evaluation in known.values():
             self._take(evaluation)

@@ -95,7 +95,11 @@ class BorderedSystem:
         active : (n,) own nodes that K' has rows of
         bound : of C x in the last row when that is loaded instead of prescribed
         """
-        self.matrix, self.grounding, self.border, self.rows, self.bound = matrix, grounding, border, rows, bound
+        self.matrix = matrix
+        self.grounding = grounding
+        self.border = border
+        self.rows = rows
+        self.bound = bound
         other = int(self.into is None or not np.array_equal(active, self.active))
         if self.partition.comm.allreduce(other, op=MPI.MAX):
             for owned in (self.into, self.out):

@@ -104,7 +104,10 @@ class DiscreteProblem:
         coupling_keys: np.ndarray = NO_KEYS,
         phases: PhaseTimes,
     ) -> None:
-        self.partition, self.elements, self.supports, self.phases = partition, elements, supports, phases
+        self.partition = partition
+        self.elements = elements
+        self.supports = supports
+        self.phases = phases
         self.surface_contacts, self.balls = list(surface_contacts), balls
         self.flanks, self.contact_search = list(flanks), contact_search
         self.penalty_contacts: list[PenaltyContact] = [*surface_contacts, *flanks]

@@ -42,7 +42,10 @@ class ReusedFactor:
         self.fresh, self.discarded = False, True
         self.layout: tuple[int, ...] = ()
         self.iterations: list[int] = []
-        self.goal, self.fewest, self.surplus, self.last = 0.0, MAX_ITERATIONS, 0, 0
+        self.goal = 0.0
+        self.fewest = MAX_ITERATIONS
+        self.surplus = 0
+        self.last = 0
         operator = PETSc.Mat().createPython([like.getSizes()] * 2, _Multiply(multiply), comm=like.comm)
         operator.setUp()
         self.ksp = PETSc.KSP().create(comm=like.comm)

@@ -50,7 +50,10 @@ class LineSearch:
         x: PETSc.Vec,
         phases: PhaseTimes,
     ) -> None:
-        self.system, self.residual, self.x, self.phases = system, residual, x, phases
+        self.system = system
+        self.residual = residual
+        self.x = x
+        self.phases = phases
         self.trial, self.force = x.duplicate(), x.duplicate()
         self.descending, self.max_node_step = False, np.inf
 
@@ -115,7 +118,10 @@ class LineSearch:
             value = self.force.dot(step) / start
             return value if np.isfinite(value) and not collapsed else -1e30
 
-        low, low_value, high, high_value = 0.0, 1.0, 1.0, slope(1.0)
+        low = 0.0
+        low_value = 1.0
+        high = 1.0
+        high_value = slope(1.0)
         t, value = 1.0, high_value
         least, trials = (0.0, self.DESCENDING_TRIALS) if self.descending else (-self.TARGET, self.TRIALS)
         for _ in range(trials):

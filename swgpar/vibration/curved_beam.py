@@ -49,7 +49,10 @@ class BeamSection:
 
 def solutions(section: BeamSection, angle: float) -> np.ndarray:
     """P: (3, 6), values of u, w (m) and r (rad) of the six solutions at an angle from the element's middle."""
-    a, c, s, j = angle, np.cos(angle), np.sin(angle), 1.0 + section.slenderness
+    a = angle
+    c = np.cos(angle)
+    s = np.sin(angle)
+    j = 1.0 + section.slenderness
     values = np.array(
         [
             [1.0, c, s, a * s, 0.0, a * c],

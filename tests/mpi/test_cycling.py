@@ -55,7 +55,10 @@ def newton(block: Block, watch: bool, longest: float = 1e9) -> tuple[float, int,
     """Last residual, iterations, and whether active sets have returned."""
     search, visited = LineSearch(block, block.residual, block.x, PhaseTimes()), VisitedSets()
     search.max_node_step = longest
-    force, step, returned, k = block.x.duplicate(), block.x.duplicate(), False, 0
+    force = block.x.duplicate()
+    step = block.x.duplicate()
+    returned = False
+    k = 0
     block.residual(block.x, force)
     while force.norm() > 1e-12 and k < 50:
         returned = visited.returns(fingerprint(MPI.COMM_SELF, block.sets()), force.norm()) or returned

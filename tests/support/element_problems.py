@@ -189,7 +189,10 @@ def thick_cylinder(poisson: float, level: int, plane: bool) -> Linear:
 
     Hexahedra in plane strain, quadrilaterals in plane stress.
     """
-    k, a, b, young = 2**level, 3.0, 9.0, 1000.0
+    k = 2**level
+    a = 3.0
+    b = 9.0
+    young = 1000.0
     points, elements, fixed, flat = arc(np.linspace(0.0, 0.5 * np.pi, 3 * k + 1), np.linspace(a, b, 5 * k + 1), plane)
     fixed[:, 2] = True
     inner = np.flatnonzero(flat[:, 1] < a + 1e-9)

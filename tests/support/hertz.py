@@ -11,7 +11,10 @@ from swgpar.contact.flank_pairs import PlacedFaces
 from swgpar.contact.segments import SAMPLES, face_corners
 from swgpar.materials import Isotropic
 
-YOUNG, POISSON, RADIUS, SIZE = 210e3, 0.3, 1000.0, 50.0
+YOUNG = 210e3
+POISSON = 0.3
+RADIUS = 1000.0
+SIZE = 50.0
 """MPa, of both bodies; mm, radius, height and width of the blocks. The half width is about 1 mm: strains are 5e-4."""
 
 APPROACH, FINE, GROWTH = 2.2e-3, 1.3, 0.8

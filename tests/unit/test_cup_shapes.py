@@ -185,7 +185,11 @@ def torsional_stiffness(mesh: SectorMesh, case: DriveDesign, begin: float, end: 
     # tangential, radial and axial components at a node, those of a pair of nodes on the sides are the same
     x, y = mesh.coords[:, :2].T / np.hypot(*mesh.coords[:, :2].T)
     frame = np.zeros((len(x), 3, 3))
-    frame[:, 0, 0], frame[:, 1, 0], frame[:, 0, 1], frame[:, 1, 1], frame[:, 2, 2] = -y, x, x, y, 1.0
+    frame[:, 0, 0] = -y
+    frame[:, 1, 0] = x
+    frame[:, 0, 1] = x
+    frame[:, 1, 1] = y
+    frame[:, 2, 2] = 1.0
     number = np.arange(len(x))
     number[mesh.ccw_nodes] = mesh.cw_nodes
     local = np.einsum(

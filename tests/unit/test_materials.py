@@ -51,7 +51,10 @@ def test_two_rings_of_two_materials() -> None:
 
     The radial displacement is A r + B / r in each ring, with the stress E / (1 - nu²) ((1 + nu) A - (1 - nu) B / r²).
     """
-    a, b, c, n = 3.0, 5.0, 9.0, 40
+    a = 3.0
+    b = 5.0
+    c = 9.0
+    n = 40
     radii = np.concatenate([np.linspace(a, b, n + 1), np.linspace(b, c, n + 1)[1:]])
     points, quads, fixed, flat = arc(np.linspace(0.0, 0.5 * np.pi, 2 * n + 1), radii, True)
     mesh = ElementMesh(points, quads, STEEL)

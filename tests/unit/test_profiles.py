@@ -142,7 +142,10 @@ def from_rack(cut: Cutter, points: np.ndarray, psi: np.ndarray) -> np.ndarray:
 
 def from_shaper(cut: Cutter, points: np.ndarray, psi: np.ndarray) -> np.ndarray:
     """The same for the left half of a shaper's tooth in the slot beside the ring's tooth."""
-    n_g, m, alpha, rho = cut.cutter_teeth, cut.module, cut.pressure_angle, cut.tip_radius
+    n_g = cut.cutter_teeth
+    m = cut.module
+    alpha = cut.pressure_angle
+    rho = cut.tip_radius
     r_g, r_b = 0.5 * n_g * m, 0.5 * n_g * m * np.cos(alpha)
     centre = np.array([0.0, cut.r_pitch - r_g]).reshape(2, *[1] * psi.ndim)
     x, y = clockwise(clockwise(points, psi) - centre, -psi * cut.n_teeth / n_g)

@@ -83,7 +83,10 @@ def test_tangent_and_balance_on_a_curved_deformed_master() -> None:
 
 def over_the_end(along: float, across: float) -> float:
     """Area (mm2) of a face that touches on a flat flank, shifted along profile and width (mm)."""
-    s, z, length, depth = np.array([0.0, 0.4, 1.0]), np.array([-0.5, 0.5]), 0.35, 1e-3
+    s = np.array([0.0, 0.4, 1.0])
+    z = np.array([-0.5, 0.5])
+    length = 0.35
+    depth = 1e-3
     flanks = master(np.column_stack([s, 0.0 * s]), np.tile([1.0, 0.0], (3, 1)), s, z, 4)
     # arc length on the slave runs the other way
     corners = np.array([[length, 0, -0.5], [0, 0, -0.5], [0, 0, 0.5], [length, 0, 0.5]])

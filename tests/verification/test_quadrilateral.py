@@ -220,7 +220,11 @@ def test_pinched_thin_ring() -> None:
 
 def test_thick_cylinder_in_plane_stress() -> None:
     """Lame's solution for a pressure inside, a = 1, b = 2; displacement and hoop stress converge as h^2."""
-    a, b, p, young, poisson = 1.0, 2.0, 1e-3, 210e3, 0.3
+    a = 1.0
+    b = 2.0
+    p = 1e-3
+    young = 210e3
+    poisson = 0.3
     factor = p * a**2 / (b**2 - a**2)
     exact_u = factor / young * ((1 - poisson) * a + (1 + poisson) * b**2 / a)
     exact_hoop = factor * (1.0 + b**2 / a**2)

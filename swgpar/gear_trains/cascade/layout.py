@@ -15,7 +15,13 @@ from swgpar.gear_trains.cascade.flex_unit import FlexUnits
 from swgpar.gear_trains.cascade.static_sharing import MESH_COUNTS, PAIRS, SIDES
 from swgpar.gear_trains.kernel import MESH, SHAFT
 
-RACK, PINION, G1, G2, G3, G4, FLYWHEEL = 0, 1, 9, 17, 19, 21, 22
+RACK = 0
+PINION = 1
+G1 = 9
+G2 = 17
+G3 = 19
+G4 = 21
+FLYWHEEL = 22
 DOFS, MESHES, SHAFTS = 23, 18, 11
 
 

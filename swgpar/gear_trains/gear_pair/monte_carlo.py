@@ -40,7 +40,10 @@ def simulate(
 
     state = np.zeros((2 * n + 4, samples))
     state[:n] = start[:, None]
-    q, noise, f0, f1 = state[: 2 * n], state[2 * n : 2 * n + 2], state[-2], state[-1]
+    q = state[: 2 * n]
+    noise = state[2 * n : 2 * n + 2]
+    f0 = state[-2]
+    f1 = state[-1]
     f0[:] = force(system.mesh_stiffness(0.0)[0], float(DEFLECTION_ROW[0] @ start), half_backlash)
 
     def rows() -> Iterator[np.ndarray]:

@@ -51,14 +51,14 @@ def advise(name: str, lengths: Mapping[str, float], builds: Callable[[str, float
     builds : whether the flank can be built with another value of a key
     unit : module, mm; a length of zero is varied up to it
     """
-    found = []
+    ranges = []
     for key, value in lengths.items():
         working = working_range(key, value, lambda x, key=key: builds(key, x), unit)
         if working is not None:
-            found.append(working)
-    if not found:
+            ranges.append(working)
+    if not ranges:
         return ""
-    best = min(found, key=lambda working: working.change)
+    best = min(ranges, key=lambda working: working.change)
     direction = "larger" if best.example > best.value else "smaller"
     return (
         f"make {name}.{best.key} {direction}: allowed {show(best.low)} to {show(best.high)} mm with the other keys as "

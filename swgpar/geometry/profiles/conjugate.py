@@ -118,13 +118,13 @@ class Envelope:
 
     def solved(self, segment: FlankSegment, s: Floats, psi: Floats) -> Contacts:
         """Contacts at `s` : (n,) mm of a segment, by Newton's method from psi (n,) rad."""
-        found = self.contacts(segment, s, psi)
+        contacts = self.contacts(segment, s, psi)
         for _ in range(12):
-            step = found.value / found.slope
-            found = self.contacts(segment, s, found.psi - step)
+            step = contacts.value / contacts.slope
+            contacts = self.contacts(segment, s, contacts.psi - step)
             if not np.max(np.abs(step), initial=0.0) > 1e-13:
                 break
-        return found
+        return contacts
 
     def _at(self, s: float, psi: float) -> Contacts:
         """The same at one arc length of the whole given flank."""
@@ -148,16 +148,16 @@ class Envelope:
         if not changes.size:
             return np.empty(0), np.empty(0)
         start = psi[changes[np.argmin(np.abs(psi[changes]))]]
-        found = np.full(STATIONS, np.nan)
+        psi_of = np.full(STATIONS, np.nan)
         for indices in (range(middle, STATIONS), range(middle, -1, -1)):
             before = start
             for k in indices:
                 contact = self._at(float(s[k]), before)
                 if not contact.speed[0] > 0.0 or not abs(contact.psi[0] - before) < np.radians(5.0):
                     break
-                found[k] = before = float(contact.psi[0])
-        known = np.isfinite(found)
-        return s[known], found[known]
+                psi_of[k] = before = float(contact.psi[0])
+        known = np.isfinite(psi_of)
+        return s[known], psi_of[known]
 
     def point(self, s: float) -> tuple[complex, float]:
         """Point, mm, and tangent angle, rad, from tip to root, at the arc length s, mm, of the given flank."""
@@ -168,27 +168,27 @@ class Envelope:
         """Piece of the given segment `index` between its local arc lengths `low` and `high`, mm, from tip to root."""
         segment, begin = self.given.segments[index], float(self.given.breaks[index])
         s = np.linspace(low, high, PIECE_STATIONS)
-        found = self.solved(segment, s, np.interp(begin + s, *self.branch))
+        contacts = self.solved(segment, s, np.interp(begin + s, *self.branch))
         # an error of psi moves the point along the envelope, and off it with its square only
-        psi = CubicHermiteSpline(s, found.psi, found.psi_rate)
+        psi = CubicHermiteSpline(s, contacts.psi, contacts.psi_rate)
 
         def evaluate(t: Floats) -> CurvePoints:
             s = high + (low - high) * t
-            found = self.contacts(segment, s, psi(s))
-            point, span = np.stack((found.point.real, found.point.imag), axis=-1), low - high
-            return CurvePoints(point, found.angle, np.abs(span * found.speed), span * found.angle_rate)
+            contacts = self.contacts(segment, s, psi(s))
+            point, span = np.stack((contacts.point.real, contacts.point.imag), axis=-1), low - high
+            return CurvePoints(point, contacts.angle, np.abs(span * contacts.speed), span * contacts.angle_rate)
 
         return CurvedSegment("conjugate", evaluate)
 
     def pieces(self, low: float, high: float) -> list[Segment | CurvedSegment]:
         """Segments between two arc lengths, mm, of the given flank, from the tip to the root of the envelope."""
-        found: list[Segment | CurvedSegment] = []
+        pieces: list[Segment | CurvedSegment] = []
         for index in range(len(self.given.segments) - 1, -1, -1):
             begin, end = self.given.breaks[index : index + 2]
             first, last = max(begin, low) - begin, min(end, high) - begin
             if last - first > 1e-9 * self.given.length:
-                found.append(self.piece(index, first, last))
-        return found
+                pieces.append(self.piece(index, first, last))
+        return pieces
 
 
 def _vector(angle: float) -> complex:

@@ -173,7 +173,10 @@ def involute(cut: Cutter, name: str = "profile") -> ToothProfile:
     name : section of the design file, for messages. Raises InputError where gear and cutter give no flank.
     """
     _check_sizes(cut, name)
-    s, alpha, r_b, rho = cut.sign, cut.pressure_angle, cut.r_base, cut.tip_radius
+    s = cut.sign
+    alpha = cut.pressure_angle
+    r_b = cut.r_base
+    rho = cut.tip_radius
     w_tip = cut.contact_distance(cut.r_tip_circle)
     if not cut.external:
         _check_shaper(cut, w_tip, name)

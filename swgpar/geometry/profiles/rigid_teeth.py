@@ -91,8 +91,8 @@ class RigidTeeth:
 
         def gaps(rotation: np.ndarray) -> np.ndarray:
             flat, exact = np.broadcast_to(rotation, psi.shape).ravel(), 0.02 * self.module
-            found = smallest_gaps(self.spline, self.ring, self.motion, psi.ravel(), n_points, flat, exact)
-            return found.reshape(psi.shape)
+            smallest = smallest_gaps(self.spline, self.ring, self.motion, psi.ravel(), n_points, flat, exact)
+            return smallest.reshape(psi.shape)
 
         touching = np.zeros((phases, 1))
         for _ in range(2):  # the second time from where the first pair touches, so that the extrapolation is short
@@ -102,7 +102,7 @@ class RigidTeeth:
             touching = np.where(np.isfinite(before) & (after < before), closing, -np.inf).max(axis=1, keepdims=True)
             if not (np.abs(touching) < 0.5 * pitch).all():
                 return np.full_like(touching, -np.inf), before
-        found = gaps(touching)
-        if np.abs(found.min(axis=1)).max() > NEAR:
+        smallest = gaps(touching)
+        if np.abs(smallest.min(axis=1)).max() > NEAR:
             touching = np.full_like(touching, -np.inf)
-        return touching, found
+        return touching, smallest
