@@ -15,9 +15,10 @@ from swgpar.constraints.supports import SPLINE_COUPLING, Supports
 from swgpar.contact.ball_contact import BallContact
 from swgpar.contact.clearance import LOADED_SIDE, FlankClearance
 from swgpar.contact.contact import NO_KEYS, Contact, ForceTerm, PenaltyContact, largest
-from swgpar.contact.flank_state import ActiveSegments, SearchRange
+from swgpar.contact.flank_state import SearchRange
 from swgpar.contact.flanks import FlankContact
 from swgpar.contact.friction import PairKey
+from swgpar.contact.frozen_segments import FrozenSegments
 from swgpar.contact.search import FlankPair, facing_flanks
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.elements import Elements
@@ -82,6 +83,7 @@ class DiscreteProblem:
     Attributes
     ----------
     contacts : all of them;  penalty_contacts : those with multipliers;  force_terms : all that is evaluated
+    segments : freezing of the flanks' segments
     x : state vector: displacements (mm) and multipliers;  accepted : the last state found in equilibrium
     matrix : the tangent of the last `tangent`;  rows : its blocks on this rank;  matrix_rows : which of them it has
     round_off : N, largest force that a last-digit error of the positions makes, of the last `tangent`
@@ -114,6 +116,7 @@ class DiscreteProblem:
         bearing = [] if balls is None else [balls]
         self.wave_generator_contacts: list[Contact] = [*surface_contacts, *bearing]
         self.contacts: list[Contact] = [*self.wave_generator_contacts, *flanks]
+        self.segments = FrozenSegments(self.flanks, partition.comm)
         self.force_terms: list[ForceTerm] = [*self.contacts, *boundary_terms]
         self.clearances = [
             FlankClearance(contact, partition.comm, module=module, outer_radius=contact_search.outer_radius)
@@ -375,41 +378,6 @@ class DiscreteProblem:
         """Side of the flanks that carry the torque of `state`, on the flexible spline or on the ring gear."""
         counter_clockwise = (state.torque >= 0.0) != self._is_output(flanks)
         return LOADED_SIDE if counter_clockwise else -LOADED_SIDE
-
-    # -- segments of the flanks ------------------------------------------------------------------------
-
-    def freeze_segments(self) -> None:
-        """Freeze the segments of the flanks."""
-        for flanks in self.flanks:
-            flanks.freeze_segments()
-
-    def release_segments(self) -> None:
-        """Cut the segments of the flanks anew in every evaluation."""
-        for flanks in self.flanks:
-            flanks.release_segments()
-
-    def segments_frozen(self) -> bool:
-        """Whether segments are frozen on any rank: many ranks have no flanks in reach. Collective."""
-        frozen = any(flanks.frozen for flanks in self.flanks)
-        return bool(self.partition.comm.allreduce(int(frozen), op=MPI.MAX))
-
-    def freeze_friction_bounds(self) -> tuple[float, float]:
-        """Let the present pressures bound the friction on frozen segments.
-
-        Returns the largest change of these pressures and the largest of them, MPa, over all ranks; 0 without friction.
-        """
-        values = [(0.0, 0.0), *(flanks.freeze_friction_bound() for flanks in self.flanks)]
-        change, top = (largest(self.partition.comm, max(of_all)) for of_all in zip(*values))
-        return change, top
-
-    def saved_segments(self) -> list[ActiveSegments | None]:
-        """The present segments of the flanks, for `restore_segments`."""
-        return [flanks.saved_segments() for flanks in self.flanks]
-
-    def restore_segments(self, saved: list[ActiveSegments | None]) -> None:
-        """Freeze the segments that were saved."""
-        for flanks, segments in zip(self.flanks, saved):
-            flanks.restore_segments(segments)
 
     # -- state -----------------------------------------------------------------------------------------
 

@@ -184,7 +184,7 @@ class NewtonSolver:
         if decision.goal is not None:
             self.system.set_goal(decision.goal)
         if decision.near_solution:
-            self.problem.freeze_segments()
+            self.problem.segments.freeze()
         if decision.cycles:
             logger.info("   contacts do not settle in Newton iteration %d: descending line search", its)
             self._break_cycle()
@@ -193,10 +193,10 @@ class NewtonSolver:
         """Search descending, and once per solve with frozen segments and friction bounds."""
         state = self.state
         self.line_search.descending = True
-        if not state.breaker.started and not self.problem.segments_frozen():
-            self.problem.freeze_segments()
-            self.problem.freeze_friction_bounds()
-            state.breaker.active = state.breaker.started = self.problem.segments_frozen()
+        if not state.breaker.started and not self.problem.segments.are_frozen():
+            self.problem.segments.freeze()
+            self.problem.segments.freeze_friction_bounds()
+            state.breaker.active = state.breaker.started = self.problem.segments.are_frozen()
             if state.breaker.active:
                 logger.info("   segments of the flanks are frozen until the contacts have settled")
 
@@ -230,7 +230,7 @@ class NewtonSolver:
                 state.softenings.insert(0, state.penalty_share)
             elif state.phase is Phase.SOFTENED:
                 state.breaker = CycleBreaker()
-                self.problem.release_segments()
+                self.problem.segments.release()
             elif state.phase is Phase.FROZEN:
                 self._after_frozen(state)
             else:
@@ -292,7 +292,7 @@ class NewtonSolver:
             logger.info("   the frozen segments stay: with segments cut anew the contacts do not settle")
             x, segments = breaker.solution
             x.copy(self.problem.x)
-            self.problem.restore_segments(segments)
+            self.problem.segments.restore(segments)
             breaker.solution = None
         elif before is not None:
             self._take_back(state, before)
@@ -306,12 +306,12 @@ class NewtonSolver:
     def _after_frozen(self, state: SolveState) -> None:
         """Repeat with friction bounds from the present pressures until they agree; then cut the segments anew."""
         breaker = state.breaker
-        change, top = self.problem.freeze_friction_bounds()
+        change, top = self.problem.segments.freeze_friction_bounds()
         if breaker.rounds < MAX_FRICTION_ROUNDS and change > FRICTION_AGREEMENT * top:
             breaker.rounds += 1
             return
-        breaker.active, breaker.solution = False, (self.problem.x.copy(), self.problem.saved_segments())
-        self.problem.release_segments()
+        breaker.active, breaker.solution = False, (self.problem.x.copy(), self.problem.segments.saved())
+        self.problem.segments.release()
 
     def _after_converged(self, state: SolveState) -> None:
         """Search again where contact was overlooked; else augment while the penetration is too large; else accept."""

@@ -64,7 +64,7 @@ def test_tangent_is_the_derivative_of_the_residual(overrides: tuple[str, ...]) -
     x, d = problem.x, create_vector(partition)
     x.array[:], d.array[:] = base[own].ravel(), direction[own].ravel()
     problem.residual(x, create_vector(partition), state)
-    problem.freeze_segments()  # the tangent does not contain the motion of the segments' edges
+    problem.segments.freeze()  # the tangent does not contain the motion of the segments' edges
     missing = problem.tangent(problem.displacement(x), state)
     assert partition.comm.allreduce(len(missing)) == 0
     product = without_grounding(problem, d)

@@ -314,16 +314,19 @@ class Torn:
     def __init__(self, solver: NewtonSolver) -> None:
         self.solver, self.problem = solver, solver.problem
         self.torn, self.restored = False, 0
+        segments = self.problem.segments
+        self.release, self.restore = segments.release, segments.restore
+        segments.release, segments.restore = self._release, self._restore
 
     def __getattr__(self, name: str) -> object:
         return getattr(self.problem, name)
 
-    def release_segments(self) -> None:
-        self.problem.release_segments()
+    def _release(self) -> None:
+        self.release()
         self.torn = self.solver.state.breaker.solution is not None
 
-    def restore_segments(self, saved: list[ActiveSegments | None]) -> None:
-        self.problem.restore_segments(saved)
+    def _restore(self, saved: list[ActiveSegments | None]) -> None:
+        self.restore(saved)
         self.torn, self.restored = False, self.restored + 1
 
     def residual(self, x: PETSc.Vec, f: PETSc.Vec, state: LoadState) -> ResidualInfo:
