@@ -60,7 +60,7 @@ def cam(facets: int, first_node: int, first_element: int) -> list[str]:
     lines += [f"{first_node + k}, {x:.12e}, {y:.12e}, {z:.12e}" for k, (x, y, z) in enumerate(nodes)]
     lines.append("*ELEMENT, TYPE=C3D8, ELSET=CAM")
     lines += [f"{first_element + k}, " + ", ".join(map(str, e)) for k, e in enumerate(elements)]
-    lines += [*sets, "*SURFACE, NAME=CAM, TYPE=ELEMENT", "CAM, S4", "*SOLID SECTION, ELSET=CAM, MATERIAL=GEAR_MATERIAL"]
+    lines += [*sets, "*SURFACE, NAME=CAM, TYPE=ELEMENT", "CAM, S4", "*SOLID SECTION, ELSET=CAM, MATERIAL=RING_MATERIAL"]
     return lines
 
 

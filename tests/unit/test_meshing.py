@@ -628,7 +628,7 @@ def test_plane_exports_read_back(tmp_path: Path) -> None:
         end = next(k for k in range(start, len(lines)) if lines[k].startswith("*"))
         assert end - start == len(mesh.hexes) * mesh.n_sectors
         assert all(line.count(",") == 4 for line in lines[start:end])
-        section = lines.index(f"*SOLID SECTION, ELSET={gear.upper()}, MATERIAL=GEAR_MATERIAL")
+        section = lines.index(f"*SOLID SECTION, ELSET={gear.upper()}, MATERIAL={gear.upper()}_MATERIAL")
         assert lines[section + 1] == "10"
     report = mesh_report(both)
     assert sum(entry["nodes"] for entry in report.values()) == len(drive.points)
