@@ -10,9 +10,7 @@ import numpy as np
 from swgpar.design.cup_section import Cup
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import InputError
-
-THICK_CUP = 0.85
-"""Cup thickness over rim thickness above which the cup continues the layers below the root as well."""
+from swgpar.geometry.drive_geometry import THICK_CUP
 
 THINNEST = 0.1
 """Thickness of a wall over that of the rim, at least."""

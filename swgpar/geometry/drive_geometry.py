@@ -9,6 +9,9 @@ from typing import Literal
 from swgpar.geometry.cup_wall import CupWall
 from swgpar.geometry.profiles import ToothProfile
 
+THICK_CUP = 0.85
+"""Cup thickness over rim thickness above which the cup continues the layers below the root as well."""
+
 
 @dataclass(frozen=True)
 class GearGeometry:
@@ -35,6 +38,11 @@ class CupGeometry:
     thickness_coef: float
     back_fillet: float
     clamping_radius: float | None
+
+    @property
+    def continues_root(self) -> bool:
+        """Whether the wall continues the layers of elements below the root as well."""
+        return self.thickness_coef > THICK_CUP
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from swgpar.geometry.drive_geometry import DriveGeometry
 from swgpar.meshing.cup import joined_columns, meridian, transition_station
 from swgpar.meshing.housing import housing_radii
 from swgpar.meshing.recipe import MeshRecipe, ToothRecipe
-from swgpar.meshing.tooth_sector import continues_root, gap_elements, require_sections, tooth_recipe
+from swgpar.meshing.tooth_sector import gap_elements, require_sections, tooth_recipe
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ def _counts(drive: DriveGeometry, recipe: MeshRecipe, gear: str) -> SectorCounts
     if external and drive.cup is not None:
         cup = recipe.cup
         stations = len(meridian(drive.cup, cup, teeth.under).inner) - 1
-        depth = teeth.rim + (teeth.under if continues_root(drive) else 0)
+        depth = teeth.rim + (teeth.under if drive.cup.continues_root else 0)
         with_all, joined, threes = stations, around, 0
         if cup.joined_columns:
             groups = joined_columns(around)

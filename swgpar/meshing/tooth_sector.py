@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from swgpar.checks.cup_checks import THICK_CUP
 from swgpar.errors import InputError
 from swgpar.geometry.arrays import Floats, Ints
 from swgpar.geometry.drive_geometry import DriveGeometry, FlankCrowning
@@ -24,11 +23,6 @@ from swgpar.meshing.sector import FlankGrid, SectorMesh
 from swgpar.meshing.sweep import axial_stations, sweep_line, sweep_quads, symmetric_steps
 
 
-def continues_root(drive: DriveGeometry) -> bool:
-    """Whether the cup of the flexible spline continues the layers below the root as well."""
-    return drive.cup is not None and drive.cup.thickness_coef > THICK_CUP
-
-
 def _radii(drive: DriveGeometry, gear: str, recipe: ToothRecipe) -> tuple[float, float, bool]:
     """Return interface and free radius, mm, and whether the cup takes in the layers below the root."""
     rim, r_root = drive.gears[gear].rim, drive.gears[gear].profile.r_root_circle
@@ -38,7 +32,7 @@ def _radii(drive: DriveGeometry, gear: str, recipe: ToothRecipe) -> tuple[float,
         return r_root + rim - lower, r_root + rim, False
     if drive.cup is None:
         return drive.inner_radius + lower, drive.inner_radius, False
-    if continues_root(drive):
+    if drive.cup.continues_root:
         return drive.inner_radius + lower, drive.inner_radius, True
     return drive.inner_radius + drive.cup.thickness_coef * rim, drive.inner_radius, False
 
