@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.constraints.supports import SPLINE_COUPLING, Supports
+from swgpar.constraints.supports import Supports
 from swgpar.contact.ball_contact import BallContact
-from swgpar.contact.clearance import LOADED_SIDE, FlankClearance
+from swgpar.contact.clearance import FlankClearance
 from swgpar.contact.contact import NO_KEYS, Contact, ForceTerm, PenaltyContact, largest
 from swgpar.contact.flank_state import SearchRange
 from swgpar.contact.flanks import FlankContact
@@ -30,6 +30,7 @@ from swgpar.geometry.rotation import to_owners
 from swgpar.load.load_states import LoadState
 from swgpar.log import PhaseTimes
 from swgpar.petsc import PETSc
+from swgpar.solve.torque_control import TorqueControl
 
 FORCE_FLOOR = 1e-6
 """Contact force below which a residual is not judged by it, as a share of E times the module squared."""
@@ -83,7 +84,7 @@ class DiscreteProblem:
     Attributes
     ----------
     contacts : all of them;  penalty_contacts : those with multipliers;  force_terms : all that is evaluated
-    segments : freezing of the flanks' segments
+    segments : freezing of the flanks' segments;  torque_control : of the output's motion
     x : state vector: displacements (mm) and multipliers;  accepted : the last state found in equilibrium
     matrix : the tangent of the last `tangent`;  rows : its blocks on this rank;  matrix_rows : which of them it has
     round_off : N, largest force that a last-digit error of the positions makes, of the last `tangent`
@@ -118,10 +119,11 @@ class DiscreteProblem:
         self.contacts: list[Contact] = [*self.wave_generator_contacts, *flanks]
         self.segments = FrozenSegments(self.flanks, partition.comm)
         self.force_terms: list[ForceTerm] = [*self.contacts, *boundary_terms]
-        self.clearances = [
+        clearances = [
             FlankClearance(contact, partition.comm, module=module, outer_radius=contact_search.outer_radius)
             for contact in flanks
         ]
+        self.torque_control = TorqueControl(supports, clearances)
         self.module = module
         self.ring_sectors, self.whole_teeth = ring_sectors, whole_teeth
         self.scale, self.coupling_keys = supports.scale, coupling_keys
@@ -349,35 +351,10 @@ class DiscreteProblem:
         squares = self.partition.comm.allreduce(squares, op=MPI.SUM)
         return float(np.finfo(float).eps * self._extent * np.sqrt(squares))
 
-    def output_step_bound(self, state: LoadState) -> float | None:
-        """Bound of the output's motion in a Newton step, in units of the last border; None where it is prescribed."""
-        if state.control != "torque":
-            return None
-        return self.scale * min(
-            clearance.largest_rotation(self._loaded_side(clearance.flanks, state)) for clearance in self.clearances
-        )
-
     def closing_rotation(self, state: LoadState) -> float:
-        """Rotation (rad) of the output, in the direction of the torque of `state`, that brings flanks together.
-
-        They are those of the output, or where the flexible spline rotates with it those of the fixed ring gear. 0 where
-        they are so close that a Newton step does the rest, or where none is near. Collective.
-        """
+        """Rotation (rad) of the output that brings flanks together, see `TorqueControl`; after a search. Collective."""
         self.search(state)
-        held = self.supports.holds_spline(state)
-        (clearance,) = (one for one in self.clearances if self._is_output(one.flanks) == held)
-        clearance.flanks.evaluate(self.displacement(), state, None, None)
-        side = self._loaded_side(clearance.flanks, state)
-        return float(np.copysign(clearance.closing_rotation(side), state.torque))
-
-    def _is_output(self, flanks: FlankContact) -> bool:
-        """Whether the ring gear of these flanks is the output."""
-        return self.supports.output_gear != SPLINE_COUPLING and flanks.ring_motion.floats
-
-    def _loaded_side(self, flanks: FlankContact, state: LoadState) -> int:
-        """Side of the flanks that carry the torque of `state`, on the flexible spline or on the ring gear."""
-        counter_clockwise = (state.torque >= 0.0) != self._is_output(flanks)
-        return LOADED_SIDE if counter_clockwise else -LOADED_SIDE
+        return self.torque_control.closing_rotation(self.displacement(), state)
 
     # -- state -----------------------------------------------------------------------------------------
 

@@ -155,7 +155,7 @@ class NewtonSolver:
         if state.load_state.stage < Stage.ROTATE and state.residuals[-1] > SETTLED:
             self.system.discard_factor()
         p.stateIncrease()
-        bound = problem.output_step_bound(state.load_state)
+        bound = problem.torque_control.output_step_bound(state.load_state)
         border, rows = problem.supports.border(u, state.load_state)
         grounding, active = problem.supports.grounding(u), problem.matrix_rows.active
         self.system.set_system(problem.matrix, active, grounding, border, rows, bound)

@@ -40,7 +40,7 @@ def system(overrides: tuple[str, ...], control: str) -> tuple[DriveModel, PETSc.
     problem.residual(problem.x, create_vector(partition), state)
     problem.tangent(u, state)
     border, rows = problem.supports.border(u, state)
-    bound = problem.output_step_bound(state)
+    bound = problem.torque_control.output_step_bound(state)
     model.solver.system.set_system(
         problem.matrix, problem.matrix_rows.active, problem.supports.grounding(u), border, rows, bound
     )

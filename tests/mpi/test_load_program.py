@@ -129,7 +129,7 @@ def test_lost_motion_of_a_stiff_drive_is_its_clearance() -> None:
     stepper, gap = load_stepper(design), []
     for state in load_sequence(design).states:
         stepper.advance(state)
-        gap.append(stepper.problem.clearances[0].gap(LOADED_SIDE))
+        gap.append(stepper.problem.torque_control.clearances[0].gap(LOADED_SIDE))
         assert stepper.row()["pairs_in_contact"] == 0
     closed = 0.99 * half + 0.01 * half * gap[-1] / (gap[-2] - gap[-1])
     print(f"clearance {2.0 * closed * 60.0:.5f}, lost motion {2.0 * half * 60.0:.5f} arc minutes")

@@ -1,0 +1,53 @@
+"""Motion of a loaded output: how far it may move in a Newton step, and what closes the backlash."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from swgpar.constraints.supports import SPLINE_COUPLING, Supports
+from swgpar.contact.clearance import LOADED_SIDE, FlankClearance
+from swgpar.contact.flanks import FlankContact
+from swgpar.load.load_states import LoadState
+
+
+class TorqueControl:
+    """Bounds and closes the clearance of the flanks that carry the torque; all methods are collective.
+
+    supports : of the drive;  clearances : of the flanks, one for each ring gear
+    """
+
+    def __init__(self, supports: Supports, clearances: Sequence[FlankClearance]) -> None:
+        self.supports, self.clearances = supports, clearances
+
+    def output_step_bound(self, state: LoadState) -> float | None:
+        """Bound of the output's motion in a Newton step, in units of the last border; None where it is prescribed."""
+        if state.control != "torque":
+            return None
+        return self.supports.scale * min(
+            clearance.largest_rotation(self._loaded_side(clearance.flanks, state)) for clearance in self.clearances
+        )
+
+    def closing_rotation(self, u: np.ndarray, state: LoadState) -> float:
+        """Rotation (rad) of the output, in the direction of the torque of `state`, that brings flanks together.
+
+        They are those of the output, or where the flexible spline rotates with it those of the fixed ring gear. 0 where
+        they are so close that a Newton step does the rest, or where none is near.
+
+        u : (n_local, 3) mm, of the last search
+        """
+        held = self.supports.holds_spline(state)
+        (clearance,) = (one for one in self.clearances if self._is_output(one.flanks) == held)
+        clearance.flanks.evaluate(u, state, None, None)
+        side = self._loaded_side(clearance.flanks, state)
+        return float(np.copysign(clearance.closing_rotation(side), state.torque))
+
+    def _is_output(self, flanks: FlankContact) -> bool:
+        """Whether the ring gear of these flanks is the output."""
+        return self.supports.output_gear != SPLINE_COUPLING and flanks.ring_motion.floats
+
+    def _loaded_side(self, flanks: FlankContact, state: LoadState) -> int:
+        """Side of the flanks that carry the torque of `state`, on the flexible spline or on the ring gear."""
+        counter_clockwise = (state.torque >= 0.0) != self._is_output(flanks)
+        return LOADED_SIDE if counter_clockwise else -LOADED_SIDE
