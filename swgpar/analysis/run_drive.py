@@ -68,7 +68,7 @@ def run_drive(design: DriveDesign, options: RunOptions) -> DriveData:
         elif not resumed:
             way = "taking over loaded states" if kept.found(comm) else "starting from the beginning"
             logger.info("no increment was saved: %s", way)
-        what, sequence = identity(design, recipe, options.accuracy), load_sequence(design)
+        sequence, what = load_sequence(design), identity(design, recipe, options.accuracy)
         chosen = None
         if options.accuracy is not None:
             if resumed:
