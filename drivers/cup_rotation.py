@@ -42,7 +42,7 @@ def main() -> float:
         columns = ("step", "wg_angle_deg", "fs_s1", "wg_torque_Nmm")
         for step, angle, stress, torque in zip(*(result.history[name] for name in columns), strict=True):
             print(f"step {step:>3}  {angle:7.2f} deg  s1 {stress:7.1f} MPa  input torque {torque:8.2f} N mm")
-    return result.summary["means"].get("fs_s1", float("nan"))
+    return result.summary.rotation.means.get("fs_s1", float("nan"))
 
 
 if __name__ == "__main__":
