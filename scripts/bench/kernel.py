@@ -35,7 +35,7 @@ def main() -> None:
     model = build_drive_model(design, load_recipe(arguments.mesh), comm=MPI.COMM_SELF)
     problem, local, elements = model.problem, model.problem.local_nodes, model.elements
     problem.set_pattern(np.zeros(0, dtype=np.int64))
-    rows, blocks, matrix = problem.rows, problem.element_blocks, problem.matrix
+    rows, blocks, matrix = problem.rows, problem.block_indices, problem.matrix
 
     def insert() -> None:
         fill_matrix(matrix, rows, problem.matrix_rows)

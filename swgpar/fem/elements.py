@@ -141,12 +141,12 @@ class BodyElements:
         self,
         u: np.ndarray,
         residual: np.ndarray | None,
-        positions: list[np.ndarray] | None = None,
+        block_indices: list[np.ndarray] | None = None,
         values: np.ndarray | None = None,
     ) -> None:
         """Add the body's internal forces to `residual` (n_local, 3) N and tangent blocks (N/mm) to `values`.
 
-        u : (n_local, 3) mm;  positions : of the blocks of the elements of every kind in `values`
+        u : (n_local, 3) mm;  block_indices : of the elements' blocks of every kind in `values`
         Raises FloatingPointError where an element has collapsed.
         """
         for k, elements in enumerate(self.assembled):
@@ -159,7 +159,7 @@ class BodyElements:
                     elements.sixths,
                     u,
                     residual,
-                    None if positions is None else positions[k],
+                    None if block_indices is None else block_indices[k],
                     values,
                 )
 
@@ -216,12 +216,12 @@ class TangentPattern:
     """Blocks of the tangent's owned rows that elements, multipliers and the diagonal need.
 
     keys : sorted row * n_global + column of the blocks
-    positions : of each body's and kind's (n, m * m) element blocks among the keys, -1 for blocks of other ranks
+    block_indices : of each body's and kind's (n, m * m) element blocks among the keys, -1 for blocks of other ranks
     nodes_without_elements : (n,) owned local nodes, which have no blocks
     """
 
     keys: np.ndarray
-    positions: list[list[np.ndarray]]
+    block_indices: list[list[np.ndarray]]
     nodes_without_elements: np.ndarray
 
 
@@ -269,8 +269,8 @@ class Elements:
             keys.append(multipliers * partition.n_global + multipliers)
         keys = np.unique(np.concatenate(keys))
         keys = keys[keys >= 0]
-        positions = [[np.where(block >= 0, np.searchsorted(keys, block), -1) for block in body] for body in blocks]
-        return TangentPattern(keys, positions, np.flatnonzero(~touched))
+        block_indices = [[np.where(block >= 0, np.searchsorted(keys, block), -1) for block in body] for body in blocks]
+        return TangentPattern(keys, block_indices, np.flatnonzero(~touched))
 
     def block_keys(self, conn: np.ndarray) -> np.ndarray:
         """Keys row * n_global + column (n, m * m) of the owned blocks of elements, -1 elsewhere; conn : (n, m)."""
@@ -282,7 +282,7 @@ class Elements:
         return keys.reshape(len(conn), conn.shape[1] ** 2)
 
     def rows(self, extra: np.ndarray, number: np.ndarray) -> tuple[BlockRows, list[list[np.ndarray]]]:
-        """Rows of the tangent for the elements and further blocks, and the positions of element blocks.
+        """Rows of the tangent for the elements and further blocks, and the indices of element blocks among them.
 
         extra : keys row * n_global + column of contact blocks;  number : (n_local,) int32 global numbers
         """
@@ -291,7 +291,7 @@ class Elements:
         row, column = np.divmod(keys, self.partition.n_global)
         first = self.partition.row_start
         start = np.searchsorted(row, np.arange(first, first + self.partition.n_own + 1))
-        position = np.searchsorted(keys, own_keys)
+        index = np.searchsorted(keys, own_keys)
         rows = BlockRows(
             start.astype(np.int64),
             column.astype(np.int32),
@@ -301,21 +301,21 @@ class Elements:
             keys,
             self.symmetric,
         )
-        return rows, [[np.where(own >= 0, position[own], -1) for own in body] for body in self.pattern.positions]
+        return rows, [[np.where(own >= 0, index[own], -1) for own in body] for body in self.pattern.block_indices]
 
     def assemble(
         self,
         u: np.ndarray,
         residual: np.ndarray | None,
         rows: BlockRows | None,
-        positions: list[list[np.ndarray]] | None,
+        block_indices: list[list[np.ndarray]] | None,
     ) -> None:
         """Add internal forces to `residual` (n_local, 3) N and tangent blocks (N/mm) to `rows.values`.
 
-        u : (n_local, 3) mm;  positions : of the element blocks in `rows`, as `rows` gives them
+        u : (n_local, 3) mm;  block_indices : of the element blocks in `rows`, as `rows` gives them
         Raises FloatingPointError where an element has collapsed.
         """
         for k, body in enumerate(self.bodies.values()):
             body.assemble(
-                u, residual, None if positions is None else positions[k], None if rows is None else rows.values
+                u, residual, None if block_indices is None else block_indices[k], None if rows is None else rows.values
             )

@@ -133,7 +133,7 @@ class DiscreteProblem:
         self.pattern: np.ndarray | None = None
         self.rows: BlockRows | None = None
         self.matrix_rows: MatrixRows | None = None
-        self.element_blocks: list[list[np.ndarray]] = []
+        self.block_indices: list[list[np.ndarray]] = []
         self.matrix: PETSc.Mat | None = None
         self._extent = largest(partition.comm, float(np.abs(self.positions()).max(initial=0.0)))
         self.round_off = 0.0
@@ -272,7 +272,7 @@ class DiscreteProblem:
                 self.rows.number = self.local_nodes.number
                 return
             self.pattern = pattern
-            self.rows, self.element_blocks = self.elements.rows(pattern, self.local_nodes.number)
+            self.rows, self.block_indices = self.elements.rows(pattern, self.local_nodes.number)
             if self.matrix is not None:
                 self.matrix.destroy()
             work = self.x.duplicate()
@@ -333,7 +333,7 @@ class DiscreteProblem:
         """
         with self.phases("tangent"):
             self.rows.values[:] = 0.0
-            self.elements.assemble(u, None, self.rows, self.element_blocks)
+            self.elements.assemble(u, None, self.rows, self.block_indices)
             missing = self._evaluate_terms(u, state, None, self.rows)
             self.supports.add_blocks(u, self.rows)
             add_unit_diagonal(self.rows, self.partition, self.scale)
