@@ -36,7 +36,8 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "sphinx-mathjax-offline",  # equations without a network
 ]
-numfig = True  # equations and figures have the number of their page, so that other pages can refer to them
+# equations and figures have the number of their page, so that other pages can refer to them
+numfig = True
 numfig_secnum_depth = 1
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 exclude_patterns = [
@@ -51,7 +52,14 @@ exclude_patterns = [
 ]
 suppress_warnings = ["toc.empty_glob", "config.cache"]
 
-myst_enable_extensions = ["amsmath", "attrs_inline", "colon_fence", "deflist", "dollarmath", "tasklist"]
+myst_enable_extensions = [
+    "amsmath",
+    "attrs_inline",
+    "colon_fence",
+    "deflist",
+    "dollarmath",
+    "tasklist",
+]
 myst_heading_anchors = 3
 
 autodoc_typehints = "description"

@@ -1,4 +1,5 @@
-"""An elastic ring on a rigid surface: the drive's elements, contact and solver on one body without teeth."""
+"""An elastic ring on a rigid surface: the drive's elements, contact and solver on one body without
+teeth."""
 
 from __future__ import annotations
 
@@ -36,7 +37,8 @@ REFERENCE_LENGTH = 1.0
 
 
 AROUND = 2
-"""Elements around a sector: even, so that nodes lie on its middle, which for sector 0 is the major axis."""
+"""Elements around a sector: even, so that nodes lie on its middle, which for sector 0 is the major
+axis."""
 
 
 def ring_sector(
@@ -48,7 +50,8 @@ def ring_sector(
     ----------
     inner, outer, width : float, mm
     sectors : int
-        Sectors of the whole ring, two elements around each; a multiple of 4 has nodes every 45 degrees.
+        Sectors of the whole ring, two elements around each; a multiple of 4 has nodes every 45
+        degrees.
     radial, axial : int
         Elements through the thickness and along the width; the plane model has one layer.
     plane : bool
@@ -57,7 +60,10 @@ def ring_sector(
     Faces ``inner`` and ``outer``, node sets ``bore`` (the inner surface) and ``outer``, no flanks.
     """
     if not 0.0 < inner < outer:
-        raise InputError(f"inner radius = {inner:g} is out of range: allowed above 0 to below {outer:g} mm (the outer)")
+        raise InputError(
+            f"inner radius = {inner:g} is out of range: allowed above 0 to below {outer:g} mm (the "
+            f"outer)"
+        )
     angle = np.pi / sectors * np.linspace(-1.0, 1.0, AROUND + 1)
     z = width * np.linspace(-0.5, 0.5, (1 if plane else axial) + 1)
     return annular_sector("ring", np.linspace(inner, outer, radial + 1), angle, z, sectors, plane)
@@ -75,8 +81,11 @@ class PlainRingDesign:
     width: float
     plane: bool
     material: Material
-    # a support touches over tenths of a millimetre: many points per facet, and a penalty as of the flanks
-    contact: sections.Contact = sections.Contact(wg_penalty_coef=50.0, wg_quadrature=7, penetration_tolerance=1e-4)
+    # a support touches over tenths of a millimetre: many points per facet, and a penalty as of the
+    # flanks
+    contact: sections.Contact = sections.Contact(
+        wg_penalty_coef=50.0, wg_quadrature=7, penetration_tolerance=1e-4
+    )
     solver: sections.Solver = sections.Solver()
 
     @property
@@ -97,7 +106,8 @@ class PlainRingDesign:
 
 @dataclass(frozen=True)
 class RingCounts:
-    """Elements: two around each of `sectors`, `radial` through the thickness, `axial` along the width of a solid."""
+    """Elements: two around each of `sectors`, `radial` through the thickness, `axial` along the
+    width of a solid."""
 
     sectors: int
     radial: int
@@ -131,19 +141,35 @@ class RingBody:
     ----------
     design, counts : the ring and its mesh
     comm : communicator
-    copies : how many times the model makes the whole ring, which equals itself rotated by that part of a turn
+    copies : how many times the model makes the whole ring, which equals itself rotated by that part
+    of a turn
     incompatible : elements with incompatible modes
     """
 
     def __init__(
-        self, design: PlainRingDesign, counts: RingCounts, comm: MPI.Comm, copies: int, incompatible: bool = True
+        self,
+        design: PlainRingDesign,
+        counts: RingCounts,
+        comm: MPI.Comm,
+        copies: int,
+        incompatible: bool = True,
     ) -> None:
         self.design, self.copies = design, copies
         inner, width = design.inner_radius, design.width
-        mesh = ring_sector(inner, design.outer_radius, width, counts.sectors, counts.radial, counts.axial, design.plane)
+        mesh = ring_sector(
+            inner,
+            design.outer_radius,
+            width,
+            counts.sectors,
+            counts.radial,
+            counts.axial,
+            design.plane,
+        )
         count, fixed = counts.sectors // copies, np.zeros(0, dtype=np.int32)
         body = Body(mesh, (design.material,), width, incompatible)
-        layout = BodyLayout(body=body, first_tooth=0, count=count, closed=True, copies=copies, fixed=fixed)
+        layout = BodyLayout(
+            body=body, first_tooth=0, count=count, closed=True, copies=copies, fixed=fixed
+        )
         self.mesh, self.partition = mesh, Partition([layout], comm)
         self.elements = Elements(self.partition)
         self.body = self.elements.bodies[body.name]
@@ -173,7 +199,8 @@ class RingBody:
 
 
 def cam_or_part_pose(state: LoadState) -> SurfacePose | None:
-    """Pose of the surface: that of the cam, or of its parts that move along the major axis like pins."""
+    """Pose of the surface: that of the cam, or of its parts that move along the major axis like
+    pins."""
     return pin_pose(state) if state.cam_clearance is None else cam_pose(state)
 
 
@@ -222,7 +249,8 @@ class RingModel:
         self.solver.destroy()
 
     def spread(self, travel: float) -> int:
-        """Equilibrium with both parts moved outward by `travel` (mm, above 0) each; returns Newton's iterations."""
+        """Equilibrium with both parts moved outward by `travel` (mm, above 0) each; returns
+        Newton's iterations."""
         first = self.travel == 0.0
         if not first:
             self.problem.x.scale(travel / self.travel)  # the ring bends nearly in proportion
@@ -231,7 +259,8 @@ class RingModel:
         return iterations
 
     def mount(self) -> int:
-        """Equilibrium on the whole surface, first pushed out by its parts; returns Newton's iterations."""
+        """Equilibrium on the whole surface, first pushed out by its parts; returns Newton's
+        iterations."""
         return self._solve(LoadState(Stage.DEFLECT, 1, pin_inset=0.0), True) + self._solve(
             LoadState(Stage.ENGAGE, 2, cam_clearance=0.0), True
         )
@@ -240,17 +269,20 @@ class RingModel:
         result = self.solver.solve(state, establish_contact=establish_contact)
         if not result.converged:
             raise ConvergenceError(
-                f"the ring did not converge ({state}): {result.reason}, residual {result.residual:.1e} "
+                f"the ring did not converge ({state}): {result.reason}, residual "
+                f"{result.residual:.1e} "
                 "of the contact force"
             )
         return result.iterations
 
     def stresses(self) -> dict[str, float]:
-        """Largest s1, s3 (positive in compression) and von Mises stress of the nodal averages, MPa."""
+        """Largest s1, s3 (positive in compression) and von Mises stress of the nodal averages,
+        MPa."""
         return maxima(self.comm, body_fields(self.body, self.problem.displacement()))
 
     def hysteresis_torque(self) -> float:
-        """Torque (N mm) that turns the ring under the surface if its material has a loss factor of 1; collective.
+        """Torque (N mm) that turns the ring under the surface if its material has a loss factor of
+        1; collective.
 
         Every sector of the ring is at another phase of the cycle that all go through.
         """
@@ -271,7 +303,8 @@ class RingModel:
         )
 
     def dial(self, angle: float, moved: float = 0.0) -> float:
-        """Inward reading (mm) of a dial on the outer surface at mid-width, at `angle` (rad) from the major axis.
+        """Inward reading (mm) of a dial on the outer surface at mid-width, at `angle` (rad) from
+        the major axis.
 
         Its pin slides along the ring: it stands where the deformed outline crosses the dial's line.
 
@@ -289,7 +322,9 @@ class RingModel:
         k, i = np.nonzero((start >= 0.0) & (end < 0.0) | (start <= 0.0) & (end > 0.0))
         t = start[k, i] / (start[k, i] - end[k, i])
         between = (1.0 - t)[:, None] * position[k, i] + t[:, None] * position[k, i + 1]
-        between *= radius / np.linalg.norm(between, axis=1, keepdims=True)  # on the circle, not on its chord
+        between *= radius / np.linalg.norm(
+            between, axis=1, keepdims=True
+        )  # on the circle, not on its chord
         between += (1.0 - t)[:, None] * u[k, i] + t[:, None] * u[k, i + 1]
         outward = (between - foot) @ along
         outward = outward[np.abs(outward) < radius]  # without the crossing on the far side

@@ -1,20 +1,25 @@
-"""Deflection of a steel ring pressed from inside by two bearings, beside the measurement (Appendix A of the source).
+"""Deflection of a steel ring pressed from inside by two bearings, beside the measurement (Appendix
+A of the source).
 
-Problem: a ring of 136 mm outer diameter and 4.5 mm thickness on two rigid round supports of 65 mm diameter, each of
-which moves outward by a along the major axis. Measured was the inward deflection b at 45 degrees from that axis, by a
-dial that travels with the movable support. Equations: equilibrium with finite rotations and frictionless contact, in
-plane stress (quadrilaterals with incompatible modes) and as a solid (hexahedra with incompatible modes). The modulus
-of elasticity cancels; the width, which the source does not say, hardly matters, and neither does the supports' radius.
+Problem: a ring of 136 mm outer diameter and 4.5 mm thickness on two rigid round supports of 65 mm
+diameter, each of which moves outward by a along the major axis. Measured was the inward deflection
+b at 45 degrees from that axis, by a dial that travels with the movable support. Equations:
+equilibrium with finite rotations and frictionless contact, in plane stress (quadrilaterals with
+incompatible modes) and as a solid (hexahedra with incompatible modes). The modulus of elasticity
+cancels; the width, which the source does not say, hardly matters, and neither does the supports'
+radius.
 
 Printed are, for every measured point, what a dial reads in the ways that can be meant
 
-    moving   45 degrees, the dial travels with the movable support, by a against the ring's centre: as described
-    centre   45 degrees, the dial stands still against the ring's centre: the inward deflection itself
-    fixed    45 degrees, the dial stands still as the other support does; it reads outward, the sign is turned
-    minor    90 degrees, against the ring's centre: half of what the ring's minor axis has lost
+    moving   45 degrees, the dial travels with the movable support, by a against the ring's centre:
+    as described centre   45 degrees, the dial stands still against the ring's centre: the inward
+    deflection itself fixed    45 degrees, the dial stands still as the other support does; it reads
+    outward, the sign is turned minor    90 degrees, against the ring's centre: half of what the
+    ring's minor axis has lost
 
-the torque that turns the ring, by internal friction (section A.9 set out to measure it), the change by halving all
-elements, and a check against the closed form at a micrometre. About a minute on 2 cores.
+the torque that turns the ring, by internal friction (section A.9 set out to measure it), the change
+by halving all elements, and a check against the closed form at a micrometre. About a minute on 2
+cores.
 
     mpirun -n 2 python drivers/ring_experiment.py --out results/ring_experiment
 """
@@ -60,9 +65,11 @@ SMALL = 1e-3
 def closed_form(angle: float, slenderness: float = 0.0, nu: float = 0.0) -> float:
     """Outward deflection of a ring under two opposite outward forces P, in units of P R³ / EI.
 
-    Inextensional and without shear (slenderness 0) it is ((pi/2 - angle) cos angle + sin angle) / 4 - 1 / pi for angles
-    (rad) of 0 to pi/2 from the forces. In general it is a Fourier series: load p cos n angle makes N = p R / (n² - 1),
-    |M| = N R and |Q| = n N. M + N R = 0 keeps the length of the centre line; the mean load, P / (pi R), stretches it.
+    Inextensional and without shear (slenderness 0) it is ((pi/2 - angle) cos angle + sin angle) / 4
+    - 1 / pi for angles (rad) of 0 to pi/2 from the forces. In general it is a Fourier series: load
+    p cos n angle makes N = p R / (n² - 1),
+    |M| = N R and |Q| = n N. M + N R = 0 keeps the length of the centre line; the mean load, P / (pi
+    R), stretches it.
 
     slenderness : thickness / R;  nu : Poisson's ratio, in the shear of a rectangular section
     """
@@ -81,11 +88,13 @@ def press(
     support_diameter: float = SUPPORT_DIAMETER,
     comm: MPI.Comm = MPI.COMM_WORLD,
 ) -> dict[str, np.ndarray]:
-    """Readings (n,) mm at the supports' travels (n,) mm: those of `READINGS`, and `top`, outward at the major axis.
+    """Readings (n,) mm at the supports' travels (n,) mm: those of `READINGS`, and `top`, outward at
+    the major axis.
 
     `torque` (n,) N mm is that of the internal friction with a loss factor of 1.
     """
-    # both supports are one curve, drawn apart by the pose: a stadium of which only the ends can touch
+    # both supports are one curve, drawn apart by the pose: a stadium of which only the ends can
+    # touch
     cam = simplified(design.inner_radius, 0.5 * support_diameter)
     model = RingModel(design, counts, cam, np.radians(20.0), comm)
     kind = "plane" if design.plane else "solid"
@@ -93,7 +102,15 @@ def press(
     for travel in travels:
         iterations = model.spread(float(travel))
         half = [model.dial(0.25 * np.pi, moved) for moved in (travel, 0.0, -travel)]
-        rows.append((*half[:2], -half[2], model.dial(0.5 * np.pi), -model.dial(0.0), model.hysteresis_torque()))
+        rows.append(
+            (
+                *half[:2],
+                -half[2],
+                model.dial(0.5 * np.pi),
+                -model.dial(0.0),
+                model.hysteresis_torque(),
+            )
+        )
         sizes = (2 * counts.sectors, counts.radial) + (() if design.plane else (counts.axial,))
         mesh = " x ".join(map(str, sizes))
         logger.info("%s, %s elements: a = %.3f mm, %d iterations", kind, mesh, travel, iterations)
@@ -102,9 +119,11 @@ def press(
 
 
 def thin_ring_torque(travel: np.ndarray, width: float) -> np.ndarray:
-    """Torque (n,) N mm of a thin ring with a loss factor of 1 under two forces that move by `travel` (n,) mm each.
+    """Torque (n,) N mm of a thin ring with a loss factor of 1 under two forces that move by
+    `travel` (n,) mm each.
 
-    4 P^2 R^3 / (pi E I) times the sum of n / (n^2 - 1)^2 over even n; P follows from the travel by `closed_form`.
+    4 P^2 R^3 / (pi E I) times the sum of n / (n^2 - 1)^2 over even n; P follows from the travel by
+    `closed_form`.
     """
     radius = 0.5 * (OUTER_DIAMETER - THICKNESS)
     bending = STEEL.E * width * THICKNESS**3 / 12.0
@@ -114,19 +133,28 @@ def thin_ring_torque(travel: np.ndarray, width: float) -> np.ndarray:
 
 
 def table(computed: dict[str, dict[str, np.ndarray]], width: float) -> list[str]:
-    """Lines of the tables; computed : readings in the plane and of the solid;  width : mm, of the ring"""
+    """Lines of the tables; computed : readings in the plane and of the solid;  width : mm, of the
+    ring"""
     plane, solid = computed["plane"], computed["solid"]
     lines = []
     for name, text in READINGS.items():
-        lines += [f"{name}: {text}", "     a  measured b   b plane      b 3D  difference (3D - measured)   b/a"]
+        lines += [
+            f"{name}: {text}",
+            "     a  measured b   b plane      b 3D  difference (3D - measured)   b/a",
+        ]
         for k, a in enumerate(OUTWARD):
             b = solid[name][k]
             lines.append(
-                f"{a:6.3f}  {MEASURED[k]:10.3f}  {plane[name][k]:8.4f}  {b:8.4f}  {b - MEASURED[k]:10.3f} {b / a:23.3f}"
+                f"{a:6.3f}  {MEASURED[k]:10.3f}  {plane[name][k]:8.4f}  {b:8.4f}  "
+                f"{b - MEASURED[k]:10.3f} {b / a:23.3f}"
             )
         off = solid[name] - MEASURED
         rms = np.sqrt(np.mean(off**2))
-        lines += [f"        root mean square of the difference {rms:.3f} mm, largest {np.abs(off).max():.3f} mm", ""]
+        lines += [
+            f"        root mean square of the difference {rms:.3f} mm, largest "
+            f"{np.abs(off).max():.3f} mm",
+            "",
+        ]
     lines.append(f"torque (N mm) by internal friction, loss factor {LOSS_FACTOR:g}")
     lines.append("     a     plane        3D  thin ring")
     thin = thin_ring_torque(OUTWARD, width)
@@ -139,14 +167,19 @@ def table(computed: dict[str, dict[str, np.ndarray]], width: float) -> list[str]
     return [
         *lines,
         "measured b/a: " + " ".join(f"{v:.3f}" for v in MEASURED / OUTWARD),
-        f"line through the measured points: b = {slope:.3f} a {offset:+.3f} mm, rms deviation {spread:.3f} mm",
+        f"line through the measured points: b = {slope:.3f} a {offset:+.3f} mm, rms deviation "
+        f"{spread:.3f} mm",
     ]
 
 
 def csv(computed: dict[str, dict[str, np.ndarray]]) -> bytes:
     """All readings, a row per measured point."""
     columns = {"a_mm": OUTWARD, "b_measured_mm": MEASURED}
-    columns |= {f"{name}_{kind}_mm": computed[kind][name] for name in READINGS for kind in ("plane", "solid")}
+    columns |= {
+        f"{name}_{kind}_mm": computed[kind][name]
+        for name in READINGS
+        for kind in ("plane", "solid")
+    }
     rows = [",".join(f"{v:.6g}" for v in row) for row in zip(*columns.values())]
     return ("\n".join([",".join(columns), *rows]) + "\n").encode()
 
@@ -161,7 +194,9 @@ def figure(computed: dict[str, dict[str, np.ndarray]]) -> bytes:
     for k, (name, text) in enumerate(READINGS.items()):
         axes.plot(OUTWARD, computed["plane"][name], f"C{k}-", label=f"{text}, plane")
         axes.plot(OUTWARD, computed["solid"][name], f"C{k}x", label=f"{text}, 3D")
-    axes.set(xlabel="outward deflection a at the major axis (mm)", ylabel="inward deflection b (mm)")
+    axes.set(
+        xlabel="outward deflection a at the major axis (mm)", ylabel="inward deflection b (mm)"
+    )
     axes.grid(alpha=0.3)
     axes.legend(fontsize=8)
     file = io.BytesIO()
@@ -170,9 +205,13 @@ def figure(computed: dict[str, dict[str, np.ndarray]]) -> bytes:
 
 
 def checks(
-    designs: dict[str, PlainRingDesign], counts: RingCounts, fine: dict[str, dict[str, np.ndarray]], support: float
+    designs: dict[str, PlainRingDesign],
+    counts: RingCounts,
+    fine: dict[str, dict[str, np.ndarray]],
+    support: float,
 ) -> list[str]:
-    """Lines on the mesh, the closed form, the width and the supports' radius; fine : readings with halved elements."""
+    """Lines on the mesh, the closed form, the width and the supports' radius; fine : readings with
+    halved elements."""
     last, lines = OUTWARD[-1:], []
 
     def change(text: str, new: dict[str, np.ndarray], old: dict[str, np.ndarray]) -> None:
@@ -186,13 +225,20 @@ def checks(
     mean = 0.5 * OUTER_DIAMETER - 0.5 * THICKNESS
     for angle, name in ((0.25 * np.pi, "centre"), (0.5 * np.pi, "minor")):
         thin = -closed_form(angle) / closed_form(0.0)
-        thick = -closed_form(angle, THICKNESS / mean, STEEL.nu) / closed_form(0.0, THICKNESS / mean, STEEL.nu)
+        thick = -closed_form(angle, THICKNESS / mean, STEEL.nu) / closed_form(
+            0.0, THICKNESS / mean, STEEL.nu
+        )
         ratio = small[name][0] / small["top"][0]
         lines.append(
-            f"{name}: inward over outward at a = {SMALL:g} mm {ratio:.4f}, thin ring {thin:.4f}, with shear {thick:.4f}"
+            f"{name}: inward over outward at a = {SMALL:g} mm {ratio:.4f}, thin ring {thin:.4f}, "
+            f"with shear {thick:.4f}"
         )
     solid = designs["solid"]
-    others = {"half the width": (0.5, support), "twice the width": (2.0, support), "supports of 60 mm": (1.0, 60.0)}
+    others = {
+        "half the width": (0.5, support),
+        "twice the width": (2.0, support),
+        "supports of 60 mm": (1.0, 60.0),
+    }
     for text, (factor, diameter) in others.items():
         other = press(replace(solid, width=factor * solid.width), counts, last, diameter)
         change(f"solid: {text}", other, coarse["solid"])
@@ -201,13 +247,21 @@ def checks(
 
 def main() -> None:
     """Compute, print and write the tables and the figure."""
-    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     options.add_argument("--out", type=Path, default=Path("results/ring_experiment"))
     options.add_argument("--width", type=float, default=10.0, help="width of the ring, mm")
     options.add_argument("--support-diameter", type=float, default=SUPPORT_DIAMETER, help="mm")
-    options.add_argument("--sectors", type=int, default=120, help="coarse mesh: half the elements around the ring")
-    options.add_argument("--radial", type=int, default=2, help="coarse mesh: elements through the thickness")
-    options.add_argument("--axial", type=int, default=2, help="coarse mesh: elements along the width of the solid")
+    options.add_argument(
+        "--sectors", type=int, default=120, help="coarse mesh: half the elements around the ring"
+    )
+    options.add_argument(
+        "--radial", type=int, default=2, help="coarse mesh: elements through the thickness"
+    )
+    options.add_argument(
+        "--axial", type=int, default=2, help="coarse mesh: elements along the width of the solid"
+    )
     arguments = options.parse_args()
 
     comm = MPI.COMM_WORLD
@@ -220,10 +274,14 @@ def main() -> None:
         for kind in ("plane", "solid")
     }
     support = arguments.support_diameter
-    fine = {kind: press(design, counts.refined(), OUTWARD, support) for kind, design in designs.items()}
+    fine = {
+        kind: press(design, counts.refined(), OUTWARD, support) for kind, design in designs.items()
+    }
     lines = [*table(fine, arguments.width), *checks(designs, counts, fine, support)]
     write_from_root(comm, arguments.out / "ring_experiment.csv", csv(fine))
-    write_from_root(comm, arguments.out / "ring_experiment.png", figure(fine) if comm.rank == 0 else b"")
+    write_from_root(
+        comm, arguments.out / "ring_experiment.png", figure(fine) if comm.rank == 0 else b""
+    )
     if comm.rank == 0:
         print("\n".join(["", *lines]))
 

@@ -2,9 +2,9 @@
 
     python scripts/code_lines.py [TREE] [--length 100]
 
-Python files are formatted by `ruff` at the length in a temporary folder. Cython, C++, C, JavaScript and templates count
-as they are; no line of theirs may be longer than the form of the project allows. Empty lines and files that Git does
-not track do not count.
+Python files are formatted by `ruff` at the length in a temporary folder. Cython, C++, C, JavaScript
+and templates count as they are; no line of theirs may be longer than the form of the project
+allows. Empty lines and files that Git does not track do not count.
 """
 
 from __future__ import annotations
@@ -23,7 +23,11 @@ def tracked_sources(tree: Path, package: str) -> list[Path]:
     listed = subprocess.run(
         ["git", "-C", str(tree), "ls-files", package], capture_output=True, text=True, check=True
     ).stdout
-    return [Path(name) for name in listed.splitlines() if name.endswith(SOURCES) and (tree / name).exists()]
+    return [
+        Path(name)
+        for name in listed.splitlines()
+        if name.endswith(SOURCES) and (tree / name).exists()
+    ]
 
 
 def code_lines(tree: Path, package: str = "swgpar", length: int = 100) -> Counter[str]:
@@ -40,12 +44,16 @@ def code_lines(tree: Path, package: str = "swgpar", length: int = 100) -> Counte
         subprocess.run(command, check=True)
         for name, copy in copies:
             room = name.parts[1].removesuffix(".py")
-            lines[room] += sum(bool(line.strip()) for line in copy.read_text(encoding="utf-8").splitlines())
+            lines[room] += sum(
+                bool(line.strip()) for line in copy.read_text(encoding="utf-8").splitlines()
+            )
     return lines
 
 
 def main() -> None:
-    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     options.add_argument("tree", type=Path, nargs="?", default=Path("."))
     options.add_argument("--length", type=int, default=100)
     chosen = options.parse_args()

@@ -2,12 +2,12 @@
 
     python scripts/import_graph.py swgpar import_graph.png
 
-A room is a folder or a loose module directly below the package. Imports in functions and below `TYPE_CHECKING` count as
-well. A name that a package's `__init__.py` only hands on counts as an import of the module that defines it. The picture
-has each room one level above all that it imports.
+A room is a folder or a loose module directly below the package. Imports in functions and below
+`TYPE_CHECKING` count as well. A name that a package's `__init__.py` only hands on counts as an
+import of the module that defines it. The picture has each room one level above all that it imports.
 
-The script prints the numbers of rooms, levels and arrows; the numbers of files, of arrows between files and of circles
-of files, with their members; and the largest room's share of the lines.
+The script prints the numbers of rooms, levels and arrows; the numbers of files, of arrows between
+files and of circles of files, with their members; and the largest room's share of the lines.
 """
 
 from __future__ import annotations
@@ -46,7 +46,9 @@ def imported_names(path: Path, package: Path) -> dict[str, str]:
         elif isinstance(node, ast.ImportFrom):
             base = [package.name, *own[: len(own) - node.level]] if node.level else []
             base += node.module.split(".") if node.module else []
-            names |= {".".join([*base, alias.name]): alias.asname or alias.name for alias in node.names}
+            names |= {
+                ".".join([*base, alias.name]): alias.asname or alias.name for alias in node.names
+            }
     return {name: inside for name, inside in names.items() if name.split(".")[0] == package.name}
 
 
@@ -56,7 +58,9 @@ def import_graph(package: Path) -> Graph:
     graph: Graph = {}
     for room, paths in members.items():
         names = [name.split(".") for path in paths for name in imported_names(path, package)]
-        graph[room] = {parts[1] for parts in names if len(parts) > 1 and parts[1] in members} - {room}
+        graph[room] = {parts[1] for parts in names if len(parts) > 1 and parts[1] in members} - {
+            room
+        }
     return graph
 
 
@@ -80,7 +84,10 @@ def file_graph(package: Path) -> Graph:
             name = name.rpartition(".")[0]
         return name
 
-    return {module: {defined_in(name) for name in names.get(module, ())} - {module} for module in sorted(modules)}
+    return {
+        module: {defined_in(name) for name in names.get(module, ())} - {module}
+        for module in sorted(modules)
+    }
 
 
 def circles(graph: Graph) -> list[list[str]]:
@@ -95,37 +102,52 @@ def circles(graph: Graph) -> list[list[str]]:
         return reached
 
     reach = {name: reachable(name) for name in graph}
-    groups = {tuple(sorted(other for other in reach[name] if name in reach[other])) for name in graph}
+    groups = {
+        tuple(sorted(other for other in reach[name] if name in reach[other])) for name in graph
+    }
     return sorted(list(group) for group in groups if group)
 
 
 def levels(graph: Graph) -> dict[str, int]:
-    """Level of every room: 0 for one that imports none, else one above the highest room that it imports.
+    """Level of every room: 0 for one that imports none, else one above the highest room that it
+    imports.
 
     Raises ValueError where rooms import each other.
     """
     level: dict[str, int] = {}
     while len(level) < len(graph):
-        ready = [name for name, needs in graph.items() if name not in level and needs <= level.keys()]
+        ready = [
+            name for name, needs in graph.items() if name not in level and needs <= level.keys()
+        ]
         if not ready:
-            raise ValueError(f"rooms import each other: {', '.join(sorted(graph.keys() - level.keys()))}")
-        level.update({name: 1 + max((level[other] for other in graph[name]), default=-1) for name in ready})
+            raise ValueError(
+                f"rooms import each other: {', '.join(sorted(graph.keys() - level.keys()))}"
+            )
+        level.update(
+            {name: 1 + max((level[other] for other in graph[name]), default=-1) for name in ready}
+        )
     return level
 
 
 def positions(graph: Graph) -> dict[str, tuple[float, float]]:
-    """Centre of every room: rows are levels, the lowest level on top; order in a row by the rooms above it."""
+    """Centre of every room: rows are levels, the lowest level on top; order in a row by the rooms
+    above it."""
     level = levels(graph)
     place: dict[str, tuple[float, float]] = {}
     for row in range(max(level.values()) + 1):
         names = [name for name in graph if level[name] == row]
         wanted = {
-            name: sum(place[other][0] for other in graph[name]) / len(graph[name]) if graph[name] else 0.0
+            name: sum(place[other][0] for other in graph[name]) / len(graph[name])
+            if graph[name]
+            else 0.0
             for name in names
         }
         names.sort(key=lambda name: (wanted[name], name))
         for k, name in enumerate(names):
-            place[name] = (k - 0.5 * (len(names) - 1)) * 2.6 + (0.0, 1.2, -0.5, -1.5)[row % 4], -float(row)
+            place[name] = (
+                (k - 0.5 * (len(names) - 1)) * 2.6 + (0.0, 1.2, -0.5, -1.5)[row % 4],
+                -float(row),
+            )
     return place
 
 
@@ -175,7 +197,10 @@ def counts(graph: Graph) -> str:
     """Rooms, levels and arrows as a sentence; without levels where rooms import each other."""
     arrows = sum(len(needs) for needs in graph.values())
     if groups := circles(graph):
-        return f"{len(graph)} rooms, {arrows} arrows; circles: {'; '.join(', '.join(group) for group in groups)}"
+        return (
+            f"{len(graph)} rooms, {arrows} arrows; circles: "
+            f"{'; '.join(', '.join(group) for group in groups)}"
+        )
     return f"{len(graph)} rooms on {max(levels(graph).values()) + 1} levels, {arrows} arrows"
 
 
@@ -199,9 +224,13 @@ def largest_room(package: Path) -> str:
 
 
 def main() -> None:
-    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     options.add_argument("package", type=Path, nargs="?", default=Path("swgpar"))
-    options.add_argument("image", type=Path, nargs="?", help="PNG or SVG; without it only the numbers are printed")
+    options.add_argument(
+        "image", type=Path, nargs="?", help="PNG or SVG; without it only the numbers are printed"
+    )
     options.add_argument("--title")
     chosen = options.parse_args()
     package = chosen.package.resolve()

@@ -1,23 +1,27 @@
-"""The way of the design, of the recipe or of one number through the package, from the file to the report.
+"""The way of the design, of the recipe or of one number through the package, from the file to the
+report.
 
     PYTHONPATH=TREE python scripts/number_path.py design
     PYTHONPATH=TREE python scripts/number_path.py torque --json
 
-TREE is the checkout that is measured: the present one or another. The script runs `swgpar run` and `swgpar report` on
-one rank and watches every function of the package.
+TREE is the checkout that is measured: the present one or another. The script runs `swgpar run` and
+`swgpar report` on one rank and watches every function of the package.
 
-A function is on the way if it holds what is followed: as an argument, a local variable or its result.
+A function is on the way if it holds what is followed: as an argument, a local variable or its
+result.
 
-- design, recipe: an object of `DriveDesign` or `MeshRecipe`. Its own methods do not count: it is asked, not handed on.
+- design, recipe: an object of `DriveDesign` or `MeshRecipe`. Its own methods do not count: it is
+asked, not handed on.
 - torque: the value of `load.torque` in N·m, N·mm, or N·mm of half of the drive.
 - stress: the largest `fs_s1` of the history. A first run gives its value.
 
-A number is also held by a text, a list, a small array or a frozen dataclass that has it. Every function counts once, at
-its first entry that holds it. Nested functions without a name belong to the function around them.
+A number is also held by a text, a list, a small array or a frozen dataclass that has it. Every
+function counts once, at its first entry that holds it. Nested functions without a name belong to
+the function around them.
 
-A *stay* is a series of entries into functions of one module. A *climb* is a stay in a module on a higher level of the
-import graph than the stay before: a module stands one level above the highest module that it imports. Modules that
-import each other share a level.
+A *stay* is a series of entries into functions of one module. A *climb* is a stay in a module on a
+higher level of the import graph than the stay before: a module stands one level above the highest
+module that it imports. Modules that import each other share a level.
 """
 
 from __future__ import annotations
@@ -78,7 +82,11 @@ class Number:
         if isinstance(value, (int, float, np.floating)):
             return any(math.isclose(abs(value), own, rel_tol=1e-12) for own in self.values)
         if isinstance(value, np.ndarray):
-            return value.dtype.kind == "f" and value.size < MOST and any(map(self, value.ravel().tolist()))
+            return (
+                value.dtype.kind == "f"
+                and value.size < MOST
+                and any(map(self, value.ravel().tolist()))
+            )
         if isinstance(value, (str, bytes)):
             text = value if isinstance(value, str) else value.decode("utf-8", "replace")
             return any(own in text for own in self.texts)
@@ -122,7 +130,10 @@ class Watch:
 
     def _leave(self, frame: FrameType, entry: int, result: Any) -> None:
         code, module = frame.f_code, frame.f_globals.get("__name__", "")
-        if not module.startswith(f"{self.package}.") or "<" in (code.co_name[0], code.co_filename[0]):
+        if not module.startswith(f"{self.package}.") or "<" in (
+            code.co_name[0],
+            code.co_filename[0],
+        ):
             return
         if code in self.first and self.first[code][0] <= entry:
             return
@@ -140,7 +151,9 @@ class Watch:
 
 def module_levels(graph: Graph) -> dict[str, int]:
     """Level of every module; those that import each other have the same one."""
-    group = {name: name for name in graph} | {name: members[0] for members in circles(graph) for name in members}
+    group = {name: name for name in graph} | {
+        name: members[0] for members in circles(graph) for name in members
+    }
     merged: Graph = {head: set() for head in group.values()}
     for name, needs in graph.items():
         merged[group[name]] |= {group[other] for other in needs} - {group[name]}
@@ -157,7 +170,8 @@ def lines_of(code: CodeType) -> int:
 class Stay:
     """A series of entries into functions of one module.
 
-    level : of the module;  climb : whether it is higher than that of the stay before;  lines : of the functions
+    level : of the module;  climb : whether it is higher than that of the stay before;  lines : of
+    the functions
     """
 
     module: str
@@ -225,7 +239,9 @@ def measure(thing: str, design: str, mesh: str, settings: Sequence[str]) -> Way:
         if thing in CLASSES:
             watch = Watch(PACKAGE, of_class(CLASSES[thing]), asked=True)
         elif thing == "torque":
-            watch = Watch(PACKAGE, Number([float(TORQUE) * unit for unit in TORQUE_UNITS], [TORQUE]))
+            watch = Watch(
+                PACKAGE, Number([float(TORQUE) * unit for unit in TORQUE_UNITS], [TORQUE])
+            )
         else:
             run(command)
             value = largest_stress(Path(out) / "history.csv")
@@ -237,7 +253,9 @@ def measure(thing: str, design: str, mesh: str, settings: Sequence[str]) -> Way:
 
 
 def main() -> None:
-    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     options.add_argument("thing", choices=["design", "torque", "recipe", "stress"])
     options.add_argument("--design", default="drivers/plane_half_turn.toml")
     options.add_argument("--mesh", default="plane_coarse")
@@ -246,7 +264,11 @@ def main() -> None:
     chosen = options.parse_args()
     way = measure(chosen.thing, chosen.design, chosen.mesh, chosen.set)
     if chosen.json:
-        print(json.dumps({"counts": way.counts(), "stays": [asdict(stay) for stay in way.stays]}, indent=1))
+        print(
+            json.dumps(
+                {"counts": way.counts(), "stays": [asdict(stay) for stay in way.stays]}, indent=1
+            )
+        )
         return
     for k, stay in enumerate(way.stays, start=1):
         mark = "climb" if stay.climb else ""

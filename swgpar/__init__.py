@@ -2,7 +2,8 @@
 
     design = swgpar.load_design("drive.toml", {"load.torque": 10.0})
     result = swgpar.run(design, mesh="coarse")
-    result.history["fs_s1"], result.summary["mean.fs_s1"].value, result.field("vm"), result.plot.stress()
+    result.history["fs_s1"], result.summary["mean.fs_s1"].value, result.field("vm"),
+    result.plot.stress()
 
 Names are imported when they are used: PETSc starts with the first one that needs it.
 """

@@ -1,8 +1,9 @@
-"""The Python interface: what the command line, drivers and notebooks call. The names are those of `import swgpar`.
+"""The Python interface: what the command line, drivers and notebooks call. The names are those of
+`import swgpar`.
 
-Under mpirun every rank calls the same functions with the same arguments; results are the same on all ranks. An error
-of swgpar is raised on all ranks. Any other error of one rank leaves the others waiting: `mpirun -n 2 python -m mpi4py
-script.py` ends all ranks then.
+Under mpirun every rank calls the same functions with the same arguments; results are the same on
+all ranks. An error of swgpar is raised on all ranks. Any other error of one rank leaves the others
+waiting: `mpirun -n 2 python -m mpi4py script.py` ends all ranks then.
 """
 
 from __future__ import annotations
@@ -65,8 +66,8 @@ def new(
     out : path
         Design file to write, with the meaning of every key.
     ratio : float
-        Speed of the wave generator over that of the output, without its sign; a multiple of 0.5, with three lobes a
-        whole number.
+        Speed of the wave generator over that of the output, without its sign; a multiple of 0.5,
+        with three lobes a whole number.
     torque : float, N·m
         On the output.
     diameter, bore : float, mm
@@ -103,7 +104,8 @@ def new(
         with agreed(comm, path):
             if comm.rank == 0 and path.exists() and not overwrite:
                 raise OutputError(
-                    f"{path} exists: replace it with overwrite = true (--overwrite), or give another name"
+                    f"{path} exists: replace it with overwrite = true (--overwrite), or give "
+                    f"another name"
                 )
         write_from_root(comm, path, as_toml(request, design, table, path.name).encode())
     return design
@@ -115,10 +117,11 @@ def load_design(design: DesignLike, overrides: Overrides = ()) -> Design:
     Parameters
     ----------
     design : path, mapping or design
-        A design file (TOML), or its content as a dict of sections: of a drive, or of a gear train. A design that is
-        loaded already is changed by the overrides only.
+        A design file (TOML), or its content as a dict of sections: of a drive, or of a gear train.
+        A design that is loaded already is changed by the overrides only.
     overrides : mapping or sequence of str
-        Values for keys, ``{"load.torque": 10.0}`` or ``["load.torque=10.0"]``, in the units of the design file.
+        Values for keys, ``{"load.torque": 10.0}`` or ``["load.torque=10.0"]``, in the units of the
+        design file.
 
     Returns
     -------
@@ -149,8 +152,8 @@ def load_mesh(mesh: MeshLike) -> MeshRecipe:
     Parameters
     ----------
     mesh : str, path, mapping or recipe
-        A name (coarse, forces, medium, full; plane_coarse, plane, plane_fine), the path of a recipe (TOML), or its
-        content. A recipe that is loaded already is returned.
+        A name (coarse, forces, medium, full; plane_coarse, plane, plane_fine), the path of a recipe
+        (TOML), or its content. A recipe that is loaded already is returned.
 
     Raises
     ------
@@ -187,17 +190,19 @@ def run(
     design : design, path or mapping
         As `load_design` takes it.
     mesh : recipe, name, path or mapping
-        As `load_mesh` takes it. Without one a drive takes the recipe forces, a plane model plane_coarse; the stress
-        at the teeth comes from windows on finer meshes. Gear trains have none.
+        As `load_mesh` takes it. Without one a drive takes the recipe forces, a plane model
+        plane_coarse; the stress at the teeth comes from windows on finer meshes. Gear trains have
+        none.
     out : path
         Results folder. Without it the run is in memory and leaves no files.
     accuracy : float
-        Refine the mesh and the windows until the estimated relative error of the largest tensile stress at the teeth
-        under load is at most this (0.001 to 0.2); drives only.
+        Refine the mesh and the windows until the estimated relative error of the largest tensile
+        stress at the teeth under load is at most this (0.001 to 0.2); drives only.
     plain : bool
-        Compute all that the design asks for. Otherwise a drive without friction leaves out the assembly
-        step by step and on a fine mesh, and the angles beyond one period, where the design does not set the keys
-        ``steps.bent_start``, ``steps.start_levels``, ``steps.samples`` and ``solver.rtol``.
+        Compute all that the design asks for. Otherwise a drive without friction leaves out the
+        assembly step by step and on a fine mesh, and the angles beyond one period, where the design
+        does not set the keys ``steps.bent_start``, ``steps.start_levels``, ``steps.samples`` and
+        ``solver.rtol``.
     restart : bool
         Continue from the checkpoint in `out`.
     overwrite : bool
@@ -217,9 +222,11 @@ def run(
     InputError
         Design, mesh and options do not fit.
     ConvergenceError
-        An increment did not converge. With `out`, the increments before it are kept and `restart` continues them.
+        An increment did not converge. With `out`, the increments before it are kept and `restart`
+        continues them.
     TimeLimitError
-        The time of ``solver.time_limit`` has passed. The increments before are kept as with a ConvergenceError.
+        The time of ``solver.time_limit`` has passed. The increments before are kept as with a
+        ConvergenceError.
     OutOfMemoryError
         An allocation has failed, perhaps on this rank alone.
     OutputError
@@ -233,7 +240,13 @@ def run(
     comm = MPI.COMM_WORLD if comm is None else comm
     terminal, folder = _terminal(progress), given_folder(out)
     given = RunOptions(
-        folder, accuracy=accuracy, plain=plain, restart=restart, overwrite=overwrite, comm=comm, terminal=terminal
+        folder,
+        accuracy=accuracy,
+        plain=plain,
+        restart=restart,
+        overwrite=overwrite,
+        comm=comm,
+        terminal=terminal,
     )
     checked, options = on_all(comm, lambda: _checked(design, mesh, given))
     with log.session(comm, terminal=terminal):
@@ -283,26 +296,30 @@ def export(
     out : path
         Folder, which is made.
     formats : sequence of str
-        Of a design "step" (solids), "dxf" (outlines) and "inp" (job of CalculiX up to the loaded state), of a result
-        "vtkhdf" and "xdmf" (fields with all teeth), "parquet" (all tables), "lookup" (torsional spring and ripple for
-        multibody programs) and "fmu" (the same as an FMU).
+        Of a design "step" (solids), "dxf" (outlines) and "inp" (job of CalculiX up to the loaded
+        state), of a result "vtkhdf" and "xdmf" (fields with all teeth), "parquet" (all tables),
+        "lookup" (torsional spring and ripple for multibody programs) and "fmu" (the same as an
+        FMU).
     mesh : str, path or MeshRecipe
         Mesh of the format "inp".
     ripple : result of a drive, or the folder of one
-        For "fmu": run with steps.samples or [deviations] of the same drive. Without it there is no kinematic error.
+        For "fmu": run with steps.samples or [deviations] of the same drive. Without it there is no
+        kinematic error.
 
     Raises
     ------
     InputError
-        A format that the source does not have, a source that is no drive, a package that is missing, or what a format
-        does not carry.
+        A format that the source does not have, a source that is no drive, a package that is
+        missing, or what a format does not carry.
     OutputError
         The folder cannot be written, or a C compiler fails with the FMU.
 
     Examples
     --------
     >>> swgpar.export("drivers/cup_45deg.toml", "results/cad", ["step"])
-    >>> swgpar.export("drivers/plane_half_turn.toml", "results/calculix", ["inp"], mesh="plane_coarse")
+    >>> swgpar.export(
+    ...     "drivers/plane_half_turn.toml", "results/calculix", ["inp"], mesh="plane_coarse"
+    ... )
     >>> swgpar.export("results/cup", "results/cup/export", ["vtkhdf", "parquet"])
     >>> swgpar.export("results/stiffness", "results/fmu", ["fmu"], ripple="results/period")
     """
@@ -313,8 +330,12 @@ def export(
     found = source if isinstance(source, DriveResult) else load_design(source)
     if isinstance(ripple, (str, Path)):
         ripple = open_result(ripple)
-    if not isinstance(found, DriveDesign | DriveResult) or not isinstance(ripple, DriveResult | None):
-        raise InputError("export is available for drives: a gear train has no geometry and no fields")
+    if not isinstance(found, DriveDesign | DriveResult) or not isinstance(
+        ripple, DriveResult | None
+    ):
+        raise InputError(
+            "export is available for drives: a gear train has no geometry and no fields"
+        )
     recipe = None if mesh is None else load_mesh(mesh)
     paths: list[Path] = []
     with agreed(MPI.COMM_WORLD, Path(out)):
@@ -367,10 +388,11 @@ def study(
     Parameters
     ----------
     study : path or mapping
-        A study file (TOML), or its content ``{"study": {...}}`` with paths relative to the working directory.
+        A study file (TOML), or its content ``{"study": {...}}`` with paths relative to the working
+        directory.
     out : path
-        Folder of the study: study.csv, published.csv, study.html, and the results of every case. Without it the study
-        is in memory and leaves no files.
+        Folder of the study: study.csv, published.csv, study.html, and the results of every case.
+        Without it the study is in memory and leaves no files.
     restart : bool
         Keep what is finished in `out`, continue what was interrupted, try again what failed.
     overwrite : bool
@@ -429,7 +451,8 @@ def optimise(
     optimisation : path
         An optimisation file (TOML): variables with bounds, objectives and constraints.
     out : path
-        Folder: optimise.csv, optimise.html, the storage, and the design files of the best designs in best/.
+        Folder: optimise.csv, optimise.html, the storage, and the design files of the best designs
+        in best/.
     restart : bool
         Continue the search in `out`.
     overwrite : bool
@@ -468,7 +491,9 @@ def optimise(
     )
 
 
-def check(design: DesignLike, overrides: Overrides = (), mesh: MeshLike | None = None) -> dict[str, float]:
+def check(
+    design: DesignLike, overrides: Overrides = (), mesh: MeshLike | None = None
+) -> dict[str, float]:
     """Derived geometry of a design, without a run; with a mesh also what a run on it will need.
 
     Returns
@@ -557,7 +582,10 @@ def _drive_mesh(design: DesignLike, mesh: MeshLike) -> DriveMesh:
 def _require(name: str, value: Any) -> None:
     """Refuse what is neither a path nor the content of a file."""
     if not isinstance(value, (str, Path, Mapping)):
-        raise InputError(f"{name} is of the type {type(value).__name__}: allowed are a path, a dict or a loaded {name}")
+        raise InputError(
+            f"{name} is of the type {type(value).__name__}: allowed are a path, a dict or a loaded "
+            f"{name}"
+        )
 
 
 def _terminal(progress: bool | None) -> bool:
@@ -565,8 +593,11 @@ def _terminal(progress: bool | None) -> bool:
     return log.console.is_terminal if progress is None else progress
 
 
-def _checked(design: DesignLike, mesh: MeshLike | None, options: RunOptions) -> tuple[Design, RunOptions]:
-    """The design of a run, and its options with the mesh; refuses options that the design's system does not have."""
+def _checked(
+    design: DesignLike, mesh: MeshLike | None, options: RunOptions
+) -> tuple[Design, RunOptions]:
+    """The design of a run, and its options with the mesh; refuses options that the design's system
+    does not have."""
     checked = load_design(design)
     system = system_of(checked)
     options.require_available(system.options, system.noun, mesh=mesh is not None)

@@ -10,11 +10,14 @@ SHOWN = 60
 
 
 def printable(text: str) -> str:
-    """The text with escapes for what a terminal would not show as a letter: control characters, bytes without meaning.
+    """The text with escapes for what a terminal would not show as a letter: control characters,
+    bytes without meaning.
 
     Files and arguments of a user may hold them. Line breaks stay.
     """
-    return "".join(c if c.isprintable() or c == "\n" else c.encode("unicode_escape").decode() for c in text)
+    return "".join(
+        c if c.isprintable() or c == "\n" else c.encode("unicode_escape").decode() for c in text
+    )
 
 
 def shortened(text: str, longest: int = SHOWN) -> str:

@@ -1,6 +1,8 @@
-"""Log of a run on several ranks: rank 0 writes to the terminal and to run.log, the other ranks write nothing.
+"""Log of a run on several ranks: rank 0 writes to the terminal and to run.log, the other ranks
+write nothing.
 
-Progress is one line per increment, in the log file as on a terminal; a terminal shows a bar below it.
+Progress is one line per increment, in the log file as on a terminal; a terminal shows a bar below
+it.
 `PhaseTimes` adds up wall seconds by phase name.
 """
 
@@ -44,7 +46,8 @@ logger.addFilter(_printable)
 
 
 def _redirected() -> bool:
-    """Whether mpirun, or its daemon on another node, writes into a file or pipe: ranks have a terminal all the same."""
+    """Whether mpirun, or its daemon on another node, writes into a file or pipe: ranks have a
+    terminal all the same."""
     if "OMPI_COMM_WORLD_RANK" not in os.environ:
         return False
     try:
@@ -53,11 +56,17 @@ def _redirected() -> bool:
         return False
 
 
-console = Console(file=sys.stdout, force_terminal=False if _redirected() else None, highlight=False, soft_wrap=True)
+console = Console(
+    file=sys.stdout,
+    force_terminal=False if _redirected() else None,
+    highlight=False,
+    soft_wrap=True,
+)
 
 
 class _RunLog(logging.FileHandler):
-    """Appends to run.log; a log file that cannot be written must not stop a run or print a traceback."""
+    """Appends to run.log; a log file that cannot be written must not stop a run or print a
+    traceback."""
 
     def handleError(self, record: logging.LogRecord) -> None:  # noqa: N802 (name given by logging)
         self.setLevel(logging.CRITICAL + 1)
@@ -72,7 +81,8 @@ class _Plain(logging.StreamHandler):
 
 
 class _ToRoot(logging.Handler):
-    """Passes records on to the handlers of the root logger; without any, Python shows warnings on stderr."""
+    """Passes records on to the handlers of the root logger; without any, Python shows warnings on
+    stderr."""
 
     def emit(self, record: logging.LogRecord) -> None:
         logging.getLogger().handle(record)
@@ -80,7 +90,8 @@ class _ToRoot(logging.Handler):
 
 @contextmanager
 def session(comm: MPI.Comm, *, terminal: bool = True, shown: bool = True) -> Iterator[None]:
-    """Log a run inside the `with` block: rank 0 logs, the other ranks are silent. The logger is restored at the end.
+    """Log a run inside the `with` block: rank 0 logs, the other ranks are silent. The logger is
+    restored at the end.
 
     Handlers that a program has attached to the logger "swgpar" stay, and get the log of rank 0.
 
@@ -88,7 +99,8 @@ def session(comm: MPI.Comm, *, terminal: bool = True, shown: bool = True) -> Ite
     ----------
     comm : communicator of the run
     terminal : whether rank 0 shows everything on the terminal
-    shown : without `terminal`: whether messages go where those of other libraries go, as far as the levels that the
+    shown : without `terminal`: whether messages go where those of other libraries go, as far as the
+    levels that the
         program has set allow: warnings to stderr, if it has set nothing
     """
     level, propagate, present = logger.level, logger.propagate, logger.handlers
@@ -174,15 +186,23 @@ class IncrementProgress:
             self._bar.stop()
 
     def newton(self, step: str, angle_deg: float, iteration: int, residual: float) -> None:
-        """Report one Newton iteration: relative residual; on the bar only, and in the log at DEBUG level."""
+        """Report one Newton iteration: relative residual; on the bar only, and in the log at DEBUG
+        level."""
         if self._bar:
             self._bar.update(
-                self._task, description=f"{step} {angle_deg:.2f}° Newton {iteration} residual {residual:.1e}"
+                self._task,
+                description=f"{step} {angle_deg:.2f}° Newton {iteration} residual {residual:.1e}",
             )
-        watch.doing(f"{step} {angle_deg:.2f} degrees, Newton iteration {iteration}, residual {residual:.1e}")
-        logger.debug("   %s %.3f deg  Newton %d  residual %.3e", step, angle_deg, iteration, residual)
+        watch.doing(
+            f"{step} {angle_deg:.2f} degrees, Newton iteration {iteration}, residual {residual:.1e}"
+        )
+        logger.debug(
+            "   %s %.3f deg  Newton %d  residual %.3e", step, angle_deg, iteration, residual
+        )
 
-    def increment(self, step: str, angle_deg: float, iterations: int, residual: float, seconds: float) -> None:
+    def increment(
+        self, step: str, angle_deg: float, iterations: int, residual: float, seconds: float
+    ) -> None:
         """Report a converged increment."""
         self._count += 1
         watch.saved("increments", self._count, self._total)
@@ -216,7 +236,8 @@ def progress_bar() -> Progress:
 class PhaseTimes:
     """Wall seconds added up by phase name.
 
-    Phases may be nested; each then counts its own full time, so that only phases of the same depth add up.
+    Phases may be nested; each then counts its own full time, so that only phases of the same depth
+    add up.
     """
 
     def __init__(self) -> None:

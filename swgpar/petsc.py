@@ -1,8 +1,9 @@
 """The one place where PETSc is initialised: `from swgpar.petsc import PETSc`.
 
-PETSc by itself reads the files .petscrc and petscrc of the working directory, and .petscrc of the home directory. What
-they name is executed. None of them is read here: only options of the command line, the files that these name, and
-the options of the environment variable PETSC_OPTIONS as far as they name no file.
+PETSc by itself reads the files .petscrc and petscrc of the working directory, and .petscrc of the
+home directory. What they name is executed. None of them is read here: only options of the command
+line, the files that these name, and the options of the environment variable PETSC_OPTIONS as far as
+they name no file.
 """
 
 from __future__ import annotations
@@ -39,8 +40,9 @@ VARIABLES = ("PETSC_OPTIONS", "PETSC_OPTIONS_YAML")
 """Environment variables that PETSc reads."""
 
 ABOUT_OPTIONS = (56, 62, 63, 65, 83, 86, 92)
-"""Error codes of PETSc (petscsystypes.h) that follow from options: not supported, wrong argument, out of range, a file
-that cannot be opened, a user's error, an unknown type, no such package for a factor."""
+"""Error codes of PETSc (petscsystypes.h) that follow from options: not supported, wrong argument,
+out of range, a file that cannot be opened, a user's error, an unknown type, no such package for a
+factor."""
 
 NO_MEMORY = 55
 """Error code of PETSc for an allocation that failed."""
@@ -55,16 +57,18 @@ _warned_of: set[str] = set()
 
 
 def start(arguments: Sequence[str] = ()) -> None:
-    """Initialise PETSc on all ranks with options of the command line; collective. Without effect when it has been.
+    """Initialise PETSc on all ranks with options of the command line; collective. Without effect
+    when it has been.
 
-    Raises InputError, on all ranks, when an option names a file that cannot be read or PETSC_OPTIONS names one at all,
-    and SwgparError without petsc4py.
+    Raises InputError, on all ranks, when an option names a file that cannot be read or
+    PETSC_OPTIONS names one at all, and SwgparError without petsc4py.
     """
     try:
         import petsc4py
     except ModuleNotFoundError:
         raise SwgparError(
-            "petsc4py is not installed: install the one of your system, or swgpar[wheels] with Python 3.12 or later"
+            "petsc4py is not installed: install the one of your system, or swgpar[wheels] with "
+            "Python 3.12 or later"
         ) from None
 
     words = MPI.COMM_WORLD.bcast(_words(arguments) if MPI.COMM_WORLD.rank == 0 else None)
@@ -79,9 +83,13 @@ def start(arguments: Sequence[str] = ()) -> None:
 
     with accepted_options(MPI.COMM_WORLD):
         if any(_is_one_of(word, FILES) for word in words):
-            PETSc.Options().insertString(" ".join(f"'{word}'" if '"' in word else f'"{word}"' for word in words))
+            PETSc.Options().insertString(
+                " ".join(f"'{word}'" if '"' in word else f'"{word}"' for word in words)
+            )
     _given.update(PETSc.Options().getAll())
-    globals()["PETSc"] = PETSc  # ranks that import it later, and not all together, do not start it again
+    globals()["PETSc"] = (
+        PETSc  # ranks that import it later, and not all together, do not start it again
+    )
 
 
 @contextmanager
@@ -96,10 +104,11 @@ def hidden_variables() -> Iterator[None]:
 
 @contextmanager
 def accepted_options(comm: MPI.Comm, *, all_errors: bool = False) -> Iterator[None]:
-    """Run a block in which PETSc reads options; what it does not accept is an InputError on all ranks. Collective.
+    """Run a block in which PETSc reads options; what it does not accept is an InputError on all
+    ranks. Collective.
 
-    An error of PETSc that is not about options is raised as it is, unless `all_errors` says that options have led to
-    it; what has no memory always is.
+    An error of PETSc that is not about options is raised as it is, unless `all_errors` says that
+    options have led to it; what has no memory always is.
     """
     from petsc4py import PETSc
 
@@ -111,7 +120,11 @@ def accepted_options(comm: MPI.Comm, *, all_errors: bool = False) -> Iterator[No
             raise
         text = re.split(r"^\[\d+\] ", str(error), flags=re.MULTILINE)[-1]
         values = PETSc.Options().getAll()
-        named = [f"-{name} {values[name]}: " for name in sorted(_given & set(values)) if values[name] in text.split()]
+        named = [
+            f"-{name} {values[name]}: "
+            for name in sorted(_given & set(values))
+            if values[name] in text.split()
+        ]
         failure = "".join(named[:1]) + text
     reason = next((text for text in comm.allgather(failure) if text is not None), None)
     if reason is not None:
@@ -120,14 +133,17 @@ def accepted_options(comm: MPI.Comm, *, all_errors: bool = False) -> Iterator[No
 
 @contextmanager
 def errors_of_callbacks() -> Iterator[None]:
-    """Raise errors that Python callbacks of PETSc raise as what they are: newer releases wrap them in their own."""
+    """Raise errors that Python callbacks of PETSc raise as what they are: newer releases wrap them
+    in their own."""
     from petsc4py import PETSc
 
     try:
         yield
     except PETSc.Error as error:
         found: BaseException | None = error
-        while found is not None and not isinstance(found, SwgparError) and not is_out_of_memory(found):
+        while (
+            found is not None and not isinstance(found, SwgparError) and not is_out_of_memory(found)
+        ):
             found = found.__cause__ or found.__context__
         if found is None or found is error:
             raise
@@ -140,7 +156,8 @@ def is_out_of_memory(error: BaseException) -> bool:
 
 
 def unused_options() -> list[str]:
-    """Options that were given at the start and that PETSc has not asked for so far, as they are written: "-name"."""
+    """Options that were given at the start and that PETSc has not asked for so far, as they are
+    written: "-name"."""
     if not _given:
         return []
     from petsc4py import PETSc
@@ -161,12 +178,15 @@ def warn_of_unused_options() -> None:
     found = [name for name in unused_options() if name not in _warned_of]
     _warned_of.update(found)
     if found:
-        logger.warning("options of PETSc that nothing has used: %s", ", ".join(map(shortened, found)))
+        logger.warning(
+            "options of PETSc that nothing has used: %s", ", ".join(map(shortened, found))
+        )
 
 
 @contextmanager
 def _without_messages() -> Iterator[list[str]]:
-    """Keep what is written to stderr from the terminal; the list then holds the text of PETSc's error.
+    """Keep what is written to stderr from the terminal; the list then holds the text of PETSc's
+    error.
 
     While it starts, PETSc writes its errors itself. Everything else is written again at the end.
     """
@@ -182,7 +202,9 @@ def _without_messages() -> Iterator[list[str]]:
             os.close(terminal)
             file.seek(0)
             lines = file.read().decode(errors="replace").splitlines()
-            errors = [line.partition("PETSC ERROR: ")[2] for line in lines if "PETSC ERROR: " in line]
+            errors = [
+                line.partition("PETSC ERROR: ")[2] for line in lines if "PETSC ERROR: " in line
+            ]
             messages += [text for text in errors if text and text[0] not in "-#"][:2][::-1]
             messages += ["they are refused"]
             for line in lines:
@@ -198,9 +220,13 @@ def _words(arguments: Sequence[str]) -> list[str] | InputError:
         return InputError(f"{VARIABLES[0]} cannot be read: {error}")
     for word in given:
         if _is_one_of(word, (*FILES, *LIBRARIES)):
-            return InputError(f"{VARIABLES[0]} holds {word}: files are named on the command line only")
+            return InputError(
+                f"{VARIABLES[0]} holds {word}: files are named on the command line only"
+            )
     if VARIABLES[1] in os.environ:
-        return InputError(f"{VARIABLES[1]} is not read: give its options on the command line, and unset it")
+        return InputError(
+            f"{VARIABLES[1]} is not read: give its options on the command line, and unset it"
+        )
     for word, name in zip(arguments, [*arguments[1:], ""]):
         if _is_one_of(word, FILES) and not os.access(name, os.R_OK):
             return InputError(f"{word} {name}: there is no such file that can be read")
@@ -208,9 +234,14 @@ def _words(arguments: Sequence[str]) -> list[str] | InputError:
 
 
 def _without_files(words: Sequence[str]) -> list[str]:
-    """Options without those that name files of options: PETSc reports their errors well only once it has started."""
+    """Options without those that name files of options: PETSc reports their errors well only once
+    it has started."""
     after_file = [False, *(_is_one_of(word, FILES) for word in words)]
-    return [word for word, skipped in zip(words, after_file) if not skipped and not _is_one_of(word, FILES)]
+    return [
+        word
+        for word, skipped in zip(words, after_file)
+        if not skipped and not _is_one_of(word, FILES)
+    ]
 
 
 def _is_one_of(word: str, names: Sequence[str]) -> bool:

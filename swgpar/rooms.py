@@ -1,6 +1,7 @@
 """The rooms of the package in the order of the data, and what each is for.
 
-A module imports only from its own room and from those before it; `tests/unit/test_layering.py` reads the order here.
+A module imports only from its own room and from those before it; `tests/unit/test_layering.py`
+reads the order here.
 """
 
 from __future__ import annotations
@@ -32,10 +33,12 @@ PURPOSE = {
     "drive_results": "the table of answers and the result of a drive, in memory or from files",
     "analysis": "a run: starts, load stepping, mesh refinement, recording, restart",
     "presentation": "what a person sees of a drive: figures, report, terminal, view",
-    "exchange": "files of other programs: STEP, DXF, VTKHDF, tables of histories, look-up tables, FMU",
+    "exchange": "files of other programs: STEP, DXF, VTKHDF, tables of histories, look-up tables, "
+    "FMU",
     "vibration": "meshes with backlash, elastic rings, statistical linearisation, random samples",
     "gear_trains": "lumped models of gear trains around strain wave gears",
-    "systems": "registry of what can be computed, drives and gear trains, for the interfaces and studies",
+    "systems": "registry of what can be computed, drives and gear trains, for the interfaces and "
+    "studies",
     "studies": "many runs: cases, schedule, tables, report",
     "optimisation": "search for the best design: variables, objectives, constraints, report",
     "api": "the Python interface",

@@ -1,4 +1,5 @@
-"""What a run is asked for beside its design: the same options from the command line, Python, studies and searches."""
+"""What a run is asked for beside its design: the same options from the command line, Python,
+studies and searches."""
 
 from __future__ import annotations
 
@@ -25,7 +26,8 @@ class RunOptions:
     out : results folder; None keeps everything in memory
     recipe : mesh recipe; None is the recipe of the package for this kind of drive
     recipe_name : of the recipe in the summary
-    accuracy : estimated relative error of the largest tensile stress at the teeth up to which the mesh is refined
+    accuracy : estimated relative error of the largest tensile stress at the teeth up to which the
+    mesh is refined
     plain : compute all that the design asks for, without shortcuts
     restart : continue from the checkpoint in `out`
     overwrite : replace results that `out` already holds
@@ -54,9 +56,16 @@ class RunOptions:
         noun : the kind of systems in the message
         mesh : whether a mesh is given, read or not yet
         """
-        given = {"mesh": mesh, "accuracy": self.accuracy is not None, "plain": self.plain, "restart": self.restart}
+        given = {
+            "mesh": mesh,
+            "accuracy": self.accuracy is not None,
+            "plain": self.plain,
+            "restart": self.restart,
+        }
         for name, is_given in given.items():
             if is_given and name not in available:
                 raise InputError(f"{name} has no meaning for {noun}: leave it out")
         if self.restart and self.out is None:
-            raise InputError("restart = true needs the results folder out: a run in memory leaves no checkpoint")
+            raise InputError(
+                "restart = true needs the results folder out: a run in memory leaves no checkpoint"
+            )

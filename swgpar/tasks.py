@@ -1,4 +1,5 @@
-"""Tasks shared by the ranks, without a rank that only serves the others, and their reports to rank 0."""
+"""Tasks shared by the ranks, without a rank that only serves the others, and their reports to rank
+0."""
 
 from __future__ import annotations
 
@@ -10,14 +11,18 @@ import numpy as np
 from mpi4py import MPI
 
 PAUSE = 0.05
-"""Seconds between two looks of a rank that has nothing left to do; MPI's own waiting would take a whole core."""
+"""Seconds between two looks of a rank that has nothing left to do; MPI's own waiting would take a
+whole core."""
 
 Send = Callable[[Any], None]
 """Takes a message to rank 0."""
 
 
-def share_tasks(comm: MPI.Comm, count: int, run: Callable[[int, Send], None], receive: Send) -> None:
-    """Run tasks by their numbers 0 to count - 1, each on one rank: a rank that is free takes the next one. Collective.
+def share_tasks(
+    comm: MPI.Comm, count: int, run: Callable[[int, Send], None], receive: Send
+) -> None:
+    """Run tasks by their numbers 0 to count - 1, each on one rank: a rank that is free takes the
+    next one. Collective.
 
     run : called with a number, and with what sends a message to rank 0
     receive : called on rank 0 with every message
@@ -36,7 +41,8 @@ def share_tasks(comm: MPI.Comm, count: int, run: Callable[[int, Send], None], re
 
 
 class _Counter:
-    """The numbers 0, 1, 2, ... of which each rank takes the next one; the counter is in the memory of rank 0.
+    """The numbers 0, 1, 2, ... of which each rank takes the next one; the counter is in the memory
+    of rank 0.
 
     Creation and `free` are collective, `take` is not.
     """

@@ -1,7 +1,9 @@
-"""Tests on several ranks: only rank 0 reports, a test fails on all ranks or on none, and no failure can hang.
+"""Tests on several ranks: only rank 0 reports, a test fails on all ranks or on none, and no failure
+can hang.
 
-A test says by `@pytest.mark.parallel` (plugin mpi-pytest) on how many ranks it runs; without that it runs on one. The
-setting `-m parallel[match]` selects the tests of the number of ranks that pytest itself was started on.
+A test says by `@pytest.mark.parallel` (plugin mpi-pytest) on how many ranks it runs; without that
+it runs on one. The setting `-m parallel[match]` selects the tests of the number of ranks that
+pytest itself was started on.
 
 The tests that `slow.txt` names run with `--slow`, or when the command line names them.
 """
@@ -18,14 +20,19 @@ import pytest
 from mpi4py import MPI
 
 WAIT = 60.0
-"""s that a rank on which a test has failed waits for the other ranks, before it ends all of them."""
+"""s that a rank on which a test has failed waits for the other ranks, before it ends all of
+them."""
 
-ranks = MPI.COMM_WORLD.Dup()  # not the communicator of the tests: their messages must not be taken for these
+ranks = (
+    MPI.COMM_WORLD.Dup()
+)  # not the communicator of the tests: their messages must not be taken for these
 
 for _number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
     # nohup, or a script's background job, ignores them: child processes would inherit that
     if signal.getsignal(_number) is signal.SIG_IGN:
-        signal.signal(_number, signal.default_int_handler if _number == signal.SIGINT else signal.SIG_DFL)
+        signal.signal(
+            _number, signal.default_int_handler if _number == signal.SIGINT else signal.SIG_DFL
+        )
 
 SLOW = Path(__file__).with_name("slow.txt")
 """Tests that take ten seconds or more, one on a line."""
@@ -63,14 +70,21 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo):
     texts = ranks.allgather(report.longreprtext if report.failed else "")
     if any(texts) and not report.failed:
         report.outcome = "failed"
-        report.longrepr = "\n".join(f"on rank {rank}:\n{text}" for rank, text in enumerate(texts) if text)
+        report.longrepr = "\n".join(
+            f"on rank {rank}:\n{text}" for rank, text in enumerate(texts) if text
+        )
 
 
 def meet(report: pytest.TestReport) -> None:
-    """Wait for all ranks; a rank whose test has failed does not wait for ever, as the others may wait for it."""
+    """Wait for all ranks; a rank whose test has failed does not wait for ever, as the others may
+    wait for it."""
     request, begin = ranks.Ibarrier(), time.monotonic()
     while not request.Test():
         if report.failed and time.monotonic() - begin > WAIT:
-            print(f"rank {ranks.rank}: {report.nodeid}\n{report.longreprtext}", file=sys.stderr, flush=True)
+            print(
+                f"rank {ranks.rank}: {report.nodeid}\n{report.longreprtext}",
+                file=sys.stderr,
+                flush=True,
+            )
             ranks.Abort(1)
         time.sleep(1e-3)

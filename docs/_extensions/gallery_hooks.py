@@ -42,7 +42,8 @@ class PageOrder:
 
 
 def name_the_file(configuration: dict[str, Any], name: str | None) -> None:
-    """Give a script its `__file__`, which sphinx-gallery leaves out; scripts find the drivers by it."""
+    """Give a script its `__file__`, which sphinx-gallery leaves out; scripts find the drivers by
+    it."""
     if name is not None:
         builtins.__file__ = str(GALLERY / Path(name).name)
 

@@ -14,7 +14,9 @@ def _keep(app: Sphinx, what: str, name: str, thing: object, options: Any, lines:
         _texts[name] = list(lines)
 
 
-def _restore(app: Sphinx, what: str, name: str, thing: object, options: Any, lines: list[str]) -> None:
+def _restore(
+    app: Sphinx, what: str, name: str, thing: object, options: Any, lines: list[str]
+) -> None:
     if what == "property":
         lines[:] = _texts.pop(name)
 

@@ -33,7 +33,9 @@ NOTE = "#b03030"
 Point = tuple[float, float]
 
 
-def canvas(width: float, height: float, rows: int = 1, columns: int = 1, **options) -> tuple[Figure, np.ndarray | Axes]:
+def canvas(
+    width: float, height: float, rows: int = 1, columns: int = 1, **options
+) -> tuple[Figure, np.ndarray | Axes]:
     """Figure (inches) with axes of equal scale and no frame."""
     figure, axes = plt.subplots(rows, columns, figsize=(width, height), **options)
     for ax in np.atleast_1d(axes).ravel():
@@ -42,9 +44,18 @@ def canvas(width: float, height: float, rows: int = 1, columns: int = 1, **optio
     return figure, axes
 
 
-def dimension(ax: Axes, start: Point, end: Point, text: str, at: Point | None = None, **style) -> None:
+def dimension(
+    ax: Axes, start: Point, end: Point, text: str, at: Point | None = None, **style
+) -> None:
     """Double arrow between two points with a text in its middle, or at another point."""
-    arrow = {"arrowstyle": "<|-|>", "color": NOTE, "lw": 0.9, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 7}
+    arrow = {
+        "arrowstyle": "<|-|>",
+        "color": NOTE,
+        "lw": 0.9,
+        "shrinkA": 0,
+        "shrinkB": 0,
+        "mutation_scale": 7,
+    }
     ax.annotate("", xy=end, xytext=start, arrowprops=arrow)
     middle = at or (0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1]))
     label(ax, middle, text, **style)
@@ -53,13 +64,24 @@ def dimension(ax: Axes, start: Point, end: Point, text: str, at: Point | None = 
 def label(ax: Axes, at: Point, text: str, **style) -> None:
     """Text on a white ground."""
     box = {"boxstyle": "square,pad=0.12", "fc": "white", "ec": "none", "alpha": 0.85}
-    ax.text(*at, text, **{"ha": "center", "va": "center", "fontsize": 8, "color": NOTE, "bbox": box, **style})
+    ax.text(
+        *at,
+        text,
+        **{"ha": "center", "va": "center", "fontsize": 8, "color": NOTE, "bbox": box, **style},
+    )
 
 
 def leader(ax: Axes, at: Point, text: str, to: Point, **style) -> None:
     """Text at one point with a thin arrow to another one."""
     box = {"boxstyle": "square,pad=0.12", "fc": "white", "ec": "none", "alpha": 0.85}
-    arrow = {"arrowstyle": "-|>", "color": NOTE, "lw": 0.7, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 6}
+    arrow = {
+        "arrowstyle": "-|>",
+        "color": NOTE,
+        "lw": 0.7,
+        "shrinkA": 0,
+        "shrinkB": 0,
+        "mutation_scale": 6,
+    }
     style = {"ha": "center", "va": "center", "fontsize": 8, "color": NOTE, "bbox": box, **style}
     ax.annotate(text, xy=to, xytext=at, arrowprops=arrow, **style)
 
@@ -80,11 +102,20 @@ def arc(center: Point, radius: float, start: float, end: float, n: int = 100) ->
     return np.column_stack([center[0] + radius * np.cos(angle), center[1] + radius * np.sin(angle)])
 
 
-def angle_mark(ax: Axes, center: Point, radius: float, start: float, end: float, text: str, out: float = 1.12) -> None:
+def angle_mark(
+    ax: Axes, center: Point, radius: float, start: float, end: float, text: str, out: float = 1.12
+) -> None:
     """Arc with an arrow at its end and a text beside its middle; degrees from +x."""
     points = arc(center, radius, start, end)
     ax.plot(*points.T, color=NOTE, lw=0.9)
-    arrow = {"arrowstyle": "-|>", "color": NOTE, "lw": 0.9, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 7}
+    arrow = {
+        "arrowstyle": "-|>",
+        "color": NOTE,
+        "lw": 0.9,
+        "shrinkA": 0,
+        "shrinkB": 0,
+        "mutation_scale": 7,
+    }
     ax.annotate("", xy=points[-1], xytext=points[-4], arrowprops=arrow)
     label(ax, tuple(arc(center, out * radius, start, end, 3)[1]), text)
 
@@ -101,7 +132,8 @@ def reference(name: str = "cup_45deg") -> DriveDesign:
 
 
 def plane_with(**sections: Mapping[str, object]) -> DriveDesign:
-    """The plane reference drive with other values of some sections; a profile or a cam is replaced as a whole."""
+    """The plane reference drive with other values of some sections; a profile or a cam is replaced
+    as a whole."""
     table = read_toml(DRIVERS / "plane_half_turn.toml")
     for name, values in sections.items():
         table[name] = dict(values) if name == "wave_generator" else {**table[name], **values}
@@ -109,7 +141,8 @@ def plane_with(**sections: Mapping[str, object]) -> DriveDesign:
 
 
 def run(drawings: Mapping[str, Callable[[], Figure]]) -> None:
-    """Write all drawings as PNG files into the folder of the command line, or else into docs/_generated."""
+    """Write all drawings as PNG files into the folder of the command line, or else into
+    docs/_generated."""
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs" / "_generated"
     folder.mkdir(parents=True, exist_ok=True)
     for name, draw in drawings.items():

@@ -38,7 +38,8 @@ R_FS = 10.0
 D = 4.0
 A = 12.0
 B = 8.0
-"""Inner radius of the spline, deflection and semi-axes (mm) of the drawings: proportions are exaggerated."""
+"""Inner radius of the spline, deflection and semi-axes (mm) of the drawings: proportions are
+exaggerated."""
 
 PARTS = {"parabola": "#8c4fb0", "connector": "#2d9a57", "lateral": "#d07a20"}
 
@@ -73,7 +74,11 @@ def draw_harmonic(ax: Axes, lobes: int) -> None:
     low = np.pi / lobes  # polar angle from +y of the least radius
     dimension(ax, (0, 0), (0, A), "$a$", at=(0.7, 0.72 * A))
     dimension(
-        ax, (0, 0), (B * np.sin(low), B * np.cos(low)), "$b$", at=(0.6 * B * np.sin(low), 0.6 * B * np.cos(low) - 1.0)
+        ax,
+        (0, 0),
+        (B * np.sin(low), B * np.cos(low)),
+        "$b$",
+        at=(0.6 * B * np.sin(low), 0.6 * B * np.cos(low) - 1.0),
     )
     angle = 0.62 * low
     radius = 0.5 * (A + B) + 0.5 * (A - B) * np.cos(lobes * angle)
@@ -107,8 +112,20 @@ def draw_arcs(ax: Axes) -> None:
     ax.plot(*arc(top.center, top.radius, 50, 130).T, color=PARTS["parabola"], lw=2.6)
     ax.plot(*arc(side.center, side.radius, 0, 50).T, color=PARTS["lateral"], lw=2.6)
     angle_mark(ax, top.center, 2.6, 90.0, 50.0, r"$\beta$", out=1.3)
-    leader(ax, (9.0, 9.0), "$r_1$", tuple(arc(top.center, top.radius, 60, 61)[0]), color=PARTS["parabola"])
-    leader(ax, (10.5, 4.5), "$r_2$", tuple(arc(side.center, side.radius, 25, 26)[0]), color=PARTS["lateral"])
+    leader(
+        ax,
+        (9.0, 9.0),
+        "$r_1$",
+        tuple(arc(top.center, top.radius, 60, 61)[0]),
+        color=PARTS["parabola"],
+    )
+    leader(
+        ax,
+        (10.5, 4.5),
+        "$r_2$",
+        tuple(arc(side.center, side.radius, 25, 26)[0]),
+        color=PARTS["lateral"],
+    )
     semi_axes(ax)
 
 
@@ -133,11 +150,18 @@ def draw_parabolic(ax: Axes) -> None:
     dimension(ax, c, tuple(middle), "$r_c$", at=(c[0] + 1.3, c[1] + 0.25))
     label(ax, (c[0] - 0.7, c[1] - 0.4), "$c$", color=PARTS["connector"])
     angle_mark(ax, lateral.center, 3.4, 0.0, np.degrees(quarter.alpha), r"$\alpha_l$", out=1.25)
-    label(ax, (lateral.center[0] + 1.0, -0.9), "centre of the lateral arc, $(b - r_l, 0)$", color=PARTS["lateral"])
+    label(
+        ax,
+        (lateral.center[0] + 1.0, -0.9),
+        "centre of the lateral arc, $(b - r_l, 0)$",
+        color=PARTS["lateral"],
+    )
     ax.plot(*quarter.end, "o", color=INK, ms=4)
     label(ax, (quarter.end[0] + 0.9, quarter.end[1] + 0.7), "$P$", color=INK)
     ax.plot([quarter.end[0]] * 2, [quarter.end[1], A + 0.8], color=NOTE, lw=0.5)
-    dimension(ax, (0, A + 0.6), (quarter.end[0], A + 0.6), "$C_p b$", at=(0.5 * quarter.end[0], A + 1.4))
+    dimension(
+        ax, (0, A + 0.6), (quarter.end[0], A + 0.6), "$C_p b$", at=(0.5 * quarter.end[0], A + 1.4)
+    )
     label(ax, (-3.9, A + 0.3), "$y = a - a_p x^2$", color=PARTS["parabola"])
     end = arc(lateral.center, lateral.radius, 0, np.degrees(quarter.alpha), 5)[2]
     leader(ax, (9.6, 6.3), "lateral\narc $r_l$", tuple(end), color=PARTS["lateral"])
@@ -149,8 +173,13 @@ def draw_asymmetric(ax: Axes) -> None:
     right, left, tilt = Side(0.06, 0.55, 2.6), Side(0.05, 0.48, 3.2), np.radians(7.0)
     base(ax, parabolic(A, B, right, left, tilt), "asymmetric_parabolic")
     parabola = Parabola(A, right.a_p, tilt)
-    for side, colour, sign, bend in ((right, PARTS["parabola"], 1, tilt), (left, PARTS["connector"], -1, -tilt)):
-        points = np.array([Parabola(A, side.a_p, bend).at(x)[0] for x in np.linspace(0, side.C_p * B, 30)])
+    for side, colour, sign, bend in (
+        (right, PARTS["parabola"], 1, tilt),
+        (left, PARTS["connector"], -1, -tilt),
+    ):
+        points = np.array(
+            [Parabola(A, side.a_p, bend).at(x)[0] for x in np.linspace(0, side.C_p * B, 30)]
+        )
         ax.plot(*(points * (sign, 1.0)).T, color=colour, lw=2.6)
     tangent = parabola.at(0.0)[1]
     ax.plot([0, 3.6 * tangent[0]], [A, A - 3.6 * tangent[1]], color="none")
@@ -176,7 +205,9 @@ def draw_rollers(ax: Axes) -> None:
     unit = c / np.hypot(*c)
     ax.plot([0, A * unit[0]], [0, A * unit[1]], color=NOTE, lw=0.7)
     ax.plot(*c, "+", color=NOTE, ms=9)
-    dimension(ax, tuple(c), tuple(c + radius * np.array([1.0, 0.0])), "$r_4$", at=(c[0] + 1.7, c[1] + 0.7))
+    dimension(
+        ax, tuple(c), tuple(c + radius * np.array([1.0, 0.0])), "$r_4$", at=(c[0] + 1.7, c[1] + 0.7)
+    )
     angle_mark(ax, (0, 0), 4.2, 90.0, 90.0 - np.degrees(beta), r"$\beta$", out=1.2)
     dimension(ax, (0, 0), tuple(-A * unit), "$a$", at=tuple(-0.35 * A * unit + (0.9, 0)))
 
@@ -193,7 +224,10 @@ def draw_pins(ax: Axes) -> None:
         ax.plot(*part[near].T, color=NOTE, lw=3.0)
         tip = sign * (A - travel)
         ax.annotate(
-            "", xy=(-1.2, tip + sign * travel), xytext=(-1.2, tip), arrowprops={"arrowstyle": "-|>", "color": NOTE}
+            "",
+            xy=(-1.2, tip + sign * travel),
+            xytext=(-1.2, tip),
+            arrowprops={"arrowstyle": "-|>", "color": NOTE},
         )
     ax.plot(*arc((0, 0), R_FS, 0, 360).T, color=SPLINE, lw=1.6)
     axis_line(ax, (-R_FS - 1.5, 0), (R_FS + 1.5, 0))
@@ -202,7 +236,9 @@ def draw_pins(ax: Axes) -> None:
         ax.plot([0, sign * 12 * np.sin(half)], [0, 12 * np.cos(half)], color=NOTE, lw=0.6, ls="--")
     angle_mark(ax, (0, 0), 5.0, 90.0, 90.0 - np.degrees(half), "pin_half_\nangle", out=1.3)
     label(ax, (-4.0, 11.6), "$d/2$")
-    label(ax, (0.0, -3.2), "the pins are the halves of the cam,\ndrawn in until they fit", color=INK)
+    label(
+        ax, (0.0, -3.2), "the pins are the halves of the cam,\ndrawn in until they fit", color=INK
+    )
     ax.set_title("pushing pins (start of stage 1)", fontsize=10)
 
 
@@ -247,7 +283,8 @@ REFERENCE = {
 
 
 def cam_radius() -> Figure:
-    """Radius of the cams of the reference drive over the angle from the major axis, at true scale."""
+    """Radius of the cams of the reference drive over the angle from the major axis, at true
+    scale."""
     figure, ax = plt.subplots(figsize=(9.0, 4.4))
     for name, keys in REFERENCE.items():
         design = plane_with(wave_generator={"face_width": 10.0, **keys})
@@ -286,24 +323,42 @@ def stages() -> Figure:
     for k, (ax, title, note) in enumerate(zip(axes.ravel(), titles, notes)):
         turn = np.radians(25.0) if k == 3 else 0.0
         c, s = np.cos(turn), np.sin(turn)
-        ellipse = np.column_stack([B * np.sin(circle), A * np.cos(circle)]) @ np.array([[c, s], [-s, c]])
-        spline = np.column_stack([(B + 0.5) * np.sin(circle), (A + 0.5) * np.cos(circle)]) @ np.array([[c, s], [-s, c]])
+        ellipse = np.column_stack([B * np.sin(circle), A * np.cos(circle)]) @ np.array(
+            [[c, s], [-s, c]]
+        )
+        spline = np.column_stack(
+            [(B + 0.5) * np.sin(circle), (A + 0.5) * np.cos(circle)]
+        ) @ np.array([[c, s], [-s, c]])
         ax.plot(*spline.T, color=SPLINE, lw=3.0)
         if k == 0:
             for sign in (1, -1):
                 half = np.radians(np.linspace(-15, 15, 30))
                 ax.plot(B * np.sin(half) * 1.5, sign * A * np.cos(half), color=NOTE, lw=4)
                 arrow = {"arrowstyle": "-|>", "color": NOTE, "lw": 1.5}
-                ax.annotate("", xy=(0, sign * (A - 0.6)), xytext=(0, sign * (A - 5)), arrowprops=arrow)
+                ax.annotate(
+                    "", xy=(0, sign * (A - 0.6)), xytext=(0, sign * (A - 5)), arrowprops=arrow
+                )
         else:
-            ax.fill(*ellipse.T, fc=CAM, alpha=0.25 if k == 1 else 0.7, ec=INK, lw=0.8, ls="--" if k == 1 else "-")
+            ax.fill(
+                *ellipse.T,
+                fc=CAM,
+                alpha=0.25 if k == 1 else 0.7,
+                ec=INK,
+                lw=0.8,
+                ls="--" if k == 1 else "-",
+            )
         if k == 2:
             angle_mark(ax, (0, 0), A + 2.5, 55.0, 90.0, "T", out=1.12)
         if k == 3:
             angle_mark(ax, (0, 0), 5.0, 90.0, 90.0 + np.degrees(turn), "wave generator", out=1.5)
             angle_mark(ax, (0, 0), A + 2.5, 55.0, 90.0, "T", out=1.12)
             angle_mark(ax, (0, 0), A + 2.5, 45.0, 25.0, "output", out=1.18)
-        ax.plot(*arc((0, 0), A + (1.2 if k else 1.2), 0, 360).T, color="#9d9d9d", lw=2.2, alpha=0.2 if k == 0 else 0.9)
+        ax.plot(
+            *arc((0, 0), A + (1.2 if k else 1.2), 0, 360).T,
+            color="#9d9d9d",
+            lw=2.2,
+            alpha=0.2 if k == 0 else 0.9,
+        )
         ax.set_title(title, fontsize=11)
         label(ax, (0, -A - 4.2), note, color=INK)
         ax.set_xlim(-18, 18)

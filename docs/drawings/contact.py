@@ -34,7 +34,9 @@ def segments() -> Figure:
     for z in LINES[1][:3]:
         left.plot([-0.55, 1.5], [z, z], color=RING, lw=2.0)
     left.fill([0, 1, 1, 0], [0, 0, 1, 1], fc=SPLINE, alpha=0.35, ec=INK, lw=1.5)
-    for (x, y), name in zip(((0, 0), (1, 0), (1, 1), (0, 1)), ("(0, 0)", "(1, 0)", "(1, 1)", "(0, 1)")):
+    for (x, y), name in zip(
+        ((0, 0), (1, 0), (1, 1), (0, 1)), ("(0, 0)", "(1, 0)", "(1, 1)", "(0, 1)")
+    ):
         left.plot(x, y, "o", color=INK, ms=5)
         label(left, (x, y - 0.08 if y == 0 else y + 0.08), name, color=INK)
     label(left, (0.5, 0.12), "face of the slave\n(flexible spline)", color=INK)
@@ -49,10 +51,20 @@ def segments() -> Figure:
     right.plot([0.5, 0.5], [0, 1], color=SPLINE, lw=1.0, ls="--")
     right.plot([0, 1], [0.5, 0.5], color=SPLINE, lw=1.0, ls="--")
     right.fill([0, 1, 1, 0], [0, 0, 1, 1], fc=SPLINE, alpha=0.2, ec=INK, lw=1.5)
-    right.scatter(cut.a.ravel(), cut.b.ravel(), s=900 * np.sqrt(cut.share.ravel()) * 0.25 + 4, color=NOTE, zorder=3)
-    right.annotate("", xy=(0.45, -0.22), xytext=(0, -0.22), arrowprops={"arrowstyle": "-|>", "color": INK})
+    right.scatter(
+        cut.a.ravel(),
+        cut.b.ravel(),
+        s=900 * np.sqrt(cut.share.ravel()) * 0.25 + 4,
+        color=NOTE,
+        zorder=3,
+    )
+    right.annotate(
+        "", xy=(0.45, -0.22), xytext=(0, -0.22), arrowprops={"arrowstyle": "-|>", "color": INK}
+    )
     label(right, (0.6, -0.22), "a, along the profile", color=INK, ha="left")
-    right.annotate("", xy=(-0.2, 0.45), xytext=(-0.2, 0.0), arrowprops={"arrowstyle": "-|>", "color": INK})
+    right.annotate(
+        "", xy=(-0.2, 0.45), xytext=(-0.2, 0.0), arrowprops={"arrowstyle": "-|>", "color": INK}
+    )
     label(right, (-0.2, 0.56), "b, along z", color=INK)
     leader(right, (1.2, 1.25), "Gauss points, 2 × 2\nin every segment", (cut.a.max(), cut.b.max()))
     text = "dashed: faces are cut in their middle too"
@@ -63,23 +75,33 @@ def segments() -> Figure:
 
 
 def offset() -> Figure:
-    """The exact, crowned flank over the facets of a coarse mesh, and the Hermite curve of the master."""
+    """The exact, crowned flank over the facets of a coarse mesh, and the Hermite curve of the
+    master."""
     design = reference("plane_half_turn")
     recipe = load_recipe("coarse")
     mesh = build_sector_meshes(design.geometry, recipe)["flexible_spline"]
     grid = mesh.flanks[0]
     profile = design.profile("flexible_spline")
-    figure, (left, right) = plt.subplots(1, 2, figsize=(9.5, 4.6), gridspec_kw={"width_ratios": [1.0, 1.25]})
+    figure, (left, right) = plt.subplots(
+        1, 2, figsize=(9.5, 4.6), gridspec_kw={"width_ratios": [1.0, 1.25]}
+    )
     left.set_aspect("equal")
     left.axis("off")
     curve = profile.point(np.linspace(0.0, profile.length, 400))
     nodes = mesh.coords[grid.nodes[:, 0], :2]
-    fill = np.concatenate([curve, [(curve[-1, 0], curve[-1, 1] - 0.2), (0.0, curve[-1, 1] - 0.2), (0.0, curve[0, 1])]])
+    fill = np.concatenate(
+        [curve, [(curve[-1, 0], curve[-1, 1] - 0.2), (0.0, curve[-1, 1] - 0.2), (0.0, curve[0, 1])]]
+    )
     left.fill(*fill.T, fc=SPLINE, alpha=0.25)
     left.plot(*curve.T, color=NOTE, lw=1.8)
     left.plot(*nodes.T, "o-", color=INK, lw=1.2, ms=4)
     label(left, (0.25, curve[0, 1] - 0.75), "flexible spline", color=INK)
-    leader(left, (0.95, curve[0, 1] - 0.15), "exact flank", tuple(profile.point(0.18 * profile.length)[0]))
+    leader(
+        left,
+        (0.95, curve[0, 1] - 0.15),
+        "exact flank",
+        tuple(profile.point(0.18 * profile.length)[0]),
+    )
     at = 0.5 * (nodes[2] + nodes[3])
     leader(left, (1.15, curve[0, 1] - 0.55), "facets between nodes", tuple(at), color=INK)
     left.set_title("nodes lie on the exact curve", fontsize=10)

@@ -24,8 +24,20 @@ CONTOUR = [
 BOLTED = {"attachment": "bolted", "bolts": 12, "bolt_circle": 60.0, "washer_diameter": 8.0}
 CLAMPED = {"attachment": "clamped", "clamping_radius": 68.0}
 CASES: dict[str, dict[str, Any]] = {
-    "contour": {"length": 40.0, "fillet_radius": 3.0, "inner_radius": 20.0, "end_thickness": 2.5, "contour": CONTOUR},
-    "short, bolted": {"length": 20.0, "fillet_radius": 3.0, "inner_radius": 20.0, "end_thickness": 1.5, **BOLTED},
+    "contour": {
+        "length": 40.0,
+        "fillet_radius": 3.0,
+        "inner_radius": 20.0,
+        "end_thickness": 2.5,
+        "contour": CONTOUR,
+    },
+    "short, bolted": {
+        "length": 20.0,
+        "fillet_radius": 3.0,
+        "inner_radius": 20.0,
+        "end_thickness": 1.5,
+        **BOLTED,
+    },
     "hat, clamped": {
         "shape": "hat",
         "length": 40.0,
@@ -43,12 +55,17 @@ def section(ax: Axes, design: DriveDesign, title: str) -> None:
     half, profile = 0.5 * design.drive.face_width, design.profile("flexible_spline")
     wall = np.concatenate([[(design.inner_radius, -half)], lines.inner, lines.outer[::-1]])
     teeth = np.array([(profile.r_tip_circle, half), (profile.r_tip_circle, -half)])
-    ax.add_patch(Polygon(np.concatenate([wall, teeth])[:, ::-1], fc=SPLINE, ec=INK, lw=0.8, alpha=0.85))
+    ax.add_patch(
+        Polygon(np.concatenate([wall, teeth])[:, ::-1], fc=SPLINE, ec=INK, lw=0.8, alpha=0.85)
+    )
     axis_line(ax, (-half - 4.0, 0.0), (56.0, 0.0))
     cup, faces = design.cup, design.cup_wall.faces
     low, high = {
         "bolted": (
-            lambda: (0.5 * (cup.bolt_circle - cup.washer_diameter), 0.5 * (cup.bolt_circle + cup.washer_diameter))
+            lambda: (
+                0.5 * (cup.bolt_circle - cup.washer_diameter),
+                0.5 * (cup.bolt_circle + cup.washer_diameter),
+            )
         ),
         "clamped": lambda: (cup.clamping_radius, cup.edge),
         "edge": lambda: (cup.edge, cup.edge),
@@ -64,7 +81,9 @@ def shapes() -> Figure:
     """Contour, short cup, silk hat."""
     figure, axes = canvas(11.0, 5.4, columns=3)
     for ax, (title, cup) in zip(axes, CASES.items(), strict=True):
-        design = reference().model_copy(update={"cup": Cup.model_validate({"thickness_coef": 0.8, **cup})})
+        design = reference().model_copy(
+            update={"cup": Cup.model_validate({"thickness_coef": 0.8, **cup})}
+        )
         section(ax, design, title)
     leader(axes[0], (8.0, 46.0), "cup.contour", (19.0, 58.3), color=NOTE)
     leader(axes[0], (8.0, 30.0), "cup.end_thickness", (43.5, 36.0), color=NOTE)

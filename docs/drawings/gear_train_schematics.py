@@ -1,10 +1,25 @@
-"""Schematics of the gear trains: bodies, springs, dampers, backlash, degrees of freedom and loads, from the drivers."""
+"""Schematics of the gear trains: bodies, springs, dampers, backlash, degrees of freedom and loads,
+from the drivers."""
 
 from __future__ import annotations
 
 import matplotlib.pyplot as plt
 import numpy as np
-from _drafting import CAM, DRIVERS, INK, NOTE, RING, SPLINE, Point, angle_mark, arc, canvas, label, leader, run
+from _drafting import (
+    CAM,
+    DRIVERS,
+    INK,
+    NOTE,
+    RING,
+    SPLINE,
+    Point,
+    angle_mark,
+    arc,
+    canvas,
+    label,
+    leader,
+    run,
+)
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Rectangle
@@ -16,14 +31,17 @@ WIRE = {"color": INK, "lw": 1.0, "solid_capstyle": "butt"}
 
 
 def local(start: Point, end: Point) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
-    """Start, unit vector along, unit vector to the left, and length of the line between two points."""
+    """Start, unit vector along, unit vector to the left, and length of the line between two
+    points."""
     a, b = np.array(start, dtype=float), np.array(end, dtype=float)
     length = float(np.hypot(*(b - a)))
     along = (b - a) / length
     return a, along, np.array([-along[1], along[0]]), length
 
 
-def path(ax: Axes, frame: tuple[np.ndarray, np.ndarray, np.ndarray, float], points: list[Point], **style) -> None:
+def path(
+    ax: Axes, frame: tuple[np.ndarray, np.ndarray, np.ndarray, float], points: list[Point], **style
+) -> None:
     """Line through points given along the frame's line (as parts of its length) and to its left."""
     a, along, left, length = frame
     xy = np.array([a + x * length * along + y * left for x, y in points])
@@ -72,12 +90,24 @@ def ground(ax: Axes, at: Point, direction: float, width: float) -> None:
     out, side = np.array([np.cos(t), np.sin(t)]), np.array([-np.sin(t), np.cos(t)])
     ax.plot(*np.array([at - width * side, at + width * side]).T, **{**WIRE, "lw": 1.5})
     for k in np.linspace(-0.9, 0.9, 6):
-        ax.plot(*np.array([at + k * width * side, at + (k - 0.25) * width * side + 0.35 * width * out]).T, **WIRE)
+        ax.plot(
+            *np.array(
+                [at + k * width * side, at + (k - 0.25) * width * side + 0.35 * width * out]
+            ).T,
+            **WIRE,
+        )
 
 
 def arrow(ax: Axes, start: Point, end: Point, color: str = NOTE) -> None:
     """Force, or direction of a coordinate."""
-    style = {"arrowstyle": "-|>", "color": color, "lw": 1.4, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 10}
+    style = {
+        "arrowstyle": "-|>",
+        "color": color,
+        "lw": 1.4,
+        "shrinkA": 0,
+        "shrinkB": 0,
+        "mutation_scale": 10,
+    }
     ax.annotate("", xy=end, xytext=start, arrowprops=style)
 
 
@@ -125,7 +155,8 @@ def gear_pair() -> Figure:
 
 
 def cascade() -> Figure:
-    """Cascade gearbox: which gears mesh, and where the springs are; one side of two, and the common part."""
+    """Cascade gearbox: which gears mesh, and where the springs are; one side of two, and the common
+    part."""
     figure, ax = canvas(11.5, 6.8)
     half = PINIONS // 2
     ax.add_patch(Rectangle((-1.0, -0.25), 2.2 * half + 1.3, 0.5, fc=RING, ec=INK, alpha=0.5))
@@ -149,7 +180,9 @@ def cascade() -> Figure:
     g4 = (8.3, 5.0)
     wheel = (10.4, 5.0)
     for k, target in ((0, (3.45, 4.85)), (2, (4.0, 4.62))):
-        mesh(ax, (0.6 + 2.2 * k + (0.45 if k == 0 else -0.25), 3.85 if k == 0 else 4.0), target, 0.11)
+        mesh(
+            ax, (0.6 + 2.2 * k + (0.45 if k == 0 else -0.25), 3.85 if k == 0 else 4.0), target, 0.11
+        )
     for center, radius, name, color in (
         (g2, 0.4, "G2", CAM),
         (g3, 0.6, "G3", SPLINE),
@@ -176,9 +209,14 @@ def cascade() -> Figure:
 
 
 def ring() -> Figure:
-    """Elastic ring of drivers/ring_moving_load.toml: elements, supports, moving loads and displacements."""
+    """Elastic ring of drivers/ring_moving_load.toml: elements, supports, moving loads and
+    displacements."""
     design = load_design(DRIVERS / "ring_moving_load.toml")
-    elements, supports, loads = design.ring.elements, design.supports.count, design.moving_load.loads
+    elements, supports, loads = (
+        design.ring.elements,
+        design.supports.count,
+        design.moving_load.loads,
+    )
     assert design.elastic_ring().size == 3 * elements
     figure, ax = canvas(8.0, 8.0)
     radius, rim = 3.0, 0.16
@@ -204,7 +242,11 @@ def ring() -> Figure:
     label(ax, (2.1, 1.6), "$F_0 + f\\sin\\omega t + b\\,W(t)$", ha="right")
     angle_mark(ax, (0.0, 0.0), 1.1, 0.0, 75.0, "$\\Omega t$", 1.2)
     ax.plot([0.0, 1.4], [0.0, 0.0], color=NOTE, lw=0.5)
-    ax.plot(*np.array([(0.0, 0.0), arc((0.0, 0.0), radius - rim, 75.0, 75.0, 1)[0]]).T, color=NOTE, lw=0.5)
+    ax.plot(
+        *np.array([(0.0, 0.0), arc((0.0, 0.0), radius - rim, 75.0, 75.0, 1)[0]]).T,
+        color=NOTE,
+        lw=0.5,
+    )
     node = np.radians(-30.0)
     e, side = np.array([np.cos(node), np.sin(node)]), np.array([-np.sin(node), np.cos(node)])
     at = radius * e
@@ -231,7 +273,10 @@ def planetary() -> Figure:
     """Planetary train of drivers/planetary.toml, pitch circles to scale."""
     design = load_design(DRIVERS / "planetary.toml")
     scale = 3.6 / design.ring.root_radius
-    sun, planet = 0.5 * scale * design.sun.pitch_diameter, 0.5 * scale * design.planet.pitch_diameter
+    sun, planet = (
+        0.5 * scale * design.sun.pitch_diameter,
+        0.5 * scale * design.planet.pitch_diameter,
+    )
     rim, centres = scale * design.ring.rim, sun + planet
     gap = 0.2  # the gears are drawn apart, for the mesh springs between them
     figure, ax = canvas(9.0, 9.0)
@@ -258,17 +303,23 @@ def planetary() -> Figure:
     label(ax, (-0.85, centres + 0.2), "$\\eta$")
     angle_mark(ax, top, 0.45 * planet, -60.0, 40.0, "$u_p$", 1.35)
     angle_mark(ax, (0.0, 0.0), 0.6 * sun, 120.0, 240.0, "$u_s$", 1.5)
-    angle_mark(ax, (0.0, 0.0), 1.75, 20.0, 70.0, "$\\Omega$, wind torque $T$\non the carrier, $u_c$", 1.55)
+    angle_mark(
+        ax, (0.0, 0.0), 1.75, 20.0, 70.0, "$\\Omega$, wind torque $T$\non the carrier, $u_c$", 1.55
+    )
     contact = np.array([0.0, 3.75 + 0.5 * rim])
     arrow(ax, tuple(contact), tuple(contact + np.array([0.0, 0.95])))
     arrow(ax, tuple(contact), tuple(contact + np.array([-0.95, 0.0])))
     label(ax, (0.25, contact[1] + 0.85), "$v$")
     label(ax, (-1.05, contact[1] + 0.25), "$w$")
     leader(ax, (4.2, 4.5), "elastic ring of curved beams", (2.87, 2.87), color=INK)
-    leader(ax, (1.35, -2.7), "planet on the carrier:\n$\\xi$, $\\eta$, $u_p$", (1.5, -1.9), color=INK)
+    leader(
+        ax, (1.35, -2.7), "planet on the carrier:\n$\\xi$, $\\eta$, $u_p$", (1.5, -1.9), color=INK
+    )
     leader(ax, (-2.6, 1.2), "sun: $x$, $y$, $u_s$", (-0.3, 0.2), color=INK)
     ring_mesh = 3.65 * np.array([-np.cos(np.pi / 6), -0.5])
-    leader(ax, (-1.0, -2.6), "mesh: $k(t)$ with\nbacklash $2b$, damper", tuple(ring_mesh), color=INK)
+    leader(
+        ax, (-1.0, -2.6), "mesh: $k(t)$ with\nbacklash $2b$, damper", tuple(ring_mesh), color=INK
+    )
     ax.set_xlim(-5.3, 5.3)
     ax.set_ylim(-5.3, 5.3)
     return figure

@@ -1,9 +1,23 @@
-"""Involute profiles and the cutters that generate them: a rack for external teeth, a shaper for internal ones."""
+"""Involute profiles and the cutters that generate them: a rack for external teeth, a shaper for
+internal ones."""
 
 from __future__ import annotations
 
 import numpy as np
-from _drafting import INK, NOTE, RING, SPLINE, arc, axis_line, canvas, label, leader, plane_with, run, turned
+from _drafting import (
+    INK,
+    NOTE,
+    RING,
+    SPLINE,
+    arc,
+    axis_line,
+    canvas,
+    label,
+    leader,
+    plane_with,
+    run,
+    turned,
+)
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -11,7 +25,8 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.geometry.profiles import ToothProfile
 
 TEETH, RADIUS, SHAPER = (40, 42), 0.2, 28
-"""Teeth of both gears, so few that the cutters' motion shows; tip radius (mm) of the cutters; teeth of the shaper."""
+"""Teeth of both gears, so few that the cutters' motion shows; tip radius (mm) of the cutters; teeth
+of the shaper."""
 
 ROLL = np.linspace(-0.2, 0.12, 17)
 """Generating angles psi (rad) at which the cutter is drawn."""
@@ -28,12 +43,15 @@ def design() -> DriveDesign:
 
 
 def rack_flank(alpha: float, depth: float, module: float) -> np.ndarray:
-    """Left flank of a rack's tooth (n, 2), mm, x from the crossing of flank and pitch line, y from the pitch line."""
+    """Left flank of a rack's tooth (n, 2), mm, x from the crossing of flank and pitch line, y from
+    the pitch line."""
     rise = (1.0 - np.sin(alpha)) / np.cos(alpha)
     middle = depth * np.tan(alpha) + RADIUS * rise, RADIUS - depth
     rounding = arc(middle, RADIUS, 180.0 + np.degrees(alpha), 270.0, 40)
     top = 0.75 * module
-    return np.concatenate([[(-top * np.tan(alpha), top)], rounding, [(0.25 * np.pi * 2.0 * module, -depth)]])
+    return np.concatenate(
+        [[(-top * np.tan(alpha), top)], rounding, [(0.25 * np.pi * 2.0 * module, -depth)]]
+    )
 
 
 def shaper_tooth(alpha: float, depth: float, module: float) -> np.ndarray:
@@ -48,7 +66,8 @@ def shaper_tooth(alpha: float, depth: float, module: float) -> np.ndarray:
         return half + roll_p - (np.tan(at) - at)
 
     r_c = outside - RADIUS
-    # the rounding is tangent to the involute where the tangent to the base circle reaches its centre
+    # the rounding is tangent to the involute where the tangent to the base circle reaches its
+    # centre
     at_c = np.arccos(base / r_c)
     center_angle = half + roll_p - (np.tan(at_c) - at_c) - RADIUS / base
     touch = np.hypot(base, base * np.tan(at_c) + RADIUS)
@@ -99,9 +118,19 @@ def rack(ax: Axes, drive: DriveDesign) -> None:
     for k, psi in enumerate(ROLL):
         # fixed frame with the gear's axis as origin; the gear has turned clockwise by psi
         fixed = flank + (r_pitch * (half + psi), r_pitch)
-        ax.plot(*turned(fixed, psi).T, color=NOTE, lw=1.3 if k == 10 else 0.5, alpha=1.0 if k == 10 else 0.6)
+        ax.plot(
+            *turned(fixed, psi).T,
+            color=NOTE,
+            lw=1.3 if k == 10 else 0.5,
+            alpha=1.0 if k == 10 else 0.6,
+        )
     frame(ax, profile, r_pitch, "external tooth (flexible spline) and rack")
-    label(ax, (1.95, r_pitch + 0.75), "rack, rolled by $r_P\\psi$\nwhile the gear turns by $\\psi$", fontsize=8)
+    label(
+        ax,
+        (1.95, r_pitch + 0.75),
+        "rack, rolled by $r_P\\psi$\nwhile the gear turns by $\\psi$",
+        fontsize=8,
+    )
     involute = profile.point(0.45 * profile.segments[0].length)[0]
     fillet = profile.point(profile.segments[0].length + 0.5 * profile.segments[1].length)[0]
     leader(ax, (0.3, r_pitch + 0.25), "involute", tuple(involute), color="#2f7fd0")
@@ -122,11 +151,19 @@ def shaper(ax: Axes, drive: DriveDesign) -> None:
     tooth, ratio = shaper_tooth(alpha, depth, g.module), g.teeth_rg / SHAPER
     tooth = tooth * (-1.0, 1.0)
     for k, psi in enumerate(ROLL):
-        # the middle of the shaper's tooth is at pi / N_g from the middle of the gear's tooth at psi = 0
+        # the middle of the shaper's tooth is at pi / N_g from the middle of the gear's tooth at psi
+        # = 0
         fixed = turned(tooth, -(np.pi / SHAPER + ratio * psi)) + (0.0, r_pitch - r_g)
-        ax.plot(*turned(fixed, psi).T, color=NOTE, lw=1.3 if k == 10 else 0.5, alpha=1.0 if k == 10 else 0.6)
+        ax.plot(
+            *turned(fixed, psi).T,
+            color=NOTE,
+            lw=1.3 if k == 10 else 0.5,
+            alpha=1.0 if k == 10 else 0.6,
+        )
     frame(ax, profile, r_pitch, "internal tooth (ring gear) and shaper")
-    label(ax, (1.95, r_pitch - 0.85), "shaper, turned by\n$\\psi N / N_g$ about its axis", fontsize=8)
+    label(
+        ax, (1.95, r_pitch - 0.85), "shaper, turned by\n$\\psi N / N_g$ about its axis", fontsize=8
+    )
     involute = profile.point(0.45 * profile.segments[0].length)[0]
     fillet = profile.point(profile.segments[0].length + 0.5 * profile.segments[1].length)[0]
     leader(ax, (0.28, r_pitch - 0.2), "involute", tuple(involute), color="#2f7fd0")

@@ -15,13 +15,17 @@ def box(ax: Axes, at: Box, text: str, colour: str) -> None:
     ax.text(*at, text, ha="center", va="center", fontsize=9, color=INK, bbox=style, zorder=3)
 
 
-def arrow(ax: Axes, start: Box, end: Box, text: str = "", at: Box | None = None, bend: float = 0.0) -> None:
+def arrow(
+    ax: Axes, start: Box, end: Box, text: str = "", at: Box | None = None, bend: float = 0.0
+) -> None:
     style = {"arrowstyle": "-|>", "color": NOTE, "lw": 1.1, "connectionstyle": f"arc3,rad={bend}"}
     ax.annotate("", xy=end, xytext=start, arrowprops={**style, "shrinkA": 0, "shrinkB": 0})
     if text:
         middle = at or (0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1]))
         ground = {"boxstyle": "square,pad=0.1", "fc": "white", "ec": "none"}
-        ax.text(*middle, text, ha="center", va="center", fontsize=8, color=NOTE, bbox=ground, zorder=4)
+        ax.text(
+            *middle, text, ha="center", va="center", fontsize=8, color=NOTE, bbox=ground, zorder=4
+        )
 
 
 def phases() -> Figure:
@@ -44,11 +48,24 @@ def phases() -> Figure:
     arrow(ax, (7.6, 5.05), (4.75, 3.5), "converged: cut anew", (6.7, 4.05))
     arrow(ax, (9.6, 6.15), (7.7, 6.15), "update friction bounds", (8.7, 6.55), 0.35)
     arrow(ax, (2.5, 3.15), (2.5, 3.65), "", None, -1.4)
-    ax.text(1.35, 3.1, "overlooked contact:\nsearch again", ha="center", va="center", fontsize=8, color=NOTE)
+    ax.text(
+        1.35,
+        3.1,
+        "overlooked contact:\nsearch again",
+        ha="center",
+        va="center",
+        fontsize=8,
+        color=NOTE,
+    )
     arrow(ax, (3.6, 2.8), (3.6, 1.4), "penetration\ntoo large")
     arrow(ax, (2.6, 0.8), (2.6, 1.2), "", None, -1.4)
     ax.text(1.45, 1.0, "still\ntoo large", ha="center", va="center", fontsize=8, color=NOTE)
-    arrow(ax, (4.6, 1.0), (8.7, 1.0), "penetration small enough,\nor augmentation failed: state before it")
+    arrow(
+        ax,
+        (4.6, 1.0),
+        (8.7, 1.0),
+        "penetration small enough,\nor augmentation failed: state before it",
+    )
     arrow(ax, (4.75, 3.1), (8.8, 1.3), "penetration small enough", (6.6, 2.25))
     arrow(ax, (4.85, 3.35), (8.3, 3.35), "no solution", (7.2, 3.35))
     figure.tight_layout()

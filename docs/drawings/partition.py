@@ -23,7 +23,9 @@ def draw_sector(ax: Axes, mesh: SectorMesh, colour: str, title: str) -> None:
     """Cross-section of one sector with the nodes that it shares with its neighbours."""
     nodes = mesh.coords[:, :2]
     quads = nodes[mesh.hexes[:, :4]]
-    ax.add_collection(PolyCollection(quads, facecolors=colour, edgecolors=INK, linewidths=0.5, alpha=0.55))
+    ax.add_collection(
+        PolyCollection(quads, facecolors=colour, edgecolors=INK, linewidths=0.5, alpha=0.55)
+    )
     for name, numbers, mark, shade in (
         ("cw_nodes: owned by this sector", mesh.cw_nodes, "o", "#2d9a57"),
         ("ccw_nodes: those of the next sector", mesh.ccw_nodes, "s", NOTE),
@@ -44,7 +46,9 @@ def sectors() -> Figure:
     design = reference("plane_half_turn")
     meshes = build_sector_meshes(design.geometry, load_recipe("plane_coarse"))
     figure, axes = canvas(9.0, 5.6, 1, 2)
-    draw_sector(axes[0], meshes["flexible_spline"], SPLINE, "sector of the flexible spline (plane_coarse)")
+    draw_sector(
+        axes[0], meshes["flexible_spline"], SPLINE, "sector of the flexible spline (plane_coarse)"
+    )
     draw_sector(axes[1], meshes["ring_gear"], RING, "sector of the ring gear (plane_coarse)")
     figure.tight_layout()
     return figure
@@ -60,9 +64,22 @@ def ring_of_sectors(ax: Axes, n: int, inner: float, outer: float, phase: float) 
         back = arc((0, 0), inner, middle + half, middle - half, 12)
         image = k >= n // 2
         rank = int(np.searchsorted(starts, k % (n // 2), side="right")) - 1
-        ax.fill(*np.concatenate([edge, back]).T, fc=RANKS[rank], alpha=0.18 if image else 0.85, ec=INK, lw=0.6)
+        ax.fill(
+            *np.concatenate([edge, back]).T,
+            fc=RANKS[rank],
+            alpha=0.18 if image else 0.85,
+            ec=INK,
+            lw=0.6,
+        )
         at = arc((0, 0), 0.5 * (inner + outer), middle, middle, 1)[0]
-        ax.text(*at, str(k % (n // 2)), ha="center", va="center", fontsize=7, color="#888888" if image else INK)
+        ax.text(
+            *at,
+            str(k % (n // 2)),
+            ha="center",
+            va="center",
+            fontsize=7,
+            color="#888888" if image else INK,
+        )
 
 
 def ownership() -> Figure:
@@ -74,15 +91,35 @@ def ownership() -> Figure:
     label(ax, (0.0, 10.6), "+y", color=INK)
     angle = 90.0 - 180.0 / N_FS
     ax.plot(
-        *np.transpose([arc((0, 0), 4.6, angle, angle, 1)[0], arc((0, 0), 7.8, angle, angle, 1)[0]]), color=NOTE, lw=1.3
+        *np.transpose([arc((0, 0), 4.6, angle, angle, 1)[0], arc((0, 0), 7.8, angle, angle, 1)[0]]),
+        color=NOTE,
+        lw=1.3,
     )
     ax.plot(
-        *-np.transpose([arc((0, 0), 4.6, angle, angle, 1)[0], arc((0, 0), 7.8, angle, angle, 1)[0]]), color=NOTE, lw=1.3
+        *-np.transpose(
+            [arc((0, 0), 4.6, angle, angle, 1)[0], arc((0, 0), 7.8, angle, angle, 1)[0]]
+        ),
+        color=NOTE,
+        lw=1.3,
     )
-    leader(ax, (-2.4, 0.8), "modelled half: chain of\nsectors, numbered\ncounter-clockwise", (-6.0, 1.2), color=INK)
-    leader(ax, (2.7, 1.0), "images: the modelled\nhalf turned by 180°,\nfactors (−1, −1, 1)", (6.0, 1.4), color=INK)
+    leader(
+        ax,
+        (-2.4, 0.8),
+        "modelled half: chain of\nsectors, numbered\ncounter-clockwise",
+        (-6.0, 1.2),
+        color=INK,
+    )
+    leader(
+        ax,
+        (2.7, 1.0),
+        "images: the modelled\nhalf turned by 180°,\nfactors (−1, −1, 1)",
+        (6.0, 1.4),
+        color=INK,
+    )
     last = arc((0, 0), 6.1, 90.0 + 180.0 - 180.0 / N_FS, 90.0 + 180.0 - 180.0 / N_FS, 1)[0]
-    leader(ax, (0.0, -3.3), "the sector after the last one\nis sector 0, turned by 180°", tuple(last))
+    leader(
+        ax, (0.0, -3.3), "the sector after the last one\nis sector 0, turned by 180°", tuple(last)
+    )
     for rank, colour in enumerate(RANKS):
         ax.fill([], [], fc=colour, ec=INK, label=f"rank {rank}")
     label(ax, (0.0, 3.6), "inside: flexible spline\noutside: ring gear", color=INK)
@@ -108,7 +145,9 @@ def chain() -> Figure:
         (first - 1, end, "their elements are assembled by rank 1", 1.75),
         (first - 1, end + 1, "seen by rank 1: nodal averages of stress", 2.25),
     ):
-        ax.annotate("", xy=(high, y), xytext=(low, y), arrowprops={"arrowstyle": "<|-|>", "color": NOTE})
+        ax.annotate(
+            "", xy=(high, y), xytext=(low, y), arrowprops={"arrowstyle": "<|-|>", "color": NOTE}
+        )
         ax.text(high + 0.15, y, text, va="center", fontsize=9, color=NOTE)
     ax.set_xlim(-0.2, 16.5)
     ax.set_ylim(-0.1, 2.5)

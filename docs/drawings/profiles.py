@@ -1,9 +1,22 @@
-"""Directly defined tooth profiles with their radii, centres and angles: quadruple and double arc, both gears."""
+"""Directly defined tooth profiles with their radii, centres and angles: quadruple and double arc,
+both gears."""
 
 from __future__ import annotations
 
 import numpy as np
-from _drafting import INK, NOTE, RING, SPLINE, arc, axis_line, canvas, label, leader, plane_with, run
+from _drafting import (
+    INK,
+    NOTE,
+    RING,
+    SPLINE,
+    arc,
+    axis_line,
+    canvas,
+    label,
+    leader,
+    plane_with,
+    run,
+)
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -11,7 +24,13 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.geometry.profiles import ToothProfile
 from swgpar.geometry.profiles.flank import Segment
 
-COLOURS = {"tip": "#8c4fb0", "addendum": "#2f7fd0", "straight": "#111111", "dedendum": "#2d9a57", "root": "#d07a20"}
+COLOURS = {
+    "tip": "#8c4fb0",
+    "addendum": "#2f7fd0",
+    "straight": "#111111",
+    "dedendum": "#2d9a57",
+    "root": "#d07a20",
+}
 
 QUADRUPLE = {"type": "quadruple_arc", "r_tip": 0.3, "r_addendum": 0.9, "straight_l": 0.3}
 QUADRUPLE |= {"r_dedendum": 1.3, "r_root": 0.25}
@@ -65,7 +84,13 @@ def draw_profile(ax: Axes, profile: ToothProfile, r_pitch: float, spots: Spot) -
             for point in (points[0], points[-1]):
                 ax.plot(*np.transpose([at, point]), color=COLOURS[segment.name], lw=0.5, ls=":")
             short = segment.name[0]
-            arrow = {"arrowstyle": "-|>", "color": COLOURS[segment.name], "lw": 0.9, "shrinkA": 0, "shrinkB": 0}
+            arrow = {
+                "arrowstyle": "-|>",
+                "color": COLOURS[segment.name],
+                "lw": 0.9,
+                "shrinkA": 0,
+                "shrinkB": 0,
+            }
             ax.annotate("", xy=middle, xytext=at, arrowprops=arrow)
             text = at + (0.62 if segment.name in ("dedendum", "addendum") else 0.5) * (middle - at)
             label(ax, tuple(text), f"$r_{short}$", color=COLOURS[segment.name], fontsize=9)
@@ -81,7 +106,11 @@ def draw_profile(ax: Axes, profile: ToothProfile, r_pitch: float, spots: Spot) -
                 ]
                 label(ax, tuple(beside), rf"$\alpha_{short}$", color=colour, fontsize=9)
             label(
-                ax, tuple(at + spots.get(name, (0.0, -0.09))), f"$O_{short}$", color=COLOURS[segment.name], fontsize=9
+                ax,
+                tuple(at + spots.get(name, (0.0, -0.09))),
+                f"$O_{short}$",
+                color=COLOURS[segment.name],
+                fontsize=9,
             )
     named = {"T": profile.point(0.0)[0], "R": profile.point(profile.length)[0]}
     s = 0.0
@@ -95,7 +124,9 @@ def draw_profile(ax: Axes, profile: ToothProfile, r_pitch: float, spots: Spot) -
         label(ax, tuple(point + spots.get(name, (0.11, 0.07))), text, color=INK, fontsize=9)
 
 
-def pitch_point(ax: Axes, profile: ToothProfile, r_pitch: float, pressure_angle: float, spots: Spot) -> None:
+def pitch_point(
+    ax: Axes, profile: ToothProfile, r_pitch: float, pressure_angle: float, spots: Spot
+) -> None:
     """The pitch point with its normal and the angles alpha_P, alpha and alpha*."""
     side = 1.0 if profile.external else -1.0
     alpha_p = 0.5 * np.pi / profile.n_teeth
@@ -104,7 +135,12 @@ def pitch_point(ax: Axes, profile: ToothProfile, r_pitch: float, pressure_angle:
     normal = np.array([np.cos(star), side * np.sin(star)])
     ax.plot(*point, "o", color=NOTE, ms=4)
     leader(ax, tuple(point + spots["P"]), "P", tuple(point), fontsize=9)
-    ax.annotate("", xy=point + 0.62 * normal, xytext=point, arrowprops={"arrowstyle": "-|>", "color": NOTE, "lw": 1.1})
+    ax.annotate(
+        "",
+        xy=point + 0.62 * normal,
+        xytext=point,
+        arrowprops={"arrowstyle": "-|>", "color": NOTE, "lw": 1.1},
+    )
     label(ax, tuple(point + spots["n"]), r"$n(\alpha^*)$", fontsize=9)
     ax.plot([point[0], point[0] + 0.55], [point[1], point[1]], color=NOTE, lw=0.5)
     mark = arc(tuple(point), 0.42, 0.0, side * np.degrees(star))
@@ -112,7 +148,10 @@ def pitch_point(ax: Axes, profile: ToothProfile, r_pitch: float, pressure_angle:
     label(ax, tuple(point + spots["star"]), r"$\alpha^*$", fontsize=9)
     # alpha_P is drawn between the centre line and the pitch point
     ax.annotate(
-        "", xy=point, xytext=(0.0, r_pitch), arrowprops={"arrowstyle": "<|-|>", "color": NOTE, "lw": 0.8, "shrinkA": 0}
+        "",
+        xy=point,
+        xytext=(0.0, r_pitch),
+        arrowprops={"arrowstyle": "<|-|>", "color": NOTE, "lw": 0.8, "shrinkA": 0},
     )
     label(ax, (0.68 * point[0], r_pitch + 0.05), r"$\alpha_P r_P$", fontsize=8)
 
@@ -139,7 +178,13 @@ def pair(profile: dict[str, object], spots: tuple[Spot, Spot], title: str) -> Fi
 
 OUTSIDE = {"P": (-0.2, -0.17), "n": (0.72, 0.2), "star": (0.52, 0.07)}
 OUTSIDE |= {"Or": (0.12, 0.02), "Ot": (-0.12, 0.0)}
-INSIDE = {"P": (-0.2, 0.17), "n": (0.72, -0.2), "star": (0.52, -0.07), "T": (0.04, -0.11), "Ot": (-0.13, 0.02)}
+INSIDE = {
+    "P": (-0.2, 0.17),
+    "n": (0.72, -0.2),
+    "star": (0.52, -0.07),
+    "T": (0.04, -0.11),
+    "Ot": (-0.13, 0.02),
+}
 INSIDE |= {"R": (0.11, 0.1), "Pd": (0.13, -0.04), "Pa": (0.12, -0.03)}
 
 

@@ -19,7 +19,11 @@ def main() -> None:
     command.append(str(folder / "import_graph.png"))
     printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     (folder / "room_counts.md").write_text(f"```text\n{printed}```\n", encoding="utf-8")
-    rows = ["| room | purpose |", "|---|---|", *(f"| `{room}` | {purpose} |" for room, purpose in PURPOSE.items())]
+    rows = [
+        "| room | purpose |",
+        "|---|---|",
+        *(f"| `{room}` | {purpose} |" for room, purpose in PURPOSE.items()),
+    ]
     (folder / "rooms.md").write_text("\n".join(rows) + "\n", encoding="utf-8")
 
 

@@ -17,10 +17,14 @@ from swgpar.evaluation.step_values import StepValues
 
 
 def kinds_of(name: str) -> tuple[AnswerKind, ...]:
-    """Kinds of a group; those of the steps are alike, and the columns of the history are their names."""
+    """Kinds of a group; those of the steps are alike, and the columns of the history are their
+    names."""
     group = ANSWER_GROUPS[name]
     if group is StepValues:
-        text = "column of history.csv at the end of the step: 1 deflection, 2 engagement, 3 load, 4 rotation"
+        text = (
+            "column of history.csv at the end of the step: 1 deflection, 2 engagement, 3 load, 4 "
+            "rotation"
+        )
         return (AnswerKind("step1.COLUMN to step4.COLUMN", text, "that of the column"),)
     return group.KINDS
 
@@ -40,7 +44,9 @@ def tables() -> Iterator[str]:
 
 def classes() -> str:
     """Directives that document the fields of all groups."""
-    lines = [f".. autoclass:: {group.__module__}.{group.__name__}()" for group in ANSWER_GROUPS.values()]
+    lines = [
+        f".. autoclass:: {group.__module__}.{group.__name__}()" for group in ANSWER_GROUPS.values()
+    ]
     return "\n```{eval-rst}\n" + "\n".join(lines) + "\n```\n"
 
 

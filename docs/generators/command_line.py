@@ -18,7 +18,9 @@ from swgpar.cli import parser
 
 def subcommands(top: argparse.ArgumentParser) -> Iterator[tuple[str, str, argparse.ArgumentParser]]:
     """Name, meaning and parser of the subcommands."""
-    group = next(action for action in top._actions if isinstance(action, argparse._SubParsersAction))
+    group = next(
+        action for action in top._actions if isinstance(action, argparse._SubParsersAction)
+    )
     for entry in group._choices_actions:
         command = group.choices[entry.dest]
         yield entry.dest, str(command.description or entry.help), command
@@ -32,7 +34,11 @@ def option_rows(command: argparse.ArgumentParser) -> Iterator[str]:
             continue
         values = formatter._format_args(action, formatter._get_default_metavar_for_optional(action))
         values = "" if action.nargs == 0 else values
-        name = " ".join([*action.option_strings[:1], values]).strip() if action.option_strings else action.dest
+        name = (
+            " ".join([*action.option_strings[:1], values]).strip()
+            if action.option_strings
+            else action.dest
+        )
         needed = " (required)" if action.required and action.option_strings else ""
         yield f"`{name}`\n: {formatter._expand_help(action)}{needed}\n"
 

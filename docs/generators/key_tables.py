@@ -32,7 +32,10 @@ MESHES = ("g1_g1", "g1_g2", "g3_g4")
 FILES: dict[str, tuple[type[Section], dict[str, str]]] = {
     "drive": (DriveDesign, {"ring_gear": "flexible_spline"}),
     "mesh_recipe": (MeshRecipe, {"ring_gear": "flexible_spline"}),
-    "cascade": (CascadeDesign, dict.fromkeys(GEARS, "pinion") | dict.fromkeys(MESHES, "rack_pinion")),
+    "cascade": (
+        CascadeDesign,
+        dict.fromkeys(GEARS, "pinion") | dict.fromkeys(MESHES, "rack_pinion"),
+    ),
     "gear_pair": (GearPairDesign, {"gear_2": "gear_1"}),
     "planetary": (PlanetaryDesign, {}),
     "ring": (RingDesign, {}),
@@ -62,7 +65,10 @@ def allowed_values(field: FieldInfo) -> str:
         return "a text"
     if get_origin(field.annotation) is list:
         kinds = {str: "texts", Any: "values"}
-        return f"a list of {kinds.get(options[0], 'tables' if get_origin(options[0]) is dict else 'numbers')}"
+        return (
+            f"a list of "
+            f"{kinds.get(options[0], 'tables' if get_origin(options[0]) is dict else 'numbers')}"
+        )
     if get_origin(field.annotation) is dict:
         return "a table"
     limits = {
@@ -103,7 +109,9 @@ def table(lines: list[Row]) -> str:
     return head + "".join(f"| `{key}` | {' | '.join(cells)} |\n" for key, *cells in lines)
 
 
-def plain_rows(section: type[Section], prefix: str = "", skip: tuple[str, ...] = ()) -> Iterator[Row]:
+def plain_rows(
+    section: type[Section], prefix: str = "", skip: tuple[str, ...] = ()
+) -> Iterator[Row]:
     """Rows of the plain keys of a section, and of the sections inside it that are no choice."""
     for name, field in section.model_fields.items():
         if name not in skip:
@@ -120,7 +128,8 @@ def rows_of(key: str, field: FieldInfo) -> Iterator[Row]:
 
 
 def chosen(prefix: str, kinds: list[type[Section]]) -> dict[str, list[Row]]:
-    """Rows of a section with a choice of types: type and common keys, then by type; caption -> rows."""
+    """Rows of a section with a choice of types: type and common keys, then by type; caption ->
+    rows."""
     first = kinds[0].model_fields
     common = [
         name
@@ -131,9 +140,13 @@ def chosen(prefix: str, kinds: list[type[Section]]) -> dict[str, list[Row]]:
     ]
     types = " or ".join(f"`{kind(section)}`" for section in kinds)
     shared = [(f"{prefix}type", str(first["type"].description), "", f'`"{kind(kinds[0])}"`', types)]
-    out = {"": shared + [line for name in common for line in rows_of(f"{prefix}{name}", first[name])]}
+    out = {
+        "": shared + [line for name in common for line in rows_of(f"{prefix}{name}", first[name])]
+    }
     for section in kinds:
-        out[f'With `{prefix}type = "{kind(section)}"`:'] = list(plain_rows(section, prefix, ("type", *common)))
+        out[f'With `{prefix}type = "{kind(section)}"`:'] = list(
+            plain_rows(section, prefix, ("type", *common))
+        )
     return out
 
 
@@ -149,7 +162,9 @@ def section_rows(field: FieldInfo) -> dict[str, list[Row]]:
     return out
 
 
-def choices_inside(section: type[Section], prefix: str = "") -> Iterator[tuple[str, list[type[Section]]]]:
+def choices_inside(
+    section: type[Section], prefix: str = ""
+) -> Iterator[tuple[str, list[type[Section]]]]:
     """Prefix and choice of the sections inside of a section that have types, at any depth."""
     for name, field in section.model_fields.items():
         inner = choices(field)
@@ -173,7 +188,10 @@ def file_tables(design: type[Section], alike: dict[str, str]) -> str:
         tables = section_rows(field)
         if name in alike:
             known = section_rows(design.model_fields[alike[name]])
-            tables = {c: [line for line in lines if line not in known.get(c, [])] for c, lines in tables.items()}
+            tables = {
+                c: [line for line in lines if line not in known.get(c, [])]
+                for c, lines in tables.items()
+            }
             more = " and these:" if any(tables.values()) else "."
             parts.append(f"The keys of `[{alike[name]}]`{more}\n")
         for caption, lines in tables.items():

@@ -1,8 +1,10 @@
-"""The ways of the design, the recipe, the torque and a stress through the package, for the developer guide.
+"""The ways of the design, the recipe, the torque and a stress through the package, for the
+developer guide.
 
     python docs/generators/ways.py FOLDER
 
-writes the counts of all ways (`ways.md`) and the stays of the torque (`way_of_the_torque.md`) into the folder.
+writes the counts of all ways (`ways.md`) and the stays of the torque (`way_of_the_torque.md`) into
+the folder.
 """
 
 from __future__ import annotations
@@ -24,14 +26,29 @@ THINGS = {
 
 def measured(thing: str) -> dict[str, Any]:
     """What `scripts/number_path.py` finds in a short run."""
-    command = [sys.executable, str(ROOT / "scripts" / "number_path.py"), thing, "--json", "--set", "steps.rotation=5"]
-    return json.loads(subprocess.run(command, check=True, capture_output=True, text=True, cwd=ROOT).stdout)
+    command = [
+        sys.executable,
+        str(ROOT / "scripts" / "number_path.py"),
+        thing,
+        "--json",
+        "--set",
+        "steps.rotation=5",
+    ]
+    return json.loads(
+        subprocess.run(command, check=True, capture_output=True, text=True, cwd=ROOT).stdout
+    )
 
 
 def counts_table(ways: dict[str, dict[str, Any]]) -> str:
     """Counts of all ways."""
-    rows = ["| what | modules | functions | lines of these functions | climbs |", "|---|---|---|---|---|"]
-    rows += [f"| {THINGS[name]} | {' | '.join(map(str, way['counts'].values()))} |" for name, way in ways.items()]
+    rows = [
+        "| what | modules | functions | lines of these functions | climbs |",
+        "|---|---|---|---|---|",
+    ]
+    rows += [
+        f"| {THINGS[name]} | {' | '.join(map(str, way['counts'].values()))} |"
+        for name, way in ways.items()
+    ]
     return "\n".join(rows) + "\n"
 
 
@@ -42,7 +59,9 @@ def stays_table(way: dict[str, Any]) -> str:
         functions.setdefault(stay["module"].removeprefix("swgpar."), []).extend(stay["functions"])
     rows = ["| module | functions |", "|---|---|"]
     for module, names in functions.items():
-        rows.append(f"| `{module}` | {', '.join(f'`{name}`' for name in names if '<locals>' not in name)} |")
+        rows.append(
+            f"| `{module}` | {', '.join(f'`{name}`' for name in names if '<locals>' not in name)} |"
+        )
     return "\n".join(rows) + "\n"
 
 

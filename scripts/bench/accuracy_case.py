@@ -1,8 +1,9 @@
-"""One case of the accuracy benchmark. It runs in a process of its own, so that its peak memory is measured alone.
+"""One case of the accuracy benchmark. It runs in a process of its own, so that its peak memory is
+measured alone.
 
-The argument is the case as JSON: its `kind` and the parameters of that kind. The output is JSON: unknowns, values and
-closed forms by quantity, wall seconds from the mesh to the numbers (the fastest of three runs when these are short),
-and the peak resident memory of all ranks.
+The argument is the case as JSON: its `kind` and the parameters of that kind. The output is JSON:
+unknowns, values and closed forms by quantity, wall seconds from the mesh to the numbers (the
+fastest of three runs when these are short), and the peak resident memory of all ranks.
 """
 
 from __future__ import annotations
@@ -40,7 +41,10 @@ def hertz(case: dict[str, Any]) -> Callable[[], Solved]:
     def run() -> Solved:
         found = solve(2 ** (case["level"] + 1), case["quadrature"], case["incompatible"])
         # relative to the answers for the load that was found
-        values = {"half width": found.found_half_width / found.half_width, "pressure": 1.0 + found.deviation}
+        values = {
+            "half width": found.found_half_width / found.half_width,
+            "pressure": 1.0 + found.deviation,
+        }
         return found.unknowns, values, {"half width": 1.0, "pressure": 1.0}
 
     return run
@@ -65,7 +69,13 @@ def main() -> None:
         seconds.append(time.perf_counter() - begin)
     memory = MPI.COMM_WORLD.allreduce(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0)
     if MPI.COMM_WORLD.rank == 0:
-        result = {"unknowns": unknowns, "values": values, "exact": exact, "seconds": min(seconds), "memory_MB": memory}
+        result = {
+            "unknowns": unknowns,
+            "values": values,
+            "exact": exact,
+            "seconds": min(seconds),
+            "memory_MB": memory,
+        }
         print(json.dumps(result))
 
 

@@ -1,4 +1,5 @@
-"""Log-log plots of error against wall seconds and against peak memory: a panel for every problem and quantity."""
+"""Log-log plots of error against wall seconds and against peak memory: a panel for every problem
+and quantity."""
 
 from __future__ import annotations
 
@@ -23,7 +24,10 @@ def plot(rows: list[dict[str, Any]], folder: Path, family: str) -> list[Path]:
     lines = -(-len(panels) // columns)
     paths = []
     for key, text in AXES.items():
-        figure = Figure(figsize=(4.2 * columns, 2.9 * lines + 0.2 * (2 + len(choices) // 4)), layout="constrained")
+        figure = Figure(
+            figsize=(4.2 * columns, 2.9 * lines + 0.2 * (2 + len(choices) // 4)),
+            layout="constrained",
+        )
         handles: dict[str, Line2D] = {}
         for place, (problem, quantity) in enumerate(panels, start=1):
             axes = figure.add_subplot(lines, columns, place)
@@ -31,12 +35,25 @@ def plot(rows: list[dict[str, Any]], folder: Path, family: str) -> list[Path]:
             for choice in dict.fromkeys(r["choice"] for r in here):
                 mine = [r for r in here if r["choice"] == choice]
                 number = choices.index(choice)
-                style = {"color": f"C{number % 10}", "marker": "os^vDPX*"[number % 8], "ms": 4, "lw": 1.2}
+                style = {
+                    "color": f"C{number % 10}",
+                    "marker": "os^vDPX*"[number % 8],
+                    "ms": 4,
+                    "lw": 1.2,
+                }
                 errors = np.maximum([r["error"] for r in mine], FLOOR)
-                (handles[choice],) = axes.loglog([r[key] for r in mine], errors, label=choice, **style)
+                (handles[choice],) = axes.loglog(
+                    [r[key] for r in mine], errors, label=choice, **style
+                )
                 for row, error in zip(mine, errors):
                     if isinstance(row["level"], str):
-                        axes.annotate(row["level"], (row[key], error), (3, 3), textcoords="offset points", fontsize=6)
+                        axes.annotate(
+                            row["level"],
+                            (row[key], error),
+                            (3, 3),
+                            textcoords="offset points",
+                            fontsize=6,
+                        )
             axes.set_title(f"{problem}: {quantity}", fontsize=9)
             axes.set_xlabel(text, fontsize=8)
             axes.set_ylabel("relative error", fontsize=8)

@@ -1,7 +1,8 @@
-"""Drives of drivers/catalogue beside what is published for their sizes: torsional stiffness, bearing, losses.
+"""Drives of drivers/catalogue beside what is published for their sizes: torsional stiffness,
+bearing, losses.
 
-Wall thicknesses, teeth and bearings of the sizes are not published: the designs are assumed. Nothing is fitted.
-Rows of drives that are not run are kept.
+Wall thicknesses, teeth and bearings of the sizes are not published: the designs are assumed.
+Nothing is fitted. Rows of drives that are not run are kept.
 """
 
 from __future__ import annotations
@@ -47,12 +48,20 @@ LOSSES = ("drive", "mesh", "wall_s", "no_load", "no_load_bearing", "loaded", "ef
 def bearing(name: str) -> list[str]:
     """Overrides that put the assumed bearing into a design; a bearing has no slope."""
     bore = 2.0 * load_design(DRIVES / f"{name}.toml").inner_radius
-    sizes = {"balls": BALLS, "ball_diameter": BALL_DIAMETER * bore, "race_thickness": RACE_THICKNESS * bore}
-    return ["micro_geometry.wg_slope=0", *(f"wave_generator.bearing.{key}={value:.4g}" for key, value in sizes.items())]
+    sizes = {
+        "balls": BALLS,
+        "ball_diameter": BALL_DIAMETER * bore,
+        "race_thickness": RACE_THICKNESS * bore,
+    }
+    return [
+        "micro_geometry.wg_slope=0",
+        *(f"wave_generator.bearing.{key}={value:.4g}" for key, value in sizes.items()),
+    ]
 
 
 def bearing_bore(name: str) -> float:
-    """Bore (mm) of the assumed bearing, both races alike: what coefficients of friction refer to."""
+    """Bore (mm) of the assumed bearing, both races alike: what coefficients of friction refer
+    to."""
     shares = 1.0 - 2.0 * (BALL_DIAMETER + 2.0 * RACE_THICKNESS)
     return shares * 2.0 * load_design(DRIVES / f"{name}.toml").inner_radius
 
@@ -60,26 +69,46 @@ def bearing_bore(name: str) -> float:
 def measure(name: str, on_balls: bool, options: argparse.Namespace) -> dict[str, Any]:
     """One run of the stiffness program at the rated torque."""
     finer = options.mesh == "forces"  # a coarser mesh of it still finds the contacts
-    overrides = ["stiffness.positions=2", "stiffness.points=1", f"stiffness.mesh_error={str(finer).lower()}"]
+    overrides = [
+        "stiffness.positions=2",
+        "stiffness.points=1",
+        f"stiffness.mesh_error={str(finer).lower()}",
+    ]
     overrides += bearing(name) if on_balls else []
     folder = Path("results/bench/catalogue") / f"{name}{'_bearing' if on_balls else ''}"
-    summary = run(folder, DRIVES / f"{name}.toml", overrides, options.ranks, options.mesh, plain=False)
+    summary = run(
+        folder, DRIVES / f"{name}.toml", overrides, options.ranks, options.mesh, plain=False
+    )
     found, share = summary["stiffness"], (summary["bearing"] or {}).get("torsional_share")
-    row = {"drive": name, "wave_generator": KINDS[on_balls], "mesh": options.mesh, "elements": summary["elements"]}
-    row |= {"wall_s": round(summary["wall_s"], 1), "share": share and share["balls"] + share["race"]}
+    row = {
+        "drive": name,
+        "wave_generator": KINDS[on_balls],
+        "mesh": options.mesh,
+        "elements": summary["elements"],
+    }
+    row |= {
+        "wall_s": round(summary["wall_s"], 1),
+        "share": share and share["balls"] + share["race"],
+    }
     row |= {key: found[key] for key in (*NAMES, "lost_motion")}
     for key in ("K1", "K3"):
-        row |= {f"{key}_error": (found["mesh_error"] or {}).get(key), f"{key}_spread": found["spread"][key]}
+        row |= {
+            f"{key}_error": (found["mesh_error"] or {}).get(key),
+            f"{key}_spread": found["spread"][key],
+        }
     return row
 
 
 def lose(name: str, options: argparse.Namespace) -> dict[str, Any]:
-    """Losses over a turn with the coefficients of [losses], without a torque and under the rated one."""
+    """Losses over a turn with the coefficients of [losses], without a torque and under the rated
+    one."""
     seconds, found = 0.0, []
     for torque in (["load.torque=0"], []):
         folder = Path("results/bench/catalogue") / f"{name}_losses"
         overrides = [f"losses.bearing_diameter={bearing_bore(name):.4g}", *torque]
-        summary = run(folder, DRIVES / f"{name}.toml", overrides, options.ranks, options.mesh, plain=False)
+        summary = run(
+            folder, DRIVES / f"{name}.toml", overrides, options.ranks, options.mesh, plain=False
+        )
         found.append(summary["losses"])
         seconds += summary["wall_s"]
     free, loaded = found
@@ -96,7 +125,18 @@ def lose(name: str, options: argparse.Namespace) -> dict[str, Any]:
 
 def table(rows: list[dict[str, Any]]) -> str:
     """The table of the stiffness."""
-    head = ["drive", "", "mesh", *NAMES, "K3 / K1", "over published: K1", "K3", "lost motion", "share", "s"]
+    head = [
+        "drive",
+        "",
+        "mesh",
+        *NAMES,
+        "K3 / K1",
+        "over published: K1",
+        "K3",
+        "lost motion",
+        "share",
+        "s",
+    ]
     found, before = [head], ""
     for row in rows:
         source, published = PUBLISHED[row["drive"]]
@@ -107,11 +147,17 @@ def table(rows: list[dict[str, Any]]) -> str:
             ratio = f"{published['K3'] / published['K1']:.2f}" if both else ""
             found.append([name, source, "", *quoted, ratio, *[""] * 5])
         before = row["drive"]
-        over = [f"{row[key] / published[key]:.2f}" if key in published else "" for key in ("K1", "K3")]
-        sizes = [
-            f"{row[key]:.4g}" + (f" ± {row[error]:.2g}" if row.get(error := f"{key}_error") else "") for key in NAMES
+        over = [
+            f"{row[key] / published[key]:.2f}" if key in published else "" for key in ("K1", "K3")
         ]
-        ratio, share = f"{row['K3'] / row['K1']:.2f}", f"{100.0 * row['share']:.0f} %" if row["share"] else ""
+        sizes = [
+            f"{row[key]:.4g}" + (f" ± {row[error]:.2g}" if row.get(error := f"{key}_error") else "")
+            for key in NAMES
+        ]
+        ratio, share = (
+            f"{row['K3'] / row['K1']:.2f}",
+            f"{100.0 * row['share']:.0f} %" if row["share"] else "",
+        )
         cells = [row["wave_generator"], row["mesh"], *sizes, ratio, *over]
         found.append(["", *cells, f"{row['lost_motion']:.2g}", share, f"{row['wall_s']:.0f}"])
     return markdown(found)
@@ -119,33 +165,59 @@ def table(rows: list[dict[str, Any]]) -> str:
 
 def table_of_losses(rows: list[dict[str, Any]]) -> str:
     """The table of the losses."""
-    head = ["drive", "no load: computed", "of it bearing", "published", "ratio", "under rated torque"]
+    head = [
+        "drive",
+        "no load: computed",
+        "of it bearing",
+        "published",
+        "ratio",
+        "under rated torque",
+    ]
     found = [[*head, "efficiency: computed", "published", "s"]]
     for row in rows:
         _, published = PUBLISHED[row["drive"]]
         torque, efficiency = published.get("no_load"), published.get("efficiency")
-        cells = [row["drive"].replace("_", " "), f"{row['no_load']:.3g}", f"{row['no_load_bearing']:.3g}"]
+        cells = [
+            row["drive"].replace("_", " "),
+            f"{row['no_load']:.3g}",
+            f"{row['no_load_bearing']:.3g}",
+        ]
         cells += [f"{torque:g}", f"{row['no_load'] / torque:.2f}"] if torque else ["", ""]
         cells += [f"{row['loaded']:.3g}", f"{100.0 * row['efficiency']:.0f} %"]
-        found.append([*cells, f"{100.0 * efficiency:.0f} %" if efficiency else "", f"{row['wall_s']:.0f}"])
+        found.append(
+            [*cells, f"{100.0 * efficiency:.0f} %" if efficiency else "", f"{row['wall_s']:.0f}"]
+        )
     return markdown(found)
 
 
-def replaced(rows: list[dict[str, Any]], new: dict[str, Any], keys: tuple[str, ...]) -> list[dict[str, Any]]:
+def replaced(
+    rows: list[dict[str, Any]], new: dict[str, Any], keys: tuple[str, ...]
+) -> list[dict[str, Any]]:
     """Rows with a new one in place of that with the same keys, in the order of `PUBLISHED`."""
     others = [row for row in rows if any(row[key] != new[key] for key in keys)]
     order = list(PUBLISHED)
-    return sorted([*others, new], key=lambda row: (order.index(row["drive"]), row.get("wave_generator") == KINDS[True]))
+    return sorted(
+        [*others, new],
+        key=lambda row: (order.index(row["drive"]), row.get("wave_generator") == KINDS[True]),
+    )
 
 
 def main() -> None:
     """Run the designs, and write the page."""
-    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    options.add_argument("--only", nargs="+", choices=list(PUBLISHED), default=list(PUBLISHED), metavar="DRIVE")
+    options = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    options.add_argument(
+        "--only", nargs="+", choices=list(PUBLISHED), default=list(PUBLISHED), metavar="DRIVE"
+    )
     options.add_argument("--ranks", type=int, default=2)
-    options.add_argument("--mesh", default="coarse", help='"forces" is three times slower and gives errors')
+    options.add_argument(
+        "--mesh", default="coarse", help='"forces" is three times slower and gives errors'
+    )
     kinds = ("rigid", "bearing", "losses")
-    options.add_argument("--what", nargs="+", choices=kinds, default=["rigid"], help="default: rigid")
+    options.add_argument(
+        "--what", nargs="+", choices=kinds, default=["rigid"], help="default: rigid"
+    )
     arguments = options.parse_args()
     for name in arguments.only:
         for on_balls, kind in ((False, "rigid"), (True, "bearing")):

@@ -1,6 +1,8 @@
-"""Choices of a drive on one mesh: increments, contact quadrature, linear solver. Errors are differences.
+"""Choices of a drive on one mesh: increments, contact quadrature, linear solver. Errors are
+differences.
 
-Without friction the state does not depend on the path to it: the increment changes the seconds only.
+Without friction the state does not depend on the path to it: the increment changes the seconds
+only.
 """
 
 from __future__ import annotations
@@ -23,12 +25,18 @@ def increments(cases: Cases) -> None:
     for friction in (0.0, 0.1):
         solved = []
         for increment in INCREMENTS:
-            keys = [f"steps.rotation={INCREMENTS[0]}", f"steps.increment={increment}", f"contact.friction={friction}"]
+            keys = [
+                f"steps.rotation={INCREMENTS[0]}",
+                f"steps.increment={increment}",
+                f"contact.friction={friction}",
+            ]
             folder = cases.out / f"increment_{increment:g}_friction_{friction:g}"
             solved.append(run(folder, PLANE, PLANE_MESHES[0], keys, cases.ranks))
         found = {q: (solved[-1]["values"][q], f"increment {INCREMENTS[-1]:g}") for q in STATE}
         levels = [f"{i:g} deg" for i in INCREMENTS[:-1]]
-        cases.series("increment", f"friction {friction:g}", solved[:-1], found, {}, levels, cases.ranks)
+        cases.series(
+            "increment", f"friction {friction:g}", solved[:-1], found, {}, levels, cases.ranks
+        )
 
 
 def quadrature(cases: Cases) -> None:
@@ -36,22 +44,41 @@ def quadrature(cases: Cases) -> None:
     for key in ("quadrature", "wg_quadrature"):
         counts = (1, 2, 3, 4, 8)
         solved = [
-            run(cases.out / f"{key}_{n}", PLANE, PLANE_MESHES[0], [*PERIOD, f"contact.{key}={n}"], cases.ranks)
+            run(
+                cases.out / f"{key}_{n}",
+                PLANE,
+                PLANE_MESHES[0],
+                [*PERIOD, f"contact.{key}={n}"],
+                cases.ranks,
+            )
             for n in counts
         ]
         found = {q: (solved[-1]["values"][q], "8 points") for q in MEANS}
-        cases.series("quadrature", f"contact.{key}", solved[:-1], found, {}, list(counts[:-1]), cases.ranks, False)
+        cases.series(
+            "quadrature",
+            f"contact.{key}",
+            solved[:-1],
+            found,
+            {},
+            list(counts[:-1]),
+            cases.ranks,
+            False,
+        )
 
 
 def solvers(cases: Cases) -> None:
     """MUMPS and GAMG on the small cup drive of the tests."""
     solved = {
-        linear: run(cases.out / f"linear_{linear}", SMALL, TINY, [f"solver.linear={linear}"], cases.ranks)
+        linear: run(
+            cases.out / f"linear_{linear}", SMALL, TINY, [f"solver.linear={linear}"], cases.ranks
+        )
         for linear in ("direct", "iterative")
     }
     found = {q: (solved["direct"]["values"][q], "direct") for q in MEANS}
     for linear, one in solved.items():
-        cases.series("solver, small cup drive", linear, [one], found, {}, ["tiny"], cases.ranks, False)
+        cases.series(
+            "solver, small cup drive", linear, [one], found, {}, ["tiny"], cases.ranks, False
+        )
 
 
 def compute(cases: Cases) -> None:

@@ -1,4 +1,5 @@
-"""Hertz's line contact and the ring on an elliptical cam: elements, contact quadrature, solver and ranks."""
+"""Hertz's line contact and the ring on an elliptical cam: elements, contact quadrature, solver and
+ranks."""
 
 from __future__ import annotations
 
@@ -24,7 +25,8 @@ RING: dict[str, tuple[int, int, Case]] = {
     "CPS4I, quadrature 3, 2 ranks": (6, 2, {}),
     "CPS4I, quadrature 3, GAMG": (4, 1, {"linear": "iterative"}),
 }
-"""Levels, ranks and what differs from `PLAIN`, which is what `swgpar run` does; the limit is that of the first."""
+"""Levels, ranks and what differs from `PLAIN`, which is what `swgpar run` does; the limit is that
+of the first."""
 
 
 def compute(cases: Cases) -> None:
@@ -36,7 +38,10 @@ def compute(cases: Cases) -> None:
     limits = None
     for choice, (count, ranks, case) in RING.items():
         levels = cases.levels(count)
-        solved = [cases.solved({"kind": "ring on cam", **PLAIN, **case, "level": k}, ranks) for k in levels]
+        solved = [
+            cases.solved({"kind": "ring on cam", **PLAIN, **case, "level": k}, ranks)
+            for k in levels
+        ]
         limits = limits or references(solved)
         # facets lie on the cam up to terms of the square of their length
         theory = {"s1": 2.0, "contact force": 2.0} if choice == next(iter(RING)) else {}

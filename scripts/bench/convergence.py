@@ -1,7 +1,8 @@
-"""The largest stresses of every region of the loaded drives on meshes of one family, with observed orders.
+"""The largest stresses of every region of the loaded drives on meshes of one family, with observed
+orders.
 
-Runs under mpirun. The meshes of a family have elements smaller by one ratio in every direction, but for rounding to
-whole numbers. A stress is a nodal average, the largest one of its region.
+Runs under mpirun. The meshes of a family have elements smaller by one ratio in every direction, but
+for rounding to whole numbers. A stress is a nodal average, the largest one of its region.
 """
 
 from __future__ import annotations
@@ -53,7 +54,8 @@ def by_region(model: DriveModel) -> dict[tuple[str, str, str], float]:
 
 
 def order(values: list[float], sizes: list[float]) -> float | None:
-    """Order observed on the last three meshes; None where their differences do not fall with one sign.
+    """Order observed on the last three meshes; None where their differences do not fall with one
+    sign.
 
     values : of a stress that converges as size**order;  sizes : of the elements, by their number
     """
@@ -87,26 +89,50 @@ def measure(family: str) -> list[Row]:
     sizes = [count ** (-1.0 / (2 if name.startswith("plane") else 3)) for count in elements]
     for body, region, quantity in levels[0]:
         values = [level[body, region, quantity] for level in levels]
-        row = {"model": family, "body": body, "region": region, "quantity": quantity, "elements": elements}
-        rows.append({**row, "values": [round(value, 2) for value in values], "order": order(values, sizes)})
+        row = {
+            "model": family,
+            "body": body,
+            "region": region,
+            "quantity": quantity,
+            "elements": elements,
+        }
+        rows.append(
+            {**row, "values": [round(value, 2) for value in values], "order": order(values, sizes)}
+        )
     return rows
 
 
 def table(rows: list[Row]) -> str:
     """The page's table."""
-    found = [["drive", "body", "region", "stress", "MPa, coarse to fine", "last change, %", "observed order"]]
+    found = [
+        [
+            "drive",
+            "body",
+            "region",
+            "stress",
+            "MPa, coarse to fine",
+            "last change, %",
+            "observed order",
+        ]
+    ]
     for row in rows:
         values, seen = row["values"], row["order"]
         change = 100.0 * (values[-1] / values[-2] - 1.0)
         cells = [row["model"], row["body"].replace("_", " "), row["region"], row["quantity"]]
-        cells += [", ".join(f"{value:.1f}" for value in values), f"{change:.1f}", "" if seen is None else f"{seen:.1f}"]
+        cells += [
+            ", ".join(f"{value:.1f}" for value in values),
+            f"{change:.1f}",
+            "" if seen is None else f"{seen:.1f}",
+        ]
         found.append(cells)
     return markdown(found)
 
 
 def main() -> None:
     """Measure the families, and write the page."""
-    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     options.parse_args()
     rows = [row for family in FAMILIES for row in measure(family)]
     if MPI.COMM_WORLD.rank == 0:

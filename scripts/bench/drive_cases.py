@@ -1,9 +1,10 @@
 """Drives over meshes: means over a period of the largest stresses of the spline.
 
-The plane drive and the plane section of the cup drive are refined in all directions beyond their finest recipe. Their
-limit is extrapolated from the last three meshes with the order that these show. The cup drive is too large. Its
-limit is extrapolated from its two finest recipes with the order of `analysis.error_estimate`. It says little about the
-finest recipe; the errors of the same recipes in the plane section say more.
+The plane drive and the plane section of the cup drive are refined in all directions beyond their
+finest recipe. Their limit is extrapolated from the last three meshes with the order that these
+show. The cup drive is too large. Its limit is extrapolated from its two finest recipes with the
+order of `analysis.error_estimate`. It says little about the finest recipe; the errors of the same
+recipes in the plane section say more.
 """
 
 from __future__ import annotations
@@ -39,8 +40,17 @@ PLANE_FACTORS, SECTION_FACTORS = (1, 1.5, 2), (1, 2, 3)
 COUNTS = {
     "root x 2": ("flexible_spline.root",),
     "under, rim x 2": ("flexible_spline.under", "flexible_spline.rim"),
-    "root, under, rim x 2": ("flexible_spline.root", "flexible_spline.under", "flexible_spline.rim"),
-    "flank, layers x 2": ("flexible_spline.flank", "flexible_spline.layers", "ring_gear.flank", "ring_gear.layers"),
+    "root, under, rim x 2": (
+        "flexible_spline.root",
+        "flexible_spline.under",
+        "flexible_spline.rim",
+    ),
+    "flank, layers x 2": (
+        "flexible_spline.flank",
+        "flexible_spline.layers",
+        "ring_gear.flank",
+        "ring_gear.layers",
+    ),
 }
 """Keys of the middle plane recipe that are doubled, to see which are worth it."""
 
@@ -54,17 +64,23 @@ def refinements(
     factors: tuple[float, ...],
     keys: list[str],
 ) -> dict[str, tuple[float, str]]:
-    """Rows of a plane drive on its recipes and on refinements of the last one; returns the limits."""
+    """Rows of a plane drive on its recipes and on refinements of the last one; returns the
+    limits."""
     name = problem.replace(" ", "_")
     runs = [(Path(mesh).stem, Path(mesh), [*PERIOD, *keys]) for mesh in meshes]
     for factor in factors[1:]:
         label = f"{Path(meshes[-1]).stem} x {factor:g}"
         path = cases.out / f"{name}_x{factor:g}.toml"
         runs.append((label, refined(meshes[-1], path, factor), [*FINER, *keys]))
-    solved = [run(cases.out / f"{name}_{label.replace(' ', '')}", design, m, k, cases.ranks) for label, m, k in runs]
+    solved = [
+        run(cases.out / f"{name}_{label.replace(' ', '')}", design, m, k, cases.ranks)
+        for label, m, k in runs
+    ]
     found = {}
     for quantity in QUANTITIES:
-        value, order = limit([s["values"][quantity] for s in solved], [1.0 / factor for factor in factors])
+        value, order = limit(
+            [s["values"][quantity] for s in solved], [1.0 / factor for factor in factors]
+        )
         found[quantity] = (value, f"extrapolated, order {order:.2f}" if order else "finest mesh")
     labels = [label for label, *_ in runs]
     if not any(source.startswith("extrapolated") for _, source in found.values()):
@@ -76,28 +92,45 @@ def refinements(
 def counts(cases: Cases, found: dict[str, tuple[float, str]]) -> None:
     """Rows of the plane drive on its middle recipe with some counts doubled."""
     for text, keys in COUNTS.items():
-        path = refined(PLANE_MESHES[1], cases.out / f"plane_{text.replace(' ', '').replace(',', '_')}.toml", 2, keys)
+        path = refined(
+            PLANE_MESHES[1],
+            cases.out / f"plane_{text.replace(' ', '').replace(',', '_')}.toml",
+            2,
+            keys,
+        )
         one = run(cases.out / path.stem, PLANE, path, PERIOD, cases.ranks)
-        cases.series("plane drive", f"plane, {text}", [one], found, {}, [""], cases.ranks, halved=False)
+        cases.series(
+            "plane drive", f"plane, {text}", [one], found, {}, [""], cases.ranks, halved=False
+        )
 
 
 def cup(cases: Cases) -> None:
     """Rows of the cup drive on its recipes."""
     levels = cases.levels(len(CUP_MESHES))
     names = [Path(mesh).stem for mesh in CUP_MESHES]
-    solved = [run(cases.out / f"cup_drive_{names[k]}", CUP, CUP_MESHES[k], CUP_PERIOD, cases.ranks) for k in levels]
+    solved = [
+        run(cases.out / f"cup_drive_{names[k]}", CUP, CUP_MESHES[k], CUP_PERIOD, cases.ranks)
+        for k in levels
+    ]
     found = {}
     for quantity in QUANTITIES:
         (a, b), (m, n) = ([s[k] for s in solved[-2:]] for k in ("values", "elements"))
-        found[quantity] = (estimate(a[quantity], b[quantity], m, n, 3).converged, "extrapolated, assumed order")
-    cases.series("cup drive", "C3D8I", solved, found, {}, levels=names, ranks=cases.ranks, halved=False)
+        found[quantity] = (
+            estimate(a[quantity], b[quantity], m, n, 3).converged,
+            "extrapolated, assumed order",
+        )
+    cases.series(
+        "cup drive", "C3D8I", solved, found, {}, levels=names, ranks=cases.ranks, halved=False
+    )
 
 
 def plane(cases: Cases) -> None:
     """Both plane drives."""
     found = refinements(cases, "plane drive", "CPS4I", PLANE, PLANE_MESHES, PLANE_FACTORS, [])
     counts(cases, found)
-    refinements(cases, "section of the cup drive", "CPS4I", CUP, CUP_MESHES, SECTION_FACTORS, SECTION)
+    refinements(
+        cases, "section of the cup drive", "CPS4I", CUP, CUP_MESHES, SECTION_FACTORS, SECTION
+    )
 
 
 def compute(cases: Cases) -> None:

@@ -10,11 +10,14 @@ from typing import Any
 import program
 
 
-def run(folder: Path, design: str, mesh: str | Path, overrides: list[str], ranks: int) -> dict[str, Any]:
-    """Unknowns, values, seconds and memory (MB, all ranks) of a run, in the form of accuracy_case.py.
+def run(
+    folder: Path, design: str, mesh: str | Path, overrides: list[str], ranks: int
+) -> dict[str, Any]:
+    """Unknowns, values, seconds and memory (MB, all ranks) of a run, in the form of
+    accuracy_case.py.
 
-    values : means over the rotation by their names in summary.json, and columns of the last row of history.csv, with
-    `last.` before their names
+    values : means over the rotation by their names in summary.json, and columns of the last row of
+    history.csv, with `last.` before their names
     """
     if (folder / "summary.json").exists():
         summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
@@ -25,7 +28,8 @@ def run(folder: Path, design: str, mesh: str | Path, overrides: list[str], ranks
     return {
         "unknowns": summary["dofs"],
         "elements": summary["elements"],
-        "values": summary["rotation"]["means"] | {f"last.{key}": float(value) for key, value in last.items()},
+        "values": summary["rotation"]["means"]
+        | {f"last.{key}": float(value) for key, value in last.items()},
         "exact": {},
         "seconds": summary["wall_s"],
         "memory_MB": sum(summary["peak_memory_MB_per_rank"]),

@@ -1,8 +1,10 @@
-"""Estimated over true error of the largest tension at the teeth, of many drives in their loaded state.
+"""Estimated over true error of the largest tension at the teeth, of many drives in their loaded
+state.
 
-The true error is the distance from a reference: a mesh of the drive with four times the elements in every direction
-(cup drive: 1.5 times), and one window more, with smaller elements than the last usual one. A second reference between
-the two tells how well the first one is known. Finished drives are stored and not computed again.
+The true error is the distance from a reference: a mesh of the drive with four times the elements in
+every direction (cup drive: 1.5 times), and one window more, with smaller elements than the last
+usual one. A second reference between the two tells how well the first one is known. Finished drives
+are stored and not computed again.
 """
 
 from __future__ import annotations
@@ -31,7 +33,17 @@ LEAST, MOST = 0.5, 3.0
 
 MESHES = {"plane": "plane_coarse", "cup": "forces"}
 
-HEAD = ["drive", "s1", "by windows", "by the drive's mesh", "estimate", "true error", "±", "ratio", "true error, %"]
+HEAD = [
+    "drive",
+    "s1",
+    "by windows",
+    "by the drive's mesh",
+    "estimate",
+    "true error",
+    "±",
+    "ratio",
+    "true error, %",
+]
 
 COLUMNS = (
     "drive",
@@ -50,10 +62,20 @@ COLUMNS += ("reference_pressure", "wall_s", "reference_wall_s")
 
 
 def scaled(module: float, teeth: int, torque: float = 2.0, **more: Any) -> Case:
-    """The plane reference drive with another module and number of teeth, in proportion. torque : N·m of that one"""
+    """The plane reference drive with another module and number of teeth, in proportion. torque :
+    N·m of that one"""
     size = teeth / 120
-    arcs = {"type": "quadruple_arc", "r_tip": 0.3, "r_addendum": 1.0, "straight_l": 0.2, "r_dedendum": 2.0}
-    profile = {**{key: v if key == "type" else v * module for key, v in arcs.items()}, "r_root": 0.3 * module}
+    arcs = {
+        "type": "quadruple_arc",
+        "r_tip": 0.3,
+        "r_addendum": 1.0,
+        "straight_l": 0.2,
+        "r_dedendum": 2.0,
+    }
+    profile = {
+        **{key: v if key == "type" else v * module for key, v in arcs.items()},
+        "r_root": 0.3 * module,
+    }
     case = {
         "drive.module": module,
         "drive.teeth_fs": teeth,
@@ -76,8 +98,15 @@ def profile(**values: Any) -> Case:
 
 def involutes(pressure_angle: float, cutter_radius: float) -> Case:
     """Involutes of both gears."""
-    involute = {"type": "involute", "pressure_angle": pressure_angle, "cutter_radius": cutter_radius}
-    return {"flexible_spline.profile": involute, "ring_gear.profile": {**involute, "cutter_teeth": 80}}
+    involute = {
+        "type": "involute",
+        "pressure_angle": pressure_angle,
+        "cutter_radius": cutter_radius,
+    }
+    return {
+        "flexible_spline.profile": involute,
+        "ring_gear.profile": {**involute, "cutter_teeth": 80},
+    }
 
 
 def drives() -> dict[str, tuple[str, Case]]:
@@ -101,7 +130,10 @@ def drives() -> dict[str, tuple[str, Case]]:
         "rim 1.4 mm": {"flexible_spline.rim": 1.4},
         "improved quadruple arc": profile(**arcs),
         "double arc": {**profile(type="double_arc", r_addendum=1.0, r_dedendum=0.5), **double},
-        "improved double arc": {**profile(type="double_arc", r_addendum=1.0, r_dedendum=0.6), **double},
+        "improved double arc": {
+            **profile(type="double_arc", r_addendum=1.0, r_dedendum=0.6),
+            **double,
+        },
         "involute": involutes(20.0, 0.2),
         "involute, 20 N·m": involutes(20.0, 0.2) | {"load.torque": 20.0},
         "involute, 25 degrees": involutes(25.0, 0.2),
@@ -113,14 +145,24 @@ def drives() -> dict[str, tuple[str, Case]]:
         "100 teeth, module 1.5": scaled(1.5, 100),
         "200 teeth, thick rim": scaled(1.0, 200, 4.0, **{"flexible_spline.rim": 2.2}),
     }
-    wanted = ("simplified,C=0.8", "simplified,C=0.95", "elliptical,C=0.9", "parabolic", "four_roller")
-    plane |= {name: case for name, case in cams().items() if name in (*wanted, "turned_parabolas=0.5")}
+    wanted = (
+        "simplified,C=0.8",
+        "simplified,C=0.95",
+        "elliptical,C=0.9",
+        "parabolic",
+        "four_roller",
+    )
+    plane |= {
+        name: case for name, case in cams().items() if name in (*wanted, "turned_parabolas=0.5")
+    }
     cup: dict[str, Case] = {
         "cup": {},
         "cup, 10 N·m": {"load.torque": 10.0},
         "cup, parabolic cam": {"wave_generator": {**cams()["parabolic"]["wave_generator"]}},
     }
-    return {name: ("plane", case) for name, case in plane.items()} | {name: ("cup", case) for name, case in cup.items()}
+    return {name: ("plane", case) for name, case in plane.items()} | {
+        name: ("cup", case) for name, case in cup.items()
+    }
 
 
 def case_of(model: str, values: Case, times: float | None = None) -> dict[str, Any]:
@@ -136,7 +178,12 @@ def case_of(model: str, values: Case, times: float | None = None) -> dict[str, A
 
 def solve(case: dict[str, Any], ranks: int) -> dict[str, Any]:
     """Run one case; ends the benchmark where it fails."""
-    command = [*on_ranks(ranks), sys.executable, str(Path(__file__).with_name("effectivity_case.py")), json.dumps(case)]
+    command = [
+        *on_ranks(ranks),
+        sys.executable,
+        str(Path(__file__).with_name("effectivity_case.py")),
+        json.dumps(case),
+    ]
     done = subprocess.run(command, capture_output=True, text=True, env=environment())
     if done.returncode:
         raise SystemExit(f"{case}: {done.stderr or done.stdout}")
@@ -152,11 +199,21 @@ def stored() -> dict[str, dict[str, Any]]:
 def row(found: dict[str, Any]) -> dict[str, Any]:
     """Estimate and true error of one drive."""
     usual, (reference, other) = found["usual"], found["references"]
-    estimate, true = math.hypot(usual["error"], usual["drive_error"]), abs(usual["s1"] - reference["s1"])
-    values = {key: usual[key] for key in ("s1", "error", "drive_error", "edge", "pressure", "wall_s")}
+    estimate, true = (
+        math.hypot(usual["error"], usual["drive_error"]),
+        abs(usual["s1"] - reference["s1"]),
+    )
+    values = {
+        key: usual[key] for key in ("s1", "error", "drive_error", "edge", "pressure", "wall_s")
+    }
     values |= {"reference": reference["s1"], "reference_pressure": reference["pressure"]}
     values |= {"uncertain": abs(reference["s1"] - other["s1"])}
-    values |= {"estimate": estimate, "true": true, "ratio": estimate / true, "reference_wall_s": reference["wall_s"]}
+    values |= {
+        "estimate": estimate,
+        "true": true,
+        "ratio": estimate / true,
+        "reference_wall_s": reference["wall_s"],
+    }
     return {"drive": found["drive"], **values}
 
 
@@ -167,13 +224,18 @@ def table(rows: list[dict[str, Any]]) -> str:
         numbers = (one["s1"], one["error"], one["drive_error"], one["estimate"], one["true"])
         numbers = (*numbers, one["uncertain"], one["ratio"])
         name = one["drive"] + (" *" if one["edge"] else "")
-        cells.append([name, *(f"{value:.2f}" for value in numbers), f"{100 * one['true'] / one['s1']:.2f}"])
+        cells.append(
+            [name, *(f"{value:.2f}" for value in numbers), f"{100 * one['true'] / one['s1']:.2f}"]
+        )
     within = sum(LEAST <= one["ratio"] <= MOST for one in rows)
     ranges = [ratio_range(one) for one in rows]
     below = sum(high < LEAST for _, high in ranges)
     above = sum(low > MOST for low, _ in ranges)
     words = f"Ratios between {LEAST:g} and {MOST:g}: {within} of {len(rows)}.\n"
-    words += f"As far as the references tell: {len(rows) - below - above}, below {below}, above {above}.\n"
+    words += (
+        f"As far as the references tell: {len(rows) - below - above}, below {below}, above "
+        f"{above}.\n"
+    )
     return markdown(cells) + "\n" + words
 
 
@@ -184,7 +246,8 @@ def ratio_range(one: dict[str, Any]) -> tuple[float, float]:
 
 
 def nodal_table(done: dict[str, dict[str, Any]]) -> str:
-    """The page's table of nodal averages: estimated over true errors of all drives, by column of the history."""
+    """The page's table of nodal averages: estimated over true errors of all drives, by column of
+    the history."""
     head = ["stress", "drives", "true error, %: middle", "largest", "ratio: middle"]
     cells = [[*head, "0.5 to 3", "below", "above", "0.5 to 3 as far as the references tell"]]
     names = dict.fromkeys(name for one in done.values() for name in one["usual"]["nodal_errors"])
@@ -198,20 +261,32 @@ def nodal_table(done: dict[str, dict[str, Any]]) -> str:
             ratios.append(usual["nodal_errors"][name] / true)
             other = one["references"][1]["nodal"].get(name, reference[name])
             low, high = ratio_range(
-                {"estimate": usual["nodal_errors"][name], "true": true, "uncertain": abs(reference[name] - other)}
+                {
+                    "estimate": usual["nodal_errors"][name],
+                    "true": true,
+                    "uncertain": abs(reference[name] - other),
+                }
             )
             told += high >= LEAST and low <= MOST
             errors.append(100.0 * true / reference[name])
         if ratios:
-            counts = [sum(0.5 <= r <= 3.0 for r in ratios), sum(r < 0.5 for r in ratios), sum(r > 3.0 for r in ratios)]
+            counts = [
+                sum(0.5 <= r <= 3.0 for r in ratios),
+                sum(r < 0.5 for r in ratios),
+                sum(r > 3.0 for r in ratios),
+            ]
             numbers = [f"{median(errors):.1f}", f"{max(errors):.1f}", f"{median(ratios):.2f}"]
-            cells.append([name.replace("_", " "), str(len(ratios)), *numbers, *map(str, (*counts, told))])
+            cells.append(
+                [name.replace("_", " "), str(len(ratios)), *numbers, *map(str, (*counts, told))]
+            )
     return markdown(cells)
 
 
 def main() -> None:
     options = argparse.ArgumentParser(description=__doc__)
-    options.add_argument("--only", nargs="+", choices=list(drives()), default=list(drives()), metavar="DRIVE")
+    options.add_argument(
+        "--only", nargs="+", choices=list(drives()), default=list(drives()), metavar="DRIVE"
+    )
     options.add_argument("--ranks", type=int, default=2)
     arguments = options.parse_args()
     OUT.parent.mkdir(parents=True, exist_ok=True)
@@ -219,7 +294,9 @@ def main() -> None:
         if name in stored():
             continue
         model, values = drives()[name]
-        usual, *references = (solve(case_of(model, values, times), arguments.ranks) for times in (None, *TIMES[model]))
+        usual, *references = (
+            solve(case_of(model, values, times), arguments.ranks) for times in (None, *TIMES[model])
+        )
         line = json.dumps({"drive": name, "usual": usual, "references": references})
         with OUT.open("a", encoding="utf-8") as file:
             file.write(line + "\n")

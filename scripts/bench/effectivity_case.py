@@ -1,10 +1,10 @@
 """One drive of the effectivity benchmark in its loaded state, in a process of its own.
 
-The argument is the case as JSON: `design` and `overrides`, `mesh`, `times` (elements in every direction over those of
-the mesh), `further` (windows beyond the usual ones; None for a usual run, whose errors are estimated). The output is
-JSON: largest tension at the teeth, its errors by the windows and by the mesh of the drive, the stress on every window,
-largest nodal averages by column of the history and their errors by a coarser mesh, pressure of the flanks, elements and
-seconds.
+The argument is the case as JSON: `design` and `overrides`, `mesh`, `times` (elements in every
+direction over those of the mesh), `further` (windows beyond the usual ones; None for a usual run,
+whose errors are estimated). The output is JSON: largest tension at the teeth, its errors by the
+windows and by the mesh of the drive, the stress on every window, largest nodal averages by column
+of the history and their errors by a coarser mesh, pressure of the flanks, elements and seconds.
 """
 
 from __future__ import annotations
@@ -34,7 +34,9 @@ def solve(case: dict[str, Any]) -> dict[str, Any]:
     """The case's numbers; collective."""
     begin = time.perf_counter()
     recipe = resized(swgpar.load_mesh(case["mesh"]), case["times"])
-    design = with_shortcuts(swgpar.load_design(case["design"], case["overrides"]), recipe, levels=False).design
+    design = with_shortcuts(
+        swgpar.load_design(case["design"], case["overrides"]), recipe, levels=False
+    ).design
     sequence = load_sequence(design)
     loaded = sequence.loaded
     coarse = None
@@ -60,7 +62,9 @@ def solve(case: dict[str, Any]) -> dict[str, Any]:
         "pressure": max((pair.pressure_MPa for pair in pairs if not pair.edge), default=0.0),
         "edge": edge,
         "nodal": {name: place.value for name, place in places.items() if not place.warning},
-        "nodal_errors": {name: place.error for name, place in places.items() if place.error is not None},
+        "nodal_errors": {
+            name: place.error for name, place in places.items() if place.error is not None
+        },
         "regions": {name: place.region for name, place in places.items()},
         "elements": model.n_elements(),
         "wall_s": time.perf_counter() - begin,

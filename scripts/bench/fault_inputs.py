@@ -1,7 +1,9 @@
-"""Bad inputs by the thousand: every one is refused in one sentence, or accepted with finite numbers.
+"""Bad inputs by the thousand: every one is refused in one sentence, or accepted with finite
+numbers.
 
-As a program, the worker that goes through a batch of them: a file of JSON lines has an input before it is used, and
-then what became of it. One that ends the process, or takes more than a minute of the processor, is so the last line.
+As a program, the worker that goes through a batch of them: a file of JSON lines has an input before
+it is used, and then what became of it. One that ends the process, or takes more than a minute of
+the processor, is so the last line.
 """
 
 from __future__ import annotations
@@ -35,7 +37,8 @@ OWN = 3
 
 
 def run_batch(number: int, count: int, out: Path) -> list[dict[str, Any]]:
-    """Outcomes of the batch with this number; a worker that ends early is followed by another one behind the input."""
+    """Outcomes of the batch with this number; a worker that ends early is followed by another one
+    behind the input."""
     file = out / f"inputs_{number}.jsonl"
     file.unlink(missing_ok=True)
     outcomes: list[dict[str, Any]] = []
@@ -50,7 +53,13 @@ def run_batch(number: int, count: int, out: Path) -> list[dict[str, Any]]:
         begun = lines[-1]
         if code == OWN or "status" in begun:
             raise SystemExit(f"the worker of batch {number} ended with {code}: see {out}")
-        lost = {**begun, "status": "ended", "fault": f"ended the process with {code}", "sentence": "", "seconds": 0.0}
+        lost = {
+            **begun,
+            "status": "ended",
+            "fault": f"ended the process with {code}",
+            "sentence": "",
+            "seconds": 0.0,
+        }
         with file.open("a", encoding="utf-8") as more:
             more.write(json.dumps(lost) + "\n")
         outcomes.append(lost)
@@ -96,7 +105,9 @@ def work(file: Path, number: int, count: int, skipped: int) -> None:
             lines.write(json.dumps({"kind": bad.kind, "what": bad.what}) + "\n")
             lines.flush()
             faulthandler.dump_traceback_later(WAITING, exit=True)
-            signal.setitimer(signal.ITIMER_PROF, SLOWEST)  # its signal ends the process, in any library
+            signal.setitimer(
+                signal.ITIMER_PROF, SLOWEST
+            )  # its signal ends the process, in any library
             outcome = attempt(bad, used)
             signal.setitimer(signal.ITIMER_PROF, 0.0)
             faulthandler.cancel_dump_traceback_later()

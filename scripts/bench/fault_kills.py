@@ -1,4 +1,5 @@
-"""Commands that are killed at random moments, and then continued to the result of one that was not."""
+"""Commands that are killed at random moments, and then continued to the result of one that was
+not."""
 
 from __future__ import annotations
 
@@ -40,7 +41,8 @@ set = [{overrides}]
 
 @dataclass(frozen=True)
 class Command:
-    """arguments : without --out;  restart : the option that continues it;  ranks : number of processes"""
+    """arguments : without --out;  restart : the option that continues it;  ranks : number of
+    processes"""
 
     arguments: tuple[str, ...]
     restart: str
@@ -58,13 +60,18 @@ def commands(folder: Path, ranks: int) -> dict[str, Command]:
     overrides = ", ".join(f'"{override}"' for override in (*PLANE, *CUP))
     study = folder / "study.toml"
     study.write_text(
-        STUDY.format(design=DESIGN, mesh=RECIPE, overrides=overrides, torques=[0.1, 0.2, 0.3, 0.4]), encoding="utf-8"
+        STUDY.format(design=DESIGN, mesh=RECIPE, overrides=overrides, torques=[0.1, 0.2, 0.3, 0.4]),
+        encoding="utf-8",
     )
     found = {
-        "plane": Command(("run", *small, "--plain", "--set", *PLANE, *ROTATION, *FEW), "--restart", ranks),
+        "plane": Command(
+            ("run", *small, "--plain", "--set", *PLANE, *ROTATION, *FEW), "--restart", ranks
+        ),
         "small cup": Command(("run", *small, "--plain", "--set", *CUP, *FEW), "--restart", ranks),
         "study": Command(("study", str(study)), "--restart", ranks),
-        "accuracy": Command(("run", *small, "--accuracy", "0.2", "--set", *PLANE, *FEW), "--restart", ranks),
+        "accuracy": Command(
+            ("run", *small, "--accuracy", "0.2", "--set", *PLANE, *FEW), "--restart", ranks
+        ),
     }
     for name in ("gear_pair", "planetary"):
         train = ("run", str(DRIVERS / f"{name}.toml"), "--set", *SMALL[name], *FEW)
@@ -80,8 +87,8 @@ WAYS = ("kill all", "kill one rank", "SIGINT to one rank", "SIGTERM to mpirun", 
 class Kill:
     """One kill. seconds : after the start;  late : seconds until all processes had ended
 
-    ended : whether the command had ended before;  difference : of the continued results, relative to each column's
-    largest value;  fault : what is wrong, empty where nothing is
+    ended : whether the command had ended before;  difference : of the continued results, relative
+    to each column's largest value;  fault : what is wrong, empty where nothing is
     """
 
     command: str
@@ -95,11 +102,14 @@ class Kill:
 
 def complete(command: Command, out: Path, *more: str) -> subprocess.CompletedProcess[str]:
     """Run a command to its end."""
-    return subprocess.run(command.line(out, *more), capture_output=True, text=True, cwd=DATA, env=environment())
+    return subprocess.run(
+        command.line(out, *more), capture_output=True, text=True, cwd=DATA, env=environment()
+    )
 
 
 def kill(name: str, command: Command, reference: Path, out: Path, way: str, seconds: float) -> Kill:
-    """Kill a command after these seconds, continue it, and compare its results with those of the reference."""
+    """Kill a command after these seconds, continue it, and compare its results with those of the
+    reference."""
     process = subprocess.Popen(
         command.line(out),
         cwd=DATA,
@@ -128,7 +138,10 @@ def kill(name: str, command: Command, reference: Path, out: Path, way: str, seco
     if not fault and not ended:
         done = complete(command, out, command.restart)
         if done.returncode:
-            fault = f"{command.restart} ended with {done.returncode}: {(done.stderr or done.stdout)[-300:]}"
+            fault = (
+                f"{command.restart} ended with {done.returncode}: "
+                f"{(done.stderr or done.stdout)[-300:]}"
+            )
     found = np.nan if fault else difference(out, reference)
     if not fault and not found <= 1e-8:
         fault = f"results differ by {found:.1e}"
@@ -171,7 +184,8 @@ def _end_rest(leader: int) -> None:
 
 
 def difference(out: Path, reference: Path) -> float:
-    """Largest difference of all tables of two results folders, relative to each column's largest value."""
+    """Largest difference of all tables of two results folders, relative to each column's largest
+    value."""
     names = sorted(path.relative_to(reference) for path in reference.rglob("*.csv"))
     return max((_of_table(out / name, reference / name) for name in names), default=np.nan)
 
@@ -212,7 +226,11 @@ def table(kills: Sequence[Kill]) -> list[list[str]]:
     rows = [["command", "kills", "after its end", "faults", "slowest end, s", "largest difference"]]
     for name in (*dict.fromkeys(kill.command for kill in kills), "all"):
         here = [kill for kill in kills if name in (kill.command, "all")]
-        largest = max((kill.difference for kill in here if np.isfinite(kill.difference)), default=np.nan)
+        largest = max(
+            (kill.difference for kill in here if np.isfinite(kill.difference)), default=np.nan
+        )
         counts = len(here), sum(kill.ended for kill in here), sum(bool(kill.fault) for kill in here)
-        rows.append([name, *map(str, counts), f"{max(kill.late for kill in here):.1f}", f"{largest:.1e}"])
+        rows.append(
+            [name, *map(str, counts), f"{max(kill.late for kill in here):.1f}", f"{largest:.1e}"]
+        )
     return rows

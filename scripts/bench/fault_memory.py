@@ -27,7 +27,8 @@ SHARES = (0.1, 0.25, 0.5, 0.75, 1.0)
 
 @dataclass(frozen=True)
 class Sample:
-    """seconds : since the start;  cases : begun so far;  memory : MB, resident, and files : open ones, per rank"""
+    """seconds : since the start;  cases : begun so far;  memory : MB, resident, and files : open
+    ones, per rank"""
 
     seconds: float
     cases: int
@@ -46,7 +47,12 @@ def long_study(cases: int, ranks: int, out: Path) -> list[Sample]:
     with (out / "log").open("w") as log:
         command = [*on_ranks(ranks), *swgpar("study", study, "--out", folder)]
         process = subprocess.Popen(
-            command, cwd=DATA, env=environment(), start_new_session=True, stdout=log, stderr=subprocess.STDOUT
+            command,
+            cwd=DATA,
+            env=environment(),
+            start_new_session=True,
+            stdout=log,
+            stderr=subprocess.STDOUT,
         )
         while process.poll() is None:
             time.sleep(EVERY)
@@ -71,8 +77,11 @@ def _resident(pid: int) -> float:
 
 
 def growth(samples: Sequence[Sample]) -> float:
-    """Memory (MB) that a rank gains per 1000 cases in the second half of the study: slope of a line, largest rank."""
-    computing = [sample for sample in samples if sample.cases < samples[-1].cases]  # the report comes afterwards
+    """Memory (MB) that a rank gains per 1000 cases in the second half of the study: slope of a
+    line, largest rank."""
+    computing = [
+        sample for sample in samples if sample.cases < samples[-1].cases
+    ]  # the report comes afterwards
     late = computing[len(computing) // 2 :]
     cases = np.array([sample.cases for sample in late], float)
     return float(1000.0 * max(np.polyfit(cases, np.array([s.memory for s in late]), 1)[0]))
@@ -97,7 +106,9 @@ def draw(samples: Sequence[Sample], path: Path) -> None:
     axes = figure.subplots()
     cases = [sample.cases for sample in samples]
     for rank in range(len(samples[0].memory)):
-        axes.plot(cases, [sample.memory[rank] for sample in samples], lw=0.8, label=f"process {rank + 1}")
+        axes.plot(
+            cases, [sample.memory[rank] for sample in samples], lw=0.8, label=f"process {rank + 1}"
+        )
     axes.set(xlabel="cases begun", ylabel="resident memory (MB)", ylim=(0.0, None))
     axes.grid(alpha=0.3)
     axes.legend()

@@ -1,7 +1,8 @@
 """The same refusal on any number of ranks: sentence and exit code of commands with bad inputs.
 
-As a program, under mpirun: it calls the command line with one list of arguments after the other, in one process per
-rank, and writes the exit code of every rank and what all of them have written to stderr.
+As a program, under mpirun: it calls the command line with one list of arguments after the other, in
+one process per rank, and writes the exit code of every rank and what all of them have written to
+stderr.
 """
 
 from __future__ import annotations
@@ -38,13 +39,23 @@ def arguments_of(bad: BadInput, folder: Path, number: int) -> list[str]:
         pitch = [f"{section}.pitch_file={file}", f"{section}.pitch_column={column}"]
         return ["check", str(DESIGN), "--set", *PLANE, *pitch]
     if bad.kind == "checkpoint":
-        run = ["run", str(DESIGN), "--mesh", str(RECIPE), "--plain", "--restart", "--out", str(folder)]
+        run = [
+            "run",
+            str(DESIGN),
+            "--mesh",
+            str(RECIPE),
+            "--plain",
+            "--restart",
+            "--out",
+            str(folder),
+        ]
         return [*run, "--set", *PLANE]
     return ["run", file, "--out", out] if number % 2 else ["check", file]
 
 
 def sample(count: int, number: int, folder: Path) -> list[list[str]]:
-    """Commands with so many inputs that are refused; their files are written into folders of this one."""
+    """Commands with so many inputs that are refused; their files are written into folders of this
+    one."""
     commands: list[list[str]] = []
     folder.mkdir(parents=True, exist_ok=True)
 
@@ -66,9 +77,13 @@ def endings(commands: list[list[str]], ranks: int, folder: Path) -> list[Ending]
     given, found = folder / "commands.json", folder / f"endings_{ranks}.json"
     given.write_text(json.dumps(commands), encoding="utf-8")
     worker = [sys.executable, __file__, str(given), str(found)]
-    done = subprocess.run([*on_ranks(ranks), *worker], capture_output=True, text=True, env=environment())
+    done = subprocess.run(
+        [*on_ranks(ranks), *worker], capture_output=True, text=True, env=environment()
+    )
     if done.returncode:
-        raise SystemExit(f"the commands on {ranks} ranks ended with {done.returncode}: {done.stderr[-2000:]}")
+        raise SystemExit(
+            f"the commands on {ranks} ranks ended with {done.returncode}: {done.stderr[-2000:]}"
+        )
     return [(codes, text) for codes, text in json.loads(found.read_text(encoding="utf-8"))]
 
 
@@ -91,7 +106,10 @@ def work(given: Path, found: Path) -> None:
     comm, results = MPI.COMM_WORLD, []
     with open(os.devnull, "w", encoding="utf-8") as nothing:
         for arguments in json.loads(given.read_text(encoding="utf-8")):
-            with contextlib.redirect_stderr(io.StringIO()) as stderr, contextlib.redirect_stdout(nothing):
+            with (
+                contextlib.redirect_stderr(io.StringIO()) as stderr,
+                contextlib.redirect_stdout(nothing),
+            ):
                 code = main(arguments)
             ends = comm.gather((code, stderr.getvalue()))
             if comm.rank == 0:

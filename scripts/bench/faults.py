@@ -1,6 +1,7 @@
 """Faults: bad inputs, refusals on several ranks, kills at random moments, memory of a long study.
 
-- inputs: bad inputs of all kinds of files. Each is refused in one printable sentence, or accepted with finite numbers.
+- inputs: bad inputs of all kinds of files. Each is refused in one printable sentence, or accepted
+with finite numbers.
 - ranks: the sentence and the exit code of a sample on one rank and on two.
 - kills: commands that are killed at a random moment and continued, against those that were not.
 - memory: resident memory and open files of a study of many small drives.
@@ -31,7 +32,8 @@ from page import DATA, markdown, put
 PARTS = ("inputs", "ranks", "kills", "memory")
 
 GROWTH = 1.0
-"""Memory (MB) per 1000 cases and rank that counts as none: that of the lists of the cases themselves."""
+"""Memory (MB) per 1000 cases and rank that counts as none: that of the lists of the cases
+themselves."""
 
 
 def measure_inputs(arguments: argparse.Namespace, out: Path) -> tuple[list[list[str]], list[Any]]:
@@ -44,7 +46,11 @@ def measure_ranks(arguments: argparse.Namespace, out: Path) -> tuple[list[list[s
     """Table, and all faults."""
     listed = sample(arguments.sample, arguments.seed, out)
     alone, together = (endings(listed, ranks, out) for ranks in (1, 2))
-    found = {" ".join(c): text for c, a, b in zip(listed, alone, together, strict=True) if (text := fault(a, b))}
+    found = {
+        " ".join(c): text
+        for c, a, b in zip(listed, alone, together, strict=True)
+        if (text := fault(a, b))
+    }
     rows = [["command", "inputs", "same sentence and code", "other"]]
     for name in (*dict.fromkeys(command[0] for command in listed), "all"):
         count = sum(name in (command[0], "all") for command in listed)
@@ -89,21 +95,39 @@ def measure_memory(arguments: argparse.Namespace, out: Path) -> tuple[list[list[
 
 
 def main() -> int:
-    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     options.add_argument("--out", default="results/bench/faults")
     options.add_argument("--page", default="docs/verification/faults.md")
     options.add_argument("--parts", nargs="+", choices=PARTS, default=list(PARTS))
-    options.add_argument("--only", nargs="+", default=None, help="words of the names of the commands to kill")
+    options.add_argument(
+        "--only", nargs="+", default=None, help="words of the names of the commands to kill"
+    )
     options.add_argument("--inputs", type=int, default=5000, help="number of bad inputs")
-    options.add_argument("--sample", type=int, default=200, help="number of inputs on one and two ranks")
+    options.add_argument(
+        "--sample", type=int, default=200, help="number of inputs on one and two ranks"
+    )
     options.add_argument("--kills", type=int, default=200, help="number of kills")
-    options.add_argument("--cases", type=int, default=2000, help="number of cases of the long study")
-    options.add_argument("--ranks", type=int, default=2, help="number of ranks of commands that are killed, and of it")
+    options.add_argument(
+        "--cases", type=int, default=2000, help="number of cases of the long study"
+    )
+    options.add_argument(
+        "--ranks",
+        type=int,
+        default=2,
+        help="number of ranks of commands that are killed, and of it",
+    )
     options.add_argument("--at-once", type=int, default=2, help="workers on bad inputs at once")
     options.add_argument("--seed", type=int, default=1)
     options.add_argument("--data", type=Path, default=None, help="file for all faults")
     arguments = options.parse_args()
-    work = {"inputs": measure_inputs, "ranks": measure_ranks, "kills": measure_kills, "memory": measure_memory}
+    work = {
+        "inputs": measure_inputs,
+        "ranks": measure_ranks,
+        "kills": measure_kills,
+        "memory": measure_memory,
+    }
     faults: list[Any] = []
     for part in arguments.parts:
         out = Path(arguments.out).resolve() / part

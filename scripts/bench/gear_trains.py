@@ -1,11 +1,14 @@
-"""Gear trains with as many samples as the sources have: seconds on some ranks beside the targets and published times.
+"""Gear trains with as many samples as the sources have: seconds on some ranks beside the targets
+and published times.
 
 Takes about ten minutes on 2 ranks, most of it for 100,000 planetary simulations. Writes
-docs/verification/gear_train_seconds.md and gear_trains.csv, .json in its folder data. Rows of other runs are kept.
+docs/verification/gear_train_seconds.md and gear_trains.csv, .json in its folder data. Rows of other
+runs are kept.
 
-Seconds: "run" is the wall time of a whole run inside the program, from the design file to the last table (without start
-of Python and without figures); "simulation" is the time of the simulating tasks over the ranks; "linearisation" is that
-of the slowest such task, which runs on one rank, with all its matrices.
+Seconds: "run" is the wall time of a whole run inside the program, from the design file to the last
+table (without start of Python and without figures); "simulation" is the time of the simulating
+tasks over the ranks; "linearisation" is that of the slowest such task, which runs on one rank, with
+all its matrices.
 """
 
 from __future__ import annotations
@@ -36,7 +39,13 @@ RUNS: dict[str, tuple[str, list[str]]] = {
 
 ROWS = [
     # run, part, what, published seconds, target
-    ("cascade", "run", "1000 gearboxes at rest and in motion, and all else of the driver", 36 * HOUR, 180.0),
+    (
+        "cascade",
+        "run",
+        "1000 gearboxes at rest and in motion, and all else of the driver",
+        36 * HOUR,
+        180.0,
+    ),
     ("gear_pair", "simulation", "20,000 gear pairs, mean of three torques", 8 * HOUR, 20.0),
     ("gear_pair", "linearisation", "gear pair, slowest torque and criterion", 35.0, None),
     ("gear_pair", "run", "all three torques: 60,000 gear pairs, six linearisations", None, None),
@@ -120,18 +129,31 @@ def timings(names: list[str], out: Path, ranks: int) -> list[dict[str, Any]]:
 
 
 def step_study(out: Path) -> list[dict[str, Any]]:
-    """Linearised planetary revolution by different numbers of steps: change of means and deviations.
+    """Linearised planetary revolution by different numbers of steps: change of means and
+    deviations.
 
-    Change against half as many: the largest over all monitored quantities and times, over the largest value.
+    Change against half as many: the largest over all monitored quantities and times, over the
+    largest value.
     """
     found, taken = [], []
     for count in STEPS:
-        overrides = [*RUNS["planetary_linearised"][1], f"time.linearised_steps={count}", "time.rows=125"]
+        overrides = [
+            *RUNS["planetary_linearised"][1],
+            f"time.linearised_steps={count}",
+            "time.rows=125",
+        ]
         summary = run("planetary", overrides, out / f"steps_{count}", 1)
         found.append(read_columns(out / f"steps_{count}" / "history.csv"))
         taken.append(max(summary["task_s"]["linearised"]))
         print(f"{count} steps: {taken[-1]:.2f} s", flush=True)
-    rows = [{"steps": STEPS[0], "seconds": round(taken[0], 2), "change_of_means": None, "change_of_deviations": None}]
+    rows = [
+        {
+            "steps": STEPS[0],
+            "seconds": round(taken[0], 2),
+            "change_of_means": None,
+            "change_of_deviations": None,
+        }
+    ]
     for (coarse, fine), count, time in zip(pairwise(found), STEPS[1:], taken[1:], strict=True):
         row: dict[str, Any] = {"steps": count, "seconds": round(time, 2)}
         for kind in ("mean", "deviation"):
@@ -147,27 +169,52 @@ def page(rows: list[dict[str, Any]], steps: list[dict[str, Any]]) -> str:
     lines = INTRODUCTION.splitlines()
     for row in rows:
         published = row["published_s"]
-        old = "" if published is None else f"{published / HOUR:g} h" if published >= HOUR else f"{published:g} s"
+        old = (
+            ""
+            if published is None
+            else f"{published / HOUR:g} h"
+            if published >= HOUR
+            else f"{published:g} s"
+        )
         target = "" if row["target_s"] is None else f"{row['target_s']:g} s"
-        cells = row["what"], row["part"], row["ranks"], old, target, f"{row['seconds']:.1f}", row["met"]
+        cells = (
+            row["what"],
+            row["part"],
+            row["ranks"],
+            old,
+            target,
+            f"{row['seconds']:.1f}",
+            row["met"],
+        )
         lines.append("| " + " | ".join(str(cell) for cell in cells) + " |")
     lines += STEPS_OF_A_REVOLUTION.splitlines()
     for row in steps:
         step = 1e3 * 2.0 * np.pi / 0.2322 / row["steps"]
-        changes = ["" if row[k] is None else f"{row[k]:.2g}" for k in ("change_of_means", "change_of_deviations")]
-        lines.append(f"| {row['steps']} | {step:.2f} | {row['seconds']:.1f} | {changes[0]} | {changes[1]} |")
+        changes = [
+            "" if row[k] is None else f"{row[k]:.2g}"
+            for k in ("change_of_means", "change_of_deviations")
+        ]
+        lines.append(
+            f"| {row['steps']} | {step:.2f} | {row['seconds']:.1f} | {changes[0]} | {changes[1]} |"
+        )
     return "\n".join(lines) + "\n"
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--out", type=Path, default=Path("results/bench_gear_trains"))
     parser.add_argument("--ranks", type=int, default=2)
     parser.add_argument("--only", nargs="+", choices=[*RUNS, "steps"], default=[*RUNS, "steps"])
     arguments = parser.parse_args()
     out = arguments.out.resolve()
     kept = DATA / "gear_trains.json"
-    old = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {"timings": [], "steps": []}
+    old = (
+        json.loads(kept.read_text(encoding="utf-8"))
+        if kept.exists()
+        else {"timings": [], "steps": []}
+    )
     new = timings([name for name in RUNS if name in arguments.only], out, arguments.ranks)
     asked = {row["run"] for row in new}
     order = [row[:2] for row in ROWS]
@@ -176,7 +223,9 @@ def main() -> None:
         key=lambda r: order.index((r["run"], r["part"])),
     )
     steps = step_study(out) if "steps" in arguments.only else old["steps"]
-    kept.write_text(json.dumps({"timings": rows, "steps": steps}, indent=1) + "\n", encoding="utf-8")
+    kept.write_text(
+        json.dumps({"timings": rows, "steps": steps}, indent=1) + "\n", encoding="utf-8"
+    )
     (DATA / "gear_trains.csv").write_bytes(format_csv(rows))
     (PAGES / "gear_train_seconds.md").write_text(page(rows, steps), encoding="utf-8")
     print(page(rows, steps))

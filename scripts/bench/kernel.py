@@ -1,4 +1,5 @@
-"""Time of residual and tangent of all elements, and of their insertion into a PETSc matrix, without contact."""
+"""Time of residual and tangent of all elements, and of their insertion into a PETSc matrix, without
+contact."""
 
 from __future__ import annotations
 
@@ -52,10 +53,19 @@ def main() -> None:
     count = sum(b["elements"] for b in model.counts().values())
     kernel, insertion = fastest(arguments.repeat, both), fastest(arguments.repeat, insert)
     force = fastest(arguments.repeat, lambda: elements.assemble(u, residual, None, None))
-    print(f"{count} elements, {3 * model.partition.n_global} unknowns, one core; fastest of {arguments.repeat}")
-    print(f"residual and tangent {kernel:7.2f} s   {1e6 * kernel / count:6.2f} microseconds per element")
+    print(
+        f"{count} elements, {3 * model.partition.n_global} unknowns, one core; fastest of "
+        f"{arguments.repeat}"
+    )
+    print(
+        f"residual and tangent {kernel:7.2f} s   {1e6 * kernel / count:6.2f} microseconds per "
+        f"element"
+    )
     print(f"insertion into PETSc {insertion:7.2f} s   {1e6 * insertion / count:6.2f}")
-    print(f"together             {kernel + insertion:7.2f} s   {1e6 * (kernel + insertion) / count:6.2f}")
+    print(
+        f"together             {kernel + insertion:7.2f} s   "
+        f"{1e6 * (kernel + insertion) / count:6.2f}"
+    )
     print(f"residual alone       {force:7.2f} s   {1e6 * force / count:6.2f}")
 
 

@@ -1,8 +1,9 @@
-"""Pressure of the flanks by contact of half planes and half spaces, on meshes that do and do not resolve it.
+"""Pressure of the flanks by contact of half planes and half spaces, on meshes that do and do not
+resolve it.
 
-In the plane reference drive the resolving mesh has 200 elements along every flank, about a fifth of the half width of
-the contact long, in layers that get thinner towards it. The cam and the flanks have twenty times the usual penalty
-there.
+In the plane reference drive the resolving mesh has 200 elements along every flank, about a fifth of
+the half width of the contact long, in layers that get thinner towards it. The cam and the flanks
+have twenty times the usual penalty there.
 """
 
 from __future__ import annotations
@@ -19,7 +20,11 @@ import swgpar
 from swgpar.input.toml_file import to_toml
 from swgpar.meshing.recipe import make_recipe
 
-DESIGN, CUP, OUT = "drivers/plane_half_turn.toml", "drivers/cup_45deg.toml", Path("results/bench/line_contact")
+DESIGN, CUP, OUT = (
+    "drivers/plane_half_turn.toml",
+    "drivers/cup_45deg.toml",
+    Path("results/bench/line_contact"),
+)
 
 TORQUES = (0.5, 2.0, 8.0)
 """N·m."""
@@ -42,7 +47,15 @@ CUP_HEAD = [
     "pressure MPa",
 ]
 
-HEAD = ["torque N·m", "tooth", "mesh", "line load N/mm", "half width mm", "by line contact", "on the mesh"]
+HEAD = [
+    "torque N·m",
+    "tooth",
+    "mesh",
+    "line load N/mm",
+    "half width mm",
+    "by line contact",
+    "on the mesh",
+]
 
 
 def recipe(mesh: str) -> str:
@@ -90,13 +103,20 @@ def rows(torque: float, mesh: str, ranks: int) -> list[list[str]]:
 
 
 def cup_rows(width: int, ranks: int) -> list[list[str]]:
-    """The loaded pairs of the reference cup drive on a mesh with so many elements over the face width."""
+    """The loaded pairs of the reference cup drive on a mesh with so many elements over the face
+    width."""
     content = swgpar.load_mesh("forces").model_dump(exclude_none=True)
     content["face_width"]["elements"] = width
     folder, path = OUT / f"width_{width}", written(f"width_{width}", content)
     run(folder, CUP, ["steps.rotation=0", "steps.bent_start=true", "solver.rtol=1e-6"], ranks, path)
     pairs = swgpar.open_result(folder).pairs
-    names = {"force_N": ".1f", "line_load_Nmm": ".1f", "width_mm": ".2f", "half_width_mm": ".4f", "pressure_MPa": ".0f"}
+    names = {
+        "force_N": ".1f",
+        "line_load_Nmm": ".1f",
+        "width_mm": ".2f",
+        "half_width_mm": ".4f",
+        "pressure_MPa": ".0f",
+    }
     return [
         [f"{width}", f"{tooth:.0f}", *(f"{pairs[name][k]:{form}}" for name, form in names.items())]
         for k, tooth in enumerate(pairs["tooth"])
@@ -106,14 +126,20 @@ def cup_rows(width: int, ranks: int) -> list[list[str]]:
 
 def main() -> None:
     """Measure, and put the table into the page."""
-    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     options.add_argument("--ranks", type=int, default=2)
     options.add_argument("--page", type=Path, help="page that gets the table")
     arguments = options.parse_args()
-    found = [row for torque in TORQUES for mesh in MESHES for row in rows(torque, mesh, arguments.ranks)]
+    found = [
+        row for torque in TORQUES for mesh in MESHES for row in rows(torque, mesh, arguments.ranks)
+    ]
     tables = {
         "line_contact": markdown([HEAD, *found]),
-        "patch_contact": markdown([CUP_HEAD, *(row for width in WIDTHS for row in cup_rows(width, arguments.ranks))]),
+        "patch_contact": markdown(
+            [CUP_HEAD, *(row for width in WIDTHS for row in cup_rows(width, arguments.ranks))]
+        ),
     }
     for name, text in tables.items():
         print(text)

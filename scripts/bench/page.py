@@ -11,7 +11,12 @@ from typing import Any
 def markdown(rows: Iterable[Sequence[str]]) -> str:
     """A table from rows of cells; the first row is the head."""
     first, *others = rows
-    return "\n".join("| " + " | ".join(cells) + " |" for cells in [first, ["---"] * len(first), *others]) + "\n"
+    return (
+        "\n".join(
+            "| " + " | ".join(cells) + " |" for cells in [first, ["---"] * len(first), *others]
+        )
+        + "\n"
+    )
 
 
 DATA = Path("docs/verification/data")
@@ -33,9 +38,14 @@ def _value(text: str) -> float | str | None:
 
 
 def write_results(
-    name: str, columns: Sequence[str], rows: Sequence[Mapping[str, Any]], text: str, page: str | None = None
+    name: str,
+    columns: Sequence[str],
+    rows: Sequence[Mapping[str, Any]],
+    text: str,
+    page: str | None = None,
 ) -> None:
-    """Write these columns of the rows to data/NAME.csv, and `text` into PAGE.md or NAME.md, of docs/verification."""
+    """Write these columns of the rows to data/NAME.csv, and `text` into PAGE.md or NAME.md, of
+    docs/verification."""
     with (DATA / f"{name}.csv").open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, columns, lineterminator="\n", extrasaction="ignore")
         writer.writeheader()
@@ -44,7 +54,8 @@ def write_results(
 
 
 def put(page: Path, name: str, text: str) -> None:
-    """Put `text` between the marks `<!-- name -->` and `<!-- end of name -->`, at the end where there are none."""
+    """Put `text` between the marks `<!-- name -->` and `<!-- end of name -->`, at the end where
+    there are none."""
     begin, end = f"<!-- {name} -->", f"<!-- end of {name} -->"
     old = page.read_text(encoding="utf-8") if page.exists() else ""
     if begin not in old:

@@ -1,9 +1,11 @@
-"""The same mesh solved by this program and by CalculiX: displacement, stress, seconds and memory side by side.
+"""The same mesh solved by this program and by CalculiX: displacement, stress, seconds and memory
+side by side.
 
-Both programs solve a whole plain ring on the same number of cores, one after the other. Compared are the displacement
-of the outer surface a right angle from the loads, the largest difference of displacements at any node, and the largest
-first principal stress at the nodes. Both programs extrapolate stresses from the Gauss points and average them at the
-nodes. Seconds are those of the whole command: reading or meshing, solving, stresses, writing.
+Both programs solve a whole plain ring on the same number of cores, one after the other. Compared
+are the displacement of the outer surface a right angle from the loads, the largest difference of
+displacements at any node, and the largest first principal stress at the nodes. Both programs
+extrapolate stresses from the Gauss points and average them at the nodes. Seconds are those of the
+whole command: reading or meshing, solving, stresses, writing.
 """
 
 from __future__ import annotations
@@ -36,7 +38,8 @@ COLUMNS = ("displacement_mm", "s1_MPa", "iterations", "seconds", "cpu_seconds", 
 
 @dataclass(frozen=True)
 class Cost:
-    """seconds : wall;  cpu : s, of all threads and ranks;  memory : MB, peak, of all ranks together"""
+    """seconds : wall;  cpu : s, of all threads and ranks;  memory : MB, peak, of all ranks
+    together"""
 
     seconds: float
     cpu: float
@@ -47,7 +50,9 @@ def timed(command: list[str], folder: Path, log: Path, environment: dict[str, st
     """Run a command to its end; the memory is that of its largest process."""
     begin = time.perf_counter()
     with log.open("w") as file:
-        process = subprocess.Popen(command, cwd=folder, stdout=file, stderr=file, env=os.environ | environment)
+        process = subprocess.Popen(
+            command, cwd=folder, stdout=file, stderr=file, env=os.environ | environment
+        )
         _, status, used = os.wait4(process.pid, 0)
     seconds = time.perf_counter() - begin
     process.returncode = os.waitstatus_to_exitcode(status)
@@ -72,18 +77,36 @@ def run_calculix(name: str, mesh: SectorMesh, folder: Path, cores: int) -> tuple
 def run_swgpar(
     name: str, counts: tuple[int, int, int], mesh: SectorMesh, folder: Path, cores: int, part: str
 ) -> tuple[Row, np.ndarray]:
-    """Columns of the table, and displacements (n, 3) mm. part : "whole" ring, or "half" by its symmetry"""
+    """Columns of the table, and displacements (n, 3) mm. part : "whole" ring, or "half" by its
+    symmetry"""
     folder = folder / part
     folder.mkdir()
     program = Path(__file__).with_name("peer_swgpar.py")
-    command = ["mpirun", "-n", str(cores), sys.executable, str(program), name, *map(str, counts), part, str(folder)]
-    cost = timed(command, Path.cwd(), folder / "swgpar.log", {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"})
+    command = [
+        "mpirun",
+        "-n",
+        str(cores),
+        sys.executable,
+        str(program),
+        name,
+        *map(str, counts),
+        part,
+        str(folder),
+    ]
+    cost = timed(
+        command,
+        Path.cwd(),
+        folder / "swgpar.log",
+        {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"},
+    )
     coords, _ = whole_body(mesh)
     numbers = sector_numbers(mesh)
     displacement, s1 = np.full(coords.shape, np.nan), np.full(len(coords), np.nan)
     for path in folder.glob("rank*.npz"):
         with np.load(path) as fields:
-            images = [(0, (1.0, 1.0, 1.0))] + [(mesh.n_sectors // 2, (-1.0, -1.0, 1.0))] * (part == "half")
+            images = [(0, (1.0, 1.0, 1.0))] + [(mesh.n_sectors // 2, (-1.0, -1.0, 1.0))] * (
+                part == "half"
+            )
             for shift, signs in images:
                 own = numbers[(fields["sectors"] + shift) % mesh.n_sectors]
                 displacement[own], s1[own] = signs * fields["displacement"], fields["s1"]
@@ -92,9 +115,18 @@ def run_swgpar(
     return columns("swgpar", cost, displacement, s1, coords, summary["iterations"]), displacement
 
 
-def columns(program: str, cost: Cost, u: np.ndarray, s1: np.ndarray, coords: np.ndarray, iterations: int) -> Row:
+def columns(
+    program: str, cost: Cost, u: np.ndarray, s1: np.ndarray, coords: np.ndarray, iterations: int
+) -> Row:
     """Columns of the table for each program."""
-    values = (u[side(coords), 0], s1.max(), iterations, round(cost.seconds, 2), round(cost.cpu, 2), round(cost.memory))
+    values = (
+        u[side(coords), 0],
+        s1.max(),
+        iterations,
+        round(cost.seconds, 2),
+        round(cost.cpu, 2),
+        round(cost.memory),
+    )
     return {f"{program}_{column}": value for column, value in zip(COLUMNS, values)}
 
 
@@ -108,14 +140,25 @@ def compare(name: str, counts: tuple[int, int, int], out: Path, cores: int) -> R
     ours, u = run_swgpar(name, counts, mesh, folder, cores, "whole")
     half, w = run_swgpar(name, counts, mesh, folder, cores, "half")
     theirs, v = run_calculix(name, mesh, folder, cores)
-    row: Row = {"problem": name, "elements": len(elements), "dofs": coords.size, "cores": cores, **ours, **theirs}
+    row: Row = {
+        "problem": name,
+        "elements": len(elements),
+        "dofs": coords.size,
+        "cores": cores,
+        **ours,
+        **theirs,
+    }
     a, b = (row[f"{program}_displacement_mm"] for program in ("swgpar", "ccx"))
     row["displacement_difference"] = a / b - 1.0
-    row["field_difference"] = float(np.linalg.norm(u - v, axis=1).max() / np.linalg.norm(v, axis=1).max())
+    row["field_difference"] = float(
+        np.linalg.norm(u - v, axis=1).max() / np.linalg.norm(v, axis=1).max()
+    )
     row["s1_difference"] = row["swgpar_s1_MPa"] / row["ccx_s1_MPa"] - 1.0
     row["times_faster"] = row["ccx_seconds"] / row["swgpar_seconds"]
     row["half_seconds"] = half["swgpar_seconds"]
-    row["half_difference"] = float(np.linalg.norm(u - w, axis=1).max() / np.linalg.norm(v, axis=1).max())
+    row["half_difference"] = float(
+        np.linalg.norm(u - w, axis=1).max() / np.linalg.norm(v, axis=1).max()
+    )
     row["times_faster_half"] = row["ccx_seconds"] / row["half_seconds"]
     row["times_less_cpu"] = row["ccx_cpu_seconds"] / row["swgpar_cpu_seconds"]
     return row
@@ -127,15 +170,32 @@ def write(rows: list[Row], tables: Path, page: Path) -> None:
     with (tables / "peer.csv").open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
         writer.writeheader()
-        writer.writerows({k: f"{v:.6g}" if isinstance(v, float) else v for k, v in row.items()} for row in rows)
+        writer.writerows(
+            {k: f"{v:.6g}" if isinstance(v, float) else v for k, v in row.items()} for row in rows
+        )
     put(page, "table", markdown([HEAD, *map(line_of, rows)]))
 
 
 HEAD = (
-    "problem", "dofs", "cores", "displacement mm: swgpar", "CalculiX", "largest difference anywhere",
-    "s1 MPa: swgpar", "CalculiX", "Newton iterations", "seconds: swgpar", "by symmetry", "CalculiX", "CPU seconds",
-    "MB: swgpar", "CalculiX", "times faster", "by symmetry", "by CPU",
-)  # fmt: skip
+    "problem",
+    "dofs",
+    "cores",
+    "displacement mm: swgpar",
+    "CalculiX",
+    "largest difference anywhere",
+    "s1 MPa: swgpar",
+    "CalculiX",
+    "Newton iterations",
+    "seconds: swgpar",
+    "by symmetry",
+    "CalculiX",
+    "CPU seconds",
+    "MB: swgpar",
+    "CalculiX",
+    "times faster",
+    "by symmetry",
+    "by CPU",
+)
 
 
 def line_of(row: Row) -> list[str]:
@@ -145,10 +205,16 @@ def line_of(row: Row) -> list[str]:
         return [f"{row[f'{program}_{column}']:{form}}" for program in ("swgpar", "ccx")]
 
     cells = [row["problem"], f"{row['dofs']:,}", str(row["cores"]), *both("displacement_mm", ".5g")]
-    cells += [f"{row['field_difference']:.3%}", *both("s1_MPa", ".5g"), " / ".join(both("iterations"))]
+    cells += [
+        f"{row['field_difference']:.3%}",
+        *both("s1_MPa", ".5g"),
+        " / ".join(both("iterations")),
+    ]
     ours, theirs = both("seconds", ".3g")
     half = row.get("half_seconds"), row.get("times_faster_half")
-    seconds, faster = ("" if value is None else f"{value:{form}}" for value, form in zip(half, (".3g", ".2g")))
+    seconds, faster = (
+        "" if value is None else f"{value:{form}}" for value, form in zip(half, (".3g", ".2g"))
+    )
     cells += [ours, seconds, theirs, " / ".join(both("cpu_seconds", ".3g")), *both("memory_MB")]
     return [*cells, f"{row['times_faster']:.2g}", faster, f"{row['times_less_cpu']:.2g}"]
 
@@ -158,10 +224,18 @@ def main() -> None:
     options.add_argument("--out", default="results/bench/peer", help="jobs and logs")
     options.add_argument("--tables", default="docs/verification/data")
     options.add_argument("--page", default="docs/verification/peer.md")
-    options.add_argument("--cores", type=int, default=2, help="threads of CalculiX, ranks of this program")
-    options.add_argument("--only", nargs="+", default=list(PROBLEMS), help="first words of the problems to run")
     options.add_argument(
-        "--levels", nargs="+", type=int, default=list(range(len(LEVELS))), help="meshes, from 0; other rows are kept"
+        "--cores", type=int, default=2, help="threads of CalculiX, ranks of this program"
+    )
+    options.add_argument(
+        "--only", nargs="+", default=list(PROBLEMS), help="first words of the problems to run"
+    )
+    options.add_argument(
+        "--levels",
+        nargs="+",
+        type=int,
+        default=list(range(len(LEVELS))),
+        help="meshes, from 0; other rows are kept",
     )
     arguments = options.parse_args()
     if shutil.which("ccx") is None:
@@ -177,7 +251,9 @@ def main() -> None:
         for level in arguments.levels:
             row = compare(name, LEVELS[level], Path(arguments.out).resolve(), arguments.cores)
             print(" | ".join(line_of(row)), flush=True)
-            rows = [r for r in rows if any(r[k] != row[k] for k in ("problem", "dofs", "cores"))] + [row]
+            rows = [
+                r for r in rows if any(r[k] != row[k] for k in ("problem", "dofs", "cores"))
+            ] + [row]
             rows.sort(key=lambda r: (r["cores"], order.index(r["problem"]), r["dofs"]))
             write(rows, tables, Path(arguments.page))
     print(f"written {tables}/peer.csv, peer.json")

@@ -2,8 +2,8 @@
 
 mpirun -n 2 python scripts/bench/peer_cup_swgpar.py MESH HELD OUT
 
-HELD is an NPZ file of `nodes` (n,), numbers in the whole spline, and `displacement` (n, 3) mm. The fields of every rank
-are written to the folder OUT.
+HELD is an NPZ file of `nodes` (n,), numbers in the whole spline, and `displacement` (n, 3) mm. The
+fields of every rank are written to the folder OUT.
 """
 
 from __future__ import annotations
@@ -40,7 +40,10 @@ STIFFNESS = 1e3
 def main() -> None:
     name, held, out = sys.argv[1:]
     comm, design = MPI.COMM_WORLD, load_design(Path(DESIGN), ["solver.rtol=1e-5"])
-    mesh, material = build_sector(design.geometry, load_recipe(name), BODY), design.material_of(BODY)
+    mesh, material = (
+        build_sector(design.geometry, load_recipe(name), BODY),
+        design.material_of(BODY),
+    )
     layout = build_layout(design, build_gear(design, mesh))
     partition = Partition([layout], comm)
     elements = Elements(partition)
@@ -50,7 +53,12 @@ def main() -> None:
         known[file["nodes"]] = file["displacement"]
     sectors = body.sectors[body.owned]
     local, values = body.local[body.owned], known[sector_numbers(mesh)[sectors % mesh.n_sectors]]
-    mine = (local >= 0) & (local < partition.n_own) & (body.sixths[body.owned] == 0) & ~np.isnan(values[..., 0])
+    mine = (
+        (local >= 0)
+        & (local < partition.n_own)
+        & (body.sixths[body.owned] == 0)
+        & ~np.isnan(values[..., 0])
+    )
     nodes, first = np.unique(local[mine], return_index=True)
     stiffness = STIFFNESS * material.modulus * design.drive.module
     scale = material.modulus * design.drive.module
@@ -65,14 +73,18 @@ def main() -> None:
     )
     LineSearch.TRIALS = 0  # the search is made for contact
     solver = NewtonSolver(problem, newton_settings(design))
-    solved = solver.solve(LoadState(Stage.ROTATE, 4, cam_clearance=0.0))  # a stage that keeps a factor
+    solved = solver.solve(
+        LoadState(Stage.ROTATE, 4, cam_clearance=0.0)
+    )  # a stage that keeps a factor
     if not solved.converged:
         raise SystemExit(f"not converged: {solved}")
     fields = body_fields(body, problem.displacement())
     path = Path(out) / f"spline{comm.rank}.npz"
     np.savez(path, sectors=sectors, displacement=fields["displacement"], s1=fields["s1"])
     if comm.rank == 0:
-        (Path(out) / "spline.json").write_text(json.dumps({"iterations": solved.iterations}), encoding="utf-8")
+        (Path(out) / "spline.json").write_text(
+            json.dumps({"iterations": solved.iterations}), encoding="utf-8"
+        )
 
 
 if __name__ == "__main__":

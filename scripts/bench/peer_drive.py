@@ -1,7 +1,8 @@
-"""The loaded state of a whole drive by this program and by CalculiX on the job of `swgpar export --format inp`.
+"""The loaded state of a whole drive by this program and by CalculiX on the job of `swgpar export
+--format inp`.
 
-Both programs have the same mesh and load. CalculiX has facets in place of the exact cam and flanks: more facets on the
-flanks show what they change.
+Both programs have the same mesh and load. CalculiX has facets in place of the exact cam and flanks:
+more facets on the flanks show what they change.
 """
 
 from __future__ import annotations
@@ -26,16 +27,26 @@ from swgpar.meshing import MeshRecipe, load_recipe
 
 DESIGN, RECIPE = "tests/data/small.toml", "tests/data/tiny.toml"
 
-LOADED = ("steps.rotation=0", "output.fields=true", "output.figures=false", "output.root_stress=false")
+LOADED = (
+    "steps.rotation=0",
+    "output.fields=true",
+    "output.figures=false",
+    "output.root_stress=false",
+)
 """Of the runs that are compared: all increments of the rotation are left out."""
 
-PLANE = ("drive.model=plane", "load.torque=0.2", *(f"micro_geometry.{k}=0" for k in ("wg_crowning", "wg_slope")))
+PLANE = (
+    "drive.model=plane",
+    "load.torque=0.2",
+    *(f"micro_geometry.{k}=0" for k in ("wg_crowning", "wg_slope")),
+)
 PLANE += ("micro_geometry.fs_crowning=0",)
 
 
 @dataclass(frozen=True)
 class Case:
-    """overrides : of the design;  tooth : elements of both gears;  wall : elements of the cup's wall"""
+    """overrides : of the design;  tooth : elements of both gears;  wall : elements of the cup's
+    wall"""
 
     overrides: tuple[str, ...]
     tooth: dict[str, int]
@@ -48,18 +59,38 @@ CASES = {
     "plane, flank 8, root 4, rim 2": Case(PLANE, {"flank": 8, "root": 4, "rim": 2}),
     "plane, flank 6, spline fixed": Case((*PLANE, "drive.layout=spline_fixed"), {"flank": 6}),
     "cup, flank 2": Case((), {"flank": 2}),
-    "cup, flank 2, finer wall": Case((), {"flank": 2}, {"cylinder": 4, "fillet": 2, "closed_end": 4}),
+    "cup, flank 2, finer wall": Case(
+        (), {"flank": 2}, {"cylinder": 4, "fillet": 2, "closed_end": 4}
+    ),
 }
 
 BOTH = ("rotation_deg", "cam_torque_Nmm", "flank_torque_Nmm", "fs_s1_MPa", "fs_vm_MPa")
 """Columns of both programs: the torques are those on the flexible spline."""
 
-COLUMNS = ("case", "elements", *(f"{program}_{name}" for name in BOTH for program in ("swgpar", "ccx")))
+COLUMNS = (
+    "case",
+    "elements",
+    *(f"{program}_{name}" for name in BOTH for program in ("swgpar", "ccx")),
+)
 COLUMNS += ("ccx_fs_s1_same_displacement_MPa", "displacement_difference_mm", "vm_rms_difference")
 COLUMNS += ("ccx_increments", "ccx_iterations")
 
-HEAD = ("case", "elements", "rotation, deg: swgpar", "CalculiX", "cam torque, N·mm: swgpar", "CalculiX")
-HEAD += ("flank torque, N·mm: swgpar", "CalculiX", "s1, MPa: swgpar", "CalculiX", "vm, MPa: swgpar", "CalculiX")
+HEAD = (
+    "case",
+    "elements",
+    "rotation, deg: swgpar",
+    "CalculiX",
+    "cam torque, N·mm: swgpar",
+    "CalculiX",
+)
+HEAD += (
+    "flank torque, N·mm: swgpar",
+    "CalculiX",
+    "s1, MPa: swgpar",
+    "CalculiX",
+    "vm, MPa: swgpar",
+    "CalculiX",
+)
 HEAD += ("s1 of CalculiX from the displacements of swgpar",)
 HEAD += ("largest difference of displacement besides the rotation, mm", "mean difference of vm")
 HEAD += ("CalculiX: increments", "iterations")
@@ -69,11 +100,14 @@ def recipe_of(case: Case) -> MeshRecipe:
     """The smallest recipe with the elements of the case."""
     recipe = load_recipe(RECIPE)
     parts = {"flexible_spline": case.tooth, "ring_gear": case.tooth, "cup": case.wall}
-    return recipe.model_copy(update={k: getattr(recipe, k).model_copy(update=v) for k, v in parts.items()})
+    return recipe.model_copy(
+        update={k: getattr(recipe, k).model_copy(update=v) for k, v in parts.items()}
+    )
 
 
 def read_prints(path: Path) -> tuple[float, dict[str, float]]:
-    """Rotation (rad) of the output, and moments (N mm) about z by slave surface, the last that drive.dat has."""
+    """Rotation (rad) of the output, and moments (N mm) about z by slave surface, the last that
+    drive.dat has."""
     lines = path.read_text(encoding="ascii").splitlines()
     rotation, moments = np.nan, {}
     for k, line in enumerate(lines):
@@ -103,7 +137,9 @@ def compare(name: str, out: Path, cores: int) -> dict[str, object]:
     grid = result.grid(body="flexible_spline", whole=True)
     distance, ours = cKDTree(grid.points).query(points[:n])
     if distance.max() > 1e-5:
-        raise ValueError(f"{folder}: a node of the mesh is {distance.max():.2g} mm from those of the result")
+        raise ValueError(
+            f"{folder}: a node of the mesh is {distance.max():.2g} mm from those of the result"
+        )
     rotation, moments = read_prints(folder / "drive.dat")
     last = {key: float(values[-1]) for key, values in result.history.items()}
     off = points[:n] + u[:n]
@@ -147,11 +183,14 @@ def calculix(job: str, folder: Path, cores: int) -> None:
 def principal(stress: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """First principal and von Mises stress (n,) of stresses (n, 6) xx yy zz xy yz zx."""
     first, second, third = np.linalg.eigvalsh(stress[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2]]]).T
-    return third, np.sqrt(0.5 * ((first - second) ** 2 + (second - third) ** 2 + (third - first) ** 2))
+    return third, np.sqrt(
+        0.5 * ((first - second) ** 2 + (second - third) ** 2 + (third - first) ** 2)
+    )
 
 
 def prescribe(folder: Path, u: np.ndarray, n: int) -> None:
-    """``elements.inp``: all nodes of the spline have the displacements u (m, 3) mm, the others of n none."""
+    """``elements.inp``: all nodes of the spline have the displacements u (m, 3) mm, the others of n
+    none."""
     job = ["*INCLUDE, INPUT=drive_mesh.inp", "*NSET, NSET=OTHERS, GENERATE", f"{len(u) + 1}, {n}"]
     job += ["*BOUNDARY", "OTHERS, 1, 3", "*STEP, NLGEOM", "*STATIC", "1., 1.", "*BOUNDARY"]
     job += [f"{k + 1}, {i + 1}, {i + 1}, {u[k, i]:.12e}" for k in range(len(u)) for i in range(3)]
@@ -170,9 +209,13 @@ def line_of(row: dict[str, object]) -> list[str]:
 
 def main() -> None:
     """Compare the cases that are named, and write the table."""
-    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     options.add_argument("--cases", nargs="+", default=list(CASES), choices=list(CASES))
-    options.add_argument("--out", type=Path, default=Path("results/bench/peer_drive"), help="jobs, runs and logs")
+    options.add_argument(
+        "--out", type=Path, default=Path("results/bench/peer_drive"), help="jobs, runs and logs"
+    )
     options.add_argument("--cores", type=int, default=2, help="threads of CalculiX")
     options.add_argument("--no-page", action="store_true", help="leave docs/verification as it is")
     arguments = options.parse_args()
@@ -187,7 +230,9 @@ def main() -> None:
         print(" | ".join(line_of(rows[name])), flush=True)
     if not arguments.no_page:
         found = [rows[name] for name in CASES if name in rows]
-        write_results("peer_drive", COLUMNS, found, markdown([HEAD, *map(line_of, found)]), page="peer")
+        write_results(
+            "peer_drive", COLUMNS, found, markdown([HEAD, *map(line_of, found)]), page="peer"
+        )
 
 
 if __name__ == "__main__":

@@ -1,4 +1,5 @@
-"""A plain ring under three loads, for two programs: dimensions, meshes, and the nodes that are loaded or looked at."""
+"""A plain ring under three loads, for two programs: dimensions, meshes, and the nodes that are
+loaded or looked at."""
 
 from __future__ import annotations
 
@@ -19,7 +20,8 @@ PENALTY = 50.0
 """Of the contact, over E / mm."""
 
 CAM = (INNER, INNER - 2.0)
-"""Semi-axes (mm) of the ellipse whose two halves are moved apart: at first they touch at their tips only."""
+"""Semi-axes (mm) of the ellipse whose two halves are moved apart: at first they touch at their tips
+only."""
 
 CAM_HALF_ANGLE = 60.0
 """Degrees from the major axis that the cam's halves cover."""
@@ -27,7 +29,8 @@ CAM_HALF_ANGLE = 60.0
 
 @dataclass(frozen=True)
 class Problem:
-    """force : N, dead, inwards on both ends of the major axis;  travel : mm, of each half of the cam outwards
+    """force : N, dead, inwards on both ends of the major axis;  travel : mm, of each half of the
+    cam outwards
 
     linear : CalculiX solves one linear step; the other program always solves with finite rotations
     """
@@ -53,7 +56,8 @@ def sector(counts: tuple[int, int, int]) -> SectorMesh:
 
 
 def line(coords: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes of the cross-section at x = 0, y > 0 among `coords` (n, 3), and their shares of a load spread over it."""
+    """Nodes of the cross-section at x = 0, y > 0 among `coords` (n, 3), and their shares of a load
+    spread over it."""
     nodes = np.flatnonzero((np.abs(coords[:, 0]) < 1e-9) & (coords[:, 1] > 0.0))
     share = np.ones(len(nodes))
     for values in (coords[nodes, 1], coords[nodes, 2]):

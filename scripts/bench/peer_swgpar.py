@@ -1,8 +1,10 @@
-"""One of the peer problems by this program, under mpirun: fields of every rank, its memory and Newton's iterations.
+"""One of the peer problems by this program, under mpirun: fields of every rank, its memory and
+Newton's iterations.
 
 mpirun -n 2 python scripts/bench/peer_swgpar.py "linear: pinched ring" 160 2 8 whole OUT
 
-With `half` instead of `whole` the twofold symmetry of ring and loads is used, as a run of a drive uses it.
+With `half` instead of `whole` the twofold symmetry of ring and loads is used, as a run of a drive
+uses it.
 """
 
 from __future__ import annotations
@@ -14,7 +16,18 @@ from pathlib import Path
 
 import numpy as np
 from mpi4py import MPI
-from peer_problems import CAM, CAM_HALF_ANGLE, INNER, OUTER, PENALTY, PROBLEMS, STEEL, WIDTH, Problem, line
+from peer_problems import (
+    CAM,
+    CAM_HALF_ANGLE,
+    INNER,
+    OUTER,
+    PENALTY,
+    PROBLEMS,
+    STEEL,
+    WIDTH,
+    Problem,
+    line,
+)
 
 from plain_ring import PlainRingDesign, RingBody, RingCounts, RingModel
 from swgpar.constraints.boundary_conditions import DeadLoad
@@ -32,7 +45,8 @@ RTOL = 1e-6
 def pinched(
     design: PlainRingDesign, counts: RingCounts, force: float, copies: int
 ) -> tuple[BodyElements, np.ndarray, int]:
-    """The ring under two forces (N): its elements, displacements (n_local, 3) mm and the iterations it took."""
+    """The ring under two forces (N): its elements, displacements (n_local, 3) mm and the iterations
+    it took."""
     ring = RingBody(design, counts, MPI.COMM_WORLD, copies=copies)
     nodes, share = line(ring.mesh.coords)
     sectors = ring.body.sectors[ring.body.owned]
@@ -41,10 +55,13 @@ def pinched(
         for k in np.flatnonzero(sectors == sector):
             local.append(ring.body.local[ring.body.owned][k, nodes])
             forces.append(force * direction * share[:, None] * (0.0, 1.0, 0.0))
-    # the search is made for contact: in bending without it a full step, which stretches the ring, is the way out
+    # the search is made for contact: in bending without it a full step, which stretches the ring,
+    # is the way out
     LineSearch.TRIALS = 0
     solver = ring.solver(DeadLoad(np.concatenate(local), np.concatenate(forces)))
-    solved = solver.solve(LoadState(Stage.LOAD, 3, cam_clearance=0.0))  # keeps a factor once the residual is small
+    solved = solver.solve(
+        LoadState(Stage.LOAD, 3, cam_clearance=0.0)
+    )  # keeps a factor once the residual is small
     if not solved.converged:
         raise SystemExit(f"not converged: {solved}")
     return ring.body, solver.problem.displacement(), solved.iterations
@@ -56,10 +73,14 @@ def main() -> None:
     problem: Problem = PROBLEMS[name]
     counts = RingCounts(*map(int, numbers))
     contact = Contact(wg_penalty_coef=PENALTY, wg_quadrature=7, penetration_tolerance=1e-4)
-    design = PlainRingDesign(2.0 * OUTER, OUTER - INNER, WIDTH, False, STEEL, contact, Solver(rtol=RTOL))
+    design = PlainRingDesign(
+        2.0 * OUTER, OUTER - INNER, WIDTH, False, STEEL, contact, Solver(rtol=RTOL)
+    )
     if problem.travel:
         cam = EllipticalCam(*CAM)
-        model = RingModel(design, counts, cam, np.radians(CAM_HALF_ANGLE), MPI.COMM_WORLD, copies=copies)
+        model = RingModel(
+            design, counts, cam, np.radians(CAM_HALF_ANGLE), MPI.COMM_WORLD, copies=copies
+        )
         iterations, body = model.spread(problem.travel), model.body
         u = model.problem.displacement()
     else:

@@ -21,18 +21,31 @@ def run(
     *,
     plain: bool = True,
 ) -> dict[str, Any]:
-    """Run a design from its beginning, without figures, and return its summary. Ends the benchmark where it fails.
+    """Run a design from its beginning, without figures, and return its summary. Ends the benchmark
+    where it fails.
 
-    mesh : without one the run takes its own mesh, its shortcuts and windows; with one it has no windows
+    mesh : without one the run takes its own mesh, its shortcuts and windows; with one it has no
+    windows
     plain : with a mesh, whether the design is taken as it is, without shortcuts
     """
     shutil.rmtree(folder, ignore_errors=True)
-    command = ["mpirun", "-n", str(ranks), sys.executable, "-P", "-m", "swgpar.cli", "run", str(design)]
+    command = [
+        "mpirun",
+        "-n",
+        str(ranks),
+        sys.executable,
+        "-P",
+        "-m",
+        "swgpar.cli",
+        "run",
+        str(design),
+    ]
     command += ["--out", str(folder), *(["--mesh", str(mesh)] if mesh is not None else [])]
     command += ["--plain"] if mesh is not None and plain else []
     windows = ["output.root_stress=false"] if mesh is not None else []
     command += ["--set", "output.figures=false", *windows, *overrides]
-    # not what MPI has put into the environment of this process since its start: mpirun would take itself for a rank
+    # not what MPI has put into the environment of this process since its start: mpirun would take
+    # itself for a rank
     done = subprocess.run(command, capture_output=True, text=True, env=dict(os.environ))
     if done.returncode:
         raise SystemExit(f"{folder.name}: {done.stderr or done.stdout}")

@@ -1,6 +1,8 @@
-"""Time with and without each reduction, and the change of the results: one run of `swgpar run` for every row.
+"""Time with and without each reduction, and the change of the results: one run of `swgpar run` for
+every row.
 
-The plain run has every reduction switched off. Each following row switches one on; the last row has all that apply.
+The plain run has every reduction switched off. Each following row switches one on; the last row has
+all that apply.
 """
 
 from __future__ import annotations
@@ -39,7 +41,9 @@ def run(arguments: argparse.Namespace, name: str, keys: dict[str, str]) -> dict[
     """One run; its row of the table."""
     out = Path(arguments.out) / name.replace(" ", "_")
     overrides = [f"{k}={v.format(samples=arguments.samples)}" for k, v in {**OFF, **keys}.items()]
-    summary = program.run(out, arguments.design, [*overrides, *arguments.set], arguments.ranks, arguments.mesh)
+    summary = program.run(
+        out, arguments.design, [*overrides, *arguments.set], arguments.ranks, arguments.mesh
+    )
     row: dict[str, float | str] = {"reduction": name, "seconds": round(summary["wall_s"], 1)}
     row["increments"] = summary["increments"]
     row["newton_mean"] = round(summary["rotation"]["newton_iterations_mean"], 2)
@@ -47,12 +51,27 @@ def run(arguments: argparse.Namespace, name: str, keys: dict[str, str]) -> dict[
     return {**row, **{k: summary["rotation"]["means"][k] for k in MEANS}}
 
 
-HEAD = ("reduction", "s", "times faster", "increments", "Newton", "MB a rank", "s1", "s3", "vm", "ring vm", "torque")
+HEAD = (
+    "reduction",
+    "s",
+    "times faster",
+    "increments",
+    "Newton",
+    "MB a rank",
+    "s1",
+    "s3",
+    "vm",
+    "ring vm",
+    "torque",
+)
 
 
 def cells(row: dict[str, float | str]) -> list[str]:
     """The row of the page's table; from `s1` on the changes of the means."""
-    numbers = [f"{row[k]}" for k in ("reduction", "seconds", "speedup", "increments", "newton_mean", "memory_MB")]
+    numbers = [
+        f"{row[k]}"
+        for k in ("reduction", "seconds", "speedup", "increments", "newton_mean", "memory_MB")
+    ]
     return [*numbers, *(f"{row[f'change_{mean}']}" for mean in MEANS)]
 
 
@@ -67,14 +86,22 @@ def main() -> None:
     options.add_argument("--samples", type=int, default=4, help="angles in a period")
     options.add_argument("--set", nargs="+", default=[], help="further overrides, for all runs")
     options.add_argument(
-        "--only", nargs="+", default=None, choices=[*ON, *PLANE_ON, "all"], help="rows besides the plain one"
+        "--only",
+        nargs="+",
+        default=None,
+        choices=[*ON, *PLANE_ON, "all"],
+        help="rows besides the plain one",
     )
     arguments = options.parse_args()
     plane = load_design(arguments.design, arguments.set).drive.model == "plane"
     apply = {**ON, **PLANE_ON} if plane else ON
     if not set(arguments.only or []) <= {*apply, "all"}:
         options.error("--only: condensed sectors are for the plane model")
-    variants = {"none": {}, **apply, "all": {k: v for keys in apply.values() for k, v in keys.items()}}
+    variants = {
+        "none": {},
+        **apply,
+        "all": {k: v for keys in apply.values() for k, v in keys.items()},
+    }
     rows: list[dict[str, float | str]] = []
     for name, keys in variants.items():
         if arguments.only is not None and name not in ("none", *arguments.only):

@@ -1,8 +1,8 @@
 """Cost of one Newton iteration of the cup drive over mesh sizes, solvers and numbers of ranks.
 
-Every case is a process group of its own. It measures the first system of the undeformed drive: seconds of residual and
-tangent, of a product with the tangent, of the factorisation or the set-up of the multigrid and of one solve, iterations
-of GMRES to 1e-6, and peak memory.
+Every case is a process group of its own. It measures the first system of the undeformed drive:
+seconds of residual and tangent, of a product with the tangent, of the factorisation or the set-up
+of the multigrid and of one solve, iterations of GMRES to 1e-6, and peak memory.
 """
 
 from __future__ import annotations
@@ -48,7 +48,9 @@ def measure(mesh: str, linear: str) -> None:
     u = problem.displacement()
     tangent = timed(lambda: problem.tangent(u, state))
     border, rows = problem.supports.border(u, state)
-    system.set_system(problem.matrix, problem.matrix_rows.active, problem.supports.grounding(u), border, rows)
+    system.set_system(
+        problem.matrix, problem.matrix_rows.active, problem.supports.grounding(u), border, rows
+    )
     row = {
         "mesh": mesh,
         "solver": linear,
@@ -79,16 +81,30 @@ def measure(mesh: str, linear: str) -> None:
 def main() -> None:
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--meshes", nargs="+", default=list(MESHES))
-    options.add_argument("--solvers", nargs="+", default=["direct", "iterative"], choices=["direct", "iterative"])
+    options.add_argument(
+        "--solvers", nargs="+", default=["direct", "iterative"], choices=["direct", "iterative"]
+    )
     options.add_argument("--ranks", nargs="+", type=int, default=[1, 2])
-    options.add_argument("--largest-iterative", type=int, default=3, help="number of meshes GAMG is tried on")
+    options.add_argument(
+        "--largest-iterative", type=int, default=3, help="number of meshes GAMG is tried on"
+    )
     options.add_argument("--table", default="docs/verification/data/scaling.csv")
     options.add_argument("--case", nargs=2, metavar=("MESH", "SOLVER"), help=argparse.SUPPRESS)
     arguments = options.parse_args()
     if arguments.case:
         measure(*arguments.case)
         return
-    columns = ("mesh", "solver", "ranks", "unknowns", "assembly_s", "product_s", "setup_s", "solve_s", "iterations")
+    columns = (
+        "mesh",
+        "solver",
+        "ranks",
+        "unknowns",
+        "assembly_s",
+        "product_s",
+        "setup_s",
+        "solve_s",
+        "iterations",
+    )
     columns += ("factor_s", "factor_entries", "factor_Gflop", "memory_MB_per_rank")
     table = Path(arguments.table)
     table.parent.mkdir(parents=True, exist_ok=True)
@@ -96,14 +112,22 @@ def main() -> None:
         writer = csv.DictWriter(file, columns, lineterminator="\n", restval="")
         writer.writeheader()
         for solver in arguments.solvers:
-            meshes = arguments.meshes if solver == "direct" else arguments.meshes[: arguments.largest_iterative]
+            meshes = (
+                arguments.meshes
+                if solver == "direct"
+                else arguments.meshes[: arguments.largest_iterative]
+            )
             for mesh in meshes:
                 for ranks in arguments.ranks:
-                    # oversubscribed ranks yield the core when they wait, which costs time where each has its own
+                    # oversubscribed ranks yield the core when they wait, which costs time where
+                    # each has its own
                     crowded = ["--oversubscribe"] if ranks > (os.cpu_count() or 1) else []
                     command = ["mpirun", *crowded, "-n", str(ranks), sys.executable, __file__]
                     done = subprocess.run(
-                        [*command, "--case", mesh, solver], check=True, capture_output=True, text=True
+                        [*command, "--case", mesh, solver],
+                        check=True,
+                        capture_output=True,
+                        text=True,
                     )
                     row = json.loads(done.stdout.splitlines()[-1])
                     print(row, flush=True)

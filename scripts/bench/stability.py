@@ -1,13 +1,16 @@
-"""Drives and elements under numerical stress: what converges, what is refused, and how far the invariants drift.
+"""Drives and elements under numerical stress: what converges, what is refused, and how far the
+invariants drift.
 
-Every group of `tests/support/drive_groups.py` is a study on a small mesh. A rank computes one case at a time. A case
-converges, is refused by one sentence before anything is computed, or fails to converge.
+Every group of `tests/support/drive_groups.py` is a study on a small mesh. A rank computes one case
+at a time. A case converges, is refused by one sentence before anything is computed, or fails to
+converge.
 
-stability.csv has a row for every case: Newton iterations (largest number in one increment, and all), cut-backs, the
-unbalanced torque over the output's torque, and the drift: the relative change of stresses and input torque after one
-period (without friction, which needs a period to settle). For other systems of units and for more ranks the drift is
-the difference from the first ones. Sensible designs turn so far that their mean input torque is compared with the
-energy balance; a drive that says itself that it may jam is flagged. Silence is the longest time without a line of
+stability.csv has a row for every case: Newton iterations (largest number in one increment, and
+all), cut-backs, the unbalanced torque over the output's torque, and the drift: the relative change
+of stresses and input torque after one period (without friction, which needs a period to settle).
+For other systems of units and for more ranks the drift is the difference from the first ones.
+Sensible designs turn so far that their mean input torque is compared with the energy balance; a
+drive that says itself that it may jam is flagged. Silence is the longest time without a line of
 output. --page gets the table by group.
 """
 
@@ -47,7 +50,18 @@ from swgpar.results import history
 from swgpar.results.folder import SUMMARY
 
 Row = dict[str, Any]
-COLUMNS = ("group", "case", "status", "newton_max", "newton_all", "cutbacks", "cycles", "unbalanced", "drift", "wall_s")
+COLUMNS = (
+    "group",
+    "case",
+    "status",
+    "newton_max",
+    "newton_all",
+    "cutbacks",
+    "cycles",
+    "unbalanced",
+    "drift",
+    "wall_s",
+)
 COLUMNS += ("flagged", "energy", "silence_s", "reason")
 
 
@@ -59,7 +73,11 @@ def study_text(name: str, group: Group) -> str:
     ]
     for case, values in group.cases().items():
         lines = [f"[[study.case]]\nname = {toml_value(case)}"]
-        lines += [f"section.{key} = {toml_value(value)}" for key, value in values.items() if "." not in key]
+        lines += [
+            f"section.{key} = {toml_value(value)}"
+            for key, value in values.items()
+            if "." not in key
+        ]
         overrides = [f"{key}={toml_value(value)}" for key, value in values.items() if "." in key]
         text.append("\n".join([*lines, f"set = {toml_value(overrides)}"]))
     return "\n\n".join(text) + "\n"
@@ -78,7 +96,12 @@ def run_group(name: str, group: Group, out: Path, ranks: int, restart: bool) -> 
         outcomes = list(csv.DictReader(file))
     cases = group.cases()
     rows = [
-        {"group": name, "case": o["case"], **verdict(o), **measured(result / "cases" / o["case"], cases[o["case"]])}
+        {
+            "group": name,
+            "case": o["case"],
+            **verdict(o),
+            **measured(result / "cases" / o["case"], cases[o["case"]]),
+        }
         | {"silence_s": round(silence, 1)}
         for o in outcomes
     ]
@@ -90,7 +113,9 @@ def run_group(name: str, group: Group, out: Path, ranks: int, restart: bool) -> 
 def run_logged(command: list[str], log: Path) -> float:
     """Run a command with its output in a file; returns the longest time (s) without a line."""
     longest, last = 0.0, time.monotonic()
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=environment(), text=True)
+    process = subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=environment(), text=True
+    )
     with log.open("w", buffering=1) as file:
         for text in process.stdout:
             file.write(text)
@@ -104,7 +129,9 @@ def compare_units(folder: Path, rows: list[Row]) -> None:
     scaled = {}
     for name, length, force in UNITS:
         last = history.read_history(next((folder / name).rglob(history.NAME)))[-1]
-        scaled[name] = {k: last[k] / (force * length if "torque" in k else force / length**2) for k in REPEATED}
+        scaled[name] = {
+            k: last[k] / (force * length if "torque" in k else force / length**2) for k in REPEATED
+        }
     for row in rows:
         row["drift"] = drift(scaled[UNITS[0][0]], scaled[row["case"]])
 
@@ -115,7 +142,11 @@ def verdict(outcome: dict[str, str]) -> Row:
     if status == "failed" and "allowed" in reason:
         status = "refused"
     reason = reason.partition("; ")[0]  # what follows says where the results are
-    return {"status": "converged" if status == "finished" else status, "wall_s": outcome["wall_s"], "reason": reason}
+    return {
+        "status": "converged" if status == "finished" else status,
+        "wall_s": outcome["wall_s"],
+        "reason": reason,
+    }
 
 
 def measured(folder: Path, case: dict[str, Any]) -> Row:
@@ -146,13 +177,18 @@ def measured(folder: Path, case: dict[str, Any]) -> Row:
 
 
 def energy(path: Path) -> Row:
-    """From the summary of a run through a whole period: relative difference of its mean input torque, and the flag."""
+    """From the summary of a run through a whole period: relative difference of its mean input
+    torque, and the flag."""
     if not path.exists():
         return {}
     summary = json.loads(path.read_text(encoding="utf-8"))
     out: Row = {"flagged": 1} if summary["rotation"]["jammed"] else {}
     expected, angles = summary["rotation"]["wg_torque_expected_Nmm"], summary["design"]["steps"]
-    if expected and angles["rotation"] > 4.9 * angles["increment"] and not summary["design"]["contact"]["friction"]:
+    if (
+        expected
+        and angles["rotation"] > 4.9 * angles["increment"]
+        and not summary["design"]["contact"]["friction"]
+    ):
         rows = history.read_history(path.with_name(history.NAME))[-4:]
         out["energy"] = abs(sum(row["wg_torque_Nmm"] for row in rows) / len(rows) / expected - 1.0)
     return out
@@ -161,15 +197,31 @@ def energy(path: Path) -> Row:
 def run_on_ranks(out: Path, numbers: Iterable[int]) -> list[Row]:
     """The small drives on several numbers of ranks, more than the machine has cores included."""
     rows: list[Row] = []
-    for model, overrides in (("cup", ()), ("plane", PLANE), ("plane, friction", (*PLANE, "contact.friction=0.1"))):
+    for model, overrides in (
+        ("cup", ()),
+        ("plane", PLANE),
+        ("plane, friction", (*PLANE, "contact.friction=0.1")),
+    ):
         alone: Row = {}
         for ranks in numbers:
             folder = out / "ranks" / f"{model.replace(', ', '_')}_{ranks}"
-            command = run_command(folder, "--overwrite", ranks=ranks, overrides=(*SHORT, *overrides))
-            done = subprocess.run(command, capture_output=True, text=True, env=environment(), cwd=ROOT)
-            row = {"group": "ranks", "case": f"{model}, {ranks} ranks", "status": "converged", "reason": ""}
+            command = run_command(
+                folder, "--overwrite", ranks=ranks, overrides=(*SHORT, *overrides)
+            )
+            done = subprocess.run(
+                command, capture_output=True, text=True, env=environment(), cwd=ROOT
+            )
+            row = {
+                "group": "ranks",
+                "case": f"{model}, {ranks} ranks",
+                "status": "converged",
+                "reason": "",
+            }
             if done.returncode:
-                row |= {"status": "failed", "reason": (done.stdout + done.stderr).strip().splitlines()[-1]}
+                row |= {
+                    "status": "failed",
+                    "reason": (done.stdout + done.stderr).strip().splitlines()[-1],
+                }
             else:
                 last = history.read_history(folder / history.NAME)[-1]
                 alone = alone or last
@@ -190,15 +242,39 @@ def counted(name: str, rows: list[Row]) -> list[str]:
     def largest(key: str) -> str:
         return f"{max(values(key)):.1e}" if values(key) else ""
 
-    numbers = [sum(r["status"] == status for r in rows) for status in ("converged", "refused", "failed")]
-    numbers += [max(values("newton_max"), default=0), sum(values("cutbacks")), sum(values("cycles"))]
+    numbers = [
+        sum(r["status"] == status for r in rows) for status in ("converged", "refused", "failed")
+    ]
+    numbers += [
+        max(values("newton_max"), default=0),
+        sum(values("cutbacks")),
+        sum(values("cycles")),
+    ]
     silence = f"{max(values('silence_s')):.0f}" if values("silence_s") else ""
     flagged = f"{sum(values('flagged')):.0f}" if values("energy") else ""
     balance = f"{np.median(values('energy')):.1e}" if values("energy") else ""
-    return [name, *(f"{n:.0f}" for n in numbers), largest("unbalanced"), largest("drift"), flagged, balance, silence]
+    return [
+        name,
+        *(f"{n:.0f}" for n in numbers),
+        largest("unbalanced"),
+        largest("drift"),
+        flagged,
+        balance,
+        silence,
+    ]
 
 
-HEADER = ["group", "converged", "refused", "failed", "Newton", "cut-backs", "cycles", "unbalanced", "drift"]
+HEADER = [
+    "group",
+    "converged",
+    "refused",
+    "failed",
+    "Newton",
+    "cut-backs",
+    "cycles",
+    "unbalanced",
+    "drift",
+]
 HEADER += ["flagged", "energy", "silence"]
 
 WHOLE_PERIOD = 5
@@ -212,14 +288,16 @@ def line(cells: list[str]) -> str:
 def write_page(page: Path, rows: list[Row]) -> None:
     """Put the table of groups, and the cases that did not converge, between the page's marks.
 
-    Of designs that are drawn at random many are refused: their reasons are in the table of all cases.
+    Of designs that are drawn at random many are refused: their reasons are in the table of all
+    cases.
     """
     names = list(dict.fromkeys(row["group"] for row in rows))
     text = markdown([HEADER, *(counted(n, [r for r in rows if r["group"] == n]) for n in names)])
     others = [
         f"- {r['group']}, {r['case']}: {r['status']}: {r['reason']}"
         for r in rows
-        if r["status"] == "failed" or (r["status"] == "refused" and r["group"] not in (SENSIBLE, SENSIBLE_CUP))
+        if r["status"] == "failed"
+        or (r["status"] == "refused" and r["group"] not in (SENSIBLE, SENSIBLE_CUP))
     ]
     put(page, "table", text + ("\n" + "\n".join(others) + "\n" if others else ""))
 
@@ -235,20 +313,34 @@ def main() -> int:
     options.add_argument("--tables", default="docs/verification/data")
     options.add_argument("--page", default="docs/verification/stability.md")
     options.add_argument("--at-once", type=int, default=2, help="cases that are computed at once")
-    options.add_argument("--most-ranks", type=int, default=8, help="largest number of ranks on one case")
+    options.add_argument(
+        "--most-ranks", type=int, default=8, help="largest number of ranks on one case"
+    )
     options.add_argument("--random", type=int, default=200, help="number of random plane designs")
-    options.add_argument("--sensible", type=int, nargs=2, default=(1000, 200), help="numbers of plane and cup drives")
-    options.add_argument("--first", type=int, default=0, help="number of the first one; earlier ones keep their rows")
+    options.add_argument(
+        "--sensible", type=int, nargs=2, default=(1000, 200), help="numbers of plane and cup drives"
+    )
+    options.add_argument(
+        "--first", type=int, default=0, help="number of the first one; earlier ones keep their rows"
+    )
     options.add_argument("--seed", type=int, default=1)
-    options.add_argument("--restart", action="store_true", help="keep the cases that an earlier call has finished")
-    options.add_argument("--only", nargs="+", default=None, help="words of the names of the groups to run")
+    options.add_argument(
+        "--restart", action="store_true", help="keep the cases that an earlier call has finished"
+    )
+    options.add_argument(
+        "--only", nargs="+", default=None, help="words of the names of the groups to run"
+    )
     arguments = options.parse_args()
     out, tables = Path(arguments.out).resolve(), Path(arguments.tables)
     tables.mkdir(parents=True, exist_ok=True)
     numbers = [n for n in (1, 2, 3, 4, 8) if n <= arguments.most_ranks]
     work = {"elements": element_rows, "ranks": lambda: run_on_ranks(out, numbers)}
-    for name, group in groups(arguments.random, arguments.seed, tuple(arguments.sensible), arguments.first).items():
-        work[name] = lambda name=name, group=group: run_group(name, group, out, arguments.at_once, arguments.restart)
+    for name, group in groups(
+        arguments.random, arguments.seed, tuple(arguments.sensible), arguments.first
+    ).items():
+        work[name] = lambda name=name, group=group: run_group(
+            name, group, out, arguments.at_once, arguments.restart
+        )
     table = tables / "stability.csv"
     rows: list[Row] = []
     if table.exists():  # groups that do not run now keep their rows

@@ -1,9 +1,10 @@
-"""Run time against the true error of the largest tension at the teeth under load, for the reference drives.
+"""Run time against the true error of the largest tension at the teeth under load, for the reference
+drives.
 
-Two ways are compared: windows, as `swgpar run` resolves that stress, and nodal averages on finer and finer meshes of
-the whole drive, in one period with a start on coarser meshes. `--nodal CHECKOUT` runs the second one by another
-installation. The true stress is that of the references of the effectivity benchmark. All runs take place in one
-sitting.
+Two ways are compared: windows, as `swgpar run` resolves that stress, and nodal averages on finer
+and finer meshes of the whole drive, in one period with a start on coarser meshes. `--nodal
+CHECKOUT` runs the second one by another installation. The true stress is that of the references of
+the effectivity benchmark. All runs take place in one sitting.
 """
 
 from __future__ import annotations
@@ -52,7 +53,12 @@ RUNS: list[Run] = [
     ("plane", WAYS[0], "accuracy 0.005", ["--accuracy", "0.005"]),
     ("plane", WAYS[1], "plane_coarse", ["--mesh", "plane_coarse", "--set", *FAST]),
     ("plane", WAYS[1], "plane", ["--mesh", "plane", "--set", *FAST, "steps.start_levels=2"]),
-    ("plane", WAYS[1], "plane_fine", ["--mesh", "plane_fine", "--set", *FAST, "steps.start_levels=3"]),
+    (
+        "plane",
+        WAYS[1],
+        "plane_fine",
+        ["--mesh", "plane_fine", "--set", *FAST, "steps.start_levels=3"],
+    ),
     ("plane", WAYS[1], "accuracy 0.02", ["--mesh", "plane_coarse", "--accuracy", "0.02"]),
 ]
 
@@ -64,12 +70,20 @@ HEAD = ["drive", "way", "run", "s", "s1 under load", "stated error", "true error
 def references() -> dict[str, tuple[float, float]]:
     """True s1 and its uncertainty (MPa) by model."""
     lines = Path("results/bench/effectivity.jsonl").read_text(encoding="utf-8").splitlines()
-    found = {one["drive"]: [mesh["s1"] for mesh in one["references"]] for one in map(json.loads, lines)}
-    return {model: (found[name][0], abs(found[name][0] - found[name][1])) for model, name in REFERENCES.items()}
+    found = {
+        one["drive"]: [mesh["s1"] for mesh in one["references"]] for one in map(json.loads, lines)
+    }
+    return {
+        model: (found[name][0], abs(found[name][0] - found[name][1]))
+        for model, name in REFERENCES.items()
+    }
 
 
-def measure(run: Run, ranks: int, other: Path | None, true: float, uncertain: float) -> dict[str, Any]:
-    """Run it; ends the benchmark where it fails. No error is below the uncertainty (MPa) of the true s1."""
+def measure(
+    run: Run, ranks: int, other: Path | None, true: float, uncertain: float
+) -> dict[str, Any]:
+    """Run it; ends the benchmark where it fails. No error is below the uncertainty (MPa) of the
+    true s1."""
     model, way, label, options = run
     here = other if way == WAYS[1] and other else Path.cwd()
     meshes = {"--mesh": lambda name: name if here == Path.cwd() else f"mesh/{name}.toml"}
@@ -82,7 +96,11 @@ def measure(run: Run, ranks: int, other: Path | None, true: float, uncertain: fl
     command += [*options, "output.figures=false", "--out", str(folder)]
     begin = time.perf_counter()
     # not the packages of this checkout in another one
-    variables = {name: value for name, value in environment().items() if here == Path.cwd() or name != "PYTHONPATH"}
+    variables = {
+        name: value
+        for name, value in environment().items()
+        if here == Path.cwd() or name != "PYTHONPATH"
+    }
     done = subprocess.run(command, cwd=here, capture_output=True, text=True, env=variables)
     seconds = time.perf_counter() - begin
     if done.returncode:
@@ -94,8 +112,18 @@ def measure(run: Run, ranks: int, other: Path | None, true: float, uncertain: fl
     if way == WAYS[0]:
         root = next(answer for answer in summary["answers"] if answer["name"] == "root.s1")
         s1, stated = root["value"], root["error"]
-    row = {"model": model, "way": way, "run": label, "wall_s": round(seconds, 1), "s1": round(s1, 2)}
-    return {**row, "stated": stated and round(stated, 2), "error": max(abs(s1 - true), uncertain) / true}
+    row = {
+        "model": model,
+        "way": way,
+        "run": label,
+        "wall_s": round(seconds, 1),
+        "s1": round(s1, 2),
+    }
+    return {
+        **row,
+        "stated": stated and round(stated, 2),
+        "error": max(abs(s1 - true), uncertain) / true,
+    }
 
 
 def draw(rows: list[dict[str, Any]]) -> None:
@@ -104,11 +132,17 @@ def draw(rows: list[dict[str, Any]]) -> None:
     for axes, model in zip(figure.subplots(1, 2), DESIGNS):
         for way, style in zip(WAYS, ("o", "s")):
             mine = [row for row in rows if (row["model"], row["way"]) == (model, way)]
-            axes.loglog([r["wall_s"] for r in mine], [100.0 * r["error"] for r in mine], style, label=way)
+            axes.loglog(
+                [r["wall_s"] for r in mine], [100.0 * r["error"] for r in mine], style, label=way
+            )
             for row in mine:
                 place = row["wall_s"], 100.0 * row["error"]
-                axes.annotate(row["run"], place, (2, 4), textcoords="offset points", fontsize=7, rotation=50)
-        axes.set(title=f"{model} drive", xlabel="wall seconds on 2 ranks", ylabel="true error of s1 (%)")
+                axes.annotate(
+                    row["run"], place, (2, 4), textcoords="offset points", fontsize=7, rotation=50
+                )
+        axes.set(
+            title=f"{model} drive", xlabel="wall seconds on 2 ranks", ylabel="true error of s1 (%)"
+        )
         for axis in (axes.xaxis, axes.yaxis):
             axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
             axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
@@ -125,21 +159,34 @@ def write(rows: list[dict[str, Any]]) -> None:
     cells = [HEAD]
     for row in rows:
         stated = "" if row["stated"] is None else f"{row['stated']:.1f}"
-        numbers = [f"{row['wall_s']:.0f}", f"{row['s1']:.1f}", stated, f"{100.0 * row['error']:.2f}"]
+        numbers = [
+            f"{row['wall_s']:.0f}",
+            f"{row['s1']:.1f}",
+            stated,
+            f"{100.0 * row['error']:.2f}",
+        ]
         cells.append([row["model"], row["way"], row["run"], *numbers])
     write_results("time_error", COLUMNS, rows, markdown(cells))
 
 
 def main() -> None:
     """Measure, and write table and picture."""
-    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     options.add_argument("--ranks", type=int, default=2)
-    options.add_argument("--nodal", type=Path, metavar="CHECKOUT", help="built checkout for the nodal averages")
+    options.add_argument(
+        "--nodal", type=Path, metavar="CHECKOUT", help="built checkout for the nodal averages"
+    )
     arguments = options.parse_args()
     true = references()
     rows = []
     for run in RUNS:
-        rows.append(measure(run, arguments.ranks, arguments.nodal and arguments.nodal.absolute(), *true[run[0]]))
+        rows.append(
+            measure(
+                run, arguments.ranks, arguments.nodal and arguments.nodal.absolute(), *true[run[0]]
+            )
+        )
         print(json.dumps(rows[-1]), flush=True)
     write(rows)
 

@@ -1,6 +1,7 @@
 """The largest tension at the teeth by windows, of drives on several meshes.
 
-Every run is loaded and ends there. Windows on one mesh after the other show what the displacements of the drive leave.
+Every run is loaded and ends there. Windows on one mesh after the other show what the displacements
+of the drive leave.
 """
 
 from __future__ import annotations
@@ -19,7 +20,11 @@ PLANE_MESHES, CUP_MESHES = ("plane_coarse", "plane", "plane_fine"), ("coarse", "
 
 DRIVES: dict[str, tuple[str, tuple[str, ...], tuple[str, ...]]] = {
     "plane, elliptical cam": (PLANE, PLANE_MESHES, ()),
-    "plane, simplified cam": (PLANE, PLANE_MESHES, ("wave_generator.type=simplified", "wave_generator.C=0.97")),
+    "plane, simplified cam": (
+        PLANE,
+        PLANE_MESHES,
+        ("wave_generator.type=simplified", "wave_generator.C=0.97"),
+    ),
     "plane, spline fixed": (PLANE, PLANE_MESHES, ("drive.layout=spline_fixed",)),
     "plane, 10 N·m": (PLANE, PLANE_MESHES, ("load.torque=10",)),
     "plane, rim 0.6 mm": (PLANE, PLANE_MESHES, ("flexible_spline.rim=0.6",)),
@@ -48,13 +53,24 @@ def table(rows: list[dict[str, Any]]) -> str:
     for row in rows:
         levels = ", ".join(f"{value:.1f}" for value in row["levels"])
         place = f"{row['region']}, r {row['radius']:.2f}, z {row['z']:.1f}"
-        found.append([row["drive"], row["mesh"], f"{row['on_mesh']:.1f}", levels, f"{row['error']:.1f}", place])
+        found.append(
+            [
+                row["drive"],
+                row["mesh"],
+                f"{row['on_mesh']:.1f}",
+                levels,
+                f"{row['error']:.1f}",
+                place,
+            ]
+        )
     return markdown(found)
 
 
 def main() -> None:
     options = argparse.ArgumentParser(description=__doc__)
-    options.add_argument("--only", nargs="+", choices=list(DRIVES), default=list(DRIVES), metavar="DRIVE")
+    options.add_argument(
+        "--only", nargs="+", choices=list(DRIVES), default=list(DRIVES), metavar="DRIVE"
+    )
     options.add_argument("--ranks", type=int, default=2)
     arguments = options.parse_args()
     rows = []

@@ -1,4 +1,5 @@
-"""The accuracy that a run is asked for: which designs allow one, and how many angles of a period suit it."""
+"""The accuracy that a run is asked for: which designs allow one, and how many angles of a period
+suit it."""
 
 from __future__ import annotations
 
@@ -14,9 +15,10 @@ ROUGH = 0.04
 """Accuracy from which an answer may be rough: the first windows are few."""
 
 SAMPLES = ((ROUGH, 2), (0.02, 4), (0.005, 8), (0.0, 16))
-"""Smallest accuracy and number of angles in a period. Four instead of eight change the means of the plane half
-turn by 0.3 %, those of the cup drive by 0.5 %. Two instead of four change s1 of the cup drive by 0.7 %, its input
-torque by 0.2 %. The summary of a run has the change by half of its own angles."""
+"""Smallest accuracy and number of angles in a period. Four instead of eight change the means of the
+plane half turn by 0.3 %, those of the cup drive by 0.5 %. Two instead of four change s1 of the cup
+drive by 0.7 %, its input torque by 0.2 %. The summary of a run has the change by half of its own
+angles."""
 
 
 def require_refinable(design: DriveDesign, accuracy: float) -> None:
@@ -28,17 +30,24 @@ def require_refinable(design: DriveDesign, accuracy: float) -> None:
         (design.dynamic_spline is not None, 'drive.model = "pancake"', '"cup"'),
     ):
         if given:
-            raise InputError(f"--accuracy {accuracy:g} is not available with {what}: allowed {allowed}")
+            raise InputError(
+                f"--accuracy {accuracy:g} is not available with {what}: allowed {allowed}"
+            )
 
 
 def with_accuracy(design: DriveDesign, accuracy: float) -> DriveDesign:
-    """The design with as many angles of the period as suit an accuracy, where it does not say them itself.
+    """The design with as many angles of the period as suit an accuracy, where it does not say them
+    itself.
 
     Raises InputError where the accuracy is out of range.
     """
     if not LOWEST <= accuracy <= HIGHEST:
-        raise InputError(f"--accuracy {accuracy:g} is out of range: allowed {LOWEST:g} to {HIGHEST:g}")
-    whole_period = design.steps.rotation >= 0.999999 * design.periods * np.degrees(design.period_angle)
+        raise InputError(
+            f"--accuracy {accuracy:g} is out of range: allowed {LOWEST:g} to {HIGHEST:g}"
+        )
+    whole_period = design.steps.rotation >= 0.999999 * design.periods * np.degrees(
+        design.period_angle
+    )
     if "samples" in design.steps.model_fields_set or not whole_period:
         return design
     samples = next(count for least, count in SAMPLES if accuracy >= least)

@@ -1,9 +1,9 @@
 """Start from the shape of the bent flexible spline, with all contacts at once.
 
-A thin ring bends without stretching. Its shape on the cam is the one with the least bending energy that does not enter
-the cam. A cup adds Love's inextensional modes, which grow linearly from the closed end and move the wall axially. Laid
-on the cam, that shape is so close to the loaded state that one solve takes the place of deflection, engagement and
-torque.
+A thin ring bends without stretching. Its shape on the cam is the one with the least bending energy
+that does not enter the cam. A cup adds Love's inextensional modes, which grow linearly from the
+closed end and move the wall axially. Laid on the cam, that shape is so close to the loaded state
+that one solve takes the place of deflection, engagement and torque.
 """
 
 from __future__ import annotations
@@ -18,13 +18,15 @@ from swgpar.geometry.rotation import rotated
 from swgpar.model.drive_model import DriveModel
 
 NEAR = 0.003
-"""Gap below which the inner surface is laid on the cam, over half of the deflection: wider gaps stay open."""
+"""Gap below which the inner surface is laid on the cam, over half of the deflection: wider gaps
+stay open."""
 
 PENETRATION = 1e-5
 """Depth over the module to which it is laid into the cam, so that the contact acts at once."""
 
 BALL_APPROACH = 1e-3
-"""Approach of the balls, over their diameter, to which an outer race is laid: of the order of that under load."""
+"""Approach of the balls, over their diameter, to which an outer race is laid: of the order of that
+under load."""
 
 
 class BentSpline:
@@ -34,7 +36,10 @@ class BentSpline:
     """
 
     def __init__(self, design: DriveDesign, inset: float | None = None) -> None:
-        self.design, self.inset = design, PENETRATION * design.drive.module if inset is None else inset
+        self.design, self.inset = (
+            design,
+            PENETRATION * design.drive.module if inset is None else inset,
+        )
         self.radius = design.inner_radius + 0.5 * design.flexible_spline.rim
         self.amplitudes = bent_ring(design.cam(), design.inner_radius, self.radius, design.lobes)
         self.order = float(design.lobes) * np.arange(len(self.amplitudes))
@@ -48,11 +53,15 @@ class BentSpline:
         radius, theta = np.hypot(x, y), np.arctan2(-x, y)
         within = np.clip(z, -self.half, self.half)
         share, on_cam = self._share(z), self._share(within)
-        gap, *_ = self.surface.evaluate(self.section(theta, np.full_like(theta, self.design.inner_radius), within))
+        gap, *_ = self.surface.evaluate(
+            self.section(theta, np.full_like(theta, self.design.inner_radius), within)
+        )
         near = NEAR * 0.5 * self.design.deflection
         lift = np.where(gap < near, -gap - self.inset, 0.0)
         moved = self.section(theta, radius, z) - points
-        moved[:, :2] += (lift * share / on_cam)[:, None] * np.column_stack([-np.sin(theta), np.cos(theta)])
+        moved[:, :2] += (lift * share / on_cam)[:, None] * np.column_stack(
+            [-np.sin(theta), np.cos(theta)]
+        )
         if self.design.has_cup:
             moved[:, 2] = self._axial(theta, radius)
             plate = self._on_plate(radius, z)
@@ -66,7 +75,8 @@ class BentSpline:
         return np.clip((self.end - z) / self.end, 0.0, None)
 
     def section(self, theta: np.ndarray, radius: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """Positions (n, 3) mm of points of the bent sections, whose normals stay normal to the middle line."""
+        """Positions (n, 3) mm of points of the bent sections, whose normals stay normal to the
+        middle line."""
         outward, around, slope = self._waves(theta)
         share, height = self._share(z), radius - self.radius
         lean = share * (around - slope) / self.radius
@@ -77,7 +87,8 @@ class BentSpline:
         return np.column_stack([-sine * along - cosine * across, cosine * along - sine * across, z])
 
     def _waves(self, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Radial and circumferential displacement (n,) mm at mid-width, and the derivative of the first by theta."""
+        """Radial and circumferential displacement (n,) mm at mid-width, and the derivative of the
+        first by theta."""
         outward, around, slope = (np.zeros_like(theta) for _ in range(3))
         for amplitude, order in zip(self.amplitudes, self.order):
             wave = amplitude * np.exp(1j * order * theta)
@@ -96,7 +107,8 @@ class BentSpline:
         return moved / self.end
 
     def _on_plate(self, radius: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """Which points (n,) belong to the closed end or flange, the fillet but for its beginning included."""
+        """Which points (n,) belong to the closed end or flange, the fillet but for its beginning
+        included."""
         wall, margin = self.design.cup_wall, 0.5 * self.design.flexible_spline.rim
         if wall.outwards:
             beyond = radius > wall.outer.points[-1, 1] + margin
@@ -105,7 +117,8 @@ class BentSpline:
         return beyond & (z > wall.back + wall.length)
 
     def _closed_end(self, theta: np.ndarray, radius: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """Displacement (n, 3) mm of the closed end or flange, a plate that bends along with the wall at its edge."""
+        """Displacement (n, 3) mm of the closed end or flange, a plate that bends along with the
+        wall at its edge."""
         deflection, slope, around = (np.zeros_like(radius) for _ in range(3))
         for amplitude, order in zip(self.amplitudes[1:], self.order[1:]):
             wave = amplitude * np.exp(1j * order * theta) / self.end
@@ -115,20 +128,29 @@ class BentSpline:
             slope += (radius / self.radius)[:, None] ** (power - 1.0) @ (power * terms) * wave.real
             around -= order * shape / radius * wave.imag
         if self.design.cup.attachment == "clamped":
-            held = self.design.cup.is_attached(np.column_stack([-radius * np.sin(theta), radius * np.cos(theta)]))
+            held = self.design.cup.is_attached(
+                np.column_stack([-radius * np.sin(theta), radius * np.cos(theta)])
+            )
             deflection[held] = slope[held] = around[held] = 0.0
         height, sine, cosine = self.end - z, np.sin(theta), np.cos(theta)
         outward, across = height * slope, height * around
-        return np.column_stack([-sine * outward - cosine * across, cosine * outward - sine * across, deflection])
+        return np.column_stack(
+            [-sine * outward - cosine * across, cosine * outward - sine * across, deflection]
+        )
 
     def _plate(self, order: float) -> tuple[np.ndarray, np.ndarray]:
-        """Powers (4,) of the radius and their factors (4,) in the deflection of a plate, for waves of this order.
+        """Powers (4,) of the radius and their factors (4,) in the deflection of a plate, for waves
+        of this order.
 
-        They solve the biharmonic equation. The bore, or the rim of a flange, is free; with a clamped ring the plate
-        ends there and neither deflects nor leans. The other edge has the wall's deflection and lean.
+        They solve the biharmonic equation. The bore, or the rim of a flange, is free; with a
+        clamped ring the plate ends there and neither deflects nor leans. The other edge has the
+        wall's deflection and lean.
         """
         cup = self.design.cup
-        edge, nu = (cup.clamping_radius or cup.edge) / self.radius, self.design.material_of("flexible_spline").poisson
+        edge, nu = (
+            (cup.clamping_radius or cup.edge) / self.radius,
+            self.design.material_of("flexible_spline").poisson,
+        )
         power = np.array([order, -order, order + 2.0, 2.0 - order])
 
         def derivative(at: float, times: int) -> np.ndarray:
@@ -136,7 +158,12 @@ class BentSpline:
 
         value, slope, bend, third = (derivative(edge, times) for times in range(4))
         moment = bend + nu * (slope / edge - order**2 * value / edge**2)
-        laplacian_slope = third + bend / edge - slope / edge**2 - order**2 * (slope / edge**2 - 2.0 * value / edge**3)
+        laplacian_slope = (
+            third
+            + bend / edge
+            - slope / edge**2
+            - order**2 * (slope / edge**2 - 2.0 * value / edge**3)
+        )
         shear = laplacian_slope - (1.0 - nu) * order**2 / edge * (slope / edge - value / edge**2)
         at_edge = [moment, shear] if cup.clamping_radius is None else [value, slope]
         conditions = [derivative(1.0, 0), derivative(1.0, 1), *at_edge]
@@ -144,7 +171,8 @@ class BentSpline:
 
 
 class BentRace:
-    """The outer race of a bearing, bent along with the flexible spline whose inner surface it touches.
+    """The outer race of a bearing, bent along with the flexible spline whose inner surface it
+    touches.
 
     inset : mm, by which its outer surface lies inside of the cam's
     """
@@ -164,7 +192,8 @@ class BentRace:
 
 
 def bend(model: DriveModel) -> None:
-    """Set the model's x to the bent spline on the unturned cam, with a bearing between them; collective."""
+    """Set the model's x to the bent spline on the unturned cam, with a bearing between them;
+    collective."""
     design, penetration = model.design, PENETRATION * model.design.drive.module
     inset = penetration
     if design.bearing is not None:
@@ -180,6 +209,9 @@ def bend(model: DriveModel) -> None:
         first, end = model.partition.owned_sectors(body)
         sectors = np.arange(first, end)
         angle = layout.sector_angle(layout.first_tooth + sectors)
-        points = rotated(np.broadcast_to(layout.mesh.coords, (len(sectors), *layout.mesh.coords.shape)), angle[:, None])
+        points = rotated(
+            np.broadcast_to(layout.mesh.coords, (len(sectors), *layout.mesh.coords.shape)),
+            angle[:, None],
+        )
         values = field.displacement(points.reshape(-1, 3)).reshape(points.shape)
         write_field(model.partition, body, sectors, values, model.problem.x)

@@ -1,8 +1,10 @@
-"""Start with the loaded state: from the bent shape, or on coarser meshes with interpolation onto the finer one.
+"""Start with the loaded state: from the bent shape, or on coarser meshes with interpolation onto
+the finer one.
 
-Most Newton iterations of a start find out which points touch. On a mesh with half of the elements in every direction
-they cost an eighth or less. Its loaded state is so close that a few iterations remain on the finer mesh. Without
-friction the loaded state does not depend on the path to it, so that the result is the same to the solver's tolerance.
+Most Newton iterations of a start find out which points touch. On a mesh with half of the elements
+in every direction they cost an eighth or less. Its loaded state is so close that a few iterations
+remain on the finer mesh. Without friction the loaded state does not depend on the path to it, so
+that the result is the same to the solver's tolerance.
 """
 
 from __future__ import annotations
@@ -31,14 +33,19 @@ from swgpar.petsc import PETSc
 
 
 def transfer(coarse: DriveModel, x: PETSc.Vec, fine: DriveModel, y: PETSc.Vec) -> None:
-    """Set y of the fine model to the state x of the coarse one; both on the same ranks, sector by sector."""
+    """Set y of the fine model to the state x of the coarse one; both on the same ranks, sector by
+    sector."""
     for body, layout in fine.partition.layouts.items():
         first, end = fine.partition.owned_sectors(body)
         sectors = np.arange(first, end)
         angle = layout.sector_angle(layout.first_tooth + sectors)
         local = rotated(read_field(coarse.partition, body, sectors, x), -angle[:, None])
         matrix = interpolation(coarse.partition.layouts[body].mesh, layout.mesh)
-        values = np.stack([matrix @ sector for sector in local]) if len(local) else np.zeros((0, matrix.shape[0], 3))
+        values = (
+            np.stack([matrix @ sector for sector in local])
+            if len(local)
+            else np.zeros((0, matrix.shape[0], 3))
+        )
         write_field(fine.partition, body, sectors, rotated(values, angle[:, None]), y)
     if fine.comm.rank == fine.comm.size - 1:
         n = fine.partition.n_multipliers
@@ -68,7 +75,8 @@ def solve_to_load(
     *,
     kept: StartStates | None = None,
 ) -> DriveModel:
-    """The drive on one mesh in its loaded state, from the loaded state of the model `coarse`, which is released.
+    """The drive on one mesh in its loaded state, from the loaded state of the model `coarse`, which
+    is released.
 
     sequence : of the run
     kept : loaded states of an earlier run, to which this one is added
@@ -94,19 +102,24 @@ def solve_to_load(
             iterations = _reach_load(stepper, sequence)
         if kept is not None and not taken_over:
             kept.save(stepper.model, recipe)
-            _settle(stepper, loaded)  # so that the forces are those of a run that takes this state over
+            _settle(
+                stepper, loaded
+            )  # so that the forces are those of a run that takes this state over
     except SwgparError:
         for model in (coarse, None if stepper is None else stepper.model):
             if model is not None:
                 model.destroy()
         raise
     counted = " + ".join(map(str, iterations))
-    logger.info("loaded on a mesh of %d elements, Newton iterations %s", stepper.model.n_elements(), counted)
+    logger.info(
+        "loaded on a mesh of %d elements, Newton iterations %s", stepper.model.n_elements(), counted
+    )
     return stepper.model
 
 
 def _settle(stepper: LoadStepper, loaded: LoadState) -> int:
-    """Search the contacts anew at the present x, which is that of the loaded state; returns Newton iterations."""
+    """Search the contacts anew at the present x, which is that of the loaded state; returns Newton
+    iterations."""
     stepper.resume_at(loaded)
     stepper.advance(loaded)
     return stepper.iterations
@@ -118,7 +131,8 @@ def starts_bent(design: DriveDesign) -> bool:
 
 
 def _reach_load(stepper: LoadStepper, sequence: LoadSequence) -> list[int]:
-    """From the bent shape if the design asks for it and that works, else step by step; returns Newton iterations."""
+    """From the bent shape if the design asks for it and that works, else step by step; returns
+    Newton iterations."""
     if starts_bent(stepper.design):
         try:
             _jump(stepper, sequence)
@@ -148,7 +162,8 @@ def start_at_load(
     on_coarse: Callable[[DriveModel, MeshRecipe], None],
     kept: StartStates,
 ) -> bool:
-    """Reach the loaded state on coarser meshes or from the bent shape; False if none is asked for, or if that fails.
+    """Reach the loaded state on coarser meshes or from the bent shape; False if none is asked for,
+    or if that fails.
 
     recipe : of the stepper's mesh;  for the others see `start_loaded`
     """
@@ -177,13 +192,16 @@ def start_loaded(
     on_coarse: Callable[[DriveModel, MeshRecipe], None] = lambda model, recipe: None,
     kept: StartStates | None = None,
 ) -> None:
-    """Bring `stepper` to the loaded state by way of coarser meshes, the coarsest of `recipes` first, or bent at once.
+    """Bring `stepper` to the loaded state by way of coarser meshes, the coarsest of `recipes`
+    first, or bent at once.
 
     sequence : of the run
-    on_coarse : called with the model on the last of the coarser meshes, and its recipe; it raises nothing
+    on_coarse : called with the model on the last of the coarser meshes, and its recipe; it raises
+    nothing
     kept : see `solve_to_load`
 
-    Raises ConvergenceError or InputError where a mesh does not allow it; `stepper` is then to be reset.
+    Raises ConvergenceError or InputError where a mesh does not allow it; `stepper` is then to be
+    reset.
     """
     target, coarse = stepper.model, None
     loaded = sequence.loaded

@@ -1,8 +1,9 @@
 """The drive with deviations at the angles of whole turns of the wave generator.
 
-The ideal drive repeats after one pitch of the fixed gear with its teeth renamed. So every angle of a turn is an angle
-of the first pitch at which the deviations have been renamed: the ideal state is known, and only the deviations differ.
-Where these repeat, the states do too, and each is computed once.
+The ideal drive repeats after one pitch of the fixed gear with its teeth renamed. So every angle of
+a turn is an angle of the first pitch at which the deviations have been renamed: the ideal state is
+known, and only the deviations differ. Where these repeat, the states do too, and each is computed
+once.
 """
 
 from __future__ import annotations
@@ -38,17 +39,21 @@ from swgpar.model.drive_model import DriveModel
 from swgpar.petsc import PETSc
 
 NEAR = 0.06
-"""Distance over the module within which flanks are followed; the check after every solve finds those that it misses."""
+"""Distance over the module within which flanks are followed; the check after every solve finds
+those that it misses."""
 
 CAM_QUADRATURE, CAM_PENALTY = 2, 1.0
-"""Largest number of points per direction and penalty coefficient of the cam on the coarse mesh: fewer points that come
-and go save a fifth of the iterations and change the output's angle by a thousandth of what deviations do."""
+"""Largest number of points per direction and penalty coefficient of the cam on the coarse mesh:
+fewer points that come and go save a fifth of the iterations and change the output's angle by a
+thousandth of what deviations do."""
 
 STEPS = (4, 16)
-"""Equal steps from the ideal state to the deviations where these cannot be reached at once; then more of them."""
+"""Equal steps from the ideal state to the deviations where these cannot be reached at once; then
+more of them."""
 
 MAX_ITERATIONS = 50
-"""Newton iterations before the residual has to halve: small loads on teeth with large deviations take many."""
+"""Newton iterations before the residual has to halve: small loads on teeth with large deviations
+take many."""
 
 
 def turn_mesh(recipe: MeshRecipe) -> MeshRecipe:
@@ -60,7 +65,8 @@ def turn_mesh(recipe: MeshRecipe) -> MeshRecipe:
 
 
 def turn_design(design: DriveDesign) -> DriveDesign:
-    """The design as its turns are computed: half of the drive only if the deviations allow it, condensed sectors."""
+    """The design as its turns are computed: half of the drive only if the deviations allow it,
+    condensed sectors."""
     deviations = design.deviations
     solver = design.solver.model_copy(
         update={
@@ -80,8 +86,12 @@ def turn_design(design: DriveDesign) -> DriveDesign:
     steps = design.steps.model_copy(update={"bent_start": True, "samples": 0, "rotation": 0.0})
     wave = design.wave_generator
     if wave.bearing is not None:  # balls that pass would make every pitch another drive
-        wave = wave.model_copy(update={"bearing": wave.bearing.model_copy(update={"cage_speed": 1.0})})
-    return design.model_copy(update={"solver": solver, "steps": steps, "contact": contact, "wave_generator": wave})
+        wave = wave.model_copy(
+            update={"bearing": wave.bearing.model_copy(update={"cage_speed": 1.0})}
+        )
+    return design.model_copy(
+        update={"solver": solver, "steps": steps, "contact": contact, "wave_generator": wave}
+    )
 
 
 def _is_twofold(design: DriveDesign, deviations: Deviations) -> bool:
@@ -103,7 +113,8 @@ class DeviatingDrive:
     Attributes
     ----------
     bore_z : mm, of the middle of the bore
-    tables : deviations of all flanks;  periods : numbers of pitches after which those of each gear repeat
+    tables : deviations of all flanks;  periods : numbers of pitches after which those of each gear
+    repeat
     """
 
     def __init__(self, design: DriveDesign, recipe: MeshRecipe, comm: MPI.Comm) -> None:
@@ -121,7 +132,9 @@ class DeviatingDrive:
         self.stepper.resume_at(self.loaded)
         gears = [gear_deviations(self.deviations, gear, design.teeth(gear)) for gear in GEARS]
         layouts = self.model.partition.layouts
-        self.tables = flank_deviations(layouts[FLEXIBLE_SPLINE], layouts[RING_GEAR], *gears, design.axial_travel)
+        self.tables = flank_deviations(
+            layouts[FLEXIBLE_SPLINE], layouts[RING_GEAR], *gears, design.axial_travel
+        )
         bore = problem.supports.couplings[SPLINE_COUPLING]
         self.bore_z = float(bore.sum(bore.weight * bore.undeformed[:, 2]))
         spline, ring = self.tables.periods()
@@ -137,10 +150,14 @@ class DeviatingDrive:
         """Release the model."""
         self.model.destroy()
 
-    def points(self, known: Container[int] = (), share: tuple[int, int] = (0, 1)) -> Iterator[TurnPoint]:
-        """States at all angles but those whose indices are `known`; an index counts the angles from 0 on.
+    def points(
+        self, known: Container[int] = (), share: tuple[int, int] = (0, 1)
+    ) -> Iterator[TurnPoint]:
+        """States at all angles but those whose indices are `known`; an index counts the angles from
+        0 on.
 
-        share : number of a share of the states, from 0, and how many shares there are: those of this one are computed
+        share : number of a share of the states, from 0, and how many shares there are: those of
+        this one are computed
 
         Raises ConvergenceError where a state cannot be reached.
         """
@@ -152,7 +169,9 @@ class DeviatingDrive:
             states: dict[tuple[int, ...], list[int]] = {}
             for pitch in range(self.pitches):
                 if pitch * len(ideals) + phase not in known:
-                    states.setdefault(tuple(pitch % period for period in self.periods), []).append(pitch)
+                    states.setdefault(tuple(pitch % period for period in self.periods), []).append(
+                        pitch
+                    )
             start, guess = split(len(states), share[1]), ideal
             for first, *others in list(states.values())[start[share[0]] : start[share[0] + 1]]:
                 found = self._point(first * len(ideals) + phase, first, state, ideal, guess)
@@ -167,7 +186,9 @@ class DeviatingDrive:
         found = [(self.loaded, x.copy())]
         for phase in range(1, count):
             angle = self.design.period_angle * phase / count
-            state = replace(self.loaded, stage=Stage.ROTATE, step=Stage.ROTATE + phase - 1, angle=angle)
+            state = replace(
+                self.loaded, stage=Stage.ROTATE, step=Stage.ROTATE + phase - 1, angle=angle
+            )
             self.stepper.advance(state)
             found.append((state, x.copy()))
         return found
@@ -196,8 +217,11 @@ class DeviatingDrive:
         offsets[SPLINE_COUPLING, [X, Y]] = share * rotated(part.shift, turn) + self.bore_z * lean
         offsets[SPLINE_COUPLING, [TILT_X, TILT_Y]] = -lean[1], lean[0]
 
-    def _point(self, index: int, pitch: int, state: LoadState, ideal: PETSc.Vec, guess: PETSc.Vec) -> TurnPoint:
-        """The state at a phase of a pitch, from a guess, or from the ideal one by shares of the deviations."""
+    def _point(
+        self, index: int, pitch: int, state: LoadState, ideal: PETSc.Vec, guess: PETSc.Vec
+    ) -> TurnPoint:
+        """The state at a phase of a pitch, from a guess, or from the ideal one by shares of the
+        deviations."""
         problem, iterations = self.model.problem, 0
         deviations = self.tables.rolled(pitch)
         for start, steps in ((guess, 1), *((ideal, steps) for steps in STEPS)):
@@ -216,7 +240,8 @@ class DeviatingDrive:
                 return TurnPoint(index, state.angle + turned, output, torque, iterations)
         angle = np.degrees(state.angle + pitch * self.design.period_angle)
         raise ConvergenceError(
-            f"the drive with [deviations] did not converge at a wave-generator angle of {angle:.4g} degrees: "
+            f"the drive with [deviations] did not converge at a wave-generator angle of "
+            f"{angle:.4g} degrees: "
             f"{result.reason}, residual {result.residual:.1e} of the contact force"
         )
 

@@ -1,4 +1,5 @@
-"""The run of a drive on its mesh: start or restart, increments with what is resolved at each, evaluation."""
+"""The run of a drive on its mesh: start or restart, increments with what is resolved at each,
+evaluation."""
 
 from __future__ import annotations
 
@@ -38,7 +39,8 @@ from swgpar.petsc import warn_of_unused_options
 class DriveRun:
     """One run: start or restart, all increments, end.
 
-    recipe : of the model's mesh;  sequence : load states of the run;  kept : those on the meshes of the start
+    recipe : of the model's mesh;  sequence : load states of the run;  kept : those on the meshes of
+    the start
     begin : time.perf_counter() at the run's start
     """
 
@@ -82,25 +84,32 @@ class DriveRun:
         return self.earlier_seconds + time.perf_counter() - self.begin
 
     def resume(self) -> Sequence[LoadState]:
-        """Bring back the state of the checkpoint; returns all increments that the run consists of."""
+        """Bring back the state of the checkpoint; returns all increments that the run consists
+        of."""
         assert isinstance(self.recorder, FolderRecorder)  # a run in memory leaves no checkpoint
         items, self.earlier_seconds = self.recorder.resume(self.stepper)
         logger.info("restarted after increment %d", len(self.record.rows))
         if self.model.design.resolves_root_stress and not self.record.root_stress:
-            logger.info("the stress at the teeth is resolved only by the run that computes the loaded state")
+            logger.info(
+                "the stress at the teeth is resolved only by the run that computes the loaded state"
+            )
         return items
 
     def start(self) -> Sequence[LoadState]:
-        """Reach the loaded state at once if the design asks for it; returns all increments of the run."""
+        """Reach the loaded state at once if the design asks for it; returns all increments of the
+        run."""
         sequence = self.sequence
         if self.record.accuracy is not None:  # the model was loaded when its mesh was chosen
             self.stepper.resume_at(sequence.loaded)
             return sequence.from_loaded
-        self.record.starts_loaded = start_at_load(self.stepper, self.recipe, sequence, self._keep_coarse, self.kept)
+        self.record.starts_loaded = start_at_load(
+            self.stepper, self.recipe, sequence, self._keep_coarse, self.kept
+        )
         return sequence.from_loaded if self.record.starts_loaded else sequence.states
 
     def _keep_coarse(self, model: DriveModel, recipe: MeshRecipe) -> None:
-        """Keep the largest stresses of a coarser mesh of the drive, to see what the mesh changes."""
+        """Keep the largest stresses of a coarser mesh of the drive, to see what the mesh
+        changes."""
         loaded = self.sequence.loaded
         places = find_places(model, loaded, model.stresses()[1])
         self.record.coarse = CoarseStresses(places, size_ratio(recipe, self.recipe))
@@ -115,7 +124,9 @@ class DriveRun:
         stepper, recorder = self.stepper, self.recorder
         loaded = next((item for item in reversed(items) if item.stage == Stage.LOAD), None)
         ratcheting = self.model.design.ratcheting
-        with IncrementProgress(self.model.comm, len(items), done=len(self.record.rows), terminal=terminal) as progress:
+        with IncrementProgress(
+            self.model.comm, len(items), done=len(self.record.rows), terminal=terminal
+        ) as progress:
             self.model.solver.monitor = lambda state, its, ratio: progress.newton(
                 state.stage.label, np.degrees(state.angle), its, ratio
             )
@@ -123,7 +134,9 @@ class DriveRun:
                 if ratcheting is not None and has_fallen(ratcheting.drop, recorder.program_rows()):
                     break
                 start = time.perf_counter()
-                if item != stepper.load_state and not self._advance(item):  # a start at once ends with the first one
+                if item != stepper.load_state and not self._advance(
+                    item
+                ):  # a start at once ends with the first one
                     break
                 seconds = time.perf_counter() - start
                 if self.model.design.resolves_root_stress:
@@ -132,25 +145,33 @@ class DriveRun:
                 if len(self.record.rows) == 1:
                     self.kept.remove(self.model.comm)
                 angle = float(np.degrees(item.angle))
-                progress.increment(item.stage.label, angle, stepper.iterations, stepper.residual, seconds)
+                progress.increment(
+                    item.stage.label, angle, stepper.iterations, stepper.residual, seconds
+                )
                 self.on_increment()
                 if terminal:
                     warn_of_unused_options()
 
     def _advance(self, item: LoadState) -> bool:
-        """Compute an increment; False where the output is rotated beyond the strength and finds no equilibrium."""
+        """Compute an increment; False where the output is rotated beyond the strength and finds no
+        equilibrium."""
         try:
             self.stepper.advance(item)
             return True
         except ConvergenceError as error:
-            if self.model.design.ratcheting is None or item.stage != Stage.PROGRAM or not self.recorder.program_rows():
+            if (
+                self.model.design.ratcheting is None
+                or item.stage != Stage.PROGRAM
+                or not self.recorder.program_rows()
+            ):
                 raise
             logger.warning("the rotation of the output ends here: %s", error)
             self.ended_early = True
             return False
 
     def _root_stress(self, state: LoadState, loaded: bool) -> RootStress | None:
-        """Largest tensile stress at the teeth by windows; the one known before where a window cannot be computed."""
+        """Largest tensile stress at the teeth by windows; the one known before where a window
+        cannot be computed."""
         known = self.record.root_stress
         design = self.model.design
         # with friction two periods are computed, of which the first one settles
@@ -159,10 +180,16 @@ class DriveRun:
             with self.model.phases("windows"):
                 if loaded:
                     return known or self._resolve_loaded(state)
-                return with_angle(known, self.model, state) if further and design.steps.samples else known
+                return (
+                    with_angle(known, self.model, state)
+                    if further and design.steps.samples
+                    else known
+                )
         except (ConvergenceError, InputError) as error:
             angle = np.degrees(state.angle)
-            logger.warning("the stress at the teeth is not resolved at %.4g degrees: %s", angle, error)
+            logger.warning(
+                "the stress at the teeth is not resolved at %.4g degrees: %s", angle, error
+            )
             return known
 
     def _resolve_loaded(self, state: LoadState) -> RootStress:
@@ -171,7 +198,9 @@ class DriveRun:
             return found
         coarse, levels = self.coarse
         least = least_error(self.model, state)
-        return replace(found, drive_error=drive_error(levels, found, size_ratio(coarse, self.recipe), least))
+        return replace(
+            found, drive_error=drive_error(levels, found, size_ratio(coarse, self.recipe), least)
+        )
 
     def finish(self, recipe_name: str) -> DriveData:
         """Summarise the run."""
@@ -180,7 +209,9 @@ class DriveRun:
         error = None
         if design.stiffness is not None and design.stiffness.mesh_error:
             with self.model.phases("coarser mesh"):
-                error = stiffness_error(design, self.recipe, recorder.program_rows(), self.model.comm)
+                error = stiffness_error(
+                    design, self.recipe, recorder.program_rows(), self.model.comm
+                )
         if design.deviations is not None:
             follow_turns(self.recipe, recorder)
         else:

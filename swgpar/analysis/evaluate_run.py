@@ -1,4 +1,5 @@
-"""All evaluations of a run at its end: the summary, and the tables that come with fatigue and losses."""
+"""All evaluations of a run at its end: the summary, and the tables that come with fatigue and
+losses."""
 
 from __future__ import annotations
 
@@ -71,20 +72,26 @@ def evaluate_run(
             "petsc": ".".join(map(str, PETSc.Sys.getVersion())),
         },
         wall_s=seconds,
-        phases_s={name: round(value, 3) for name, value in model.phases.slowest(model.comm).items()},
+        phases_s={
+            name: round(value, 3) for name, value in model.phases.slowest(model.comm).items()
+        },
         peak_memory_MB_per_rank=tuple(round(value, 1) for value in memory),
         ratio=design.input_ratio,
         design=design,
         rotation=evaluate_rotation(design, rows, record.root_stress, places),
         stresses=LargestStresses.of(places),
         steps=step_values(shown),
-        numerics=evaluate_numerics(rows, model.omitted_bending_stress() if design.solver.condensed_sectors else None),
+        numerics=evaluate_numerics(
+            rows, model.omitted_bending_stress() if design.solver.condensed_sectors else None
+        ),
         accuracy=record.accuracy,
         root_stress=record.root_stress,
         contact=largest_contact(record.pairs),
         load_sharing=_load_sharing(recorder),
         transmission_error=evaluate_turns(design, record.turns),
-        stiffness=torsional_stiffness(design, program, stiffness_error) if design.stiffness else None,
+        stiffness=torsional_stiffness(design, program, stiffness_error)
+        if design.stiffness
+        else None,
         ratcheting=(
             evaluate_ratcheting(design, program, record.tooth_rotations, ended_early=ended_early)
             if design.ratcheting
@@ -120,14 +127,22 @@ def _bearing(recorder: Recorder) -> BallLoads | None:
     design = recorder.model.design
     if design.bearing is None:
         return None
-    loaded = loaded_increments({"step": np.array([int(row["step"]) for row in recorder.record.rows])})
+    loaded = loaded_increments(
+        {"step": np.array([int(row["step"]) for row in recorder.record.rows])}
+    )
     increments = [int(k) + 1 for k in loaded]
     return evaluate_bearing(
-        design, recorder.record.balls, increments, recorder.record.bearing_shares, recorder.record.race_stress
+        design,
+        recorder.record.balls,
+        increments,
+        recorder.record.bearing_shares,
+        recorder.record.race_stress,
     )
 
 
-def _cycle_results(recorder: Recorder) -> tuple[FatigueResult | None, DriveLosses | None, Mapping[str, np.ndarray]]:
+def _cycle_results(
+    recorder: Recorder,
+) -> tuple[FatigueResult | None, DriveLosses | None, Mapping[str, np.ndarray]]:
     """SafetyAndLife, losses and the columns of losses.csv over the sampled period."""
     cycle, model = recorder.cycle, recorder.model
     design = model.design
@@ -139,4 +154,6 @@ def _cycle_results(recorder: Recorder) -> tuple[FatigueResult | None, DriveLosse
             return fatigue, None, {}
         count = len(recorder.record.rows)
         increments = range(count - design.steps.samples + 1, count + 1)
-        return fatigue, *evaluate_losses(cycle, recorder.record.pairs, recorder.record.cam_forces, increments)
+        return fatigue, *evaluate_losses(
+            cycle, recorder.record.pairs, recorder.record.cam_forces, increments
+        )

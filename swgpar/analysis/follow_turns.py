@@ -1,4 +1,5 @@
-"""Whole turns of the wave generator with deviations, as a part of a run: what is computed, kept and reported."""
+"""Whole turns of the wave generator with deviations, as a part of a run: what is computed, kept and
+reported."""
 
 from __future__ import annotations
 
@@ -27,10 +28,11 @@ REPORTS = 10
 
 
 def follow_turns(recipe: MeshRecipe, recorder: Recorder) -> None:
-    """Compute the angles of the turns that the recorder does not know, and let it keep them; collective.
+    """Compute the angles of the turns that the recorder does not know, and let it keep them;
+    collective.
 
-    The states do not depend on each other. In the plane, where every rank has room for the whole drive, the ranks share
-    the states; they share the cup.
+    The states do not depend on each other. In the plane, where every rank has room for the whole
+    drive, the ranks share the states; they share the cup.
 
     recipe : of the run's mesh. Raises ConvergenceError; the rows up to then are kept.
     """
@@ -59,7 +61,9 @@ def follow_turns(recipe: MeshRecipe, recorder: Recorder) -> None:
                     recorder.keep_turns(_sorted(known))
                 if len(known) * REPORTS >= (reported + 1) * total:
                     reported = len(known) * REPORTS // total
-                    logger.info("%6d of %d angles, %d Newton iterations", len(known), total, iterations)
+                    logger.info(
+                        "%6d of %d angles, %d Newton iterations", len(known), total, iterations
+                    )
         finally:
             recorder.keep_turns(_sorted(known))
             drive.destroy()

@@ -1,7 +1,9 @@
-"""What a run will need: elements, unknowns, memory and time, from design and recipe, before anything is meshed.
+"""What a run will need: elements, unknowns, memory and time, from design and recipe, before
+anything is meshed.
 
-Memory and time of a gear's thin bodies grow linearly with the unknowns. The constants are those of runs on two cores
-with 27,000 to 790,000 unknowns (docs/verification/forecast.md); other machines need more or less time.
+Memory and time of a gear's thin bodies grow linearly with the unknowns. The constants are those of
+runs on two cores with 27,000 to 790,000 unknowns (docs/verification/forecast.md); other machines
+need more or less time.
 """
 
 from __future__ import annotations
@@ -22,7 +24,8 @@ from swgpar.petsc import is_out_of_memory
 
 @dataclass(frozen=True)
 class Growth:
-    """Needs of a run with default shortcuts and windows on two ranks: base + growing * unknowns / 100,000.
+    """Needs of a run with default shortcuts and windows on two ranks: base + growing * unknowns /
+    100,000.
 
     memory, memory_base : GB of all ranks;  seconds, seconds_base : wall time
     """
@@ -42,7 +45,8 @@ GROWTH["pancake"] = GROWTH["cup"]
 
 @dataclass(frozen=True)
 class Forecast:
-    """elements : of the whole drive;  unknowns : modelled;  memory : GB of all ranks;  seconds : wall time"""
+    """elements : of the whole drive;  unknowns : modelled;  memory : GB of all ranks;  seconds :
+    wall time"""
 
     elements: int
     unknowns: int
@@ -76,7 +80,9 @@ def fits(needs: Forecast, limit: float | None = None, comm: MPI.Comm = MPI.COMM_
     return needs.memory <= (free_memory(comm) if limit is None else limit)
 
 
-def require_memory(needs: Forecast, limit: float | None = None, comm: MPI.Comm = MPI.COMM_SELF) -> None:
+def require_memory(
+    needs: Forecast, limit: float | None = None, comm: MPI.Comm = MPI.COMM_SELF
+) -> None:
     """Refuse what does not `fit`, with an InputError; collective."""
     if fits(needs, limit, comm):
         return
@@ -85,13 +91,15 @@ def require_memory(needs: Forecast, limit: float | None = None, comm: MPI.Comm =
     if limit is not None:
         allowed = f"solver.memory_limit = {limit:g} GB ({free:.3g} GB are free)"
     raise InputError(
-        f"the mesh has {needs.elements:,} elements and {needs.unknowns:,} unknowns, which need about "
+        f"the mesh has {needs.elements:,} elements and {needs.unknowns:,} unknowns, which need "
+        f"about "
         f"{needs.memory:.3g} GB of memory: allowed are meshes that need at most {allowed}"
     )
 
 
 def free_memory(comm: MPI.Comm = MPI.COMM_SELF) -> float:
-    """Memory (GB) that is free on the machines of all ranks; infinite where it is not known. Collective."""
+    """Memory (GB) that is free on the machines of all ranks; infinite where it is not known.
+    Collective."""
     node = comm.Split_type(MPI.COMM_TYPE_SHARED)
     here = _free_here() if node.rank == 0 else 0.0
     node.Free()
@@ -108,7 +116,10 @@ def _free_here() -> float:
         return float("inf")
     group = Path("/sys/fs/cgroup")
     try:
-        most, used = (int((group / f"memory.{name}").read_text(encoding="ascii")) for name in ("max", "current"))
+        most, used = (
+            int((group / f"memory.{name}").read_text(encoding="ascii"))
+            for name in ("max", "current")
+        )
     except (OSError, ValueError):  # no container, or none with a limit
         return free
     return min(free, max(most - used, 0) / 1e9)
@@ -119,7 +130,8 @@ def reported_memory(needs: Forecast) -> Iterator[None]:
     """Turn an allocation that fails inside the block, on this rank, into an OutOfMemoryError."""
     # made before it is needed: then there may be no memory for it
     failure = OutOfMemoryError(
-        f"not enough memory: {needs.unknowns:,} unknowns need about {needs.memory:.3g} GB on all ranks: "
+        f"not enough memory: {needs.unknowns:,} unknowns need about {needs.memory:.3g} GB on all "
+        f"ranks: "
         "take a coarser mesh, or more memory"
     )
     failure.alone = True

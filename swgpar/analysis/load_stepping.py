@@ -1,4 +1,5 @@
-"""Load stepping: one increment after the other, with prediction, cut-back and closing of the backlash."""
+"""Load stepping: one increment after the other, with prediction, cut-back and closing of the
+backlash."""
 
 from __future__ import annotations
 
@@ -22,13 +23,15 @@ MAX_KNOWN_STATES = 40
 """States of the rotation that are kept to predict the next ones from."""
 
 MAX_JUMP_ITERATIONS = 60
-"""Newton iterations of a solve for the loaded state at once; step by step it takes some 35 in all."""
+"""Newton iterations of a solve for the loaded state at once; step by step it takes some 35 in
+all."""
 
 MAX_EXTRAPOLATION = 2.0
 """Largest step of a load program that is predicted along the last one, over that one."""
 
 MAX_CLOSING_ROTATIONS = 10
-"""Rotations in which a backlash is closed: each leaves about an eighth of it, by the pressure angle."""
+"""Rotations in which a backlash is closed: each leaves about an eighth of it, by the pressure
+angle."""
 
 
 class LoadStepper:
@@ -40,7 +43,8 @@ class LoadStepper:
 
     Attributes
     ----------
-    load_state : the state reached;  iterations, residual : Newton iterations and last residual of the last increment
+    load_state : the state reached;  iterations, residual : Newton iterations and last residual of
+    the last increment
     known_states : periodic states that predictions start from
     """
 
@@ -69,11 +73,11 @@ class LoadStepper:
     def advance(self, target: LoadState) -> None:
         """Solve up to `target`, with smaller steps where Newton's iteration fails.
 
-        Teeth that are held across a backlash may stick on the wrong flanks. The first load that friction does not let
-        through is taken up without it, and then with it.
+        Teeth that are held across a backlash may stick on the wrong flanks. The first load that
+        friction does not let through is taken up without it, and then with it.
 
-        Raises ConvergenceError after `solver.max_cutbacks` halvings or `solver.iteration_limit` iterations; x is then
-        the last converged state.
+        Raises ConvergenceError after `solver.max_cutbacks` halvings or `solver.iteration_limit`
+        iterations; x is then the last converged state.
         """
         self.iterations = 0
         takes_up_load = self.load_state.stage == Stage.ENGAGE and target.control == "torque"
@@ -95,7 +99,9 @@ class LoadStepper:
         while done < 1.0:
             saved = x.copy()
             end = min(1.0, done + share)
-            state = origin.interpolate(target, end, self.design.drive.module, self.design.deflection)
+            state = origin.interpolate(
+                target, end, self.design.drive.module, self.design.deflection
+            )
             result = self._solve(state, settings.iteration_limit - self.iterations)
             self.iterations += result.iterations
             if result.converged:
@@ -105,13 +111,21 @@ class LoadStepper:
             saved.copy(x)
             cutbacks += 1
             if self.iterations >= settings.iteration_limit:
-                limit = f"{settings.iteration_limit} Newton iterations of one increment (solver.iteration_limit)"
-                raise ConvergenceError(self._failure(target, state, replace(result, reason=limit), cutbacks - 1))
+                limit = (
+                    f"{settings.iteration_limit} Newton iterations of one increment "
+                    f"(solver.iteration_limit)"
+                )
+                raise ConvergenceError(
+                    self._failure(target, state, replace(result, reason=limit), cutbacks - 1)
+                )
             if cutbacks > settings.max_cutbacks or origin == target:  # nothing to halve
                 raise ConvergenceError(self._failure(target, state, result, cutbacks - 1))
             share *= 0.5
             logger.info(
-                "   cut back to %.3g of the increment (%s, residual %.1e)", share, result.reason, result.residual
+                "   cut back to %.3g of the increment (%s, residual %.1e)",
+                share,
+                result.reason,
+                result.residual,
             )
 
     def _solve(self, state: LoadState, most: int) -> SolveResult:
@@ -127,14 +141,18 @@ class LoadStepper:
             self._close_backlash(state)
         self._predict(state)
         result = self.solver.solve(
-            state, establish_contact=state.switches_on(self.load_state), max_iterations=max(1, most - before)
+            state,
+            establish_contact=state.switches_on(self.load_state),
+            max_iterations=max(1, most - before),
         )
         return replace(result, iterations=before + result.iterations)
 
     def _held(self, state: LoadState) -> LoadState | None:
-        """The same load with the flexible spline held, where contacts alone are to hold it; otherwise None.
+        """The same load with the flexible spline held, where contacts alone are to hold it;
+        otherwise None.
 
-        Two backlashes cannot be closed at once: the output then meets the held spline, and with it the fixed ring gear.
+        Two backlashes cannot be closed at once: the output then meets the held spline, and with it
+        the fixed ring gear.
         """
         free = self.problem.supports.spline_ratio is not None and not state.spline_held
         return replace(state, spline_held=True) if free else None
@@ -142,25 +160,30 @@ class LoadStepper:
     def _origin(self, target: LoadState) -> LoadState:
         """The present load state with what the output has under the control of the target.
 
-        After a cut-back an increment begins with the torque that held the output, or with the angle that it had.
+        After a cut-back an increment begins with the torque that held the output, or with the angle
+        that it had.
         """
         here, problem = self.load_state, self.problem
         if here.control == target.control:
             return here
         if target.control == "torque":
             supports = problem.supports
-            return replace(here, torque=float(supports.reactions(problem.multipliers())[supports.output_gear]))
+            return replace(
+                here, torque=float(supports.reactions(problem.multipliers())[supports.output_gear])
+            )
         return replace(here, output_rotation=problem.output_rotation())
 
     def _takes_up_torque(self, state: LoadState) -> bool:
-        """Whether other flanks may have to carry than those of the present state: a backlash is to be closed first."""
+        """Whether other flanks may have to carry than those of the present state: a backlash is to
+        be closed first."""
         here = self.load_state
         if state.control == "rotation" or not state.torque:
             return False
         return here.control == "rotation" or here.torque * state.torque <= 0.0
 
     def jump(self, target: LoadState) -> None:
-        """Solve for `target` from the present x in one increment, whatever it is; raises ConvergenceError."""
+        """Solve for `target` from the present x in one increment, whatever it is; raises
+        ConvergenceError."""
         self.iterations = 0
         held = self._held(target)
         for state in (target,) if held is None else (held, target):
@@ -178,13 +201,17 @@ class LoadStepper:
             self._before, self._last = self._last, (state, self.problem.x.copy())
         if state.is_periodic:
             known = self.known_states if state.continues_period(before, self.design.ratio) else []
-            self.known_states = [*known, KnownState(state.angle, self.problem.x.copy())][-MAX_KNOWN_STATES:]
+            self.known_states = [*known, KnownState(state.angle, self.problem.x.copy())][
+                -MAX_KNOWN_STATES:
+            ]
 
     @staticmethod
     def _failure(target: LoadState, state: LoadState, result: SolveResult, cutbacks: int) -> str:
         return (
-            f"step {target.step} ({target.stage.label}) did not converge at a wave-generator angle of "
-            f"{np.degrees(state.angle):.4g} degrees after {cutbacks} cut-backs: {result.reason}, residual "
+            f"step {target.step} ({target.stage.label}) did not converge at a wave-generator angle "
+            f"of "
+            f"{np.degrees(state.angle):.4g} degrees after {cutbacks} cut-backs: {result.reason}, "
+            f"residual "
             f"{result.residual:.1e} of the contact force"
         )
 
@@ -210,12 +237,14 @@ class LoadStepper:
         elif state.stage == here.stage == Stage.DEFLECT:
             # the ring bends in proportion to the travel of the pins, or to the growth of the cam
             first, old, new = (
-                s.cam_clearance if s.pin_inset is None else s.pin_inset for s in (start_state(self.design), here, state)
+                s.cam_clearance if s.pin_inset is None else s.pin_inset
+                for s in (start_state(self.design), here, state)
             )
             self.problem.x.scale((first - new) / (first - old))
 
     def _extrapolation(self, state: LoadState) -> float:
-        """Share of the last step of a load program that leads on to `state`; 0 where not only the load goes on.
+        """Share of the last step of a load program that leads on to `state`; 0 where not only the
+        load goes on.
 
         It is bounded: contacts that come and go make the state bend off from the line.
         """
@@ -226,7 +255,9 @@ class LoadStepper:
             return 0.0
         name = "torque" if state.control == "torque" else "output_rotation"
         values = [getattr(one, name) for one in (older, last, state)]
-        if state.control == "torque" and min(values) < 0.0 < max(values):  # there may be a backlash between
+        if state.control == "torque" and min(values) < 0.0 < max(
+            values
+        ):  # there may be a backlash between
             return 0.0
         step = values[1] - values[0]
         return min((values[2] - values[1]) / step, MAX_EXTRAPOLATION) if step else 0.0
@@ -234,8 +265,9 @@ class LoadStepper:
     def _close_backlash(self, target: LoadState) -> None:
         """Rotate the output until the flanks that are to carry nearly meet.
 
-        The deformed pattern rotates along, past the cam. Newton's steps move the nodes of the spline straight ahead,
-        which lifts it off the cam, so that a rotation by a fraction of the backlash would take several iterations.
+        The deformed pattern rotates along, past the cam. Newton's steps move the nodes of the
+        spline straight ahead, which lifts it off the cam, so that a rotation by a fraction of the
+        backlash would take several iterations.
         """
         for _ in range(MAX_CLOSING_ROTATIONS):
             rotation = self.problem.closing_rotation(target)
@@ -244,13 +276,15 @@ class LoadStepper:
             self._rotate_output(rotation, alone=target.spline_held)
 
     def _rotate_output(self, rotation: float, *, alone: bool = False) -> None:
-        """Rotate the output in its deformed pattern (rad). alone : without a flexible spline that is held"""
+        """Rotate the output in its deformed pattern (rad). alone : without a flexible spline that
+        is held"""
         x, fixed = self.problem.x, self.model.fixed_body
         resting = {fixed, FLEXIBLE_SPLINE} if alone else {fixed}
         predict(self.model.partition, fixed, [KnownState(0.0, x)], x, 0.0, rotation, resting)
 
     def _predict_rotation(self, angle: float) -> None:
-        """Predict the state at an angle of the wave generator (rad) from the known states, or from the present one."""
+        """Predict the state at an angle of the wave generator (rad) from the known states, or from
+        the present one."""
         x = self.problem.x
         known = self.known_states or [KnownState(self.load_state.angle, x)]
         predict(self.model.partition, self.model.fixed_body, known, x, angle)

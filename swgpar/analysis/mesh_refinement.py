@@ -1,8 +1,9 @@
-"""Meshes for an accuracy: of the drive, and of the windows that resolve the largest tensile stress at the teeth.
+"""Meshes for an accuracy: of the drive, and of the windows that resolve the largest tensile stress
+at the teeth.
 
-The drive is loaded on a mesh and on a coarser one. The change of the stress in a window between them gives the error of
-the drive's mesh, the order seen on three windows that of the window's mesh. The larger of both is reduced until they
-are small enough together (docs/theory/meshes.md).
+The drive is loaded on a mesh and on a coarser one. The change of the stress in a window between
+them gives the error of the drive's mesh, the order seen on three windows that of the window's mesh.
+The larger of both is reduced until they are small enough together (docs/theory/meshes.md).
 """
 
 from __future__ import annotations
@@ -22,7 +23,13 @@ from swgpar.errors import ConvergenceError, InputError, SwgparError
 from swgpar.evaluation.contact.pair_contact import pair_contacts
 from swgpar.evaluation.place_errors import CoarseStresses
 from swgpar.evaluation.places import Place, find_places
-from swgpar.evaluation.windows.root_stress import FEWEST_LEVELS, LEVELS, MOST_LEVELS, RootStress, resolve_root_stress
+from swgpar.evaluation.windows.root_stress import (
+    FEWEST_LEVELS,
+    LEVELS,
+    MOST_LEVELS,
+    RootStress,
+    resolve_root_stress,
+)
 from swgpar.load.load_sequence import LoadSequence
 from swgpar.load.load_states import LoadState
 from swgpar.log import logger
@@ -37,15 +44,16 @@ COMPARED_LEVELS = 2
 """Windows of which the last one shows what the mesh of the drive changes."""
 
 LEAST = {"plane": 0.004, "cup": 0.01}
-"""Least error by the mesh of the drive that two meshes can show, as a share of the stress: on plane_coarse that error
-is 0 to 0.6 %, on forces 0.2 to 1.1 % (docs/verification/effectivity.md)."""
+"""Least error by the mesh of the drive that two meshes can show, as a share of the stress: on
+plane_coarse that error is 0 to 0.6 %, on forces 0.2 to 1.1 % (docs/verification/effectivity.md)."""
 
 LEAST_WITH_EDGES = 0.02
-"""The same where a contact lies on an edge. The forces of the teeth move with the mesh: on plane_coarse by 0.7 to 2.7 %
-of the stress."""
+"""The same where a contact lies on an edge. The forces of the teeth move with the mesh: on
+plane_coarse by 0.7 to 2.7 % of the stress."""
 
 SMALLEST_RATIO = 1.05
-"""Ratio of element sizes that an error is judged by at least: the smallest recipes can hardly be coarsened."""
+"""Ratio of element sizes that an error is judged by at least: the smallest recipes can hardly be
+coarsened."""
 
 LARGEST = {"plane": 1_500_000, "cup": 700_000}
 """Elements of the whole drive beyond which no finer mesh is taken; they need about 7 and 12 GB."""
@@ -67,20 +75,28 @@ class ChosenMesh:
 
 
 def compared_stresses(model: DriveModel, state: LoadState) -> Mapping[str, Sequence[float]]:
-    """Stresses (MPa) in windows on a coarser mesh of the drive, for `drive_error`: only the last one is computed."""
+    """Stresses (MPa) in windows on a coarser mesh of the drive, for `drive_error`: only the last
+    one is computed."""
     return resolve_root_stress(model, state, COMPARED_LEVELS, COMPARED_LEVELS - 1).by_part
 
 
 def drive_error(
-    coarse: Mapping[str, Sequence[float]], fine: RootStress, ratio: float, least: float, before: float | None = None
+    coarse: Mapping[str, Sequence[float]],
+    fine: RootStress,
+    ratio: float,
+    least: float,
+    before: float | None = None,
 ) -> float:
-    """Error (MPa) of the finer of two meshes of the drive by the stresses in the windows that both drive.
+    """Error (MPa) of the finer of two meshes of the drive by the stresses in the windows that both
+    drive.
 
-    coarse : s1 (MPa) on the same windows, coarse to fine, by part of the teeth;  ratio : of the element sizes
-    least : share of the stress, see `least_error`;  before : error of the coarser mesh, if it is known
+    coarse : s1 (MPa) on the same windows, coarse to fine, by part of the teeth;  ratio : of the
+    element sizes
+    least : share of the stress, see `least_error`;  before : error of the coarser mesh, if it is
+    known
 
-    A change that is small by chance is no convergence: the error is at least what remains of that before, or else
-    `least` of the stress.
+    A change that is small by chance is no convergence: the error is at least what remains of that
+    before, or else `least` of the stress.
     """
     levels = coarse[fine.part]
     shared = min(len(levels), len(fine.levels)) - 1
@@ -90,7 +106,8 @@ def drive_error(
 
 
 def least_error(model: DriveModel, state: LoadState) -> float:
-    """Least error by the mesh of the drive that two meshes can show, as a share of the stress; collective."""
+    """Least error by the mesh of the drive that two meshes can show, as a share of the stress;
+    collective."""
     edge = any(pair.edge for pair in pair_contacts(model, state))
     return LEAST_WITH_EDGES if edge else LEAST[model.design.drive.model]
 
@@ -106,7 +123,8 @@ class Refinement:
     Parameters
     ----------
     design, sequence, comm : the drive, load states of its run, communicator
-    recipe : the first mesh, compared with a coarser one, or where that would not find the contacts with a finer one
+    recipe : the first mesh, compared with a coarser one, or where that would not find the contacts
+    with a finer one
     largest : elements of the whole drive beyond which no mesh is taken
     kept : loaded states of an earlier run, to which those of this one are added
     levels : windows on the first mesh; None for the usual ones
@@ -151,25 +169,35 @@ class Refinement:
         return find_places(self.model, self.loaded, self.model.stresses()[1])
 
     def _load(self, recipe: MeshRecipe) -> None:
-        """Take the model on this mesh, from the present one's state where the path to the state does not matter."""
+        """Take the model on this mesh, from the present one's state where the path to the state
+        does not matter."""
         coarse = self.model
         if self.design.contact.friction:
             coarse.destroy()
-            self.model = solve_to_load(self.design, recipe, self.sequence, self.comm, kept=self.kept)
+            self.model = solve_to_load(
+                self.design, recipe, self.sequence, self.comm, kept=self.kept
+            )
             return
         try:
-            self.model = solve_to_load(self.design, recipe, self.sequence, self.comm, coarse, kept=self.kept)
+            self.model = solve_to_load(
+                self.design, recipe, self.sequence, self.comm, coarse, kept=self.kept
+            )
         except (ConvergenceError, InputError) as error:
             logger.info("the state of another mesh does not lead to that of this one: %s", error)
-            self.model = solve_to_load(self.design, recipe, self.sequence, self.comm, kept=self.kept)
+            self.model = solve_to_load(
+                self.design, recipe, self.sequence, self.comm, kept=self.kept
+            )
 
     def _resolve(self, before: float | None = None) -> RootStress:
         """Windows on the present mesh. before : error (MPa) of the mesh before it"""
         found = resolve_root_stress(self.model, self.loaded, self.levels)
         least = least_error(self.model, self.loaded)
-        found = replace(found, drive_error=drive_error(self.coarse, found, self.ratio, least, before))
+        found = replace(
+            found, drive_error=drive_error(self.coarse, found, self.ratio, least, before)
+        )
         logger.info(
-            "%d elements: s1 %.1f MPa under load; error by the windows %.2g %%, by the mesh of the drive %.2g %%",
+            "%d elements: s1 %.1f MPa under load; error by the windows %.2g %%, by the mesh of the "
+            "drive %.2g %%",
             self.model.n_elements(),
             found.s1,
             100.0 * found.error / found.s1,
@@ -195,7 +223,9 @@ class Refinement:
         try:
             finer = resized(self.recipe, RATIO)
             needs = forecast(self.design, finer)
-            if needs.elements > self.largest or not fits(needs, self.design.solver.memory_limit, self.comm):
+            if needs.elements > self.largest or not fits(
+                needs, self.design.solver.memory_limit, self.comm
+            ):
                 return False
             build_sector_meshes(self.design.geometry, finer)
         except InputError:
@@ -210,7 +240,9 @@ class Refinement:
             logger.warning("no finer mesh of the drive: %s", error)
             self.coarse, self.ratio, self.found, self.coarse_places = earlier
             self.model.destroy()
-            self.model = solve_to_load(self.design, self.recipe, self.sequence, self.comm, kept=self.kept)
+            self.model = solve_to_load(
+                self.design, self.recipe, self.sequence, self.comm, kept=self.kept
+            )
             return False
         self.recipe = finer
         return True
@@ -226,14 +258,16 @@ def choose_mesh(
     largest: int | None = None,
     kept: StartStates | None = None,
 ) -> ChosenMesh:
-    """Refine `recipe` and the windows until the estimated relative error of the root's stress is at most `accuracy`.
+    """Refine `recipe` and the windows until the estimated relative error of the root's stress is at
+    most `accuracy`.
 
     sequence : of the run
-    largest : elements of the whole drive beyond which no finer mesh is taken; None for those of `LARGEST`
+    largest : elements of the whole drive beyond which no finer mesh is taken; None for those of
+    `LARGEST`
     kept : see `Refinement`
 
-    Ends with the best mesh where the accuracy is out of reach, and says so. Raises ConvergenceError or InputError like
-    a run on one of the first two meshes.
+    Ends with the best mesh where the accuracy is out of reach, and says so. Raises ConvergenceError
+    or InputError like a run on one of the first two meshes.
     """
     largest = LARGEST[design.drive.model] if largest is None else largest
     levels = FEWEST_LEVELS[design.drive.model] if accuracy >= ROUGH else None
@@ -241,10 +275,13 @@ def choose_mesh(
     refine = {"windows": drive.refine_windows, "mesh": drive.refine_drive}
     while relative_error(drive.found) > accuracy:
         errors = {"windows": drive.found.error, "mesh": drive.found.drive_error}
-        too_large = any(errors[part] > accuracy * drive.found.s1 for part in errors.keys() - refine.keys())
+        too_large = any(
+            errors[part] > accuracy * drive.found.s1 for part in errors.keys() - refine.keys()
+        )
         if too_large or not refine:
             logger.info(
-                "no finer mesh is taken: the drive has at most %d elements, and its run fits into the memory",
+                "no finer mesh is taken: the drive has at most %d elements, and its run fits into "
+                "the memory",
                 drive.largest,
             )
             break

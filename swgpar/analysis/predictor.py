@@ -1,7 +1,9 @@
-"""Prediction of the state at the next angle of the wave generator from the states of the period that are known.
+"""Prediction of the state at the next angle of the wave generator from the states of the period
+that are known.
 
-After one pitch of the fixed gear the drive repeats with its teeth renamed by one. Every known state is therefore known
-at all angles that differ from its own by whole pitches. States between them are interpolated over teeth and angles.
+After one pitch of the fixed gear the drive repeats with its teeth renamed by one. Every known state
+is therefore known at all angles that differ from its own by whole pitches. States between them are
+interpolated over teeth and angles.
 """
 
 from __future__ import annotations
@@ -17,11 +19,12 @@ from swgpar.geometry.rotation import rotated
 from swgpar.petsc import PETSc
 
 MIN_SPACING = 1.5
-"""Smallest distance of the second state on one side over that of the first: of states close together the difference
-says nothing about the state ahead."""
+"""Smallest distance of the second state on one side over that of the first: of states close
+together the difference says nothing about the state ahead."""
 
 SAME_POSITION = 1e-6
-"""Distance in pitches below which two states are at the same position of the period; the later one counts."""
+"""Distance in pitches below which two states are at the same position of the period; the later one
+counts."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +37,8 @@ class KnownState:
 
 @dataclass(frozen=True)
 class InterpolationPoint:
-    """One of the states that are interpolated: its index, the teeth by which it is renamed, its weight."""
+    """One of the states that are interpolated: its index, the teeth by which it is renamed, its
+    weight."""
 
     index: int
     teeth: int
@@ -44,7 +48,8 @@ class InterpolationPoint:
 def interpolation_points(shifts: list[float]) -> list[InterpolationPoint]:
     """States that give the one at shift 0, with the weights of a cubic polynomial.
 
-    shifts : of the states, in teeth, the latest last. The two nearest ones on either side are taken.
+    shifts : of the states, in teeth, the latest last. The two nearest ones on either side are
+    taken.
     """
     known: list[tuple[float, int, int]] = []
     for k in reversed(range(len(shifts))):
@@ -61,7 +66,9 @@ def interpolation_points(shifts: list[float]) -> list[InterpolationPoint]:
         chosen += [ahead[0], second]
     positions = [position for position, *_ in chosen]
     weights = [float(np.prod([b / (b - a) for b in positions if b != a])) for a in positions]
-    points = [InterpolationPoint(k, tooth, weight) for weight, (_, k, tooth) in zip(weights, chosen)]
+    points = [
+        InterpolationPoint(k, tooth, weight) for weight, (_, k, tooth) in zip(weights, chosen)
+    ]
     return [point for point in points if point.weight != 0.0]
 
 
@@ -74,7 +81,8 @@ def predict(
     output_rotation: float = 0.0,
     resting: Collection[str] = (),
 ) -> None:
-    """Set x to the state at an angle of the wave generator (rad), from states at others; collective.
+    """Set x to the state at an angle of the wave generator (rad), from states at others;
+    collective.
 
     fixed_body : name of the gear that does not rotate
     output_rotation : rad, further rotation in its deformed pattern of what is not `resting`
@@ -84,17 +92,27 @@ def predict(
     for body, layout in partition.layouts.items():
         first, end = partition.owned_sectors(body)
         own = np.arange(first, end)
-        moved = _pattern(partition, fixed_body, body, known, angle, 0.0 if body in resting else output_rotation)
+        moved = _pattern(
+            partition, fixed_body, body, known, angle, 0.0 if body in resting else output_rotation
+        )
         at = layout.sector_angle(layout.first_tooth + own)[:, None]
-        new.append((body, own, rotated(layout.mesh.coords + moved, at) - rotated(layout.mesh.coords, at)))
+        new.append(
+            (body, own, rotated(layout.mesh.coords + moved, at) - rotated(layout.mesh.coords, at))
+        )
     for body, own, values in new:
         write_field(partition, body, own, values, x)
 
 
 def _pattern(
-    partition: Partition, fixed_body: str, body: str, known: list[KnownState], angle: float, rotation: float
+    partition: Partition,
+    fixed_body: str,
+    body: str,
+    known: list[KnownState],
+    angle: float,
+    rotation: float,
 ) -> np.ndarray:
-    """Displacements (n_sectors, n_nodes, 3) mm of the owned sectors of a body, each in the frame of its tooth."""
+    """Displacements (n_sectors, n_nodes, 3) mm of the owned sectors of a body, each in the frame of
+    its tooth."""
     layout = partition.layouts[body]
     teeth, fixed_teeth = layout.mesh.n_sectors, partition.layouts[fixed_body].mesh.n_sectors
     pitch = 2.0 * np.pi / fixed_teeth
@@ -103,7 +121,8 @@ def _pattern(
     own = np.arange(first, end)
     coords = layout.mesh.coords
     moved = np.zeros((end - first, *coords.shape))
-    # when the pattern rotates by `shift` teeth, a tooth takes over the displacements of the one so many teeth before
+    # when the pattern rotates by `shift` teeth, a tooth takes over the displacements of the one so
+    # many teeth before
     shifts = [(angle - state.angle) / pitch - rotation * teeth / (2.0 * np.pi) for state in known]
     for point in interpolation_points(shifts):
         state = known[point.index]

@@ -61,7 +61,8 @@ NodalFields = dict[str, dict[str, np.ndarray]]
 
 
 class Recorder(ABC):
-    """Rows of the history and how the mesh was chosen; how fields and rows are kept is that of the two kinds.
+    """Rows of the history and how the mesh was chosen; how fields and rows are kept is that of the
+    two kinds.
 
     Every call is collective.
 
@@ -90,7 +91,8 @@ class Recorder(ABC):
         with model.phases("stress"):
             values, body_fields = model.stresses()
         race, housing = (
-            {name: values.pop(name) for name in list(values) if name.startswith(part)} for part in ("race_", "housing_")
+            {name: values.pop(name) for name in list(values) if name.startswith(part)}
+            for part in ("race_", "housing_")
         )
         self.record.rows.append(history.plain_row({**stepper.row(), **values, "wall_s": seconds}))
         if model.design.ratcheting:
@@ -110,7 +112,9 @@ class Recorder(ABC):
             fields = dict(body_fields)
             if model.design.output.fields:
                 spline = model.elements.bodies[FLEXIBLE_SPLINE]
-                fields[FLEXIBLE_SPLINE]["pressure"] = nodal_pressure(model.problem, stepper.load_state, spline)
+                fields[FLEXIBLE_SPLINE]["pressure"] = nodal_pressure(
+                    model.problem, stepper.load_state, spline
+                )
             self._keep(stepper, fields, elapsed)
 
     def _in_frame(self, stepper: LoadStepper, fields: NodalFields) -> NodalFields:
@@ -124,26 +128,38 @@ class Recorder(ABC):
                 if name not in self.record.places or place.value > self.record.places[name].value:
                     self.record.places[name] = place
             if self.record.coarse is not None and state == self._sequence.loaded:
-                self.record.stress_errors, self.record.coarse = self.record.coarse.errors(self.record.places), None
+                self.record.stress_errors, self.record.coarse = (
+                    self.record.coarse.errors(self.record.places),
+                    None,
+                )
 
     def places_with_errors(self) -> dict[str, Place]:
         """The places with the errors of their stresses where they are known."""
         return with_errors(self.record.places, self.record.stress_errors, self.record.root_stress)
 
     def _keep_pairs(self, state: LoadState) -> bool:
-        """Keep the contacts of flanks under load; returns whether one of them lies on the edge of a tooth."""
+        """Keep the contacts of flanks under load; returns whether one of them lies on the edge of a
+        tooth."""
         contacts: list[PairContact] = []
         if state.is_periodic and not self.model.design.stiffness:
             row = self.record.rows[-1]
-            when = {"increment": len(self.record.rows), "step": row["step"], "wg_angle_deg": row["wg_angle_deg"]}
+            when = {
+                "increment": len(self.record.rows),
+                "step": row["step"],
+                "wg_angle_deg": row["wg_angle_deg"],
+            }
             contacts = pair_contacts(self.model, state)
             self.record.pairs += [{**when, **contact.row()} for contact in contacts]
-            self.record.contact_lines += [{**when, **row} for contact in contacts for row in contact.station_rows()]
+            self.record.contact_lines += [
+                {**when, **row} for contact in contacts for row in contact.station_rows()
+            ]
         return any(contact.edge for contact in contacts)
 
     def _keep_balls(self, state: LoadState, race: Mapping[str, float]) -> None:
         if self.model.design.bearing is not None:
-            self.record.balls += ball_rows(self.model, state, len(self.record.rows), self.record.rows[-1]["step"])
+            self.record.balls += ball_rows(
+                self.model, state, len(self.record.rows), self.record.rows[-1]["step"]
+            )
             if state.is_periodic:
                 keep_largest(self.record.race_stress, race)
             if state.stage == Stage.LOAD or self._has_largest_torque(state):
@@ -154,7 +170,9 @@ class Recorder(ABC):
         if state.stage != Stage.PROGRAM or state.control != "torque" or self.record.bearing_shares:
             return False
         torques = [abs(point.value) for point in self._sequence.points if point.control == "torque"]
-        return abs(state.torque) >= abs(internal_torque(self.model.design.ratio, max(torques))) * (1.0 - 1e-9)
+        return abs(state.torque) >= abs(internal_torque(self.model.design.ratio, max(torques))) * (
+            1.0 - 1e-9
+        )
 
     def keep_turns(self, rows: list[Row]) -> None:
         """Keep rows of transmission_error.csv in place of those before."""
@@ -194,7 +212,8 @@ class Recorder(ABC):
 
     @abstractmethod
     def finish(self, rows: list[Row], summary: DriveSummary, tables: DriveTables) -> DriveData:
-        """The result, with all rows of history.csv, the summary and what was evaluated at the end."""
+        """The result, with all rows of history.csv, the summary and what was evaluated at the
+        end."""
 
 
 class MemoryRecorder(Recorder):
@@ -233,7 +252,8 @@ class FolderRecorder(Recorder):
         self._writer = FieldWriter(out, self.comm) if model.design.output.fields else None
 
     def resume(self, stepper: LoadStepper) -> tuple[tuple[LoadState, ...], float]:
-        """Bring back the state of the checkpoint; returns the states of the run, and the wall seconds spent so far."""
+        """Bring back the state of the checkpoint; returns the states of the run, and the wall
+        seconds spent so far."""
         saved, states = resume_run(self.out, self.identity, stepper, self._sequence, self.cycle)
         self.record = saved.record
         self._write_tables()
@@ -249,7 +269,8 @@ class FolderRecorder(Recorder):
             self._writer.write_mesh(_body_parts(self.model))
 
     def _keep(self, stepper: LoadStepper, fields: NodalFields, elapsed: float) -> None:
-        """Write the fields, the history and the checkpoint, in this order: the checkpoint marks all as complete."""
+        """Write the fields, the history and the checkpoint, in this order: the checkpoint marks all
+        as complete."""
         if self._writer is not None:
             self.record.components = {
                 body: {name: a.shape[2] if a.ndim == 3 else 1 for name, a in values.items()}
@@ -270,14 +291,21 @@ class FolderRecorder(Recorder):
         present = self.comm.bcast(path.exists() if self.comm.rank == 0 else None)
         with agreed(self.comm, path, "read"):
             columns = read_columns(path) if present else {}
-        return [{**row, "newton_iterations": int(row["newton_iterations"])} for row in as_rows(columns)]
+        return [
+            {**row, "newton_iterations": int(row["newton_iterations"])} for row in as_rows(columns)
+        ]
 
     def _write_tables(self) -> None:
         """Write the index of the fields, the history and the other tables that grow with it."""
         record = self.record
         if self._writer is not None:
-            # increments computed with output.fields = false have no fields, and a restart may ask for them
-            written = [(i, row["wg_angle_deg"]) for i, row in enumerate(record.rows, start=1) if self._writer.has(i)]
+            # increments computed with output.fields = false have no fields, and a restart may ask
+            # for them
+            written = [
+                (i, row["wg_angle_deg"])
+                for i, row in enumerate(record.rows, start=1)
+                if self._writer.has(i)
+            ]
             self._writer.write_index(self.comm.bcast(written), record.components)
         shown = history_rows(self.model.design, record.rows)
         write_from_root(self.comm, self.out / history.NAME, history.format_rows(shown))
@@ -298,7 +326,9 @@ class FolderRecorder(Recorder):
         tables.write(self.out, self.comm)
         write_from_root(self.comm, self.out / SUMMARY, summary_to_json(summary))
         folder = self.out.absolute()  # the fields are read later
-        return DriveData(*self._shared(rows, summary, tables), open_fields(folder, self.comm), self.comm, folder)
+        return DriveData(
+            *self._shared(rows, summary, tables), open_fields(folder, self.comm), self.comm, folder
+        )
 
 
 def _body_parts(model: DriveModel) -> dict[str, BodyPart]:
@@ -314,4 +344,6 @@ def _body_parts(model: DriveModel) -> dict[str, BodyPart]:
 def _flank_grids(mesh: SectorMesh) -> FlankGrids | None:
     if not mesh.flanks:
         return None
-    return FlankGrids(np.array([grid.nodes for grid in mesh.flanks]), mesh.flanks[0].s, mesh.flanks[0].z)
+    return FlankGrids(
+        np.array([grid.nodes for grid in mesh.flanks]), mesh.flanks[0].s, mesh.flanks[0].z
+    )

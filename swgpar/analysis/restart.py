@@ -71,21 +71,27 @@ def save_run(
 
 
 def resume_run(
-    out: Path, identity: str, stepper: LoadStepper, sequence: LoadSequence, cycle: StressCycle | None
+    out: Path,
+    identity: str,
+    stepper: LoadStepper,
+    sequence: LoadSequence,
+    cycle: StressCycle | None,
 ) -> tuple[SavedRun, tuple[LoadState, ...]]:
     """Bring back the state of the checkpoint, on any number of ranks; collective.
 
     identity, sequence : of the run that is to be continued
 
-    Returns what is saved, and the load states that the run consists of: without the first ones where they were computed
-    on other meshes.
+    Returns what is saved, and the load states that the run consists of: without the first ones
+    where they were computed on other meshes.
     """
     model, path = stepper.model, out / checkpoint.NAME
     saved = checkpoint.read_checkpoint(path, model.comm, SavedRun)
     if saved.identity != identity:
         raise InputError(
-            f"restart: {path} belongs to another design, recipe, accuracy or solver setting; allowed are the "
-            "same ones (--plain as before), only steps.rotation, the output, solver.linear, keep_factor, far_teeth and "
+            f"restart: {path} belongs to another design, recipe, accuracy or solver setting; "
+            f"allowed are the "
+            "same ones (--plain as before), only steps.rotation, the output, solver.linear, "
+            "keep_factor, far_teeth and "
             "limits may differ"
         )
     checkpoint.require_undamaged(path, model.comm)
@@ -93,8 +99,10 @@ def resume_run(
     states = sequence.from_loaded if record.starts_loaded or record.accuracy else sequence.states
     if not _continues(record, last, states):
         raise InputError(
-            f"restart: steps.rotation = {model.design.steps.rotation:g} does not continue {path}, which "
-            f"ends at {np.degrees(last.angle):g} degrees; allowed are values with this angle among their increments"
+            f"restart: steps.rotation = {model.design.steps.rotation:g} does not continue {path}, "
+            f"which "
+            f"ends at {np.degrees(last.angle):g} degrees; allowed are values with this angle among "
+            f"their increments"
         )
     restore_state(model, path, saved.solved)
     if cycle is not None:

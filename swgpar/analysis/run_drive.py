@@ -36,8 +36,8 @@ def run_drive(design: DriveDesign, options: RunOptions) -> DriveData:
     Raises
     ------
     InputError, OutputError, ConvergenceError, TimeLimitError
-        On all ranks. After the last two everything up to the last converged increment is in the folder and can be
-        continued with `options.restart`.
+        On all ranks. After the last two everything up to the last converged increment is in the
+        folder and can be continued with `options.restart`.
     OutOfMemoryError
         On the rank whose allocation has failed.
     """
@@ -77,7 +77,11 @@ def run_drive(design: DriveDesign, options: RunOptions) -> DriveData:
                 chosen = choose_mesh(design, recipe, sequence, options.accuracy, comm, kept=kept)
                 recipe = chosen.recipe
         model = build_drive_model(design, recipe, comm=comm) if chosen is None else chosen.model
-        recorder = MemoryRecorder(model, sequence) if folder is None else FolderRecorder(model, sequence, folder, what)
+        recorder = (
+            MemoryRecorder(model, sequence)
+            if folder is None
+            else FolderRecorder(model, sequence, folder, what)
+        )
         try:
             if chosen is not None:
                 recorder.keep_choice(chosen, options.accuracy)
@@ -86,9 +90,16 @@ def run_drive(design: DriveDesign, options: RunOptions) -> DriveData:
             run.go_through(items, options.terminal)
             result = run.finish(recipe_name)
         except SwgparError as error:
-            model.destroy()  # collective: all ranks have this error, but perhaps not one of another kind
-            if isinstance(error, (ConvergenceError, TimeLimitError)) and recorder.record.rows and folder is not None:
-                raise type(error)(f"{error}; {len(recorder.record.rows)} increments are saved in {folder}") from None
+            # collective: all ranks have this error, but perhaps not one of another kind
+            model.destroy()
+            if (
+                isinstance(error, (ConvergenceError, TimeLimitError))
+                and recorder.record.rows
+                and folder is not None
+            ):
+                raise type(error)(
+                    f"{error}; {len(recorder.record.rows)} increments are saved in {folder}"
+                ) from None
             raise
         model.destroy()
     return result
@@ -102,4 +113,6 @@ def _log_remarks(design: DriveDesign, left_out: Sequence[str]) -> None:
         logger.info("left out: %s; --plain computes all of it", ", ".join(left_out))
     if design.output.root_stress and not design.has_program and not design.resolves_root_stress:
         reason = "a bearing" if design.bearing is not None else "two ring gears"
-        logger.info("the stress at the teeth is not resolved by windows: not available with %s", reason)
+        logger.info(
+            "the stress at the teeth is not resolved by windows: not available with %s", reason
+        )

@@ -1,4 +1,5 @@
-"""A solved state of a drive in a file: rows by sector, multipliers, and what is modelled in full."""
+"""A solved state of a drive in a file: rows by sector, multipliers, and what is modelled in
+full."""
 
 from __future__ import annotations
 
@@ -21,7 +22,8 @@ class SolvedState:
     """What a state has beside its rows.
 
     multipliers : of the constraints
-    modelled_sectors : teeth and sectors that are modelled in full, as `DiscreteProblem.modelled_sectors` gives them
+    modelled_sectors : teeth and sectors that are modelled in full, as
+    `DiscreteProblem.modelled_sectors` gives them
     """
 
     multipliers: list[float]
@@ -33,10 +35,14 @@ class SolvedState:
         return cls(model.problem.multipliers().tolist(), model.problem.modelled_sectors())
 
 
-def state_rows(model: DriveModel, displacement: Mapping[str, np.ndarray] | None = None) -> dict[str, Block]:
-    """Displacements of all bodies by name, and with friction the tractions of the flanks; collective.
+def state_rows(
+    model: DriveModel, displacement: Mapping[str, np.ndarray] | None = None
+) -> dict[str, Block]:
+    """Displacements of all bodies by name, and with friction the tractions of the flanks;
+    collective.
 
-    displacement : by body, (n_sectors, n_local, 3) mm of the owned sectors; None reads those of the model's x
+    displacement : by body, (n_sectors, n_local, 3) mm of the owned sectors; None reads those of the
+    model's x
     """
     blocks, partition = {}, model.partition
     for name, layout in partition.layouts.items():

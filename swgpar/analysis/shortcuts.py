@@ -1,8 +1,10 @@
-"""What a run leaves out by itself where the scene allows it, and the mesh that it takes when none is named.
+"""What a run leaves out by itself where the scene allows it, and the mesh that it takes when none
+is named.
 
-Without friction the loaded state does not depend on the path to it, and the state repeats after one period. So a run
-needs neither the steps of the assembly nor the angles of further periods, and it may start on coarser meshes. Digits
-that no mesh gives are not computed. Keys that the design file sets are kept.
+Without friction the loaded state does not depend on the path to it, and the state repeats after one
+period. So a run needs neither the steps of the assembly nor the angles of further periods, and it
+may start on coarser meshes. Digits that no mesh gives are not computed. Keys that the design file
+sets are kept.
 """
 
 from __future__ import annotations
@@ -18,19 +20,21 @@ from swgpar.meshing import MeshRecipe
 from swgpar.meshing.recipe_counts import coarser
 
 MESHES = {"plane": "plane_coarse", "cup": "forces", "pancake": "forces"}
-"""Mesh recipes of the package for a run that names none. Windows that they drive are within 1 % of those that finer
-meshes drive (docs/verification/windows.md)."""
+"""Mesh recipes of the package for a run that names none. Windows that they drive are within 1 % of
+those that finer meshes drive (docs/verification/windows.md)."""
 
 SAMPLES = {"plane": 6, "cup": 4, "pancake": 4}
-"""Angles in a period. In the plane eight change the means by 0.1 %, the range of the input torque by a twentieth. In
-the cup six change the mean of s1 by 0.1 %, that range by a tenth."""
+"""Angles in a period. In the plane eight change the means by 0.1 %, the range of the input torque
+by a twentieth. In the cup six change the mean of s1 by 0.1 %, that range by a tenth."""
 
 RTOL = {"plane": 1e-6, "cup": 1e-5, "pancake": 1e-5}
-"""Newton's tolerance. The stresses of the reference drives keep all digits that are printed, the input torque of the
-cup drive changes by 1e-5. At 1e-5 that of a fine plane mesh would change by 0.6 %."""
+"""Newton's tolerance. The stresses of the reference drives keep all digits that are printed, the
+input torque of the cup drive changes by 1e-5. At 1e-5 that of a fine plane mesh would change by 0.6
+%."""
 
 FEWEST = 4
-"""Elements along the flank, and along the face width, below which a coarser mesh does not find its contacts."""
+"""Elements along the flank, and along the face width, below which a coarser mesh does not find its
+contacts."""
 
 MOST = 4
 """Coarser meshes at most: the largest value of `steps.start_levels`."""
@@ -56,7 +60,8 @@ def with_shortcuts(design: DriveDesign, recipe: MeshRecipe, *, levels: bool = Tr
 
     Keys that the design sets are kept.
 
-    levels : whether the run may start on coarser meshes;  with `--accuracy` it has meshes of its own
+    levels : whether the run may start on coarser meshes;  with `--accuracy` it has meshes of its
+    own
     """
     steps = design.steps
     solver = design.solver
@@ -65,7 +70,8 @@ def with_shortcuts(design: DriveDesign, recipe: MeshRecipe, *, levels: bool = Tr
     points = program_points(design)
     stiffness = design.stiffness
 
-    # with a bearing balls pass, with bolts teeth are not alike: no angle of another period has the same state
+    # with a bearing balls pass, with bolts teeth are not alike: no angle of another period has the
+    # same state
     repeats = design.bearing is None and not design.is_bolted
 
     def leave_out(key: str, value: int | bool, words: str) -> None:
@@ -76,10 +82,15 @@ def with_shortcuts(design: DriveDesign, recipe: MeshRecipe, *, levels: bool = Tr
     if not design.contact.friction:
         period, samples = float(np.degrees(design.period_angle)), SAMPLES[design.drive.model]
         samples_enough = (
-            repeats and steps.rotation >= 0.999999 * period and steps.rotation > (samples - 1) * steps.increment
+            repeats
+            and steps.rotation >= 0.999999 * period
+            and steps.rotation > (samples - 1) * steps.increment
         )
         if samples_enough and not points:
-            words = f"{steps.rotation - period:.4g} of {steps.rotation:.4g} degrees ({samples} angles of one period)"
+            words = (
+                f"{steps.rotation - period:.4g} of {steps.rotation:.4g} degrees ({samples} angles "
+                f"of one period)"
+            )
             leave_out("samples", samples, words)
         # the bent spline lies on the cam that is not turned
         if points[0].angle == 0.0 if points else steps.load_increments == 1:
@@ -97,7 +108,11 @@ def with_shortcuts(design: DriveDesign, recipe: MeshRecipe, *, levels: bool = Tr
     if not left_out:
         return Shortcuts(design, ())
     content: dict[str, Any] = {**steps.model_dump(exclude_unset=True), **changes}
-    update = {"steps": type(steps).model_validate(content), "solver": solver, "stiffness": stiffness}
+    update = {
+        "steps": type(steps).model_validate(content),
+        "solver": solver,
+        "stiffness": stiffness,
+    }
     return Shortcuts(design.model_copy(update=update), tuple(left_out))
 
 

@@ -1,7 +1,9 @@
-"""Loaded states on the meshes of a start, in files of the results folder until the run has a checkpoint.
+"""Loaded states on the meshes of a start, in files of the results folder until the run has a
+checkpoint.
 
-A run that starts on coarser meshes, or chooses its mesh, has nothing in its checkpoint for some time. Every mesh that
-has reached the load leaves a file meanwhile. A restart goes the same way again and takes these states over.
+A run that starts on coarser meshes, or chooses its mesh, has nothing in its checkpoint for some
+time. Every mesh that has reached the load leaves a file meanwhile. A restart goes the same way
+again and takes these states over.
 """
 
 from __future__ import annotations
@@ -34,7 +36,9 @@ class StartStates:
 
     def _path(self, model: DriveModel, recipe: MeshRecipe) -> Path | None:
         """File of the model's loaded state on the mesh of this recipe; None where none is kept."""
-        if self.folder is None or model.design.contact.friction:  # a state with friction depends on the path to it
+        if (
+            self.folder is None or model.design.contact.friction
+        ):  # a state with friction depends on the path to it
             return None
         return self.folder / START_STATES.replace("*", identity(model.design, recipe, None)[:12])
 

@@ -1,4 +1,5 @@
-"""Error of the torsional stiffness by the mesh, from the first position on a coarser mesh of the drive."""
+"""Error of the torsional stiffness by the mesh, from the first position on a coarser mesh of the
+drive."""
 
 from __future__ import annotations
 
@@ -29,7 +30,10 @@ def stiffness_error(
     """
     coarse = resized(recipe, 1.0 / RATIO)
     if not finds_contacts(coarse):
-        logger.info("the error of the stiffness by the mesh is not known: a coarser one would not find the contacts")
+        logger.info(
+            "the error of the stiffness by the mesh is not known: a coarser one would not find the "
+            "contacts"
+        )
         return None
     first = _first_position(design)
     try:

@@ -18,15 +18,19 @@ def _smallest(cam: Cam, lobes: int) -> dict[str, float]:
 
 
 def derived_geometry(design: DriveDesign) -> dict[str, float]:
-    """Quantities that follow from a design: names with units, and values. `swgpar check` prints them."""
+    """Quantities that follow from a design: names with units, and values. `swgpar check` prints
+    them."""
     spline, ring = design.profile("flexible_spline"), design.profile("ring_gear")
     cam, half = design.cam(), 0.5 * design.deflection
     return {
-        f"ratio ({'ring gear' if design.wave_generator_is_fixed else 'wave generator'} / output)": design.input_ratio,
+        f"ratio ({'ring gear' if design.wave_generator_is_fixed else 'wave generator'} / "
+        f"output)": design.input_ratio,
         "d, diametral deflection (mm)": design.deflection,
         "a, major semi-axis (mm)": design.major_semi_axis,
         **_smallest(cam, design.lobes),
-        "taut length of cam / inner perimeter - 1": taut_length(cam) / (2.0 * np.pi * design.inner_radius) - 1.0,
+        "taut length of cam / inner perimeter - 1": taut_length(cam)
+        / (2.0 * np.pi * design.inner_radius)
+        - 1.0,
         "travel of the pins (mm)": pin_travel(cam, design.inner_radius, design.lobes),
         "r_fs, inner radius of the spline (mm)": design.inner_radius,
         "backlash at the pitch circle (mm)": design.backlash,
@@ -39,8 +43,12 @@ def derived_geometry(design: DriveDesign) -> dict[str, float]:
         "top land, ring gear (mm)": ring.top_land,
         "root land, flexible spline (mm)": spline.root_land,
         "root land, ring gear (mm)": ring.root_land,
-        "tip of spline to root of ring, major axis (mm)": ring.r_root_circle - spline.r_tip_circle - half,
-        "tip of ring to root of spline, major axis (mm)": ring.r_tip_circle - spline.r_root_circle - half,
+        "tip of spline to root of ring, major axis (mm)": ring.r_root_circle
+        - spline.r_tip_circle
+        - half,
+        "tip of ring to root of spline, major axis (mm)": ring.r_tip_circle
+        - spline.r_root_circle
+        - half,
         "tips at the minor axis (mm)": ring.r_tip_circle - spline.r_tip_circle + half,
         "smallest flank clearance, kinematic (mm)": design.rigid_teeth().clearance(),
         **_dynamic_spline(design),
@@ -67,7 +75,9 @@ def _cup(design: DriveDesign) -> dict[str, float]:
     if thinnest != design.cup_thickness:
         sizes["thinnest place of the wall (mm)"] = thinnest
     if design.end_thickness != design.cup_thickness:
-        sizes[f"thickness of the {'flange' if cup.shape == 'hat' else 'closed end'} (mm)"] = design.end_thickness
+        sizes[f"thickness of the {'flange' if cup.shape == 'hat' else 'closed end'} (mm)"] = (
+            design.end_thickness
+        )
     if cup.attachment == "clamped":
         sizes["attached area, one side (mm2)"] = np.pi * abs(cup.edge**2 - cup.clamping_radius**2)
     if cup.attachment == "bolted":
@@ -85,7 +95,11 @@ def _dynamic_spline(design: DriveDesign) -> dict[str, float]:
     return {
         "face width of the ring gear (mm)": high - low,
         "backlash of the dynamic spline (mm)": design.dynamic_backlash,
-        "tip of spline to root of dynamic spline (mm)": second.r_root_circle - spline.r_tip_circle - half,
-        "tip of dynamic spline to root of spline (mm)": second.r_tip_circle - spline.r_root_circle - half,
+        "tip of spline to root of dynamic spline (mm)": second.r_root_circle
+        - spline.r_tip_circle
+        - half,
+        "tip of dynamic spline to root of spline (mm)": second.r_tip_circle
+        - spline.r_root_circle
+        - half,
         "clearance in the dynamic spline (mm)": design.rigid_teeth("dynamic_spline").clearance(),
     }

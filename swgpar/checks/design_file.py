@@ -12,7 +12,8 @@ from swgpar.input.toml_file import apply_overrides, read_toml, validate
 
 
 def make_drive(table: dict[str, Any]) -> DriveDesign:
-    """A checked design from the content of its file; every problem is an InputError of one sentence."""
+    """A checked design from the content of its file; every problem is an InputError of one
+    sentence."""
     design = validate(DriveDesign, table).made_by(make_drive)
     check_fit(design)
     return design

@@ -10,7 +10,8 @@ WITH = 'with drive.model = "pancake"'
 
 
 def check_pancake(design: DriveDesign) -> None:
-    """Raise InputError where a pancake drive lacks its second ring gear, or has what only other drives have."""
+    """Raise InputError where a pancake drive lacks its second ring gear, or has what only other
+    drives have."""
     second, drive = design.dynamic_spline, design.drive
     if drive.model != "pancake":
         if second is not None:
@@ -31,7 +32,11 @@ def check_pancake(design: DriveDesign) -> None:
         (design.bearing is not None, "wave_generator.bearing", "allowed a cam without a bearing"),
         (design.deviations is not None, "deviations", "allowed without them"),
         (design.has_program, "a load program, stiffness or ratcheting", "allowed load.torque"),
-        (design.contact.friction > 0.0, f"contact.friction = {design.contact.friction:g}", "allowed 0"),
+        (
+            design.contact.friction > 0.0,
+            f"contact.friction = {design.contact.friction:g}",
+            "allowed 0",
+        ),
         (design.fatigue is not None, "fatigue", "allowed without it"),
         (design.losses is not None, "losses", "allowed without them"),
         (
@@ -51,19 +56,27 @@ def check_pancake(design: DriveDesign) -> None:
 
 
 def _check_widths(design: DriveDesign) -> None:
-    """Both ring gears and the gap share the face width of the flexible spline, all of which lies on the cam."""
-    second, width, cam = design.dynamic_spline, design.drive.face_width, design.wave_generator.face_width
+    """Both ring gears and the gap share the face width of the flexible spline, all of which lies on
+    the cam."""
+    second, width, cam = (
+        design.dynamic_spline,
+        design.drive.face_width,
+        design.wave_generator.face_width,
+    )
     if second.gap >= width:
         raise InputError(
-            f"dynamic_spline.gap = {second.gap:g} is out of range: allowed above 0 to below {width:g} mm "
+            f"dynamic_spline.gap = {second.gap:g} is out of range: allowed above 0 to below "
+            f"{width:g} mm "
             "(drive.face_width)"
         )
     if second.face_width is not None and second.face_width >= width - second.gap:
         raise InputError(
-            f"dynamic_spline.face_width = {second.face_width:g} is out of range: allowed above 0 to below "
+            f"dynamic_spline.face_width = {second.face_width:g} is out of range: allowed above 0 "
+            f"to below "
             f"{width - second.gap:g} mm (drive.face_width less dynamic_spline.gap)"
         )
     if cam != width:
         raise InputError(
-            f"wave_generator.face_width = {cam:g} is out of range: allowed only {width:g} mm (drive.face_width) {WITH}"
+            f"wave_generator.face_width = {cam:g} is out of range: allowed only {width:g} mm "
+            f"(drive.face_width) {WITH}"
         )

@@ -1,4 +1,5 @@
-"""What a design may have and what deserves a word: teeth that overlap, torques that are too small to be resolved."""
+"""What a design may have and what deserves a word: teeth that overlap, torques that are too small
+to be resolved."""
 
 from __future__ import annotations
 
@@ -24,7 +25,8 @@ def torque_remark(torque: float, negligible: float) -> str | None:
     if not 0.0 < 1000.0 * torque <= negligible:
         return None
     return (
-        f"load.torque = {torque:g} N·m counts as none: up to {0.001 * negligible:.3g} N·m it is too small "
+        f"load.torque = {torque:g} N·m counts as none: up to {0.001 * negligible:.3g} N·m it is "
+        f"too small "
         "beside the bending of the flexible spline"
     )
 
@@ -33,8 +35,12 @@ def remarks(design: DriveDesign, derived: Mapping[str, float]) -> list[str]:
     """Sentences about what is allowed and may not be meant. derived : of `derived_geometry`"""
     allowed = design.contact.penetration_tolerance * design.drive.module
     overlaps = [
-        f"interference: {name} = {derived[name]:.3g}: teeth overlap before they are loaded, and the drive may jam"
+        f"interference: {name} = {derived[name]:.3g}: teeth overlap before they are loaded, and "
+        f"the drive may jam"
         for name in CLEARANCES
         if derived.get(name, 0.0) < -allowed
     ]
-    return [*overlaps, *filter(None, [torque_remark(design.load.torque, negligible_torque(design))])]
+    return [
+        *overlaps,
+        *filter(None, [torque_remark(design.load.torque, negligible_torque(design))]),
+    ]

@@ -1,8 +1,10 @@
-"""A design to start from: all sizes of a drive from its ratio, its diameter or bore, its torque and kinds of curves.
+"""A design to start from: all sizes of a drive from its ratio, its diameter or bore, its torque and
+kinds of curves.
 
-What is given is kept. All else follows from rules of proportion, those of the designs in `drivers/catalogue`: sizes of
-the blank over the pitch diameter D, sizes of the teeth over the module. The backlash is the smallest of a list with
-which the undeformed flanks clear each other, and the teeth of a dynamic spline are the thickest of a list.
+What is given is kept. All else follows from rules of proportion, those of the designs in
+`drivers/catalogue`: sizes of the blank over the pitch diameter D, sizes of the teeth over the
+module. The backlash is the smallest of a list with which the undeformed flanks clear each other,
+and the teeth of a dynamic spline are the thickest of a list.
 """
 
 from __future__ import annotations
@@ -33,7 +35,8 @@ Model = Literal["cup", "plane", "pancake"]
 """Kinds of drives of a starter design."""
 
 Shape = Literal["cup", "short", "hat"]
-"""Shapes of the flexible spline: a usual cup, one of half the length, a silk hat with a flange outwards."""
+"""Shapes of the flexible spline: a usual cup, one of half the length, a silk hat with a flange
+outwards."""
 
 LEAST_RATIO, LARGEST_RATIO = 15.0, 320.0
 """Ratios for which the rules give a drive that can be built and meshed."""
@@ -43,10 +46,12 @@ FACE_WIDTH = 0.17
 LENGTH = 0.5
 FILLET = 0.02
 BORE = 0.17
-"""Over the pitch diameter: rim of the ring gear, face width, length, fillet and bore radius of the cup."""
+"""Over the pitch diameter: rim of the ring gear, face width, length, fillet and bore radius of the
+cup."""
 
 SHORT_LENGTH, FLANGE, FLANGE_THICKNESS = 0.25, 0.68, 0.016
-"""Over the pitch diameter: length of a short cup, radius and thickness of the flange of a silk hat."""
+"""Over the pitch diameter: length of a short cup, radius and thickness of the flange of a silk
+hat."""
 
 RING_RIM_MODULES = 8.0
 """Largest rim of the ring gear, modules: a thicker one behaves alike."""
@@ -56,11 +61,13 @@ ADDENDUM, DEDENDUM = 0.6, 0.8
 """Of both gears, modules."""
 
 RIM, PRESSURE_ANGLE = {2: 0.012, 3: 0.006}, {2: 20.0, 3: 14.0}
-"""By lobes: rim of the flexible spline over the pitch diameter, pressure angle in degrees. Three lobes lead a tooth on
-a path that is 1.5 times as steep, and bend the rim four times as much on the same module."""
+"""By lobes: rim of the flexible spline over the pitch diameter, pressure angle in degrees. Three
+lobes lead a tooth on a path that is 1.5 times as steep, and bend the rim four times as much on the
+same module."""
 
 PLAY = (0.005, 0.01, 0.02, 0.03, 0.05, 0.1, 0.2)
-"""Backlash that is tried: share of the tooth's thickness (1 - c_P of the ring gear), or its profile shift."""
+"""Backlash that is tried: share of the tooth's thickness (1 - c_P of the ring gear), or its profile
+shift."""
 
 LEAST_CLEARANCE = 0.0005
 """Between the undeformed flanks, modules."""
@@ -68,17 +75,26 @@ LEAST_CLEARANCE = 0.0005
 GAP = 0.05
 """Between the ring gears of a pancake drive, over its face width."""
 
-DYNAMIC_RADII = {"r_tip": 0.2, "r_addendum": 3.0, "straight_l": 0.2, "r_dedendum": 3.0, "r_root": 0.3}
-"""Modules. Thin teeth need straighter flanks than those of the ring gear, or their tips end in a point."""
+DYNAMIC_RADII = {
+    "r_tip": 0.2,
+    "r_addendum": 3.0,
+    "straight_l": 0.2,
+    "r_dedendum": 3.0,
+    "r_root": 0.3,
+}
+"""Modules. Thin teeth need straighter flanks than those of the ring gear, or their tips end in a
+point."""
 
 DYNAMIC_THICKNESS = tuple(0.01 * percent for percent in range(80, 54, -2))
-"""c_P of the dynamic spline that is tried: its slots leave room for the motion of the teeth to both sides."""
+"""c_P of the dynamic spline that is tried: its slots leave room for the motion of the teeth to both
+sides."""
 
 LEAST_DYNAMIC_CLEARANCE = 0.01
 """Between the undeformed flanks of the dynamic spline and the flexible spline, modules."""
 
 PANCAKE_CROWNING = 0.05
-"""Of the cam of a pancake drive, modules. Its flexible spline has no cone, so that there is no slope."""
+"""Of the cam of a pancake drive, modules. Its flexible spline has no cone, so that there is no
+slope."""
 
 CROWNING, SLOPE, FLANK_CROWNING = 0.1, 0.09, 0.045
 """Micro-geometry of the reference drive (Table 7.4), modules."""
@@ -92,7 +108,8 @@ class Request:
     """What a starter design is made from.
 
     ratio : wave generator over output, without its sign;  torque : N·m, on the output
-    diameter : mm, pitch diameter of the flexible spline;  bore : mm, its inner diameter. One of both is given.
+    diameter : mm, pitch diameter of the flexible spline;  bore : mm, its inner diameter. One of
+    both is given.
     """
 
     ratio: float
@@ -136,48 +153,64 @@ def starter_design(request: Request) -> tuple[DriveDesign, dict[str, Any]]:
     if refusal is not None and not built:
         raise refusal
     raise InputError(
-        f"ratio = {request.ratio:g} with profile = {request.profile} and cam = {request.cam} leaves no clearance "
+        f"ratio = {request.ratio:g} with profile = {request.profile} and cam = {request.cam} "
+        f"leaves no clearance "
         "between the flanks: allowed are other ratios, profiles or cams"
     )
 
 
 def _thin_teeth(table: dict[str, Any]) -> tuple[DriveDesign, dict[str, Any]]:
-    """The pancake drive with the thickest teeth of the dynamic spline that clear those of the flexible spline."""
+    """The pancake drive with the thickest teeth of the dynamic spline that clear those of the
+    flexible spline."""
     for c_P in DYNAMIC_THICKNESS:
         thinner = with_value(table, "dynamic_spline.c_P", _rounded(c_P))
         design = make_drive(thinner)
-        if design.rigid_teeth("dynamic_spline").clearance(91) > LEAST_DYNAMIC_CLEARANCE * design.drive.module:
+        if (
+            design.rigid_teeth("dynamic_spline").clearance(91)
+            > LEAST_DYNAMIC_CLEARANCE * design.drive.module
+        ):
             return design, thinner
     teeth = table["drive"]["teeth_fs"]
     raise InputError(
-        f"teeth_fs = {teeth} leaves no clearance in the dynamic spline: allowed are other ratios or profiles"
+        f"teeth_fs = {teeth} leaves no clearance in the dynamic spline: allowed are other ratios "
+        f"or profiles"
     )
 
 
 def _check(request: Request) -> None:
     """Refuse numbers from which no drive can be made."""
     if request.shape != "cup" and request.model != "cup":
-        raise InputError(f'shape = "{request.shape}" is not available with model = "{request.model}": allowed "cup"')
+        raise InputError(
+            f'shape = "{request.shape}" is not available with model = "{request.model}": allowed '
+            f'"cup"'
+        )
     for name, unit in (("torque", "N·m"), ("diameter", "mm"), ("bore", "mm")):
         value = getattr(request, name)
         if value is not None and not 0.0 < value < np.inf:
             raise InputError(f"{name} = {value:g} is out of range: allowed above 0 {unit}")
     if (request.diameter is None) == (request.bore is None):
         raise InputError(
-            "give either diameter (pitch diameter of the flexible spline, mm) or bore (its inner diameter)"
+            "give either diameter (pitch diameter of the flexible spline, mm) or bore (its inner "
+            "diameter)"
         )
     if request.layout not in LAYOUTS:  # from Python, where no parser has refused it
-        raise InputError(f'layout = "{request.layout}" is not available for a start: allowed {" or ".join(LAYOUTS)}')
+        raise InputError(
+            f'layout = "{request.layout}" is not available for a start: allowed '
+            f"{' or '.join(LAYOUTS)}"
+        )
     if request.lobes not in RIM:
         raise InputError(f"lobes = {request.lobes} is out of range: allowed 2 or 3")
     if request.lobes == 3 and request.model == "pancake":
         raise InputError('lobes = 3 is not available with model = "pancake": allowed 2')
     if request.lobes == 3 and request.cam != "harmonic":
-        raise InputError(f'lobes = 3 is not available with cam = "{request.cam}": allowed with "harmonic"')
+        raise InputError(
+            f'lobes = 3 is not available with cam = "{request.cam}": allowed with "harmonic"'
+        )
     step = 0.5 if request.lobes == 2 else 1.0
     if not LEAST_RATIO <= request.ratio <= LARGEST_RATIO or request.ratio % step:
         raise InputError(
-            f"ratio = {request.ratio:g} is out of range: allowed {LEAST_RATIO:g} to {LARGEST_RATIO:g} in steps of "
+            f"ratio = {request.ratio:g} is out of range: allowed {LEAST_RATIO:g} to "
+            f"{LARGEST_RATIO:g} in steps of "
             f"{step:g}"
         )
 
@@ -210,7 +243,11 @@ def _table(request: Request, play: float) -> dict[str, Any]:
             "face_width": width,
         },
         **{gear: _gear(request, gear, module, teeth, play) for gear in GEARS},
-        "wave_generator": {"type": request.cam, **({"lobes": 3} if lobes == 3 else {}), "face_width": width},
+        "wave_generator": {
+            "type": request.cam,
+            **({"lobes": 3} if lobes == 3 else {}),
+            "face_width": width,
+        },
     }
     if request.model == "cup":
         length = SHORT_LENGTH if request.shape == "short" else LENGTH
@@ -237,7 +274,10 @@ def _end(shape: Shape, pitch: float) -> dict[str, Any]:
     """Keys of the closed end or flange. pitch : mm, pitch diameter"""
     if shape != "hat":
         return {"inner_radius": _rounded(BORE * pitch)}
-    flange = {"flange_radius": _rounded(FLANGE * pitch), "end_thickness": _rounded(FLANGE_THICKNESS * pitch)}
+    flange = {
+        "flange_radius": _rounded(FLANGE * pitch),
+        "end_thickness": _rounded(FLANGE_THICKNESS * pitch),
+    }
     return {"shape": "hat", **flange}
 
 
@@ -260,7 +300,10 @@ def _gear(request: Request, gear: str, module: float, teeth: int, play: float) -
     section: dict[str, Any] = {"rim": _rounded(rim)}
     if profile == "involute":
         if ring:
-            radii |= {"shift": play, "cutter_teeth": 2 * round(0.5 * CUTTER_TEETH * (teeth + request.lobes))}
+            radii |= {
+                "shift": play,
+                "cutter_teeth": 2 * round(0.5 * CUTTER_TEETH * (teeth + request.lobes)),
+            }
         return {**section, "profile": {"type": profile, **radii}}
     section["c_P"] = _rounded(1.0 - play) if ring else 1.0
     section["c_l"] = 0.0 if profile == "double_arc" else 0.5
@@ -276,7 +319,10 @@ def _cam_keys(cam: CamType, table: dict[str, Any]) -> dict[str, float]:
     lobes = table["drive"]["teeth_rg"] - teeth
     major, minor = inner + 0.5 * lobes * module, inner - 0.5 * lobes * module
     if cam == "four_roller":
-        return {"beta": 10.0, "r_4": _rounded(0.135 * major)}  # 8 mm on the reference drive (section 5.5)
+        return {
+            "beta": 10.0,
+            "r_4": _rounded(0.135 * major),
+        }  # 8 mm on the reference drive (section 5.5)
 
     def excess(keys: WaveGenerator) -> float:
         C = 1.0 if isinstance(keys, Parabolic) else keys.C
@@ -284,14 +330,22 @@ def _cam_keys(cam: CamType, table: dict[str, Any]) -> dict[str, float]:
 
     # the band around the cam is as long as the spline's inner circumference
     if cam == "simplified":
-        return {"C": _rounded(brentq(lambda C: excess(Simplified(C=C, face_width=1.0)), 0.5, 1.0, xtol=1e-7))}
+        return {
+            "C": _rounded(
+                brentq(lambda C: excess(Simplified(C=C, face_width=1.0)), 0.5, 1.0, xtol=1e-7)
+            )
+        }
     if cam == "harmonic":
-        fitting = brentq(lambda C: excess(Harmonic(C=C, lobes=lobes, face_width=1.0)), 0.5, 1.0, xtol=1e-8)
+        fitting = brentq(
+            lambda C: excess(Harmonic(C=C, lobes=lobes, face_width=1.0)), 0.5, 1.0, xtol=1e-8
+        )
         return {"C": _rounded(fitting, 6)}
     shape = {"C_p": 0.51, "r_c": _rounded(0.175 * minor)}  # that of the improved cam of Table 5.5
     ellipse = 0.5 * major / minor**2
     bounds = ellipse, 1.08 * ellipse
-    a_p = brentq(lambda a_p: excess(Parabolic(a_p=a_p, face_width=1.0, **shape)), *bounds, xtol=1e-7)
+    a_p = brentq(
+        lambda a_p: excess(Parabolic(a_p=a_p, face_width=1.0, **shape)), *bounds, xtol=1e-7
+    )
     return {"C": 1.0, "a_p": _rounded(a_p, 5), **shape}
 
 
@@ -300,12 +354,18 @@ def as_toml(request: Request, design: DriveDesign, table: dict[str, Any], name: 
 
     design, table : of `starter_design`;  name : of the file, for the commands in its head
     """
-    size = f"bore {request.bore:g} mm" if request.diameter is None else f"pitch diameter {request.diameter:g} mm"
+    size = (
+        f"bore {request.bore:g} mm"
+        if request.diameter is None
+        else f"pitch diameter {request.diameter:g} mm"
+    )
     drive = design.drive
     lines = [
         f"# Strain wave gear: ratio {request.ratio:g}, {size}, torque {request.torque:g} N·m.",
-        "# These are given, with the kinds of profile and cam. All other values are assumptions to start from: sizes",
-        f"# of the blank are shares of the pitch diameter, {drive.module * drive.teeth_fs:.5g} mm, those of the teeth "
+        "# These are given, with the kinds of profile and cam. All other values are assumptions to "
+        "start from: sizes",
+        f"# of the blank are shares of the pitch diameter, {drive.module * drive.teeth_fs:.5g} mm, "
+        f"those of the teeth "
         "multiples of the module.",
         f"#   swgpar check {name}",
         f"#   mpirun -n 2 swgpar run {name} --out results/{name.removesuffix('.toml')}",
@@ -316,12 +376,19 @@ def as_toml(request: Request, design: DriveDesign, table: dict[str, Any], name: 
 
 
 def _section(title: str, section: Section, content: dict[str, Any]) -> list[str]:
-    """Lines of a section: its plain keys with the texts of their fields, then the sections in it."""
+    """Lines of a section: its plain keys with the texts of their fields, then the sections in
+    it."""
     tables = {key: value for key, value in content.items() if isinstance(value, dict)}
-    entries = {key: f"{key} = {toml_value(value)}" for key, value in content.items() if key not in tables}
+    entries = {
+        key: f"{key} = {toml_value(value)}" for key, value in content.items() if key not in tables
+    }
     width = max(map(len, entries.values()))
     fields = type(section).model_fields
-    lines = ["", f"[{title}]", *(f"{entry:{width}s}  # {fields[key].description}" for key, entry in entries.items())]
+    lines = [
+        "",
+        f"[{title}]",
+        *(f"{entry:{width}s}  # {fields[key].description}" for key, entry in entries.items()),
+    ]
     for key, value in tables.items():
         lines += _section(f"{title}.{key}", getattr(section, key), value)
     return lines

@@ -37,7 +37,13 @@ def _check_rest(rest: Sequence[str], petsc: bool) -> None:
         option = petsc and len(word) > 1 and word[0] == "-" and (word[1].isalpha())
         if not option and not after_option:
             near = difflib.get_close_matches(word, OPTIONS, n=1)
-            hint = f": did you mean {near[0]}?" if near else "; options of PETSc begin with one dash" if petsc else ""
+            hint = (
+                f": did you mean {near[0]}?"
+                if near
+                else "; options of PETSc begin with one dash"
+                if petsc
+                else ""
+            )
             raise InputError(f"unknown argument {shortened(word)}{hint}")
         after_option = option
 
@@ -75,7 +81,11 @@ def _main(arguments: Sequence[str] | None) -> int:
         sys.stderr.close()
         return 1
     except MemoryError:
-        print("swgpar: error: not enough memory: take a coarser mesh, or more memory", file=sys.stderr, flush=True)
+        print(
+            "swgpar: error: not enough memory: take a coarser mesh, or more memory",
+            file=sys.stderr,
+            flush=True,
+        )
         if command in SOLVING:
             from mpi4py import MPI
 

@@ -1,4 +1,5 @@
-"""What the subcommands do. Their imports are their own: a command that needs no solver does not load it."""
+"""What the subcommands do. Their imports are their own: a command that needs no solver does not
+load it."""
 
 from __future__ import annotations
 
@@ -27,7 +28,9 @@ def _run(arguments: argparse.Namespace) -> None:
         design,
         arguments.mesh,
         arguments.out,
-        **{name: getattr(arguments, name) for name in ("accuracy", "plain", "restart", "overwrite")},
+        **{
+            name: getattr(arguments, name) for name in ("accuracy", "plain", "restart", "overwrite")
+        },
         progress=True,
         comm=comm,
     )
@@ -46,7 +49,11 @@ def _study(arguments: argparse.Namespace) -> None:
 
     _begin(arguments)
     found = api.study(
-        arguments.study, arguments.out, restart=arguments.restart, overwrite=arguments.overwrite, progress=True
+        arguments.study,
+        arguments.out,
+        restart=arguments.restart,
+        overwrite=arguments.overwrite,
+        progress=True,
     )
     folder = Path(arguments.out)
     if MPI.COMM_WORLD.rank == 0:
@@ -57,13 +64,27 @@ def _study(arguments: argparse.Namespace) -> None:
     MPI.COMM_WORLD.Barrier()  # mpirun ends all ranks when one of them fails
     if found.failed:
         reasons = folder / "study.csv"
-        raise StudyError(f"{len(found.failed)} of {len(found.results)} runs failed: the reasons are in {reasons}")
+        raise StudyError(
+            f"{len(found.failed)} of {len(found.results)} runs failed: the reasons are in {reasons}"
+        )
 
 
 def _new(arguments: argparse.Namespace) -> None:
     from swgpar import api
 
-    names = ("ratio", "torque", "diameter", "bore", "profile", "cam", "layout", "model", "shape", "lobes", "overwrite")
+    names = (
+        "ratio",
+        "torque",
+        "diameter",
+        "bore",
+        "profile",
+        "cam",
+        "layout",
+        "model",
+        "shape",
+        "lobes",
+        "overwrite",
+    )
     design = api.new(arguments.design, **{name: getattr(arguments, name) for name in names})
     drive = design.drive
     _print(
@@ -85,12 +106,18 @@ def _optimise(arguments: argparse.Namespace) -> None:
 
     _begin(arguments, kind="evaluations")
     found = api.optimise(
-        arguments.optimisation, arguments.out, restart=arguments.restart, overwrite=arguments.overwrite, progress=True
+        arguments.optimisation,
+        arguments.out,
+        restart=arguments.restart,
+        overwrite=arguments.overwrite,
+        progress=True,
     )
     if MPI.COMM_WORLD.rank == 0:
         print_result(found)
         folder = Path(arguments.out)
-        for path in sorted([*folder.glob("*.csv"), *folder.glob("*.html"), *folder.glob("best/*.toml")]):
+        for path in sorted(
+            [*folder.glob("*.csv"), *folder.glob("*.html"), *folder.glob("best/*.toml")]
+        ):
             console.print(printable(f"written {path}"), markup=False)
     _warn()
     MPI.COMM_WORLD.Barrier()  # mpirun ends all ranks when one of them fails
@@ -105,9 +132,13 @@ def _export(arguments: argparse.Namespace) -> None:
     source = arguments.source
     if arguments.overrides:
         if Path(source).is_dir():
-            raise InputError(f"--set is of no use with the results folder {source}: allowed with a design file")
+            raise InputError(
+                f"--set is of no use with the results folder {source}: allowed with a design file"
+            )
         source = on_all(MPI.COMM_WORLD, lambda: api.load_design(source, arguments.overrides))
-    paths = api.export(source, arguments.out, arguments.format, mesh=arguments.mesh, ripple=arguments.ripple)
+    paths = api.export(
+        source, arguments.out, arguments.format, mesh=arguments.mesh, ripple=arguments.ripple
+    )
     _print(f"written {path}" for path in paths)
 
 
@@ -158,7 +189,8 @@ def _view(arguments: argparse.Namespace) -> None:
 
 
 def _warn() -> None:
-    """Warn of options of PETSc that a study, or a system without PETSc, has not used; a drive says it earlier."""
+    """Warn of options of PETSc that a study, or a system without PETSc, has not used; a drive says
+    it earlier."""
     from mpi4py import MPI
 
     from swgpar import log, petsc
@@ -176,8 +208,11 @@ def _print(lines: Iterable[str]) -> None:
             print(printable(line))
 
 
-def _begin(arguments: argparse.Namespace, system: System[Any, Any] | None = None, kind: str = "cases") -> None:
-    """Say what is saved when a signal ends the command. system : of the design of a run;  kind : counted without it"""
+def _begin(
+    arguments: argparse.Namespace, system: System[Any, Any] | None = None, kind: str = "cases"
+) -> None:
+    """Say what is saved when a signal ends the command. system : of the design of a run;  kind :
+    counted without it"""
     from mpi4py import MPI
 
     from swgpar import watch

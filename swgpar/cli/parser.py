@@ -100,7 +100,10 @@ REPORT_EXAMPLES = """example:
   swgpar report results/coarse
 """
 
-MESH_HELP = "mesh recipe: coarse, forces, medium, full, plane_coarse, plane, plane_fine, or the path of a file (TOML)"
+MESH_HELP = (
+    "mesh recipe: coarse, forces, medium, full, plane_coarse, plane, plane_fine, or the path of a "
+    "file (TOML)"
+)
 
 
 _Commands: TypeAlias = "argparse._SubParsersAction[_Parser]"
@@ -117,7 +120,8 @@ def parser() -> argparse.ArgumentParser:
     """Argument parser of all subcommands."""
     top = _Parser(
         prog="swgpar",
-        description="Contact finite-element analysis of strain wave gears, and models of the gear trains around them.",
+        description="Contact finite-element analysis of strain wave gears, and models of the gear "
+        "trains around them.",
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -144,21 +148,33 @@ def parser() -> argparse.ArgumentParser:
         help="vtu for ParaView, msh for Gmsh, inp for Abaqus and CalculiX (default: all)",
     )
     check = _add_command(
-        commands, "check", "Check a design and print its derived geometry, and what a run will need.", CHECK_EXAMPLES
+        commands,
+        "check",
+        "Check a design and print its derived geometry, and what a run will need.",
+        CHECK_EXAMPLES,
     )
     _add_design(check)
-    check.add_argument("--mesh", help=f"{MESH_HELP}: prints elements, unknowns, memory and time to expect")
+    check.add_argument(
+        "--mesh", help=f"{MESH_HELP}: prints elements, unknowns, memory and time to expect"
+    )
     report = _add_command(
-        commands, "report", "Draw the figures of a finished run again, and write its report.html.", REPORT_EXAMPLES
+        commands,
+        "report",
+        "Draw the figures of a finished run again, and write its report.html.",
+        REPORT_EXAMPLES,
     )
     report.add_argument("out", help="results folder")
     _add_export(commands)
-    view = _add_command(commands, "view", "Show the deformed drive of a finished run in a window.", VIEW_EXAMPLES)
+    view = _add_command(
+        commands, "view", "Show the deformed drive of a finished run in a window.", VIEW_EXAMPLES
+    )
     view.add_argument("out", help="results folder")
     return top
 
 
-def _add_command(commands: _Commands, name: str, text: str, examples: str) -> argparse.ArgumentParser:
+def _add_command(
+    commands: _Commands, name: str, text: str, examples: str
+) -> argparse.ArgumentParser:
     return commands.add_parser(
         name,
         help=text.partition(".")[0].lower(),
@@ -187,24 +203,45 @@ def _add_set(command: argparse.ArgumentParser) -> None:
 def _add_new(commands: _Commands) -> None:
     new = _add_command(commands, "new", NEW, NEW_EXAMPLES)
     new.add_argument("design", help="design file to write (TOML)")
-    new.add_argument("--ratio", type=float, required=True, help="speed of the wave generator over that of the output")
+    new.add_argument(
+        "--ratio",
+        type=float,
+        required=True,
+        help="speed of the wave generator over that of the output",
+    )
     size = new.add_mutually_exclusive_group(required=True)
-    size.add_argument("--diameter", type=float, metavar="D", help="pitch diameter of the flexible spline, mm")
-    size.add_argument("--bore", type=float, metavar="D", help="inner diameter of the flexible spline, mm")
+    size.add_argument(
+        "--diameter", type=float, metavar="D", help="pitch diameter of the flexible spline, mm"
+    )
+    size.add_argument(
+        "--bore", type=float, metavar="D", help="inner diameter of the flexible spline, mm"
+    )
     new.add_argument("--torque", type=float, required=True, metavar="T", help="on the output, N·m")
     for name, choices, text in (
         ("--profile", ("quadruple_arc", "double_arc", "involute"), "profile of the teeth"),
         ("--layout", ("ring_fixed", "spline_fixed"), "fixed member"),
-        ("--model", ("cup", "plane", "pancake"), "cup drive, toothed section in plane stress, two ring gears"),
-        ("--shape", ("cup", "short", "hat"), "flexible spline: a cup, one of half the length, a silk hat"),
+        (
+            "--model",
+            ("cup", "plane", "pancake"),
+            "cup drive, toothed section in plane stress, two ring gears",
+        ),
+        (
+            "--shape",
+            ("cup", "short", "hat"),
+            "flexible spline: a cup, one of half the length, a silk hat",
+        ),
     ):
-        new.add_argument(name, choices=choices, default=choices[0], help=f"{text} (default: {choices[0]})")
+        new.add_argument(
+            name, choices=choices, default=choices[0], help=f"{text} (default: {choices[0]})"
+        )
     new.add_argument(
         "--cam",
         choices=("elliptical", "parabolic", "simplified", "four_roller", "harmonic"),
         help="cam of the wave generator (default: elliptical, with three lobes harmonic)",
     )
-    new.add_argument("--lobes", type=int, choices=(2, 3), default=2, help="lobes of the cam (default: 2)")
+    new.add_argument(
+        "--lobes", type=int, choices=(2, 3), default=2, help="lobes of the cam (default: 2)"
+    )
     new.add_argument("--overwrite", action="store_true", help="replace a file that exists")
 
 
@@ -218,12 +255,16 @@ def _add_export(commands: _Commands) -> None:
         nargs="+",
         required=True,
         choices=["step", "dxf", "inp", "vtkhdf", "xdmf", "parquet", "lookup", "fmu"],
-        help="step: solids of gears and cam; dxf: their outlines; inp: job of CalculiX; vtkhdf, xdmf: fields with all "
-        "teeth; parquet: tables; lookup: torsional spring and ripple for multibody programs; fmu: the same as an FMU "
+        help="step: solids of gears and cam; dxf: their outlines; inp: job of CalculiX; vtkhdf, "
+        "xdmf: fields with all "
+        "teeth; parquet: tables; lookup: torsional spring and ripple for multibody programs; fmu: "
+        "the same as an FMU "
         "(FMI 2.0)",
     )
     export.add_argument(
-        "--ripple", metavar="FOLDER", help="for fmu: results of the same drive with steps.samples or [deviations]"
+        "--ripple",
+        metavar="FOLDER",
+        help="for fmu: results of the same drive with steps.samples or [deviations]",
     )
     export.add_argument("--mesh", help=f"of the format inp; {MESH_HELP}")
 
@@ -232,26 +273,34 @@ def _add_run(commands: _Commands) -> None:
     run = _add_command(commands, "run", RUN, RUN_EXAMPLES)
     _add_design(run)
     run.add_argument(
-        "--mesh", help=f"{MESH_HELP} (default: forces, for a plane model plane_coarse); gear trains have none"
+        "--mesh",
+        help=f"{MESH_HELP} (default: forces, for a plane model plane_coarse); gear trains have "
+        f"none",
     )
     run.add_argument(
         "--accuracy",
         type=float,
         metavar="A",
-        help="refine the mesh and the windows until the estimated error of the largest tensile stress at the teeth "
-        "under load is at most A (0.02: 2 %%; 0.001 to 0.2). Without other values in the design, one period is "
-        "computed in 2 (from 0.04), 4, 8 or 16 angles. The mesh has at most 1,500,000 elements in the plane, "
+        help="refine the mesh and the windows until the estimated error of the largest tensile "
+        "stress at the teeth "
+        "under load is at most A (0.02: 2 %%; 0.001 to 0.2). Without other values in the design, "
+        "one period is "
+        "computed in 2 (from 0.04), 4, 8 or 16 angles. The mesh has at most 1,500,000 elements in "
+        "the plane, "
         "700,000 in space",
     )
     run.add_argument(
         "--plain",
         action="store_true",
-        help="compute all that the design asks for: without this, a drive without friction leaves out the "
+        help="compute all that the design asks for: without this, a drive without friction leaves "
+        "out the "
         "assembly step by step and further periods, where the design does not set their keys",
     )
     run.add_argument("--out", required=True, help="results folder")
     run.add_argument("--restart", action="store_true", help="continue from the checkpoint in --out")
-    run.add_argument("--overwrite", action="store_true", help="replace results that --out already holds")
+    run.add_argument(
+        "--overwrite", action="store_true", help="replace results that --out already holds"
+    )
 
 
 def _add_study(commands: _Commands) -> None:
@@ -259,7 +308,9 @@ def _add_study(commands: _Commands) -> None:
     study.add_argument("study", help="study file (TOML)")
     study.add_argument("--out", required=True, help="folder of the study")
     study.add_argument("--restart", action="store_true", help="continue the study in --out")
-    study.add_argument("--overwrite", action="store_true", help="replace a study that --out already holds")
+    study.add_argument(
+        "--overwrite", action="store_true", help="replace a study that --out already holds"
+    )
 
 
 def _add_optimise(commands: _Commands) -> None:
@@ -267,4 +318,6 @@ def _add_optimise(commands: _Commands) -> None:
     optimise.add_argument("optimisation", help="optimisation file (TOML)")
     optimise.add_argument("--out", required=True, help="folder of the results")
     optimise.add_argument("--restart", action="store_true", help="continue the search in --out")
-    optimise.add_argument("--overwrite", action="store_true", help="replace a search that --out already holds")
+    optimise.add_argument(
+        "--overwrite", action="store_true", help="replace a search that --out already holds"
+    )

@@ -1,4 +1,5 @@
-"""Boundary conditions of a part that is cut out of the drive: displacements and forces that are known.
+"""Boundary conditions of a part that is cut out of the drive: displacements and forces that are
+known.
 
 Both meet the protocol `ForceTerm`.
 """

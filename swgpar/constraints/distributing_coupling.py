@@ -1,12 +1,14 @@
-"""Distributing coupling on the bore (in the plane on the inner surface) or on the ring gear's outer surface.
+"""Distributing coupling on the bore (in the plane on the inner surface) or on the ring gear's outer
+surface.
 
 The coupling ties six quantities of a surface to a reference point without stiffening it: the mean
-displacement, the mean tilts and the mean rotation about z of its nodes, weighted by their area. The rotation
+displacement, the mean tilts and the mean rotation about z of its nodes, weighted by their area. The
+rotation
 
     phi = atan2(sum w (X x dx)_z, sum w (X . dx)),   X, dx taken from the weighted means,
 
-is the best-fitting rigid rotation in the plane; the torque T enters through its potential -T phi, so that
-it is work-conjugate to phi at any rotation (section 3.4.5, "Load application").
+is the best-fitting rigid rotation in the plane; the torque T enters through its potential -T phi,
+so that it is work-conjugate to phi at any rotation (section 3.4.5, "Load application").
 """
 
 from __future__ import annotations
@@ -52,7 +54,8 @@ class Coupling(Protocol):
 
 
 def node_weights(coords: np.ndarray, nodes: np.ndarray, ccw: np.ndarray) -> np.ndarray:
-    """Tributary area of the surface's nodes of one sector (arc length times axial share), closed over the sector.
+    """Tributary area of the surface's nodes of one sector (arc length times axial share), closed
+    over the sector.
 
     coords : (n, 3) mm, sector 0;  nodes : (k,) local;  ccw : local nodes that the next sector owns
     """
@@ -82,7 +85,8 @@ class NodeMeans:
     nodes : (n,) local nodes that this rank owns, each once;  undeformed : (n, 3) mm, their places
     weight : (n,) of the nodes in the means, of any sum
     images : the model is a part of the drive; then only z and the rotation can be non-zero
-    fixed_axis : the rotation is that about the drive's axis, and not about the mean place of the nodes
+    fixed_axis : the rotation is that about the drive's axis, and not about the mean place of the
+    nodes
 
     Attributes
     ----------
@@ -116,17 +120,22 @@ class NodeMeans:
         return self.comm.allreduce(local, op=MPI.SUM)
 
     def evaluate(self, u: np.ndarray) -> MeanMotion:
-        """Coupled quantities (mm, mm, mm, rad, rad, rad) and their gradients at displacement u (n_local, 3)."""
+        """Coupled quantities (mm, mm, mm, rad, rad, rad) and their gradients at displacement u
+        (n_local, 3)."""
         v, w, arm = u[self.nodes], self.weight, self.arm
         mean = self.sum(w[:, None] * v)
         if self.fixed_axis:
             mean[:2] = 0.0
         x, y = arm[:, 0] + v[:, 0] - mean[0], arm[:, 1] + v[:, 1] - mean[1]
         sine, cosine = self.sum(
-            np.column_stack([w * (arm[:, 0] * y - arm[:, 1] * x), w * (arm[:, 0] * x + arm[:, 1] * y)])
+            np.column_stack(
+                [w * (arm[:, 0] * y - arm[:, 1] * x), w * (arm[:, 0] * x + arm[:, 1] * y)]
+            )
         )
         tilt_x, tilt_y = (
-            self.sum(np.column_stack([w * arm[:, 1] * v[:, 2], -w * arm[:, 0] * v[:, 2]])) * 2.0 / self.radius2
+            self.sum(np.column_stack([w * arm[:, 1] * v[:, 2], -w * arm[:, 0] * v[:, 2]]))
+            * 2.0
+            / self.radius2
         )
         value = np.array([*mean, tilt_x, tilt_y, np.arctan2(sine, cosine)])
         gradient = np.zeros((N_COUPLED, len(w), 3))
@@ -152,7 +161,12 @@ class DistributingCoupling(NodeMeans):
     """
 
     def __init__(
-        self, partition: Partition, body: BodyElements, surface: str, images: bool, centred: bool = True
+        self,
+        partition: Partition,
+        body: BodyElements,
+        surface: str,
+        images: bool,
+        centred: bool = True,
     ) -> None:
         mesh = body.layout.mesh
         nodes = mesh.node_sets[surface]
@@ -170,20 +184,24 @@ class DistributingCoupling(NodeMeans):
         )
         whole = not images
         held = whole and centred
-        self.active = np.array([held, held, self.solid, whole and self.solid, whole and self.solid, True])
+        self.active = np.array(
+            [held, held, self.solid, whole and self.solid, whole and self.solid, True]
+        )
 
     def supports(self) -> np.ndarray:
         """Unit directions (n, n_local, 3) on single nodes that support the body rigidly.
 
-        They ground the structure inside a factorisation and are taken out again exactly; see `BorderedSystem`. A solid
-        body needs six of them, axial and tangential at three nodes. A plane body needs the tangential ones only. The
-        model of a part of the drive needs those of one node.
+        They ground the structure inside a factorisation and are taken out again exactly; see
+        `BorderedSystem`. A solid body needs six of them, axial and tangential at three nodes. A
+        plane body needs the tangential ones only. The model of a part of the drive needs those of
+        one node.
         """
         wanted_angles = (0.0,) if self.images else (0.0, 2.0 * np.pi / 3.0, 4.0 * np.pi / 3.0)
         angle = np.mod(np.arctan2(-self.arm[:, 0], self.arm[:, 1]), 2.0 * np.pi)
         directions = []
         for wanted in wanted_angles:
-            # the first node at the smallest angular distance, by rank: exactly one node in the whole model
+            # the first node at the smallest angular distance, by rank: exactly one node in the
+            # whole model
             distance = np.abs(np.mod(angle - wanted + np.pi, 2.0 * np.pi) - np.pi)
             best = (
                 (float(np.round(distance.min(), 9)), self.comm.rank, int(distance.argmin()))
@@ -202,7 +220,8 @@ class DistributingCoupling(NodeMeans):
 
 
 class RadialGuide:
-    """Rigid ring in which the ring gear rotates as the output: its outer nodes stay on their circle (section 5.8).
+    """Rigid ring in which the ring gear rotates as the output: its outer nodes stay on their circle
+    (section 5.8).
 
     Stiff radial springs, as hard as contact; the nodes are free along the circle and the axis.
 
@@ -217,7 +236,8 @@ class RadialGuide:
         self.stiffness = penalty * area * coupling.weight
 
     def _radial(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Radii (n,) mm, outward normals (n, 2) and forces along them (n,) N at displacement u (n_local, 3)."""
+        """Radii (n,) mm, outward normals (n, 2) and forces along them (n,) N at displacement u
+        (n_local, 3)."""
         x = self.position + u[self.nodes, :2]
         r = np.hypot(*x.T)
         return r, x / r[:, None], self.stiffness * (r - self.radius)

@@ -1,18 +1,27 @@
 """The outer race of a bearing rotates with the flexible spline, and stays in its plane.
 
-Contact and balls are frictionless: nothing else keeps the race from rotating in the spline. Friction would take it
-along with the spline. The condition carries no torque, because the race is the same all round.
+Contact and balls are frictionless: nothing else keeps the race from rotating in the spline.
+Friction would take it along with the spline. The condition carries no torque, because the race is
+the same all round.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from swgpar.constraints.distributing_coupling import N_COUPLED, ROTATION, DistributingCoupling, MeanMotion, NodeMeans, Z
+from swgpar.constraints.distributing_coupling import (
+    N_COUPLED,
+    ROTATION,
+    DistributingCoupling,
+    MeanMotion,
+    NodeMeans,
+    Z,
+)
 
 
 class RaceCoupling:
-    """Mean rotation of the race relative to that of the spline and, in space, its mean displacement along z.
+    """Mean rotation of the race relative to that of the spline and, in space, its mean displacement
+    along z.
 
     race : coupling of the race's outer surface;  spline : coupling of the flexible spline
     """
@@ -24,7 +33,8 @@ class RaceCoupling:
         self.active[ROTATION], self.active[Z] = True, race.solid
 
     def evaluate(self, u: np.ndarray) -> MeanMotion:
-        """Relative rotation (rad) and displacement (mm), and their gradients; the other quantities are not used."""
+        """Relative rotation (rad) and displacement (mm), and their gradients; the other quantities
+        are not used."""
         race, spline = self.race.evaluate(u), self.spline.evaluate(u)
         value, against = race.value.copy(), np.zeros_like(spline.gradient)
         value[ROTATION] -= spline.value[ROTATION]
@@ -34,4 +44,6 @@ class RaceCoupling:
     def supports(self) -> np.ndarray:
         """Directions that support the race."""
         directions = self.race.supports()
-        return np.concatenate([directions, np.zeros((len(directions), len(self.spline.nodes), 3))], axis=1)
+        return np.concatenate(
+            [directions, np.zeros((len(directions), len(self.spline.nodes), 3))], axis=1
+        )

@@ -1,12 +1,15 @@
-"""Closed end or flange that is clamped or bolted to a rigid flange, which is the output or stands still.
+"""Closed end or flange that is clamped or bolted to a rigid flange, which is the output or stands
+still.
 
-Both faces of the attached area move as one rigid body about the drive's axis. They are bedded on it with the stiffness
-of a contact, per area: no stiffer than what the elements resolve, and no number of the result. The energy is
+Both faces of the attached area move as one rigid body about the drive's axis. They are bedded on it
+with the stiffness of a contact, per area: no stiffer than what the elements resolve, and no number
+of the result. The energy is
 
     E = k / 2 sum a |x - R(phi) X - offset|^2,   phi = atan2(sum a (X x x)_z, sum a (X . x)),
 
-with the areas a of the nodes. phi makes E the least: the bedding is free of moment, and a torque with the potential
--T phi is work-conjugate to phi. The tangent is k a on the nodes less one rank, k |sum a R X . x| grad phi grad phi^T.
+with the areas a of the nodes. phi makes E the least: the bedding is free of moment, and a torque
+with the potential -T phi is work-conjugate to phi. The tangent is k a on the nodes less one rank, k
+|sum a R X . x| grad phi grad phi^T.
 """
 
 from __future__ import annotations
@@ -15,7 +18,16 @@ from collections.abc import Callable
 
 import numpy as np
 
-from swgpar.constraints.distributing_coupling import N_COUPLED, ROTATION, TILT_X, TILT_Y, NodeMeans, X, Y, Z
+from swgpar.constraints.distributing_coupling import (
+    N_COUPLED,
+    ROTATION,
+    TILT_X,
+    TILT_Y,
+    NodeMeans,
+    X,
+    Y,
+    Z,
+)
 from swgpar.fem.elements import BodyElements
 from swgpar.fem.partition import Partition
 from swgpar.geometry.rotation import rotated
@@ -37,7 +49,9 @@ def face_sides(mesh: SectorMesh, surface: str) -> np.ndarray:
     return np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2).max(axis=0)
 
 
-def area_shares(mesh: SectorMesh, surface: str, angle: float, inside: Inside, width: float) -> np.ndarray:
+def area_shares(
+    mesh: SectorMesh, surface: str, angle: float, inside: Inside, width: float
+) -> np.ndarray:
     """Areas (n_node,) mm² of the nodes on plane faces of a sector within the attached area.
 
     angle : rad, of the sector;  width : mm, of the attached area across its narrowest place
@@ -49,7 +63,10 @@ def area_shares(mesh: SectorMesh, surface: str, angle: float, inside: Inside, wi
     at_a, at_b = ((2.0 * np.arange(n) + 1.0) / n - 1.0 for n in counts)
     a, b = (v.ravel()[:, None] for v in np.meshgrid(at_a, at_b, indexing="ij"))
     shape = 0.25 * (1 + a * CORNERS[:, 0]) * (1 + b * CORNERS[:, 1])
-    along_a, along_b = 0.25 * CORNERS[:, 0] * (1 + b * CORNERS[:, 1]), 0.25 * CORNERS[:, 1] * (1 + a * CORNERS[:, 0])
+    along_a, along_b = (
+        0.25 * CORNERS[:, 0] * (1 + b * CORNERS[:, 1]),
+        0.25 * CORNERS[:, 1] * (1 + a * CORNERS[:, 0]),
+    )
     areas = np.zeros(len(mesh.coords))
     for face, points in zip(faces, corners, strict=True):
         within = inside(shape @ points)
@@ -66,7 +83,8 @@ class RigidAttachment(NodeMeans):
     ----------
     partition : ownership
     body : elements of the body on this rank;  surface : name of its plane faces
-    inside : which points of them are attached;  width : mm, of the attached area across its narrowest place
+    inside : which points of them are attached;  width : mm, of the attached area across its
+    narrowest place
     penalty : MPa / mm;  images : the model holds half a turn
     """
 
@@ -85,7 +103,10 @@ class RigidAttachment(NodeMeans):
         sectors = np.arange(len(body.sectors))[body.owned]
         angles = layout.sector_angle(layout.first_tooth + body.sectors[body.owned])
         step = 2.0 * np.pi / mesh.n_sectors
-        around = [area_shares(mesh, surface, angle, inside, width) for angle in (*(angles[:1] - step), *angles)]
+        around = [
+            area_shares(mesh, surface, angle, inside, width)
+            for angle in (*(angles[:1] - step), *angles)
+        ]
         areas = np.array(around[1:]).reshape(len(sectors), len(mesh.coords))
         for row, before in zip(areas, around[:-1], strict=False):
             # nodes between two sectors belong to the second one, with the shares of both
@@ -132,6 +153,8 @@ class RigidAttachment(NodeMeans):
         """Vector B (n, 3) of the part -B B^T of the tangent: the flange rotates freely."""
         moved = self.undeformed[:, :2] + u[self.nodes, :2]
         x, y = self.undeformed[:, :2].T
-        parts = np.column_stack([x * moved[:, 1] - y * moved[:, 0], x * moved[:, 0] + y * moved[:, 1]])
+        parts = np.column_stack(
+            [x * moved[:, 1] - y * moved[:, 0], x * moved[:, 0] + y * moved[:, 1]]
+        )
         reach = np.hypot(*self.sum(self.stiffness[:, None] * parts))
         return np.sqrt(reach) * self.evaluate(u).gradient[ROTATION]

@@ -1,11 +1,18 @@
-"""Supports and load of the drive: couplings, guide, and the grounding that a factorisation needs."""
+"""Supports and load of the drive: couplings, guide, and the grounding that a factorisation
+needs."""
 
 from __future__ import annotations
 
 import numpy as np
 from mpi4py import MPI
 
-from swgpar.constraints.distributing_coupling import N_COUPLED, ROTATION, Coupling, NodeMeans, RadialGuide
+from swgpar.constraints.distributing_coupling import (
+    N_COUPLED,
+    ROTATION,
+    Coupling,
+    NodeMeans,
+    RadialGuide,
+)
 from swgpar.constraints.race_coupling import RaceCoupling
 from swgpar.constraints.rigid_attachment import RigidAttachment
 from swgpar.fem.partition import Partition
@@ -51,26 +58,29 @@ class FloatingRing:
         return float(self.coupling.evaluate(u).value[ROTATION])
 
     def add_ring_moment(self, u: np.ndarray, moment: float, residual: np.ndarray) -> None:
-        """Add this rank's part of a moment (N mm) on that rotation to residual (n_local, 3) N; collective."""
+        """Add this rank's part of a moment (N mm) on that rotation to residual (n_local, 3) N;
+        collective."""
         total = self.comm.allreduce(moment, op=MPI.SUM)
         residual[self.coupling.nodes] += total * self.coupling.evaluate(u).gradient[ROTATION]
 
 
 class Supports:
-    """The couplings of all bodies that float: of the gears by their indices, then of a bearing's outer race.
+    """The couplings of all bodies that float: of the gears by their indices, then of a bearing's
+    outer race.
 
     Parameters
     ----------
     partition : ownership
-    couplings : six multipliers each, in this order at the end of the vector; none where contacts hold the body, no
+    couplings : six multipliers each, in this order at the end of the vector; none where contacts
+    hold the body, no
         second one where the ring gear is clamped
     output : index of the coupling of the output
     guide : around the ring gear, or None
     scale : unit of the multipliers and of the grounding: E times the module, N/mm
     share : modelled share of the drive: 1, or 1 over the number of lobes
     race : coupling of the outer race, without a bearing None
-    spline_ratio : rotation of the flexible spline over that of the output, where contacts alone hold it unless the load
-    state says otherwise; None where its coupling supports it
+    spline_ratio : rotation of the flexible spline over that of the output, where contacts alone
+    hold it unless the load state says otherwise; None where its coupling supports it
 
     Attributes
     ----------
@@ -113,7 +123,8 @@ class Supports:
         self._ground_vectors.append(vector)
 
     def grounding(self, u: np.ndarray) -> list[PETSc.Vec]:
-        """Vectors B of what the matrix holds too much at displacement u (n_local, 3) mm: B B^T; collective.
+        """Vectors B of what the matrix holds too much at displacement u (n_local, 3) mm: B B^T;
+        collective.
 
         One for each supported direction, and one for the free rotation of each rigid attachment.
         """
@@ -136,7 +147,9 @@ class Supports:
 
     def prescribed(self, state: LoadState) -> list[tuple[int, int]]:
         """Pairs (coupling, coupled quantity) that the load state prescribes."""
-        active = [(i, int(k)) for i, c in enumerate(self.couplings) for k in np.flatnonzero(c.active)]
+        active = [
+            (i, int(k)) for i, c in enumerate(self.couplings) for k in np.flatnonzero(c.active)
+        ]
         if state.control == "torque":
             active.remove((self.output_gear, ROTATION))
         if self.spline_ratio is not None and not state.spline_held:
@@ -157,7 +170,9 @@ class Supports:
         """Rotation (rad) of the output at displacement u (n_local, 3) mm; collective."""
         return float(self.output.evaluate(u).value[ROTATION])
 
-    def add_forces(self, u: np.ndarray, state: LoadState, multiplier: np.ndarray, residual: np.ndarray) -> np.ndarray:
+    def add_forces(
+        self, u: np.ndarray, state: LoadState, multiplier: np.ndarray, residual: np.ndarray
+    ) -> np.ndarray:
         """Add forces of multipliers, load and guide to residual (n_local, 3) N.
 
         Returns the residual's rows (n_multipliers,) of the multipliers, N.
@@ -176,10 +191,14 @@ class Supports:
             target[SPLINE_COUPLING, ROTATION] += self.spline_ratio * state.output_rotation
         for i, k in self.prescribed(state):
             gradient = motion[i].gradient[k]
-            residual[self.couplings[i].nodes] += self.scale * multiplier[N_COUPLED * i + k] * gradient
+            residual[self.couplings[i].nodes] += (
+                self.scale * multiplier[N_COUPLED * i + k] * gradient
+            )
             rows[N_COUPLED * i + k] = self.scale * (motion[i].value[k] - target[i, k])
         if state.control == "torque":
-            residual[self.output.nodes] -= self.share * state.torque * motion[self.output_gear].gradient[ROTATION]
+            residual[self.output.nodes] -= (
+                self.share * state.torque * motion[self.output_gear].gradient[ROTATION]
+            )
         return rows
 
     def add_blocks(self, u: np.ndarray, rows: BlockRows) -> None:
@@ -192,17 +211,21 @@ class Supports:
             add_diagonal(rows, self.partition, attachment.nodes, attachment.blocks())
 
     def border(self, u: np.ndarray, state: LoadState) -> tuple[list[PETSc.Vec], list[int]]:
-        """Gradients of all prescribed quantities, with the rows of their multipliers; a loaded rotation is last."""
+        """Gradients of all prescribed quantities, with the rows of their multipliers; a loaded
+        rotation is last."""
         prescribed = self.prescribed(state)
         if state.control == "torque":
             prescribed.append((self.output_gear, ROTATION))
         motion, border = [coupling.evaluate(u) for coupling in self.couplings], []
         for i, k in prescribed:
             vector = create_vector(self.partition)
-            vector.array.reshape(-1, 3)[self.couplings[i].nodes] = self.scale * motion[i].gradient[k]
+            vector.array.reshape(-1, 3)[self.couplings[i].nodes] = (
+                self.scale * motion[i].gradient[k]
+            )
             border.append(vector)
         return border, [N_COUPLED * i + k for i, k in prescribed]
 
     def reactions(self, multiplier: np.ndarray) -> np.ndarray:
-        """Torques (N mm) about z of the whole drive that support the coupled gears, from the multipliers."""
+        """Torques (N mm) about z of the whole drive that support the coupled gears, from the
+        multipliers."""
         return -self.scale * multiplier[ROTATION::N_COUPLED][: self._gears] / self.share

@@ -1,9 +1,11 @@
-"""Balls between the rigid inner race on the cam and the elastic outer race; Hertz's springs, see `point_contact`.
+"""Balls between the rigid inner race on the cam and the elastic outer race; Hertz's springs, see
+`point_contact`.
 
-A ball lies on the line through its centre along the normals of the grooves. Where this line meets the outer race's
-inner surface, nu is the height of the surface above its place when the race's outer surface is on the cam's curve. The
-ball's approach is delta = max(0, -nu - clearance), its energy 2/5 K delta^2.5. The forces on the race and the
-tangent are the derivatives of that energy, so that the forces are normal to the race's surface.
+A ball lies on the line through its centre along the normals of the grooves. Where this line meets
+the outer race's inner surface, nu is the height of the surface above its place when the race's
+outer surface is on the cam's curve. The ball's approach is delta = max(0, -nu - clearance), its
+energy 2/5 K delta^2.5. The forces on the race and the tangent are the derivatives of that energy,
+so that the forces are normal to the race's surface.
 """
 
 from __future__ import annotations
@@ -23,24 +25,27 @@ from swgpar.kernel import add_face_blocks
 from swgpar.load.load_states import LoadState
 
 TIE = 1e-7
-"""Share of a piece of the race by which its ends are shifted, so that a ball on a node belongs to one piece only."""
+"""Share of a piece of the race by which its ends are shifted, so that a ball on a node belongs to
+one piece only."""
 
 POINTS, KERNEL_MOMENT = 8, 0.2
 """Gauss points over the reach; second moment of its weight 3/4 (1 - s²), -1 <= s <= 1."""
 
 LARGEST_REACH = 0.35
-"""Largest reach over a sector: a rank sees one sector beyond its own, in which windows of two balls' reach must end."""
+"""Largest reach over a sector: a rank sees one sector beyond its own, in which windows of two
+balls' reach must end."""
 
 BallLines = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]]
-"""Gives centres (n, 2) mm, groove normals (n, 2) in the cam's frame and curvatures (n,) 1/mm of the centres' curve at
-angles (n,) rad from the major axis."""
+"""Gives centres (n, 2) mm, groove normals (n, 2) in the cam's frame and curvatures (n,) 1/mm of the
+centres' curve at angles (n,) rad from the major axis."""
 
 
 @dataclass(frozen=True)
 class BallSet:
     """The balls of a bearing.
 
-    number : of balls;  diameter, clearance : mm;  first_angle : rad, from +y, of ball 0 before the rotation
+    number : of balls;  diameter, clearance : mm;  first_angle : rad, from +y, of ball 0 before the
+    rotation
     cage_speed : of the cage over that of the wave generator
     lines : places of the balls;  spring : of a ball
     """
@@ -54,7 +59,8 @@ class BallSet:
     spring: BallSpring
 
     def angles(self, rotation: float) -> np.ndarray:
-        """Angles (number,) rad of all balls from +y, counter-clockwise, at a rotation (rad) of the wave generator."""
+        """Angles (number,) rad of all balls from +y, counter-clockwise, at a rotation (rad) of the
+        wave generator."""
         spacing = 2.0 * np.pi / self.number
         return self.first_angle + self.cage_speed * rotation + spacing * np.arange(self.number)
 
@@ -63,9 +69,11 @@ class BallSet:
 class _Touch:
     """Balls on the race as this rank sees it: n of them, each on m nodes around.
 
-    ball, first : (n,) indices of the balls, and of the first of their nodes;  owned : (n,) bool, of this rank
+    ball, first : (n,) indices of the balls, and of the first of their nodes;  owned : (n,) bool, of
+    this rank
     approach : (n,) mm, negative with a gap
-    gradient : (n, m, 2) of nu by the nodes, in the plane;  place_gradient : (n, m, 2) of the ball's place phi
+    gradient : (n, m, 2) of nu by the nodes, in the plane;  place_gradient : (n, m, 2) of the ball's
+    place phi
     bend : (n, m, 2) of the rise of nu by phi;  curvature : (n,) mm, of nu by phi twice
     """
 
@@ -82,8 +90,9 @@ class _Touch:
 class BallContact:
     """All balls on the inner surface of the outer race; meets the protocol `Contact`.
 
-    Hertz's approach includes what the surface yields right below the ball. So the race carries the force like a beam,
-    spread over a `reach` around the ball, on the smooth curve through its nodes (`smooth_curve`).
+    Hertz's approach includes what the surface yields right below the ball. So the race carries the
+    force like a beam, spread over a `reach` around the ball, on the smooth curve through its nodes
+    (`smooth_curve`).
 
     Parameters
     ----------
@@ -99,7 +108,13 @@ class BallContact:
     """
 
     def __init__(
-        self, body: BodyElements, balls: BallSet, *, groove: np.ndarray, spread: np.ndarray, reach: float
+        self,
+        body: BodyElements,
+        balls: BallSet,
+        *,
+        groove: np.ndarray,
+        spread: np.ndarray,
+        reach: float,
     ) -> None:
         self.balls, self.spread, self.reach = balls, spread, reach
         n, n_sectors = len(groove) - 1, len(body.sectors)
@@ -120,10 +135,14 @@ class BallContact:
         weight = weight * (1.0 - point**2)
         self.kernel_weight, self.kernel_angle = weight / weight.sum(), point * reach / radius
         pieces = np.arange(max(len(column) - 3, 0))[:, None] + np.arange(NODES)
-        self.polynomials = smooth_curve(np.einsum("fnzi,z->fni", self.coords[pieces], spread)[..., :2])
+        self.polynomials = smooth_curve(
+            np.einsum("fnzi,z->fni", self.coords[pieces], spread)[..., :2]
+        )
         span = 2.0 * reach / radius / np.diff(at).min()
         self.n_nodes = min(int(np.ceil(span)) + NODES, len(column))
-        windows = np.arange(len(column) - self.n_nodes + 1 if n_sectors else 0)[:, None] + np.arange(self.n_nodes)
+        windows = np.arange(len(column) - self.n_nodes + 1 if n_sectors else 0)[
+            :, None
+        ] + np.arange(self.n_nodes)
         self.windows = self.conn[windows].reshape(len(windows), self.n_nodes * len(spread))
         self.touch: _Touch | None = None
 
@@ -185,18 +204,24 @@ class BallContact:
         value, rate, second = self._shape_functions(place)
         along_rate = np.sum(rate * tau, axis=1)
         slope = np.sum(rate * nu, axis=1) / along_rate
-        # the mean over the reach lies inside of the race's surface, which is curved as the groove is
+        # the mean over the reach lies inside of the race's surface, which is curved as the groove
+        # is
         inner = curvature[ball] / (1.0 + 0.5 * curvature[ball] * self.balls.diameter)
         surface = np.sum(value * nu, axis=1) + 0.5 * inner * self.reach**2 * KERNEL_MOMENT
         first = np.minimum((value != 0.0).argmax(axis=1), len(self.angle) - self.n_nodes)
         window = first[:, None] + np.arange(self.n_nodes)
-        value, rate = (np.take_along_axis(weights, window, axis=1)[..., None] for weights in (value, rate))
+        value, rate = (
+            np.take_along_axis(weights, window, axis=1)[..., None] for weights in (value, rate)
+        )
         tilted = (n - slope[:, None] * t)[:, None]
         return _Touch(
             ball=ball,
             first=first,
             owned=(piece >= self.own_range[0]) & (piece < self.own_range[1]),
-            approach=0.5 * self.balls.diameter - surface - self.balls.clearance - state.cam_clearance,
+            approach=0.5 * self.balls.diameter
+            - surface
+            - self.balls.clearance
+            - state.cam_clearance,
             gradient=value * tilted,
             place_gradient=-(value / along_rate[:, None, None]) * t[:, None],
             bend=rate * tilted,
@@ -206,11 +231,13 @@ class BallContact:
     def _crossed(self, tau: np.ndarray, height: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Balls (n,) and the pieces (n,) of the race between two nodes that their lines cross.
 
-        tau, height : (n_ball, n_node) mm, of the nodes across the lines, and along them from the axis
+        tau, height : (n_ball, n_node) mm, of the nodes across the lines, and along them from the
+        axis
         """
         shift = TIE * np.diff(tau, axis=1)
         crossed = (tau[:, :-1] <= shift) & (tau[:, 1:] > shift) & (height[:, 1:] > 0.0)
-        # without neighbours every ball is this rank's; with them those that reach its nodes come along
+        # without neighbours every ball is this rank's; with them those that reach its nodes come
+        # along
         more = 0 if self.alone else self.n_nodes // 2 + 1
         outside = np.ones(crossed.shape[1], dtype=bool)
         outside[max(self.own_range[0] - more, 0) : self.own_range[1] + more] = False
@@ -218,14 +245,19 @@ class BallContact:
         return np.nonzero(crossed)
 
     def _shape_functions(self, place: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Weights (n, n_node) of all nodes in the means around places (n,) rad, and their derivatives by the place."""
+        """Weights (n, n_node) of all nodes in the means around places (n,) rad, and their
+        derivatives by the place."""
         out = tuple(np.zeros((len(place), len(self.angle))) for _ in range(3))
         ball = np.arange(len(place))
         for weight, away in zip(self.kernel_weight, self.kernel_angle):
             at = place + away
-            piece = np.clip(np.searchsorted(self.angle, at, side="right") - 1, 1, len(self.angle) - 3)
+            piece = np.clip(
+                np.searchsorted(self.angle, at, side="right") - 1, 1, len(self.angle) - 3
+            )
             length = self.angle[piece + 1] - self.angle[piece]
-            at_place = shape_functions(self.polynomials[piece - 1], (at - self.angle[piece]) / length)
+            at_place = shape_functions(
+                self.polynomials[piece - 1], (at - self.angle[piece]) / length
+            )
             for order, (total, weights) in enumerate(zip(out, at_place)):
                 for k in range(NODES):
                     total[ball, piece - 1 + k] += weight * weights[:, k] / length**order
@@ -233,8 +265,13 @@ class BallContact:
 
     def _nodes(self, touch: _Touch, chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Local nodes and image flags (n, m n_z) of chosen balls."""
-        window, size = touch.first[chosen][:, None] + np.arange(self.n_nodes), self.n_nodes * len(self.spread)
-        conn, sixths = (values[window].reshape(len(chosen), size) for values in (self.conn, self.sixths))
+        window, size = (
+            touch.first[chosen][:, None] + np.arange(self.n_nodes),
+            self.n_nodes * len(self.spread),
+        )
+        conn, sixths = (
+            values[window].reshape(len(chosen), size) for values in (self.conn, self.sixths)
+        )
         return np.ascontiguousarray(conn), np.ascontiguousarray(sixths)
 
     def _add_forces(self, touch: _Touch, chosen: np.ndarray, residual: np.ndarray) -> None:
@@ -249,7 +286,11 @@ class BallContact:
         """The Hessian of the energy: F' grad grad^T - F Hessian of nu."""
         approach, k = touch.approach[chosen], self.balls.spring.stiffness
         force, rate = k * approach**1.5, 1.5 * k * np.sqrt(approach)
-        gradient, shift, bend = touch.gradient[chosen], touch.place_gradient[chosen], touch.bend[chosen]
+        gradient, shift, bend = (
+            touch.gradient[chosen],
+            touch.place_gradient[chosen],
+            touch.bend[chosen],
+        )
 
         def outer(a: np.ndarray, b: np.ndarray) -> np.ndarray:
             return np.einsum("nai,nbj->nabij", a, b)
@@ -262,14 +303,17 @@ class BallContact:
         n, m, n_z = len(chosen), self.n_nodes, len(self.spread)
         blocks = np.zeros((n, m, n_z, m, n_z, 3, 3))
         blocks[..., :2, :2] = np.einsum("nabij,y,z->naybzij", core, self.spread, self.spread)
-        add_face_blocks(conn, sixths, np.ascontiguousarray(blocks.reshape(n, m * n_z, m * n_z, 3, 3)), rows)
+        add_face_blocks(
+            conn, sixths, np.ascontiguousarray(blocks.reshape(n, m * n_z, m * n_z, 3, 3)), rows
+        )
 
     def owned_forces(self) -> np.ndarray:
         """Forces (n,) N of the balls of this rank in the last evaluation."""
         return self.balls.spring.force(self.owned_loads()[1])
 
     def owned_loads(self) -> tuple[np.ndarray, np.ndarray]:
-        """Indices (n,) of the balls of this rank in the last evaluation, and their approaches (n,) mm."""
+        """Indices (n,) of the balls of this rank in the last evaluation, and their approaches (n,)
+        mm."""
         if self.touch is None:
             return np.zeros(0, dtype=np.int64), np.zeros(0)
         return self.touch.ball[self.touch.owned], self.touch.approach[self.touch.owned]

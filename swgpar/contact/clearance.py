@@ -1,4 +1,5 @@
-"""Distance of the flanks that are to carry the load, and the rotation of the output that closes it."""
+"""Distance of the flanks that are to carry the load, and the rotation of the output that closes
+it."""
 
 from __future__ import annotations
 
@@ -9,16 +10,20 @@ from swgpar.contact.contact import largest
 from swgpar.contact.flanks import FlankContact
 
 LOADED_SIDE = -1
-"""Side of the flanks that carry a load that rotates the flexible spline counter-clockwise against the ring gear."""
+"""Side of the flanks that carry a load that rotates the flexible spline counter-clockwise against
+the ring gear."""
 
 LARGEST_STEP, MEETING_DEPTH = 0.05, 2e-4
-"""Largest travel (modules) of the teeth in a Newton step under torque control, and the depth at which they meet."""
+"""Largest travel (modules) of the teeth in a Newton step under torque control, and the depth at
+which they meet."""
 
 
 class FlankClearance:
-    """Clearance of the loaded flanks in the last evaluation of their contact; all methods are collective.
+    """Clearance of the loaded flanks in the last evaluation of their contact; all methods are
+    collective.
 
-    They take the side of the flanks that carry: `LOADED_SIDE`, or the other one where the torque acts in reverse.
+    They take the side of the flanks that carry: `LOADED_SIDE`, or the other one where the torque
+    acts in reverse.
 
     Parameters
     ----------
@@ -26,7 +31,9 @@ class FlankClearance:
     module : mm;  outer_radius : mm, radius that no tooth is farther out than
     """
 
-    def __init__(self, flanks: FlankContact, comm: MPI.Comm, *, module: float, outer_radius: float) -> None:
+    def __init__(
+        self, flanks: FlankContact, comm: MPI.Comm, *, module: float, outer_radius: float
+    ) -> None:
         self.flanks = flanks
         self.comm = comm
         self.module = module
@@ -39,10 +46,15 @@ class FlankClearance:
     def largest_rotation(self, side: int) -> float:
         """Bound (rad) of the output's rotation in a Newton step under torque control.
 
-        Flanks close no faster than their radius times the rotation: up to contact there is no overshoot.
+        Flanks close no faster than their radius times the rotation: up to contact there is no
+        overshoot.
         """
         gap = self.gap(side) / self.module
-        return self.module * (min(gap, LARGEST_STEP) + MEETING_DEPTH if gap > 0.0 else LARGEST_STEP) / self.outer_radius
+        return (
+            self.module
+            * (min(gap, LARGEST_STEP) + MEETING_DEPTH if gap > 0.0 else LARGEST_STEP)
+            / self.outer_radius
+        )
 
     def closing_rotation(self, side: int) -> float:
         """Rotation (rad) that brings the flanks together.

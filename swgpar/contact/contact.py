@@ -23,7 +23,8 @@ class FacePressure:
     """Pressures of the last evaluation on faces that this rank owns.
 
     conn : (n_face, 4) local nodes, -1 without unknowns
-    shape : (n_q, 4) or (n_face, n_q, 4) shape functions;  weight : (n_face, n_q) mm²;  pressure : (n_face, n_q) MPa
+    shape : (n_q, 4) or (n_face, n_q, 4) shape functions;  weight : (n_face, n_q) mm²;  pressure :
+    (n_face, n_q) MPa
     """
 
     conn: np.ndarray
@@ -58,11 +59,13 @@ class Contact(ForceTerm, Protocol):
         """Add the forces of the faces that this rank owns, each face once over all ranks."""
 
     def active_sets(self) -> list[np.ndarray]:
-        """Arrays that tell which points or faces touch, and which slip, in the last evaluation on this rank."""
+        """Arrays that tell which points or faces touch, and which slip, in the last evaluation on
+        this rank."""
 
 
 class PenaltyContact(Contact, Protocol):
-    """A contact enforced by a penalty and multipliers: all but the balls, whose approach is elastic.
+    """A contact enforced by a penalty and multipliers: all but the balls, whose approach is
+    elastic.
 
     `reset` begins it anew at every contact search; all other methods may follow in any order.
 

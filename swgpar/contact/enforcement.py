@@ -1,8 +1,8 @@
 """Hard contact by augmented multipliers: the pressure is p = max(0, lambda - epsilon g).
 
-epsilon is a stiffness per area near E / h; lambda, one number per quadrature point, starts at zero in every
-increment and is set to p until the remaining penetration is below a tolerance, so that neither shows in the
-results. Friction acts at the same points (see friction.py).
+epsilon is a stiffness per area near E / h; lambda, one number per quadrature point, starts at zero
+in every increment and is set to p until the remaining penetration is below a tolerance, so that
+neither shows in the results. Friction acts at the same points (see friction.py).
 """
 
 from __future__ import annotations
@@ -43,7 +43,8 @@ class PressedPoints:
         self.multiplier = self.pressure.copy()
 
     def set_gap(self, gap: np.ndarray, reachable: np.ndarray) -> None:
-        """Set gaps (mm; negative is penetration) and their pressures; points out of reach (bool) do not touch."""
+        """Set gaps (mm; negative is penetration) and their pressures; points out of reach (bool) do
+        not touch."""
         self.gap = np.where(reachable, gap, np.inf)
         trial = np.maximum(0.0, self.multiplier - self.penalty * np.where(reachable, gap, 0.0))
         self.pressure = np.where(reachable, trial, 0.0)

@@ -1,9 +1,11 @@
-"""Deviating flanks in the contact: the teeth of the ring gear are moved, those of the flexible spline get heights.
+"""Deviating flanks in the contact: the teeth of the ring gear are moved, those of the flexible
+spline get heights.
 
-The stiffness of a tooth sector stays that of the ideal one. The flanks of the ring gear are the master curves of the
-contact: their points and tangents are moved. Heights of the flexible spline's flanks count along the normal there and
-turn with the tooth, as the heights of exact flanks over their facets do. A tilt of the ring gear changes along the
-width, which its curves cannot: it is counted as height of the facing flank.
+The stiffness of a tooth sector stays that of the ideal one. The flanks of the ring gear are the
+master curves of the contact: their points and tangents are moved. Heights of the flexible spline's
+flanks count along the normal there and turn with the tooth, as the heights of exact flanks over
+their facets do. A tilt of the ring gear changes along the width, which its curves cannot: it is
+counted as height of the facing flank.
 """
 
 from __future__ import annotations
@@ -27,9 +29,12 @@ SIDES = (1, -1)
 class FlankDeviations:
     """Tables of the deviations of all flanks, by tooth and side (`SIDES`).
 
-    heights : (teeth_fs, 2, n_face, n, n) mm, of the flexible spline's flanks at the samples of their faces
-    points, tangents : (teeth_rg, 2, n_s + 1, 2) mm and 1, of the ring gear's flanks in the frames of their teeth
-    leans : (teeth_rg, 2, n_face, n, n) mm, heights that stand for the tilt of the ring gear; None without tilt
+    heights : (teeth_fs, 2, n_face, n, n) mm, of the flexible spline's flanks at the samples of
+    their faces
+    points, tangents : (teeth_rg, 2, n_s + 1, 2) mm and 1, of the ring gear's flanks in the frames
+    of their teeth
+    leans : (teeth_rg, 2, n_face, n, n) mm, heights that stand for the tilt of the ring gear; None
+    without tilt
     """
 
     heights: np.ndarray
@@ -38,32 +43,42 @@ class FlankDeviations:
     leans: np.ndarray | None = None
 
     def rolled(self, teeth: int) -> FlankDeviations:
-        """The deviations after the teeth have been renamed: tooth k has those of tooth k + `teeth`."""
+        """The deviations after the teeth have been renamed: tooth k has those of tooth k +
+        `teeth`."""
         leans = None if self.leans is None else np.roll(self.leans, -teeth, axis=0)
-        tables = (np.roll(table, -teeth, axis=0) for table in (self.heights, self.points, self.tangents))
+        tables = (
+            np.roll(table, -teeth, axis=0) for table in (self.heights, self.points, self.tangents)
+        )
         return FlankDeviations(*tables, leans)
 
     def scaled(self, share: float) -> FlankDeviations:
         """A share of the deviations."""
         leans = None if self.leans is None else share * self.leans
-        return FlankDeviations(share * self.heights, share * self.points, share * self.tangents, leans)
+        return FlankDeviations(
+            share * self.heights, share * self.points, share * self.tangents, leans
+        )
 
     def periods(self) -> tuple[int, int]:
-        """Numbers of teeth of the flexible spline and of the ring gear after which the deviations repeat."""
+        """Numbers of teeth of the flexible spline and of the ring gear after which the deviations
+        repeat."""
         ring = [table for table in (self.points, self.tangents, self.leans) if table is not None]
         return _period([self.heights]), _period(ring)
 
     def slave_heights(self, pairs: Sequence[FlankPair], first_tooth: int) -> np.ndarray:
-        """Heights (n_pair * n_face, n, n) mm of the flexible spline's faces of pairs. first_tooth : of sector 0"""
+        """Heights (n_pair * n_face, n, n) mm of the flexible spline's faces of pairs. first_tooth :
+        of sector 0"""
         side = [SIDES.index(pair.side) for pair in pairs]
         tooth = np.array([first_tooth + pair.sector for pair in pairs]) % len(self.heights)
         heights = self.heights[tooth, side]
         if self.leans is not None:
-            heights = heights + self.leans[[pair.ring_tooth % len(self.leans) for pair in pairs], side]
+            heights = (
+                heights + self.leans[[pair.ring_tooth % len(self.leans) for pair in pairs], side]
+            )
         return heights.reshape(-1, *heights.shape[2:])
 
     def master_shifts(self, pairs: Sequence[FlankPair]) -> tuple[np.ndarray, np.ndarray]:
-        """Shifts of points and changes of tangents (n_pair, n_s + 1, 2) of the ring gear's flanks of pairs."""
+        """Shifts of points and changes of tangents (n_pair, n_s + 1, 2) of the ring gear's flanks
+        of pairs."""
         side = [SIDES.index(-pair.side) for pair in pairs]
         tooth = [pair.ring_tooth % len(self.points) for pair in pairs]
         return self.points[tooth, side], self.tangents[tooth, side]
@@ -75,18 +90,24 @@ def _period(tables: Sequence[np.ndarray]) -> int:
     scale = max(float(np.abs(table).max(initial=0.0)) for table in tables)
     for period in range(1, teeth):
         if teeth % period == 0 and all(
-            np.abs(np.roll(table, -period, axis=0) - table).max() <= 1e-12 * scale for table in tables
+            np.abs(np.roll(table, -period, axis=0) - table).max() <= 1e-12 * scale
+            for table in tables
         ):
             return period
     return teeth
 
 
 def flank_deviations(
-    spline: BodyLayout, ring: BodyLayout, of_spline: GearDeviations, of_ring: GearDeviations, axial_travel: float
+    spline: BodyLayout,
+    ring: BodyLayout,
+    of_spline: GearDeviations,
+    of_ring: GearDeviations,
+    axial_travel: float,
 ) -> FlankDeviations:
     """Tables of the deviations of both gears.
 
-    axial_travel : mm, by which teeth in mesh have moved along z: they meet the tilted ring gear there
+    axial_travel : mm, by which teeth in mesh have moved along z: they meet the tilted ring gear
+    there
     """
     profile, teeth = spline.mesh.profile, np.arange(spline.mesh.n_sectors)
     angle = spline.sector_angle(teeth)
@@ -106,10 +127,13 @@ def flank_deviations(
         points.append(moved)
         tangents.append(turned)
         if of_ring.tilt.any():
-            # the facing flank lies in the slot beside the tooth; what moves the ring gear towards it adds height
+            # the facing flank lies in the slot beside the tooth; what moves the ring gear towards
+            # it adds height
             normal = profile.normal(s.ravel()) * (MIRROR if side < 0 else np.ones(2))
             slot = ring_angle + side * np.pi / ring.mesh.n_sectors
             away = rotated(np.broadcast_to(of_ring.tilt, (len(slot), 2)), -slot)
-            leans.append(-((z.ravel() + axial_travel) * (away @ normal.T)).reshape(len(ring_teeth), *s.shape))
+            leans.append(
+                -((z.ravel() + axial_travel) * (away @ normal.T)).reshape(len(ring_teeth), *s.shape)
+            )
     tables = [np.stack(table, axis=1) for table in (heights, points, tangents)]
     return FlankDeviations(*tables, np.stack(leans, axis=1) if leans else None)

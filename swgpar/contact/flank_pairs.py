@@ -1,4 +1,5 @@
-"""Arrays of flank pairs in the form that the kernel reads: master flanks, slave faces and their quadrature points."""
+"""Arrays of flank pairs in the form that the kernel reads: master flanks, slave faces and their
+quadrature points."""
 
 from __future__ import annotations
 
@@ -18,7 +19,8 @@ from swgpar.geometry.rotation import MIRROR
 from swgpar.meshing.sector import FlankGrid
 
 LINE_WINDOW = (1, 1)
-"""Facets beside that of a foot point, along the profile and along z, whose nodes may couple with the slave face."""
+"""Facets beside that of a foot point, along the profile and along z, whose nodes may couple with
+the slave face."""
 
 
 @dataclass
@@ -69,7 +71,9 @@ class PlacedFaces:
     def joined(cls, parts: list[PlacedFaces]) -> PlacedFaces:
         """The faces of several pairs, one after the other."""
         names = [f.name for f in fields(cls)]
-        return cls(*(np.ascontiguousarray(np.concatenate([getattr(f, n) for f in parts])) for n in names))
+        return cls(
+            *(np.ascontiguousarray(np.concatenate([getattr(f, n) for f in parts])) for n in names)
+        )
 
     def cut(self, chosen: np.ndarray, segments: Segments) -> Faces:
         """The segments of the faces `chosen` (n,) as faces of their own."""
@@ -103,17 +107,20 @@ class PlacedFaces:
 
 
 class FlankPairs:
-    """The pairs of one contact search that this rank takes part in, with their arrays in local numbering.
+    """The pairs of one contact search that this rank takes part in, with their arrays in local
+    numbering.
 
     Parameters
     ----------
     partition, spline, ring : ownership and the elements of both bodies
-    slaves : faces of the flexible spline's flanks by side;  masters : grids of the ring gear's flanks by side
+    slaves : faces of the flexible spline's flanks by side;  masters : grids of the ring gear's
+    flanks by side
     pairs : pairs of flanks;  local : local nodes, those of the pairs among them
 
     Attributes
     ----------
-    masters : arrays of the ring gear's flanks;  faces : of the flexible spline's, None without pairs
+    masters : arrays of the ring gear's flanks;  faces : of the flexible spline's, None without
+    pairs
     owned : (n_pair,) bool, whether this rank owns the tooth of the flexible spline
     """
 
@@ -132,9 +139,14 @@ class FlankPairs:
         self.masters = self._master_flanks(masters)
         placed = [self._placed(slaves[p.side], p, k) for k, p in enumerate(pairs)]
         self.faces = PlacedFaces.joined(placed) if placed else None
-        self._ideal = self.masters.point, self.masters.tangent, None if self.faces is None else self.faces.offset
+        self._ideal = (
+            self.masters.point,
+            self.masters.tangent,
+            None if self.faces is None else self.faces.offset,
+        )
         owner = np.array(
-            [partition.owner_of_sector(FLEXIBLE_SPLINE, np.array(p.sector)) for p in pairs], dtype=np.int64
+            [partition.owner_of_sector(FLEXIBLE_SPLINE, np.array(p.sector)) for p in pairs],
+            dtype=np.int64,
         )
         self.owned = owner == partition.comm.rank
 
@@ -145,7 +157,9 @@ class FlankPairs:
         point, tangent, offset = self._ideal
         shift, turned = deviations.master_shifts(self.pairs)
         self.masters.point, self.masters.tangent = point + shift, tangent + turned
-        self.faces.offset = offset + deviations.slave_heights(self.pairs, self.spline.layout.first_tooth)
+        self.faces.offset = offset + deviations.slave_heights(
+            self.pairs, self.spline.layout.first_tooth
+        )
 
     def _master_flanks(self, grids: Mapping[int, FlankGrid]) -> MasterFlanks:
         grid, n_pair = self.ring.layout.mesh.flanks[0], len(self.pairs)
@@ -164,19 +178,26 @@ class FlankPairs:
             mirror = MIRROR if grid.side < 0 else np.ones(2)
             tangent = profile.tangent(grid.s) * mirror
             flanks.point[k], flanks.tangent[k] = profile.point(grid.s) * mirror, tangent
-            # tangent (T to R) x z points to the right of the tangent: compare with the outward normal
+            # tangent (T to R) x z points to the right of the tangent: compare with the outward
+            # normal
             right = np.column_stack([tangent[:, 1], -tangent[:, 0]])
             flanks.orientation[k] = np.sign(np.sum(right * profile.normal(grid.s) * mirror))
             angle = self.ring.layout.sector_angle(np.array(p.ring_tooth))
             flanks.rotation[k] = np.cos(angle), np.sin(angle)
-            number, sixths = self.partition.node_numbers(self.ring.layout.name, np.array([p.ring]), grid.nodes.ravel())
+            number, sixths = self.partition.node_numbers(
+                self.ring.layout.name, np.array([p.ring]), grid.nodes.ravel()
+            )
             flanks.conn[k] = self.local.index(number).reshape(grid.nodes.shape)
-            flanks.sixths[k] = np.where(number >= 0, (sixths + p.ring_sixths) % 6, 0).reshape(grid.nodes.shape)
+            flanks.sixths[k] = np.where(number >= 0, (sixths + p.ring_sixths) % 6, 0).reshape(
+                grid.nodes.shape
+            )
         return flanks
 
     def _placed(self, slave: FlankFaces, pair: FlankPair, patch: int) -> PlacedFaces:
         layout = self.spline.layout
-        number, sixths = self.partition.node_numbers(FLEXIBLE_SPLINE, np.array([pair.sector]), slave.corners.ravel())
+        number, sixths = self.partition.node_numbers(
+            FLEXIBLE_SPLINE, np.array([pair.sector]), slave.corners.ravel()
+        )
         angle = layout.sector_angle(np.array(layout.first_tooth + pair.sector))
         c, s = np.cos(angle), np.sin(angle)
         rotation = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
@@ -191,7 +212,8 @@ class FlankPairs:
         )
 
     def block_keys(self, chosen: np.ndarray, foot_point: np.ndarray, symmetric: bool) -> np.ndarray:
-        """Keys row * n_global + column of the blocks that faces and the master facets at their foot points couple.
+        """Keys row * n_global + column of the blocks that faces and the master facets at their foot
+        points couple.
 
         chosen : (n,) faces;  foot_point : (n, 2) mm, arc length and z on the master
         symmetric : keep the upper triangle only
@@ -216,5 +238,7 @@ class FlankPairs:
         nodes = np.concatenate(columns, axis=1)
         row, col = nodes[:, :, None], nodes[:, None, :]
         first = self.local.row_start
-        valid = (row >= first) & (row < first + self.local.n_own) & (col >= (row if symmetric else 0))
+        valid = (
+            (row >= first) & (row < first + self.local.n_own) & (col >= (row if symmetric else 0))
+        )
         return np.unique((row * self.partition.n_global + col)[valid])

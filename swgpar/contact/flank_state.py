@@ -1,4 +1,5 @@
-"""Data of the flanks' contact: its settings, the state from which friction counts, the segments of an evaluation."""
+"""Data of the flanks' contact: its settings, the state from which friction counts, the segments of
+an evaluation."""
 
 from __future__ import annotations
 
@@ -21,10 +22,12 @@ class RingMotion(Protocol):
     floats: bool
 
     def ring_rotation(self, u: np.ndarray) -> float:
-        """Rotation (rad) of the ring gear at displacement u (n_local, 3) mm; zero when it is fixed."""
+        """Rotation (rad) of the ring gear at displacement u (n_local, 3) mm; zero when it is
+        fixed."""
 
     def add_ring_moment(self, u: np.ndarray, moment: float, residual: np.ndarray) -> None:
-        """Add to residual (n_local, 3) N this rank's part of a moment (N mm) that acts on that rotation."""
+        """Add to residual (n_local, 3) N this rank's part of a moment (N mm) that acts on that
+        rotation."""
 
 
 @dataclass(frozen=True)

@@ -1,13 +1,15 @@
-"""Tooth flanks of the flexible spline (slave) against those of the ring gear (master), both deformable.
+"""Tooth flanks of the flexible spline (slave) against those of the ring gear (master), both
+deformable.
 
-Quadrature is by segments on the slave flank (see segments.py). The master flank is the exact profile plus the
-finite-element displacement (see kernel/contact.hpp). Sliding is finite: every evaluation finds the foot points anew.
+Quadrature is by segments on the slave flank (see segments.py). The master flank is the exact
+profile plus the finite-element displacement (see kernel/contact.hpp). Sliding is finite: every
+evaluation finds the foot points anew.
 
-Life cycle. `search` finds the pairs and faces that can meet and begins with no segments. Every `evaluate` cuts the
-faces into segments anew, until `freeze_segments` freezes them near the solution: the tangent does not contain the
-motion of the segments, and multipliers belong to their points. `release_segments` ends that, and the next `search`
-begins anew. Before the first search, and where no faces are near, nothing is in contact and every method has a defined
-result.
+Life cycle. `search` finds the pairs and faces that can meet and begins with no segments. Every
+`evaluate` cuts the faces into segments anew, until `freeze_segments` freezes them near the
+solution: the tangent does not contain the motion of the segments, and multipliers belong to their
+points. `release_segments` ends that, and the next `search` begins anew. Before the first search,
+and where no faces are near, nothing is in contact and every method has a defined result.
 """
 
 from __future__ import annotations
@@ -36,11 +38,13 @@ from swgpar.kernel import contact_flanks
 from swgpar.load.load_states import LoadState
 
 CONTINUATION = 5.0
-"""Length, in facets, of the straight continuation past the ends of the master's flank. Corners of slave faces have
-their foot points on it, so that the cut at the flank's end changes continuously while a face slides over that end."""
+"""Length, in facets, of the straight continuation past the ends of the master's flank. Corners of
+slave faces have their foot points on it, so that the cut at the flank's end changes continuously
+while a face slides over that end."""
 
 SLIP_SHARE = 0.99
-"""Share of the friction bound from which a point counts as slipping: base vectors have unit length but for strain."""
+"""Share of the friction bound from which a point counts as slipping: base vectors have unit length
+but for strain."""
 
 
 class FlankContact:
@@ -85,7 +89,8 @@ class FlankContact:
         self.order, self.friction_coefficient = order, friction_coefficient
         mesh = spline.layout.mesh
         self.slaves = {
-            g.side: flank_faces(mesh, g, crowning.amount, crowning.width, crowning.shape) for g in mesh.flanks
+            g.side: flank_faces(mesh, g, crowning.amount, crowning.width, crowning.shape)
+            for g in mesh.flanks
         }
         self.masters = {g.side: g for g in ring.layout.mesh.flanks}
         self.n_face = len(self.slaves[1].corners)
@@ -99,7 +104,7 @@ class FlankContact:
         self._cut_at: np.ndarray | None = None  # displacement at which unfrozen segments were cut
         self._ring_rotation = 0.0
 
-    # -- search ----------------------------------------------------------------------------------------
+    # -- search ------------------------------------------------------------------------------------
 
     @property
     def symmetric(self) -> bool:
@@ -114,7 +119,10 @@ class FlankContact:
     def takes_part(self, pair: FlankPair) -> bool:
         """Whether this rank owns one of the pair's teeth."""
         owner = self.partition.owner_of_sector
-        owners = owner(FLEXIBLE_SPLINE, np.array(pair.sector)), owner(self.ring.layout.name, np.array(pair.ring))
+        owners = (
+            owner(FLEXIBLE_SPLINE, np.array(pair.sector)),
+            owner(self.ring.layout.name, np.array(pair.ring)),
+        )
         return self.partition.comm.rank in owners
 
     def node_numbers(self, pairs: list[FlankPair]) -> np.ndarray:
@@ -137,7 +145,8 @@ class FlankContact:
         """Choose the faces that can meet, of pairs that this rank takes part in; collective.
 
         pairs : of this rank;  local : local nodes, those of the pairs among them
-        u : (n_local, 3) mm;  accepted : converged displacement from which friction counts the slip, None without
+        u : (n_local, 3) mm;  accepted : converged displacement from which friction counts the slip,
+        None without
 
         Returns keys row * n_global + column (n,) of the tangent's blocks that may couple.
         """
@@ -168,7 +177,8 @@ class FlankContact:
         self._active, self._cut_at, self.frozen = None, None, False
 
     def deviate(self, deviations: FlankDeviations) -> None:
-        """Let the flanks deviate from now on, also those of the last search, which begin with new segments."""
+        """Let the flanks deviate from now on, also those of the last search, which begin with new
+        segments."""
         self.deviations = deviations
         if self.flank_pairs is not None:
             self.flank_pairs.deviate(deviations)
@@ -181,10 +191,13 @@ class FlankContact:
         return samples.reshape(-1, *samples.shape[2:])
 
     def sectors_in_reach(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Sectors (n,) by the last search: of both gears with evaluated faces, of the ring gear with near ones."""
+        """Sectors (n,) by the last search: of both gears with evaluated faces, of the ring gear
+        with near ones."""
         if self.flank_pairs is None or self.flank_pairs.faces is None:
             return tuple(np.zeros((3, 0), dtype=np.int64))
-        evaluated = [self.pairs[k] for k in np.unique(self.flank_pairs.faces.patch[self._near_faces])]
+        evaluated = [
+            self.pairs[k] for k in np.unique(self.flank_pairs.faces.patch[self._near_faces])
+        ]
         return (
             np.array([pair.sector for pair in evaluated], dtype=np.int64),
             np.array([pair.ring for pair in evaluated], dtype=np.int64),
@@ -192,7 +205,8 @@ class FlankContact:
         )
 
     def _gaps_at_centers(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Gap (n_face,) mm at the middle of every face and its foot point (n_face, 2) mm on the master."""
+        """Gap (n_face,) mm at the middle of every face and its foot point (n_face, 2) mm on the
+        master."""
         faces = self.flank_pairs.faces.centers()
         gap, _, foot_point, _ = self._call_kernel(faces, u, np.zeros((len(faces.conn), 1)), 0.0)
         return gap[:, 0], foot_point[:, 0]
@@ -209,7 +223,7 @@ class FlankContact:
         gap, _ = self._gaps_at_centers(u)
         return bool(np.delete(gap + state.flank_clearance < 0.0, self._near_faces).any())
 
-    # -- forces and tangent ----------------------------------------------------------------------------
+    # -- forces and tangent ------------------------------------------------------------------------
 
     def is_active(self, state: LoadState) -> bool:
         """Whether the load state switches this contact on."""
@@ -218,7 +232,8 @@ class FlankContact:
     def evaluate(
         self, u: np.ndarray, state: LoadState, residual: np.ndarray | None, rows: BlockRows | None
     ) -> np.ndarray:
-        """Compute gaps and pressures at u (n_local, 3) mm; add to residual (n_local, 3) N and to the tangent's rows.
+        """Compute gaps and pressures at u (n_local, 3) mm; add to residual (n_local, 3) N and to
+        the tangent's rows.
 
         Collective. Returns keys (n,) of blocks that the pattern of `rows` lacks.
         """
@@ -234,7 +249,8 @@ class FlankContact:
     def _evaluate_segments(
         self, u: np.ndarray, clearance: float, residual: np.ndarray | None, rows: BlockRows | None
     ) -> tuple[float, np.ndarray]:
-        """Moment (N mm) on the ring gear's rotation from owned pairs, and keys of missing blocks."""
+        """Moment (N mm) on the ring gear's rotation from owned pairs, and keys of missing
+        blocks."""
         if not len(self._near_faces):
             return 0.0, NO_KEYS
         if not self.frozen and (self._cut_at is None or not np.array_equal(u, self._cut_at)):
@@ -244,20 +260,34 @@ class FlankContact:
             active.friction.stiffness = friction.STIFFNESS * self.penalty
         moments = np.zeros(len(active.faces.conn))
         active.gap, active.pressure, foot_point, missing = self._call_kernel(
-            active.faces, u, active.multiplier, clearance, residual, rows, active.friction, moment=moments
+            active.faces,
+            u,
+            active.multiplier,
+            clearance,
+            residual,
+            rows,
+            active.friction,
+            moment=moments,
         )
-        moment = 0.0 if residual is None else float(moments[self.flank_pairs.owned[active.faces.patch]].sum())
+        moment = (
+            0.0
+            if residual is None
+            else float(moments[self.flank_pairs.owned[active.faces.patch]].sum())
+        )
         if not missing:
             return moment, NO_KEYS
         acts = active.pressure > 0.0
         if active.friction is not None and active.friction.lagged is not None:
             acts |= (active.friction.lagged > 0.0) & np.isfinite(foot_point[..., 0])
         face, point = np.nonzero(acts)
-        keys = self.flank_pairs.block_keys(active.segments.parent[face], foot_point[face, point], self.symmetric)
+        keys = self.flank_pairs.block_keys(
+            active.segments.parent[face], foot_point[face, point], self.symmetric
+        )
         return moment, keys
 
     def _cut(self, u: np.ndarray) -> ActiveSegments:
-        """Cut the faces for displacement u; without multipliers, which would belong to other points."""
+        """Cut the faces for displacement u; without multipliers, which would belong to other
+        points."""
         all_faces, masters = self.flank_pairs.faces, self.flank_pairs.masters
         corners = all_faces.corners(self._near_faces)
         zero = np.zeros(corners.weight.shape)
@@ -273,7 +303,13 @@ class FlankContact:
             traction = friction.interpolated(start.tractions, segments)
             law = friction.begin(self.friction_coefficient, foot_point, gap, traction)
         return ActiveSegments(
-            self.flank_pairs, faces, segments, law, multiplier, np.full_like(multiplier, np.inf), multiplier.copy()
+            self.flank_pairs,
+            faces,
+            segments,
+            law,
+            multiplier,
+            np.full_like(multiplier, np.inf),
+            multiplier.copy(),
         )
 
     def _call_kernel(
@@ -287,25 +323,38 @@ class FlankContact:
         law: Friction | None = None,
         **more: Any,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
-        """Gaps, pressures, foot points and the number of missing blocks; see `swgpar.kernel.contact_flanks`."""
-        settings = self.penalty, clearance, self.max_gap, self.pressure_limit, residual, rows, law, self._ring_rotation
+        """Gaps, pressures, foot points and the number of missing blocks; see
+        `swgpar.kernel.contact_flanks`."""
+        settings = (
+            self.penalty,
+            clearance,
+            self.max_gap,
+            self.pressure_limit,
+            residual,
+            rows,
+            law,
+            self._ring_rotation,
+        )
         return contact_flanks(self.flank_pairs.masters, faces, u, multiplier, *settings, **more)
 
     def add_owned_forces(self, u: np.ndarray, state: LoadState, residual: np.ndarray) -> None:
-        """Add the forces of the pairs whose flexible-spline tooth this rank owns to residual (n_local, 3) N."""
+        """Add the forces of the pairs whose flexible-spline tooth this rank owns to residual
+        (n_local, 3) N."""
         active = self._active
         if state.flank_clearance is None or active is None:
             return
         mine = self.flank_pairs.owned[active.faces.patch]
         law = None if active.friction is None else active.friction.subset(mine)
         multiplier = np.ascontiguousarray(active.multiplier[mine])
-        self._call_kernel(active.faces.subset(mine), u, multiplier, state.flank_clearance, residual, None, law)
+        self._call_kernel(
+            active.faces.subset(mine), u, multiplier, state.flank_clearance, residual, None, law
+        )
 
     def scale_penalty(self, share: float) -> None:
         """Use this share of the full penalty."""
         self.penalty = share * self.full_penalty
 
-    # -- multipliers and frozen segments ---------------------------------------------------------------
+    # -- multipliers and frozen segments -----------------------------------------------------------
 
     @property
     def multiplier(self) -> np.ndarray:
@@ -316,18 +365,22 @@ class FlankContact:
     @multiplier.setter
     def multiplier(self, values: np.ndarray) -> None:
         if values.shape != self.multiplier.shape:
-            raise ValueError(f"multipliers of shape {values.shape} do not belong to the present segments")
+            raise ValueError(
+                f"multipliers of shape {values.shape} do not belong to the present segments"
+            )
         if self._active is not None:
             self._active.multiplier = values
 
     def augment(self) -> None:
-        """Take the pressures of the last evaluation as multipliers and freeze the segments that they belong to."""
+        """Take the pressures of the last evaluation as multipliers and freeze the segments that
+        they belong to."""
         if self._active is not None:
             self._active.multiplier = self._active.pressure.copy()
         self.freeze_segments()
 
     def freeze_segments(self) -> None:
-        """Freeze the segments of the last evaluation until `release_segments` or the next search."""
+        """Freeze the segments of the last evaluation until `release_segments` or the next
+        search."""
         self.frozen, self._cut_at = self._active is not None, None
 
     def release_segments(self) -> None:
@@ -339,7 +392,8 @@ class FlankContact:
         return self._active
 
     def restore_segments(self, saved: ActiveSegments | None) -> None:
-        """Freeze segments of the last search again; friction follows the pressure on them, without multipliers.
+        """Freeze segments of the last search again; friction follows the pressure on them, without
+        multipliers.
 
         Raises ValueError for segments of an earlier search: their local nodes are others.
         """
@@ -355,7 +409,8 @@ class FlankContact:
     def freeze_friction_bound(self) -> tuple[float, float]:
         """Let the pressures of the last evaluation bound the friction, on frozen segments.
 
-        Returns the largest change of these pressures and the largest of them (MPa) on this rank; 0 without friction.
+        Returns the largest change of these pressures and the largest of them (MPa) on this rank; 0
+        without friction.
         """
         if not self.frozen or self._active.friction is None:
             return 0.0, 0.0
@@ -384,10 +439,11 @@ class FlankContact:
         """The accepted tractions of the sectors first .. end - 1, as rows for a file."""
         return friction.to_rows(self.tractions, first, end, self.n_face)
 
-    # -- results of the last evaluation ----------------------------------------------------------------
+    # -- results of the last evaluation ------------------------------------------------------------
 
     def active_sets(self) -> list[np.ndarray]:
-        """Faces with pressure, and faces with points that slip, of the last evaluation on this rank; their numbers."""
+        """Faces with pressure, and faces with points that slip, of the last evaluation on this
+        rank; their numbers."""
         active = self._active
         if active is None:
             return []
@@ -407,7 +463,8 @@ class FlankContact:
         return int(self.flank_pairs.owned[touching].sum())
 
     def smallest_gap(self, side: int) -> float:
-        """Smallest gap (mm) of the flanks on one side (+1, -1) in the last evaluation on this rank; inf without any."""
+        """Smallest gap (mm) of the flanks on one side (+1, -1) in the last evaluation on this rank;
+        inf without any."""
         active = self._active
         if active is None:
             return np.inf
@@ -424,4 +481,6 @@ class FlankContact:
         if active is None:
             return None
         own, faces = self.flank_pairs.owned[active.faces.patch], active.faces
-        return FacePressure(faces.conn[own], faces.shape[own], faces.weight[own], active.pressure[own])
+        return FacePressure(
+            faces.conn[own], faces.shape[own], faces.weight[own], active.pressure[own]
+        )

@@ -1,10 +1,12 @@
-"""Coulomb friction between flanks: the history of the last converged state, at fixed points of the material.
+"""Coulomb friction between flanks: the history of the last converged state, at fixed points of the
+material.
 
-Segments are cut anew in every increment, so that their quadrature points are not the same material points. The
-tangential traction therefore lives on a uniform grid of `SAMPLES` x `SAMPLES` points of every slave face, between
-which it is interpolated. The foot point of that state is not stored: the point is projected again at the converged
-displacement, exactly. Components are those of the master's undeformed coordinates, arc length and z, with the
-current base vectors (see kernel/friction.hpp).
+Segments are cut anew in every increment, so that their quadrature points are not the same material
+points. The tangential traction therefore lives on a uniform grid of `SAMPLES` x `SAMPLES` points of
+every slave face, between which it is interpolated. The foot point of that state is not stored: the
+point is projected again at the converged displacement, exactly. Components are those of the
+master's undeformed coordinates, arc length and z, with the current base vectors (see
+kernel/friction.hpp).
 """
 
 from __future__ import annotations
@@ -20,7 +22,8 @@ SAMPLES = 8
 """Points per direction of a face on which the traction is stored, at the middles of equal cells."""
 
 STIFFNESS = 1.0
-"""Tangential stiffness over the normal penalty: a point that sticks has moved less than mu times its penetration."""
+"""Tangential stiffness over the normal penalty: a point that sticks has moved less than mu times
+its penetration."""
 
 PairKey = tuple[int, int, int]
 """Sector of the flexible spline, side of its tooth, number of the ring gear's tooth."""
@@ -28,11 +31,12 @@ PairKey = tuple[int, int, int]
 
 @dataclass
 class Friction:
-    """Law and history at the quadrature points of the present segments; see `swgpar.kernel.contact_flanks`.
+    """Law and history at the quadrature points of the present segments; see
+    `swgpar.kernel.contact_flanks`.
 
     coefficient : of friction;  stiffness : MPa / mm
-    foot_point (n_face, n_q, 2) mm, gap (n_face, n_q) mm : of the last converged state, nan and inf without a foot
-    traction (n_face, n_q, 2) MPa : of the last converged state
+    foot_point (n_face, n_q, 2) mm, gap (n_face, n_q) mm : of the last converged state, nan and inf
+    without a foot traction (n_face, n_q, 2) MPa : of the last converged state
     current (n_face, n_q, 2) MPa : set by the kernel
     lagged (n_face, n_q) MPa : pressures that stand for the present ones in the law, or None
     """
@@ -49,18 +53,27 @@ class Friction:
         """The same of some of the faces."""
         arrays = (self.foot_point, self.gap, self.traction, self.current)
         lagged = None if self.lagged is None else np.ascontiguousarray(self.lagged[rows])
-        return Friction(self.coefficient, self.stiffness, *(np.ascontiguousarray(a[rows]) for a in arrays), lagged)
+        return Friction(
+            self.coefficient,
+            self.stiffness,
+            *(np.ascontiguousarray(a[rows]) for a in arrays),
+            lagged,
+        )
 
 
-def begin(coefficient: float, foot_point: np.ndarray, gap: np.ndarray, traction: np.ndarray) -> Friction:
+def begin(
+    coefficient: float, foot_point: np.ndarray, gap: np.ndarray, traction: np.ndarray
+) -> Friction:
     """Friction at points whose last converged state is given; see `Friction`."""
     return Friction(coefficient, 0.0, foot_point, gap, traction, np.zeros_like(traction))
 
 
 def sampled(segments: Segments, values: np.ndarray, face: int) -> np.ndarray:
-    """Values (n, n_q, k) at the points of segments of one face, taken to its samples (SAMPLES, SAMPLES, k).
+    """Values (n, n_q, k) at the points of segments of one face, taken to its samples (SAMPLES,
+    SAMPLES, k).
 
-    The points of a face form a grid: linear interpolation in both directions, constant beyond the outermost ones.
+    The points of a face form a grid: linear interpolation in both directions, constant beyond the
+    outermost ones.
     """
     mine = segments.parent == face
     a, i = np.unique(segments.a[mine], return_inverse=True)
@@ -68,12 +81,15 @@ def sampled(segments: Segments, values: np.ndarray, face: int) -> np.ndarray:
     grid = np.zeros((len(a), len(b), values.shape[2]))
     grid[i.ravel(), j.ravel()] = values[mine].reshape(-1, values.shape[2])
     at = (np.arange(SAMPLES) + 0.5) / SAMPLES
-    to_a, to_b = (np.stack([np.interp(at, x, unit) for unit in np.eye(len(x))], axis=1) for x in (a, b))
+    to_a, to_b = (
+        np.stack([np.interp(at, x, unit) for unit in np.eye(len(x))], axis=1) for x in (a, b)
+    )
     return np.einsum("ai,bj,ijk->abk", to_a, to_b, grid)
 
 
 def interpolated(samples: np.ndarray, segments: Segments) -> np.ndarray:
-    """Values (n, n_q, k) at the points of segments from samples (n_face, SAMPLES, SAMPLES, k) of all faces."""
+    """Values (n, n_q, k) at the points of segments from samples (n_face, SAMPLES, SAMPLES, k) of
+    all faces."""
     low, share = [], []
     for x in (segments.a, segments.b):
         position = np.clip(SAMPLES * x - 0.5, 0.0, SAMPLES - 1.0)
@@ -92,11 +108,13 @@ ROWS = ("friction/tooth", "friction/traction")
 """Names of the rows in a file, by sector of the flexible spline."""
 
 
-def to_rows(store: Mapping[PairKey, np.ndarray], first: int, end: int, n_face: int) -> dict[str, np.ndarray]:
+def to_rows(
+    store: Mapping[PairKey, np.ndarray], first: int, end: int, n_face: int
+) -> dict[str, np.ndarray]:
     """The tractions of the sectors first .. end - 1 as rows for a file.
 
-    Returns teeth (end - first, 2) of the ring gear that the flanks of side +1 and -1 touch, and their tractions
-    (end - first, 2, n_face, SAMPLES, SAMPLES, 2) MPa.
+    Returns teeth (end - first, 2) of the ring gear that the flanks of side +1 and -1 touch, and
+    their tractions (end - first, 2, n_face, SAMPLES, SAMPLES, 2) MPa.
     """
     tooth = np.full((end - first, 2), NO_TOOTH)
     traction = np.zeros((end - first, 2, n_face, SAMPLES, SAMPLES, 2))

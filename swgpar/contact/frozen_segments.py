@@ -1,4 +1,5 @@
-"""Freezing of the segments of all flanks: near the solution, and while a cycle of the contacts is broken."""
+"""Freezing of the segments of all flanks: near the solution, and while a cycle of the contacts is
+broken."""
 
 from __future__ import annotations
 
@@ -31,14 +32,16 @@ class FrozenSegments:
             flanks.release_segments()
 
     def are_frozen(self) -> bool:
-        """Whether segments are frozen on any rank: many ranks have no flanks in reach. Collective."""
+        """Whether segments are frozen on any rank: many ranks have no flanks in reach.
+        Collective."""
         frozen = any(flanks.frozen for flanks in self.flanks)
         return bool(self.comm.allreduce(int(frozen), op=MPI.MAX))
 
     def freeze_friction_bounds(self) -> tuple[float, float]:
         """Let the present pressures bound the friction on frozen segments.
 
-        Returns the largest change of these pressures and the largest of them, MPa, over all ranks; 0 without friction.
+        Returns the largest change of these pressures and the largest of them, MPa, over all ranks;
+        0 without friction.
         """
         values = [(0.0, 0.0), *(flanks.freeze_friction_bound() for flanks in self.flanks)]
         change, top = (largest(self.comm, max(of_all)) for of_all in zip(*values))

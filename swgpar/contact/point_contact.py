@@ -1,10 +1,12 @@
 """Hertz's contact of a ball in a groove: approach, ellipse and pressure by the force on it.
 
-With the relative curvatures kx and ky, k = kx + ky, the ratio e of the semi-axes of the ellipse solves
+With the relative curvatures kx and ky, k = kx + ky, the ratio e of the semi-axes of the ellipse
+solves
 
     |kx - ky| / k = ((e² + 1) E - 2 K) / ((e² - 1) E)
 
-with the complete elliptic integrals K and E of 1 - 1 / e² (Harris, Rolling Bearing Analysis, 6.20-6.38):
+with the complete elliptic integrals K and E of 1 - 1 / e² (Harris, Rolling Bearing Analysis,
+6.20-6.38):
 
     a = (2 e² E / pi)^(1/3) (3 F / (2 k E*))^(1/3),    b = a / e,
     delta = (2 K / pi) (pi / (2 e² E))^(1/3) (3 F / (2 k E*))^(2/3) k / 2,    p = 3 F / (2 pi a b).
@@ -19,7 +21,8 @@ from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
 ROUND, LONGEST = 1e-9, 1e7
-"""Relative difference of the curvatures below which the ellipse is a circle; largest ratio of its semi-axes."""
+"""Relative difference of the curvatures below which the ellipse is a circle; largest ratio of its
+semi-axes."""
 
 
 @dataclass(frozen=True)
@@ -41,14 +44,21 @@ class PointContact:
 def point_contact(along: float, across: float, modulus: float) -> PointContact:
     """Contact of two bodies.
 
-    along, across : 1/mm, sums of their curvatures in both principal planes, positive;  modulus : E*, MPa
+    along, across : 1/mm, sums of their curvatures in both principal planes, positive;  modulus :
+    E*, MPa
     """
     total, difference = along + across, abs(along - across) / (along + across)
-    ratio = 1.0 if difference < ROUND else float(np.exp(brentq(_excess, 1e-6, np.log(LONGEST), (difference,))))
+    ratio = (
+        1.0
+        if difference < ROUND
+        else float(np.exp(brentq(_excess, 1e-6, np.log(LONGEST), (difference,))))
+    )
     first, second = ellipk(1.0 - ratio**-2), ellipe(1.0 - ratio**-2)
     size = np.cbrt(1.5 / (total * modulus))
     major = float(size * np.cbrt(2.0 * ratio**2 * second / np.pi))
-    approach = 2.0 * first / np.pi * np.cbrt(np.pi / (2.0 * ratio**2 * second)) * size**2 * 0.5 * total
+    approach = (
+        2.0 * first / np.pi * np.cbrt(np.pi / (2.0 * ratio**2 * second)) * size**2 * 0.5 * total
+    )
     return PointContact(float(approach), major, major / ratio)
 
 
@@ -62,7 +72,8 @@ def _excess(log_ratio: float, difference: float) -> float:
 class BallSpring:
     """A ball between two grooves: F = stiffness * approach^1.5.
 
-    inner, outer : contacts on the inner and on the outer race;  factor : on the stiffness of both in series
+    inner, outer : contacts on the inner and on the outer race;  factor : on the stiffness of both
+    in series
     """
 
     inner: PointContact
@@ -89,8 +100,10 @@ def ball_spring(
 ) -> BallSpring:
     """Spring of a ball between two races.
 
-    diameter : mm, of the ball;  inner_groove, outer_groove : mm, radii of the races at the bottom of their grooves
-    conformities : of inner and outer race, radius of the groove over the ball's diameter;  modulus : E*, MPa
+    diameter : mm, of the ball;  inner_groove, outer_groove : mm, radii of the races at the bottom
+    of their grooves
+    conformities : of inner and outer race, radius of the groove over the ball's diameter;  modulus
+    : E*, MPa
     factor : on the stiffness
     """
     ball = 2.0 / diameter

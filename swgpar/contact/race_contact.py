@@ -1,13 +1,16 @@
-"""Frictionless contact of the outer race of a bearing with the inner surface of the flexible spline.
+"""Frictionless contact of the outer race of a bearing with the inner surface of the flexible
+spline.
 
-The gap of a point x of the spline is its distance from the smooth curve X(lambda) of the race's outer surface at the
-same z, in the plane across the axis: g = n . (x - X) where x - X is normal to the curve. With dr = dx - dX,
-a = dr . X', b = n . dX', m = X' . X' and k = n . X'' its differentials are
+The gap of a point x of the spline is its distance from the smooth curve X(lambda) of the race's
+outer surface at the same z, in the plane across the axis: g = n . (x - X) where x - X is normal to
+the curve. With dr = dx - dX, a = dr . X', b = n . dX', m = X' . X' and k = n . X'' its
+differentials are
 
     dg = n . dr,    d²g = -(k a² + 2 m a b + m g b²) / (m (m - g k)).
 
-Race and spline slide on each other by some hundredths of a millimetre. A point of the spline therefore stays with the
-piece of the curve that it touches in the undeformed state, which is continued beyond its ends.
+Race and spline slide on each other by some hundredths of a millimetre. A point of the spline
+therefore stays with the piece of the curve that it touches in the undeformed state, which is
+continued beyond its ends.
 """
 
 from __future__ import annotations
@@ -31,14 +34,16 @@ LAYERS = 2
 
 
 class RaceContact(PressedPoints):
-    """Face quadrature of the spline's inner surface against the race's outer one; meets `PenaltyContact`.
+    """Face quadrature of the spline's inner surface against the race's outer one; meets
+    `PenaltyContact`.
 
     Parameters
     ----------
-    spline, race : elements of both bodies, bound to local nodes; their sectors are opposite each other
+    spline, race : elements of both bodies, bound to local nodes; their sectors are opposite each
+    other
     grid : (n_around + 1, n_z) nodes of a race's sector on its outer surface, clockwise side first
-    column, layer : (n_face,) places in the grid of the cells opposite the spline's faces ``inner``; layer -1 where the
-    race does not reach
+    column, layer : (n_face,) places in the grid of the cells opposite the spline's faces ``inner``;
+    layer -1 where the race does not reach
     half_width : mm, of the race;  radius : mm, of the surface
     relief : gives the gap (n,) mm at z (n,) mm in the undeformed state
     n_quadrature : Gauss points per direction;  penalty : MPa / mm
@@ -66,7 +71,9 @@ class RaceContact(PressedPoints):
     ) -> None:
         self.pressure_limit = pressure_limit
         sectors = (
-            np.arange(len(spline.sectors)) if spline.preceding.any() else np.arange(len(spline.sectors))[spline.owned]
+            np.arange(len(spline.sectors))
+            if spline.preceding.any()
+            else np.arange(len(spline.sectors))[spline.owned]
         )
         points = FaceQuadrature(spline, "inner", radius, n_quadrature, sectors)
         sector, column, layer = (
@@ -79,7 +86,8 @@ class RaceContact(PressedPoints):
         self.owned = (sector >= spline.owned.start) & (sector < spline.owned.stop)
         sector, nodes = curve_nodes(grid, sector, column)
         nodes = np.stack(
-            [np.take_along_axis(nodes, (layer + k)[:, None, None], axis=2)[..., 0] for k in (0, 1)], axis=2
+            [np.take_along_axis(nodes, (layer + k)[:, None, None], axis=2)[..., 0] for k in (0, 1)],
+            axis=2,
         )
         sector, shape = sector[..., None], (len(sector), NODES * LAYERS)
         self.conn = np.hstack([points.conn[chosen], race.local[sector, nodes].reshape(shape)])
@@ -90,7 +98,9 @@ class RaceContact(PressedPoints):
         self.inside = np.abs(position[..., 2]) <= half_width
         self.weight = points.weight[chosen]
         super().__init__(self.weight.shape, penalty)
-        self.offset = points.offset[chosen] + relief(position[..., 2].ravel()).reshape(self.weight.shape)
+        self.offset = points.offset[chosen] + relief(position[..., 2].ravel()).reshape(
+            self.weight.shape
+        )
         self.polynomials = smooth_curve(of_race[:, :, 0, :2])
         low, high = of_race[:, 1, 0, 2], of_race[:, 1, 1, 2]
         upper = (position[..., 2] - low[:, None]) / (high - low)[:, None]
@@ -101,7 +111,9 @@ class RaceContact(PressedPoints):
         )
 
     @staticmethod
-    def _reach_owned_nodes(spline: BodyElements, sector: np.ndarray, column: np.ndarray, n: int) -> np.ndarray:
+    def _reach_owned_nodes(
+        spline: BodyElements, sector: np.ndarray, column: np.ndarray, n: int
+    ) -> np.ndarray:
         """Which faces reach nodes of this rank: its own, two columns before them and one behind."""
         first, end = spline.owned.start, spline.owned.stop
         own = (sector >= first) & (sector < end)
@@ -119,7 +131,8 @@ class RaceContact(PressedPoints):
     def evaluate(
         self, u: np.ndarray, state: LoadState, residual: np.ndarray | None, rows: BlockRows | None
     ) -> np.ndarray:
-        """Compute gaps and pressures at u (n_local, 3) mm; add to residual (n_local, 3) N and to the tangent's rows.
+        """Compute gaps and pressures at u (n_local, 3) mm; add to residual (n_local, 3) N and to
+        the tangent's rows.
 
         Returns no keys: the problem has room for all faces.
         """
@@ -143,8 +156,8 @@ class RaceContact(PressedPoints):
     def _find_gaps(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Set gaps and pressures.
 
-        Returns dg, a and b (n_face, n_q, 12, 2, 3) by the nodes' displacements, and the factors (n_face, n_q, 3, 3) of
-        their products in d²g.
+        Returns dg, a and b (n_face, n_q, 12, 2, 3) by the nodes' displacements, and the factors
+        (n_face, n_q, 3, 3) of their products in d²g.
         """
         x = (self.coords + to_images(u[self.conn], self.sixths))[..., :2]
         point = np.einsum("qa,fai->fqi", self.shape, x[:, :4])
@@ -153,7 +166,9 @@ class RaceContact(PressedPoints):
         for step in range(STEPS + 1):  # the last evaluation is at the foot point
             value, rate, second = shape_functions(polynomials, place)
             away = point - np.einsum("fqn,fqni->fqi", value, curve)
-            tangent, bend = (np.einsum("fqn,fqni->fqi", weights, curve) for weights in (rate, second))
+            tangent, bend = (
+                np.einsum("fqn,fqni->fqi", weights, curve) for weights in (rate, second)
+            )
             if step < STEPS:
                 steepness = np.sum(tangent * tangent - away * bend, axis=-1)
                 place = place + np.sum(away * tangent, axis=-1) / steepness
@@ -163,7 +178,9 @@ class RaceContact(PressedPoints):
         self.set_gap(distance + self.offset, self.inside)
 
         def on_race(weights: np.ndarray) -> np.ndarray:
-            return (weights[..., None] * self.layers[:, :, None]).reshape(*weights.shape[:2], NODES * LAYERS)
+            return (weights[..., None] * self.layers[:, :, None]).reshape(
+                *weights.shape[:2], NODES * LAYERS
+            )
 
         own = np.broadcast_to(self.shape, (len(x), *self.shape.shape))
         relative = np.concatenate([own, -on_race(value)], axis=2)
@@ -187,11 +204,18 @@ class RaceContact(PressedPoints):
         nodal[..., :2] = -np.einsum("fq,fqai->fai", force, vectors[faces, ..., 0])
         np.add.at(residual, self.conn[faces], to_owners(nodal, self.sixths[faces]))
 
-    def _add_blocks(self, vectors: np.ndarray, curvature: np.ndarray, faces: np.ndarray, rows: BlockRows) -> None:
+    def _add_blocks(
+        self, vectors: np.ndarray, curvature: np.ndarray, faces: np.ndarray, rows: BlockRows
+    ) -> None:
         """Add the tangent: penalty times dg times dg, less the pressure times d²g."""
         force = (self.pressure * self.weight)[faces]
-        factors = -np.minimum(force, self.pressure_limit * self.weight[faces])[..., None, None] * curvature
-        factors[..., 0, 0] = np.where(self.pressure[faces] > 0.0, self.penalty * self.weight[faces], 0.0)
+        factors = (
+            -np.minimum(force, self.pressure_limit * self.weight[faces])[..., None, None]
+            * curvature
+        )
+        factors[..., 0, 0] = np.where(
+            self.pressure[faces] > 0.0, self.penalty * self.weight[faces], 0.0
+        )
         n, n_nodes = self.conn[faces].shape
         flat = vectors.reshape(*vectors.shape[:2], 2 * n_nodes, 3)
         plane = np.einsum("fqmk,fqkl,fqnl->fmn", flat, factors, flat, optimize=True)

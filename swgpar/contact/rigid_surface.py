@@ -1,7 +1,8 @@
 """The rigid wave generator and its pushing pins against the inner surface of the flexible spline.
 
-The surface is exact: its level function h, gradient and Hessian come in closed form. The gap of a quadrature
-point is h at the point of the facet plus the distance from the facet to the exact cylinder there.
+The surface is exact: its level function h, gradient and Hessian come in closed form. The gap of a
+quadrature point is h at the point of the facet plus the distance from the facet to the exact
+cylinder there.
 """
 
 from __future__ import annotations
@@ -31,10 +32,13 @@ class Surface(Protocol):
 
 @dataclass(frozen=True)
 class SurfacePose:
-    """Position of the rigid surface: rotated by `angle` (rad), every gap opened by `clearance` (mm).
+    """Position of the rigid surface: rotated by `angle` (rad), every gap opened by `clearance`
+    (mm).
 
-    inset : None for the cam; for the pins, the distance (mm) by which each is drawn in towards the axis
-    shift : mm, of the surface's axis, in the cam's frame;  lean : displacement of that axis per mm along z
+    inset : None for the cam; for the pins, the distance (mm) by which each is drawn in towards the
+    axis
+    shift : mm, of the surface's axis, in the cam's frame;  lean : displacement of that axis per mm
+    along z
     """
 
     angle: float
@@ -78,7 +82,8 @@ def pin_directions(lobes: int) -> np.ndarray:
 
 
 class RigidContact(PressedPoints):
-    """Face quadrature of the inner surface against a rigid surface; meets the protocol `PenaltyContact`.
+    """Face quadrature of the inner surface against a rigid surface; meets the protocol
+    `PenaltyContact`.
 
     Parameters
     ----------
@@ -132,7 +137,8 @@ class RigidContact(PressedPoints):
     def evaluate(
         self, u: np.ndarray, state: LoadState, residual: np.ndarray | None, rows: BlockRows | None
     ) -> np.ndarray:
-        """Compute gaps and pressures at u (n_local, 3) mm; add to residual (n_local, 3) N and to the tangent's rows.
+        """Compute gaps and pressures at u (n_local, 3) mm; add to residual (n_local, 3) N and to
+        the tangent's rows.
 
         Returns no keys: a face's blocks are in the pattern of its elements.
         """
@@ -161,7 +167,8 @@ class RigidContact(PressedPoints):
     def _find_gaps(self, u: np.ndarray, pose: SurfacePose) -> tuple[np.ndarray, np.ndarray]:
         """Set gaps and pressures.
 
-        Returns gradients (n_face, n_q, 3) and Hessians (n_face, n_q, 3, 3) of the level in the cam's frame.
+        Returns gradients (n_face, n_q, 3) and Hessians (n_face, n_q, 3, 3) of the level in the
+        cam's frame.
         """
         field = np.where(self.conn[..., None] >= 0, u[self.conn], 0.0)
         x = np.einsum("qa,fai->fqi", self.shape, self.coords + to_images(field, self.sixths))
@@ -185,14 +192,19 @@ class RigidContact(PressedPoints):
         nodal = to_owners(nodal, sixths)
         free = conn >= 0
         for axis in range(3):
-            residual[:, axis] += np.bincount(conn[free], nodal[..., axis][free], minlength=len(residual))
+            residual[:, axis] += np.bincount(
+                conn[free], nodal[..., axis][free], minlength=len(residual)
+            )
 
-    def _add_blocks(self, normal: np.ndarray, curvature: np.ndarray, faces: np.ndarray, rows: BlockRows) -> None:
-        """Add the tangent: penalty times normal times normal, less the pressure times the curvature (n, n_q, 3, 3)."""
+    def _add_blocks(
+        self, normal: np.ndarray, curvature: np.ndarray, faces: np.ndarray, rows: BlockRows
+    ) -> None:
+        """Add the tangent: penalty times normal times normal, less the pressure times the curvature
+        (n, n_q, 3, 3)."""
         force = (self.pressure * self.weight)[faces]
         stiffness = np.where(self.pressure[faces] > 0.0, self.penalty * self.weight[faces], 0.0)
-        # far from the solution the penalty's pressure is meaningless, and its geometric term would make the
-        # tangent indefinite: it is bounded there
+        # far from the solution the penalty's pressure is meaningless, and its geometric term would
+        # make the tangent indefinite: it is bounded there
         geometric = np.minimum(force, self.pressure_limit * self.weight[faces])
         core = (
             stiffness[..., None, None] * normal[..., :, None] * normal[..., None, :]

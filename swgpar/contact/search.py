@@ -1,8 +1,8 @@
 """Which teeth can meet: the tooth of the flexible spline in a slot of the ring gear.
 
-A tooth in slot J (at angle J 2 pi / N_rg for a ring gear with a slot on +y) faces ring-gear tooth J - 1 with
-its clockwise flank and tooth J with its counter-clockwise one. It can only touch where its tip reaches past
-the tips of the ring gear.
+A tooth in slot J (at angle J 2 pi / N_rg for a ring gear with a slot on +y) faces ring-gear tooth J
+- 1 with its clockwise flank and tooth J with its counter-clockwise one. It can only touch where its
+tip reaches past the tips of the ring gear.
 """
 
 from __future__ import annotations
@@ -21,8 +21,10 @@ from swgpar.fem.partition import Partition
 class FlankPair:
     """A flank of the flexible spline and the ring-gear flank it faces.
 
-    sector : chain index in the flexible spline;  side : +1 clockwise flank, -1 counter-clockwise flank
-    ring : chain index in the ring gear;  ring_sixths : sixths of a turn by which that tooth is rotated, an image
+    sector : chain index in the flexible spline;  side : +1 clockwise flank, -1 counter-clockwise
+    flank
+    ring : chain index in the ring gear;  ring_sixths : sixths of a turn by which that tooth is
+    rotated, an image
     ring_tooth : tooth number, images not brought back
     """
 
@@ -39,7 +41,12 @@ class FlankPair:
 
 
 def facing_flanks(
-    partition: Partition, spline: BodyElements, ring: BodyLayout, u: np.ndarray, ring_rotation: float, margin: float
+    partition: Partition,
+    spline: BodyElements,
+    ring: BodyLayout,
+    u: np.ndarray,
+    ring_rotation: float,
+    margin: float,
 ) -> list[FlankPair]:
     """Pairs of flanks that can meet at displacement u (n_local, 3); the same list on every rank.
 
@@ -58,7 +65,9 @@ def facing_flanks(
     local_x, local_y = c * flank[..., 0] + s * flank[..., 1], -s * flank[..., 0] + c * flank[..., 1]
     lean = np.arctan2(-local_x.mean(axis=1), local_y.mean(axis=1))
     tip_radius = np.hypot(x[:, tips, 0], x[:, tips, 1]).max(axis=1) if len(rows) else np.zeros(0)
-    table = np.concatenate(partition.comm.allgather(np.column_stack([angle + lean, tip_radius]).reshape(-1, 2)))
+    table = np.concatenate(
+        partition.comm.allgather(np.column_stack([angle + lean, tip_radius]).reshape(-1, 2))
+    )
     pitch = 2.0 * np.pi / ring.mesh.n_sectors
     pairs = []
     for k in np.flatnonzero(table[:, 1] > ring.mesh.profile.r_tip_circle - margin):

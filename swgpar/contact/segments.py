@@ -1,9 +1,11 @@
-"""Quadrature on slave flank faces by segments: a face is cut along the edges of the master facets it lies on.
+"""Quadrature on slave flank faces by segments: a face is cut along the edges of the master facets
+it lies on.
 
-Gap and shape functions of both sides are smooth inside a segment, so that a few Gauss points integrate them
-exactly where the whole segment is in contact: the contact patch test then passes on meshes that do not match.
-The cuts run along the face's own edges: exact where both grids are aligned, as those of flanks swept along the
-axis are; for a tilt t between them the pressure of the patch test is uniform to about 0.03 t.
+Gap and shape functions of both sides are smooth inside a segment, so that a few Gauss points
+integrate them exactly where the whole segment is in contact: the contact patch test then passes on
+meshes that do not match. The cuts run along the face's own edges: exact where both grids are
+aligned, as those of flanks swept along the axis are; for a tilt t between them the pressure of the
+patch test is uniform to about 0.03 t.
 """
 
 from __future__ import annotations
@@ -17,14 +19,16 @@ from swgpar.geometry.rotation import MIRROR
 from swgpar.meshing.sector import FlankGrid, SectorMesh
 
 SAMPLES = 0.5 - 0.5 * np.cos(np.pi * (np.arange(5) + 0.5) / 5)
-"""Positions per direction, in [0, 1], at which the exact surface is sampled; it is interpolated by polynomials."""
+"""Positions per direction, in [0, 1], at which the exact surface is sampled; it is interpolated by
+polynomials."""
 
 
 @dataclass(frozen=True)
 class FlankFaces:
     """Faces of one flank of sector 0, by rows of the profile, then along the width.
 
-    corners : (n_face, 4) local nodes, at (a, b) = (0, 0), (1, 0), (1, 1), (0, 1): a along the profile, b along z
+    corners : (n_face, 4) local nodes, at (a, b) = (0, 0), (1, 0), (1, 1), (0, 1): a along the
+    profile, b along z
     size : (n_face, 2) mm, arc length and width;  normal : (n_face, 3) outward, undeformed
     offset : (n_face, n, n) mm, height of the exact, crowned surface over the facet at `SAMPLES`
     """
@@ -35,7 +39,9 @@ class FlankFaces:
     offset: np.ndarray
 
 
-def flank_faces(mesh: SectorMesh, grid: FlankGrid, removed: float, width: float, shape_name: str) -> FlankFaces:
+def flank_faces(
+    mesh: SectorMesh, grid: FlankGrid, removed: float, width: float, shape_name: str
+) -> FlankFaces:
     """Faces of a flank; removed : mm, crowning at |z| = width / 2, of the curve `shape_name`."""
     corners = face_corners(grid.nodes)
     ds, dz = np.diff(grid.s), np.diff(grid.z)
@@ -48,7 +54,9 @@ def flank_faces(mesh: SectorMesh, grid: FlankGrid, removed: float, width: float,
     cut = crowning(removed, z, width, shape_name)[0] * profile.crowning_weight(s)
     exact = profile.point(s) * side - cut[:, None] * outward
     facet = np.einsum("qa,fai->fqi", bilinear(a, b), mesh.coords[corners]).reshape(-1, 3)
-    offset = np.sum((exact - facet[:, :2]) * outward, axis=1).reshape(-1, len(SAMPLES), len(SAMPLES))
+    offset = np.sum((exact - facet[:, :2]) * outward, axis=1).reshape(
+        -1, len(SAMPLES), len(SAMPLES)
+    )
     middle = profile.normal(np.repeat(grid.s[:-1] + 0.5 * ds, len(dz))) * side
     return FlankFaces(corners, size, np.column_stack([middle, np.zeros(len(middle))]), offset)
 
@@ -64,7 +72,8 @@ def face_samples(grid: FlankGrid) -> tuple[np.ndarray, np.ndarray]:
 
 
 def face_corners(n: np.ndarray) -> np.ndarray:
-    """Corners (n_face, 4) of the faces of a grid of nodes (n_s + 1, n_z + 1), as in `FlankFaces`."""
+    """Corners (n_face, 4) of the faces of a grid of nodes (n_s + 1, n_z + 1), as in
+    `FlankFaces`."""
     return np.stack([n[:-1, :-1], n[1:, :-1], n[1:, 1:], n[:-1, 1:]], axis=-1).reshape(-1, 4)
 
 
@@ -84,12 +93,16 @@ def lagrange(t: np.ndarray) -> np.ndarray:
 
 
 def _cuts(low: np.ndarray, high: np.ndarray, lines: np.ndarray) -> np.ndarray:
-    """Ends of the segments of [0, 1], ascending, (n, m): where the line from low to high (n,) crosses one of `lines`.
+    """Ends of the segments of [0, 1], ascending, (n, m): where the line from low to high (n,)
+    crosses one of `lines`.
 
-    Halves are cut too, and the number of segments padded by empty ones: points move continuously with the cuts.
+    Halves are cut too, and the number of segments padded by empty ones: points move continuously
+    with the cuts.
     """
     first = np.searchsorted(lines, np.minimum(low, high))
-    count = np.where(np.isfinite(low + high), np.searchsorted(lines, np.maximum(low, high)) - first, 0)
+    count = np.where(
+        np.isfinite(low + high), np.searchsorted(lines, np.maximum(low, high)) - first, 0
+    )
     step = np.arange(count.max(initial=0))
     crossed = lines[np.minimum(first[:, None] + step, len(lines) - 1)]
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -101,7 +114,8 @@ def _cuts(low: np.ndarray, high: np.ndarray, lines: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Segments:
-    """Segments of faces: parent (n,) face of each, (a, b) (n, n_q) positions in it, share (n, n_q) of its area."""
+    """Segments of faces: parent (n,) face of each, (a, b) (n, n_q) positions in it, share (n, n_q)
+    of its area."""
 
     parent: np.ndarray
     a: np.ndarray
@@ -112,11 +126,13 @@ class Segments:
 def _ends(
     foot_point: np.ndarray, corners: tuple[list[int], list[int]], length: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Positions (n,) of both ends of faces on the master, from one component (n, 4) of their corners' foot points.
+    """Positions (n,) of both ends of faces on the master, from one component (n, 4) of their
+    corners' foot points.
 
-    Feet beyond the end of the flank lie on its straight continuation: the face is cut where the flank ends, so that
-    what touches changes continuously. length : (n,) of the faces along the master, with sign, which stands in for a
-    foot that is much farther off still, or across the tooth.
+    Feet beyond the end of the flank lie on its straight continuation: the face is cut where the
+    flank ends, so that
+    what touches changes continuously. length : (n,) of the faces along the master, with sign, which
+    stands in for a foot that is much farther off still, or across the tooth.
     """
     low, high = (
         np.where(np.isnan(a), b, np.where(np.isnan(b), a, 0.5 * (a + b)))
@@ -126,12 +142,19 @@ def _ends(
 
 
 def cut_faces(
-    foot_point: np.ndarray, size: np.ndarray, s: np.ndarray, z: np.ndarray, order: int, plane: bool = False
+    foot_point: np.ndarray,
+    size: np.ndarray,
+    s: np.ndarray,
+    z: np.ndarray,
+    order: int,
+    plane: bool = False,
 ) -> Segments:
     """Cut faces along the lines s and z of the master's nodes.
 
-    foot_point : (n_face, 4, 2) mm, foot points of the corners on the master, nan where there is none
-    size : (n_face, 2) mm of the faces along arc length, which runs in the opposite sense on the master, and z
+    foot_point : (n_face, 4, 2) mm, foot points of the corners on the master, nan where there is
+    none
+    size : (n_face, 2) mm of the faces along arc length, which runs in the opposite sense on the
+    master, and z
     s, z : lines, ascending;  order : Gauss points per direction of a segment
     plane : nothing changes along z, where one point stands for all
     """

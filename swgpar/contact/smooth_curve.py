@@ -1,8 +1,9 @@
 """Smooth curves through the nodes of a race's surface, around the axis.
 
-Between two nodes the curve is a cubic with the slopes of the parabolas through three nodes, so that its direction is
-the same on both sides of a node. On straight facets the direction of a frictionless force would jump at the nodes, and
-two surfaces that slide on each other would hold each other back.
+Between two nodes the curve is a cubic with the slopes of the parabolas through three nodes, so that
+its direction is the same on both sides of a node. On straight facets the direction of a
+frictionless force would jump at the nodes, and two surfaces that slide on each other would hold
+each other back.
 """
 
 from __future__ import annotations
@@ -13,17 +14,20 @@ NODES = 4
 """Nodes of a piece of the curve: its ends are the second and the third."""
 
 STEPS = 6
-"""Newton steps to a point of the curve: pieces are nearly straight, and the iteration is quadratic."""
+"""Newton steps to a point of the curve: pieces are nearly straight, and the iteration is
+quadratic."""
 
 
-def curve_nodes(grid: np.ndarray, sector: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def curve_nodes(
+    grid: np.ndarray, sector: np.ndarray, column: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Nodes of pieces of the curve.
 
     grid : (n_around + 1, n_z) nodes of a sector's surface, clockwise side first
     sector, column : (n,) index of a piece's sector, and of the piece in it
 
-    Returns indices of the sectors (n, 4) and nodes (n, 4, n_z) of the pieces; those at the ends of a sector reach into
-    the next ones.
+    Returns indices of the sectors (n, 4) and nodes (n, 4, n_z) of the pieces; those at the ends of
+    a sector reach into the next ones.
     """
     n = len(grid) - 1
     further, position = np.divmod(column[:, None] + np.arange(-1, 3), n)
@@ -31,7 +35,8 @@ def curve_nodes(grid: np.ndarray, sector: np.ndarray, column: np.ndarray) -> tup
 
 
 def smooth_curve(nodes: np.ndarray) -> np.ndarray:
-    """Polynomials (n, 4, 4) in lambda of the four nodes, 0 to 1 on a piece; coefficients of 1 to lambda³ come last.
+    """Polynomials (n, 4, 4) in lambda of the four nodes, 0 to 1 on a piece; coefficients of 1 to
+    lambda³ come last.
 
     nodes : (n, 4, 2) mm, undeformed
     """
@@ -47,8 +52,11 @@ def smooth_curve(nodes: np.ndarray) -> np.ndarray:
     return out
 
 
-def shape_functions(polynomials: np.ndarray, place: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Shape functions of the nodes at places lambda, and their first and second derivatives by lambda; (..., 4) each.
+def shape_functions(
+    polynomials: np.ndarray, place: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Shape functions of the nodes at places lambda, and their first and second derivatives by
+    lambda; (..., 4) each.
 
     polynomials : (..., 4, 4);  place : (...)
     """

@@ -12,14 +12,17 @@ from swgpar.input.quantities import Section, quantity
 
 
 class ContourPoint(Section):
-    """One table [[cup.contour]]: a point of the wall's section. Between points its surfaces are straight."""
+    """One table [[cup.contour]]: a point of the wall's section. Between points its surfaces are
+    straight."""
 
     distance: float = quantity(unit="mm", text="from the back of the teeth along the axis", gt=0.0)
     thickness: float = quantity(unit="mm", text="thickness of the wall, across the axis", gt=0.0)
     radius: float | None = quantity(
         None, unit="mm", text="inner radius of the wall; default that below the teeth", gt=0.0
     )
-    rounding: float = quantity(0.0, unit="mm", text="radius that rounds the corners at this point", ge=0.0)
+    rounding: float = quantity(
+        0.0, unit="mm", text="radius that rounds the corners at this point", ge=0.0
+    )
 
 
 class Cup(Section):
@@ -32,16 +35,23 @@ class Cup(Section):
         unit="mm", text="from the back of the teeth to the far face of closed end or flange", gt=0.0
     )
     thickness_coef: float = quantity(
-        0.8, text="thickness of the wall at the back of the teeth over rim thickness", ge=0.1, le=0.95
+        0.8,
+        text="thickness of the wall at the back of the teeth over rim thickness",
+        ge=0.1,
+        le=0.95,
     )
     contour: list[ContourPoint] = quantity(
-        [], text="points of a wall that is not straight, from the teeth on; behind the last one it is straight"
+        [],
+        text="points of a wall that is not straight, from the teeth on; behind the last one it is "
+        "straight",
     )
     end_thickness: float | None = quantity(
         None, unit="mm", text="thickness of closed end or flange; default that of the wall", gt=0.0
     )
     fillet_radius: float = quantity(
-        unit="mm", text="fillet radius of a closed end on its outer side, of a flange on its inner side", gt=0.0
+        unit="mm",
+        text="fillet radius of a closed end on its outer side, of a flange on its inner side",
+        gt=0.0,
     )
     inner_radius: float | None = quantity(
         None, unit="mm", text='bore radius of the closed end, needed with shape "cup"', gt=0.0
@@ -49,16 +59,24 @@ class Cup(Section):
     flange_radius: float | None = quantity(
         None, unit="mm", text='outer radius of the flange, needed with shape "hat"', gt=0.0
     )
-    back_fillet: float = quantity(0.0, unit="mm", text="fillet radius between back of teeth and wall", ge=0.0)
+    back_fillet: float = quantity(
+        0.0, unit="mm", text="fillet radius between back of teeth and wall", ge=0.0
+    )
 
     attachment: Literal["edge", "clamped", "bolted"] = quantity(
         "edge",
-        text="what carries the torque: bore or rim of the flange, a clamped ring of closed end or flange, bolts",
+        text="what carries the torque: bore or rim of the flange, a clamped ring of closed end or "
+        "flange, bolts",
     )
     clamping_radius: float | None = quantity(
-        None, unit="mm", text='radius to which closed end or flange is clamped, needed with "clamped"', gt=0.0
+        None,
+        unit="mm",
+        text='radius to which closed end or flange is clamped, needed with "clamped"',
+        gt=0.0,
     )
-    bolts: int | None = quantity(None, text='bolts, evenly spaced, the first on +y, needed with "bolted"', ge=3, le=400)
+    bolts: int | None = quantity(
+        None, text='bolts, evenly spaced, the first on +y, needed with "bolted"', ge=3, le=400
+    )
     bolt_circle: float | None = quantity(
         None, unit="mm", text='diameter of the circle of the bolts, needed with "bolted"', gt=0.0
     )
@@ -67,11 +85,16 @@ class Cup(Section):
     )
 
     def is_attached(self, points: Floats) -> NDArray[np.bool_]:
-        """Whether points (..., 2) mm of closed end or flange are clamped or lie under a bolt, undeformed."""
+        """Whether points (..., 2) mm of closed end or flange are clamped or lie under a bolt,
+        undeformed."""
         x, y = points[..., 0], points[..., 1]
         radius = np.hypot(x, y)
         if self.attachment == "clamped":
-            return radius >= self.clamping_radius if self.shape == "hat" else radius <= self.clamping_radius
+            return (
+                radius >= self.clamping_radius
+                if self.shape == "hat"
+                else radius <= self.clamping_radius
+            )
         if self.attachment == "edge":
             return np.zeros(radius.shape, dtype=bool)
         angle, step = np.arctan2(-x, y), 2.0 * np.pi / self.bolts

@@ -1,4 +1,5 @@
-"""The validated design of a drive: its sections and the quantities derived from them (section 3.2)."""
+"""The validated design of a drive: its sections and the quantities derived from them (section
+3.2)."""
 
 from __future__ import annotations
 
@@ -34,7 +35,14 @@ from swgpar.geometry.cup_wall import CupWall, rounded_lines
 from swgpar.geometry.drive_geometry import CupGeometry, DriveGeometry, FlankCrowning, GearGeometry
 from swgpar.geometry.micro_geometry import WaveGeneratorSurface
 from swgpar.geometry.neutral_line import NeutralLine, neutral_line
-from swgpar.geometry.profiles import Conjugate, RackInvolute, Teeth, ToothMotion, ToothProfile, make_profile
+from swgpar.geometry.profiles import (
+    Conjugate,
+    RackInvolute,
+    Teeth,
+    ToothMotion,
+    ToothProfile,
+    make_profile,
+)
 from swgpar.geometry.profiles.rigid_teeth import RigidTeeth
 from swgpar.input.design import Design
 from swgpar.materials import ChosenMaterial, Material
@@ -44,7 +52,8 @@ from swgpar.materials import ChosenMaterial, Material
 def _line(
     keys: WaveGenerator, a: float, b: float | None, inner_radius: float, radius: float, share: float
 ) -> NeutralLine:
-    """Neutral line on the cam of these keys; kept, because a design asks for its profiles again and again."""
+    """Neutral line on the cam of these keys; kept, because a design asks for its profiles again and
+    again."""
     return neutral_line(make_cam(keys, a, b), inner_radius, radius, share, keys.lobes)
 
 
@@ -72,7 +81,8 @@ class DriveDesign(Design):
 
     @property
     def gears(self) -> tuple[GearName, ...]:
-        """The gears in the order of the bodies; the dynamic spline of a pancake drive is the third one."""
+        """The gears in the order of the bodies; the dynamic spline of a pancake drive is the third
+        one."""
         return GEARS if self.dynamic_spline is None else (*GEARS, "dynamic_spline")
 
     def axial_range(self, gear: GearName) -> tuple[float, float]:
@@ -81,7 +91,9 @@ class DriveDesign(Design):
         if second is None or gear == "flexible_spline":
             return -half, half
         width = second.face_width or 0.5 * (self.drive.face_width - second.gap)
-        return (half - width, half) if gear == "dynamic_spline" else (-half, half - width - second.gap)
+        return (
+            (half - width, half) if gear == "dynamic_spline" else (-half, half - width - second.gap)
+        )
 
     def rim_radius(self, ring: GearName) -> float:
         """Outer radius (mm) of a ring gear, without a housing."""
@@ -100,7 +112,8 @@ class DriveDesign(Design):
 
     @property
     def inner_radius(self) -> float:
-        """Inner radius r_fs of the undeformed flexible spline, mm (eq. 3.1); a profile shift moves the root circle."""
+        """Inner radius r_fs of the undeformed flexible spline, mm (eq. 3.1); a profile shift moves
+        the root circle."""
         g, profile = self.drive, self.flexible_spline.profile
         shift = profile.shift if isinstance(profile, RackInvolute) else 0.0
         return (0.5 * g.teeth_fs - g.dedendum_coef + shift) * g.module - self.flexible_spline.rim
@@ -112,25 +125,33 @@ class DriveDesign(Design):
 
     @property
     def minor_semi_axis(self) -> float | None:
-        """Minor semi-axis b of the wave generator, mm (eqs 3.2, 3.4); None for rollers, which have none."""
+        """Minor semi-axis b of the wave generator, mm (eqs 3.2, 3.4); None for rollers, which have
+        none."""
         wave = self.wave_generator
-        return None if isinstance(wave, FourRoller) else wave.C * (self.inner_radius - 0.5 * self.deflection)
+        return (
+            None
+            if isinstance(wave, FourRoller)
+            else wave.C * (self.inner_radius - 0.5 * self.deflection)
+        )
 
     @property
     def wave_generator_is_fixed(self) -> bool:
-        """Whether the ring gear is the input. Everything is then computed in the frame of the ring gear."""
+        """Whether the ring gear is the input. Everything is then computed in the frame of the ring
+        gear."""
         return self.drive.layout == "wave_generator_fixed"
 
     @property
     def output_gear(self) -> GearName:
-        """The gear that is the output; the other one stands in the frame in which the drive is computed."""
+        """The gear that is the output; the other one stands in the frame in which the drive is
+        computed."""
         if self.drive.layout == "spline_fixed":
             return "ring_gear"
         return "flexible_spline" if self.dynamic_spline is None else "dynamic_spline"
 
     @property
     def standing_gear(self) -> GearName:
-        """The gear that stands in the frame in which the drive is computed: the fixed one, or the driven ring gear."""
+        """The gear that stands in the frame in which the drive is computed: the fixed one, or the
+        driven ring gear."""
         if self.output_gear != "ring_gear":
             return "ring_gear"
         return "flexible_spline" if self.dynamic_spline is None else "dynamic_spline"
@@ -139,15 +160,22 @@ class DriveDesign(Design):
     def ratio(self) -> float:
         """Speed ratio, wave generator over output, both against the standing gear."""
         g = self.drive
-        return (g.teeth_rg if self.output_gear == "ring_gear" else -g.teeth_fs) / (g.teeth_rg - g.teeth_fs)
+        return (g.teeth_rg if self.output_gear == "ring_gear" else -g.teeth_fs) / (
+            g.teeth_rg - g.teeth_fs
+        )
 
     @property
     def input_ratio(self) -> float:
         """Speed ratio of the drive, input over output."""
-        return self.drive.teeth_fs / self.drive.teeth_rg if self.wave_generator_is_fixed else self.ratio
+        return (
+            self.drive.teeth_fs / self.drive.teeth_rg
+            if self.wave_generator_is_fixed
+            else self.ratio
+        )
 
     def in_frame_of_result(self, angle: float, wave_generator: float) -> float:
-        """Angle in the frame of the fixed member, from that in the frame in which the drive is computed.
+        """Angle in the frame of the fixed member, from that in the frame in which the drive is
+        computed.
 
         wave_generator : its angle against the standing gear, in the unit of the angle
         """
@@ -155,25 +183,34 @@ class DriveDesign(Design):
 
     @property
     def period_angle(self) -> float:
-        """Period of the motion, rad of the wave generator against the standing gear: one pitch angle of that gear."""
+        """Period of the motion, rad of the wave generator against the standing gear: one pitch
+        angle of that gear."""
         return 2.0 * np.pi / self.teeth(self.standing_gear).n_teeth
 
     @property
     def has_program(self) -> bool:
-        """Whether the output follows a load program, in place of one torque and a rotation of the wave generator."""
+        """Whether the output follows a load program, in place of one torque and a rotation of the
+        wave generator."""
         return bool(self.load.program or self.stiffness or self.ratcheting)
 
     @property
     def is_mirror_symmetric(self) -> bool:
-        """Whether the undeformed drive is its own image in the plane through the axis and the major axis.
+        """Whether the undeformed drive is its own image in the plane through the axis and the major
+        axis.
 
-        The balls of a bearing are placed on one side of it or the other. With bolts no other state mirrors it.
+        The balls of a bearing are placed on one side of it or the other. With bolts no other state
+        mirrors it.
         """
-        return self.wave_generator.type != "asymmetric_parabolic" and self.bearing is None and not self.is_bolted
+        return (
+            self.wave_generator.type != "asymmetric_parabolic"
+            and self.bearing is None
+            and not self.is_bolted
+        )
 
     @property
     def has_cup(self) -> bool:
-        """Whether the flexible spline has a wall and an end; the plane model leaves out the cup of its section."""
+        """Whether the flexible spline has a wall and an end; the plane model leaves out the cup of
+        its section."""
         return self.drive.model == "cup"
 
     @property
@@ -190,7 +227,8 @@ class DriveDesign(Design):
     def copies(self) -> int:
         """How many times the model makes the whole drive.
 
-        The number of lobes where the drive equals itself rotated by one of them and the design allows it, else 1.
+        The number of lobes where the drive equals itself rotated by one of them and the design
+        allows it, else 1.
         """
         counts = [self.drive.teeth_fs, self.drive.teeth_rg]
         if self.bearing is not None:
@@ -202,27 +240,33 @@ class DriveDesign(Design):
 
     @property
     def periods(self) -> int:
-        """Periods that are computed with `steps.samples`: two with friction, whose state settles in the first."""
+        """Periods that are computed with `steps.samples`: two with friction, whose state settles in
+        the first."""
         return 2 if self.contact.friction else 1
 
     @property
     def backlash(self) -> float:
-        """Circumferential backlash at the pitch circles, mm (eqs 6.1 to 6.3): the pitch less both teeth."""
+        """Circumferential backlash at the pitch circles, mm (eqs 6.1 to 6.3): the pitch less both
+        teeth."""
         thickness = [self.profile(gear).thickness(self.teeth(gear).r_pitch) for gear in GEARS]
         return float(np.pi * self.drive.module - sum(thickness))
 
     @property
     def dynamic_backlash(self) -> float:
-        """Circumferential backlash of the dynamic spline, mm: its pitch less both teeth; 0 without one."""
+        """Circumferential backlash of the dynamic spline, mm: its pitch less both teeth; 0 without
+        one."""
         if self.dynamic_spline is None:
             return 0.0
         second = self.teeth("dynamic_spline")
         space = np.pi * second.module - self.profile("dynamic_spline").thickness(second.r_pitch)
-        return float(space - self.profile("flexible_spline").thickness(self.teeth("flexible_spline").r_pitch))
+        return float(
+            space - self.profile("flexible_spline").thickness(self.teeth("flexible_spline").r_pitch)
+        )
 
     @property
     def backlash_angle(self) -> float:
-        """Rotation gamma of the flexible spline that closes the backlash on one side, rad (eq. 6.4)."""
+        """Rotation gamma of the flexible spline that closes the backlash on one side, rad (eq.
+        6.4)."""
         return self.backlash / (self.drive.teeth_fs * self.drive.module)
 
     @property
@@ -233,7 +277,9 @@ class DriveDesign(Design):
     @property
     def bearing_sizes(self) -> BearingSizes:
         """Sizes of the bearing, which the design must have."""
-        return BearingSizes(self.inner_radius, self.bearing.race_thickness, self.bearing.ball_diameter)
+        return BearingSizes(
+            self.inner_radius, self.bearing.race_thickness, self.bearing.ball_diameter
+        )
 
     @property
     def race_width(self) -> float:
@@ -262,7 +308,10 @@ class DriveDesign(Design):
         if self.dynamic_spline is not None:
             radii.append(self.rim_radius("dynamic_spline"))
         if self.has_cup:
-            radii += [self.cup.edge, *(inner + thickness for _, inner, thickness, _ in self.wall_points)]
+            radii += [
+                self.cup.edge,
+                *(inner + thickness for _, inner, thickness, _ in self.wall_points),
+            ]
         return max(radii)
 
     @property
@@ -274,18 +323,22 @@ class DriveDesign(Design):
     def cage_speed(self) -> float:
         """Speed of the cage over that of the wave generator.
 
-        With `steps.samples` it is 1: the balls are then fixed to the cam, because only then the drive repeats after a
-        period. Otherwise it is the key, or that of balls that roll on a race that rotates with the flexible spline.
+        With `steps.samples` it is 1: the balls are then fixed to the cam, because only then the
+        drive repeats after a period. Otherwise it is the key, or that of balls that roll on a race
+        that rotates with the flexible spline.
         """
         if self.steps.samples:
             return 1.0
         if self.bearing.cage_speed is not None:
             return self.bearing.cage_speed
-        return self.bearing_sizes.rolling_speed(0.0 if self.output_gear == "ring_gear" else 1.0 / self.ratio)
+        return self.bearing_sizes.rolling_speed(
+            0.0 if self.output_gear == "ring_gear" else 1.0 / self.ratio
+        )
 
     @property
     def ball_passing_angle(self) -> float:
-        """Rotation (rad) of the wave generator after which a ball takes the place of the one before it on the cam.
+        """Rotation (rad) of the wave generator after which a ball takes the place of the one before
+        it on the cam.
 
         inf where the balls are fixed to the cam.
         """
@@ -299,31 +352,37 @@ class DriveDesign(Design):
 
     @property
     def resolves_root_stress(self) -> bool:
-        """Whether windows resolve the stress at the teeth: with one loaded state, on a cam without a bearing, and one
-        ring gear."""
+        """Whether windows resolve the stress at the teeth: with one loaded state, on a cam without
+        a bearing, and one ring gear."""
         simple = self.bearing is None and self.dynamic_spline is None
         return self.output.root_stress and not self.has_program and simple
 
     @property
     def axial_travel(self) -> float:
-        """Axial displacement (mm) of a tooth at the major axis towards the closed end; 0 in the plane model.
+        """Axial displacement (mm) of a tooth at the major axis towards the closed end; 0 in the
+        plane model.
 
-        The cup is taken as a wall that bends without extension, with a radial deflection d / 2 cos n phi that grows
-        linearly from the closed end, n lobes. Such a wall moves axially by r d / (2 n² L) (Love's inextensional mode),
-        and the tooth leans by d / (2 L).
+        The cup is taken as a wall that bends without extension, with a radial deflection d / 2 cos
+        n phi that grows linearly from the closed end, n lobes. Such a wall moves axially by r d /
+        (2 n² L) (Love's inextensional mode), and the tooth leans by d / (2 L).
         """
         middle = self.inner_radius + 0.5 * self.flexible_spline.rim
         height = 0.5 * self.drive.teeth_fs * self.drive.module - middle
-        return 0.5 * self.deflection / self.cup.length * (middle / self.lobes**2 + height) if self.has_cup else 0.0
+        return (
+            0.5 * self.deflection / self.cup.length * (middle / self.lobes**2 + height)
+            if self.has_cup
+            else 0.0
+        )
 
     @property
     def omitted_bending(self) -> float:
         """Share of the bending strain that the plane model's condensed sectors leave out, at most.
 
-        The change of the rim's curvature rotates the ends of a sector, a pitch apart, by theta relative to each other.
-        The strain left out is theta^2 / 8, here divided by the bending strain. With n lobes the curvature changes by
-        (n^2 - 1) d / (2 r^2) on a cam that the rim follows all around, as an ellipse. A ring that touches at its major
-        axis only bends 1.4 times as much there, on rollers 70 degrees apart 2.9 times: 3 covers both.
+        The change of the rim's curvature rotates the ends of a sector, a pitch apart, by theta
+        relative to each other. The strain left out is theta^2 / 8, here divided by the bending
+        strain. With n lobes the curvature changes by (n^2 - 1) d / (2 r^2) on a cam that the rim
+        follows all around, as an ellipse. A ring that touches at its major axis only bends 1.4
+        times as much there, on rollers 70 degrees apart 2.9 times: 3 covers both.
         """
         factor = 1.0 if self.wave_generator.type == "elliptical" else 3.0
         curvature = factor * 0.5 * (self.lobes**2 - 1) * self.deflection / self.inner_radius**2
@@ -332,20 +391,26 @@ class DriveDesign(Design):
 
     @property
     def can_condense(self) -> bool:
-        """Whether sectors may be condensed: in the plane model, where that leaves out little bending strain."""
+        """Whether sectors may be condensed: in the plane model, where that leaves out little
+        bending strain."""
         return self.drive.model == "plane" and self.omitted_bending <= OMITTED_BENDING
 
     @property
     def cup_thickness(self) -> float:
-        """Thickness (mm) of the cup's wall at the back of the teeth; that of the rim in the plane model without cup."""
+        """Thickness (mm) of the cup's wall at the back of the teeth; that of the rim in the plane
+        model without cup."""
         return (self.cup.thickness_coef if self.has_cup else 1.0) * self.flexible_spline.rim
 
     @property
     def wall_points(self) -> list[tuple[float, float, float, float]]:
-        """Points of the cup's wall: distance from the back of the teeth, inner radius, thickness and rounding, mm."""
+        """Points of the cup's wall: distance from the back of the teeth, inner radius, thickness
+        and rounding, mm."""
         cup = self.cup
         points = [(0.0, self.inner_radius, self.cup_thickness, 0.0)]
-        points += [(p.distance, p.radius or self.inner_radius, p.thickness, p.rounding) for p in cup.contour]
+        points += [
+            (p.distance, p.radius or self.inner_radius, p.thickness, p.rounding)
+            for p in cup.contour
+        ]
         (last, radius, thickness, _), length = points[-1], cup.length - cup.fillet_radius
         return points if last >= length else [*points, (length, radius, thickness, 0.0)]
 
@@ -372,16 +437,24 @@ class DriveDesign(Design):
 
     @property
     def rest_plane(self) -> float:
-        """z (mm) at which the deflection vanishes: the middle of the closed end or flange; 0 in the plane model."""
-        return 0.5 * self.drive.face_width + self.cup.length - 0.5 * self.end_thickness if self.has_cup else 0.0
+        """z (mm) at which the deflection vanishes: the middle of the closed end or flange; 0 in the
+        plane model."""
+        return (
+            0.5 * self.drive.face_width + self.cup.length - 0.5 * self.end_thickness
+            if self.has_cup
+            else 0.0
+        )
 
     def material_of(self, body: DesignBody) -> Material:
         """Material of a body of the design: that of its own section, else [material]."""
-        section = {"housing": self.housing, "bearing": self.bearing}.get(body) or getattr(self, body)
+        section = {"housing": self.housing, "bearing": self.bearing}.get(body) or getattr(
+            self, body
+        )
         return section.material or self.material
 
     def modulus_of(self, *bodies: DesignBody) -> float:
-        """Modulus of elasticity (MPa) of the softest of bodies: the scale of contacts and supports between them."""
+        """Modulus of elasticity (MPa) of the softest of bodies: the scale of contacts and supports
+        between them."""
         return min(self.material_of(body).modulus for body in bodies)
 
     def penalty(self, *bodies: DesignBody) -> float:
@@ -396,7 +469,9 @@ class DriveDesign(Design):
     @property
     def materials(self) -> dict[str, Material]:
         """Materials of the gears, and of the housing if there is one, by name."""
-        bodies: tuple[DesignBody, ...] = self.gears if self.housing is None else (*self.gears, "housing")
+        bodies: tuple[DesignBody, ...] = (
+            self.gears if self.housing is None else (*self.gears, "housing")
+        )
         return {body: self.material_of(body) for body in bodies}
 
     @property
@@ -407,15 +482,20 @@ class DriveDesign(Design):
 
     @property
     def geometry(self) -> DriveGeometry:
-        """Sizes from which meshes are made. Raises InputError where keys of a profile give no flank."""
+        """Sizes from which meshes are made. Raises InputError where keys of a profile give no
+        flank."""
         drive, cup = self.drive, None
         if self.has_cup:
             section = self.cup
-            cup = CupGeometry(self.cup_wall, section.thickness_coef, section.back_fillet, section.clamping_radius)
+            cup = CupGeometry(
+                self.cup_wall, section.thickness_coef, section.back_fillet, section.clamping_radius
+            )
         return DriveGeometry(
             model=drive.model,
             gears={
-                gear: GearGeometry(self.profile(gear), getattr(self, gear).rim, self.axial_range(gear))
+                gear: GearGeometry(
+                    self.profile(gear), getattr(self, gear).rim, self.axial_range(gear)
+                )
                 for gear in self.gears
             },
             module=drive.module,
@@ -430,8 +510,8 @@ class DriveDesign(Design):
     def teeth(self, gear: GearName) -> Teeth:
         """Number and sizes of the teeth of a gear.
 
-        The dynamic spline has the teeth of the flexible spline on the pitch circle of the ring gear, where these mesh
-        at the major axis: its module is larger.
+        The dynamic spline has the teeth of the flexible spline on the pitch circle of the ring
+        gear, where these mesh at the major axis: its module is larger.
         """
         drive, external = self.drive, gear == "flexible_spline"
         wider = drive.teeth_rg / drive.teeth_fs if gear == "dynamic_spline" else 1.0
@@ -451,25 +531,39 @@ class DriveDesign(Design):
         if isinstance(section.profile, Conjugate):
             other = GEARS[1 - GEARS.index(gear)]
             partner = self.profile(other), self.tooth_motion(section.profile.section)
-        return make_profile(section.profile, self.teeth(gear), section.c_P, section.c_l, gear, partner)
+        return make_profile(
+            section.profile, self.teeth(gear), section.c_P, section.c_l, gear, partner
+        )
 
     def tooth_motion(self, z: float = 0.0, ring: GearName = "ring_gear") -> ToothMotion:
-        """Motion of the flexible spline's tooth in its slot of `ring` at the section z, mm, of the rigid limit."""
+        """Motion of the flexible spline's tooth in its slot of `ring` at the section z, mm, of the
+        rigid limit."""
         radius = self.inner_radius + 0.5 * self.flexible_spline.rim
         share = 1.0
         if self.has_cup:
             # the deflection of a cup grows linearly from the closed end, whose middle stays plane
             share = (self.rest_plane - z) / self.rest_plane
-        line = _line(self.wave_generator, self.major_semi_axis, self.minor_semi_axis, self.inner_radius, radius, share)
+        line = _line(
+            self.wave_generator,
+            self.major_semi_axis,
+            self.minor_semi_axis,
+            self.inner_radius,
+            radius,
+            share,
+        )
         return ToothMotion(line, self.drive.teeth_fs, self.teeth(ring).n_teeth)
 
     def rigid_teeth(self, ring: GearName = "ring_gear") -> RigidTeeth:
         """Undeformed teeth of the flexible spline and of a ring gear at mid-width."""
-        profiles, motion = (self.profile("flexible_spline"), self.profile(ring)), self.tooth_motion(ring=ring)
+        profiles, motion = (
+            (self.profile("flexible_spline"), self.profile(ring)),
+            self.tooth_motion(ring=ring),
+        )
         return RigidTeeth(*profiles, motion, self.lobes, self.drive.teeth_fs, self.drive.module)
 
     def cam(self) -> Cam:
-        """Exact curve of the cam, major axis along +y. Raises InputError where its keys give no closed curve."""
+        """Exact curve of the cam, major axis along +y. Raises InputError where its keys give no
+        closed curve."""
         return make_cam(self.wave_generator, self.major_semi_axis, self.minor_semi_axis)
 
     def cam_surface(self) -> WaveGeneratorSurface:

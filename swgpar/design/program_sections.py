@@ -1,4 +1,5 @@
-"""The sections of load programs: stages of a path of loads, and programs that are generated from few keys."""
+"""The sections of load programs: stages of a path of loads, and programs that are generated from
+few keys."""
 
 from __future__ import annotations
 
@@ -6,11 +7,14 @@ from swgpar.input.quantities import Section, quantity
 
 
 class ProgramStage(Section):
-    """One table [[load.program]]: where output and wave generator are taken from where the stage before left them."""
+    """One table [[load.program]]: where output and wave generator are taken from where the stage
+    before left them."""
 
     name: str = quantity(text="name of the stage in the results")
     torque: float | None = quantity(
-        None, unit="N·m", text="output torque at the end of the stage, positive against the output's motion"
+        None,
+        unit="N·m",
+        text="output torque at the end of the stage, positive against the output's motion",
     )
     output_rotation: float | None = quantity(
         None,
@@ -22,7 +26,9 @@ class ProgramStage(Section):
     wave_generator: float | None = quantity(
         None, unit="deg", text="angle of the wave generator at the end", ge=-36000.0, le=36000.0
     )
-    points: int = quantity(1, text="points that are recorded, evenly spaced up to the end", ge=1, le=10000)
+    points: int = quantity(
+        1, text="points that are recorded, evenly spaced up to the end", ge=1, le=10000
+    )
 
 
 class Stiffness(Section):
@@ -32,10 +38,14 @@ class Stiffness(Section):
         None, unit="N·m", text="largest torque, in both directions; default load.torque", gt=0.0
     )
     rated_torque: float | None = quantity(
-        None, unit="N·m", text="torque that lost_motion_share refers to; default stiffness.torque", gt=0.0
+        None,
+        unit="N·m",
+        text="torque that lost_motion_share refers to; default stiffness.torque",
+        gt=0.0,
     )
     break_points: list[float] = quantity(
-        [0.2, 0.65], text="two shares of the largest torque, ascending: K1 ends at the first, K2 at the second"
+        [0.2, 0.65],
+        text="two shares of the largest torque, ascending: K1 ends at the first, K2 at the second",
     )
     lost_motion_share: float = quantity(
         0.04, text="share of the rated torque at which the lost motion is measured", gt=0.0, lt=1.0
@@ -46,17 +56,26 @@ class Stiffness(Section):
         ge=1,
         le=200,
     )
-    positions: int = quantity(3, text="angles of the wave generator in one period, evenly spaced", ge=1, le=360)
-    loop: bool = quantity(
-        True, text="compute the whole loop at every position; false: one way of it, which suffices without friction"
+    positions: int = quantity(
+        3, text="angles of the wave generator in one period, evenly spaced", ge=1, le=360
     )
-    mesh_error: bool = quantity(True, text="repeat the first position on a coarser mesh for the error by the mesh")
+    loop: bool = quantity(
+        True,
+        text="compute the whole loop at every position; false: one way of it, which suffices "
+        "without friction",
+    )
+    mesh_error: bool = quantity(
+        True, text="repeat the first position on a coarser mesh for the error by the mesh"
+    )
 
 
 class Ratcheting(Section):
-    """Section [ratcheting]: the output is rotated with the wave generator locked until its torque falls."""
+    """Section [ratcheting]: the output is rotated with the wave generator locked until its torque
+    falls."""
 
-    wave_generator: float = quantity(0.0, unit="deg", text="angle of the wave generator", ge=0.0, lt=360.0)
+    wave_generator: float = quantity(
+        0.0, unit="deg", text="angle of the wave generator", ge=0.0, lt=360.0
+    )
     increment: float = quantity(
         0.02,
         unit="pitches",
@@ -65,8 +84,15 @@ class Ratcheting(Section):
         le=0.5,
     )
     limit: float = quantity(
-        1.5, unit="pitches", text="rotation of the output at which the run ends at the latest", gt=0.0, le=20.0
+        1.5,
+        unit="pitches",
+        text="rotation of the output at which the run ends at the latest",
+        gt=0.0,
+        le=20.0,
     )
     drop: float = quantity(
-        0.1, text="share of its peak by which the torque has to fall for the run to end", gt=0.0, lt=1.0
+        0.1,
+        text="share of its peak by which the torque has to fall for the run to end",
+        gt=0.0,
+        lt=1.0,
     )

@@ -27,11 +27,14 @@ class Drive(Section):
 
     layout: Literal["ring_fixed", "spline_fixed", "wave_generator_fixed"] = quantity(
         "ring_fixed",
-        text="fixed member; the wave generator drives the other gear, or where it is fixed the ring gear the spline; "
+        text="fixed member; the wave generator drives the other gear, or where it is fixed the "
+        "ring gear the spline; "
         "in a pancake drive the dynamic spline takes the place of the flexible one",
     )
     model: Literal["cup", "plane", "pancake"] = quantity(
-        "cup", text="the cup drive, the toothed section in plane stress, or a flexible spline between two ring gears"
+        "cup",
+        text="the cup drive, the toothed section in plane stress, or a flexible spline between two "
+        "ring gears",
     )
     teeth_fs: int = quantity(text="teeth of the flexible spline", ge=8, le=2000)
     teeth_rg: int = quantity(text="teeth of the ring gear", ge=10, le=2002)
@@ -46,8 +49,12 @@ class Gear(Section):
     """What the sections [flexible_spline] and [ring_gear] have in common."""
 
     rim: float = quantity(unit="mm", text="rim thickness below the root circle", gt=0.0)
-    c_P: float = quantity(1.0, text="angular tooth thickness reduction; 1 for involutes", gt=0.0, le=1.2)
-    c_l: float = quantity(0.5, text="share of the straight segment above the pitch point", ge=0.0, le=1.0)
+    c_P: float = quantity(
+        1.0, text="angular tooth thickness reduction; 1 for involutes", gt=0.0, le=1.2
+    )
+    c_l: float = quantity(
+        0.5, text="share of the straight segment above the pitch point", ge=0.0, le=1.0
+    )
     material: OptionalMaterial = None
 
 
@@ -58,7 +65,8 @@ class ExternalGear(Gear):
 
 
 class Housing(Section):
-    """Section [ring_gear.housing]: an elastic ring around the ring gear and bonded to it, as wide as the gear."""
+    """Section [ring_gear.housing]: an elastic ring around the ring gear and bonded to it, as wide
+    as the gear."""
 
     thickness: float = quantity(unit="mm", text="radial thickness", gt=0.0)
     outside: Literal["free", "held"] = quantity(
@@ -75,14 +83,19 @@ class InternalGear(Gear):
 
 
 class DynamicSpline(Gear):
-    """Section [dynamic_spline]: the second ring gear of a pancake drive, with as many teeth as the flexible spline.
+    """Section [dynamic_spline]: the second ring gear of a pancake drive, with as many teeth as the
+    flexible spline.
 
-    It lies at z > 0, [ring_gear] at z < 0. Both end with the teeth of the flexible spline, whose face width they share.
+    It lies at z > 0, [ring_gear] at z < 0. Both end with the teeth of the flexible spline, whose
+    face width they share.
     """
 
     profile: InternalProfile
     face_width: float | None = quantity(
-        None, unit="mm", text="face width; default half of what the gap leaves, the rest is the ring gear's", gt=0.0
+        None,
+        unit="mm",
+        text="face width; default half of what the gap leaves, the rest is the ring gear's",
+        gt=0.0,
     )
     gap: float = quantity(unit="mm", text="axial gap between the ring gears", gt=0.0)
 
@@ -92,17 +105,28 @@ class MicroGeometry(Section):
 
     wg_crowning: float = quantity(0.0, unit="mm", text="crowning of the cam at its edges", ge=0.0)
     wg_slope: float = quantity(
-        0.0, unit="mm", text="slope of the cam: radial -s (2z/F_w) cos(lobes theta); s > 0 follows the cone of the cup"
+        0.0,
+        unit="mm",
+        text="slope of the cam: radial -s (2z/F_w) cos(lobes theta); s > 0 follows the cone of the "
+        "cup",
     )
-    fs_crowning: float = quantity(0.0, unit="mm", text="crowning of the flexible spline's flanks at their ends", ge=0.0)
-    crowning_shape: Literal["parabolic", "circular"] = quantity("parabolic", text="curve of the crowning")
+    fs_crowning: float = quantity(
+        0.0, unit="mm", text="crowning of the flexible spline's flanks at their ends", ge=0.0
+    )
+    crowning_shape: Literal["parabolic", "circular"] = quantity(
+        "parabolic", text="curve of the crowning"
+    )
 
 
 class Load(Section):
     """Section [load]."""
 
-    torque: float = quantity(0.0, unit="N·m", text="output torque, against the output's motion", ge=0.0)
-    input_speed: float = quantity(2000.0, unit="1/min", text="speed of the input, for sliding speeds", gt=0.0, le=1e6)
+    torque: float = quantity(
+        0.0, unit="N·m", text="output torque, against the output's motion", ge=0.0
+    )
+    input_speed: float = quantity(
+        2000.0, unit="1/min", text="speed of the input, for sliding speeds", gt=0.0, le=1e6
+    )
     program: list[ProgramStage] = quantity(
         [], text="stages of a load program, which takes the place of torque and rotation"
     )
@@ -111,12 +135,20 @@ class Load(Section):
 class Contact(Section):
     """Section [contact]: friction, penalties and quadrature."""
 
-    friction: float = quantity(0.0, text="coefficient of friction between the flanks", ge=0.0, le=1.0)
+    friction: float = quantity(
+        0.0, text="coefficient of friction between the flanks", ge=0.0, le=1.0
+    )
     penalty_coef: float = quantity(50.0, text="penalty of the flanks over E / module", gt=0.0)
     wg_penalty_coef: float = quantity(5.0, text="penalty of cam and pins over E / module", gt=0.0)
-    quadrature: int = quantity(2, text="Gauss points per direction on segments of flank faces", ge=1, le=16)
-    wg_quadrature: int = quantity(3, text="Gauss points per direction on the inner surface", ge=1, le=16)
-    max_augmentations: int = quantity(3, text="largest number of augmentations per increment", ge=0, le=50)
+    quadrature: int = quantity(
+        2, text="Gauss points per direction on segments of flank faces", ge=1, le=16
+    )
+    wg_quadrature: int = quantity(
+        3, text="Gauss points per direction on the inner surface", ge=1, le=16
+    )
+    max_augmentations: int = quantity(
+        3, text="largest number of augmentations per increment", ge=0, le=50
+    )
     penetration_tolerance: float = quantity(
         1e-3, unit="modules", text="penetration that needs no augmentation", gt=0.0, le=0.1
     )
@@ -126,55 +158,85 @@ class Steps(Section):
     """Section [steps]: the load sequence and its increments."""
 
     rotation: float = quantity(45.0, unit="deg", text="rotation of the input", ge=0.0, le=36000.0)
-    increment: float = quantity(5.0, unit="deg", text="increment of that rotation", ge=0.01, le=45.0)
-    pins: bool = quantity(
-        True, text="deflect the spline by pins before the cam acts; false, or with a bearing: by the growing cam"
+    increment: float = quantity(
+        5.0, unit="deg", text="increment of that rotation", ge=0.01, le=45.0
     )
-    deflect_increments: int = quantity(1, text="increments of the deflection (step 1)", ge=1, le=1000)
+    pins: bool = quantity(
+        True,
+        text="deflect the spline by pins before the cam acts; false, or with a bearing: by the "
+        "growing cam",
+    )
+    deflect_increments: int = quantity(
+        1, text="increments of the deflection (step 1)", ge=1, le=1000
+    )
     engage_increments: int = quantity(1, text="increments of the engagement", ge=1, le=1000)
     load_increments: int = quantity(1, text="increments of the torque", ge=1, le=1000)
     samples: int = quantity(
         0,
-        text="angles computed in one period and continued by symmetry, instead of increments; 0: off",
+        text="angles computed in one period and continued by symmetry, instead of increments; 0: "
+        "off",
         ge=0,
         le=1000,
     )
     bent_start: bool = quantity(
-        False, text="begin with the loaded state, from the shape of the bent flexible spline, instead of steps 1 to 3"
+        False,
+        text="begin with the loaded state, from the shape of the bent flexible spline, instead of "
+        "steps 1 to 3",
     )
     start_levels: int = quantity(
-        0, text="coarser meshes on which the drive is assembled and loaded (steps 1 to 3); 0: off", ge=0, le=4
+        0,
+        text="coarser meshes on which the drive is assembled and loaded (steps 1 to 3); 0: off",
+        ge=0,
+        le=4,
     )
 
 
 class Solver(Section):
     """Section [solver]: linear solver, convergence and reductions of the model."""
 
-    linear: Literal["direct", "iterative"] = quantity("direct", text="linear solver: MUMPS, or GMRES with GAMG")
+    linear: Literal["direct", "iterative"] = quantity(
+        "direct", text="linear solver: MUMPS, or GMRES with GAMG"
+    )
     rtol: float = quantity(1e-9, text="residual over contact force at convergence", gt=0.0, le=1e-3)
     max_iterations: int = quantity(
         25, text="Newton iterations before a cut-back, unless the residual falls", ge=1, le=1000
     )
-    max_cutbacks: int = quantity(5, text="halvings of an increment before the run ends", ge=0, le=20)
+    max_cutbacks: int = quantity(
+        5, text="halvings of an increment before the run ends", ge=0, le=20
+    )
     iteration_limit: int = quantity(
-        600, text="Newton iterations of one increment, those before cut-backs included", ge=1, le=1_000_000
+        600,
+        text="Newton iterations of one increment, those before cut-backs included",
+        ge=1,
+        le=1_000_000,
     )
     time_limit: float | None = quantity(
-        None, unit="s", text="wall time after which a run ends with the next Newton iteration; without it none", gt=0.0
+        None,
+        unit="s",
+        text="wall time after which a run ends with the next Newton iteration; without it none",
+        gt=0.0,
     )
     memory_limit: float | None = quantity(
-        None, unit="GB", text="largest memory that a run may need by its forecast; without it what is free", gt=0.0
+        None,
+        unit="GB",
+        text="largest memory that a run may need by its forecast; without it what is free",
+        gt=0.0,
     )
     symmetry: bool = quantity(
         True, text="model half of the drive when tooth numbers allow it, with three lobes a third"
     )
     far_teeth: Literal["left_out", "modelled"] = quantity(
         "left_out",
-        text="teeth out of reach: sectors of a fixed ring gear without housing are left out, in the cup drive teeth "
+        text="teeth out of reach: sectors of a fixed ring gear without housing are left out, in "
+        "the cup drive teeth "
         "are one element",
     )
-    condensed_sectors: bool = quantity(False, text="plane model: eliminate the inside of tooth sectors")
-    keep_factor: bool = quantity(True, text="use factors for later tangents while GMRES converges with them")
+    condensed_sectors: bool = quantity(
+        False, text="plane model: eliminate the inside of tooth sectors"
+    )
+    keep_factor: bool = quantity(
+        True, text="use factors for later tangents while GMRES converges with them"
+    )
 
 
 class Output(Section):
@@ -183,37 +245,59 @@ class Output(Section):
     fields: bool = quantity(True, text="write fields.h5 and fields.xdmf")
     figures: bool = quantity(True, text="draw the figures")
     root_stress: bool = quantity(
-        True, text="resolve the largest tensile stress at the teeth under load by windows on finer meshes"
+        True,
+        text="resolve the largest tensile stress at the teeth under load by windows on finer "
+        "meshes",
     )
 
 
 class Fatigue(Section):
-    """Section [fatigue]: strengths of the flexible spline, for polished specimens; present to compute its fatigue.
+    """Section [fatigue]: strengths of the flexible spline, for polished specimens; present to
+    compute its fatigue.
 
-    The defaults are those of a steel like 30CrNiMo8, quenched and tempered (docs/theory/fatigue.md).
+    The defaults are those of a steel like 30CrNiMo8, quenched and tempered
+    (docs/theory/fatigue.md).
     """
 
     tensile_strength: float = quantity(1250.0, unit="MPa", text="tensile strength", gt=0.0)
     yield_strength: float = quantity(1050.0, unit="MPa", text="yield strength", gt=0.0)
-    fatigue_limit: float = quantity(560.0, unit="MPa", text="fatigue limit under alternating tension", gt=0.0)
-    shear_fatigue_limit: float = quantity(348.0, unit="MPa", text="fatigue limit under alternating torsion", gt=0.0)
-    surface_factor: float = quantity(0.86, text="factor of the surface on the fatigue strengths", gt=0.0, le=1.5)
-    size_factor: float = quantity(1.0, text="factor of the size on the fatigue strengths", gt=0.0, le=1.5)
-    basquin_coefficient: float = quantity(1875.0, unit="MPa", text="Basquin's coefficient, of reversals", gt=0.0)
+    fatigue_limit: float = quantity(
+        560.0, unit="MPa", text="fatigue limit under alternating tension", gt=0.0
+    )
+    shear_fatigue_limit: float = quantity(
+        348.0, unit="MPa", text="fatigue limit under alternating torsion", gt=0.0
+    )
+    surface_factor: float = quantity(
+        0.86, text="factor of the surface on the fatigue strengths", gt=0.0, le=1.5
+    )
+    size_factor: float = quantity(
+        1.0, text="factor of the size on the fatigue strengths", gt=0.0, le=1.5
+    )
+    basquin_coefficient: float = quantity(
+        1875.0, unit="MPa", text="Basquin's coefficient, of reversals", gt=0.0
+    )
     basquin_exponent: float = quantity(-0.087, text="Basquin's exponent", ge=-0.5, lt=0.0)
 
 
 class Losses(Section):
     """Section [losses]: coefficients of the losses; present to compute them."""
 
-    loss_factor: float = quantity(3e-4, text="loss factor of the flexible spline's material", ge=0.0, le=0.1)
-    flank_friction: float = quantity(
-        0.05, text="friction between the flanks for their losses, without contact.friction", ge=0.0, le=1.0
+    loss_factor: float = quantity(
+        3e-4, text="loss factor of the flexible spline's material", ge=0.0, le=0.1
     )
-    bearing_friction: float = quantity(0.0015, text="friction of the wave generator's bearing", ge=0.0, le=0.1)
+    flank_friction: float = quantity(
+        0.05,
+        text="friction between the flanks for their losses, without contact.friction",
+        ge=0.0,
+        le=1.0,
+    )
+    bearing_friction: float = quantity(
+        0.0015, text="friction of the wave generator's bearing", ge=0.0, le=0.1
+    )
     bearing_diameter: float | None = quantity(
         None,
         unit="mm",
-        text="diameter at which that friction acts; default that of the balls' centres, without a bearing of the bore",
+        text="diameter at which that friction acts; default that of the balls' centres, without a "
+        "bearing of the bore",
         gt=0.0,
     )

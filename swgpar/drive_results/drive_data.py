@@ -1,4 +1,5 @@
-"""Data of a run of a drive: history, summary, mesh and fields, in memory or from the files of a run."""
+"""Data of a run of a drive: history, summary, mesh and fields, in memory or from the files of a
+run."""
 
 from __future__ import annotations
 
@@ -52,29 +53,37 @@ class DriveData:
     Attributes
     ----------
     history : dict of (n,) arrays
-        Columns of history.csv, a value for every increment, for example ``history["fs_s1"]`` in MPa.
+        Columns of history.csv, a value for every increment, for example ``history["fs_s1"]`` in
+        MPa.
         ``pandas.DataFrame(result.history)`` makes a table of it.
     summary : DriveSummary
-        A mapping of all answers by name: ``summary["mean.fs_s1"].value``, with their units, errors and places. Its
-        attributes are what the answers are made of: ``summary.root_stress``, ``summary.stiffness``,
-        ``summary.fatigue``, ``summary.design`` and so on; None for what the run does not have.
+        A mapping of all answers by name: ``summary["mean.fs_s1"].value``, with their units, errors
+        and places. Its attributes are what the answers are made of: ``summary.root_stress``,
+        ``summary.stiffness``, ``summary.fatigue``, ``summary.design`` and so on; None for what the
+        run does not have.
     pairs : dict of (n,) arrays
-        Columns of pairs.csv, a value for every pair of flanks in contact at every computed increment under load.
+        Columns of pairs.csv, a value for every pair of flanks in contact at every computed
+        increment under load.
     contact_lines : dict of (n,) arrays
-        Columns of contact_lines.csv, a value for every station along the face width of these contacts.
+        Columns of contact_lines.csv, a value for every station along the face width of these
+        contacts.
     fatigue : SectorFields or None
-        With [fatigue]: safety factors, amplitude and mean at the nodes of one sector; ``fatigue.fields["amplitude"]``.
+        With [fatigue]: safety factors, amplitude and mean at the nodes of one sector;
+        ``fatigue.fields["amplitude"]``.
     fatigue_cycle : dict of (n,) arrays
         Columns of fatigue_cycle.csv: stress over a cycle where the safety is the least.
     losses : dict of (n,) arrays
         Columns of losses.csv: losses at the angles of the sampled period.
     program : dict of (n,) arrays
-        Columns of program.csv, a value for every point of a load program: torque and rotation of the output.
+        Columns of program.csv, a value for every point of a load program: torque and rotation of
+        the output.
     transmission_error : dict of (n,) arrays
-        Columns of transmission_error.csv: angles of input and output, transmission error and input torque over the
-        sampled period, or with ``[deviations]`` over whole turns. ``summary.transmission_error`` has what follows.
+        Columns of transmission_error.csv: angles of input and output, transmission error and input
+        torque over the sampled period, or with ``[deviations]`` over whole turns.
+        ``summary.transmission_error`` has what follows.
     balls : dict of (n,) arrays
-        Columns of balls.csv, a value for every ball of a bearing at every computed increment; empty without a bearing.
+        Columns of balls.csv, a value for every ball of a bearing at every computed increment; empty
+        without a bearing.
     folder : Path or None
         The results folder; None when the run was in memory.
     """
@@ -103,7 +112,8 @@ class DriveData:
     def __repr__(self) -> str:
         where = f" in {self.folder}" if self.folder else ""
         return (
-            f"<{type(self).__name__} of {len(self.history['step'])} increments, {self.increments} with fields{where}>"
+            f"<{type(self).__name__} of {len(self.history['step'])} increments, {self.increments} "
+            f"with fields{where}>"
         )
 
     @property
@@ -136,16 +146,19 @@ class DriveData:
         design = self.summary.design
         drive = design.drive
         standing = drive.teeth_fs if drive.layout == "spline_fixed" else drive.teeth_rg
-        # the wave generator turns against the ring gear as the ring gear turns against it, the other way round
+        # the wave generator turns against the ring gear as the ring gear turns against it, the
+        # other way round
         ratio = self.summary.ratio * (-1.0 if design.wave_generator_is_fixed else 1.0)
-        return history.curves(self.history, design.steps.samples, self.summary.increments, 360.0 / standing, ratio)
+        return history.curves(
+            self.history, design.steps.samples, self.summary.increments, 360.0 / standing, ratio
+        )
 
     def mesh(self, body: GearName = SPLINE) -> BodyMesh:
         """Undeformed mesh of the modelled part of a body.
 
-        A drive that equals itself after a turn by one lobe is modelled by a half, or a third with three lobes. Nodes
-        are numbered sector by sector, so that those between two sectors appear twice. A plane model is one layer of
-        elements.
+        A drive that equals itself after a turn by one lobe is modelled by a half, or a third with
+        three lobes. Nodes are numbered sector by sector, so that those between two sectors appear
+        twice. A plane model is one layer of elements.
 
         Parameters
         ----------
@@ -174,10 +187,12 @@ class DriveData:
         Parameters
         ----------
         name : str
-            "displacement" (mm), "stress" (MPa; components xx xy xz yy yz zz), "s1", "s3", "vm" (MPa; largest and
-            smallest principal stress, von Mises stress), on the flexible spline also "pressure" (MPa; contact).
+            "displacement" (mm), "stress" (MPa; components xx xy xz yy yz zz), "s1", "s3", "vm"
+            (MPa; largest and smallest principal stress, von Mises stress), on the flexible spline
+            also "pressure" (MPa; contact).
         increment : int
-            Number of the increment among those with fields, from 0; negative ones count from the end.
+            Number of the increment among those with fields, from 0; negative ones count from the
+            end.
         body : "flexible_spline", "ring_gear", or in a pancake drive "dynamic_spline"
 
         Returns
@@ -194,7 +209,9 @@ class DriveData:
         number = chosen_increment(source, increment)
         known = source.names(body, number)
         if name not in known:
-            raise InputError(f"field {name!r} is not available on {body}: allowed {', '.join(known)}")
+            raise InputError(
+                f"field {name!r} is not available on {body}: allowed {', '.join(known)}"
+            )
         return source.read(body, name, number)
 
     def flank_pressure(self, increment: int = -1) -> FlankPressure:
@@ -219,8 +236,9 @@ class DriveData:
         ----------
         increment : as in `field`
         body : "flexible_spline", "ring_gear", or None for all gears
-            With all, the cell data "body" is 0 for the flexible spline, 1 for the ring gear and 2 for the dynamic
-            spline of a pancake drive; a field that a body does not have is NaN there.
+            With all, the cell data "body" is 0 for the flexible spline, 1 for the ring gear and 2
+            for the dynamic spline of a pancake drive; a field that a body does not have is NaN
+            there.
         whole : bool
             Add what symmetry left out, if the model is a half or a third of the drive.
         """
@@ -234,23 +252,41 @@ class DriveData:
             parts += [_rotated(*part, turn) for turn in turns for part in parts]
             bodies = bodies * copies
         first = np.cumsum([0, *(len(points) for points, _, _ in parts)])
-        cells = np.concatenate([cells + start for start, (_, cells, _) in zip(first, parts, strict=False)])
+        cells = np.concatenate(
+            [cells + start for start, (_, cells, _) in zip(first, parts, strict=False)]
+        )
         kinds = np.full(len(cells), pyvista.CellType.HEXAHEDRON)
         grid = pyvista.UnstructuredGrid(
-            np.hstack([np.full((len(cells), 1), 8), cells]).ravel(), kinds, np.concatenate([part[0] for part in parts])
+            np.hstack([np.full((len(cells), 1), 8), cells]).ravel(),
+            kinds,
+            np.concatenate([part[0] for part in parts]),
         )
-        for name, example in {name: values for *_, fields in parts for name, values in fields.items()}.items():
+        for name, example in {
+            name: values for *_, fields in parts for name, values in fields.items()
+        }.items():
             missing = np.nan * np.empty((1, *example.shape[1:]), dtype=example.dtype)
             grid.point_data[name] = np.concatenate(
-                [fields.get(name, np.repeat(missing, len(points), axis=0)) for points, _, fields in parts]
+                [
+                    fields.get(name, np.repeat(missing, len(points), axis=0))
+                    for points, _, fields in parts
+                ]
             )
-        numbers = [np.full(len(part[1]), self.gears.index(name)) for name, part in zip(bodies, parts, strict=True)]
+        numbers = [
+            np.full(len(part[1]), self.gears.index(name))
+            for name, part in zip(bodies, parts, strict=True)
+        ]
         grid.cell_data["body"] = np.concatenate(numbers)
         return grid
 
-    def _part(self, body: GearName, increment: int) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
+    def _part(
+        self, body: GearName, increment: int
+    ) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
         points, cells = self.mesh(body)
-        return points, cells, {name: self.field(name, increment, body) for name in self.names(body, increment)}
+        return (
+            points,
+            cells,
+            {name: self.field(name, increment, body) for name in self.names(body, increment)},
+        )
 
     def _source(self, body: GearName) -> FieldSource:
         bodies = list(self.summary.bodies)

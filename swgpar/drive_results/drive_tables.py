@@ -1,4 +1,5 @@
-"""Tables of a drive's run beside its history: contacts of flanks, fatigue and losses; in memory or in files."""
+"""Tables of a drive's run beside its history: contacts of flanks, fatigue and losses; in memory or
+in files."""
 
 from __future__ import annotations
 
@@ -10,7 +11,15 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.results.atomic import write_from_root
-from swgpar.results.folder import BALLS, CONTACT_LINES, CYCLE, LOSSES, PAIRS, PROGRAM, TRANSMISSION_ERROR
+from swgpar.results.folder import (
+    BALLS,
+    CONTACT_LINES,
+    CYCLE,
+    LOSSES,
+    PAIRS,
+    PROGRAM,
+    TRANSMISSION_ERROR,
+)
 from swgpar.results.sector_fields import SectorFields, read_sector, write_sector
 from swgpar.results.table import format_columns, read_columns
 
@@ -22,9 +31,11 @@ class DriveTables:
     """Columns of the tables, empty where there are none.
 
     pairs, contact_lines : contacts of the flanks under load;  program : points of a load program
-    turns : transmission error over the sampled period or whole turns;  balls : loads of a bearing's balls
+    turns : transmission error over the sampled period or whole turns;  balls : loads of a bearing's
+    balls
     cycle : stress where the safety is the least
-    losses : at the angles of the sampled period;  sector : safety factors at the nodes of a sector, None without
+    losses : at the angles of the sampled period;  sector : safety factors at the nodes of a sector,
+    None without
     """
 
     pairs: Columns = field(default_factory=dict)

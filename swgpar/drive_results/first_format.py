@@ -30,7 +30,9 @@ def from_first_format(
     found["stresses"] = {name: content[name] for name in ("places", "regions")}
     found["steps"] = asdict(step_values(rows))
     found["numerics"] = asdict(evaluate_numerics(computed, content["condensed_MPa"]))
-    found["program"] = {"stages": content["program"]} if content["design"]["load"]["program"] else None
+    found["program"] = (
+        {"stages": content["program"]} if content["design"]["load"]["program"] else None
+    )
     if contact := content["contact"]:
         found["contact"] = {**contact, "on_edge": bool(np.any(pairs["edge"]))}
     if fatigue := content["fatigue"]:
@@ -48,7 +50,8 @@ def from_first_format(
 
 
 def _with_materials(design: Mapping[str, Any]) -> dict[str, Any]:
-    """The design with sections of materials in place of E and nu of the housing and of the bearing."""
+    """The design with sections of materials in place of E and nu of the housing and of the
+    bearing."""
     found = deepcopy(dict(design))
     general = found["material"]
     for section in (found["ring_gear"].get("housing"), found["wave_generator"].get("bearing")):

@@ -1,4 +1,5 @@
-"""Verdicts on a finished run: balance, energy, penetration, edge contact, resolution, and what else may mislead."""
+"""Verdicts on a finished run: balance, energy, penetration, edge contact, resolution, and what else
+may mislead."""
 
 from __future__ import annotations
 
@@ -18,9 +19,11 @@ from swgpar.evaluation.windows.root_stress import RootStress
 from swgpar.results.history import loaded_increments
 
 ENERGY = 0.05
-"""Largest difference between the mean input torque of a drive without friction and T / ratio, relative.
+"""Largest difference between the mean input torque of a drive without friction and T / ratio,
+relative.
 
-The coupling of the plane model takes up to 2 % of it (docs/theory/drive.md); the rest is the sampling.
+The coupling of the plane model takes up to 2 % of it (docs/theory/drive.md); the rest is the
+sampling.
 """
 
 RESOLUTION = 0.05
@@ -54,10 +57,17 @@ def checks(summary: DriveSummary, history: Mapping[str, np.ndarray]) -> list[Che
 
 
 def _balance(found: Numerics) -> Check:
-    left, largest, allowed = found.balance_error_Nmm, found.largest_tooth_torque_Nmm, found.largest_balance_Nmm
+    left, largest, allowed = (
+        found.balance_error_Nmm,
+        found.largest_tooth_torque_Nmm,
+        found.largest_balance_Nmm,
+    )
     if largest == 0.0:
         return Check("balance of torques", None, "the teeth carry no torque")
-    text = f"{left:.2g} N·mm are left over of {largest:.4g} N·mm at the teeth; good up to {BALANCE:g} of it"
+    text = (
+        f"{left:.2g} N·mm are left over of {largest:.4g} N·mm at the teeth; good up to {BALANCE:g} "
+        f"of it"
+    )
     return Check("balance of torques", left <= allowed, text)
 
 
@@ -68,14 +78,28 @@ def _energy(design: DriveDesign, rotation: Rotation) -> Check:
     if design.is_bolted:
         return Check(name, None, "a drive on bolts does not repeat after a pitch")
     mean = rotation.means.get("wg_torque_Nmm")
-    covered = design.steps.samples or design.steps.rotation >= 0.999999 * np.degrees(design.period_angle)
+    covered = design.steps.samples or design.steps.rotation >= 0.999999 * np.degrees(
+        design.period_angle
+    )
     if mean is None or not expected or not covered:
-        return Check(name, None, "needs a torque, and a rotation over a period of the motion or more")
-    torque = "mean torque on the standing wave generator" if design.wave_generator_is_fixed else "mean input torque"
+        return Check(
+            name, None, "needs a torque, and a rotation over a period of the motion or more"
+        )
+    torque = (
+        "mean torque on the standing wave generator"
+        if design.wave_generator_is_fixed
+        else "mean input torque"
+    )
     text = f"{torque} {mean:.5g} N·mm, by the energy balance {expected:.5g} N·mm"
     if design.contact.friction:
-        return Check(name, mean >= expected * (1.0 - ENERGY), f"{text}; friction takes {mean - expected:.3g} N·mm")
-    return Check(name, abs(mean / expected - 1.0) <= ENERGY, f"{text}; good within {100 * ENERGY:g} %")
+        return Check(
+            name,
+            mean >= expected * (1.0 - ENERGY),
+            f"{text}; friction takes {mean - expected:.3g} N·mm",
+        )
+    return Check(
+        name, abs(mean / expected - 1.0) <= ENERGY, f"{text}; good within {100 * ENERGY:g} %"
+    )
 
 
 def _penetration(design: DriveDesign, history: Mapping[str, np.ndarray]) -> Check:
@@ -83,8 +107,14 @@ def _penetration(design: DriveDesign, history: Mapping[str, np.ndarray]) -> Chec
     if "max_penetration_mm" not in history:  # a result of another version
         return Check("penetration", None, "the history does not have it")
     values = history["max_penetration_mm"][loaded] if len(loaded) else history["max_penetration_mm"]
-    most, allowed = float(values.max(initial=0.0)), design.contact.penetration_tolerance * design.drive.module
-    text = f"flanks penetrate each other by up to {1000 * most:.2g} µm; good up to {1000 * allowed:.2g} µm"
+    most, allowed = (
+        float(values.max(initial=0.0)),
+        design.contact.penetration_tolerance * design.drive.module,
+    )
+    text = (
+        f"flanks penetrate each other by up to {1000 * most:.2g} µm; good up to "
+        f"{1000 * allowed:.2g} µm"
+    )
     return Check("penetration", most <= allowed, text)
 
 
@@ -92,7 +122,8 @@ def _clearance(design: DriveDesign) -> Check:
     clearance = min(design.rigid_teeth(ring).clearance(181) for ring in design.gears[1:])
     least = -design.contact.penetration_tolerance * design.drive.module
     text = (
-        f"smallest distance of the undeformed flanks {1000 * clearance:.3g} µm; good from {1000 * least:.2g} µm: the "
+        f"smallest distance of the undeformed flanks {1000 * clearance:.3g} µm; good from "
+        f"{1000 * least:.2g} µm: the "
         "contact takes up an overlap of that size"
     )
     return Check("clearance of the flanks", clearance >= least, text)
@@ -101,31 +132,54 @@ def _clearance(design: DriveDesign) -> Check:
 def _edge(contact: LargestContact | None) -> Check:
     if contact is None:
         return Check("edge contact", None, "no contact under load is known")
-    text = "lies on an edge: stress and pressure there grow with every finer mesh" if contact.edge else "lies off edges"
+    text = (
+        "lies on an edge: stress and pressure there grow with every finer mesh"
+        if contact.edge
+        else "lies off edges"
+    )
     return Check("edge contact", not contact.edge, f"the largest contact {text}")
 
 
 def _resolution(root: RootStress | None, accuracy: Accuracy | None) -> Check:
     if root is None:
-        text = "the stress at the teeth is not resolved by windows: nodal averages have no error (output.root_stress)"
+        text = (
+            "the stress at the teeth is not resolved by windows: nodal averages have no error "
+            "(output.root_stress)"
+        )
         return Check("resolution", None, text)
     share = root.total_error / abs(root.s1) if root.s1 else np.inf
     limit = accuracy.asked if accuracy else RESOLUTION
-    text = f"error of the largest tension at the teeth {100 * share:.2g} %; good up to {100 * limit:.3g} %"
+    text = (
+        f"error of the largest tension at the teeth {100 * share:.2g} %; good up to "
+        f"{100 * limit:.3g} %"
+    )
     return Check("resolution", share <= limit and (accuracy is None or accuracy.reached), text)
 
 
 def _meshed(stresses: LargestStresses) -> Check:
-    doubtful = [name for name, place in stresses.places.items() if place.warning and not name.endswith(APART)]
+    doubtful = [
+        name
+        for name, place in stresses.places.items()
+        if place.warning and not name.endswith(APART)
+    ]
     if not stresses.places:
         return Check("places of the stresses", None, "there is no increment under load")
     if not doubtful:
-        return Check("places of the stresses", True, "no largest stress lies where the mesh determines it")
-    text = f"{', '.join(doubtful)}: the largest value lies where it depends on the mesh; see the table of stresses"
+        return Check(
+            "places of the stresses", True, "no largest stress lies where the mesh determines it"
+        )
+    text = (
+        f"{', '.join(doubtful)}: the largest value lies where it depends on the mesh; see the "
+        f"table of stresses"
+    )
     return Check("places of the stresses", None, text)
 
 
 def _elements(bodies: Mapping[str, BodySizes]) -> Check:
     worst = {body: sizes.quality["min_scaled_jacobian"] for body, sizes in bodies.items()}
     text = ", ".join(f"{body.replace('_', ' ')} {value:.2g}" for body, value in worst.items())
-    return Check("elements", min(worst.values()) >= QUALITY, f"least scaled Jacobian: {text}; good from {QUALITY:g}")
+    return Check(
+        "elements",
+        min(worst.values()) >= QUALITY,
+        f"least scaled Jacobian: {text}; good from {QUALITY:g}",
+    )

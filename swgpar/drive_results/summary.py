@@ -124,7 +124,9 @@ class DriveSummary(Mapping[str, Answer]):
     def not_asked_for(self) -> list[type[AnswerGroup]]:
         """Evaluations that need a section of the design which it does not have, or windows."""
         sections = [
-            kind for kind in ANSWER_GROUPS.values() if kind.SECTION and getattr(self.design, kind.SECTION) is None
+            kind
+            for kind in ANSWER_GROUPS.values()
+            if kind.SECTION and getattr(self.design, kind.SECTION) is None
         ]
         return sections if self.design.output.root_stress else [*sections, RootStress]
 

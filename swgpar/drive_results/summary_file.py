@@ -21,19 +21,26 @@ from swgpar.results.history import Row
 from swgpar.version import __version__
 
 FORMAT = 2
-"""Number in the file. Format 1 has none: its values stood beside each other and had no table of answers."""
+"""Number in the file. Format 1 has none: its values stood beside each other and had no table of
+answers."""
 
 
 def summary_to_json(summary: DriveSummary) -> bytes:
     """Text of summary.json. Its table of answers is for other programs: it is not read back."""
     content = asdict(summary) | {"design": summary.design.model_dump()}
-    return to_json({"format": FORMAT, "answers": [asdict(answer) for answer in summary.values()], **content})
+    return to_json(
+        {"format": FORMAT, "answers": [asdict(answer) for answer in summary.values()], **content}
+    )
 
 
 def summary_from(
-    content: Mapping[str, Any], rows: Sequence[Row], pairs: Mapping[str, np.ndarray], path: Path = Path(SUMMARY)
+    content: Mapping[str, Any],
+    rows: Sequence[Row],
+    pairs: Mapping[str, np.ndarray],
+    path: Path = Path(SUMMARY),
 ) -> DriveSummary:
-    """The summary from the content of summary.json, the rows of history.csv and the columns of pairs.csv.
+    """The summary from the content of summary.json, the rows of history.csv and the columns of
+    pairs.csv.
 
     Raises OutputError for a format that this version does not read.
     """
@@ -47,7 +54,8 @@ def summary_from(
     except (ValidationError, KeyError, TypeError, ValueError):
         by = content.get("versions", {}).get("swgpar", "of unknown number")
         raise OutputError(
-            f"{path} of swgpar {by} has the format {number}, and not a content that swgpar {__version__} reads: "
+            f"{path} of swgpar {by} has the format {number}, and not a content that swgpar "
+            f"{__version__} reads: "
             f"allowed are results of formats 1 to {FORMAT}"
         ) from None
     found.design.made_by(make_drive)

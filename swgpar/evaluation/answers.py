@@ -1,7 +1,7 @@
 """Answers: the numbers that a run gives, with their names, units, errors and places.
 
-What an evaluation gives is a dataclass that knows which of its fields are answers. Names and units are known before a
-run, so that studies and optimisations can check what they ask for.
+What an evaluation gives is a dataclass that knows which of its fields are answers. Names and units
+are known before a run, so that studies and optimisations can check what they ask for.
 """
 
 from __future__ import annotations
@@ -19,7 +19,8 @@ class AnswerKind:
 
     name : group and name, as in "stiffness.K1"
     text : what it is, without its unit;  unit : empty for a pure number
-    path : where the evaluation has it: names of attributes or keys, with dots between; by default the end of the name
+    path : where the evaluation has it: names of attributes or keys, with dots between; by default
+    the end of the name
     detail : whether the terminal and the first table of the report leave it out
     """
 
@@ -52,7 +53,8 @@ class Answer:
 
 
 class AnswerGroup:
-    """What one evaluation of a run gives; its results are the fields of the dataclass that derives from it.
+    """What one evaluation of a run gives; its results are the fields of the dataclass that derives
+    from it.
 
     Attributes
     ----------
@@ -96,10 +98,16 @@ class AnswerGroup:
         return value
 
 
-def place_text(region: str, tooth: int | None, radius: float, z: float, angle_deg: float | None = None) -> str:
+def place_text(
+    region: str, tooth: int | None, radius: float, z: float, angle_deg: float | None = None
+) -> str:
     """Words for a place. radius, z : mm;  angle_deg : from +y, counter-clockwise"""
     where = region
     if tooth is not None:
-        where = f"inside tooth {tooth}" if region == "inside the tooth" else f"{region} of tooth {tooth}"
+        where = (
+            f"inside tooth {tooth}"
+            if region == "inside the tooth"
+            else f"{region} of tooth {tooth}"
+        )
     angle = "" if angle_deg is None else f", {angle_deg:.1f}° from +y"
     return f"{where}, radius {radius:.2f}, z {z:.2f} mm{angle}"

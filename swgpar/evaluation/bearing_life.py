@@ -1,11 +1,13 @@
 """Rating life of a ball bearing by ISO 281, from the loads of its balls.
 
-C = b_m f_c Z^(2/3) D^1.8 with the factor f_c of ISO/TR 1281-1. Loads that are not those of one radial force are taken
-ball by ball, as in ISO/TS 16281: with the capacities Q_c of the contacts that follow from C,
+C = b_m f_c Z^(2/3) D^1.8 with the factor f_c of ISO/TR 1281-1. Loads that are not those of one
+radial force are taken ball by ball, as in ISO/TS 16281: with the capacities Q_c of the contacts
+that follow from C,
 
     L10 = ((Q_ci / Q_ei)^(-10/3) + (Q_co / Q_eo)^(-10/3))^(-9/10) million turns,
 
-where Q_e is the mean load of power 3 of a race that rotates relative to the load, of power 10/3 of one that does not.
+where Q_e is the mean load of power 3 of a race that rotates relative to the load, of power 10/3 of
+one that does not.
 """
 
 from __future__ import annotations
@@ -24,14 +26,16 @@ LARGEST_BALL = 25.4
 """Diameter (mm) above which ISO 281 counts balls with a smaller power."""
 
 STATIONARY, ROTATING = 10.0 / 3.0, 3.0
-"""Powers of the mean load of a race that stands still relative to the load, and of one that does not."""
+"""Powers of the mean load of a race that stands still relative to the load, and of one that does
+not."""
 
 
 @dataclass(frozen=True)
 class BearingSeries:
     """What the rating of a bearing depends on.
 
-    number : of balls;  diameter, pitch_diameter : mm;  inner, outer : conformities, groove radius over ball diameter
+    number : of balls;  diameter, pitch_diameter : mm;  inner, outer : conformities, groove radius
+    over ball diameter
     """
 
     number: int
@@ -44,7 +48,8 @@ class BearingSeries:
         return self.diameter / self.pitch_diameter
 
     def _races(self, constant: float) -> float:
-        """Capacity of the inner race's contact over that of the outer one's, with the constant of a standard."""
+        """Capacity of the inner race's contact over that of the outer one's, with the constant of a
+        standard."""
         size = self._size()
         grooves = self.inner * (2.0 * self.outer - 1.0) / (self.outer * (2.0 * self.inner - 1.0))
         return constant * ((1.0 - size) / (1.0 + size)) ** 1.72 * grooves**0.41
@@ -59,7 +64,8 @@ class BearingSeries:
         return MATERIAL_FACTOR * factor * self.number ** (2.0 / 3.0) * power
 
     def contact_capacities(self, load_rating: float) -> tuple[float, float]:
-        """Capacities Q_c (N) of the contacts on the inner and on the outer race, by the load rating C (N)."""
+        """Capacities Q_c (N) of the contacts on the inner and on the outer race, by the load rating
+        C (N)."""
         ratio = self._races(1.044) ** (10.0 / 3.0)
         inner = load_rating / (0.407 * self.number) * (1.0 + ratio) ** 0.3
         outer = load_rating / (0.389 * self.number) * (1.0 + 1.0 / ratio) ** 0.3
@@ -72,7 +78,8 @@ def mean_load(loads: np.ndarray, power: float) -> float:
 
 
 def million_turns(series: BearingSeries, load_rating: float, loads: np.ndarray) -> float:
-    """L10 in million relative turns of the races, whose inner one stands still relative to the load; inf without load.
+    """L10 in million relative turns of the races, whose inner one stands still relative to the
+    load; inf without load.
 
     load_rating : C, N;  loads : N, of all balls at all their places, of any shape
     """

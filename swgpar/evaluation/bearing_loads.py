@@ -37,7 +37,8 @@ class ComplianceShares:
 class BearingLife:
     """Rating life of a bearing.
 
-    load_rating_N : basic dynamic load rating;  load_rating_given : whether it is that of the design file
+    load_rating_N : basic dynamic load rating;  load_rating_given : whether it is that of the design
+    file
     equivalent_load_N : load that gives the same life
     L10_turns : of the wave generator, None without load;  L10_hours : at `load.input_speed`
     """
@@ -53,12 +54,13 @@ class BearingLife:
 class BallLoads(AnswerGroup):
     """Loads of the balls over the increments under load.
 
-    largest_load_N, largest_pressure_MPa, largest_approach_um : of a ball;  wg_angle_deg, cam_angle_deg : where, angles
-    of the wave generator and from the major axis
+    largest_load_N, largest_pressure_MPa, largest_approach_um : of a ball;  wg_angle_deg,
+    cam_angle_deg : where, angles of the wave generator and from the major axis
     mean_load_N : over all balls;  unloaded_balls : largest number of balls without load
     cage_speed : of the cage over that of the wave generator
     balls_fixed_to_cam : whether `steps.samples` has fixed the balls to the cam
-    ball_passing_deg : rotation after which the next ball is at the same place of the cam, None if fixed to it
+    ball_passing_deg : rotation after which the next ball is at the same place of the cam, None if
+    fixed to it
     covers_ball_passing : whether the run covers it
     load_ripple : range of the largest ball load over its mean, None without load
     torsional_share, radial_share : in the compliance of the loaded drive, None without a torque
@@ -90,8 +92,18 @@ class BallLoads(AnswerGroup):
     SECTION = "bearing"
     KINDS = (
         AnswerKind("bearing.largest_load", "largest ball load under load", "N", "largest_load_N"),
-        AnswerKind("bearing.pressure", "largest pressure of a ball on a race", "MPa", "largest_pressure_MPa"),
-        AnswerKind("bearing.approach", "largest approach of the races at a ball", "µm", "largest_approach_um"),
+        AnswerKind(
+            "bearing.pressure",
+            "largest pressure of a ball on a race",
+            "MPa",
+            "largest_pressure_MPa",
+        ),
+        AnswerKind(
+            "bearing.approach",
+            "largest approach of the races at a ball",
+            "µm",
+            "largest_approach_um",
+        ),
         AnswerKind("bearing.mean_load", "mean ball load under load", "N", "mean_load_N"),
         AnswerKind("bearing.unloaded_balls", "largest number of balls without load", detail=True),
         AnswerKind("bearing.load_ripple", "range of the largest ball load over its mean"),
@@ -106,16 +118,37 @@ class BallLoads(AnswerGroup):
             path="torsional_share.balls",
         ),
         AnswerKind(
-            "bearing.radial_share", "share of the bearing in the radial compliance", path="radial_share.bearing"
+            "bearing.radial_share",
+            "share of the bearing in the radial compliance",
+            path="radial_share.bearing",
         ),
         AnswerKind(
-            "bearing.radial_share_of_balls", "share of the balls in the radial compliance", path="radial_share.balls"
+            "bearing.radial_share_of_balls",
+            "share of the balls in the radial compliance",
+            path="radial_share.balls",
         ),
-        AnswerKind("bearing.race_s1", "largest tension in the outer race under load", "MPa", "race_s1_MPa"),
-        AnswerKind("bearing.race_s3", "largest compression in the outer race under load", "MPa", "race_s3_MPa"),
-        AnswerKind("bearing.race_vm", "largest von Mises stress in the outer race under load", "MPa", "race_vm_MPa"),
+        AnswerKind(
+            "bearing.race_s1", "largest tension in the outer race under load", "MPa", "race_s1_MPa"
+        ),
+        AnswerKind(
+            "bearing.race_s3",
+            "largest compression in the outer race under load",
+            "MPa",
+            "race_s3_MPa",
+        ),
+        AnswerKind(
+            "bearing.race_vm",
+            "largest von Mises stress in the outer race under load",
+            "MPa",
+            "race_vm_MPa",
+        ),
         AnswerKind("bearing.load_rating", "basic dynamic load rating", "N", "life.load_rating_N"),
-        AnswerKind("bearing.equivalent_load", "load that gives the same life", "N", "life.equivalent_load_N"),
+        AnswerKind(
+            "bearing.equivalent_load",
+            "load that gives the same life",
+            "N",
+            "life.equivalent_load_N",
+        ),
         AnswerKind(
             "bearing.life_turns",
             "rating life L10 of the bearing, turns of the wave generator",
@@ -126,25 +159,41 @@ class BallLoads(AnswerGroup):
 
     def answers(self) -> Iterator[Answer]:
         for answer in super().answers():
-            at_ball = answer.name in ("bearing.largest_load", "bearing.pressure", "bearing.approach")
+            at_ball = answer.name in (
+                "bearing.largest_load",
+                "bearing.pressure",
+                "bearing.approach",
+            )
             place = f"{self.cam_angle_deg:.0f} degrees from the major axis" if at_ball else ""
             yield replace(answer, place=place)
 
     def remarks(self) -> Iterator[str]:
-        yield "with the bearing the stress at the teeth is not resolved by windows: it is that of nodal averages"
+        yield (
+            "with the bearing the stress at the teeth is not resolved by windows: it is that of "
+            "nodal averages"
+        )
         if self.balls_fixed_to_cam:
             yield "the balls are fixed to the cam: ball passing is left out"
         elif not self.covers_ball_passing:
-            yield f"a ball passes every {self.ball_passing_deg:.3g} degrees: the run covers less than that"
+            yield (
+                f"a ball passes every {self.ball_passing_deg:.3g} degrees: the run covers less "
+                f"than that"
+            )
 
 
 def ball_rows(model: DriveModel, state: LoadState, increment: int, step: int) -> list[Row]:
     """Rows of balls.csv of the present state, a ball each, on all ranks; collective."""
     contact, design = model.problem.balls, model.design
     contact.evaluate(model.problem.displacement(), state, None, None)
-    found = dict(pair for part in model.comm.allgather(list(zip(*contact.owned_loads()))) for pair in part)
+    found = dict(
+        pair for part in model.comm.allgather(list(zip(*contact.owned_loads()))) for pair in part
+    )
     balls, part = contact.balls, contact.balls.number // model.copies
-    found |= {(ball + k * part) % balls.number: found[ball] for ball in list(found) for k in range(1, model.copies)}
+    found |= {
+        (ball + k * part) % balls.number: found[ball]
+        for ball in list(found)
+        for k in range(1, model.copies)
+    }
     rows = []
     for ball, angle in enumerate(balls.angles(state.angle)):
         approach = float(found[ball])
@@ -155,7 +204,9 @@ def ball_rows(model: DriveModel, state: LoadState, increment: int, step: int) ->
                 "step": step,
                 "wg_angle_deg": float(np.degrees(state.angle)),
                 "ball": ball,
-                "angle_deg": design.in_frame_of_result(float(np.degrees(angle)), float(np.degrees(state.angle)))
+                "angle_deg": design.in_frame_of_result(
+                    float(np.degrees(angle)), float(np.degrees(state.angle))
+                )
                 % 360.0,
                 "cam_angle_deg": float(np.degrees(angle - state.angle) + 180.0) % 360.0 - 180.0,
                 "load_N": force,
@@ -177,7 +228,8 @@ def evaluate_bearing(
     """The loads over the increments under load.
 
     rows : of balls.csv;  increments : under load, as in their column `increment`
-    shares : in the torsional and the radial compliance of the loaded state, where they were computed
+    shares : in the torsional and the radial compliance of the loaded state, where they were
+    computed
     race_stress : largest stresses of the outer race under load, MPa, by name
     """
     loaded = [row for row in rows if row["increment"] in set(increments)]
@@ -207,7 +259,8 @@ def evaluate_bearing(
 
 
 def bearing_life(design: DriveDesign, loads: np.ndarray) -> BearingLife:
-    """Rating life from the loads (n, n_balls) N of all balls; the wave generator's speed is that of the design."""
+    """Rating life from the loads (n, n_balls) N of all balls; the wave generator's speed is that of
+    the design."""
     bearing = design.bearing
     series = BearingSeries(
         bearing.balls,

@@ -1,7 +1,8 @@
 """Shares of the bearing in the compliance of the loaded drive.
 
-The displacement x by a unit of load solves K x = f with the tangent K. The compliance is f . x = sum x . K_i x over the
-parts of the model, so that each part has its share. K_i x is the difference of the part's forces along x.
+The displacement x by a unit of load solves K x = f with the tangent K. The compliance is f . x =
+sum x . K_i x over the parts of the model, so that each part has its share. K_i x is the difference
+of the part's forces along x.
 """
 
 from __future__ import annotations
@@ -20,11 +21,13 @@ from swgpar.model.drive_model import DriveModel
 from swgpar.petsc import PETSc
 
 STEP = 1e-6
-"""Largest displacement (mm) of the differences, and change of the cam's size: far below the approach of balls."""
+"""Largest displacement (mm) of the differences, and change of the cam's size: far below the
+approach of balls."""
 
 
 def bearing_shares(model: DriveModel, state: LoadState) -> dict[str, ComplianceShares]:
-    """Shares in the torsional compliance (against the torque) and in the radial one (against growth of the cam).
+    """Shares in the torsional compliance (against the torque) and in the radial one (against growth
+    of the cam).
 
     None of them without a torque, which leaves the output's position open. Collective.
 
@@ -54,14 +57,19 @@ def bearing_shares(model: DriveModel, state: LoadState) -> dict[str, ComplianceS
     own = slice(0, model.partition.n_own)
 
     def shares(right: PETSc.Vec, growth: float) -> ComplianceShares:
-        """Shares in the answer to a load, or to the cam's growth of so many mm for each unit of it."""
+        """Shares in the answer to a load, or to the cam's growth of so many mm for each unit of
+        it."""
         x = create_vector(model.partition)
         system.solve_with_factor(right, x)
         field = problem.displacement(x)
         unit = STEP / max(largest(model.comm, float(np.abs(field).max(initial=0.0))), growth)
         ahead, behind = (ball_forces(u + t * field, t * growth) for t in (unit, -unit))
         race = race_forces(u + unit * field) - race_forces(u - unit * field)
-        sums = [np.sum((ahead[0] - behind[0])[own] * field[own]), ahead[1] - behind[1], np.sum(race[own] * field[own])]
+        sums = [
+            np.sum((ahead[0] - behind[0])[own] * field[own]),
+            ahead[1] - behind[1],
+            np.sum(race[own] * field[own]),
+        ]
         on_race, pushed, bent = model.comm.allreduce(np.array(sums), op=MPI.SUM) / (2.0 * unit)
         # the balls take the work of the cam's growth less what they pass on to the race
         total = growth * pushed if growth else right.dot(x)

@@ -1,4 +1,5 @@
-"""Fatigue of the flexible spline over a turn of the wave generator or a load program: safety, places, life."""
+"""Fatigue of the flexible spline over a turn of the wave generator or a load program: safety,
+places, life."""
 
 from __future__ import annotations
 
@@ -30,7 +31,8 @@ from swgpar.model.regions import TOOTH_END, warning_of
 from swgpar.results.sector_fields import SectorFields
 
 WARNING = (
-    "the strengths in [fatigue] are the user's responsibility: the defaults are those of a steel like 30CrNiMo8 and "
+    "the strengths in [fatigue] are the user's responsibility: the defaults are those of a steel "
+    "like 30CrNiMo8 and "
     "replace no test of the part"
 )
 
@@ -52,7 +54,8 @@ class LeastSafety:
 
     safety : the factor
     amplitude_MPa, mean_MPa : of the normal stress on Goodman's critical plane
-    region, radius, z : mm, as of a `Place`;  angle_deg : from the middle of its tooth, counter-clockwise
+    region, radius, z : mm, as of a `Place`;  angle_deg : from the middle of its tooth,
+    counter-clockwise
     """
 
     safety: float
@@ -69,7 +72,8 @@ class RegionSafety:
     """Least safety factors of a region.
 
     safety : by criterion
-    amplitude_MPa, mean_MPa : where the safety by Goodman is the least;  warning : why it depends on the mesh
+    amplitude_MPa, mean_MPa : where the safety by Goodman is the least;  warning : why it depends on
+    the mesh
     """
 
     safety: Mapping[str, float]
@@ -80,10 +84,11 @@ class RegionSafety:
 
 @dataclass(frozen=True)
 class Life:
-    """Damage and life by Basquin, in turns of the wave generator or in passages of the load program.
+    """Damage and life by Basquin, in turns of the wave generator or in passages of the load
+    program.
 
-    Values of the other kind are None. Without damage the life is None, without end. Where the stress exceeds the
-    tensile strength, the life is 0 and the damage None.
+    Values of the other kind are None. Without damage the life is None, without end. Where the
+    stress exceeds the tensile strength, the life is 0 and the damage None.
     """
 
     damage_per_turn: float | None = None
@@ -124,8 +129,12 @@ class SafetyAndLife(AnswerGroup):
     ASKED_BY = "[fatigue]"
     SECTION = "fatigue"
     KINDS = (
-        AnswerKind("fatigue.goodman", "least safety factor by Goodman", path="least.goodman.safety"),
-        AnswerKind("fatigue.crossland", "least safety factor by Crossland", path="least.crossland.safety"),
+        AnswerKind(
+            "fatigue.goodman", "least safety factor by Goodman", path="least.goodman.safety"
+        ),
+        AnswerKind(
+            "fatigue.crossland", "least safety factor by Crossland", path="least.crossland.safety"
+        ),
         AnswerKind("fatigue.yield", "least safety factor against yield", path="least.yield.safety"),
         AnswerKind(
             "fatigue.amplitude",
@@ -134,9 +143,17 @@ class SafetyAndLife(AnswerGroup):
             "least.goodman.amplitude_MPa",
         ),
         AnswerKind("fatigue.mean", "its mean", "MPa", "least.goodman.mean_MPa"),
-        AnswerKind("fatigue.life_turns", "life by Basquin, turns of the wave generator", path="life.life_turns"),
+        AnswerKind(
+            "fatigue.life_turns",
+            "life by Basquin, turns of the wave generator",
+            path="life.life_turns",
+        ),
         AnswerKind("fatigue.life_hours", "life by Basquin", "h", "life.life_hours"),
-        AnswerKind("fatigue.life_programs", "life by Basquin, passages of the load program", path="life.life_programs"),
+        AnswerKind(
+            "fatigue.life_programs",
+            "life by Basquin, passages of the load program",
+            path="life.life_programs",
+        ),
         AnswerKind("fatigue.root_factor", "factor of windows on stresses in the tooth root"),
         AnswerKind(
             "fatigue.limit_of_the_part",
@@ -160,15 +177,23 @@ class SafetyAndLife(AnswerGroup):
             if name in self.least:
                 at = self.least[name]
                 answer = replace(answer, place=place_text(at.region, None, at.radius, at.z))
-            if name == "goodman" and self.mesh_error is not None:  # that of the angles alone says little
-                answer = replace(answer, error=float(np.hypot(self.mesh_error, self.sampling_error or 0.0)))
+            if (
+                name == "goodman" and self.mesh_error is not None
+            ):  # that of the angles alone says little
+                answer = replace(
+                    answer, error=float(np.hypot(self.mesh_error, self.sampling_error or 0.0))
+                )
             yield answer
 
     def remarks(self) -> Iterator[str]:
         if self.life.life_turns is None and self.life.life_programs is None:
             yield "life by Basquin: without end"
         if not self.root_factor:
-            missing = ": set output.root_stress = true" if self.windows else ": there are no windows in this run"
+            missing = (
+                ": set output.root_stress = true"
+                if self.windows
+                else ": there are no windows in this run"
+            )
             yield f"stresses in the tooth root are nodal averages, up to 25 % low{missing}"
         yield WARNING
 
@@ -191,7 +216,8 @@ def evaluate_fatigue(cycle: StressCycle, root_stress: RootStress | None) -> Fati
 
     In a load program the least of all sectors stand for a node.
 
-    root_stress : of the loaded state, by which nodal stresses in the tooth root are scaled; None leaves them
+    root_stress : of the loaded state, by which nodal stresses in the tooth root are scaled; None
+    leaves them
     """
     model = cycle.model
     comm, fatigue = model.comm, model.design.fatigue
@@ -206,7 +232,9 @@ def evaluate_fatigue(cycle: StressCycle, root_stress: RootStress | None) -> Fati
         "crossland": crossland(stress, fatigue),
         "yield": principal(stress)[2].max(axis=0) / fatigue.yield_strength,
     }
-    own = _largest(len(cycle.nodes), mine, {**utilisation, "amplitude": plane.amplitude, "mean": plane.mean})
+    own = _largest(
+        len(cycle.nodes), mine, {**utilisation, "amplitude": plane.amplitude, "mean": plane.mean}
+    )
     parts = comm.allgather(own)
     joined = {name: np.concatenate([part[name] for part in parts]) for name in own}
     nodal = _largest(len(cycle.nodes), np.tile(np.arange(len(cycle.nodes)), len(parts)), joined)
@@ -220,7 +248,9 @@ def evaluate_fatigue(cycle: StressCycle, root_stress: RootStress | None) -> Fati
         least={name: _place(cycle, name, least[name], nodal, regions) for name in CRITERIA},
         regions=_by_region(nodal, regions, warnings),
         normal=tuple(normal.tolist()),
-        mesh_error=float(factor_error / factor / nodal["goodman"][least["goodman"]]) if at_root else None,
+        mesh_error=float(factor_error / factor / nodal["goodman"][least["goodman"]])
+        if at_root
+        else None,
         sampling_error=half,
         root_factor=factor if root_stress else None,
         root_factor_error=factor_error if root_stress else None,
@@ -229,7 +259,11 @@ def evaluate_fatigue(cycle: StressCycle, root_stress: RootStress | None) -> Fati
         phases=len(values),
         fatigue_limit_of_the_part_MPa=float(fatigue_limits(fatigue)[0]),
     )
-    table = {**_when(cycle, len(values)), **dict(zip(COMPONENTS, history.T, strict=True)), "normal_stress_MPa": values}
+    table = {
+        **_when(cycle, len(values)),
+        **dict(zip(COMPONENTS, history.T, strict=True)),
+        "normal_stress_MPa": values,
+    }
     return FatigueResult(found, _sector(cycle, nodal, regions), table)
 
 
@@ -250,7 +284,8 @@ def _life(cycle: StressCycle, damage_of_cycle: float) -> Life:
 
 
 def _when(cycle: StressCycle, count: int) -> dict[str, np.ndarray]:
-    """Columns that say when the values of a cycle are: wave-generator angles, in a load program its steps too."""
+    """Columns that say when the values of a cycle are: wave-generator angles, in a load program its
+    steps too."""
     design = cycle.model.design
     if not design.has_program:
         return {"wg_angle_deg": np.degrees(cycle.angle) * np.arange(count) / count}
@@ -266,7 +301,8 @@ def _scaled(root_stress: RootStress | None) -> list[str]:
 
 
 def _root_factor(root_stress: RootStress | None) -> tuple[float, float]:
-    """Largest tension at the teeth by windows over that of nodal averages, and its error; 1 and 0 without windows."""
+    """Largest tension at the teeth by windows over that of nodal averages, and its error; 1 and 0
+    without windows."""
     if root_stress is None:
         return 1.0, 0.0
     return root_stress.s1 / root_stress.on_mesh, root_stress.total_error / root_stress.on_mesh
@@ -298,7 +334,8 @@ def _first_largest(values: np.ndarray) -> int:
 
 
 def _largest(n: int, index: np.ndarray, columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Largest utilisations of n nodes, amplitude and mean where that by Goodman is the largest; -1 without values.
+    """Largest utilisations of n nodes, amplitude and mean where that by Goodman is the largest; -1
+    without values.
 
     index : (m,) nodes of the values in columns (m,), of which a node may have several
     """
@@ -314,7 +351,8 @@ def _largest(n: int, index: np.ndarray, columns: dict[str, np.ndarray]) -> dict[
 def _history_at(
     comm: MPI.Comm, mine: np.ndarray, stress: np.ndarray, plane: CriticalPlane, node: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Stress (n_phases, 6) MPa and normal (3,) of the critical plane at a node, on every rank; collective.
+    """Stress (n_phases, 6) MPa and normal (3,) of the critical plane at a node, on every rank;
+    collective.
 
     Of several histories at the node it is that with the largest utilisation.
     """
@@ -361,7 +399,9 @@ def _safety(utilisation: float) -> float:
     return float(min(LARGEST, 1.0 / max(utilisation, 1e-300)))
 
 
-def _by_region(nodal: dict[str, np.ndarray], regions: np.ndarray, warnings: np.ndarray) -> dict[str, RegionSafety]:
+def _by_region(
+    nodal: dict[str, np.ndarray], regions: np.ndarray, warnings: np.ndarray
+) -> dict[str, RegionSafety]:
     """Least safety factors of every region, with the warnings that belong to it."""
     found = {}
     for region in dict.fromkeys(regions.tolist()):
@@ -377,14 +417,20 @@ def _by_region(nodal: dict[str, np.ndarray], regions: np.ndarray, warnings: np.n
 
 
 def _sector(cycle: StressCycle, nodal: dict[str, np.ndarray], regions: np.ndarray) -> SectorFields:
-    """Fields of all nodes of the sector. `region` numbers the regions in the order of `SafetyAndLife.regions`."""
+    """Fields of all nodes of the sector. `region` numbers the regions in the order of
+    `SafetyAndLife.regions`."""
     mesh = cycle.body.layout.mesh
     index = np.zeros(len(mesh.coords), dtype=int)
     index[cycle.nodes] = np.arange(len(cycle.nodes))
     if mesh.lower_nodes is not None:
         index = index[mesh.lower_nodes]
     names = list(dict.fromkeys(regions.tolist()))
-    fields = {f"safety_{name}": np.minimum(LARGEST, 1.0 / np.clip(nodal[name], 1e-300, None)) for name in CRITERIA}
+    fields = {
+        f"safety_{name}": np.minimum(LARGEST, 1.0 / np.clip(nodal[name], 1e-300, None))
+        for name in CRITERIA
+    }
     fields |= {name: nodal[name] for name in ("amplitude", "mean")}
     fields["region"] = np.array([float(names.index(region)) for region in regions])
-    return SectorFields(mesh.coords, mesh.hexes, {name: values[index] for name, values in fields.items()})
+    return SectorFields(
+        mesh.coords, mesh.hexes, {name: values[index] for name, values in fields.items()}
+    )

@@ -1,4 +1,5 @@
-"""Fatigue criteria of stress histories: Goodman's line on the critical plane, Crossland's criterion, Basquin's life."""
+"""Fatigue criteria of stress histories: Goodman's line on the critical plane, Crossland's
+criterion, Basquin's life."""
 
 from __future__ import annotations
 
@@ -16,7 +17,8 @@ IN_SPACE = 150
 """Directions on half a sphere. Principal directions of each point are tried as well."""
 
 BALL_TOLERANCE, BALL_ITERATIONS = 1e-4, 2000
-"""Relative tolerance of the radius of the smallest ball around a history, and iterations at most."""
+"""Relative tolerance of the radius of the smallest ball around a history, and iterations at
+most."""
 
 
 @dataclass(frozen=True)
@@ -39,17 +41,22 @@ def fatigue_limits(fatigue: Fatigue) -> tuple[float, float]:
 
 
 def goodman(amplitude: np.ndarray, mean: np.ndarray, fatigue: Fatigue) -> np.ndarray:
-    """Utilisation by Goodman's line: amplitude over the fatigue limit, and tensile mean over the tensile strength.
+    """Utilisation by Goodman's line: amplitude over the fatigue limit, and tensile mean over the
+    tensile strength.
 
-    A compressive mean has no effect. The safety factor, its inverse, holds for amplitude and mean that grow together.
+    A compressive mean has no effect. The safety factor, its inverse, holds for amplitude and mean
+    that grow together.
     """
-    return amplitude / fatigue_limits(fatigue)[0] + np.clip(mean, 0.0, None) / fatigue.tensile_strength
+    return (
+        amplitude / fatigue_limits(fatigue)[0] + np.clip(mean, 0.0, None) / fatigue.tensile_strength
+    )
 
 
 def critical_plane(stress: np.ndarray, fatigue: Fatigue, plane: bool) -> CriticalPlane:
     """Plane with the largest utilisation by `goodman` of its normal stress.
 
-    stress : (n_phases, n, 6) MPa, xx yy zz xy yz zx;  plane : plane stress, with normals in the plane only
+    stress : (n_phases, n, 6) MPa, xx yy zz xy yz zx;  plane : plane stress, with normals in the
+    plane only
     """
     n = stress.shape[1]
     found = CriticalPlane(np.full(n, -1.0), np.zeros(n), np.zeros(n), np.zeros((n, 3)))
@@ -67,7 +74,9 @@ def normal_stress(stress: np.ndarray, normal: np.ndarray) -> np.ndarray:
     return np.einsum("tnc,nc->tn", stress, weight)
 
 
-def _worse(found: CriticalPlane, stress: np.ndarray, normal: np.ndarray, fatigue: Fatigue) -> CriticalPlane:
+def _worse(
+    found: CriticalPlane, stress: np.ndarray, normal: np.ndarray, fatigue: Fatigue
+) -> CriticalPlane:
     """`found`, with another normal (n, 3) where that has the larger utilisation."""
     values = normal_stress(stress, normal)
     high, low = values.max(axis=0), values.min(axis=0)
@@ -83,7 +92,8 @@ def _worse(found: CriticalPlane, stress: np.ndarray, normal: np.ndarray, fatigue
 
 
 def _directions(plane: bool) -> np.ndarray:
-    """Unit vectors (m, 3): over half a turn in the plane, or over half a sphere along Fibonacci's spiral."""
+    """Unit vectors (m, 3): over half a turn in the plane, or over half a sphere along Fibonacci's
+    spiral."""
     if plane:
         angle = np.pi * np.arange(IN_PLANE) / IN_PLANE
         return np.column_stack([np.cos(angle), np.sin(angle), np.zeros(IN_PLANE)])
@@ -94,15 +104,20 @@ def _directions(plane: bool) -> np.ndarray:
 
 
 def _principal_directions(stress: np.ndarray) -> list[np.ndarray]:
-    """Principal directions, each (n, 3), of points at their largest tension, and of the largest change from there."""
+    """Principal directions, each (n, 3), of points at their largest tension, and of the largest
+    change from there."""
     at = np.arange(stress.shape[1])
     top = stress[principal(stress)[0].argmax(axis=0), at]
     change = stress - top
-    far = change[np.einsum("tnc,tnc,c->tn", change, change, np.array([1, 1, 1, 2, 2, 2])).argmax(axis=0), at]
+    far = change[
+        np.einsum("tnc,tnc,c->tn", change, change, np.array([1, 1, 1, 2, 2, 2])).argmax(axis=0), at
+    ]
     found = []
     for tensor in (top, far):
         xx, yy, zz, xy, yz, zx = tensor.T
-        matrix = np.stack([np.stack([xx, xy, zx], -1), np.stack([xy, yy, yz], -1), np.stack([zx, yz, zz], -1)], -2)
+        matrix = np.stack(
+            [np.stack([xx, xy, zx], -1), np.stack([xy, yy, yz], -1), np.stack([zx, yz, zz], -1)], -2
+        )
         found += list(np.moveaxis(np.linalg.eigh(matrix)[1], -1, 0))
     return found
 
@@ -110,9 +125,10 @@ def _principal_directions(stress: np.ndarray) -> list[np.ndarray]:
 def crossland(stress: np.ndarray, fatigue: Fatigue) -> np.ndarray:
     """Utilisation (n,) by the criterion of Crossland (1956) of histories (n_phases, n, 6) MPa.
 
-    It is (a + alpha p) / t with the amplitude a of the root of the second invariant of the stress deviator, that is the
-    radius of the smallest ball around its path, the largest hydrostatic stress p, and alpha = 3 t / f - sqrt(3), where
-    t and f are the fatigue limits under torsion and tension.
+    It is (a + alpha p) / t with the amplitude a of the root of the second invariant of the stress
+    deviator, that is the radius of the smallest ball around its path, the largest hydrostatic
+    stress p, and alpha = 3 t / f - sqrt(3), where t and f are the fatigue limits under torsion and
+    tension.
     """
     tension, shear = fatigue_limits(fatigue)
     xx, yy, zz, xy, yz, zx = np.moveaxis(stress, -1, 0)
@@ -128,10 +144,11 @@ def crossland(stress: np.ndarray, fatigue: Fatigue) -> np.ndarray:
 
 
 def smallest_ball(points: np.ndarray) -> np.ndarray:
-    """Radius (n,) of the smallest balls around points (m, n, d), from above within `BALL_TOLERANCE`.
+    """Radius (n,) of the smallest balls around points (m, n, d), from above within
+    `BALL_TOLERANCE`.
 
-    Frank and Wolfe's method with away steps: E. A. Yildirim, SIAM Journal on Optimization 19 (2008), 1368-1391,
-    algorithm 4.1.
+    Frank and Wolfe's method with away steps: E. A. Yildirim, SIAM Journal on Optimization 19
+    (2008), 1368-1391, algorithm 4.1.
     """
     m, n, d = points.shape
     out, active, at = np.zeros(n), np.arange(n), np.arange(n)
@@ -158,7 +175,9 @@ def smallest_ball(points: np.ndarray) -> np.ndarray:
             break
         towards = gain >= loss
         own = weight[near, at]
-        back = np.minimum(loss / np.clip(2.0 * (1.0 - loss), 1e-300, None), own / np.clip(1.0 - own, 1e-300, None))
+        back = np.minimum(
+            loss / np.clip(2.0 * (1.0 - loss), 1e-300, None), own / np.clip(1.0 - own, 1e-300, None)
+        )
         step = np.where(towards, gain / np.clip(2.0 * (1.0 + gain), 1e-300, None), -back)
         weight *= 1.0 - step
         chosen = np.where(towards, far, near)
@@ -172,10 +191,12 @@ def smallest_ball(points: np.ndarray) -> np.ndarray:
 
 
 def damage(history: np.ndarray, fatigue: Fatigue) -> float:
-    """Damage by one passage of a closed history (n,) MPa of a normal stress; Miner's sum over the cycles by rainflow.
+    """Damage by one passage of a closed history (n,) MPa of a normal stress; Miner's sum over the
+    cycles by rainflow.
 
-    Amplitudes are taken to zero mean by Goodman's line. A cycle below the fatigue limit does no damage. The others have
-    Basquin's life of ``0.5 (amplitude / coefficient)^(1 / exponent)`` cycles.
+    Amplitudes are taken to zero mean by Goodman's line. A cycle below the fatigue limit does no
+    damage. The others have Basquin's life of ``0.5 (amplitude / coefficient)^(1 / exponent)``
+    cycles.
     """
     import rainflow  # runs without fatigue need it not
 

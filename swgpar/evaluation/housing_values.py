@@ -34,7 +34,9 @@ class HousingStresses(AnswerGroup):
     KINDS = (
         AnswerKind("housing.s1", "largest tension in the housing under load", "MPa", "s1_MPa"),
         AnswerKind("housing.s3", "largest compression in the housing under load", "MPa", "s3_MPa"),
-        AnswerKind("housing.vm", "largest von Mises stress in the housing under load", "MPa", "vm_MPa"),
+        AnswerKind(
+            "housing.vm", "largest von Mises stress in the housing under load", "MPa", "vm_MPa"
+        ),
         AnswerKind(
             "housing.bulge",
             "largest radial displacement of the ring gear's outer surface under load",
@@ -49,7 +51,8 @@ def housing_values(model: DriveModel, stresses: Mapping[str, float]) -> dict[str
 
     stresses : of the housing, MPa, as `DriveModel.stresses` names them
 
-    `bulge_um` is the largest radial displacement, outwards, of the surface between ring gear and housing.
+    `bulge_um` is the largest radial displacement, outwards, of the surface between ring gear and
+    housing.
     """
     body = model.elements.bodies[RING_GEAR]
     mesh = body.layout.mesh

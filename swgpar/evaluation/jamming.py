@@ -14,11 +14,15 @@ LEAST_EFFICIENCY = 0.5
 """Below this a drive loses more than it transmits: its teeth jam, or it turns against itself."""
 
 
-def jamming_remark(design: DriveDesign, rows: Sequence[Row], means: Mapping[str, float]) -> str | None:
-    """A sentence where the mean input torque is far from that of the energy balance, T / ratio; else None.
+def jamming_remark(
+    design: DriveDesign, rows: Sequence[Row], means: Mapping[str, float]
+) -> str | None:
+    """A sentence where the mean input torque is far from that of the energy balance, T / ratio;
+    else None.
 
-    Over a period the work of the input torque is that of the output torque, plus what friction takes. Less than a
-    period, drives without a torque and bolted ones, which do not repeat after a pitch, are not judged.
+    Over a period the work of the input torque is that of the output torque, plus what friction
+    takes. Less than a period, drives without a torque and bolted ones, which do not repeat after a
+    pitch, are not judged.
 
     rows : increments of the rotation whose `means` are given
     """
@@ -26,11 +30,15 @@ def jamming_remark(design: DriveDesign, rows: Sequence[Row], means: Mapping[str,
     if not rows or expected == 0.0 or design.is_bolted or counts_as_none(design):
         return None
     angles = column(rows, "wg_angle_deg")
-    covered = design.steps.samples or np.ptp(angles) + design.steps.increment >= np.degrees(design.period_angle)
+    covered = design.steps.samples or np.ptp(angles) + design.steps.increment >= np.degrees(
+        design.period_angle
+    )
     mean = means["wg_torque_Nmm"]
     if not covered or LEAST_EFFICIENCY * expected <= mean <= expected / LEAST_EFFICIENCY:
         return None
     return (
-        f"the mean input torque of {mean:.4g} N·mm is far from the {expected:.4g} N·mm of the energy balance: the "
-        "teeth may jam, and the results are not those of a running drive; swgpar check shows where teeth overlap"
+        f"the mean input torque of {mean:.4g} N·mm is far from the {expected:.4g} N·mm of the "
+        f"energy balance: the "
+        "teeth may jam, and the results are not those of a running drive; swgpar check shows where "
+        "teeth overlap"
     )

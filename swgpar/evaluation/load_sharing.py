@@ -27,10 +27,12 @@ class LoadSharing(AnswerGroup):
 
     pairs : touching pairs;  teeth_share : share of the flexible spline's teeth that touch
     largest_force_share : of one tooth in the forces of all pairs
-    largest_force_N, largest_line_load_Nmm : of one pair; the line load in N/mm, None where no contact is known
-    opposing_torque_share : torque of the pairs that push against the others, over the sum of all absolute values, mean
-    torque_error : largest difference between the sum of the pairs' torques and that of the teeth, over the sum of
-    their absolute values
+    largest_force_N, largest_line_load_Nmm : of one pair; the line load in N/mm, None where no
+    contact is known
+    opposing_torque_share : torque of the pairs that push against the others, over the sum of all
+    absolute values, mean
+    torque_error : largest difference between the sum of the pairs' torques and that of the teeth,
+    over the sum of their absolute values
     """
 
     pairs: Spread
@@ -43,21 +45,44 @@ class LoadSharing(AnswerGroup):
 
     TITLE = "load sharing over the rotation"
     KINDS = (
-        AnswerKind("sharing.pairs", "pairs of flanks in contact, mean over the rotation", path="pairs.mean"),
-        AnswerKind("sharing.largest_pairs", "pairs of flanks in contact, most over the rotation", path="pairs.largest"),
         AnswerKind(
-            "sharing.smallest_pairs", "pairs of flanks in contact, fewest over the rotation", path="pairs.smallest"
+            "sharing.pairs", "pairs of flanks in contact, mean over the rotation", path="pairs.mean"
+        ),
+        AnswerKind(
+            "sharing.largest_pairs",
+            "pairs of flanks in contact, most over the rotation",
+            path="pairs.largest",
+        ),
+        AnswerKind(
+            "sharing.smallest_pairs",
+            "pairs of flanks in contact, fewest over the rotation",
+            path="pairs.smallest",
         ),
         AnswerKind(
             "sharing.teeth_share",
             "share of the flexible spline's teeth in contact, mean over the rotation",
             path="teeth_share.mean",
         ),
-        AnswerKind("sharing.largest_force_share", "largest share of one tooth in the force of all pairs"),
+        AnswerKind(
+            "sharing.largest_force_share", "largest share of one tooth in the force of all pairs"
+        ),
         AnswerKind("sharing.largest_force", "largest force of one pair", "N", "largest_force_N"),
-        AnswerKind("sharing.largest_line_load", "largest line load of one pair", "N/mm", "largest_line_load_Nmm"),
-        AnswerKind("sharing.opposing_torque_share", "share of torques that push against the others", detail=True),
-        AnswerKind("sharing.torque_error", "relative difference of the torques of pairs and teeth", detail=True),
+        AnswerKind(
+            "sharing.largest_line_load",
+            "largest line load of one pair",
+            "N/mm",
+            "largest_line_load_Nmm",
+        ),
+        AnswerKind(
+            "sharing.opposing_torque_share",
+            "share of torques that push against the others",
+            detail=True,
+        ),
+        AnswerKind(
+            "sharing.torque_error",
+            "relative difference of the torques of pairs and teeth",
+            detail=True,
+        ),
     )
 
     @classmethod
@@ -66,7 +91,11 @@ class LoadSharing(AnswerGroup):
 
 
 def load_sharing(
-    pairs: Sequence[Row], tooth_torque: Sequence[float], increments: Sequence[int], teeth: int, copies: int
+    pairs: Sequence[Row],
+    tooth_torque: Sequence[float],
+    increments: Sequence[int],
+    teeth: int,
+    copies: int,
 ) -> LoadSharing | None:
     """Numbers of pairs and largest shares over increments; None without pairs in them.
 
@@ -85,7 +114,9 @@ def load_sharing(
     chosen = [pair for pair in pairs if pair["increment"] in set(increments)]
     for increment in increments:
         here = [pair for pair in chosen if pair["increment"] == increment]
-        tooth, share = np.array([[pair["tooth"], pair["force_share"]] for pair in here]).reshape(-1, 2).T
+        tooth, share = (
+            np.array([[pair["tooth"], pair["force_share"]] for pair in here]).reshape(-1, 2).T
+        )
         torque = copies * np.array([pair["torque_Nmm"] for pair in here])
         counts.append(copies * len(here))
         touching.append(copies * len(np.unique(tooth)) / teeth)
@@ -102,7 +133,9 @@ def load_sharing(
         teeth_share=_spread(touching),
         largest_force_share=max(shares),
         largest_force_N=max(pair["force_N"] for pair in chosen),
-        largest_line_load_Nmm=float(loads[np.isfinite(loads)].max()) if np.isfinite(loads).any() else None,
+        largest_line_load_Nmm=float(loads[np.isfinite(loads)].max())
+        if np.isfinite(loads).any()
+        else None,
         opposing_torque_share=float(np.mean(opposing)),
         torque_error=max(errors),
     )

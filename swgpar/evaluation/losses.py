@@ -1,6 +1,8 @@
-"""Losses of the drive over a turn of the wave generator: friction of flanks and bearing, hysteresis of the material.
+"""Losses of the drive over a turn of the wave generator: friction of flanks and bearing, hysteresis
+of the material.
 
-The loss torque is the input torque that the losses take: their work per turn over 2 pi (docs/theory/losses.md).
+The loss torque is the input torque that the losses take: their work per turn over 2 pi
+(docs/theory/losses.md).
 """
 
 from __future__ import annotations
@@ -21,7 +23,8 @@ from swgpar.model.drive_model import DriveModel
 from swgpar.results.history import Row
 
 SMALL_SHARE = 0.01
-"""Share of the flanks' force that friction leaves out without a word: pairs that hardly touch are not searched."""
+"""Share of the flanks' force that friction leaves out without a word: pairs that hardly touch are
+not searched."""
 
 CHUNK = 256
 """Elements whose harmonics are combined at once."""
@@ -61,23 +64,47 @@ class DriveLosses(AnswerGroup):
     SECTION = "losses"
     KINDS = (
         AnswerKind("losses.torque", "input torque that the losses take", "N·mm", "loss_torque_Nmm"),
-        AnswerKind("losses.flank_friction", "its part by friction of the flanks", "N·mm", "parts_Nmm.flank_friction"),
-        AnswerKind("losses.hysteresis", "its part by hysteresis of the spline", "N·mm", "parts_Nmm.hysteresis"),
         AnswerKind(
-            "losses.bearing", "its part by friction of the wave generator's bearing", "N·mm", "parts_Nmm.bearing"
+            "losses.flank_friction",
+            "its part by friction of the flanks",
+            "N·mm",
+            "parts_Nmm.flank_friction",
+        ),
+        AnswerKind(
+            "losses.hysteresis",
+            "its part by hysteresis of the spline",
+            "N·mm",
+            "parts_Nmm.hysteresis",
+        ),
+        AnswerKind(
+            "losses.bearing",
+            "its part by friction of the wave generator's bearing",
+            "N·mm",
+            "parts_Nmm.bearing",
         ),
         AnswerKind("losses.efficiency", "efficiency"),
-        AnswerKind("losses.no_load_torque", "input torque without a load", "N·mm", "no_load_torque_Nmm"),
-        AnswerKind("losses.work_per_turn", "work of all losses per turn", "J", "work_per_turn_J", detail=True),
+        AnswerKind(
+            "losses.no_load_torque", "input torque without a load", "N·mm", "no_load_torque_Nmm"
+        ),
+        AnswerKind(
+            "losses.work_per_turn",
+            "work of all losses per turn",
+            "J",
+            "work_per_turn_J",
+            detail=True,
+        ),
         AnswerKind("losses.power", "power of all losses", "W", "power_W"),
-        AnswerKind("losses.cam_force", "force of the wave generator, mean", "N", "cam_force_N", detail=True),
+        AnswerKind(
+            "losses.cam_force", "force of the wave generator, mean", "N", "cam_force_N", detail=True
+        ),
     )
 
 
 def cam_force(model: DriveModel) -> float:
     """Force (N) of the wave generator on the whole drive; collective.
 
-    It is the pressure integrated over the inner surface of the spline, with a bearing the sum of the ball loads.
+    It is the pressure integrated over the inner surface of the spline, with a bearing the sum of
+    the ball loads.
     """
     if model.design.bearing is not None:
         mine = float(model.problem.balls.owned_forces().sum())
@@ -98,7 +125,9 @@ def evaluate_losses(
     model = cycle.model
     design, losses = model.design, model.design.losses
     omega = design.load.input_speed * np.pi / 30.0
-    sliding = np.array([_flank_torque(design, pairs, increment, model.copies) for increment in increments])
+    sliding = np.array(
+        [_flank_torque(design, pairs, increment, model.copies) for increment in increments]
+    )
     forces = np.array([cam_forces[increment - 1] for increment in increments])
     arm = 0.5 * (losses.bearing_diameter or _bearing_diameter(design))
     # the outer race turns with the flexible spline
@@ -108,7 +137,8 @@ def evaluate_losses(
     parts = LossParts(float(sliding.mean()), hysteresis, float(bearing.mean()))
     if (missing := force_without_sliding(pairs, increments)) > SMALL_SHARE:
         logger.warning(
-            "the friction of the flanks leaves out %.3g %% of their force: the contacts of these pairs are not known",
+            "the friction of the flanks leaves out %.3g %% of their force: the contacts of these "
+            "pairs are not known",
             100.0 * missing,
         )
     total, useful = sum(astuple(parts)), 1000.0 * design.load.torque / abs(design.input_ratio)
@@ -132,19 +162,27 @@ def evaluate_losses(
 
 
 def _bearing_diameter(design: DriveDesign) -> float:
-    """Diameter (mm) on which the bearing's friction acts: that of the balls' centres, or without them of the bore."""
-    return 2.0 * design.inner_radius if design.bearing is None else design.bearing_sizes.pitch_diameter
+    """Diameter (mm) on which the bearing's friction acts: that of the balls' centres, or without
+    them of the bore."""
+    return (
+        2.0 * design.inner_radius if design.bearing is None else design.bearing_sizes.pitch_diameter
+    )
 
 
 def flank_coefficient(design: DriveDesign) -> float:
-    """Coefficient of friction between the flanks: that of the run, or that of [losses] in a run without friction."""
+    """Coefficient of friction between the flanks: that of the run, or that of [losses] in a run
+    without friction."""
     return design.contact.friction or design.losses.flank_friction
 
 
 def _flank_torque(design: DriveDesign, pairs: Sequence[Row], increment: int, copies: int) -> float:
     """Power of the friction between the flanks over the speed of the wave generator, N mm."""
     omega, coefficient = design.load.input_speed * np.pi / 30.0, flank_coefficient(design)
-    here = [pair for pair in pairs if pair["increment"] == increment and np.isfinite(pair["sliding_mm_s"])]
+    here = [
+        pair
+        for pair in pairs
+        if pair["increment"] == increment and np.isfinite(pair["sliding_mm_s"])
+    ]
     work = sum(pair["force_N"] * abs(pair["sliding_mm_s"]) for pair in here)
     # the force of a pair in a run with friction has its tangential part
     share = coefficient / np.hypot(1.0, coefficient) if design.contact.friction else coefficient
@@ -160,12 +198,18 @@ def force_without_sliding(pairs: Sequence[Row], increments: Sequence[int]) -> fl
 
 
 def hysteresis_work(cycle: StressCycle) -> float:
-    """Work (N mm) per turn of the wave generator that the spline takes with a loss factor of 1; collective."""
+    """Work (N mm) per turn of the wave generator that the spline takes with a loss factor of 1;
+    collective."""
     model, layout = cycle.model, cycle.body.layout
     mine, stress = cycle.history()
     thickness = model.design.drive.face_width if layout.mesh.plane else None
     per_cycle = work_per_cycle(
-        model.comm, layout, cycle.nodes[mine], stress, model.design.material_of("flexible_spline"), thickness
+        model.comm,
+        layout,
+        cycle.nodes[mine],
+        stress,
+        model.design.material_of("flexible_spline"),
+        thickness,
     )
     return per_cycle * 2.0 * np.pi / cycle.angle
 
@@ -180,8 +224,8 @@ def work_per_cycle(
 ) -> float:
     """Work (N mm) that all sectors of a body take in a cycle with a loss factor of 1; collective.
 
-    Harmonic n of the stress at a point goes through n cycles in a cycle of the drive. With a loss factor eta each of
-    them takes 2 pi eta times the strain energy of its amplitude.
+    Harmonic n of the stress at a point goes through n cycles in a cycle of the drive. With a loss
+    factor eta each of them takes 2 pi eta times the strain energy of its amplitude.
 
     nodes : (n,) of the elements of this rank;  stress : (n_phases, n, 6) MPa over the cycle
     thickness : mm, in the plane; None for a solid
@@ -202,10 +246,13 @@ def work_per_cycle(
 
 
 def energy_coordinates(amplitude: np.ndarray, material: Material) -> np.ndarray:
-    """Numbers (n, m) whose squares add up to the strain energy density (MPa) of amplitudes (k, n, 6) MPa, complex.
+    """Numbers (n, m) whose squares add up to the strain energy density (MPa) of amplitudes (k, n,
+    6) MPa, complex.
 
-    The density is half of the product of stress and strain, in plane stress as well: with the compliance L L^T it is
-    |L^T s|^2 / 2. A law has to be the same in all directions of the plane xy, because the stress is in global axes.
+    The density is half of the product of stress and strain, in plane stress as well: with the
+    compliance L L^T it is
+    |L^T s|^2 / 2. A law has to be the same in all directions of the plane xy, because the stress is
+    in global axes.
     """
     coordinates = amplitude @ np.linalg.cholesky(0.5 * material.compliance())
     stacked = np.concatenate([coordinates.real, coordinates.imag], axis=0)
@@ -213,20 +260,28 @@ def energy_coordinates(amplitude: np.ndarray, material: Material) -> np.ndarray:
 
 
 def mass_matrices(coords: np.ndarray, thickness: float | None) -> np.ndarray:
-    """Integrals (n, m, m) mm³ of products of the shape functions of hexahedra (n, 8, 3) mm, or of quadrilaterals.
+    """Integrals (n, m, m) mm³ of products of the shape functions of hexahedra (n, 8, 3) mm, or of
+    quadrilaterals.
 
     thickness : mm, of quadrilaterals (n, 4, 3) in the plane; None for hexahedra
     """
     dims = 3 if thickness is None else 2
     corner = np.array([[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1]])
     corner = np.vstack([corner, corner * (1, 1, -1)])[: 2**dims, :dims]
-    point = np.array(np.meshgrid(*[(-1.0 / np.sqrt(3.0), 1.0 / np.sqrt(3.0))] * dims)).reshape(dims, -1).T
+    point = (
+        np.array(np.meshgrid(*[(-1.0 / np.sqrt(3.0), 1.0 / np.sqrt(3.0))] * dims))
+        .reshape(dims, -1)
+        .T
+    )
     out = np.zeros((len(coords), len(corner), len(corner)))
     for x in point:
         factors = 1.0 + x * corner
         shape = factors.prod(axis=1) / 2.0**dims
         gradient = np.stack(
-            [corner[:, k] * np.delete(factors, k, axis=1).prod(axis=1) / 2.0**dims for k in range(dims)]
+            [
+                corner[:, k] * np.delete(factors, k, axis=1).prod(axis=1) / 2.0**dims
+                for k in range(dims)
+            ]
         )
         jacobian = np.linalg.det(np.einsum("ka,nai->nki", gradient, coords[..., :dims]))
         out += np.abs(jacobian)[:, None, None] * shape[:, None] * shape

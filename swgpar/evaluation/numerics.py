@@ -27,8 +27,18 @@ class Numerics(AnswerGroup):
 
     TITLE = "torque balance and reductions"
     KINDS = (
-        AnswerKind("residue.torque", "torque that is left over in an increment, largest", "N·mm", "balance_error_Nmm"),
-        AnswerKind("residue.condensed", "bending stress that condensed sectors leave out", "MPa", "condensed_MPa"),
+        AnswerKind(
+            "residue.torque",
+            "torque that is left over in an increment, largest",
+            "N·mm",
+            "balance_error_Nmm",
+        ),
+        AnswerKind(
+            "residue.condensed",
+            "bending stress that condensed sectors leave out",
+            "MPa",
+            "condensed_MPa",
+        ),
     )
 
     @property
@@ -38,7 +48,9 @@ class Numerics(AnswerGroup):
 
     def answers(self) -> Iterator[Answer]:
         for answer in super().answers():
-            yield replace(answer, limit=self.largest_balance_Nmm if answer.name == "residue.torque" else None)
+            yield replace(
+                answer, limit=self.largest_balance_Nmm if answer.name == "residue.torque" else None
+            )
 
 
 def evaluate_numerics(rows: Sequence[Row], condensed: float | None) -> Numerics:

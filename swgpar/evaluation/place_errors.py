@@ -25,12 +25,16 @@ class CoarseStresses:
     ratio: float
 
     def errors(self, fine: Mapping[str, Place]) -> dict[str, float]:
-        """Errors of the stresses on the finer mesh as shares of them; none of those that depend on either mesh.
+        """Errors of the stresses on the finer mesh as shares of them; none of those that depend on
+        either mesh.
 
-        A coarser mesh may have no node in a region, for example in a fillet of one element: no error there.
+        A coarser mesh may have no node in a region, for example in a fillet of one element: no
+        error there.
         """
         return {
-            name: abs(place.value - self.places[name].value) / (self.ratio**NODAL_ORDER - 1.0) / place.value
+            name: abs(place.value - self.places[name].value)
+            / (self.ratio**NODAL_ORDER - 1.0)
+            / place.value
             for name, place in fine.items()
             if name in self.places
             if not place.warning and not self.places[name].warning and place.value > 0.0
@@ -43,16 +47,18 @@ def with_errors(
     """The places with the errors (MPa) of their stresses where they are known.
 
     shares : errors by a coarser mesh over the stresses, by column of the history
-    root_stress : of the loaded state, where it is known. What nodal averages lose in the roots of the flexible spline
-    is the same share of every stress there, in the ring gear in proportion to the element's length. The root may have
-    the largest stress on a finer mesh.
+    root_stress : of the loaded state, where it is known. What nodal averages lose in the roots of
+    the flexible spline is the same share of every stress there, in the ring gear in proportion to
+    the element's length. The root may have the largest stress on a finer mesh.
     """
     lost: dict[str, float] = {}
     spacing = {place.body: place.root_spacing for place in places.values()}
     share = root_stress.lost_in_root if root_stress is not None else None
     if share is not None and places:
         of_spline = spacing[FLEXIBLE_SPLINE]
-        lost = {body: share * (length / of_spline) ** NODAL_ORDER for body, length in spacing.items()}
+        lost = {
+            body: share * (length / of_spline) ** NODAL_ORDER for body, length in spacing.items()
+        }
     return {
         name: replace(place, error=_error(place, shares.get(name), lost.get(place.body)))
         for name, place in places.items()
@@ -60,7 +66,8 @@ def with_errors(
 
 
 def _error(place: Place, share: float | None, lost: float | None) -> float | None:
-    """Error (MPa) of a stress. share : by a coarser mesh;  lost : share that is lost in the roots"""
+    """Error (MPa) of a stress. share : by a coarser mesh;  lost : share that is lost in the
+    roots"""
     if place.warning:
         return None
     in_root = lost is not None and place.region == TOOTH_ROOT

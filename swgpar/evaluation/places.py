@@ -1,4 +1,5 @@
-"""Where the largest stresses are: body, region, tooth, radius, z, angle, and whether the number means anything."""
+"""Where the largest stresses are: body, region, tooth, radius, z, angle, and whether the number
+means anything."""
 
 from __future__ import annotations
 
@@ -21,10 +22,12 @@ TOUCHED = 0.02
 """Share of the largest nodal pressure from which a flank's node counts as touched."""
 
 APART, APART_DISTANCE = "_apart", 0.25
-"""Ending of the names of stresses apart from the contact of flanks; distance (modules) from a touched node."""
+"""Ending of the names of stresses apart from the contact of flanks; distance (modules) from a
+touched node."""
 
 OF_REGION = " in "
-"""Between a stress and a region in the names of the largest stresses of regions: "fs_vm in cup wall"."""
+"""Between a stress and a region in the names of the largest stresses of regions: "fs_vm in cup
+wall"."""
 
 ROLLER = "below a roller: an average over elements, larger on a finer mesh"
 CORNER = "a contact lies on the edge of a tooth: larger on a finer mesh"
@@ -35,9 +38,9 @@ class Place:
     """Place of a largest stress.
 
     value : MPa;  body : name
-    region : "tooth root", "tooth end", "flank under contact", "flank", "tip", "rim inside", "rim", "notch", "cup wall",
-    "fillet at the back", "fillet", "closed end", "bore", "attachment", "flange", "rim of the flange", "outer surface"
-    or "inside the tooth"
+    region : "tooth root", "tooth end", "flank under contact", "flank", "tip", "rim inside", "rim",
+    "notch", "cup wall", "fillet at the back", "fillet", "closed end", "bore", "attachment",
+    "flange", "rim of the flange", "outer surface" or "inside the tooth"
     tooth : number, counter-clockwise from +y in the undeformed drive
     radius, z : mm;  angle_deg : from +y, counter-clockwise
     warning : why the value depends on the mesh; empty where it converges
@@ -80,14 +83,21 @@ class LargestStresses(AnswerGroup):
 
     TITLE = "largest nodal averages of stress under load"
     KINDS = tuple(
-        AnswerKind(f"largest.{body}_{stress}{ending}", f"{BODIES[body]}, {STRESSES[stress]}{words}", "MPa")
+        AnswerKind(
+            f"largest.{body}_{stress}{ending}", f"{BODIES[body]}, {STRESSES[stress]}{words}", "MPa"
+        )
         for body in ("fs", "rg")
         for stress in STRESSES
         for ending, words in (("", ""), (APART, ", apart from the contact"))
         if not (ending and stress == "s1")
     )
     OF_REGIONS = tuple(
-        AnswerKind(f"largest.{body}_{stress}{OF_REGION}", f"{BODIES[body]}, {STRESSES[stress]} in ", "MPa", detail=True)
+        AnswerKind(
+            f"largest.{body}_{stress}{OF_REGION}",
+            f"{BODIES[body]}, {STRESSES[stress]} in ",
+            "MPa",
+            detail=True,
+        )
         for body in ("fs", "rg")
         for stress in ("s1", "vm")
     )
@@ -118,20 +128,31 @@ class LargestStresses(AnswerGroup):
 
 
 def find_places(
-    model: DriveModel, state: LoadState, fields: Mapping[str, Mapping[str, np.ndarray]], *, on_edge: bool = False
+    model: DriveModel,
+    state: LoadState,
+    fields: Mapping[str, Mapping[str, np.ndarray]],
+    *,
+    on_edge: bool = False,
 ) -> dict[str, Place]:
-    """Places of the largest s1, |s3| and von Mises stress of both bodies, by column of the history; collective.
+    """Places of the largest s1, |s3| and von Mises stress of both bodies, by column of the history;
+    collective.
 
-    |s3| and von Mises are looked for apart from the contact of flanks as well, with names that end with `APART`: on
-    surfaces and in the rim. Inside of a tooth they decrease with the distance from the contact, wherever it is cut off.
-    s1 and von Mises are looked for in every region as well, with names that have `OF_REGION`; only values above 0.
+    |s3| and von Mises are looked for apart from the contact of flanks as well, with names that end
+    with `APART`: on surfaces and in the rim. Inside of a tooth they decrease with the distance from
+    the contact, wherever it is cut off. s1 and von Mises are looked for in every region as well,
+    with names that have `OF_REGION`; only values above 0.
 
     fields : nodal fields of both bodies as `DriveModel.stresses` gives them
     on_edge : whether a contact of flanks lies on the edge of a tooth
     """
-    pressed = pressed_nodes(model, state)  # those of the spline; any flank of the ring gear may be touched
+    pressed = pressed_nodes(
+        model, state
+    )  # those of the spline; any flank of the ring gear may be touched
     found, design = {}, model.design
-    distance, on_rollers = APART_DISTANCE * design.drive.module, design.wave_generator.type == "four_roller"
+    distance, on_rollers = (
+        APART_DISTANCE * design.drive.module,
+        design.wave_generator.type == "four_roller",
+    )
     for name, prefix in ((FLEXIBLE_SPLINE, "fs"), (RING_GEAR, "rg")):
         body = model.elements.bodies[name]
         ring = name == RING_GEAR
@@ -151,7 +172,10 @@ def find_places(
             below = np.broadcast_to(below, touched.shape)
             names = {f"{prefix}_{stress}": (values, below)}
             if stress != "s1":
-                names[f"{prefix}_{stress}{APART}"] = np.where(apart, values, -np.inf), np.zeros_like(touched)
+                names[f"{prefix}_{stress}{APART}"] = (
+                    np.where(apart, values, -np.inf),
+                    np.zeros_like(touched),
+                )
             if stress != "s3":
                 names |= _by_region(f"{prefix}_{stress}", regions, values, below)
             for column, of in names.items():
@@ -169,10 +193,13 @@ def find_places(
 def _by_region(
     stress: str, regions: Mapping[bool, np.ndarray], values: np.ndarray, below: np.ndarray
 ) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Values (n_sectors, n_node) of every region, -inf elsewhere, by name; the same names on all ranks."""
+    """Values (n_sectors, n_node) of every region, -inf elsewhere, by name; the same names on all
+    ranks."""
     return {
         f"{stress}{OF_REGION}{region}": (
-            np.where(np.where(below, regions[True] == region, regions[False] == region), values, -np.inf),
+            np.where(
+                np.where(below, regions[True] == region, regions[False] == region), values, -np.inf
+            ),
             below,
         )
         for region in np.unique(np.concatenate(list(regions.values())))
@@ -180,7 +207,8 @@ def _by_region(
 
 
 def inside_teeth(design: DriveDesign, mesh: SectorMesh) -> np.ndarray:
-    """Whether a node (n_node,) of a sector lies inside of its tooth: neither on a surface nor in the rim."""
+    """Whether a node (n_node,) of a sector lies inside of its tooth: neither on a surface nor in
+    the rim."""
     radius, z = np.hypot(mesh.coords[:, 0], mesh.coords[:, 1]), mesh.coords[:, 2]
     low, high = sorted((mesh.profile.r_root_circle, mesh.profile.r_tip_circle))
     near = NEAR * design.drive.module
@@ -196,7 +224,11 @@ def root_nodes(design: DriveDesign, mesh: SectorMesh) -> np.ndarray:
     """Nodes (n,) on the roots of a sector's tooth, between its ends."""
     nodes = [grid.nodes[grid.s >= mesh.profile.breaks[-2]].ravel() for grid in mesh.flanks]
     found = np.unique(np.concatenate(nodes))
-    return found if mesh.plane else found[np.abs(mesh.coords[found, 2]) <= END * design.drive.face_width]
+    return (
+        found
+        if mesh.plane
+        else found[np.abs(mesh.coords[found, 2]) <= END * design.drive.face_width]
+    )
 
 
 def pressed_nodes(model: DriveModel, state: LoadState) -> np.ndarray:
@@ -207,14 +239,20 @@ def pressed_nodes(model: DriveModel, state: LoadState) -> np.ndarray:
 
 
 def near_contact(mesh: SectorMesh, touched: np.ndarray, distance: float) -> np.ndarray:
-    """Nodes (n_sectors, n_node) within a distance (mm) of touched ones on the working parts of the flanks."""
+    """Nodes (n_sectors, n_node) within a distance (mm) of touched ones on the working parts of the
+    flanks."""
     working = np.zeros(len(mesh.coords), dtype=bool)
     for grid in mesh.flanks:
         working[grid.nodes[grid.s < mesh.profile.breaks[-2]]] = True
     tree, near = cKDTree(mesh.coords), np.zeros(touched.shape, dtype=bool)
     for sector in np.flatnonzero((touched & working).any(axis=1)):
         nodes = np.flatnonzero(touched[sector] & working)
-        near[sector, np.unique(np.concatenate(tree.query_ball_point(mesh.coords[nodes], distance)).astype(int))] = True
+        near[
+            sector,
+            np.unique(
+                np.concatenate(tree.query_ball_point(mesh.coords[nodes], distance)).astype(int)
+            ),
+        ] = True
     return near
 
 
@@ -226,13 +264,19 @@ def root_spacing(mesh: SectorMesh) -> float:
 
 
 def _largest(model: DriveModel, name: str, values: np.ndarray, touched: np.ndarray) -> Place:
-    """Place of the largest of values (n_sectors, n_node) MPa of a body; collective. touched : nodes under contact"""
+    """Place of the largest of values (n_sectors, n_node) MPa of a body; collective. touched : nodes
+    under contact"""
     body = model.elements.bodies[name]
     best: tuple[float, int, int, bool] = (-np.inf, 0, 0, False)
     if values.size:
         sector, node = np.unravel_index(values.argmax(), values.shape)
         first, _ = model.partition.owned_sectors(name)
-        best = (float(values[sector, node]), first + int(sector), int(node), bool(touched[sector, node]))
+        best = (
+            float(values[sector, node]),
+            first + int(sector),
+            int(node),
+            bool(touched[sector, node]),
+        )
     mine = float(values[:, root_nodes(model.design, body.layout.mesh)].max(initial=0.0))
     in_root = max(model.comm.allgather(mine))
     value, sector, node, pressed = max(model.comm.allgather(best), key=lambda one: one[0])

@@ -26,12 +26,13 @@ COLUMNS = {
     "wg_torque_Nmm": "N·mm",
     "pairs_in_contact": "",
 }
-"""Columns of program.csv with their units: the torque on the output, positive against its motion, and the rotation of
-the output by it, beyond what the ratio makes of the wave generator's angle."""
+"""Columns of program.csv with their units: the torque on the output, positive against its motion,
+and the rotation of the output by it, beyond what the ratio makes of the wave generator's angle."""
 
 
 def point_rows(points: Sequence[ProgramPoint], ratio: float, rows: Sequence[Row]) -> list[PointRow]:
-    """Rows of program.csv from those of the history. ratio : speed of the wave generator over that of the output"""
+    """Rows of program.csv from those of the history. ratio : speed of the wave generator over that
+    of the output"""
     direction, found = torque_direction(ratio), []
     for row in rows:
         index = int(row["step"]) - Stage.LOAD
@@ -63,7 +64,8 @@ def work_by_torque(rows: Sequence[PointRow]) -> float:
 class ProgramStages(AnswerGroup):
     """The last point of every stage of a load program.
 
-    stages : by the name of the stage, values by the columns of program.csv, without that of the stage
+    stages : by the name of the stage, values by the columns of program.csv, without that of the
+    stage
     """
 
     stages: Mapping[str, Mapping[str, float]]
@@ -84,7 +86,11 @@ class ProgramStages(AnswerGroup):
     def kinds_of(cls, stages: Iterable[str]) -> tuple[AnswerKind, ...]:
         """The kinds for stages with these names."""
         return tuple(
-            replace(kind, name=kind.name.replace("STAGE", stage), text=kind.text.replace("the stage STAGE", stage))
+            replace(
+                kind,
+                name=kind.name.replace("STAGE", stage),
+                text=kind.text.replace("the stage STAGE", stage),
+            )
             for stage in stages
             for kind in cls.KINDS
         )
@@ -92,9 +98,13 @@ class ProgramStages(AnswerGroup):
     def answers(self) -> Iterator[Answer]:
         for stage, values in self.stages.items():
             for kind in self.kinds_of((stage,)):
-                yield Answer(kind.name, float(values[kind.name.rpartition(".")[2]]), kind.unit, kind.text)
+                yield Answer(
+                    kind.name, float(values[kind.name.rpartition(".")[2]]), kind.unit, kind.text
+                )
 
 
 def stage_ends(rows: Sequence[PointRow]) -> ProgramStages:
     """The last point of every stage from the rows of program.csv."""
-    return ProgramStages({row["stage"]: {name: row[name] for name in COLUMNS if name != "stage"} for row in rows})
+    return ProgramStages(
+        {row["stage"]: {name: row[name] for name in COLUMNS if name != "stage"} for row in rows}
+    )

@@ -1,4 +1,5 @@
-"""Ratcheting: the peak of the torque under a prescribed rotation of the output, and what gives way."""
+"""Ratcheting: the peak of the torque under a prescribed rotation of the output, and what gives
+way."""
 
 from __future__ import annotations
 
@@ -16,8 +17,8 @@ from swgpar.load.load_program import pitch_angle, torque_direction
 from swgpar.model.drive_model import DriveModel
 
 AT_TEETH, IN_SPLINE, NOTHING = "teeth jump over", "flexible spline buckles", "nothing"
-"""What gives way: the teeth move on with the output; they stay, and the spline yields between them and the output;
-nothing up to the end of the run."""
+"""What gives way: the teeth move on with the output; they stay, and the spline yields between them
+and the output; nothing up to the end of the run."""
 
 
 @dataclass(frozen=True)
@@ -25,9 +26,11 @@ class RatchetingTorque(AnswerGroup):
     """The largest torque of the output under a prescribed rotation, and what gave way.
 
     peak_torque_Nm : largest torque;  peak_error_Nm : difference from the points beside it
-    peak_rotation_deg, peak_rotation_pitches : rotation of the output there;  peak_step : its point of the program
+    peak_rotation_deg, peak_rotation_pitches : rotation of the output there;  peak_step : its point
+    of the program
     last_torque_Nm, last_step : of the last point
-    is_peak : whether the torque fell after it;  gave_way : `AT_TEETH`, `IN_SPLINE` or `NOTHING`;  ended : why
+    is_peak : whether the torque fell after it;  gave_way : `AT_TEETH`, `IN_SPLINE` or `NOTHING`;
+    ended : why
     """
 
     peak_torque_Nm: float
@@ -52,7 +55,11 @@ class RatchetingTorque(AnswerGroup):
 
     def answers(self) -> Iterator[Answer]:
         torque, *others = super().answers()
-        yield replace(torque, error=self.peak_error_Nm, remark="" if self.is_peak else "no peak: it still grows")
+        yield replace(
+            torque,
+            error=self.peak_error_Nm,
+            remark="" if self.is_peak else "no peak: it still grows",
+        )
         yield from others
 
     def remarks(self) -> Iterator[str]:
@@ -60,7 +67,8 @@ class RatchetingTorque(AnswerGroup):
 
 
 def tooth_rotation(model: DriveModel) -> float:
-    """Mean rotation (deg) of the flexible spline's teeth, the rigid one that fits their flanks best; collective."""
+    """Mean rotation (deg) of the flexible spline's teeth, the rigid one that fits their flanks
+    best; collective."""
     body = model.elements.bodies[FLEXIBLE_SPLINE]
     nodes = np.unique(np.concatenate([grid.nodes.ravel() for grid in body.layout.mesh.flanks]))
     at = body.positions()[body.owned][:, nodes, :2]
@@ -77,7 +85,8 @@ def peak(rows: Sequence[PointRow]) -> int:
 
 
 def has_fallen(drop: float, rows: Sequence[PointRow]) -> bool:
-    """Whether the torque of the last row has fallen clearly below its peak. drop : share of the peak"""
+    """Whether the torque of the last row has fallen clearly below its peak. drop : share of the
+    peak"""
     if not rows:
         return False
     top = rows[peak(rows)]["torque_Nm"]
@@ -85,7 +94,8 @@ def has_fallen(drop: float, rows: Sequence[PointRow]) -> bool:
 
 
 def what_gave_way(design: DriveDesign, rows: Sequence[PointRow], teeth: Sequence[float]) -> str:
-    """What the output's rotation since the peak went into: `AT_TEETH`, `IN_SPLINE`, or `NOTHING` without a peak.
+    """What the output's rotation since the peak went into: `AT_TEETH`, `IN_SPLINE`, or `NOTHING`
+    without a peak.
 
     teeth : (n,) deg, rotation of the flexible spline's teeth at every row
     """
@@ -118,5 +128,9 @@ def evaluate_ratcheting(
         last_step=rows[-1]["step"],
         is_peak=top < len(rows) - 1,
         gave_way=what_gave_way(design, rows, teeth),
-        ended="no equilibrium found" if ended_early else "torque fell" if fallen else "limit reached",
+        ended="no equilibrium found"
+        if ended_early
+        else "torque fell"
+        if fallen
+        else "limit reached",
     )

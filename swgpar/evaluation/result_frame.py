@@ -1,9 +1,9 @@
 """Results in the frame of the fixed member.
 
-A drive whose wave generator is fixed is computed in the frame of its ring gear, where it is a drive with the ring gear
-fixed: a rigid rotation of the whole drive changes no stress and no torque (docs/theory/kinematics.md). What a run
-leaves is rotated back by the angle of the wave generator against the ring gear, so that the wave generator stands.
-In the other layouts nothing changes.
+A drive whose wave generator is fixed is computed in the frame of its ring gear, where it is a drive
+with the ring gear fixed: a rigid rotation of the whole drive changes no stress and no torque
+(docs/theory/kinematics.md). What a run leaves is rotated back by the angle of the wave generator
+against the ring gear, so that the wave generator stands. In the other layouts nothing changes.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from swgpar.results.history import Row, column, wrapped
 def history_rows(design: DriveDesign, rows: Sequence[Row]) -> list[Row]:
     """Rows of history.csv from those in the frame in which the drive is computed.
 
-    With the wave generator fixed they have the ring gear's angle and its torque too: that of the teeth on the spline,
-    which is the torque that drives the ring gear. `wg_angle_deg` is the angle against the ring gear in all layouts with
-    the flexible spline as the output.
+    With the wave generator fixed they have the ring gear's angle and its torque too: that of the
+    teeth on the spline, which is the torque that drives the ring gear. `wg_angle_deg` is the angle
+    against the ring gear in all layouts with the flexible spline as the output.
     """
     if not design.wave_generator_is_fixed:
         return list(rows)
@@ -41,14 +41,16 @@ def history_rows(design: DriveDesign, rows: Sequence[Row]) -> list[Row]:
 
 
 def shown_output(design: DriveDesign, row: Row) -> float:
-    """Angle of the output (degrees), within half a turn, of a row in the frame in which the drive is computed."""
+    """Angle of the output (degrees), within half a turn, of a row in the frame in which the drive
+    is computed."""
     return float(wrapped(design.in_frame_of_result(row["output_angle_deg"], row["wg_angle_deg"])))
 
 
 def nodal_fields(
     model: DriveModel, angle: float, fields: Mapping[str, dict[str, np.ndarray]]
 ) -> dict[str, dict[str, np.ndarray]]:
-    """Nodal fields of all bodies by name. angle : rad, of the wave generator in the frame of the computation
+    """Nodal fields of all bodies by name. angle : rad, of the wave generator in the frame of the
+    computation
 
     Displacements go from the undeformed place to that in the frame of the fixed member.
     """
@@ -61,7 +63,9 @@ def nodal_fields(
         found[name] = {
             **values,
             "displacement": rotated(position + values["displacement"], back) - position,
-            "stress": rotated_stress(values["stress"], float(model.design.in_frame_of_result(0.0, angle))),
+            "stress": rotated_stress(
+                values["stress"], float(model.design.in_frame_of_result(0.0, angle))
+            ),
         }
     return found
 
@@ -87,7 +91,8 @@ def rotated_stress(stress: np.ndarray, angle: float) -> np.ndarray:
 class InputTorque:
     """Torque (N mm) of a ring gear that is driven, over the rotation.
 
-    torque_Nmm : mean;  torque_expected_Nmm : by the energy balance, T_in theta_in + T_out theta_out = 0
+    torque_Nmm : mean;  torque_expected_Nmm : by the energy balance, T_in theta_in + T_out theta_out
+    = 0
     torque_ripple : largest less smallest, over the mean; None for a mean of 0
     """
 

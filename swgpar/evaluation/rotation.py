@@ -54,7 +54,11 @@ class Rotation(AnswerGroup):
 
     TITLE = "over the rotation"
     OVERALL = (
-        AnswerKind("rotation.torque_ripple", "input torque, largest less smallest over mean", path="torque_ripple"),
+        AnswerKind(
+            "rotation.torque_ripple",
+            "input torque, largest less smallest over mean",
+            path="torque_ripple",
+        ),
         AnswerKind(
             "rotation.transmission_error",
             "transmission error of the ideal drive, peak to peak",
@@ -69,12 +73,22 @@ class Rotation(AnswerGroup):
         ),
     )
     INPUT = (
-        AnswerKind("input.torque", "torque of the driven ring gear, mean", "N·mm", "input.torque_Nmm"),
-        AnswerKind("input.expected_torque", "the same by the energy balance", "N·mm", "input.torque_expected_Nmm"),
+        AnswerKind(
+            "input.torque", "torque of the driven ring gear, mean", "N·mm", "input.torque_Nmm"
+        ),
+        AnswerKind(
+            "input.expected_torque",
+            "the same by the energy balance",
+            "N·mm",
+            "input.torque_expected_Nmm",
+        ),
     )
     MEANS = tuple(
         AnswerKind(
-            f"mean.{name}", f"{COLUMNS[name].label}, mean over the rotation", COLUMNS[name].unit, f"means.{name}"
+            f"mean.{name}",
+            f"{COLUMNS[name].label}, mean over the rotation",
+            COLUMNS[name].unit,
+            f"means.{name}",
         )
         for name in MEAN_COLUMNS
     )
@@ -107,18 +121,25 @@ class Rotation(AnswerGroup):
         if self.jammed:
             yield self.jammed
         if self.sampling_error:
-            changes = ", ".join(f"{name} {self.sampling_error[name]:.2f}" for name in GEAR_STRESSES[:3])
+            changes = ", ".join(
+                f"{name} {self.sampling_error[name]:.2f}" for name in GEAR_STRESSES[:3]
+            )
             yield f"half as many angles change the means by (MPa): {changes}"
 
 
 def evaluate_rotation(
-    design: DriveDesign, rows: Sequence[Row], root_stress: RootStress | None, places: Mapping[str, Place]
+    design: DriveDesign,
+    rows: Sequence[Row],
+    root_stress: RootStress | None,
+    places: Mapping[str, Place],
 ) -> Rotation:
     """From the history `rows` of the computed increments.
 
     root_stress, places : by which the errors of the means are known
     """
-    rotation = [] if design.has_program else [row for row in rows if int(row["step"]) >= Stage.ROTATE]
+    rotation = (
+        [] if design.has_program else [row for row in rows if int(row["step"]) >= Stage.ROTATE]
+    )
     sampled = sampled_rows(design, rows)
     driven = input_torque(design, sampled)
     means: dict[str, float] = {}
@@ -141,7 +162,9 @@ def evaluate_rotation(
         transmission_error_arcsec=deviation,
         mesh_error=mesh_error(root_stress, means, places),
         sampling_error=half,
-        newton_iterations_mean=float(np.mean([row["newton_iterations"] for row in rotation])) if rotation else None,
+        newton_iterations_mean=float(np.mean([row["newton_iterations"] for row in rotation]))
+        if rotation
+        else None,
         input=driven,
         wg_torque_expected_Nmm=1000.0 * design.load.torque / abs(design.ratio),
         jammed=jamming_remark(design, sampled, means),
@@ -149,7 +172,8 @@ def evaluate_rotation(
 
 
 def sampled_rows(design: DriveDesign, rows: Sequence[Row]) -> list[Row]:
-    """Rows of the history that stand for the rotation: those of the sampled period, or all; none in a load program."""
+    """Rows of the history that stand for the rotation: those of the sampled period, or all; none in
+    a load program."""
     if design.steps.samples:
         return of_period(design, list(rows))
     return [] if design.has_program else [row for row in rows if int(row["step"]) >= Stage.ROTATE]
@@ -158,13 +182,16 @@ def sampled_rows(design: DriveDesign, rows: Sequence[Row]) -> list[Row]:
 def mesh_error(
     root_stress: RootStress | None, means: Mapping[str, float], places: Mapping[str, Place]
 ) -> dict[str, float]:
-    """Errors (MPa) of the means of nodal stresses by the drive's mesh, by column of the history, where they are known.
+    """Errors (MPa) of the means of nodal stresses by the drive's mesh, by column of the history,
+    where they are known.
 
-    That of s1 is how far windows are from it, and their own error. Others are in proportion to those of the largest
-    stresses under load, which a coarser mesh gives.
+    That of s1 is how far windows are from it, and their own error. Others are in proportion to
+    those of the largest stresses under load, which a coarser mesh gives.
     """
     found = {
-        name: means[name] * place.error / place.value for name, place in places.items() if name in means and place.error
+        name: means[name] * place.error / place.value
+        for name, place in places.items()
+        if name in means and place.error
     }
     if root_stress is not None:
         found["fs_s1"] = abs(root_stress.on_mesh - root_stress.s1) + root_stress.total_error

@@ -23,7 +23,10 @@ class StepValues(AnswerGroup):
     TITLE = "ends of the steps"
     KINDS = tuple(
         AnswerKind(
-            f"step{k}.{column.name}", f"{column.label or column.name}, end of step {k}", column.unit, detail=True
+            f"step{k}.{column.name}",
+            f"{column.label or column.name}, end of step {k}",
+            column.unit,
+            detail=True,
         )
         for k in STEPS
         for column in (*columns_of("all"), *columns_of("wave generator fixed"))
@@ -32,8 +35,14 @@ class StepValues(AnswerGroup):
 
     @classmethod
     def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:
-        left_out = set() if design.wave_generator_is_fixed else {"input_angle_deg", "input_torque_Nmm"}
-        return tuple(kind for kind in cls.KINDS if not design.has_program and _parts(kind.name)[1] not in left_out)
+        left_out = (
+            set() if design.wave_generator_is_fixed else {"input_angle_deg", "input_torque_Nmm"}
+        )
+        return tuple(
+            kind
+            for kind in cls.KINDS
+            if not design.has_program and _parts(kind.name)[1] not in left_out
+        )
 
     def answers(self) -> Iterator[Answer]:
         for kind in self.KINDS:

@@ -45,10 +45,13 @@ WAY_BACK = {
 
 @dataclass(frozen=True)
 class Stiffness:
-    """Torsional stiffness at one angle of the wave generator, or its mean, spread or error over several.
+    """Torsional stiffness at one angle of the wave generator, or its mean, spread or error over
+    several.
 
-    K1, K2, K3 : N m / rad, chords of the middle line up to the first break point, to the second and to the top
-    lost_motion : arc minutes, between the middles of both branches at plus and minus a share of the rated torque
+    K1, K2, K3 : N m / rad, chords of the middle line up to the first break point, to the second and
+    to the top
+    lost_motion : arc minutes, between the middles of both branches at plus and minus a share of the
+    rated torque
     hysteresis : arc minutes, width of the loop at zero torque
     backlash : arc minutes, rotation without torque where the torque changes its sign
     loop_work : N mm, area of the loop
@@ -77,7 +80,8 @@ class StiffnessAtAngle(Stiffness):
 class TorsionalStiffness(Stiffness, AnswerGroup):
     """Means of the torsional stiffness over angles of the wave generator.
 
-    torque_Nm, rated_torque_Nm : largest torque of the loop, and the rated one;  break_points : shares of the largest
+    torque_Nm, rated_torque_Nm : largest torque of the loop, and the rated one;  break_points :
+    shares of the largest
     spread : largest less smallest over the positions
     mesh_error : of each value by the mesh, None where it is not known
     positions : the stiffness at every angle of the wave generator
@@ -99,7 +103,9 @@ class TorsionalStiffness(Stiffness, AnswerGroup):
         AnswerKind("stiffness.K3", "torsional stiffness above the second break point", "N·m/rad"),
         AnswerKind("stiffness.lost_motion", "lost motion", "arc minutes"),
         AnswerKind("stiffness.hysteresis", "width of the loop at zero torque", "arc minutes"),
-        AnswerKind("stiffness.backlash", "rotation without torque between the flanks", "arc minutes"),
+        AnswerKind(
+            "stiffness.backlash", "rotation without torque between the flanks", "arc minutes"
+        ),
         AnswerKind("stiffness.loop_work", "area of the loop", "N·mm"),
     )
 
@@ -110,7 +116,10 @@ class TorsionalStiffness(Stiffness, AnswerGroup):
             yield replace(answer, error=(self.mesh_error or {}).get(name), remark=spread)
 
     def remarks(self) -> Iterator[str]:
-        yield f"means over {len(self.positions)} positions of the wave generator, up to {self.torque_Nm:g} N·m"
+        yield (
+            f"means over {len(self.positions)} positions of the wave generator, up to "
+            f"{self.torque_Nm:g} N·m"
+        )
         if self.mesh_error is None:
             yield "the error of the stiffness by the mesh is not known"
 
@@ -125,10 +134,13 @@ class Branch:
         torque = sign * np.array([row["torque_Nm"] for row in rows])
         order = np.argsort(torque)
         self.torque = torque[order]
-        self.rotation = sign * ARC_MINUTE * np.array([row["rotation_arcmin"] for row in rows])[order]
+        self.rotation = (
+            sign * ARC_MINUTE * np.array([row["rotation_arcmin"] for row in rows])[order]
+        )
 
     def at(self, torque: float) -> float:
-        """Rotation (rad) at a torque of the program (N·m); without torque on the line through the first points."""
+        """Rotation (rad) at a torque of the program (N·m); without torque on the line through the
+        first points."""
         if torque == 0.0:
             (a, b), (u, v) = self.torque[:2], self.rotation[:2]
             return float(u - a * (v - u) / (b - a))
@@ -136,7 +148,8 @@ class Branch:
 
 
 class Loop:
-    """The loop at one angle of the wave generator; what the program has left out is made of its image.
+    """The loop at one angle of the wave generator; what the program has left out is made of its
+    image.
 
     Attributes
     ----------
@@ -161,7 +174,9 @@ class Loop:
         }
         # a side that is left out is the image of the other one
         one = next(iter(branches.values()))
-        self.unloading = [branches.get(name, one) for name in (POSITIVE_UNLOADING, NEGATIVE_UNLOADING)]
+        self.unloading = [
+            branches.get(name, one) for name in (POSITIVE_UNLOADING, NEGATIVE_UNLOADING)
+        ]
         self.loading = [branches.get(name, one) for name in (POSITIVE_LOADING, NEGATIVE_LOADING)]
         self.work = _loop_work([found[name] for name in BRANCHES])
 
@@ -175,7 +190,8 @@ class Loop:
 
 
 def at_position(design: DriveDesign, rows: Sequence[PointRow]) -> Stiffness:
-    """The stiffness from the rows of the loop at one angle of the wave generator, in the order of the program."""
+    """The stiffness from the rows of the loop at one angle of the wave generator, in the order of
+    the program."""
     loop = Loop(rows)
     unloading, loading = loop.unloading, loop.loading
 
@@ -190,7 +206,9 @@ def at_position(design: DriveDesign, rows: Sequence[PointRow]) -> Stiffness:
         *(float(value) for value in chords),
         lost_motion=(middle(0, share) + middle(1, share)) / ARC_MINUTE,
         hysteresis=(unloading[0].at(0.0) + unloading[1].at(0.0)) / ARC_MINUTE,
-        backlash=0.5 * sum(a.at(0.0) + b.at(0.0) for a, b in zip(loading, unloading[::-1])) / ARC_MINUTE,
+        backlash=0.5
+        * sum(a.at(0.0) + b.at(0.0) for a, b in zip(loading, unloading[::-1]))
+        / ARC_MINUTE,
         loop_work=loop.work,
     )
 
@@ -218,11 +236,14 @@ def _loop_work(branches: Sequence[Sequence[PointRow]]) -> float:
 
 def by_position(design: DriveDesign, rows: Sequence[PointRow]) -> dict[float, Stiffness]:
     """The stiffness at every angle (deg) of the wave generator, from all rows of program.csv."""
-    return {angle: at_position(design, here) for angle, here in rows_by_position(design, rows).items()}
+    return {
+        angle: at_position(design, here) for angle, here in rows_by_position(design, rows).items()
+    }
 
 
 def rows_by_position(design: DriveDesign, rows: Sequence[PointRow]) -> dict[float, list[PointRow]]:
-    """Rows of the loop that stands for every angle (deg) of the wave generator, from all rows of program.csv."""
+    """Rows of the loop that stands for every angle (deg) of the wave generator, from all rows of
+    program.csv."""
     angles = stiffness_angles(design)
     found = {}
     for k, angle in enumerate(angles):
@@ -247,5 +268,7 @@ def torsional_stiffness(
         break_points=tuple(design.stiffness.break_points),
         spread=Stiffness(**{name: float(np.ptp(values)) for name, values in table.items()}),
         mesh_error=error,
-        positions=tuple(StiffnessAtAngle(**asdict(one), wg_angle_deg=angle) for angle, one in found.items()),
+        positions=tuple(
+            StiffnessAtAngle(**asdict(one), wg_angle_deg=angle) for angle, one in found.items()
+        ),
     )

@@ -1,9 +1,11 @@
-"""Stress of every point of a sector of the flexible spline over a turn of the wave generator, or a load program.
+"""Stress of every point of a sector of the flexible spline over a turn of the wave generator, or a
+load program.
 
-After one pitch of the fixed gear the drive is in the same state with its teeth renumbered by one. So tooth k at the
-angle phi + m pitch has the stress that tooth k - m has at phi. In a sampled period every modelled tooth is at another
-phase: it holds the whole cycle of one sector (docs/theory/fatigue.md). In a load program every modelled sector has a
-history of its own, one value at each point.
+After one pitch of the fixed gear the drive is in the same state with its teeth renumbered by one.
+So tooth k at the angle phi + m pitch has the stress that tooth k - m has at phi. In a sampled
+period every modelled tooth is at another phase: it holds the whole cycle of one sector
+(docs/theory/fatigue.md). In a load program every modelled sector has a history of its own, one
+value at each point.
 """
 
 from __future__ import annotations
@@ -66,7 +68,9 @@ class StressCycle:
     def complete(self) -> bool:
         """Whether all samples of the period, or of the program, are there."""
         design = self.model.design
-        return len(self.samples) == (len(program_points(design)) if design.has_program else design.steps.samples)
+        return len(self.samples) == (
+            len(program_points(design)) if design.has_program else design.steps.samples
+        )
 
     @property
     def angle(self) -> float:
@@ -95,8 +99,8 @@ class StressCycle:
     def history(self) -> tuple[np.ndarray, np.ndarray]:
         """Stress over the cycle; collective.
 
-        Returns what `history_by_renaming` does. With a load program it is the stress (n_points, n, 6) of the owned
-        sectors, at whose nodes `mine` (n,) repeats.
+        Returns what `history_by_renaming` does. With a load program it is the stress (n_points, n,
+        6) of the owned sectors, at whose nodes `mine` (n,) repeats.
         """
         samples = [self.samples[number] for number in sorted(self.samples)]
         if self.model.design.has_program:
@@ -106,7 +110,8 @@ class StressCycle:
 
 
 def elements_of_rank(comm: MPI.Comm, layout: BodyLayout) -> np.ndarray:
-    """Elements (m,) of a sector that belong to this rank where ranks share the work on one sector."""
+    """Elements (m,) of a sector that belong to this rank where ranks share the work on one
+    sector."""
     start = split(len(layout.mesh.elements), comm.size)
     return np.arange(start[comm.rank], start[comm.rank + 1])
 
@@ -119,19 +124,22 @@ def history_by_renaming(
     Parameters
     ----------
     nodes : (n,) of a sector
-    samples : of one period, in time, each (n_owned, n, 6) MPa of the owned sectors in their own frames
+    samples : of one period, in time, each (n_owned, n, 6) MPa of the owned sectors in their own
+    frames
 
     Returns
     -------
     mine : (n_mine,) indices in `nodes`, of the elements `elements_of_rank`
-    stress : (n_phases, n_mine, 6) MPa; the phases are evenly spaced in time, as many as sectors times samples
+    stress : (n_phases, n_mine, 6) MPa; the phases are evenly spaced in time, as many as sectors
+    times samples
     """
     index = np.full(len(layout.mesh.coords), -1)
     index[nodes] = np.arange(len(nodes))
     mine = np.unique(index[layout.mesh.elements[elements_of_rank(comm, layout)]])
     wanted = comm.allgather(mine)
     period = [
-        np.concatenate(comm.alltoall([np.ascontiguousarray(values[:, part]) for part in wanted])) for values in samples
+        np.concatenate(comm.alltoall([np.ascontiguousarray(values[:, part]) for part in wanted]))
+        for values in samples
     ]
     stress = np.stack(period, axis=1)  # sector, sample, node, component
     in_time = stress[-np.arange(layout.count) % layout.count]
@@ -139,7 +147,8 @@ def history_by_renaming(
 
 
 def sector_stress(body: BodyElements, fields: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Nodal stress (n_owned, n_node, 6) MPa of the owned sectors, each in the frame that rotates with the sector.
+    """Nodal stress (n_owned, n_node, 6) MPa of the owned sectors, each in the frame that rotates
+    with the sector.
 
     fields : nodal fields of the body, of `DriveModel.stresses`
     """
@@ -150,13 +159,17 @@ def sector_stress(body: BodyElements, fields: Mapping[str, np.ndarray]) -> np.nd
 
 
 def _rotation(before: np.ndarray, after: np.ndarray) -> np.ndarray:
-    """Rotation (n,) rad about z that fits the motion of points (n, m, 2) best, by the polar decomposition."""
+    """Rotation (n,) rad about z that fits the motion of points (n, m, 2) best, by the polar
+    decomposition."""
     a, b = before - before.mean(axis=1, keepdims=True), after - after.mean(axis=1, keepdims=True)
-    return np.arctan2((a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]).sum(axis=1), (a * b).sum(axis=(1, 2)))
+    return np.arctan2(
+        (a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]).sum(axis=1), (a * b).sum(axis=(1, 2))
+    )
 
 
 def rotated_tensor(stress: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """Tensors (..., 6) xx yy zz xy yz zx, rotated about z by angles (rad) that broadcast to (...)."""
+    """Tensors (..., 6) xx yy zz xy yz zx, rotated about z by angles (rad) that broadcast to
+    (...)."""
     c, s = np.cos(angle), np.sin(angle)
     xx, yy, zz, xy, yz, zx = np.moveaxis(stress, -1, 0)
     return np.stack(

@@ -19,8 +19,8 @@ from swgpar.solve.discrete_problem import DiscreteProblem
 class Torques:
     """Torques about z of the whole drive, N mm.
 
-    wave_generator : on the flexible spline, of the wave generator with its pins; with a bearing on the spline and the
-    outer race together, of the balls
+    wave_generator : on the flexible spline, of the wave generator with its pins; with a bearing on
+    the spline and the outer race together, of the balls
     teeth : on the flexible spline, of the teeth of each ring gear
     output : load on the output
     balance : largest sum that should vanish, over the bodies that are free to rotate
@@ -53,10 +53,15 @@ def torques(problem: DiscreteProblem, state: LoadState) -> Torques:
     reactions = supports.reactions(problem.multipliers())
     if state.control == "torque":
         reactions[supports.output_gear] = state.torque
-    output, wave_generator = float(reactions[supports.output_gear]), moment(problem.wave_generator_contacts)
+    output, wave_generator = (
+        float(reactions[supports.output_gear]),
+        moment(problem.wave_generator_contacts),
+    )
     teeth = tuple(moment([flanks]) for flanks in problem.flanks)
     balance = abs(wave_generator + sum(teeth) + float(reactions[SPLINE_COUPLING]))
     if supports.ring_floats:
-        of_ring = sum(torque for flanks, torque in zip(problem.flanks, teeth) if flanks.ring_motion.floats)
+        of_ring = sum(
+            torque for flanks, torque in zip(problem.flanks, teeth) if flanks.ring_motion.floats
+        )
         balance = max(balance, abs(float(reactions[RING_COUPLING]) - of_ring))
     return Torques(wave_generator, teeth, output, balance)

@@ -1,4 +1,5 @@
-"""Transmission error and ripple of the input torque: curves, spectra by orders of the input's turn, causes."""
+"""Transmission error and ripple of the input torque: curves, spectra by orders of the input's turn,
+causes."""
 
 from __future__ import annotations
 
@@ -60,7 +61,8 @@ class SpectrumLine:
 
 @dataclass(frozen=True)
 class TorqueOverTurns:
-    """Torque of the wave generator over the same angles, N mm; `ripple` is peak to peak over the mean."""
+    """Torque of the wave generator over the same angles, N mm; `ripple` is peak to peak over the
+    mean."""
 
     mean: float
     peak_to_peak: float
@@ -70,10 +72,12 @@ class TorqueOverTurns:
 
 @dataclass(frozen=True)
 class TransmissionError(AnswerGroup):
-    """Transmission error over whole turns with deviations, or over the sampled period of the ideal drive.
+    """Transmission error over whole turns with deviations, or over the sampled period of the ideal
+    drive.
 
     turns, angles : turns of the wave generator, and angles that stand for them
-    peak_to_peak, amplitude (half of it), mean : arc seconds;  spectrum : its largest orders, arc seconds
+    peak_to_peak, amplitude (half of it), mean : arc seconds;  spectrum : its largest orders, arc
+    seconds
     torque : of the wave generator
     """
 
@@ -89,7 +93,12 @@ class TransmissionError(AnswerGroup):
     ASKED_BY = "steps.samples or [deviations]"
     KINDS = (
         AnswerKind("transmission_error.peak_to_peak", "transmission error, peak to peak", "arcsec"),
-        AnswerKind("transmission_error.amplitude", "transmission error, half of peak to peak", "arcsec", detail=True),
+        AnswerKind(
+            "transmission_error.amplitude",
+            "transmission error, half of peak to peak",
+            "arcsec",
+            detail=True,
+        ),
         AnswerKind("transmission_error.mean", "transmission error, mean", "arcsec", detail=True),
         AnswerKind(
             "transmission_error.torque_mean",
@@ -110,7 +119,11 @@ class TransmissionError(AnswerGroup):
         return () if design.has_program else cls.KINDS
 
     def remarks(self) -> Iterator[str]:
-        yield f"{self.turns:.0f} turns with deviations" if self.turns >= 1.0 else "one period of the ideal drive"
+        yield (
+            f"{self.turns:.0f} turns with deviations"
+            if self.turns >= 1.0
+            else "one period of the ideal drive"
+        )
         for line in self.spectrum[:SHOWN]:
             yield f"order {line.order:.3f}: {line.amplitude:.3g} arc seconds, {line.cause}"
 
@@ -126,7 +139,8 @@ def turn_row(point: TurnPoint, design: DriveDesign) -> Row:
 
 
 def period_rows(design: DriveDesign, rows: Sequence[Row]) -> list[Row]:
-    """Rows of transmission_error.csv of the ideal drive from the history of its sampled period; none without one."""
+    """Rows of transmission_error.csv of the ideal drive from the history of its sampled period;
+    none without one."""
     if not design.steps.samples or len(rows) < design.steps.samples or not design.load.torque:
         return []
     period = of_period(design, list(rows))
@@ -150,7 +164,8 @@ def period_rows(design: DriveDesign, rows: Sequence[Row]) -> list[Row]:
 
 
 def spectrum(values: np.ndarray, turns: float) -> tuple[np.ndarray, np.ndarray]:
-    """Orders (m,) of the input's turn above 0, and amplitudes (m,) of values (n,) at even angles over `turns` turns."""
+    """Orders (m,) of the input's turn above 0, and amplitudes (m,) of values (n,) at even angles
+    over `turns` turns."""
     amplitude = np.abs(np.fft.rfft(values)) / len(values)
     both = 2.0 * np.ones(len(amplitude))
     if len(values) % 2 == 0:
@@ -162,9 +177,9 @@ def spectrum(values: np.ndarray, turns: float) -> tuple[np.ndarray, np.ndarray]:
 class Causes:
     """Names of the orders of the input's turn.
 
-    A gear that stands is passed by both waves in every turn: its deviations have whole orders. The other gear turns
-    with the output, against which the wave generator turns 1 - 1 / ratio times. The teeth mesh once per pitch of the
-    standing gear, with odd numbers of teeth twice.
+    A gear that stands is passed by both waves in every turn: its deviations have whole orders. The
+    other gear turns with the output, against which the wave generator turns 1 - 1 / ratio times.
+    The teeth mesh once per pitch of the standing gear, with odd numbers of teeth twice.
 
     Parameters
     ----------
@@ -175,10 +190,17 @@ class Causes:
         self.design, self.turns = design, turns
         fixed = round(2.0 * np.pi / design.period_angle)
         self.mesh = math.lcm(fixed, design.lobes)
-        parts = {"ring gear": _kinds(design, "ring_gear"), "flexible spline": _kinds(design, "flexible_spline")}
+        parts = {
+            "ring gear": _kinds(design, "ring_gear"),
+            "flexible spline": _kinds(design, "flexible_spline"),
+        }
         moving = design.output_gear.replace("_", " ")
         passes = 1.0 - 1.0 / design.ratio
-        self.gears = [(name, kinds, passes if name == moving else 1.0) for name, kinds in parts.items() if kinds]
+        self.gears = [
+            (name, kinds, passes if name == moving else 1.0)
+            for name, kinds in parts.items()
+            if kinds
+        ]
 
     def of(self, order: float) -> str:
         """Cause of an order, or several that the spectrum cannot tell apart."""
@@ -193,7 +215,12 @@ class Causes:
                 found.append(f"{name} ({', '.join(kinds)}), {times} per turn against it")
         output = 1.0 / abs(self.design.ratio)
         times = round(order / output)
-        if not found and times and abs(order - times * output) < half and self.turns >= abs(self.design.ratio):
+        if (
+            not found
+            and times
+            and abs(order - times * output) < half
+            and self.turns >= abs(self.design.ratio)
+        ):
             against = " against the ring gear" if self.design.wave_generator_is_fixed else ""
             found.append(f"output, {times} per turn{against}")
         if round(order) == 1 and (kinds := _kinds(self.design, "wave_generator")):
@@ -214,7 +241,11 @@ def _kinds(design: DriveDesign, part: str) -> list[str]:
     kinds += ["ovality"] if getattr(section, "ovality", 0.0) else []
     if part == "flexible_spline":
         cup = design.deviations.cup
-        kinds += [name for name, value in (("cup eccentricity", cup.eccentricity), ("cup tilt", cup.tilt)) if value]
+        kinds += [
+            name
+            for name, value in (("cup eccentricity", cup.eccentricity), ("cup tilt", cup.tilt))
+            if value
+        ]
     return kinds
 
 
@@ -244,7 +275,9 @@ def evaluate_turns(design: DriveDesign, rows: Sequence[Row]) -> TransmissionErro
 
 def _step(design: DriveDesign) -> float:
     """Angle (rad) of the wave generator between two rows."""
-    count = design.steps.samples if design.deviations is None else design.deviations.angles_per_pitch
+    count = (
+        design.steps.samples if design.deviations is None else design.deviations.angles_per_pitch
+    )
     return design.period_angle / count
 
 
@@ -260,8 +293,11 @@ def _named(values: np.ndarray, turns: float, causes: Causes) -> tuple[SpectrumLi
     )
 
 
-def orders(turns: float, rows: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Orders (m,) and amplitudes (m,) of the transmission error (arc seconds) and of the input torque (N mm).
+def orders(
+    turns: float, rows: Mapping[str, np.ndarray]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Orders (m,) and amplitudes (m,) of the transmission error (arc seconds) and of the input
+    torque (N mm).
 
     turns : of the wave generator, of `TransmissionError`;  rows : columns of transmission_error.csv
     """

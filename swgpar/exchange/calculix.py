@@ -1,12 +1,15 @@
-"""drive.inp: a job of CalculiX from the undeformed drive to its loaded state, with the mesh in drive_mesh.inp.
+"""drive.inp: a job of CalculiX from the undeformed drive to its loaded state, with the mesh in
+drive_mesh.inp.
 
 Steps:
 
-1. The inner surface of the flexible spline gets the displacement of the bent spline; no contact acts.
+1. The inner surface of the flexible spline gets the displacement of the bent spline; no contact
+acts.
 2. It is let go on the cam. The output does not rotate.
 3. The flanks may touch. The output rotates until the loaded flanks meet.
 4. The torque acts in place of that rotation.
-5. Nothing changes. CalculiX keeps the places of contact of the beginning of an increment. Where surfaces slide in
+5. Nothing changes. CalculiX keeps the places of contact of the beginning of an increment. Where
+surfaces slide in
    it, forces on both are not on one line. In this step nothing slides.
 """
 
@@ -53,7 +56,14 @@ def write_calculix(design: DriveDesign, recipe: MeshRecipe, folder: Path) -> lis
     _check(design)
     model = JobModel(design, recipe)
     mesh, job = folder / MESH, folder / JOB
-    write_inp(mesh, model.drive, model.surfaces, design.materials, design.drive.face_width, plane_stress=model.plane)
+    write_inp(
+        mesh,
+        model.drive,
+        model.surfaces,
+        design.materials,
+        design.drive.face_width,
+        plane_stress=model.plane,
+    )
     half = 0.5 * design.wave_generator.face_width
     if model.plane:
         half = (0.5 + CAM_OVERHANG) * design.drive.face_width
@@ -87,7 +97,10 @@ def _check(design: DriveDesign) -> None:
         refuse(f'cup.attachment = "{design.cup.attachment}"', '"edge"')
     if not design.load.torque or counts_as_none(design):
         least = 0.001 * negligible_torque(design)
-        refuse(f"load.torque = {design.load.torque:g} N·m", f"above {least:.3g} N·m, which closes the backlash")
+        refuse(
+            f"load.torque = {design.load.torque:g} N·m",
+            f"above {least:.3g} N·m, which closes the backlash",
+        )
 
 
 def _numbered(numbers: Iterable[int]) -> str:
@@ -97,7 +110,9 @@ def _numbered(numbers: Iterable[int]) -> str:
 def _equation(terms: list[Term]) -> Iterator[str]:
     yield from ("*EQUATION", str(len(terms)))
     for k in range(0, len(terms), 4):
-        yield ", ".join(f"{node + 1}, {axis}, {factor:.12e}" for node, axis, factor in terms[k : k + 4])
+        yield ", ".join(
+            f"{node + 1}, {axis}, {factor:.12e}" for node, axis, factor in terms[k : k + 4]
+        )
 
 
 def _job(model: JobModel, cam: CamFacets) -> Iterator[str]:
@@ -114,7 +129,10 @@ def _job(model: JobModel, cam: CamFacets) -> Iterator[str]:
         equations = [*model.mean_motion(outer, output, in_housing=True), *model.housing(outer)]
         equations += model.mean_motion(bore, output + 2)
         bore_held = [f"{output + 3}, 1, 3", f"{output + 4}, 1, 3"]
-    held, rotation = [f"{output + 1}, 1, 3", f"{output + 2}, 1, 2", *bore_held], f"{output + 2}, 3, 3"
+    held, rotation = (
+        [f"{output + 1}, 1, 3", f"{output + 2}, 1, 2", *bore_held],
+        f"{output + 2}, 3, 3",
+    )
     dependent = {terms[0][0] for terms in equations}
     equations += model.ties() if model.plane else ()
 
@@ -126,8 +144,14 @@ def _job(model: JobModel, cam: CamFacets) -> Iterator[str]:
         yield from ("*NODE, NSET=HELD", f"{output + 3}, 0., 0., 0.", f"{output + 4}, 0., 0., 0.")
     for terms in equations:
         yield from _equation(terms)
-    for name, penalty in (("ON_CAM", design.wg_penalty), ("ON_FLANKS", design.penalty("flexible_spline", "ring_gear"))):
-        yield from (f"*SURFACE INTERACTION, NAME={name}", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR")
+    for name, penalty in (
+        ("ON_CAM", design.wg_penalty),
+        ("ON_FLANKS", design.penalty("flexible_spline", "ring_gear")),
+    ):
+        yield from (
+            f"*SURFACE INTERACTION, NAME={name}",
+            "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR",
+        )
         yield f"{penalty:.12g}"
     for pair in PAIRS.values():
         name = "ON_CAM" if pair == CAM else "ON_FLANKS"
@@ -148,9 +172,12 @@ def _heading(model: JobModel, cam: CamFacets) -> Iterator[str]:
     yield from (
         "** from the undeformed drive to its loaded state, at the end of step 5; mm, N, MPa, rad",
         "** drive.frd: displacements and stresses",
-        "** drive.dat: rotation of the output, the third displacement of the last node of OUTPUT; contact forces, of",
-        "** which the moment mz about the origin is the torque of the cam or of the flanks on the flexible spline",
-        f"** facets deviate by up to {cam.sagitta:.3g} mm from the cam and {model.flank_gap():.3g} mm from the flanks",
+        "** drive.dat: rotation of the output, the third displacement of the last node of OUTPUT; "
+        "contact forces, of",
+        "** which the moment mz about the origin is the torque of the cam or of the flanks on the "
+        "flexible spline",
+        f"** facets deviate by up to {cam.sagitta:.3g} mm from the cam and {model.flank_gap():.3g} "
+        f"mm from the flanks",
     )
 
 
@@ -163,17 +190,24 @@ def _cam(model: JobModel, cam: CamFacets) -> Iterator[str]:
     yield "*ELEMENT, TYPE=C3D8, ELSET=CAM"
     for k, nodes in enumerate(cam.elements + n + 1, start=m + 1):
         yield f"{k}, {_numbered(nodes)}"
-    yield from ("*SOLID SECTION, ELSET=CAM, MATERIAL=FLEXIBLE_SPLINE_MATERIAL", "*SURFACE, NAME=CAM, TYPE=ELEMENT")
+    yield from (
+        "*SOLID SECTION, ELSET=CAM, MATERIAL=FLEXIBLE_SPLINE_MATERIAL",
+        "*SURFACE, NAME=CAM, TYPE=ELEMENT",
+    )
     yield f"CAM, S{OUTER_FACE + 1}"
 
 
 def _bend(model: JobModel, dependent: set[int], held: Iterable[str]) -> Iterator[str]:
-    """Step 1. dependent : nodes whose displacement an equation gives;  held : further boundary conditions"""
+    """Step 1. dependent : nodes whose displacement an equation gives;  held : further boundary
+    conditions"""
     nodes = np.array([k for k in model.inner_nodes() if k not in dependent])
     u = BentSpline(model.design).displacement(model.points[nodes])
     lines = ["*BOUNDARY", *held]
     for node, values in zip(nodes + 1, u, strict=True):
-        lines += [f"{node}, {k}, {k}, {values[k - 1]:.12e}" for k in ((1, 2) if model.plane else (1, 2, 3))]
+        lines += [
+            f"{node}, {k}, {k}, {values[k - 1]:.12e}"
+            for k in ((1, 2) if model.plane else (1, 2, 3))
+        ]
     yield from _step("1: bent without contact", *lines, remove=list(PAIRS.values()))
 
 
@@ -183,7 +217,9 @@ def _torque(model: JobModel, surface: Surface) -> Iterator[str]:
     x = model.points[surface.nodes, :2]
     share = torque * surface.weight / float((surface.weight * (x**2).sum(axis=1)).sum())
     yield "*CLOAD"
-    for node, (fx, fy) in zip(surface.nodes + 1, share[:, None] * np.column_stack([-x[:, 1], x[:, 0]]), strict=True):
+    for node, (fx, fy) in zip(
+        surface.nodes + 1, share[:, None] * np.column_stack([-x[:, 1], x[:, 0]]), strict=True
+    ):
         yield from (f"{node}, 1, {fx:.12e}", f"{node}, 2, {fy:.12e}")
 
 
@@ -199,7 +235,12 @@ def _step(
 
     add, remove, acting : contact pairs that are switched on, off, or whose forces are printed
     """
-    yield from (f"** step {name}", f"*STEP, NLGEOM, INC=1000{parameters}", "*STATIC", "1., 1., 1e-6")
+    yield from (
+        f"** step {name}",
+        f"*STEP, NLGEOM, INC=1000{parameters}",
+        "*STATIC",
+        "1., 1., 1e-6",
+    )
     for action, pairs in (("REMOVE", remove), ("ADD", add)):
         for pair in pairs:
             yield from (f"*MODEL CHANGE, TYPE=CONTACT PAIR, {action}", pair)

@@ -1,8 +1,8 @@
 """What a job of CalculiX consists of: numbered nodes, surfaces and constraints of the whole drive.
 
-The plane model is one layer of C3D8I elements. Their incompatible modes are those of the project's quadrilaterals;
-CPS4 of CalculiX has none. A material without transverse contraction along z, no displacement along z and layers tied
-to each other give exact plane stress at any thickness.
+The plane model is one layer of C3D8I elements. Their incompatible modes are those of the project's
+quadrilaterals; CPS4 of CalculiX has none. A material without transverse contraction along z, no
+displacement along z and layers tied to each other give exact plane stress at any thickness.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ SIDES = {1: "clockwise", -1: "counter_clockwise"}
 """Of the flanks of a tooth."""
 
 MEAN_NODES = 8
-"""Least number of nodes of a mean motion; the mean of this many nodes at equal angles is free of the waves of the
-bent flexible spline up to this order."""
+"""Least number of nodes of a mean motion; the mean of this many nodes at equal angles is free of
+the waves of the bent flexible spline up to this order."""
 
 Term = tuple[int, int, float]
 """Node from 0, degree of freedom from 1, coefficient."""
@@ -90,7 +90,8 @@ class JobModel:
 
     @cached_property
     def surfaces(self) -> dict[str, Ints]:
-        """Element and face (n, 2), both from 0, of the surfaces in contact: each side of the flanks is one."""
+        """Element and face (n, 2), both from 0, of the surfaces in contact: each side of the flanks
+        is one."""
         found, first = {}, 0
         for mesh in self.meshes.values():
             quads = {f"{mesh.body}_{SIDES[grid.side]}": _quads(grid.nodes) for grid in mesh.flanks}
@@ -98,7 +99,9 @@ class JobModel:
                 quads[f"{mesh.body}_inner"] = mesh.faces["inner"]
             for name, corners in quads.items():
                 copies = np.repeat(element_faces(mesh, corners)[None], mesh.n_sectors, axis=0)
-                copies[..., 0] += first + len(mesh.elements) * np.arange(mesh.n_sectors, dtype=np.int32)[:, None]
+                copies[..., 0] += (
+                    first + len(mesh.elements) * np.arange(mesh.n_sectors, dtype=np.int32)[:, None]
+                )
                 found[name] = copies.reshape(-1, 2)
             first += len(mesh.elements) * mesh.n_sectors
         return found
@@ -119,7 +122,8 @@ class JobModel:
         )
 
     def inner_nodes(self) -> Ints:
-        """Nodes (n,), from 0, of the inner surface that the cam can touch; of the plane model those of one layer."""
+        """Nodes (n,), from 0, of the inner surface that the cam can touch; of the plane model those
+        of one layer."""
         nodes = np.unique(self.spline.faces["inner"])
         nodes = np.intersect1d(nodes, self.spline.node_sets["bore"]) if self.plane else nodes
         return np.unique(self.numbers(self.spline, nodes))
@@ -142,14 +146,18 @@ class JobModel:
 
     def faceted_teeth(self) -> RigidTeeth:
         """Rigid teeth whose flanks at mid-width are polygons."""
-        return replace(self.design.rigid_teeth(), spline=_polygon(self.spline), ring=_polygon(self.ring))
+        return replace(
+            self.design.rigid_teeth(), spline=_polygon(self.spline), ring=_polygon(self.ring)
+        )
 
     def ties(self) -> Iterator[list[Term]]:
         """Plane model: the upper layer of nodes moves with the lower one."""
         for name, mesh in self.flat.items():
             upper = np.flatnonzero(mesh.lower_nodes != np.arange(len(mesh.coords)))
             solid = self.meshes[name]
-            pairs = np.stack([self.numbers(solid, upper), self.numbers(solid, mesh.lower_nodes[upper])], axis=-1)
+            pairs = np.stack(
+                [self.numbers(solid, upper), self.numbers(solid, mesh.lower_nodes[upper])], axis=-1
+            )
             for above, below in np.unique(pairs.reshape(-1, 2), axis=0).tolist():
                 for axis in (1, 2):
                     yield [(above, axis, 1.0), (below, axis, -1.0)]
@@ -165,34 +173,50 @@ class JobModel:
     def housing(self, surface: Surface) -> Iterator[list[Term]]:
         """The nodes of a surface, that of the ring gear, move along its circle and the axis.
 
-        The equations are linear: a node moves on the chord of the rotation that brings the flanks together.
+        The equations are linear: a node moves on the chord of the rotation that brings the flanks
+        together.
         """
         normal, axes = self._chords(surface.nodes)
         for node, n, pair in zip(surface.nodes.tolist(), normal, axes.tolist(), strict=True):
             yield [(node, axis + 1, float(n[axis])) for axis in pair]
 
     def _chords(self, nodes: Ints) -> tuple[Floats, Ints]:
-        """Normals (n, 2) mm of the chords, and the axes (n, 2): of the displacement that follows, and of the other."""
+        """Normals (n, 2) mm of the chords, and the axes (n, 2): of the displacement that follows,
+        and of the other."""
         normal = rotated(self.points[nodes, :2], 0.5 * self.closing_rotation)
         first = np.abs(normal).argmax(axis=1)
         return normal, np.column_stack([first, 1 - first])
 
-    def mean_motion(self, surface: Surface, reference: int, in_housing: bool = False) -> Iterator[list[Term]]:
-        """Mean displacements, tilts and rotation about z of a surface, linear: the degrees of freedom 1 to 3 of the
-        node `reference`, and those of the next one.
+    def mean_motion(
+        self, surface: Surface, reference: int, in_housing: bool = False
+    ) -> Iterator[list[Term]]:
+        """Mean displacements, tilts and rotation about z of a surface, linear: the degrees of
+        freedom 1 to 3 of the node `reference`, and those of the next one.
 
         in_housing : the nodes move in a housing; there is no mean displacement along x and y then
         """
         x = self.points[surface.mean]
         arm, n = x - x.mean(axis=0), len(x)
         radius2 = float((arm[:, :2] ** 2).sum())
-        top, left, bottom, right = (int(k) for k in (arm[:, 1].argmax(), arm[:, 0].argmin(), arm[:, 1].argmin(),
-                                                      arm[:, 0].argmax()))  # fmt: skip
+        top, left, bottom, right = (
+            int(k)
+            for k in (
+                arm[:, 1].argmax(),
+                arm[:, 0].argmin(),
+                arm[:, 1].argmin(),
+                arm[:, 0].argmax(),
+            )
+        )
         one, none = np.full(n, 1.0 / n), np.zeros(n)
         # of the displacements along x, y and z; the node that depends on the others, and its axis
-        rows = [((reference + 1, 3), (-arm[:, 1] / radius2, arm[:, 0] / radius2, none), (bottom, 0))]
+        rows = [
+            ((reference + 1, 3), (-arm[:, 1] / radius2, arm[:, 0] / radius2, none), (bottom, 0))
+        ]
         if not in_housing:
-            rows += [((reference, 1), (one, none, none), (top, 0)), ((reference, 2), (none, one, none), (right, 1))]
+            rows += [
+                ((reference, 1), (one, none, none), (top, 0)),
+                ((reference, 2), (none, one, none), (right, 1)),
+            ]
         if not self.plane:
             rows += [
                 ((reference, 3), (none, none, one), (left, 2)),
@@ -203,15 +227,21 @@ class JobModel:
         if in_housing:
             normal, axes = self._chords(surface.mean)
             for k, (first, second) in enumerate(axes):
-                factors[:, 3 * k + second] -= normal[k, second] / normal[k, first] * factors[:, 3 * k + first]
+                factors[:, 3 * k + second] -= (
+                    normal[k, second] / normal[k, first] * factors[:, 3 * k + first]
+                )
                 factors[:, 3 * k + first] = 0.0
         dependent = [3 * k + axis for *_, (k, axis) in rows]
         # none of the dependent displacements is left in the equations of the others
         inverse = np.linalg.inv(factors[:, dependent])
         solved = inverse @ factors
         for i, first in enumerate(dependent):
-            columns = [first, *np.setdiff1d(np.flatnonzero(np.abs(solved[i]) > 1e-12 * np.abs(solved[i]).max()),
-                                            dependent)]  # fmt: skip
+            columns = [
+                first,
+                *np.setdiff1d(
+                    np.flatnonzero(np.abs(solved[i]) > 1e-12 * np.abs(solved[i]).max()), dependent
+                ),
+            ]
             terms = [(int(surface.mean[c // 3]), c % 3 + 1, float(solved[i, c])) for c in columns]
             yield terms + [(*rows[j][0], -float(f)) for j, f in enumerate(inverse[i]) if f]
 
@@ -226,5 +256,8 @@ def _polygon(mesh: SectorMesh) -> ToothProfile:
     points = mesh.coords[flank.nodes[:, int(np.abs(flank.z).argmin())], :2]
     lines = np.diff(points, axis=0)
     angle, length = np.arctan2(lines[:, 1], lines[:, 0]), np.hypot(*lines.T)
-    segments = [Segment("facet", (p[0], p[1]), a, 0.0, s) for p, a, s in zip(points, angle, length, strict=False)]
+    segments = [
+        Segment("facet", (p[0], p[1]), a, 0.0, s)
+        for p, a, s in zip(points, angle, length, strict=False)
+    ]
     return replace(mesh.profile, segments=tuple(segments))

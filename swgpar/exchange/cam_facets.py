@@ -1,4 +1,5 @@
-"""The rigid cam as a layer of hexahedra below its surface, whose outer faces other programs take as contact surface."""
+"""The rigid cam as a layer of hexahedra below its surface, whose outer faces other programs take as
+contact surface."""
 
 from __future__ import annotations
 
@@ -23,7 +24,8 @@ OUTER_FACE = 3
 
 
 class CamFacets(NamedTuple):
-    """points : (n, 3) mm;  elements : (m, 8) from 0;  sagitta : mm, largest height of the curve over a facet"""
+    """points : (n, 3) mm;  elements : (m, 8) from 0;  sagitta : mm, largest height of the curve
+    over a facet"""
 
     points: np.ndarray
     elements: np.ndarray
@@ -33,9 +35,10 @@ class CamFacets(NamedTuple):
 def cam_facets(design: DriveDesign, half_width: float, inset: float) -> CamFacets:
     """Facets of the cam with crowning and slope, in |z| <= half_width (mm).
 
-    inset : mm, by which the surface lies below the exact one. The facets of the flexible spline lie within its exact
-        inner cylinder; their mean distance from it is the inset with which facets touch as the exact surfaces do. The
-        mean height of the curve over the facets of the cam is taken off.
+    inset : mm, by which the surface lies below the exact one. The facets of the flexible spline lie
+    within its exact
+        inner cylinder; their mean distance from it is the inset with which facets touch as the
+        exact surfaces do. The mean height of the curve over the facets of the cam is taken off.
     """
     surface, module = design.cam_surface(), design.drive.module
     count = 256
@@ -58,15 +61,15 @@ def cam_facets(design: DriveDesign, half_width: float, inset: float) -> CamFacet
         for _ in range(3):
             level, gradient, _ = surface.evaluate(grid[:, 1].reshape(-1, 3))
             slope2 = (gradient[:, :2] ** 2).sum(axis=1)
-            grid[:, 1, :, :2] -= (level / slope2)[:, None].reshape(stations + 1, n, 1) * gradient[:, :2].reshape(
-                stations + 1, n, 2
-            )
+            grid[:, 1, :, :2] -= (level / slope2)[:, None].reshape(stations + 1, n, 1) * gradient[
+                :, :2
+            ].reshape(stations + 1, n, 2)
         grid[:, 1, :, :2] += (2.0 / 3.0 * sagitta - inset) * normal
         grid[:, 0, :, :2] = grid[:, 1, :, :2] - DEPTH * module * normal
         number = first + np.arange(grid[..., 0].size).reshape(grid.shape[:3])
         here, after = number, np.roll(number, -1, axis=2)
-        # inward, outward, then along the curve: seen from +z counter-clockwise, of which S4 (corners 1 2 6 5 of the
-        # second edge) is the outer face
+        # inward, outward, then along the curve: seen from +z counter-clockwise, of which S4
+        # (corners 1 2 6 5 of the second edge) is the outer face
         lower, upper = slice(None, -1), slice(1, None)
         corners = [
             here[lower, 0], here[lower, 1], after[lower, 1], after[lower, 0],

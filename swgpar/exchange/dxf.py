@@ -1,4 +1,5 @@
-"""DXF files of the tooth profiles and the cam: one sector of each gear, whole outlines, and the cam, in mm."""
+"""DXF files of the tooth profiles and the cam: one sector of each gear, whole outlines, and the
+cam, in mm."""
 
 from __future__ import annotations
 
@@ -15,7 +16,8 @@ from swgpar.exchange.outlines import Edge, cam_outlines, gear_outline
 
 
 def write_dxf(design: DriveDesign, folder: Path) -> list[Path]:
-    """Write drive.dxf with a layer for each gear, the wave generator and, if there is one, the housing.
+    """Write drive.dxf with a layer for each gear, the wave generator and, if there is one, the
+    housing.
 
     Call it on one rank.
 
@@ -33,7 +35,9 @@ def write_dxf(design: DriveDesign, folder: Path) -> list[Path]:
         document.layers.add("housing")
         space.add_circle((0.0, 0.0), design.outer_radius, dxfattribs={"layer": "housing"})
     document.layers.add("wave_generator")
-    for points in cam_outlines(design):  # a polyline of this many points is within 0.02 µm of the curve
+    for points in cam_outlines(
+        design
+    ):  # a polyline of this many points is within 0.02 µm of the curve
         space.add_lwpolyline(points.tolist(), close=True, dxfattribs={"layer": "wave_generator"})
     path = folder / "drive.dxf"
     document.saveas(path)
@@ -44,7 +48,9 @@ def _ezdxf() -> ModuleType:
     try:
         import ezdxf
     except ImportError:
-        raise InputError("the format dxf needs the package ezdxf: pip install 'swgpar[exchange]'") from None
+        raise InputError(
+            "the format dxf needs the package ezdxf: pip install 'swgpar[exchange]'"
+        ) from None
     return ezdxf
 
 

@@ -19,10 +19,15 @@ from swgpar.exchange.vtkhdf import write_vtkhdf
 from swgpar.exchange.xdmf import write_xdmf
 from swgpar.meshing import MeshRecipe
 
-OF_DESIGN: Mapping[str, Callable[[DriveDesign, Path], list[Path]]] = {"step": write_step, "dxf": write_dxf}
+OF_DESIGN: Mapping[str, Callable[[DriveDesign, Path], list[Path]]] = {
+    "step": write_step,
+    "dxf": write_dxf,
+}
 """Formats of a design: its geometry."""
 
-ON_MESH: Mapping[str, Callable[[DriveDesign, MeshRecipe, Path], list[Path]]] = {"inp": write_calculix}
+ON_MESH: Mapping[str, Callable[[DriveDesign, MeshRecipe, Path], list[Path]]] = {
+    "inp": write_calculix
+}
 """Formats of a design on a mesh: a job of another program."""
 
 OF_RESULT: Mapping[str, Callable[[DriveData, Path], list[Path]]] = {
@@ -50,7 +55,8 @@ def export_files(
     Raises
     ------
     InputError
-        A format that the source does not have, one whose package or mesh is missing, or a mesh that no format has.
+        A format that the source does not have, one whose package or mesh is missing, or a mesh that
+        no format has.
     """
     writers: dict[str, Callable[[Any, Path], list[Path]]]
     if isinstance(source, DriveDesign):
@@ -60,14 +66,20 @@ def export_files(
         noun, writers = "a result", dict(OF_RESULT)
     for name in formats:
         if name not in writers:
-            raise InputError(f'format = "{name}" is not available for {noun}: allowed {", ".join(writers)}')
+            raise InputError(
+                f'format = "{name}" is not available for {noun}: allowed {", ".join(writers)}'
+            )
         if name in ON_MESH and recipe is None:
             raise InputError(f'format = "{name}" needs a mesh recipe: --mesh, or mesh= in Python')
     if recipe is not None and not set(formats) & set(ON_MESH):
-        raise InputError(f"a mesh recipe is of no use without one of the formats {', '.join(ON_MESH)}")
+        raise InputError(
+            f"a mesh recipe is of no use without one of the formats {', '.join(ON_MESH)}"
+        )
     if ripple is not None:
         if "fmu" not in formats:
-            raise InputError(f"--ripple is not available for the format {', '.join(formats)}: allowed with fmu")
+            raise InputError(
+                f"--ripple is not available for the format {', '.join(formats)}: allowed with fmu"
+            )
         writers["fmu"] = partial(write_fmu, periodic=ripple)
     folder.mkdir(parents=True, exist_ok=True)
     return [path for name in formats for path in writers[name](source, folder)]

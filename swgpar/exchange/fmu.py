@@ -1,7 +1,8 @@
 """strain_wave_spring.fmu: the spring model of a drive for multibody programs, after FMI 2.0.
 
-The FMU is one C file and a header with the numbers of the drive. It has no states, so that it serves co-simulation and
-model exchange alike. Its sources are in it; where a C compiler is found, the binary for Linux on x86-64 as well.
+The FMU is one C file and a header with the numbers of the drive. It has no states, so that it
+serves co-simulation and model exchange alike. Its sources are in it; where a C compiler is found,
+the binary for Linux on x86-64 as well.
 """
 
 from __future__ import annotations
@@ -36,7 +37,8 @@ NAME = "strain_wave_spring"
 
 
 class Variable(NamedTuple):
-    """A variable of the FMU: its name, causality, unit and meaning; the number in VARIABLES is its reference."""
+    """A variable of the FMU: its name, causality, unit and meaning; the number in VARIABLES is its
+    reference."""
 
     name: str
     causality: str
@@ -50,12 +52,32 @@ VARIABLES = (
     Variable("output_angle", "input", "rad", "angle of the output"),
     Variable("output_speed", "input", "rad/s", "speed of the output"),
     Variable("friction_torque", "parameter", "N.m", "friction against the speed of the wind-up"),
-    Variable("friction_speed", "parameter", "rad/s", "speed of the wind-up at which 76 % of its friction act, above 0"),
+    Variable(
+        "friction_speed",
+        "parameter",
+        "rad/s",
+        "speed of the wind-up at which 76 % of its friction act, above 0",
+    ),
     Variable("loss_torque", "parameter", "N.m", "friction against the speed of the wave generator"),
-    Variable("loss_speed", "parameter", "rad/s", "speed of the wave generator at which 76 % of it act, above 0"),
+    Variable(
+        "loss_speed",
+        "parameter",
+        "rad/s",
+        "speed of the wave generator at which 76 % of it act, above 0",
+    ),
     Variable("damping", "parameter", "N.m.s/rad", "viscous damping of the wind-up"),
-    Variable("wave_generator_start_angle", "parameter", "rad", "wave_generator_angle with the major axis on +y"),
-    Variable("output_start_angle", "parameter", "rad", "output_angle that belongs to it without torque and error"),
+    Variable(
+        "wave_generator_start_angle",
+        "parameter",
+        "rad",
+        "wave_generator_angle with the major axis on +y",
+    ),
+    Variable(
+        "output_start_angle",
+        "parameter",
+        "rad",
+        "output_angle that belongs to it without torque and error",
+    ),
     Variable("wave_generator_torque", "output", "N.m", "torque of the drive on the wave generator"),
     Variable("output_torque", "output", "N.m", "torque of the drive on the output"),
     Variable("windup", "output", "rad", "angle of the output beyond ratio and kinematic error"),
@@ -109,7 +131,9 @@ def write_fmu(result: DriveData, folder: Path, periodic: DriveData | None = None
 def start_values(model: SpringModel) -> dict[str, float]:
     """Start values of all variables that are set from outside; zero but for friction and losses."""
     return {
-        one.name: float(getattr(model, one.name, 0.0)) for one in VARIABLES if one.causality in ("input", "parameter")
+        one.name: float(getattr(model, one.name, 0.0))
+        for one in VARIABLES
+        if one.causality in ("input", "parameter")
     }
 
 
@@ -126,27 +150,42 @@ def header(model: SpringModel) -> str:
 
 
 def _knots(name: str, knots: np.ndarray) -> str:
-    rows = ",\n".join("  {" + ", ".join(repr(float(value)) for value in knot) + "}" for knot in knots)
-    return f"#define N_{name} {len(knots)}\nstatic const double {name}[N_{name}][3] = {{\n{rows}}};\n"
+    rows = ",\n".join(
+        "  {" + ", ".join(repr(float(value)) for value in knot) + "}" for knot in knots
+    )
+    return (
+        f"#define N_{name} {len(knots)}\nstatic const double {name}[N_{name}][3] = {{\n{rows}}};\n"
+    )
 
 
 def model_description(guid: str, starts: dict[str, float]) -> bytes:
     """Text of modelDescription.xml."""
     outputs = [index for index, one in enumerate(VARIABLES, start=1) if one.causality == "output"]
     values = {"name": NAME, "guid": guid, "version": __version__, "units": UNITS}
-    text = render("exchange/model_description.xml.j2", **values, variables=VARIABLES, starts=starts, outputs=outputs)
+    text = render(
+        "exchange/model_description.xml.j2",
+        **values,
+        variables=VARIABLES,
+        starts=starts,
+        outputs=outputs,
+    )
     return text.encode()
 
 
 def compiled(source: str, body: str) -> bytes | None:
-    """The binary for Linux on x86-64; None with a warning elsewhere and where no C compiler is found."""
-    missing = "the FMU has sources only: it is built by the program that imports it, or with fmpy compile"
+    """The binary for Linux on x86-64; None with a warning elsewhere and where no C compiler is
+    found."""
+    missing = (
+        "the FMU has sources only: it is built by the program that imports it, or with fmpy compile"
+    )
     if sys.platform != "linux" or platform.machine() != "x86_64":
         logger.warning(f"{missing}; binaries are made on Linux on x86-64 alone")
         return None
     compiler = c_compiler()
     if not compiler:
-        logger.warning(f"{missing}; a binary needs a C compiler here: cc, gcc or clang, or one named in CC")
+        logger.warning(
+            f"{missing}; a binary needs a C compiler here: cc, gcc or clang, or one named in CC"
+        )
         return None
     with TemporaryDirectory() as folder:
         code, binary = Path(folder) / f"{NAME}.c", Path(folder) / f"{NAME}.so"
@@ -154,7 +193,10 @@ def compiled(source: str, body: str) -> bytes | None:
         (Path(folder) / "drive.h").write_text(body, encoding="utf-8")
         flags = ["-std=c99", "-O2", "-fPIC", "-shared", "-fvisibility=hidden"]
         run = subprocess.run(
-            [*compiler, *flags, str(code), "-o", str(binary), "-lm"], capture_output=True, text=True, errors="replace"
+            [*compiler, *flags, str(code), "-o", str(binary), "-lm"],
+            capture_output=True,
+            text=True,
+            errors="replace",
         )
         if run.returncode:
             reason = (run.stderr.strip().splitlines() or [f"exit code {run.returncode}"])[0]
@@ -163,6 +205,10 @@ def compiled(source: str, body: str) -> bytes | None:
 
 
 def c_compiler() -> Sequence[str]:
-    """Command of a C compiler: that in CC, else the first of cc, gcc and clang; empty without any."""
-    names = shlex.split(os.environ.get("CC", "")) or [name for name in ("cc", "gcc", "clang") if shutil.which(name)][:1]
+    """Command of a C compiler: that in CC, else the first of cc, gcc and clang; empty without
+    any."""
+    names = (
+        shlex.split(os.environ.get("CC", ""))
+        or [name for name in ("cc", "gcc", "clang") if shutil.which(name)][:1]
+    )
     return names if names and shutil.which(names[0]) else []

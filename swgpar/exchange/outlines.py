@@ -1,7 +1,8 @@
-"""Outlines of gears and cams as lines, arcs and curves through exact points, in the plane of the section.
+"""Outlines of gears and cams as lines, arcs and curves through exact points, in the plane of the
+section.
 
-Arcs are exact. Other curves pass through exact points, so many that the curve between them stays within `TOLERANCE`
-of the exact one.
+Arcs are exact. Other curves pass through exact points, so many that the curve between them stays
+within `TOLERANCE` of the exact one.
 """
 
 from __future__ import annotations
@@ -50,7 +51,9 @@ class Edge(NamedTuple):
 def flank_edges(profile: ToothProfile) -> list[Edge]:
     """The flank at x > 0, from its root to its tip."""
     edges = []
-    for begin, end, segment in zip(profile.breaks[:-1], profile.breaks[1:], profile.segments, strict=True):
+    for begin, end, segment in zip(
+        profile.breaks[:-1], profile.breaks[1:], profile.segments, strict=True
+    ):
         if not isinstance(segment, Segment):
             edges.append(Edge(profile.point(np.linspace(begin, end, FLANK_POINTS))[::-1]))
             continue
@@ -64,7 +67,8 @@ def flank_edges(profile: ToothProfile) -> list[Edge]:
 
 
 def gear_outline(design: DriveDesign, gear: GearName) -> list[Edge]:
-    """The closed toothed outline of an undeformed gear, counter-clockwise, its first tooth on +y or beside it."""
+    """The closed toothed outline of an undeformed gear, counter-clockwise, its first tooth on +y or
+    beside it."""
     profile = design.profile(gear)
     right = flank_edges(profile)
     left = [edge.mirrored() for edge in right[::-1]]
@@ -78,7 +82,8 @@ def gear_outline(design: DriveDesign, gear: GearName) -> list[Edge]:
 
 
 def cam_outlines(design: DriveDesign) -> list[np.ndarray]:
-    """Closed curves of the cam, each (n, 2) mm without the first point again: one, or one for each roller."""
+    """Closed curves of the cam, each (n, 2) mm without the first point again: one, or one for each
+    roller."""
     return cam_parts(design, CAM_POINTS)
 
 

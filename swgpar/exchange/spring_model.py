@@ -1,4 +1,5 @@
-"""The drive as a torsional spring with ripple and friction: numbers of docs/theory/spring_model.md from results."""
+"""The drive as a torsional spring with ripple and friction: numbers of docs/theory/spring_model.md
+from results."""
 
 from __future__ import annotations
 
@@ -30,8 +31,10 @@ class SpringModel:
     Attributes
     ----------
     ratio : speed of the wave generator over that of the output, with its sign
-    spring : (n, 3) wind-up rad, torque N·m on the output that holds it, N·m/rad; beyond the ends straight
-    ripple : (m, 3) angle of the wave generator rad over one period, kinematic error rad, its derivative
+    spring : (n, 3) wind-up rad, torque N·m on the output that holds it, N·m/rad; beyond the ends
+    straight
+    ripple : (m, 3) angle of the wave generator rad over one period, kinematic error rad, its
+    derivative
     friction_torque : N·m against the speed of the wind-up
     friction_speed : rad/s of the wind-up, SHARE of the range of `spring` in a second
     loss_torque : N·m against the speed of the wave generator
@@ -55,7 +58,8 @@ class SpringModel:
 def spring_model(result: DriveData, periodic: DriveData | None) -> SpringModel:
     """The model from a run with [stiffness] and from one of the same drive over a period.
 
-    periodic : with steps.samples or [deviations], for the kinematic error; with [losses] also for the loss torque;
+    periodic : with steps.samples or [deviations], for the kinematic error; with [losses] also for
+    the loss torque;
         None for neither
 
     Raises
@@ -66,9 +70,12 @@ def spring_model(result: DriveData, periodic: DriveData | None) -> SpringModel:
     summary = result.summary
     if not (result.program and summary.stiffness):
         raise InputError(
-            "the format fmu needs a run with [stiffness]: the kinematic error comes from a second run, --ripple FOLDER"
+            "the format fmu needs a run with [stiffness]: the kinematic error comes from a second "
+            "run, --ripple FOLDER"
         )
-    if summary.design.wave_generator_is_fixed:  # the columns of both runs count the rotation of the wave generator
+    if (
+        summary.design.wave_generator_is_fixed
+    ):  # the columns of both runs count the rotation of the wave generator
         raise InputError(
             f'drive.layout = "{summary.design.drive.layout}" is not available with the format fmu: '
             'allowed "ring_fixed" '
@@ -76,13 +83,16 @@ def spring_model(result: DriveData, periodic: DriveData | None) -> SpringModel:
         )
     ratio = summary.ratio
     table = spring_table(result)
-    direction = -np.sign(ratio)  # a positive torque of the table acts against the motion of the output
+    direction = -np.sign(
+        ratio
+    )  # a positive torque of the table acts against the motion of the output
     torque, windup = direction * table["torque_Nm"], direction * table["windup_rad"]
     order = np.argsort(torque)
     torque, windup = torque[order], windup[order]
     for k in np.flatnonzero(np.diff(windup) <= 0.0)[:1]:
         raise InputError(
-            f"the wind-up does not grow between {torque[k]:.6g} and {torque[k + 1]:.6g} N·m: the format fmu needs a "
+            f"the wind-up does not grow between {torque[k]:.6g} and {torque[k + 1]:.6g} N·m: the "
+            f"format fmu needs a "
             "stiffness loop whose mean branch rises"
         )
     reach = float(np.ptp(windup))
@@ -92,7 +102,8 @@ def spring_model(result: DriveData, periodic: DriveData | None) -> SpringModel:
     if periodic is not None:
         if not np.isclose(periodic.summary.ratio, ratio, rtol=1e-12):
             raise InputError(
-                f"--ripple has the ratio {periodic.summary.ratio:.9g}: allowed a run of the same drive, {ratio:.9g}"
+                f"--ripple has the ratio {periodic.summary.ratio:.9g}: allowed a run of the same "
+                f"drive, {ratio:.9g}"
             )
         ripple = _ripple_knots(periodic)
         if periodic.summary.losses:
@@ -111,11 +122,16 @@ def spring_model(result: DriveData, periodic: DriveData | None) -> SpringModel:
 def _ripple_knots(result: DriveData) -> np.ndarray:
     """Knots (n + 1, 3) of the periodic cubic spline through a kinematic error at n even angles."""
     if not result.transmission_error:
-        raise InputError("--ripple needs a run with steps.samples or [deviations]: this one has no transmission error")
+        raise InputError(
+            "--ripple needs a run with steps.samples or [deviations]: this one has no transmission "
+            "error"
+        )
     table = ripple_table(result.transmission_error)
     angle, error = table["wave_generator_angle_rad"], table["kinematic_error_rad"]
     if len(angle) < FEWEST:
-        raise InputError(f"--ripple has the kinematic error at {len(angle)} angles: allowed {FEWEST} and more")
+        raise InputError(
+            f"--ripple has the kinematic error at {len(angle)} angles: allowed {FEWEST} and more"
+        )
     angle = np.append(angle, angle[-1] + (angle[-1] - angle[0]) / (len(angle) - 1))
     error = np.append(error, error[0])
     curve = CubicSpline(angle, error, bc_type="periodic")

@@ -1,7 +1,9 @@
-"""STEP files of the flexible spline, the ring gear, its housing and the cam, by gmsh's OpenCASCADE kernel.
+"""STEP files of the flexible spline, the ring gear, its housing and the cam, by gmsh's OpenCASCADE
+kernel.
 
-The bodies are undeformed and without crowning and slope, which are below the accuracy of many CAD programs. The axis is
-z, the mid-plane of the face width z = 0, the closed end of the cup at z > 0. Units are mm.
+The bodies are undeformed and without crowning and slope, which are below the accuracy of many CAD
+programs. The axis is z, the mid-plane of the face width z = 0, the closed end of the cup at z > 0.
+Units are mm.
 """
 
 from __future__ import annotations
@@ -70,7 +72,12 @@ def _build(gmsh: ModuleType, design: DriveDesign, name: str) -> None:
     width = front - back
     if name == "housing":
         _extrude(
-            gmsh, [_circle(gmsh, radius, back) for radius in (design.outer_radius, design.ring_outer_radius)], width
+            gmsh,
+            [
+                _circle(gmsh, radius, back)
+                for radius in (design.outer_radius, design.ring_outer_radius)
+            ],
+            width,
         )
         return
     teeth = _loop(gmsh, gear_outline(design, name), back)
@@ -85,7 +92,11 @@ def _build(gmsh: ModuleType, design: DriveDesign, name: str) -> None:
 def _extrude(gmsh: ModuleType, loops: Sequence[int], width: float) -> tuple[int, int]:
     """The solid between closed curves, the first outside; its dimension and tag."""
     surface = gmsh.model.occ.addPlaneSurface(list(loops))
-    return next(entity for entity in gmsh.model.occ.extrude([(2, surface)], 0.0, 0.0, width) if entity[0] == 3)
+    return next(
+        entity
+        for entity in gmsh.model.occ.extrude([(2, surface)], 0.0, 0.0, width)
+        if entity[0] == 3
+    )
 
 
 def _circle(gmsh: ModuleType, radius: float, z: float) -> int:
@@ -93,10 +104,11 @@ def _circle(gmsh: ModuleType, radius: float, z: float) -> int:
 
 
 def closed_curve(gmsh: ModuleType, points: np.ndarray, normals: np.ndarray, z: float) -> list[int]:
-    """Curves, one after the other, through the points (n, 2) of a closed curve with these normals (n, 2).
+    """Curves, one after the other, through the points (n, 2) of a closed curve with these normals
+    (n, 2).
 
-    They join with the exact tangent. OpenCASCADE integrates volumes with a limited number of points on a curve: one
-    curve around a cam whose curvature jumps would give its volume to 0.3 % only.
+    They join with the exact tangent. OpenCASCADE integrates volumes with a limited number of points
+    on a curve: one curve around a cam whose curvature jumps would give its volume to 0.3 % only.
     """
     occ = gmsh.model.occ
     tangents = np.column_stack([-normals[:, 1], normals[:, 0], np.zeros(len(normals))])
@@ -121,12 +133,15 @@ def _loop(gmsh: ModuleType, edges: Sequence[Edge], z: float) -> int:
         elif len(edge.points) == 2:
             curves.append(occ.addLine(start, end))
         else:
-            curves.append(occ.addSpline([start, *(occ.addPoint(*p, z) for p in edge.points[1:-1]), end]))
+            curves.append(
+                occ.addSpline([start, *(occ.addPoint(*p, z) for p in edge.points[1:-1]), end])
+            )
     return occ.addCurveLoop(curves)
 
 
 class _Meridian:
-    """Curves of a section in the plane of r and z, one after the other; `at` is the tag of the last point."""
+    """Curves of a section in the plane of r and z, one after the other; `at` is the tag of the last
+    point."""
 
     def __init__(self, gmsh: ModuleType, r: float, z: float) -> None:
         self.occ, self.place = gmsh.model.occ, (r, z)
@@ -144,14 +159,20 @@ class _Meridian:
             self.curves.append(self.occ.addLine(start, self.at))
 
     def arc(self, r: float, z: float, center: tuple[float, float]) -> None:
-        """The shorter arc to a point, or that of an ellipse with axes along r and z; none without a size."""
-        sizes = [max(abs(a - c), abs(b - c)) for a, b, c in zip(self.place, (r, z), center, strict=True)]
+        """The shorter arc to a point, or that of an ellipse with axes along r and z; none without a
+        size."""
+        sizes = [
+            max(abs(a - c), abs(b - c)) for a, b, c in zip(self.place, (r, z), center, strict=True)
+        ]
         if min(sizes) < SAME:  # a fillet without one of its sizes is a corner
             self.line(center[0], center[1])
             self.line(r, z)
             return
         middle, start = self.occ.addPoint(center[0], 0.0, center[1]), self.at
-        round_arc = abs(np.hypot(*np.subtract(self.place, center)) - np.hypot(r - center[0], z - center[1])) < SAME
+        round_arc = (
+            abs(np.hypot(*np.subtract(self.place, center)) - np.hypot(r - center[0], z - center[1]))
+            < SAME
+        )
         self.at = self._end(r, z)
         if round_arc:
             self.curves.append(self.occ.addCircleArc(start, middle, self.at))
@@ -188,7 +209,9 @@ def _wall(gmsh: ModuleType, design: DriveDesign) -> tuple[int, int]:
     return next(entity for entity in solid if entity[0] == 3)
 
 
-def _continue(section: _Meridian, back: float, s: float, r: float, center: np.ndarray | None) -> None:
+def _continue(
+    section: _Meridian, back: float, s: float, r: float, center: np.ndarray | None
+) -> None:
     """A piece of a wall's line to a distance from the back of the teeth and a radius."""
     if center is None:
         section.line(r, back + s)

@@ -1,4 +1,5 @@
-"""Histories and tables of a result as Parquet, and the drive as a look-up table for multibody programs."""
+"""Histories and tables of a result as Parquet, and the drive as a look-up table for multibody
+programs."""
 
 from __future__ import annotations
 
@@ -33,12 +34,15 @@ SPRING, RIPPLE = "spring.csv", "ripple.csv"
 
 
 def write_parquet(result: DriveData, folder: Path) -> list[Path]:
-    """Write every table of a result as NAME.parquet; raises InputError without the package pyarrow."""
+    """Write every table of a result as NAME.parquet; raises InputError without the package
+    pyarrow."""
     try:
         import pyarrow
         import pyarrow.parquet
     except ImportError:
-        raise InputError("the format parquet needs the package pyarrow: pip install 'swgpar[exchange]'") from None
+        raise InputError(
+            "the format parquet needs the package pyarrow: pip install 'swgpar[exchange]'"
+        ) from None
     paths = []
     for name in TABLES:
         columns = getattr(result, name)
@@ -51,9 +55,10 @@ def write_parquet(result: DriveData, folder: Path) -> list[Path]:
 def write_look_up(result: DriveData, folder: Path) -> list[Path]:
     """Write the drive as a torsional spring with ripple: what a multibody program interpolates in.
 
-    `spring.csv` has the torque (N·m) on the output and its wind-up (rad), from the stiffness loops: of the rising and
-    of the falling branch, whose distance is friction, and their mean; means over all positions. `ripple.csv` has the
-    kinematic error (rad) of the output over the angle of the wave generator (rad); the table covers whole periods.
+    `spring.csv` has the torque (N·m) on the output and its wind-up (rad), from the stiffness loops:
+    of the rising and of the falling branch, whose distance is friction, and their mean; means over
+    all positions. `ripple.csv` has the kinematic error (rad) of the output over the angle of the
+    wave generator (rad); the table covers whole periods.
 
     Raises
     ------
@@ -69,16 +74,21 @@ def write_look_up(result: DriveData, folder: Path) -> list[Path]:
         paths[-1].write_bytes(format_columns(ripple_table(result.transmission_error)))
     if not paths:
         raise InputError(
-            "the format lookup needs a run with [stiffness], steps.samples or [deviations]: this one has neither a "
+            "the format lookup needs a run with [stiffness], steps.samples or [deviations]: this "
+            "one has neither a "
             "stiffness loop nor a transmission error"
         )
     return paths
 
 
 def spring_table(result: DriveData) -> dict[str, np.ndarray]:
-    """Columns of spring.csv of a run with [stiffness]: wind-up at the torques of its loops, mean over the positions."""
+    """Columns of spring.csv of a run with [stiffness]: wind-up at the torques of its loops, mean
+    over the positions."""
     design = result.summary.design
-    rows = [dict(zip(result.program, values, strict=True)) for values in zip(*result.program.values(), strict=True)]
+    rows = [
+        dict(zip(result.program, values, strict=True))
+        for values in zip(*result.program.values(), strict=True)
+    ]
     loops = [Loop(here) for here in rows_by_position(design, rows).values()]
     torques = np.array(stiffness_torques(design))
     levels = np.concatenate([-torques[::-1], torques])

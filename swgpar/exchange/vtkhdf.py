@@ -1,7 +1,8 @@
 """fields.vtkhdf: the fields of a result as one file that ParaView and VTK read without a plugin.
 
-An unstructured grid over time, format VTKHDF 2: mesh once, fields of every increment one after the other. The time is
-that of `swgpar.results.fields.times`. Fields that a body does not have are zero there.
+An unstructured grid over time, format VTKHDF 2: mesh once, fields of every increment one after the
+other. The time is that of `swgpar.results.fields.times`. Fields that a body does not have are zero
+there.
 """
 
 from __future__ import annotations
@@ -30,7 +31,10 @@ NAME = "fields.vtkhdf"
 def require_fields(result: DriveData, name: str) -> None:
     """Raise InputError where a run kept no fields for the format with this name."""
     if not result.increments:
-        raise InputError(f"the format {name} needs fields, and this run kept none: allowed with output.fields = true")
+        raise InputError(
+            f"the format {name} needs fields, and this run kept none: allowed with output.fields = "
+            f"true"
+        )
 
 
 def step_times(result: DriveData) -> np.ndarray:
@@ -39,7 +43,8 @@ def step_times(result: DriveData) -> np.ndarray:
 
 
 def write_vtkhdf(result: DriveData, folder: Path) -> list[Path]:
-    """Write all increments with fields, with all teeth; call it on one rank of a result from a folder."""
+    """Write all increments with fields, with all teeth; call it on one rank of a result from a
+    folder."""
     require_fields(result, "vtkhdf")
     whole = result.grid(0, whole=True)
     points, cells = np.asarray(whole.points, dtype=float), whole.cells.reshape(-1, 9)[:, 1:]
@@ -49,11 +54,16 @@ def write_vtkhdf(result: DriveData, folder: Path) -> list[Path]:
     with h5py.File(path, "w") as file:
         root = file.create_group("VTKHDF", track_order=True)
         root.attrs["Version"] = np.array([2, 0])
-        root.attrs.create("Type", np.bytes_("UnstructuredGrid"), dtype=h5py.string_dtype("ascii", 16))
+        root.attrs.create(
+            "Type", np.bytes_("UnstructuredGrid"), dtype=h5py.string_dtype("ascii", 16)
+        )
         root["NumberOfPoints"], root["NumberOfCells"] = np.array([n]), np.array([m])
         root["NumberOfConnectivityIds"] = np.array([8 * m])
         root["Points"], root["Connectivity"] = points, cells.ravel().astype(np.int64)
-        root["Offsets"], root["Types"] = 8 * np.arange(m + 1), np.full(m, HEXAHEDRON, dtype=np.uint8)
+        root["Offsets"], root["Types"] = (
+            8 * np.arange(m + 1),
+            np.full(m, HEXAHEDRON, dtype=np.uint8),
+        )
         root["CellData/body"] = whole.cell_data["body"].astype(np.int32)
         group = root.create_group("Steps")
         group.attrs["NSteps"] = steps
@@ -71,7 +81,9 @@ def write_vtkhdf(result: DriveData, folder: Path) -> list[Path]:
                 values = values[:, TENSOR] if values.ndim == 2 and values.shape[1] == 6 else values
                 if step == 0:
                     kind = np.float64 if name == "displacement" else np.float32
-                    root.create_dataset(f"PointData/{name}", (steps * n, *values.shape[1:]), dtype=kind)
+                    root.create_dataset(
+                        f"PointData/{name}", (steps * n, *values.shape[1:]), dtype=kind
+                    )
                     group[f"PointDataOffsets/{name}"] = n * np.arange(steps)
                 root[f"PointData/{name}"][step * n : (step + 1) * n] = values
     return [path]

@@ -1,4 +1,5 @@
-"""A body of the drive: its name, the mesh of one of its congruent sectors, and what it is made of."""
+"""A body of the drive: its name, the mesh of one of its congruent sectors, and what it is made
+of."""
 
 from __future__ import annotations
 
@@ -22,7 +23,8 @@ class Body:
     """What is known of a body before it is distributed over ranks.
 
     mesh : the congruent sector, which has the name of the body
-    materials : of the parts of the mesh (`SectorMesh.parts`): of a gear, and of the housing around it
+    materials : of the parts of the mesh (`SectorMesh.parts`): of a gear, and of the housing around
+    it
     thickness : mm, of the plane model
     incompatible : whether the elements have incompatible modes; without them for comparison only
     """

@@ -1,10 +1,10 @@
 """The modelled tooth sectors of one body, and where the unknowns of a sector's nodes are.
 
-A body is a chain of congruent tooth sectors. A node on the counter-clockwise side of sector k is a node on the
-clockwise side of sector k + 1. With a symmetry of rotation the chain is half a turn long, or a third: the sector after
-the last one is sector 0 rotated by that. A node of it is an *image*: its vectors are those of the owner, rotated. The
-flag of a node, `sixths`, is that rotation in sixths of a turn: 0 for the owner itself, 3 after half a turn, 2 and 4
-after one and two thirds.
+A body is a chain of congruent tooth sectors. A node on the counter-clockwise side of sector k is a
+node on the clockwise side of sector k + 1. With a symmetry of rotation the chain is half a turn
+long, or a third: the sector after the last one is sector 0 rotated by that. A node of it is an
+*image*: its vectors are those of the owner, rotated. The flag of a node, `sixths`, is that rotation
+in sixths of a turn: 0 for the owner itself, 3 after half a turn, 2 and 4 after one and two thirds.
 """
 
 from __future__ import annotations
@@ -27,10 +27,11 @@ class SectorNumbering:
     Attributes
     ----------
     previous : (n_node,) int64
-        Node of the next sector (on its clockwise side) with which a node on the counter-clockwise side coincides.
+        Node of the next sector (on its clockwise side) with which a node on the counter-clockwise
+        side coincides.
     owned_nodes : (n_owned,) int64
-        Nodes whose unknowns belong to this sector: all but those of the counter-clockwise side and those without
-        unknowns.
+        Nodes whose unknowns belong to this sector: all but those of the counter-clockwise side and
+        those without unknowns.
     row : (n_node,) int64
         Index of a node among the owned ones.
     end_row : (n_node,) int64
@@ -55,11 +56,13 @@ class BodyLayout:
 
     body : what is known of the body, with the mesh of the congruent sector
     first_tooth, count : modelled teeth first_tooth .. first_tooth + count - 1
-    closed : the chain closes on itself, with a rotation by its own length where the model is a part of the drive
+    closed : the chain closes on itself, with a rotation by its own length where the model is a part
+    of the drive
     copies : how many times the model makes the whole: 1, 2 or 3
     fixed : (n_fixed,) local nodes that do not move
     condensed : the sector as one element, whose inner nodes have no unknowns; None where they have
-    tooth : the tooth as one element, for sectors whose flanks nothing touches; None where it is not used
+    tooth : the tooth as one element, for sectors whose flanks nothing touches; None where it is not
+    used
     """
 
     body: Body

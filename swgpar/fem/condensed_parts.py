@@ -1,10 +1,12 @@
-"""Parts of a sector whose inside is eliminated: congruent parts share one stiffness of their outer nodes.
+"""Parts of a sector whose inside is eliminated: congruent parts share one stiffness of their outer
+nodes.
 
-A part is then one element (a superelement, by static condensation) of the nodes that others act on. Its inside is
-linear in a frame that rotates with the outer nodes, as every element is in a frame of its own
-(`kernel/corotation.hpp`). Two kinds of parts are condensed:
+A part is then one element (a superelement, by static condensation) of the nodes that others act on.
+Its inside is linear in a frame that rotates with the outer nodes, as every element is in a frame of
+its own (`kernel/corotation.hpp`). Two kinds of parts are condensed:
 
-- whole sectors of the plane model. The rotation of a sector's ends relative to each other (`relative_end_rotation`) is
+- whole sectors of the plane model. The rotation of a sector's ends relative to each other
+(`relative_end_rotation`) is
   not seen: strains of an eighth of the square of that angle are left out.
 - teeth of solid gears above their rims, while no flank is within reach. They hardly bend.
 """
@@ -26,9 +28,11 @@ from swgpar.meshing.sector import SectorMesh
 class CondensedPart:
     """Elements of a sector as one.
 
-    outer : (m,) nodes that keep their unknowns;  inner : (k,) nodes that are eliminated;  inner_coords : (k, 3) mm
+    outer : (m,) nodes that keep their unknowns;  inner : (k,) nodes that are eliminated;
+    inner_coords : (k, 3) mm
     reference : the part as an element of m nodes, without recovery of stress
-    modes : (3 k, 3 m) constraint modes: displacement of the inner nodes by that of the outer ones, in that frame
+    modes : (3 k, 3 m) constraint modes: displacement of the inner nodes by that of the outer ones,
+    in that frame
     """
 
     outer: np.ndarray
@@ -59,12 +63,14 @@ class CondensedPart:
 
 
 def _about_z(angle: np.ndarray) -> np.ndarray:
-    """Matrices (n, 3, 3) that rotate row vectors by angles (n,) rad about z when multiplied from the right."""
+    """Matrices (n, 3, 3) that rotate row vectors by angles (n,) rad about z when multiplied from
+    the right."""
     return Rotation.from_euler("z", angle[:, None]).as_matrix().transpose(0, 2, 1)
 
 
 def relative_end_rotation(mesh: SectorMesh, angle: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """Rotation (n,) rad of the two ends of sectors relative to each other, at displacements u (n, n_node, 3) mm.
+    """Rotation (n,) rad of the two ends of sectors relative to each other, at displacements u (n,
+    n_node, 3) mm.
 
     angle : (n,) rad, of the sectors
     """
@@ -73,7 +79,9 @@ def relative_end_rotation(mesh: SectorMesh, angle: np.ndarray, u: np.ndarray) ->
         undeformed = mesh.coords[nodes] @ _about_z(angle)
         undeformed -= undeformed.mean(axis=1, keepdims=True)
         deformed = undeformed + u[:, nodes] - u[:, nodes].mean(axis=1, keepdims=True)
-        sine = (undeformed[..., 0] * deformed[..., 1] - undeformed[..., 1] * deformed[..., 0]).sum(axis=1)
+        sine = (undeformed[..., 0] * deformed[..., 1] - undeformed[..., 1] * deformed[..., 0]).sum(
+            axis=1
+        )
         rotations.append(np.arctan2(sine, (undeformed * deformed)[..., :2].sum(axis=(1, 2))))
     return rotations[0] - rotations[1]
 
@@ -91,7 +99,8 @@ def condense_sector(mesh: SectorMesh, elements: ReferenceElements) -> CondensedP
 
 
 def condense_tooth(mesh: SectorMesh, elements: ReferenceElements) -> CondensedPart:
-    """The tooth of a solid sector as one element of the nodes on its rim, and of those where its flanks begin.
+    """The tooth of a solid sector as one element of the nodes on its rim, and of those where its
+    flanks begin.
 
     The latter give the frame: those on the rim lie close to a plane.
     """
@@ -102,8 +111,11 @@ def condense_tooth(mesh: SectorMesh, elements: ReferenceElements) -> CondensedPa
     return _condense(mesh, elements, mesh.tooth, np.union1d(base, ends))
 
 
-def _condense(mesh: SectorMesh, elements: ReferenceElements, part: np.ndarray, outer: np.ndarray) -> CondensedPart:
-    """Eliminate all nodes but the `outer` ones from the stiffness of the elements `part` of a sector."""
+def _condense(
+    mesh: SectorMesh, elements: ReferenceElements, part: np.ndarray, outer: np.ndarray
+) -> CondensedPart:
+    """Eliminate all nodes but the `outer` ones from the stiffness of the elements `part` of a
+    sector."""
     conn, dims = mesh.elements[part], 2 if mesh.plane else 3
     inner = np.setdiff1d(conn, outer)
     n, m, k = len(mesh.coords), len(outer), len(inner)
@@ -111,11 +123,17 @@ def _condense(mesh: SectorMesh, elements: ReferenceElements, part: np.ndarray, o
     row, column = np.broadcast_arrays(entry[:, :, None], entry[:, None, :])
     entries = elements.stiffness[part].ravel(), (row.ravel(), column.ravel())
     stiffness = coo_matrix(entries, shape=(3 * n, 3 * n)).tocsr()
-    at_outer, at_inner = ((3 * nodes[:, None] + np.arange(dims)).ravel() for nodes in (outer, inner))
+    at_outer, at_inner = (
+        (3 * nodes[:, None] + np.arange(dims)).ravel() for nodes in (outer, inner)
+    )
     coupling = stiffness[at_inner][:, at_outer].toarray()
     modes = np.zeros((k, 3, m, 3))
     reduced = np.zeros((m, 3, m, 3))
-    factor = splu(stiffness[at_inner][:, at_inner].tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+    factor = splu(
+        stiffness[at_inner][:, at_inner].tocsc(),
+        permc_spec="MMD_AT_PLUS_A",
+        options={"SymmetricMode": True},
+    )
     solved = -factor.solve(coupling)
     condensed = stiffness[at_outer][:, at_outer].toarray() + coupling.T @ solved
     modes[:, :dims, :, :dims] = solved.reshape(k, dims, m, dims)

@@ -1,8 +1,9 @@
-"""Element arrays of the owned sectors: internal forces, tangent blocks, nodal stress, pattern of the tangent.
+"""Element arrays of the owned sectors: internal forces, tangent blocks, nodal stress, pattern of
+the tangent.
 
-Every rank computes complete rows of the nodes it owns: its sectors' elements and those of the sector
-before that share nodes with it. No matrix or vector entry is ever sent, and a row's terms are summed in
-the same order on any number of ranks.
+Every rank computes complete rows of the nodes it owns: its sectors' elements and those of the
+sector before that share nodes with it. No matrix or vector entry is ever sent, and a row's terms
+are summed in the same order on any number of ranks.
 """
 
 from __future__ import annotations
@@ -36,9 +37,11 @@ class AssembledElements:
 
 
 def sectors_seen(partition: Partition, body: str) -> np.ndarray:
-    """Indices (n,) in the chain of the sectors whose elements a rank needs: its own and one on either side.
+    """Indices (n,) in the chain of the sectors whose elements a rank needs: its own and one on
+    either side.
 
-    The owned rows need the sector before them, nodal averages of stress need both; none where the rank owns none.
+    The owned rows need the sector before them, nodal averages of stress need both; none where the
+    rank owns none.
     """
     layout = partition.layouts[body]
     first, end = partition.owned_sectors(body)
@@ -57,9 +60,11 @@ class BodyElements:
     Attributes
     ----------
     layout : BodyLayout
-    sectors : (n_sectors,) indices in the chain, see `sectors_seen`;  owned : slice of the owned ones among them
+    sectors : (n_sectors,) indices in the chain, see `sectors_seen`;  owned : slice of the owned
+    ones among them
     preceding : (n_sectors,) bool, the sector before the first owned one, where another rank owns it
-    number, sixths, local : (n_sectors, n_node) global numbers, image flags and local indices of the nodes
+    number, sixths, local : (n_sectors, n_node) global numbers, image flags and local indices of the
+    nodes
     sector_rotation : (n_sectors, 2) cosine and sine of the angles of the sectors
     active : (n_sectors,) bool, sectors whose elements count
     whole_teeth : (n_sectors,) bool, sectors whose tooth is not one element
@@ -78,9 +83,12 @@ class BodyElements:
         sectors = sectors_seen(partition, body)
         self.sectors = sectors
         self.owned = slice(int(np.searchsorted(sectors, first)), int(np.searchsorted(sectors, end)))
-        self.number, self.sixths = partition.node_numbers(body, sectors, np.arange(len(layout.mesh.coords)))
+        self.number, self.sixths = partition.node_numbers(
+            body, sectors, np.arange(len(layout.mesh.coords))
+        )
         self.local = local.index(self.number)
-        # on a single rank the sector before the first is an image of an owned one: it must not count twice
+        # on a single rank the sector before the first is an image of an owned one: it must not
+        # count twice
         self.preceding = np.zeros(len(sectors), dtype=bool)
         self.preceding[: self.owned.start] = True
         if layout.closed and end - first == layout.count:
@@ -89,7 +97,9 @@ class BodyElements:
         self.sector_rotation = np.column_stack([np.cos(angle), np.sin(angle)]).reshape(-1, 2)
         counted = self.preceding.copy()
         counted[self.owned] = True
-        owned = (self.number >= partition.row_start) & (self.number < partition.row_start + partition.n_own)
+        owned = (self.number >= partition.row_start) & (
+            self.number < partition.row_start + partition.n_own
+        )
         owned &= counted[:, None]
         self._touching = [
             owned[:, nodes].any(axis=2) if len(sectors) else np.zeros((0, len(nodes)), dtype=bool)
@@ -116,7 +126,9 @@ class BodyElements:
             chosen[1] &= ~self.whole_teeth[:, None]
         return [self._of_kind(*kind, mask) for kind, mask in zip(self._kinds, chosen)]
 
-    def _of_kind(self, matrices: ReferenceElements, nodes: np.ndarray, chosen: np.ndarray) -> AssembledElements:
+    def _of_kind(
+        self, matrices: ReferenceElements, nodes: np.ndarray, chosen: np.ndarray
+    ) -> AssembledElements:
         sector, element = (v.astype(np.int32) for v in np.nonzero(chosen))
         nodes = nodes[element]
         return AssembledElements(
@@ -128,12 +140,16 @@ class BodyElements:
         )
 
     def inside_of_teeth(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Own nodes (n,) inside of condensed teeth and their displacement (n, 3) mm, from u (n_local, 3) outside."""
+        """Own nodes (n,) inside of condensed teeth and their displacement (n, 3) mm, from u
+        (n_local, 3) outside."""
         rows = np.flatnonzero(~self.whole_teeth)
         rows = rows[(rows >= self.owned.start) & (rows < self.owned.stop)]
         if not len(rows):
             return np.zeros(0, dtype=np.int64), np.zeros((0, 3))
-        tooth, angle = self.layout.tooth, np.arctan2(self.sector_rotation[rows, 1], self.sector_rotation[rows, 0])
+        tooth, angle = (
+            self.layout.tooth,
+            np.arctan2(self.sector_rotation[rows, 1], self.sector_rotation[rows, 0]),
+        )
         inner = tooth.inner_displacement(angle, u[self.local[np.ix_(rows, tooth.outer)]])
         return self.local[np.ix_(rows, tooth.inner)].ravel(), inner.reshape(-1, 3)
 
@@ -144,7 +160,8 @@ class BodyElements:
         block_indices: list[np.ndarray] | None = None,
         values: np.ndarray | None = None,
     ) -> None:
-        """Add the body's internal forces to `residual` (n_local, 3) N and tangent blocks (N/mm) to `values`.
+        """Add the body's internal forces to `residual` (n_local, 3) N and tangent blocks (N/mm) to
+        `values`.
 
         u : (n_local, 3) mm;  block_indices : of the elements' blocks of every kind in `values`
         Raises FloatingPointError where an element has collapsed.
@@ -164,7 +181,8 @@ class BodyElements:
                 )
 
     def displacement(self, u: np.ndarray) -> np.ndarray:
-        """Displacement of all nodes of the sectors seen, images rotated; (n_sectors, n_node, 3) mm."""
+        """Displacement of all nodes of the sectors seen, images rotated; (n_sectors, n_node, 3)
+        mm."""
         field = np.where(self.local[..., None] >= 0, u[self.local], 0.0)
         return self.layout.with_inner_nodes(self.sectors, to_images(field, self.sixths))
 
@@ -172,10 +190,13 @@ class BodyElements:
         """Undeformed positions of all nodes of the sectors seen; (n_sectors, n_node, 3) mm."""
         x, y, z = self.layout.mesh.coords.T
         c, s = self.sector_rotation[:, :1], self.sector_rotation[:, 1:]
-        return np.stack([c * x - s * y, s * x + c * y, np.broadcast_to(z, (len(c), len(z)))], axis=-1)
+        return np.stack(
+            [c * x - s * y, s * x + c * y, np.broadcast_to(z, (len(c), len(z)))], axis=-1
+        )
 
     def nodal_stress(self, u: np.ndarray, part: int = 0) -> np.ndarray:
-        """Stress at the nodes of the owned sectors: extrapolated per element, averaged over the elements of a part.
+        """Stress at the nodes of the owned sectors: extrapolated per element, averaged over the
+        elements of a part.
 
         Returns (n_owned, n_node, 6) MPa; components xx, yy, zz, xy, yz, zx in global axes.
         It is zero in sectors without elements, and at nodes that the part has not.
@@ -198,7 +219,9 @@ class BodyElements:
                 field[k],
             )
             for c in range(6):
-                sums[k, :, c] = np.bincount(elements.ravel(), stress[:, :, c].ravel(), minlength=n_node)
+                sums[k, :, c] = np.bincount(
+                    elements.ravel(), stress[:, :, c].ravel(), minlength=n_node
+                )
         count = np.bincount(elements.ravel(), minlength=n_node).astype(float)
         if lower is not None:
             sums, count = sums[:, lower], count[lower]
@@ -216,7 +239,8 @@ class TangentPattern:
     """Blocks of the tangent's owned rows that elements, multipliers and the diagonal need.
 
     keys : sorted row * n_global + column of the blocks
-    block_indices : of each body's and kind's (n, m * m) element blocks among the keys, -1 for blocks of other ranks
+    block_indices : of each body's and kind's (n, m * m) element blocks among the keys, -1 for
+    blocks of other ranks
     nodes_without_elements : (n,) owned local nodes, which have no blocks
     """
 
@@ -242,11 +266,15 @@ class Elements:
     def __init__(self, partition: Partition, symmetric: bool = True) -> None:
         self.partition, self.symmetric = partition, symmetric
         needed = [
-            partition.node_numbers(k, sectors_seen(partition, k), np.arange(len(layout.mesh.coords)))[0].ravel()
+            partition.node_numbers(
+                k, sectors_seen(partition, k), np.arange(len(layout.mesh.coords))
+            )[0].ravel()
             for k, layout in partition.layouts.items()
         ]
         self.local = LocalNodes(partition, np.concatenate([*needed, partition.multiplier_nodes]))
-        self.bodies = {name: BodyElements(partition, name, self.local) for name in partition.layouts}
+        self.bodies = {
+            name: BodyElements(partition, name, self.local) for name in partition.layouts
+        }
         self.pattern = self._pattern()
 
     def renew_pattern(self) -> None:
@@ -262,29 +290,44 @@ class Elements:
         multipliers = partition.multiplier_nodes
         own = multipliers - local.row_start
         touched[own[(own >= 0) & (own < local.n_own)]] = True
-        blocks = [[self.block_keys(part.conn) for part in body.assembled] for body in self.bodies.values()]
+        blocks = [
+            [self.block_keys(part.conn) for part in body.assembled] for body in self.bodies.values()
+        ]
         diagonal = local.row_start + np.flatnonzero(touched)
-        keys = [*(block.ravel() for body in blocks for block in body), diagonal * partition.n_global + diagonal]
+        keys = [
+            *(block.ravel() for body in blocks for block in body),
+            diagonal * partition.n_global + diagonal,
+        ]
         if local.n_own and local.row_start + local.n_own == partition.n_global:
             keys.append(multipliers * partition.n_global + multipliers)
         keys = np.unique(np.concatenate(keys))
         keys = keys[keys >= 0]
-        block_indices = [[np.where(block >= 0, np.searchsorted(keys, block), -1) for block in body] for body in blocks]
+        block_indices = [
+            [np.where(block >= 0, np.searchsorted(keys, block), -1) for block in body]
+            for body in blocks
+        ]
         return TangentPattern(keys, block_indices, np.flatnonzero(~touched))
 
     def block_keys(self, conn: np.ndarray) -> np.ndarray:
-        """Keys row * n_global + column (n, m * m) of the owned blocks of elements, -1 elsewhere; conn : (n, m)."""
+        """Keys row * n_global + column (n, m * m) of the owned blocks of elements, -1 elsewhere;
+        conn : (n, m)."""
         local = self.local
         number = np.where(conn >= 0, local.number[conn], -1).astype(np.int64)
         row, col = number[:, :, None], number[:, None, :]
         owned = ((conn >= 0) & (conn < local.n_own))[:, :, None]
-        keys = np.where(owned & (col >= (row if self.symmetric else 0)), row * self.partition.n_global + col, -1)
+        keys = np.where(
+            owned & (col >= (row if self.symmetric else 0)), row * self.partition.n_global + col, -1
+        )
         return keys.reshape(len(conn), conn.shape[1] ** 2)
 
-    def rows(self, extra: np.ndarray, number: np.ndarray) -> tuple[BlockRows, list[list[np.ndarray]]]:
-        """Rows of the tangent for the elements and further blocks, and the indices of element blocks among them.
+    def rows(
+        self, extra: np.ndarray, number: np.ndarray
+    ) -> tuple[BlockRows, list[list[np.ndarray]]]:
+        """Rows of the tangent for the elements and further blocks, and the indices of element
+        blocks among them.
 
-        extra : keys row * n_global + column of contact blocks;  number : (n_local,) int32 global numbers
+        extra : keys row * n_global + column of contact blocks;  number : (n_local,) int32 global
+        numbers
         """
         own_keys = self.pattern.keys
         keys = np.union1d(own_keys, extra) if len(extra) else own_keys
@@ -301,7 +344,10 @@ class Elements:
             keys,
             self.symmetric,
         )
-        return rows, [[np.where(own >= 0, index[own], -1) for own in body] for body in self.pattern.block_indices]
+        return rows, [
+            [np.where(own >= 0, index[own], -1) for own in body]
+            for body in self.pattern.block_indices
+        ]
 
     def assemble(
         self,
@@ -310,12 +356,16 @@ class Elements:
         rows: BlockRows | None,
         block_indices: list[list[np.ndarray]] | None,
     ) -> None:
-        """Add internal forces to `residual` (n_local, 3) N and tangent blocks (N/mm) to `rows.values`.
+        """Add internal forces to `residual` (n_local, 3) N and tangent blocks (N/mm) to
+        `rows.values`.
 
         u : (n_local, 3) mm;  block_indices : of the element blocks in `rows`, as `rows` gives them
         Raises FloatingPointError where an element has collapsed.
         """
         for k, body in enumerate(self.bodies.values()):
             body.assemble(
-                u, residual, None if block_indices is None else block_indices[k], None if rows is None else rows.values
+                u,
+                residual,
+                None if block_indices is None else block_indices[k],
+                None if rows is None else rows.values,
             )

@@ -12,11 +12,14 @@ class LocalNodes:
 
     Parameters
     ----------
-    needed : global block numbers whose local indices do not depend on the additional ones; negative ones are ignored
+    needed : global block numbers whose local indices do not depend on the additional ones; negative
+    ones are ignored
     additional : more global block numbers, indexed after all of those
     """
 
-    def __init__(self, partition: Partition, needed: np.ndarray, additional: np.ndarray | None = None) -> None:
+    def __init__(
+        self, partition: Partition, needed: np.ndarray, additional: np.ndarray | None = None
+    ) -> None:
         self.partition = partition
         self.row_start, self.n_own = partition.row_start, partition.n_own
         self.ghosts = self._foreign(needed)
@@ -38,11 +41,15 @@ class LocalNodes:
         return len(self.number)
 
     def index(self, number: np.ndarray) -> np.ndarray:
-        """Local index (int32) of global numbers; -1 where there is none (-1) or this rank does not see it."""
+        """Local index (int32) of global numbers; -1 where there is none (-1) or this rank does not
+        see it."""
         number = np.asarray(number)
         own = (number >= self.row_start) & (number < self.row_start + self.n_own)
         found = np.where(own, number - self.row_start, -1)
-        for ghosts, first in ((self.ghosts, self.n_own), (self.additional, self.n_own + len(self.ghosts))):
+        for ghosts, first in (
+            (self.ghosts, self.n_own),
+            (self.additional, self.n_own + len(self.ghosts)),
+        ):
             if len(ghosts):
                 position = np.minimum(np.searchsorted(ghosts, number), len(ghosts) - 1)
                 found = np.where(ghosts[position] == number, first + position, found)

@@ -1,8 +1,9 @@
 """Which rank owns what: sectors, nodes and global numbers.
 
-Rank r owns a contiguous range of the sectors of every body, so that node numbers, owners and neighbours follow from
-arithmetic and no global array is stored. Displacement unknowns are numbered in blocks of three per node. Nodes that are
-fixed to the frame and nodes inside of condensed sectors have none.
+Rank r owns a contiguous range of the sectors of every body, so that node numbers, owners and
+neighbours follow from arithmetic and no global array is stored. Displacement unknowns are numbered
+in blocks of three per node. Nodes that are fixed to the frame and nodes inside of condensed sectors
+have none.
 """
 
 from __future__ import annotations
@@ -14,7 +15,8 @@ from swgpar.fem.body_layout import BodyLayout
 from swgpar.geometry.rotation import sixths_of_turn
 
 MULTIPLIER_NODES = 2
-"""Blocks appended after the last node for each body that floats: six multipliers of its coupling."""
+"""Blocks appended after the last node for each body that floats: six multipliers of its
+coupling."""
 
 
 def split(n: int, parts: int) -> np.ndarray:
@@ -44,7 +46,8 @@ class Partition:
         sizes = np.array(
             [
                 [
-                    np.diff(s)[r] * len(b.numbering.owned_nodes) + (b.numbering.n_end if r == comm.size - 1 else 0)
+                    np.diff(s)[r] * len(b.numbering.owned_nodes)
+                    + (b.numbering.n_end if r == comm.size - 1 else 0)
                     for s, b in zip(self._first.values(), layouts)
                 ]
                 for r in range(comm.size)
@@ -76,7 +79,9 @@ class Partition:
         periods, rest = np.divmod(index, b.count)
         return rest, sixths_of_turn(b.copies, periods)
 
-    def node_numbers(self, body: str, index: np.ndarray, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def node_numbers(
+        self, body: str, index: np.ndarray, nodes: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Global block numbers of local nodes of sectors.
 
         Parameters

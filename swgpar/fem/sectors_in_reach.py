@@ -1,11 +1,12 @@
 """What flanks cannot reach is modelled with less.
 
-Ring-gear sectors that no tooth of the flexible spline can reach are left out: the frame supports them, and their effect
-on the loaded teeth decays within a few pitches. Their elements are dropped and their nodes are fixed: the tangent has
-no rows of them.
+Ring-gear sectors that no tooth of the flexible spline can reach are left out: the frame supports
+them, and their effect on the loaded teeth decays within a few pitches. Their elements are dropped
+and their nodes are fixed: the tangent has no rows of them.
 
-Teeth of solid gears that reach no flank are one element each (`condensed_parts.py`). The tangent has no rows of the
-nodes inside of them either; their displacement follows from that of the tooth's rim.
+Teeth of solid gears that reach no flank are one element each (`condensed_parts.py`). The tangent
+has no rows of the nodes inside of them either; their displacement follows from that of the tooth's
+rim.
 """
 
 from __future__ import annotations
@@ -19,7 +20,8 @@ from swgpar.fem.elements import BodyElements, Elements
 
 
 class SectorsInReach(ABC):
-    """Which sectors of a closed chain are within reach, or near one that is; the same choice on every rank.
+    """Which sectors of a closed chain are within reach, or near one that is; the same choice on
+    every rank.
 
     Parameters
     ----------
@@ -48,9 +50,13 @@ class SectorsInReach(ABC):
         return mask
 
     def update(self, within_reach: np.ndarray, elements: Elements) -> bool:
-        """Choose by the sectors (n,) within reach; returns whether the body's elements have changed."""
+        """Choose by the sectors (n,) within reach; returns whether the body's elements have
+        changed."""
         missing = self._with_neighbours(within_reach, self.LEAST) & ~self.active
-        if not missing.any() and not (self.active & ~self._with_neighbours(within_reach, self.MOST)).any():
+        if (
+            not missing.any()
+            and not (self.active & ~self._with_neighbours(within_reach, self.MOST)).any()
+        ):
             return False
         self.active = self._with_neighbours(within_reach, self.MARGIN)
         self._apply(elements)
@@ -87,7 +93,8 @@ class RingSectors(SectorsInReach):
 class WholeTeeth(SectorsInReach):
     """Teeth of a body that are not one element; no flank of the others may touch. `body` : its name
 
-    The choice follows from the shape at the search alone, so that one that repeats after a period has the same teeth.
+    The choice follows from the shape at the search alone, so that one that repeats after a period
+    has the same teeth.
     """
 
     LEAST, MARGIN, MOST = 1, 1, 1

@@ -14,7 +14,8 @@ from swgpar.petsc import PETSc
 
 @dataclass
 class BlockRows:
-    """Blocks of the owned rows, of a symmetric matrix those of the upper triangle, sorted by column.
+    """Blocks of the owned rows, of a symmetric matrix those of the upper triangle, sorted by
+    column.
 
     start : (n_own + 1,) int64;  column : (n_blocks,) int32 global
     values : (n_blocks, 3, 3) N/mm, values[p, l, k] is entry (k, l) of block p
@@ -36,7 +37,8 @@ class BlockRows:
 class MatrixRows:
     """Rows of the matrix: those of the owned nodes that something acts on.
 
-    active : (n,) owned nodes;  start : (n + 1,), column : (n_blocks,) of the blocks, numbered without empty rows
+    active : (n,) owned nodes;  start : (n + 1,), column : (n_blocks,) of the blocks, numbered
+    without empty rows
     first, count : number of the first row, and of all rows on all ranks
     """
 
@@ -47,7 +49,9 @@ class MatrixRows:
     count: int
 
 
-def matrix_rows(rows: BlockRows, local: LocalNodes, exchange: Exchange, vector: PETSc.Vec) -> MatrixRows:
+def matrix_rows(
+    rows: BlockRows, local: LocalNodes, exchange: Exchange, vector: PETSc.Vec
+) -> MatrixRows:
     """Number the rows that are not empty; collective.
 
     local, exchange : the nodes that a rank sees, and their values of a vector
@@ -66,7 +70,8 @@ def matrix_rows(rows: BlockRows, local: LocalNodes, exchange: Exchange, vector: 
 
 
 def create_matrix(partition: Partition, rows: BlockRows, numbered: MatrixRows) -> PETSc.Mat:
-    """Blocked matrix with the pattern of `rows`, not yet filled; a symmetric one keeps its upper triangle."""
+    """Blocked matrix with the pattern of `rows`, not yet filled; a symmetric one keeps its upper
+    triangle."""
     mat = PETSc.Mat().create(comm=partition.comm)
     n_own = len(numbered.active)
     size = (partition.dims * n_own, partition.dims * numbered.count)
@@ -78,7 +83,8 @@ def create_matrix(partition: Partition, rows: BlockRows, numbered: MatrixRows) -
     diagonal = np.bincount(own[own_column], minlength=n_own).astype(PETSc.IntType)
     off = np.bincount(own[~own_column], minlength=n_own).astype(PETSc.IntType)
     mat.setPreallocationNNZ((diagonal, off))
-    # on every rank: one without rows would not have it, and the ranks would disagree in the assembly
+    # on every rank: one without rows would not have it, and the ranks would disagree in the
+    # assembly
     mat.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, True)
     mat.setOption(PETSc.Mat.Option.ROW_ORIENTED, False)
     if rows.symmetric:
@@ -92,17 +98,23 @@ def fill_matrix(mat: PETSc.Mat, rows: BlockRows, numbered: MatrixRows) -> None:
     """Overwrite the owned rows of `mat` with the blocks, without their z in the plane."""
     dims = mat.getBlockSize()
     values = rows.values[:, :dims, :dims].ravel()
-    mat.setValuesBlockedIJV(numbered.start, numbered.column, values, addv=PETSc.InsertMode.INSERT_VALUES)
+    mat.setValuesBlockedIJV(
+        numbered.start, numbered.column, values, addv=PETSc.InsertMode.INSERT_VALUES
+    )
     mat.assemble()
 
 
-def add_diagonal(rows: BlockRows, partition: Partition, nodes: np.ndarray, blocks: np.ndarray) -> None:
-    """Add blocks (n, 3, 3) or (3, 3), N/mm, to the diagonal at own nodes (n,), each of them once."""
+def add_diagonal(
+    rows: BlockRows, partition: Partition, nodes: np.ndarray, blocks: np.ndarray
+) -> None:
+    """Add blocks (n, 3, 3) or (3, 3), N/mm, to the diagonal at own nodes (n,), each of them
+    once."""
     keys = (partition.row_start + nodes.astype(np.int64)) * (partition.n_global + 1)
     rows.values[np.searchsorted(rows.keys, keys)] += blocks
 
 
 def add_unit_diagonal(rows: BlockRows, partition: Partition, value: float) -> None:
-    """Put `value` on the diagonal of the multiplier blocks, which couple through the border only."""
+    """Put `value` on the diagonal of the multiplier blocks, which couple through the border
+    only."""
     nodes = partition.multiplier_nodes - partition.row_start
     add_diagonal(rows, partition, nodes[(nodes >= 0) & (nodes < rows.n_own)], value * np.eye(3))

@@ -9,9 +9,12 @@ from swgpar.fem.elements import BodyElements
 
 
 def principal(stress: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Largest and smallest principal stress and von Mises stress of (…, 6) tensors xx yy zz xy yz zx (MPa)."""
+    """Largest and smallest principal stress and von Mises stress of (…, 6) tensors xx yy zz xy yz
+    zx (MPa)."""
     xx, yy, zz, xy, yz, zx = np.moveaxis(stress, -1, 0)
-    tensor = np.stack([np.stack([xx, xy, zx], -1), np.stack([xy, yy, yz], -1), np.stack([zx, yz, zz], -1)], -2)
+    tensor = np.stack(
+        [np.stack([xx, xy, zx], -1), np.stack([xy, yy, yz], -1), np.stack([zx, yz, zz], -1)], -2
+    )
     values = np.linalg.eigvalsh(tensor)
     s1, s2, s3 = values[..., 2], values[..., 1], values[..., 0]
     mises = np.sqrt(0.5 * ((s1 - s2) ** 2 + (s2 - s3) ** 2 + (s3 - s1) ** 2))
@@ -28,7 +31,13 @@ def body_fields(body: BodyElements, u: np.ndarray) -> dict[str, np.ndarray]:
         nodes = np.setdiff1d(mesh.nodes_of(part), mesh.nodes_of(0))
         tensor[:, nodes] = body.nodal_stress(u, part)[:, nodes]
     s1, s3, mises = principal(tensor)
-    return {"displacement": body.displacement(u)[body.owned], "stress": tensor, "s1": s1, "s3": s3, "vm": mises}
+    return {
+        "displacement": body.displacement(u)[body.owned],
+        "stress": tensor,
+        "s1": s1,
+        "s3": s3,
+        "vm": mises,
+    }
 
 
 def part_maxima(
@@ -49,7 +58,11 @@ def part_maxima(
 def maxima(comm: MPI.Comm, fields: dict[str, np.ndarray]) -> dict[str, float]:
     """Maxima over the whole body (MPa): s1, s3 (positive in compression) and vm."""
     local = np.array(
-        [fields["s1"].max(initial=-np.inf), (-fields["s3"]).max(initial=-np.inf), fields["vm"].max(initial=0.0)]
+        [
+            fields["s1"].max(initial=-np.inf),
+            (-fields["s3"]).max(initial=-np.inf),
+            fields["vm"].max(initial=0.0),
+        ]
     )
     total = np.empty(3)
     comm.Allreduce(local, total, op=MPI.MAX)

@@ -1,4 +1,5 @@
-"""Distributed vectors of nodal unknowns: creation, ghost values, nodal fields of sectors, multipliers."""
+"""Distributed vectors of nodal unknowns: creation, ghost values, nodal fields of sectors,
+multipliers."""
 
 from __future__ import annotations
 
@@ -11,7 +12,9 @@ from swgpar.petsc import PETSc
 
 def create_vector(partition: Partition) -> PETSc.Vec:
     """Distributed vector of three unknowns per node, multipliers last."""
-    return PETSc.Vec().createMPI((3 * partition.n_own, 3 * partition.n_global), bsize=3, comm=partition.comm)
+    return PETSc.Vec().createMPI(
+        (3 * partition.n_own, 3 * partition.n_global), bsize=3, comm=partition.comm
+    )
 
 
 class Exchange:
@@ -22,7 +25,9 @@ class Exchange:
 
     def __init__(self, partition: Partition, number: np.ndarray) -> None:
         self.target = PETSc.Vec().createSeq(3 * len(number), bsize=3)
-        entries = (3 * number[:, None] + np.arange(3, dtype=PETSc.IntType)).ravel().astype(PETSc.IntType)
+        entries = (
+            (3 * number[:, None] + np.arange(3, dtype=PETSc.IntType)).ravel().astype(PETSc.IntType)
+        )
         source = PETSc.IS().createGeneral(entries, comm=PETSc.COMM_SELF)
         into = PETSc.IS().createStride(3 * len(number), 0, 1, comm=PETSc.COMM_SELF)
         template = create_vector(partition)
@@ -37,13 +42,20 @@ class Exchange:
 
     def __call__(self, vector: PETSc.Vec) -> np.ndarray:
         """Local nodal values (n_local, 3) of a global vector, ghosts included."""
-        self.scatter.scatter(vector, self.target, addv=PETSc.InsertMode.INSERT, mode=PETSc.ScatterMode.FORWARD)
+        self.scatter.scatter(
+            vector, self.target, addv=PETSc.InsertMode.INSERT, mode=PETSc.ScatterMode.FORWARD
+        )
         return self.target.array_r.reshape(-1, 3).copy()
 
 
-def read_field(partition: Partition, body: str, sectors: np.ndarray, vector: PETSc.Vec) -> np.ndarray:
-    """Nodal values (n_sectors, n_local_nodes, 3) of any sectors of a body, images rotated; collective."""
-    number, sixths = partition.node_numbers(body, sectors, np.arange(len(partition.layouts[body].mesh.coords)))
+def read_field(
+    partition: Partition, body: str, sectors: np.ndarray, vector: PETSc.Vec
+) -> np.ndarray:
+    """Nodal values (n_sectors, n_local_nodes, 3) of any sectors of a body, images rotated;
+    collective."""
+    number, sixths = partition.node_numbers(
+        body, sectors, np.arange(len(partition.layouts[body].mesh.coords))
+    )
     needed, position = np.unique(number, return_inverse=True)
     absent = int(len(needed) > 0 and needed[0] == -1)
     exchange = Exchange(partition, needed[absent:].astype(np.int32))
@@ -53,10 +65,19 @@ def read_field(partition: Partition, body: str, sectors: np.ndarray, vector: PET
     return partition.layouts[body].with_inner_nodes(sectors, to_images(values, sixths))
 
 
-def write_field(partition: Partition, body: str, sectors: np.ndarray, values: np.ndarray, vector: PETSc.Vec) -> None:
-    """Set the owned entries of `vector` from nodal values (n_sectors, n_local_nodes, 3) of owned sectors."""
-    number, sixths = partition.node_numbers(body, sectors, np.arange(len(partition.layouts[body].mesh.coords)))
-    own = (number >= partition.row_start) & (number < partition.row_start + partition.n_own) & (sixths == 0)
+def write_field(
+    partition: Partition, body: str, sectors: np.ndarray, values: np.ndarray, vector: PETSc.Vec
+) -> None:
+    """Set the owned entries of `vector` from nodal values (n_sectors, n_local_nodes, 3) of owned
+    sectors."""
+    number, sixths = partition.node_numbers(
+        body, sectors, np.arange(len(partition.layouts[body].mesh.coords))
+    )
+    own = (
+        (number >= partition.row_start)
+        & (number < partition.row_start + partition.n_own)
+        & (sixths == 0)
+    )
     vector.array.reshape(-1, 3)[number[own] - partition.row_start] = values[own]
 
 

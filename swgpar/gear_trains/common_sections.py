@@ -19,10 +19,12 @@ MAX_STEPS = 10_000_000
 
 
 def require_steps(key: str, step: float, duration: float) -> None:
-    """Refuse a time step (s) that is longer than the simulation, or so short that it has too many of them."""
+    """Refuse a time step (s) that is longer than the simulation, or so short that it has too many
+    of them."""
     if not duration / MAX_STEPS <= step <= duration:
         raise InputError(
-            f"{key} = {show(step)} is out of range: allowed {duration / MAX_STEPS:.6g} to {duration:g} s (at most "
+            f"{key} = {show(step)} is out of range: allowed {duration / MAX_STEPS:.6g} to "
+            f"{duration:g} s (at most "
             f"{MAX_STEPS} steps)"
         )
 
@@ -42,7 +44,9 @@ class GearTrain(Section):
 
 class Damping(Section):
     mass: float = quantity(unit="1/s", text="damping over mass", ge=0.0)
-    stiffness: float = quantity(unit="s", text="damping over stiffness, of meshes over their mean stiffness", ge=0.0)
+    stiffness: float = quantity(
+        unit="s", text="damping over stiffness, of meshes over their mean stiffness", ge=0.0
+    )
 
 
 class MonteCarlo(Section):

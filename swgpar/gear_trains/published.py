@@ -1,4 +1,5 @@
-"""Published values in a design file beside the computed ones: section [published], quantities by name."""
+"""Published values in a design file beside the computed ones: section [published], quantities by
+name."""
 
 from __future__ import annotations
 
@@ -17,7 +18,8 @@ STATISTICS = {"mean": "mean", "deviation": "standard deviation"}
 
 
 def numbered(name: str, count: int) -> list[str]:
-    """Names of the single numbers of a quantity: its own name, or with the position in the list in brackets."""
+    """Names of the single numbers of a quantity: its own name, or with the position in the list in
+    brackets."""
     return [name] if count == 1 else [f"{name}[{number}]" for number in range(1, count + 1)]
 
 
@@ -27,27 +29,42 @@ def number_label(value: float) -> str:
 
 
 def check_published(published: Mapping[str, Any], known: Mapping[str, Quantity]) -> None:
-    """Refuse names that are no quantity, and values that are not as many numbers as the quantity has."""
+    """Refuse names that are no quantity, and values that are not as many numbers as the quantity
+    has."""
     for name, given in published.items():
         if name not in known:
             near = difflib.get_close_matches(name, known, n=1)
             hint = f"did you mean {near[0]}?" if near else f"allowed {', '.join(known)}"
-            raise InputError(f"published.{show_key(name)} is not a quantity of this gear train: {hint}")
+            raise InputError(
+                f"published.{show_key(name)} is not a quantity of this gear train: {hint}"
+            )
         values = given if isinstance(given, list) else [given]
-        numbers = all(isinstance(v, (int, float)) and not isinstance(v, bool) and np.isfinite(v) for v in values)
+        numbers = all(
+            isinstance(v, (int, float)) and not isinstance(v, bool) and np.isfinite(v)
+            for v in values
+        )
         if not numbers or len(values) != known[name].count:
-            wanted = "one number" if known[name].count == 1 else f"a list of {known[name].count} numbers"
-            raise InputError(f"published.{name} = {show(given)} is not {wanted}: allowed {known[name].text}")
+            wanted = (
+                "one number" if known[name].count == 1 else f"a list of {known[name].count} numbers"
+            )
+            raise InputError(
+                f"published.{name} = {show(given)} is not {wanted}: allowed {known[name].text}"
+            )
 
 
 def compare(
-    published: Mapping[str, Any], computed: Mapping[str, float | Sequence[float]], known: Mapping[str, Quantity]
+    published: Mapping[str, Any],
+    computed: Mapping[str, float | Sequence[float]],
+    known: Mapping[str, Quantity],
 ) -> list[dict[str, Any]]:
-    """Rows of published.csv; the difference is in percent of the published value, empty where that is 0."""
+    """Rows of published.csv; the difference is in percent of the published value, empty where that
+    is 0."""
     rows = []
     for name, given in published.items():
         expected, found = np.atleast_1d(given), np.atleast_1d(computed[name])
-        for title, old, new in zip(numbered(name, len(expected)), expected.tolist(), found.tolist(), strict=True):
+        for title, old, new in zip(
+            numbered(name, len(expected)), expected.tolist(), found.tolist(), strict=True
+        ):
             rows.append(
                 {
                     "quantity": title,

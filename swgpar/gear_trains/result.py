@@ -1,4 +1,5 @@
-"""Result of a gear train, in memory or in files: history.csv, tables, published.csv and summary.json."""
+"""Result of a gear train, in memory or in files: history.csv, tables, published.csv and
+summary.json."""
 
 from __future__ import annotations
 
@@ -30,7 +31,8 @@ class TrainResult:
     Attributes
     ----------
     history : dict of (n,) arrays
-        Columns of history.csv; their names end with the unit. ``pandas.DataFrame(result.history)`` makes a table of it.
+        Columns of history.csv; their names end with the unit. ``pandas.DataFrame(result.history)``
+        makes a table of it.
     tables : dict of tables like the history, by name
     quantities : dict
         What can be compared with published values: a number or a list of numbers by name.
@@ -76,13 +78,18 @@ def read(out: Path) -> TrainResult:
     summary = read_summary(out)
     tables = {path.stem: read_columns(path) for path in sorted((out / TABLES).glob("*.csv"))}
     compared = _read_compared(out / PUBLISHED) if (out / PUBLISHED).exists() else []
-    return TrainResult(read_columns(out / history.NAME), tables, summary["quantities"], summary, compared, out)
+    return TrainResult(
+        read_columns(out / history.NAME), tables, summary["quantities"], summary, compared, out
+    )
 
 
 def _read_compared(path: Path) -> list[dict[str, Any]]:
     texts = ("quantity", "meaning")
     with open(path, newline="", encoding="utf-8") as file:
         return [
-            {name: value if name in texts else float(value) if value else None for name, value in row.items()}
+            {
+                name: value if name in texts else float(value) if value else None
+                for name, value in row.items()
+            }
             for row in csv.DictReader(file)
         ]

@@ -20,5 +20,7 @@ def print_compared(rows: list[dict[str, Any]]) -> None:
     for row in rows:
         percent = row["difference_percent"]
         difference = "" if percent is None else f"{percent:+.2f} %"
-        table.add_row(row["quantity"], f"{row['published']:.6g}", f"{row['computed']:.6g}", difference)
+        table.add_row(
+            row["quantity"], f"{row['published']:.6g}", f"{row['computed']:.6g}", difference
+        )
     console.print(table)

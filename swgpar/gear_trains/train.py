@@ -53,7 +53,14 @@ class TrainModel:
 
 
 def _model(package: ModuleType, design: type[TrainDesign]) -> TrainModel:
-    return TrainModel(design, package.check_fit, package.quantities, package.derived, package.compute, package.drawings)
+    return TrainModel(
+        design,
+        package.check_fit,
+        package.quantities,
+        package.derived,
+        package.compute,
+        package.drawings,
+    )
 
 
 MODELS = {
@@ -65,7 +72,8 @@ MODELS = {
 
 
 def make_train(table: dict[str, Any]) -> TrainDesign:
-    """A checked design from the content of its file; every problem is an `InputError` of one sentence."""
+    """A checked design from the content of its file; every problem is an `InputError` of one
+    sentence."""
     section = table.get(SECTION)
     name = section.get("model") if isinstance(section, dict) else None
     choices = " or ".join(f'"{name}"' for name in MODELS)
@@ -126,16 +134,20 @@ def run_train(design: TrainDesign, options: RunOptions) -> TrainResult:
 
 @contextmanager
 def reported_arithmetic() -> Iterator[None]:
-    """Refuse values that fit their ranges and are still too far apart for the arithmetic inside the block."""
+    """Refuse values that fit their ranges and are still too far apart for the arithmetic inside the
+    block."""
     try:
         with np.errstate(all="ignore"):  # what is not finite then is found in the results
             yield
     except (np.linalg.LinAlgError, ArithmeticError, ValueError, MemoryError) as error:
-        raise InputError(f"the gear train cannot be computed with these values: {sentence(error)}") from None
+        raise InputError(
+            f"the gear train cannot be computed with these values: {sentence(error)}"
+        ) from None
 
 
 def require_finite(values: Mapping[str, float | list[float]]) -> None:
-    """Refuse values with infinite results, by name, or with none at all. A single NaN stands for what there is not."""
+    """Refuse values with infinite results, by name, or with none at all. A single NaN stands for
+    what there is not."""
     numbers = {name: np.atleast_1d(value) for name, value in values.items()}
     infinite = [name for name, value in numbers.items() if np.isinf(value).any()]
     if infinite or all(np.isnan(value).all() for value in numbers.values()):

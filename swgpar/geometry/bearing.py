@@ -1,7 +1,8 @@
 """Flexible ball bearing between cam and flexible spline: its sizes, and where its balls are.
 
-The outer surface of the outer race takes the place of the cam's surface. Both grooves are curves at a constant distance
-inside of the cam's curve, so that all three have the same normals. The inner race is rigid on the cam.
+The outer surface of the outer race takes the place of the cam's surface. Both grooves are curves at
+a constant distance inside of the cam's curve, so that all three have the same normals. The inner
+race is rigid on the cam.
 """
 
 from __future__ import annotations
@@ -53,11 +54,16 @@ class BearingSizes:
 
         outer_speed : speed of the outer race over that of the wave generator
         """
-        return (self.inner_groove + self.outer_groove * outer_speed) / (self.inner_groove + self.outer_groove)
+        return (self.inner_groove + self.outer_groove * outer_speed) / (
+            self.inner_groove + self.outer_groove
+        )
 
 
-def ball_lines(cam: Cam, depth: float, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Centres (n, 2) mm of the balls, and normals (n, 2) and curvatures (n,) 1/mm of their curve there.
+def ball_lines(
+    cam: Cam, depth: float, angle: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Centres (n, 2) mm of the balls, and normals (n, 2) and curvatures (n,) 1/mm of their curve
+    there.
 
     All in the cam's frame; the grooves have the same normals.
 
@@ -78,6 +84,7 @@ def ball_lines(cam: Cam, depth: float, angle: np.ndarray) -> tuple[np.ndarray, n
 
 
 def smallest_curvature_radius(cam: Cam, n: int = 2000) -> float:
-    """Smallest radius of curvature (mm) of the cam's curve at n points of it; inf for straight lines only."""
+    """Smallest radius of curvature (mm) of the cam's curve at n points of it; inf for straight
+    lines only."""
     largest = float(cam.evaluate(cam.outline(n))[2].max())
     return 1.0 / largest if largest > 0.0 else np.inf

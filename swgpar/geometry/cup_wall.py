@@ -1,7 +1,8 @@
-"""The section of the flexible spline's wall behind its teeth: exact lines of its inner and outer surface.
+"""The section of the flexible spline's wall behind its teeth: exact lines of its inner and outer
+surface.
 
-The wall runs from the back of the teeth to a fillet, and from there inwards as a closed end with a bore or outwards as
-a flange. All lines are straight pieces, arcs and quarters of ellipses.
+The wall runs from the back of the teeth to a fillet, and from there inwards as a closed end with a
+bore or outwards as a flange. All lines are straight pieces, arcs and quarters of ellipses.
 """
 
 from __future__ import annotations
@@ -30,7 +31,8 @@ class Arc(NamedTuple):
 
 
 class RoundedLine:
-    """Radius over the distance from the back of the teeth: straight pieces whose corners are rounded by arcs.
+    """Radius over the distance from the back of the teeth: straight pieces whose corners are
+    rounded by arcs.
 
     points : (n, 2) distance, which increases, and radius, mm;  rounding : (n,) mm, 0 at both ends
     """
@@ -41,13 +43,15 @@ class RoundedLine:
         self._along = sides / np.linalg.norm(sides, axis=1)[:, None]
 
     def turning(self) -> Floats:
-        """Angles (n - 2,) rad by which the line turns at its inner points, positive where it turns outwards."""
+        """Angles (n - 2,) rad by which the line turns at its inner points, positive where it turns
+        outwards."""
         a, b = self._along[:-1].T, self._along[1:].T
         angle = np.arctan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1])
         return np.where(np.abs(angle) < STRAIGHT, 0.0, angle)
 
     def largest_rounding(self) -> Floats:
-        """Radii (n - 2,) mm of arcs that take half of the shorter side at a point; inf where the line is straight."""
+        """Radii (n - 2,) mm of arcs that take half of the shorter side at a point; inf where the
+        line is straight."""
         half = 0.5 * np.linalg.norm(np.diff(self.points, axis=0), axis=1)
         with np.errstate(divide="ignore"):
             return np.minimum(half[:-1], half[1:]) / np.tan(0.5 * np.abs(self.turning()))
@@ -57,7 +61,11 @@ class RoundedLine:
         radius, turning = self.rounding[k], self.turning()[k - 1]
         if radius == 0.0 or turning == 0.0:
             return None
-        before, after, reach = self._along[k - 1], self._along[k], radius * np.tan(0.5 * abs(turning))
+        before, after, reach = (
+            self._along[k - 1],
+            self._along[k],
+            radius * np.tan(0.5 * abs(turning)),
+        )
         start = self.points[k] - reach * before
         normal = np.sign(turning) * np.array([-before[1], before[0]])
         return Arc(start, self.points[k] + reach * after, start + radius * normal)
@@ -68,7 +76,8 @@ class RoundedLine:
         return [arc for arc in corners if arc is not None]
 
     def pieces(self) -> list[tuple[Floats, Floats, Floats | None]]:
-        """Start, end and centre (2,) of straight pieces, without a centre, and of arcs, one after the other."""
+        """Start, end and centre (2,) of straight pieces, without a centre, and of arcs, one after
+        the other."""
         pieces: list[tuple[Floats, Floats, Floats | None]] = []
         at = self.points[0]
         for k, turning in enumerate(self.turning(), 1):
@@ -78,7 +87,11 @@ class RoundedLine:
                 at = self.points[k] if arc is None else arc.end
             if arc is not None:
                 pieces.append((arc.start, arc.end, arc.center))
-        return [piece for piece in [*pieces, (at, self.points[-1], None)] if piece[1][0] - piece[0][0] > SAME]
+        return [
+            piece
+            for piece in [*pieces, (at, self.points[-1], None)]
+            if piece[1][0] - piece[0][0] > SAME
+        ]
 
     def corners(self) -> Floats:
         """Distances (n,) mm of the points at which the line turns."""
@@ -89,7 +102,11 @@ class RoundedLine:
         """Distance (mm) as far as which the line keeps its first radius."""
         if self.points[1, 1] != self.points[0, 1]:
             return 0.0
-        starts = [*(float(arc.start[0]) for arc in self.arcs()), *self.corners().tolist(), float(self.points[-1, 0])]
+        starts = [
+            *(float(arc.start[0]) for arc in self.arcs()),
+            *self.corners().tolist(),
+            float(self.points[-1, 0]),
+        ]
         return min(starts)
 
     def radius(self, distance: Floats) -> Floats:
@@ -136,12 +153,17 @@ class CupWall:
     @property
     def center(self) -> tuple[float, float]:
         """Radius and z (mm) of the centre of the fillet's curves."""
-        r = self.inner.points[-1, 1] + self.fillet if self.outwards else self.outer.points[-1, 1] - self.fillet
+        r = (
+            self.inner.points[-1, 1] + self.fillet
+            if self.outwards
+            else self.outer.points[-1, 1] - self.fillet
+        )
         return float(r), self.end - self.fillet
 
     @property
     def sizes(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Semi-axes (along r and z, mm) of the fillet's curves on the inner and on the outer line."""
+        """Semi-axes (along r and z, mm) of the fillet's curves on the inner and on the outer
+        line."""
         long = self.fillet, self.fillet
         short = self.fillet - self.thickness, self.fillet - self.end_thickness
         return (long, short) if self.outwards else (short, long)
@@ -153,7 +175,8 @@ class CupWall:
         return (self.end, near) if self.outwards else (near, self.end)
 
     def stations(self, usual: Floats, first: float) -> Floats:
-        """Distances (n,) mm of stations, with the corners and the ends of their arcs in place of those close by.
+        """Distances (n,) mm of stations, with the corners and the ends of their arcs in place of
+        those close by.
 
         usual : (m,) mm, from 0 to `length`;  first : mm, as far as which they stay
         """
@@ -162,7 +185,9 @@ class CupWall:
         ends = np.array([point[0] for arc in arcs for point in (arc.start, arc.end)])
         keep = np.concatenate([usual[usual <= first], usual[-1:], corners])
         stations = usual
-        for at in corners:  # all of them: between two that are close the wall may change its thickness
+        for (
+            at
+        ) in corners:  # all of them: between two that are close the wall may change its thickness
             stations = with_station(stations, at, keep, room=0.0)
         for at in ends:
             stations = with_station(stations, at, keep)
@@ -170,10 +195,11 @@ class CupWall:
 
 
 def with_station(stations: Floats, at: float, keep: Floats, room: float = 0.25) -> Floats:
-    """The stations (n,) with one at `at`, unless one that is kept is close: the nearest other one that is close moves.
+    """The stations (n,) with one at `at`, unless one that is kept is close: the nearest other one
+    that is close moves.
 
-    keep : (m,) stations that do not move;  room : share of the distance to the next one within which a station is close
-    to a kept one
+    keep : (m,) stations that do not move;  room : share of the distance to the next one within
+    which a station is close to a kept one
     """
     near = int(np.abs(stations - at).argmin())
     gap = np.diff(stations)[min(near, len(stations) - 2)]
@@ -186,7 +212,9 @@ def with_station(stations: Floats, at: float, keep: Floats, room: float = 0.25) 
     return moved
 
 
-def rounded_lines(points: Sequence[tuple[float, float, float, float]]) -> tuple[RoundedLine, RoundedLine]:
+def rounded_lines(
+    points: Sequence[tuple[float, float, float, float]],
+) -> tuple[RoundedLine, RoundedLine]:
     """Inner and outer line through points: distance, inner radius, thickness and rounding, mm."""
     distance, radius, thickness, rounding = np.array(points).T
     lines = (radius, radius + thickness)

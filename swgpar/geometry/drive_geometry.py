@@ -10,7 +10,8 @@ from swgpar.geometry.cup_wall import CupWall
 from swgpar.geometry.profiles import ToothProfile
 
 THICK_CUP = 0.85
-"""Cup thickness over rim thickness above which the cup continues the layers below the root as well."""
+"""Cup thickness over rim thickness above which the cup continues the layers below the root as
+well."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,8 @@ class CupGeometry:
     """The cup behind the teeth of the flexible spline.
 
     wall : its section;  thickness_coef : thickness at the back of the teeth over that of the rim
-    back_fillet : mm, radius at the back of the teeth;  clamping_radius : mm, of a clamped ring, or None
+    back_fillet : mm, radius at the back of the teeth;  clamping_radius : mm, of a clamped ring, or
+    None
     """
 
     wall: CupWall
@@ -47,7 +49,8 @@ class CupGeometry:
 
 @dataclass(frozen=True)
 class FlankCrowning:
-    """Crowning of the flexible spline's flanks: mm at |z| = width / 2, mm, curve ("parabolic" or "circular")."""
+    """Crowning of the flexible spline's flanks: mm at |z| = width / 2, mm, curve ("parabolic" or
+    "circular")."""
 
     amount: float
     width: float

@@ -1,7 +1,9 @@
-"""Deviations of a gear's flanks from their ideal places: how far every point of every tooth is moved.
+"""Deviations of a gear's flanks from their ideal places: how far every point of every tooth is
+moved.
 
-A tooth moves as a rigid body: along the pitch circle (pitch), with the axis of the gear (eccentricity, tilt), with a
-ring that is pressed oval. Its profile deviates along the normal. Everything is of first order in the deviations.
+A tooth moves as a rigid body: along the pitch circle (pitch), with the axis of the gear
+(eccentricity, tilt), with a ring that is pressed oval. Its profile deviates along the normal.
+Everything is of first order in the deviations.
 """
 
 from __future__ import annotations
@@ -24,8 +26,10 @@ class GearDeviations:
     """Deviations of one gear.
 
     r_pitch : mm, pitch radius
-    pitch : (n_teeth,) mm, position of the teeth along the pitch circle less the theoretical one, counter-clockwise
-    shift : (2,) mm, of the gear's axis at mid-width;  tilt : (2,) displacement of the axis per mm along z
+    pitch : (n_teeth,) mm, position of the teeth along the pitch circle less the theoretical one,
+    counter-clockwise
+    shift : (2,) mm, of the gear's axis at mid-width;  tilt : (2,) displacement of the axis per mm
+    along z
     ovality : mm, largest less smallest diameter;  oval_angle : rad, of the largest one from +y
     profile_slope, profile_form : mm, see `profile_height`
     """
@@ -50,12 +54,14 @@ class GearDeviations:
         )
 
     def moved(self, points: np.ndarray, angle: np.ndarray) -> np.ndarray:
-        """Displacement (n_teeth, n, 2) mm of points (n, 2) mm of the tooth at +y, in the frame of each tooth.
+        """Displacement (n_teeth, n, 2) mm of points (n, 2) mm of the tooth at +y, in the frame of
+        each tooth.
 
         angle : (n_teeth,) rad, of the teeth from +y
 
-        The oval gear is a ring that bends without stretching: with psi from the largest diameter and a the ovality,
-        w = a / 4 cos 2 psi outward, v = -a / 8 sin 2 psi counter-clockwise, rotation 3 a / 8 sin 2 psi / r.
+        The oval gear is a ring that bends without stretching: with psi from the largest diameter
+        and a the ovality, w = a / 4 cos 2 psi outward, v = -a / 8 sin 2 psi counter-clockwise,
+        rotation 3 a / 8 sin 2 psi / r.
         """
         turn = self.pitch / self.r_pitch
         psi = 2.0 * (angle - self.oval_angle)
@@ -63,15 +69,19 @@ class GearDeviations:
         lean = 0.375 * self.ovality * np.sin(psi) / self.r_pitch
         x, y = points.T
         rigid = rotated(np.broadcast_to(self.shift, (len(angle), 2)), -angle)
-        along = rigid[:, :1] - around[:, None] - np.outer(turn, y) - np.outer(lean, y - self.r_pitch)
+        along = (
+            rigid[:, :1] - around[:, None] - np.outer(turn, y) - np.outer(lean, y - self.r_pitch)
+        )
         across = rigid[:, 1:] + outward[:, None] + np.outer(turn, x) + np.outer(lean, x)
         return np.stack([along, across], axis=-1)
 
     def profile_height(self, profile: ToothProfile, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Height (n,) mm of the profile over the ideal one at arc lengths s (n,) mm, and its derivative by s.
+        """Height (n,) mm of the profile over the ideal one at arc lengths s (n,) mm, and its
+        derivative by s.
 
-        The slope raises the tip end by half of it and lowers the root end of the active profile by half of it. The
-        form is one wave of that height, high at both ends. Both fade out where crowning does.
+        The slope raises the tip end by half of it and lowers the root end of the active profile by
+        half of it. The form is one wave of that height, high at both ends. Both fade out where
+        crowning does.
         """
         end = profile.breaks[-2]
 
@@ -84,26 +94,35 @@ class GearDeviations:
         low, high = np.clip(s - step, 0.0, None), np.clip(s + step, None, profile.length)
         return height(s), (height(high) - height(low)) / (high - low)
 
-    def heights(self, profile: ToothProfile, s: np.ndarray, z: np.ndarray, angle: np.ndarray, side: int) -> np.ndarray:
-        """Height (n_teeth, n) mm of the moved flank over the ideal one along its normal, at s and z (n,) mm.
+    def heights(
+        self, profile: ToothProfile, s: np.ndarray, z: np.ndarray, angle: np.ndarray, side: int
+    ) -> np.ndarray:
+        """Height (n_teeth, n) mm of the moved flank over the ideal one along its normal, at s and z
+        (n,) mm.
 
         side : +1 for the clockwise flank, -1 for the other;  angle : (n_teeth,) rad, of the teeth
         """
         mirror = MIRROR if side < 0 else np.ones(2)
         points, normal = profile.point(s) * mirror, profile.normal(s) * mirror
         moved = self.moved(points, angle)
-        moved = moved + z[:, None] * rotated(np.broadcast_to(self.tilt, (len(angle), 2)), -angle)[:, None, :]
+        moved = (
+            moved
+            + z[:, None] * rotated(np.broadcast_to(self.tilt, (len(angle), 2)), -angle)[:, None, :]
+        )
         return np.einsum("tni,ni->tn", moved, normal) + self.profile_height(profile, s)[0]
 
     def flank_shift(
         self, profile: ToothProfile, s: np.ndarray, angle: np.ndarray, side: int
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Displacement (n_teeth, n, 2) mm of the flank at s (n,) mm in the frames of the teeth, without tilt.
+        """Displacement (n_teeth, n, 2) mm of the flank at s (n,) mm in the frames of the teeth,
+        without tilt.
 
         Returns it and its derivative by s, which changes the tangent. side, angle : as in `heights`
         """
         mirror = MIRROR if side < 0 else np.ones(2)
-        points, tangent, normal = (f(s) * mirror for f in (profile.point, profile.tangent, profile.normal))
+        points, tangent, normal = (
+            f(s) * mirror for f in (profile.point, profile.tangent, profile.normal)
+        )
         height, rise = self.profile_height(profile, s)
         moved = self.moved(points, angle)
         turned = self.moved(points + tangent, angle) - moved

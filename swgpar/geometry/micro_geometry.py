@@ -1,8 +1,9 @@
 """Crowning and slope: microns taken from the cam and from the flanks (section 7.12).
 
-Sign of the slope, with theta from the major axis and z towards the closed end: the cam's surface is moved
-radially by -s (2 z / F_w) cos(n theta), n lobes. s > 0 raises the edge under the open end at the major axis, so that
-the surface follows the cone of the deflected cup (section 7.12); s < 0 is the sense of the words of section 7.13.3.
+Sign of the slope, with theta from the major axis and z towards the closed end: the cam's surface is
+moved radially by -s (2 z / F_w) cos(n theta), n lobes. s > 0 raises the edge under the open end at
+the major axis, so that the surface follows the cone of the deflected cup (section 7.12); s < 0 is
+the sense of the words of section 7.13.3.
 """
 
 from __future__ import annotations
@@ -12,10 +13,14 @@ import numpy as np
 from swgpar.geometry.cams import Cam
 
 
-def crowning(amount: float, z: np.ndarray, width: float, shape: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Material removed at the axial coordinates z (n,), mm, and its first two derivatives (mm, -, 1/mm).
+def crowning(
+    amount: float, z: np.ndarray, width: float, shape: str
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Material removed at the axial coordinates z (n,), mm, and its first two derivatives (mm, -,
+    1/mm).
 
-    `amount` at |z| = width / 2, nothing at mid-width; "parabolic", or "circular": the arc through the same points.
+    `amount` at |z| = width / 2, nothing at mid-width; "parabolic", or "circular": the arc through
+    the same points.
     """
     z = np.asarray(z, dtype=float)
     if amount == 0.0:
@@ -48,7 +53,11 @@ def _three_waves(x: np.ndarray, y: np.ndarray) -> Waves:
     q, (qx, qy), (qxx, qxy, qyy) = _two_waves(x, y)
     r = np.hypot(x, y)
     p, px, py = y / r, -x * y / r**3, x * x / r**3
-    pxx, pxy, pyy = y * (2.0 * x * x - y * y) / r**5, x * (2.0 * y * y - x * x) / r**5, -3.0 * x * x * y / r**5
+    pxx, pxy, pyy = (
+        y * (2.0 * x * x - y * y) / r**5,
+        x * (2.0 * y * y - x * x) / r**5,
+        -3.0 * x * x * y / r**5,
+    )
     f = 2.0 * q - 1.0
     return (
         p * f,
@@ -62,15 +71,18 @@ def _three_waves(x: np.ndarray, y: np.ndarray) -> Waves:
 
 
 class WaveGeneratorSurface:
-    """Level function of the cam with crowning and slope: exact in-plane distance less the radial modification.
+    """Level function of the cam with crowning and slope: exact in-plane distance less the radial
+    modification.
 
-    The zero level is the surface; away from it h is the distance up to the factor |grad h|, 1.002 at most here.
+    The zero level is the surface; away from it h is the distance up to the factor |grad h|, 1.002
+    at most here.
 
     Parameters
     ----------
     cam : curve of the cross-section at mid-width
     width : mm, face width of the cam
-    crowning, slope : mm, at |z| = width / 2 (section 7.12; the sign of the slope is explained above)
+    crowning, slope : mm, at |z| = width / 2 (section 7.12; the sign of the slope is explained
+    above)
     shape : "parabolic" or "circular", of the crowning
     lobes : 2 or 3, of the cam
     """
@@ -88,7 +100,8 @@ class WaveGeneratorSurface:
         self.crowning, self.slope, self.shape = crowning, slope, shape
 
     def evaluate(self, xyz: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Level h (n,) mm, gradient (n, 3), Hessian (n, 3, 3) 1/mm at points (n, 3) of the cam's frame."""
+        """Level h (n,) mm, gradient (n, 3), Hessian (n, 3, 3) 1/mm at points (n, 3) of the cam's
+        frame."""
         x, y, z = np.asarray(xyz, dtype=float).T
         distance, normal, k = self.cam.evaluate(xyz[:, :2])
         gradient = np.zeros((len(x), 3))

@@ -1,8 +1,9 @@
 """The neutral line of a thin ring that a cam bends without extension.
 
-The ring's tangents turn by the tilt L(theta), a series of the harmonics of the lobes in the material
-angle theta. Its curve follows
-exactly: X' = -r exp(i (theta + L)), with the plane's points as complex numbers x + i y and the major axis along +y.
+The ring's tangents turn by the tilt L(theta), a series of the harmonics of the lobes in the
+material angle theta. Its curve follows
+exactly: X' = -r exp(i (theta + L)), with the plane's points as complex numbers x + i y and the
+major axis along +y.
 """
 
 from __future__ import annotations
@@ -22,19 +23,22 @@ PENALTY = 1e3 / 9.0
 """Stiffness of the cam at a point, over that of the first harmonic: 9 with two lobes."""
 
 ROUNDS, MAX_CHANGES = 4, 50
-"""Rounds in which the points find their places on the cam as they move around; changes of the points that touch."""
+"""Rounds in which the points find their places on the cam as they move around; changes of the
+points that touch."""
 
 SERIES_POINTS = 1024
 """Points of the Fourier series of the curve, whose terms fall to round-off long before."""
 
 
 def bent_ring(cam: Cam, inner_radius: float, radius: float, lobes: int = 2) -> np.ndarray:
-    """Complex amplitudes c_n (HARMONICS + 1,) mm of the radial displacement Re(c_n exp(i lobes n theta)) on the cam.
+    """Complex amplitudes c_n (HARMONICS + 1,) mm of the radial displacement Re(c_n exp(i lobes n
+    theta)) on the cam.
 
-    The energy of a harmonic k = lobes n is that of the change of curvature, (k² - 1)² a_n². The ring shrinks by what
-    its waves need.
+    The energy of a harmonic k = lobes n is that of the change of curvature, (k² - 1)² a_n². The
+    ring shrinks by what its waves need.
 
-    inner_radius, radius : mm, of the undeformed ring's inner surface, which touches the cam, and of its neutral line
+    inner_radius, radius : mm, of the undeformed ring's inner surface, which touches the cam, and of
+    its neutral line
     """
     theta = np.linspace(0.0, 2.0 * np.pi / lobes, POINTS, endpoint=False)
     order = float(lobes) * np.arange(1, HARMONICS + 1)
@@ -56,7 +60,9 @@ def bent_ring(cam: Cam, inner_radius: float, radius: float, lobes: int = 2) -> n
                 break
             touches = inside
             pressed = penalty * waves[touches]
-            amplitudes = np.linalg.solve(np.diag(energy) + pressed.T @ waves[touches], pressed.T @ needed[touches])
+            amplitudes = np.linalg.solve(
+                np.diag(energy) + pressed.T @ waves[touches], pressed.T @ needed[touches]
+            )
         shrink = -float((np.sqrt(energy) * amplitudes**2).sum()) / (4.0 * radius)
     return np.append(shrink, amplitudes[:HARMONICS] + 1j * amplitudes[HARMONICS:])
 
@@ -68,8 +74,8 @@ class NeutralLine:
     Attributes
     ----------
     amplitudes : tuple of complex, mm
-        Those of the radial displacement by the harmonics lobes, 2 lobes, …, counted from the major axis
-        counter-clockwise.
+        Those of the radial displacement by the harmonics lobes, 2 lobes, …, counted from the major
+        axis counter-clockwise.
     radius : float, mm
         That of the undeformed line.
     stretched : float, mm
@@ -84,17 +90,29 @@ class NeutralLine:
     lobes: int = 2
 
     def tilt(self, theta: Floats) -> tuple[Floats, Floats, Floats]:
-        """Tilt L (n,) rad of the tangents at material angles `theta` : (n,) rad, and its first two derivatives."""
+        """Tilt L (n,) rad of the tangents at material angles `theta` : (n,) rad, and its first two
+        derivatives."""
         order = float(self.lobes) * np.arange(1, len(self.amplitudes) + 1)[:, None]
         # v = -int w, L = (v - w') / r: both of the imaginary part
-        wave = (order - 1.0 / order) * np.array(self.amplitudes)[:, None] * np.exp(1j * order * theta) / self.radius
-        return wave.imag.sum(axis=0), (order * wave.real).sum(axis=0), -(order**2 * wave.imag).sum(axis=0)
+        wave = (
+            (order - 1.0 / order)
+            * np.array(self.amplitudes)[:, None]
+            * np.exp(1j * order * theta)
+            / self.radius
+        )
+        return (
+            wave.imag.sum(axis=0),
+            (order * wave.real).sum(axis=0),
+            -(order**2 * wave.imag).sum(axis=0),
+        )
 
     @cached_property
     def _series(self) -> tuple[np.ndarray, np.ndarray]:
         """Orders and complex amplitudes, mm, of X."""
         theta = 2.0 * np.pi * np.arange(SERIES_POINTS) / SERIES_POINTS
-        slope = np.fft.fft(-self.stretched * np.exp(1j * (theta + self.tilt(theta)[0]))) / SERIES_POINTS
+        slope = (
+            np.fft.fft(-self.stretched * np.exp(1j * (theta + self.tilt(theta)[0]))) / SERIES_POINTS
+        )
         order = np.fft.fftfreq(SERIES_POINTS, 1.0 / SERIES_POINTS)
         # the mean is zero: the tangents of all lobes cancel
         terms = np.divide(slope, 1j * order, out=np.zeros_like(slope), where=order != 0.0)
@@ -107,7 +125,9 @@ class NeutralLine:
         return np.exp(1j * np.outer(theta, order)) @ terms
 
 
-def neutral_line(cam: Cam, inner_radius: float, radius: float, share: float = 1.0, lobes: int = 2) -> NeutralLine:
+def neutral_line(
+    cam: Cam, inner_radius: float, radius: float, share: float = 1.0, lobes: int = 2
+) -> NeutralLine:
     """The neutral line on a cam of so many lobes.
 
     inner_radius, radius : mm, of the undeformed ring's inner surface and of its neutral line

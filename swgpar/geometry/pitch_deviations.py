@@ -1,6 +1,7 @@
 """Pitch deviations of a gear: tolerances of ISO 1328-1 and random deviations that stay in them.
 
-ISO 1328-1:2013, section 5.3: with the pitch diameter d and the module m in mm and the tolerance class A
+ISO 1328-1:2013, section 5.3: with the pitch diameter d and the module m in mm and the tolerance
+class A
 
     f_pT = (0.001 d + 0.4 m + 5) sqrt(2)^(A - 5)                     single pitch, eq. 5
     F_pT = (0.002 d + 0.55 sqrt(d) + 0.7 m + 12) sqrt(2)^(A - 5)     total cumulative pitch, eq. 6
@@ -16,7 +17,8 @@ import numpy as np
 
 
 class PitchTolerances(NamedTuple):
-    """single : f_pT, µm, bound of the difference of neighbouring teeth;  total : F_pT, µm, of any two teeth"""
+    """single : f_pT, µm, bound of the difference of neighbouring teeth;  total : F_pT, µm, of any
+    two teeth"""
 
     single: float
     total: float
@@ -30,12 +32,15 @@ def pitch_tolerances(diameter: float, module: float, grade: int) -> PitchToleran
     return PitchTolerances(single, float(total))
 
 
-def random_pitch_errors(n_teeth: int, tolerances: PitchTolerances, seed: tuple[int, ...]) -> np.ndarray:
-    """Positions (n_teeth,) µm of the teeth on the pitch circle less their theoretical ones, with mean 0.
+def random_pitch_errors(
+    n_teeth: int, tolerances: PitchTolerances, seed: tuple[int, ...]
+) -> np.ndarray:
+    """Positions (n_teeth,) µm of the teeth on the pitch circle less their theoretical ones, with
+    mean 0.
 
-    Differences of neighbours are drawn from a normal distribution and closed over the circle. They are then scaled
-    so that single and total pitch deviation stay in their tolerances and one of them reaches it: the gear just
-    meets its grade.
+    Differences of neighbours are drawn from a normal distribution and closed over the circle. They
+    are then scaled so that single and total pitch deviation stay in their tolerances and one of
+    them reaches it: the gear just meets its grade.
 
     seed : the same numbers give the same deviations
     """

@@ -1,1 +1,2 @@
-"""What any design file needs: quantities with units and ranges, TOML and its one-sentence errors."""
+"""What any design file needs: quantities with units and ranges, TOML and its one-sentence
+errors."""

@@ -17,7 +17,8 @@ class Design(Section):
     _maker: Callable[[dict[str, Any]], Self] | None = PrivateAttr(None)
 
     def made_by(self, maker: Callable[[dict[str, Any]], Self]) -> Self:
-        """This design, which `maker` has checked: designs that are made of it are checked in the same way."""
+        """This design, which `maker` has checked: designs that are made of it are checked in the
+        same way."""
         self._maker = maker
         return self
 
@@ -27,7 +28,8 @@ class Design(Section):
         Parameters
         ----------
         values : mapping
-            ``"section.key"`` -> value, in the units of the design file; a whole section is given as a dict.
+            ``"section.key"`` -> value, in the units of the design file; a whole section is given as
+            a dict.
 
         Raises
         ------

@@ -18,11 +18,13 @@ MAGNITUDE = "magnitude"
 """Kind of pydantic's finding for numbers of another magnitude than those of their unit."""
 
 WHOLE_SECTION = "whole_section"
-"""Kind of a finding on a section whose keys do not fit each other; its message goes on after the section's name."""
+"""Kind of a finding on a section whose keys do not fit each other; its message goes on after the
+section's name."""
 
 
 class Section(BaseModel):
-    """One table of an input file: immutable, no unknown keys, no silent conversion, finite numbers only."""
+    """One table of an input file: immutable, no unknown keys, no silent conversion, finite numbers
+    only."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
@@ -30,7 +32,9 @@ class Section(BaseModel):
     @classmethod
     def _has_a_magnitude(cls, value: Any, info: ValidationInfo) -> Any:
         """Refuse numbers of another magnitude than those of their unit (`swgpar.input.ranges`)."""
-        if info.field_name is not None and beyond(value, unit_of(cls.model_fields[info.field_name])):
+        if info.field_name is not None and beyond(
+            value, unit_of(cls.model_fields[info.field_name])
+        ):
             raise PydanticCustomError(MAGNITUDE, "another magnitude than that of its unit")
         return value
 
@@ -54,7 +58,8 @@ def quantity(default: Any = ..., *, unit: str = "", text: str, **limits: Any) ->
 
 
 def default_type(name: str) -> Callable[[Any], Any]:
-    """Return a validator that gives a table without a `type` the type `name`; for fields with several sections."""
+    """Return a validator that gives a table without a `type` the type `name`; for fields with
+    several sections."""
     return lambda value: {"type": name, **value} if isinstance(value, dict) else value
 
 
@@ -88,7 +93,8 @@ def unit_of(field: FieldInfo) -> str:
 
 
 def unit_of_key(design: BaseModel, key: str) -> str:
-    """Return the unit of a dotted key of a design; empty for a pure number and for a section that the design lacks."""
+    """Return the unit of a dotted key of a design; empty for a pure number and for a section that
+    the design lacks."""
     *sections, name = key.split(".")
     section: Any = design
     for part in sections:
@@ -100,11 +106,14 @@ def unit_of_key(design: BaseModel, key: str) -> str:
 def allowed(field: FieldInfo, *, smallest: bool = False) -> str:
     """Return the allowed range of a field as words, for example ``allowed above 0 to 100000 mm``.
 
-    smallest : with the smallest magnitude of a number with its unit, for example ``allowed 0 and 0.001 to 100000 mm``
+    smallest : with the smallest magnitude of a number with its unit, for example ``allowed 0 and
+    0.001 to 100000 mm``
     """
     least, largest = map(show, magnitudes(unit_of(field)))
     lower, upper = f"-{largest}", largest
-    of_items = [limit for item in get_args(field.annotation) for limit in getattr(item, "__metadata__", ())]
+    of_items = [
+        limit for item in get_args(field.annotation) for limit in getattr(item, "__metadata__", ())
+    ]
     for limit in [*field.metadata, *of_items]:
         if isinstance(limit, annotated_types.Ge):
             lower = show(limit.ge)
@@ -115,6 +124,8 @@ def allowed(field: FieldInfo, *, smallest: bool = False) -> str:
         elif isinstance(limit, annotated_types.Lt):
             upper = f"below {show(limit.lt)}"
     if smallest:
-        lower = {"above 0": least, "0": f"0 and {least}"}.get(lower, f"{lower} to -{least}, 0 and {least}")
+        lower = {"above 0": least, "0": f"0 and {least}"}.get(
+            lower, f"{lower} to -{least}, 0 and {least}"
+        )
     unit = unit_of(field)
     return f"allowed {lower} to {upper}" + (f" {unit}" if unit else "")

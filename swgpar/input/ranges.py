@@ -1,6 +1,8 @@
-"""Magnitudes of numbers by their unit: far beyond those of any drive or gear train, far inside those of arithmetic.
+"""Magnitudes of numbers by their unit: far beyond those of any drive or gear train, far inside
+those of arithmetic.
 
-A number beyond them is a slip, and would end in an overflow or in a division by zero somewhere in a run.
+A number beyond them is a slip, and would end in an overflow or in a division by zero somewhere in a
+run.
 """
 
 from __future__ import annotations
@@ -48,7 +50,8 @@ def magnitudes(unit: str) -> tuple[float, float]:
 
 
 def beyond(value: Any, unit: str) -> bool:
-    """Whether a number, or one of a list, has another magnitude than numbers of this unit; False for all else."""
+    """Whether a number, or one of a list, has another magnitude than numbers of this unit; False
+    for all else."""
     if isinstance(value, list):
         return any(beyond(item, unit) for item in value)
     if isinstance(value, bool) or not isinstance(value, (int, float)):

@@ -1,4 +1,5 @@
-"""The sentence that refuses a bad value of an input file: its key, the value and what is allowed."""
+"""The sentence that refuses a bad value of an input file: its key, the value and what is
+allowed."""
 
 from __future__ import annotations
 
@@ -24,9 +25,12 @@ NOUNS: dict[Any, str] = {
 
 
 def _section_classes(field: FieldInfo) -> list[type[Section]]:
-    """Return the section a field holds, or all those it has the choice of; none for a plain value."""
+    """Return the section a field holds, or all those it has the choice of; none for a plain
+    value."""
     choices = get_args(field.annotation) or (field.annotation,)
-    return [choice for choice in choices if isinstance(choice, type) and issubclass(choice, Section)]
+    return [
+        choice for choice in choices if isinstance(choice, type) and issubclass(choice, Section)
+    ]
 
 
 def _is_list(field: FieldInfo) -> bool:
@@ -34,11 +38,15 @@ def _is_list(field: FieldInfo) -> bool:
     return get_origin(field.annotation) is list and bool(_section_classes(field))
 
 
-def _locate(model: type[Section], path: Sequence[Any]) -> tuple[type[Section], FieldInfo | None, list[Any]]:
-    """Return the section that holds the last key of `path`, the field when it is a known key, and the keys.
+def _locate(
+    model: type[Section], path: Sequence[Any]
+) -> tuple[type[Section], FieldInfo | None, list[Any]]:
+    """Return the section that holds the last key of `path`, the field when it is a known key, and
+    the keys.
 
-    Below a field with several sections pydantic adds the chosen type to the path. It is not a key, and left out. Below
-    a list of sections it adds the index, which becomes the number of the entry, from 1.
+    Below a field with several sections pydantic adds the chosen type to the path. It is not a key,
+    and left out. Below a list of sections it adds the index, which becomes the number of the entry,
+    from 1.
     """
     path, keys = list(path), []
     field = None
@@ -72,7 +80,10 @@ def _unknown_key(model: type[Section], path: Sequence[Any], value: Any) -> str:
     ]
     near = inner or difflib.get_close_matches(str(path[-1]), alike, n=1, cutoff=0.5)
     if near:
-        return f"{given} is not a key of the {where}: did you mean {parent + '.' if parent else ''}{near[0]}?"
+        return (
+            f"{given} is not a key of the {where}: did you mean "
+            f"{parent + '.' if parent else ''}{near[0]}?"
+        )
     return f"{given} is not a key of the {where}: allowed {', '.join(names)}"
 
 
@@ -97,7 +108,9 @@ def sentence(model: type[Section], error: ValidationError) -> str:
     if _section_classes(field):
         return _bad_section(field, kind, key, value)
     if kind == "literal_error":
-        return f"{key} = {show(value)} is not available: allowed {_choices(field.annotation.__args__)}"
+        return (
+            f"{key} = {show(value)} is not available: allowed {_choices(field.annotation.__args__)}"
+        )
     return _bad_value(field, kind, key, value)
 
 
@@ -106,10 +119,15 @@ def _choices(names: Iterable[str]) -> str:
 
 
 def _bad_section(field: FieldInfo, kind: str, key: str, value: Any) -> str:
-    """Refuse the value of a field that holds a section: an unknown type, none at all, or something else."""
+    """Refuse the value of a field that holds a section: an unknown type, none at all, or something
+    else."""
     sections = _section_classes(field)
     if kind == "union_tag_invalid":
-        types = (name for section in sections for name in get_args(section.model_fields["type"].annotation))
+        types = (
+            name
+            for section in sections
+            for name in get_args(section.model_fields["type"].annotation)
+        )
         return f"{key}.type = {show(value['type'])} is not available: allowed {_choices(types)}"
     keys = ", ".join(sections[0].model_fields)
     header = f"[[{key.rstrip('.0123456789')}]]" if _is_list(field) else f"[{key}]"

@@ -49,7 +49,8 @@ def parse_value(text: str) -> Any:
 
 
 Overrides = Sequence[str] | Mapping[str, Any]
-"""Values for keys of a design file: texts ``"section.key=value"``, or a mapping from ``"section.key"`` to the value."""
+"""Values for keys of a design file: texts ``"section.key=value"``, or a mapping from
+``"section.key"`` to the value."""
 
 
 def apply_overrides(table: dict[str, Any], overrides: Overrides) -> dict[str, Any]:
@@ -70,7 +71,9 @@ def _plain(value: Any) -> Any:
     value = value.tolist() if hasattr(value, "tolist") else value
     if isinstance(value, (list, tuple)):
         return [_plain(item) for item in value]
-    return {key: _plain(item) for key, item in value.items()} if isinstance(value, Mapping) else value
+    return (
+        {key: _plain(item) for key, item in value.items()} if isinstance(value, Mapping) else value
+    )
 
 
 def split_override(override: str) -> tuple[str, str]:
@@ -83,23 +86,33 @@ def split_override(override: str) -> tuple[str, str]:
 
 
 def with_value(table: dict[str, Any], key: str, value: Any) -> dict[str, Any]:
-    """Return a copy of `table` with the value of ``section.key`` replaced; missing sections are added.
+    """Return a copy of `table` with the value of ``section.key`` replaced; missing sections are
+    added.
 
-    In a list of tables the part after its name is the number of the entry, from 1: ``load.program.2.torque``.
+    In a list of tables the part after its name is the number of the entry, from 1:
+    ``load.program.2.torque``.
 
-    Raises InputError where a part of the key names a value instead of a section, or an entry that is not there.
+    Raises InputError where a part of the key names a value instead of a section, or an entry that
+    is not there.
     """
     table = _copy(table)
     target, names = table, key.split(".")
     for depth, name in enumerate(names[:-1], start=1):
-        target = _entry(target, name, key, value) if isinstance(target, list) else target.setdefault(name, {})
+        target = (
+            _entry(target, name, key, value)
+            if isinstance(target, list)
+            else target.setdefault(name, {})
+        )
         if not isinstance(target, dict | list):
             raise InputError(
-                f"{show_key(key)} = {show(value)} cannot be applied: {show_key(*names[:depth])} = {show(target)} "
+                f"{show_key(key)} = {show(value)} cannot be applied: {show_key(*names[:depth])} = "
+                f"{show(target)} "
                 "is a value, not a section"
             )
     if isinstance(target, list):
-        raise InputError(f"{key} = {show(value)} cannot be applied: write a key of the entry, {key}.key")
+        raise InputError(
+            f"{key} = {show(value)} cannot be applied: write a key of the entry, {key}.key"
+        )
     target[names[-1]] = value
     return table
 
@@ -108,7 +121,9 @@ def _entry(tables: list[Any], number: str, key: str, value: Any) -> Any:
     """The entry of a list of tables with this number, from 1."""
     if number.isdecimal() and 1 <= int(number) <= len(tables):
         return tables[int(number) - 1]
-    raise InputError(f"{key} = {show(value)} cannot be applied: {number} is no entry, allowed 1 to {len(tables)}")
+    raise InputError(
+        f"{key} = {show(value)} cannot be applied: {number} is no entry, allowed 1 to {len(tables)}"
+    )
 
 
 def _copy(value: Any) -> Any:
@@ -146,7 +161,8 @@ def toml_value(value: Any) -> str:
 
 
 def validate(model: type[SectionType], table: dict[str, Any]) -> SectionType:
-    """Validate `table` against `model`; the first finding becomes an `InputError` of one sentence."""
+    """Validate `table` against `model`; the first finding becomes an `InputError` of one
+    sentence."""
     try:
         return model.model_validate(table)
     except ValidationError as error:

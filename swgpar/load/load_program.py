@@ -1,6 +1,8 @@
-"""Load programs: the points at which a path of torques, output rotations and wave-generator angles stops.
+"""Load programs: the points at which a path of torques, output rotations and wave-generator angles
+stops.
 
-A program is written in the design file, or generated from its sections [stiffness] and [ratcheting].
+A program is written in the design file, or generated from its sections [stiffness] and
+[ratcheting].
 """
 
 from __future__ import annotations
@@ -17,7 +19,8 @@ from swgpar.design.program_sections import ProgramStage
 NO_TORQUE = 1e-3
 """Share of the largest torque of a program that stands for zero.
 
-Without a torque a drive with backlash has no definite angle of the output. Under this one its flanks just touch.
+Without a torque a drive with backlash has no definite angle of the output. Under this one its
+flanks just touch.
 """
 
 Control = Literal["rotation", "torque"]
@@ -29,7 +32,8 @@ BRANCHES = (POSITIVE_UNLOADING, NEGATIVE_LOADING, NEGATIVE_UNLOADING, POSITIVE_L
 """Branches of the stiffness loop in order, from the largest torque."""
 
 FIRST_LOADING, TRAVEL = "first loading", "travel"
-"""Stages of the stiffness program beside its loops: from zero to the largest torque, and to the next angle."""
+"""Stages of the stiffness program beside its loops: from zero to the largest torque, and to the
+next angle."""
 
 RATCHETING = "ratcheting"
 """The stage in which the output is rotated beyond the strength."""
@@ -41,7 +45,8 @@ class ProgramPoint:
 
     stage : name of the stage that it belongs to
     angle : deg, of the wave generator
-    control : whether `value` is the angle of the output (deg) or its torque (N·m, positive against its motion)
+    control : whether `value` is the angle of the output (deg) or its torque (N·m, positive against
+    its motion)
     """
 
     stage: str
@@ -60,32 +65,47 @@ def program_points(design: DriveDesign) -> list[ProgramPoint]:
 
 
 def stage_points(stages: Sequence[ProgramStage]) -> list[ProgramPoint]:
-    """Points of stages that follow each other, the first one from the assembled drive without torque."""
+    """Points of stages that follow each other, the first one from the assembled drive without
+    torque."""
     points: list[ProgramPoint] = []
     angle, value, before = 0.0, 0.0, "rotation"
     for stage, control in zip(stages, controls(stages)):
-        target = next((given for given in (stage.torque, stage.output_rotation) if given is not None), value)
+        target = next(
+            (given for given in (stage.torque, stage.output_rotation) if given is not None), value
+        )
         if control != before:
             value = 0.0  # where the control changes later than here, a stage has a single point
         end = angle if stage.wave_generator is None else stage.wave_generator
         for i in range(1, stage.points + 1):
             t = i / stage.points
-            points.append(ProgramPoint(stage.name, angle + t * (end - angle), control, value + t * (target - value)))
+            points.append(
+                ProgramPoint(
+                    stage.name, angle + t * (end - angle), control, value + t * (target - value)
+                )
+            )
         angle, value, before = end, target, control
     return _with_torque(points)
 
 
 def controls(stages: Sequence[ProgramStage]) -> list[Control]:
-    """What every stage gives at the output: a torque or an angle, without both what the one before gave."""
+    """What every stage gives at the output: a torque or an angle, without both what the one before
+    gave."""
     found: list[Control] = []
     for stage in stages:
         before: Control = found[-1] if found else "rotation"
-        found.append("torque" if stage.torque is not None else before if stage.output_rotation is None else "rotation")
+        found.append(
+            "torque"
+            if stage.torque is not None
+            else before
+            if stage.output_rotation is None
+            else "rotation"
+        )
     return found
 
 
 def _with_torque(points: Sequence[ProgramPoint]) -> list[ProgramPoint]:
-    """The points with `NO_TORQUE` in place of zero, in the direction of the torque before it, or else after it."""
+    """The points with `NO_TORQUE` in place of zero, in the direction of the torque before it, or
+    else after it."""
     torques = [point.value for point in points if point.control == "torque" and point.value]
     least, found = NO_TORQUE * max(map(abs, torques), default=0.0), []
     sign = np.sign(torques[0]) if torques else 1.0
@@ -98,7 +118,7 @@ def _with_torque(points: Sequence[ProgramPoint]) -> list[ProgramPoint]:
     return found
 
 
-# -- generated programs --------------------------------------------------------------------------------
+# -- generated programs ----------------------------------------------------------------------------
 
 
 def stiffness_torque(design: DriveDesign) -> float:
@@ -112,7 +132,8 @@ def rated_torque(design: DriveDesign) -> float:
 
 
 def stiffness_torques(design: DriveDesign) -> list[float]:
-    """Torques (N·m) of one branch of the stiffness loop, ascending from that which stands for zero."""
+    """Torques (N·m) of one branch of the stiffness loop, ascending from that which stands for
+    zero."""
     section, top = design.stiffness, stiffness_torque(design)
     even = np.linspace(0.0, 1.0, section.points + 1)[1:] * top
     ends = [share * top for share in (NO_TORQUE, *section.break_points)]
@@ -129,7 +150,8 @@ def stiffness_angles(design: DriveDesign) -> list[float]:
 def computed_position(design: DriveDesign, k: int) -> int:
     """Index of the angle of `stiffness_angles` whose loop stands for that at the angle k.
 
-    Without friction a drive with a mirror plane has the same stiffness at the angle that the mirror makes of it.
+    Without friction a drive with a mirror plane has the same stiffness at the angle that the mirror
+    makes of it.
     """
     return min(k, design.stiffness.positions - k) if _uses_mirror(design) else k
 
@@ -163,9 +185,11 @@ def _stiffness(design: DriveDesign) -> list[ProgramPoint]:
 
 
 def _one_way(design: DriveDesign, k: int, torque: float) -> tuple[str, ...]:
-    """Branches that suffice at the angle k where the way back is the same. torque : in which the position before ended
+    """Branches that suffice at the angle k where the way back is the same. torque : in which the
+    position before ended
 
-    Where the mirror plane is that of the wave generator too, one side of the loop is the image of the other.
+    Where the mirror plane is that of the wave generator too, one side of the loop is the image of
+    the other.
     """
     way = BRANCHES[:2] if torque >= 0.0 else BRANCHES[2:]
     if _uses_mirror(design) and 2 * k in (0, design.stiffness.positions):
@@ -174,7 +198,8 @@ def _one_way(design: DriveDesign, k: int, torque: float) -> tuple[str, ...]:
 
 
 def pitch_angle(design: DriveDesign) -> float:
-    """Angle of a pitch of the output, deg: a rotation by it with the wave generator locked renames its teeth."""
+    """Angle of a pitch of the output, deg: a rotation by it with the wave generator locked renames
+    its teeth."""
     return 360.0 / design.teeth(design.output_gear).n_teeth
 
 
@@ -196,5 +221,6 @@ def torque_direction(ratio: float) -> float:
 
 
 def internal_torque(ratio: float, torque: float) -> float:
-    """Torque about z on the output (N mm) for one against its motion (N·m). ratio : as in `torque_direction`"""
+    """Torque about z on the output (N mm) for one against its motion (N·m). ratio : as in
+    `torque_direction`"""
     return torque_direction(ratio) * 1000.0 * torque

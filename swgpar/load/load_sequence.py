@@ -1,4 +1,5 @@
-"""The load states of a run in order, from the design: stages, load program, angles of the rotation."""
+"""The load states of a run in order, from the design: stages, load program, angles of the
+rotation."""
 
 from __future__ import annotations
 
@@ -11,7 +12,13 @@ import numpy as np
 from swgpar.design.drive_design import DriveDesign
 from swgpar.geometry.cams import pin_travel
 from swgpar.load.load_program import ProgramPoint, internal_torque, program_points
-from swgpar.load.load_states import CAM_START_CLEARANCE, FLANK_START_CLEARANCE, PIN_RETRACTION, LoadState, Stage
+from swgpar.load.load_states import (
+    CAM_START_CLEARANCE,
+    FLANK_START_CLEARANCE,
+    PIN_RETRACTION,
+    LoadState,
+    Stage,
+)
 
 RING_FLEXIBILITY = 0.25 * np.pi - 2.0 / np.pi
 """Change of the diameter of a ring under two opposed forces F, over F r^3 / (E I) (Timoshenko)."""
@@ -19,13 +26,14 @@ RING_FLEXIBILITY = 0.25 * np.pi - 2.0 / np.pi
 NEGLIGIBLE = 1e-4
 """Share of the bending force up to which a force on the teeth counts as none.
 
-Newton's iteration balances it together with the forces that bend the flexible spline: far below them, the flanks that
-carry it do not settle. The stresses by bending are larger by the same ratio.
+Newton's iteration balances it together with the forces that bend the flexible spline: far below
+them, the flanks that carry it do not settle. The stresses by bending are larger by the same ratio.
 """
 
 
 def negligible_torque(design: DriveDesign) -> float:
-    """Output torque (N·mm) up to which a drive counts as unloaded: that of `NEGLIGIBLE` at the spline's radius.
+    """Output torque (N·mm) up to which a drive counts as unloaded: that of `NEGLIGIBLE` at the
+    spline's radius.
 
     The bending force is that of a ring with the section of the rim, between two opposed forces.
     """
@@ -36,7 +44,8 @@ def negligible_torque(design: DriveDesign) -> float:
 
 
 def counts_as_none(design: DriveDesign) -> bool:
-    """Whether the design has a torque that is too small beside the bending of the flexible spline."""
+    """Whether the design has a torque that is too small beside the bending of the flexible
+    spline."""
     return 0.0 < 1000.0 * design.load.torque <= negligible_torque(design)
 
 
@@ -70,7 +79,11 @@ class LoadSequence:
     def from_loaded(self) -> tuple[LoadState, ...]:
         """The states from the fully loaded one on."""
         ends = [k for k, state in enumerate(self.states) if state.stage == Stage.LOAD]
-        first = ends[-1] if ends else next(k for k, state in enumerate(self.states) if state.stage == Stage.PROGRAM)
+        first = (
+            ends[-1]
+            if ends
+            else next(k for k, state in enumerate(self.states) if state.stage == Stage.PROGRAM)
+        )
         return self.states[first:]
 
 
@@ -130,7 +143,13 @@ def _engagement(design: DriveDesign) -> Iterator[LoadState]:
 
 def _program(points: Sequence[ProgramPoint], ratio: float) -> Iterator[LoadState]:
     for step, point in enumerate(points, start=int(Stage.LOAD)):
-        state = LoadState(Stage.PROGRAM, step, float(np.radians(point.angle)), cam_clearance=0.0, flank_clearance=0.0)
+        state = LoadState(
+            Stage.PROGRAM,
+            step,
+            float(np.radians(point.angle)),
+            cam_clearance=0.0,
+            flank_clearance=0.0,
+        )
         if point.control == "torque":
             yield replace(state, control="torque", torque=internal_torque(ratio, point.value))
         else:
@@ -140,12 +159,15 @@ def _program(points: Sequence[ProgramPoint], ratio: float) -> Iterator[LoadState
 def rotation_angles(design: DriveDesign) -> list[float]:
     """Angles (rad) of the wave generator at the ends of the computed increments of its rotation.
 
-    With `steps.samples` these are the angles of one period. The last one is left out, because the drive is then in its
-    loaded state again. With friction they are the angles of two periods; the slip settles in the first one.
+    With `steps.samples` these are the angles of one period. The last one is left out, because the
+    drive is then in its loaded state again. With friction they are the angles of two periods; the
+    slip settles in the first one.
     """
     steps = design.steps
     if steps.samples:
         count = 2 * steps.samples if design.contact.friction else steps.samples - 1
         return [design.period_angle * i / steps.samples for i in range(1, count + 1)]
     count = int(np.ceil(round(steps.rotation / steps.increment, 9)))
-    return [float(np.radians(min(i * steps.increment, steps.rotation))) for i in range(1, count + 1)]
+    return [
+        float(np.radians(min(i * steps.increment, steps.rotation))) for i in range(1, count + 1)
+    ]

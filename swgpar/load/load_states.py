@@ -2,18 +2,20 @@
 
 The stages follow each other:
 
-1. DEFLECT: the pins, the lobes of the cam, push the flexible spline outward by d / 2 each. A cam that bulges
+1. DEFLECT: the pins, the lobes of the cam, push the flexible spline outward by d / 2 each. A cam
+that bulges
    beside its tips pushes farther. With `steps.pins = false`, and with a bearing, the cam grows
    out of the circle instead.
 2. ENGAGE: the wave generator grows into place, the pins are drawn back, and the flanks may touch.
 3. LOAD: the torque is applied. The output rotates until the flanks carry it.
 4. ROTATE: the wave generator rotates in increments.
 
-PROGRAM takes the place of LOAD and ROTATE where the design has a load program: every increment goes to one of its
-points.
+PROGRAM takes the place of LOAD and ROTATE where the design has a load program: every increment goes
+to one of its points.
 
-Without a torque, a drive with backlash has no definite output angle. The output is then held at its kinematic angle,
-and the torque that this takes is reported. The flexible spline of a pancake drive, which has no cup, is then held too.
+Without a torque, a drive with backlash has no definite output angle. The output is then held at its
+kinematic angle, and the torque that this takes is reported. The flexible spline of a pancake drive,
+which has no cup, is then held too.
 """
 
 from __future__ import annotations
@@ -34,7 +36,8 @@ SAME_ROTATION = 1e-12
 
 
 class Stage(enum.IntEnum):
-    """Stage of the load sequence; its value is the number in the column `step` of the first increment.
+    """Stage of the load sequence; its value is the number in the column `step` of the first
+    increment.
 
     Points of a load program are numbered from that of LOAD on.
     """
@@ -59,11 +62,13 @@ class LoadState:
     stage : what the increment does
     step : number in the history's column `step`; increments of the rotation count on from 4
     angle : rad, of the wave generator
-    cam_clearance, flank_clearance : mm, added to every gap of the cam or the flanks; None while they are switched off
+    cam_clearance, flank_clearance : mm, added to every gap of the cam or the flanks; None while
+    they are switched off
     pin_inset : mm, by which each pin is drawn in towards the axis; None when the pins are out
-    control : "rotation" (output held at `output_rotation`, rad) or "torque" (`torque`, N mm, against the output's
-    motion)
-    spline_held : in a pancake drive, whether the flexible spline is held at the output's kinematic angle
+    control : "rotation" (output held at `output_rotation`, rad) or "torque" (`torque`, N mm,
+    against the output's motion)
+    spline_held : in a pancake drive, whether the flexible spline is held at the output's kinematic
+    angle
     frictionless : whether friction is left out, on the way to a state that is not reached with it
     """
 
@@ -90,15 +95,22 @@ class LoadState:
         return self.stage >= Stage.LOAD
 
     def switches_on(self, before: LoadState) -> bool:
-        """Whether a contact is active here that is not in the state `before`; the first state switches all on."""
+        """Whether a contact is active here that is not in the state `before`; the first state
+        switches all on."""
 
         def active(state: LoadState) -> list[bool]:
-            return [value is not None for value in (state.cam_clearance, state.pin_inset, state.flank_clearance)]
+            return [
+                value is not None
+                for value in (state.cam_clearance, state.pin_inset, state.flank_clearance)
+            ]
 
-        return before.stage == Stage.START or any(new and not old for new, old in zip(active(self), active(before)))
+        return before.stage == Stage.START or any(
+            new and not old for new, old in zip(active(self), active(before))
+        )
 
     def continues_period(self, before: LoadState, ratio: float) -> bool:
-        """Whether this state follows from `before` in the drive's periodic motion, that is under the same load.
+        """Whether this state follows from `before` in the drive's periodic motion, that is under
+        the same load.
 
         ratio : speed of the wave generator over that of the output
         """
@@ -109,11 +121,13 @@ class LoadState:
         turned = self.output_rotation - before.output_rotation - (self.angle - before.angle) / ratio
         return abs(turned) < SAME_ROTATION
 
-    def interpolate(self, target: LoadState, share: float, module: float, deflection: float) -> LoadState:
+    def interpolate(
+        self, target: LoadState, share: float, module: float, deflection: float
+    ) -> LoadState:
         """State between this one (share 0) and `target` (share 1).
 
-        What the target switches on grows from `CAM_START_CLEARANCE` and `FLANK_START_CLEARANCE`. Pins that it takes out
-        are drawn back by `PIN_RETRACTION`.
+        What the target switches on grows from `CAM_START_CLEARANCE` and `FLANK_START_CLEARANCE`.
+        Pins that it takes out are drawn back by `PIN_RETRACTION`.
 
         module : mm;  deflection : mm, d of the drive
         """
@@ -123,10 +137,17 @@ class LoadState:
         for key in ("angle", "output_rotation", "torque"):
             old, new = getattr(self, key), getattr(target, key)
             values[key] = old + share * (new - old)
-        starts = {"cam_clearance": CAM_START_CLEARANCE * module, "flank_clearance": FLANK_START_CLEARANCE * module}
+        starts = {
+            "cam_clearance": CAM_START_CLEARANCE * module,
+            "flank_clearance": FLANK_START_CLEARANCE * module,
+        }
         for key, clearance in starts.items():
             old, new = getattr(self, key), getattr(target, key)
-            values[key] = None if new is None else (1.0 - share) * (clearance if old is None else old) + share * new
+            values[key] = (
+                None
+                if new is None
+                else (1.0 - share) * (clearance if old is None else old) + share * new
+            )
         if self.pin_inset is not None:
             inset = PIN_RETRACTION * deflection if target.pin_inset is None else target.pin_inset
             values["pin_inset"] = self.pin_inset + share * (inset - self.pin_inset)

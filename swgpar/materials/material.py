@@ -18,16 +18,17 @@ IN_PLANE = [0, 1, 3]
 class Material(Section):
     """A linear elastic law. Its fields are the keys of the section, its one method is `compliance`.
 
-    The law holds in the axes of a tooth sector, and rotates with it: y is radial at the middle of the sector, x is
-    tangential there, and z is the axis of the drive. Components are xx, yy, zz, xy, yz, zx, with engineering shear
-    strains.
+    The law holds in the axes of a tooth sector, and rotates with it: y is radial at the middle of
+    the sector, x is tangential there, and z is the axis of the drive. Components are xx, yy, zz,
+    xy, yz, zx, with engineering shear strains.
     """
 
     @model_validator(mode="after")
     def _is_stable(self) -> Self:
         if np.linalg.eigvalsh(self.compliance()).min() <= 0.0:
             raise PydanticCustomError(
-                WHOLE_SECTION, "is a material that yields energy: allowed a compliance that is positive definite"
+                WHOLE_SECTION,
+                "is a material that yields energy: allowed a compliance that is positive definite",
             )
         return self
 
@@ -40,12 +41,14 @@ class Material(Section):
         return _inverse(self.compliance())
 
     def plane_stress(self) -> np.ndarray:
-        """Stresses xx, yy, xy by these strains where zz, yz and zx are free of stress, (3, 3) MPa."""
+        """Stresses xx, yy, xy by these strains where zz, yz and zx are free of stress, (3, 3)
+        MPa."""
         return _inverse(self.compliance()[np.ix_(IN_PLANE, IN_PLANE)])
 
     @property
     def modulus(self) -> float:
-        """Modulus of elasticity along x, MPa: E of formulas for isotropic bodies, and scale of penalties."""
+        """Modulus of elasticity along x, MPa: E of formulas for isotropic bodies, and scale of
+        penalties."""
         return float(1.0 / self.compliance()[0, 0])
 
     @property
@@ -55,17 +58,22 @@ class Material(Section):
         return float(-compliance[0, 1] / compliance[0, 0])
 
     def contact_compliance(self, *, plane_stress: bool = False) -> float:
-        """Share of a half space in 1 / E* of a contact along z, 1/MPa; of a half plane in plane stress.
+        """Share of a half space in 1 / E* of a contact along z, 1/MPa; of a half plane in plane
+        stress.
 
-        It is (1 - nu²) / E of an isotropic body, 1 / E in plane stress. The plane xy is taken as isotropic.
+        It is (1 - nu²) / E of an isotropic body, 1 / E in plane stress. The plane xy is taken as
+        isotropic.
         """
         s = self.compliance()
         return float(s[0, 0] if plane_stress else s[0, 0] - s[0, 2] ** 2 / s[2, 2])
 
 
 def contact_modulus(first: Material, second: Material, *, plane_stress: bool = False) -> float:
-    """E* (MPa) of two half spaces, or of half planes in plane stress: 1 / E* is the sum of their shares."""
-    return 1.0 / sum(material.contact_compliance(plane_stress=plane_stress) for material in (first, second))
+    """E* (MPa) of two half spaces, or of half planes in plane stress: 1 / E* is the sum of their
+    shares."""
+    return 1.0 / sum(
+        material.contact_compliance(plane_stress=plane_stress) for material in (first, second)
+    )
 
 
 def _inverse(matrix: np.ndarray) -> np.ndarray:

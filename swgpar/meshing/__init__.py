@@ -4,4 +4,11 @@ from swgpar.meshing.recipe import MeshRecipe, load_recipe
 from swgpar.meshing.sector import FlankGrid, SectorMesh
 from swgpar.meshing.tooth_sector import build_sector_meshes, require_sections
 
-__all__ = ["FlankGrid", "MeshRecipe", "SectorMesh", "build_sector_meshes", "load_recipe", "require_sections"]
+__all__ = [
+    "FlankGrid",
+    "MeshRecipe",
+    "SectorMesh",
+    "build_sector_meshes",
+    "load_recipe",
+    "require_sections",
+]

@@ -15,7 +15,8 @@ from swgpar.meshing.mapped import MappedBlocks, MeshError, QuadMesh
 from swgpar.meshing.recipe import ToothRecipe
 
 UNDER, ROOT, RIM = 3, 4, 5
-"""Numbers of the blocks below the core and below the root, and of the first block of the lower rim."""
+"""Numbers of the blocks below the core and below the root, and of the first block of the lower
+rim."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +59,9 @@ class CrossSection:
     housing: NDArray[np.bool_]
 
 
-def cross_section(profile: ToothProfile, recipe: ToothRecipe, interface: float, free: float) -> CrossSection:
+def cross_section(
+    profile: ToothProfile, recipe: ToothRecipe, interface: float, free: float
+) -> CrossSection:
     """Mesh the cross-section of one tooth and its rim; parameters as for `HalfTooth`."""
     half = HalfTooth(profile, recipe, interface, free)
     mapped = MappedBlocks(scale=half.half_pitch * profile.r_tip_circle)
@@ -69,7 +72,9 @@ def cross_section(profile: ToothProfile, recipe: ToothRecipe, interface: float, 
     find = NodeFinder(mesh.coords, 1e-6 * mapped.scale)
     flank = find(flank_points)
     mesh.coords[flank] = flank_points
-    edge = np.flatnonzero(np.abs(np.arctan2(*mesh.coords.T) - half.half_pitch) < 1e-9 * half.half_pitch)
+    edge = np.flatnonzero(
+        np.abs(np.arctan2(*mesh.coords.T) - half.half_pitch) < 1e-9 * half.half_pitch
+    )
     full, mirror = mirrored(mesh)
     radius = np.hypot(*full.coords.T)
     rim_layer, root_layer = full.block >= RIM, (full.block == UNDER) | (full.block == ROOT)
@@ -94,7 +99,8 @@ def cross_section(profile: ToothProfile, recipe: ToothRecipe, interface: float, 
 
 
 class NodeFinder:
-    """Nodes by their coordinates: `find(points)` gives the node (n,) at each of the `points` (n, 2), mm."""
+    """Nodes by their coordinates: `find(points)` gives the node (n,) at each of the `points` (n,
+    2), mm."""
 
     def __init__(self, coords: Floats, tolerance: float) -> None:
         self.tree, self.tolerance = cKDTree(coords), tolerance
@@ -124,4 +130,6 @@ def mirrored(half: QuadMesh) -> tuple[QuadMesh, Ints]:
     image[~axis] = n + np.arange(np.count_nonzero(~axis))
     mirror = np.concatenate((image, np.flatnonzero(~axis))).astype(np.int32)
     quads = np.concatenate((half.quads, image[half.quads[:, ::-1]]))
-    return QuadMesh(np.concatenate((coords, coords[~axis] * (-1.0, 1.0))), quads, np.tile(half.block, 2)), mirror
+    return QuadMesh(
+        np.concatenate((coords, coords[~axis] * (-1.0, 1.0))), quads, np.tile(half.block, 2)
+    ), mirror

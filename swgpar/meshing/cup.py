@@ -1,4 +1,5 @@
-"""The cup's slice of one tooth sector: the lower rim continued over the wall and the closed end or flange."""
+"""The cup's slice of one tooth sector: the lower rim continued over the wall and the closed end or
+flange."""
 
 from __future__ import annotations
 
@@ -15,13 +16,16 @@ from swgpar.meshing.recipe import CupRecipe
 from swgpar.meshing.sweep import sweep_line, sweep_quads, symmetric_steps
 
 GROWTH = 1.6
-"""Ratio of the lengths of successive elements between the fillet at the back of the teeth and the other ones."""
+"""Ratio of the lengths of successive elements between the fillet at the back of the teeth and the
+other ones."""
 
 
 def cylinder_stations(length: float, recipe: CupRecipe, fillet: float, layers: int) -> Floats:
-    """Distances (n,), mm, of the stations along the cylinder from the back of the teeth, the last one at `length`.
+    """Distances (n,), mm, of the stations along the cylinder from the back of the teeth, the last
+    one at `length`.
 
-    fillet : its radius, mm;  layers : elements along it, from which those behind it grow to the recipe's
+    fillet : its radius, mm;  layers : elements along it, from which those behind it grow to the
+    recipe's
     """
     usual = length * symmetric_steps(recipe.cylinder, recipe.end_ratio)
     if fillet == 0.0:
@@ -32,14 +36,20 @@ def cylinder_stations(length: float, recipe: CupRecipe, fillet: float, layers: i
         step *= GROWTH
         behind = usual[usual > stations[-1] + 0.5 * step]
         if len(behind) < 2 or step > behind[1] - behind[0] or stations[-1] + 1.5 * step > length:
-            return np.array([*stations, *behind]) if len(behind) else np.array([*stations[:-1], length])
+            return (
+                np.array([*stations, *behind])
+                if len(behind)
+                else np.array([*stations[:-1], length])
+            )
         stations.append(stations[-1] + step)
 
 
 def fillet_points(share: Floats, radius: float) -> tuple[Floats, Floats]:
-    """Points of the fillet at the back of the teeth: height above the wall and distance from the back, mm.
+    """Points of the fillet at the back of the teeth: height above the wall and distance from the
+    back, mm.
 
-    share : (n,) of the fillet, -1 at its end on the wall, 0 in its middle, 1 at its end at the back of the teeth
+    share : (n,) of the fillet, -1 at its end on the wall, 0 in its middle, 1 at its end at the back
+    of the teeth
     """
     angle = 0.25 * np.pi * (1.0 + share)
     return radius * (1.0 - np.cos(angle)), radius * (1.0 - np.sin(angle))
@@ -47,7 +57,8 @@ def fillet_points(share: Floats, radius: float) -> tuple[Floats, Floats]:
 
 @dataclass(frozen=True)
 class Meridian:
-    """Stations of the wall in the meridian plane, from the back of the teeth to the bore or the rim of the flange.
+    """Stations of the wall in the meridian plane, from the back of the teeth to the bore or the rim
+    of the flange.
 
     inner, outer : (n_station, 2) mm, points (r, z) of both surfaces
     wall, end : station at which the fillet begins, and the closed end or flange
@@ -68,15 +79,21 @@ def meridian(cup: CupGeometry, recipe: CupRecipe, layers: int = 1) -> Meridian:
     """
     wall, back_fillet = cup.wall, cup.back_fillet
     r_center, z_center = wall.center
-    s = wall.stations(cylinder_stations(wall.length, recipe, back_fillet, layers), back_fillet * (1.0 + 1e-9))
+    s = wall.stations(
+        cylinder_stations(wall.length, recipe, back_fillet, layers), back_fillet * (1.0 + 1e-9)
+    )
     angle = np.linspace(0.0, 0.5 * np.pi, recipe.fillet + 1)[1:]
     side = -1.0 if wall.outwards else 1.0
     share = symmetric_steps(recipe.closed_end, recipe.end_ratio)
     if cup.clamping_radius is not None:
-        share = with_station(share, (cup.clamping_radius - r_center) / (wall.edge - r_center), share[[0, -1]])
+        share = with_station(
+            share, (cup.clamping_radius - r_center) / (wall.edge - r_center), share[[0, -1]]
+        )
     r = r_center + (wall.edge - r_center) * share[1:]
     lines = []
-    for line, (along_r, along_z), face in zip((wall.inner, wall.outer), wall.sizes, wall.faces, strict=True):
+    for line, (along_r, along_z), face in zip(
+        (wall.inner, wall.outer), wall.sizes, wall.faces, strict=True
+    ):
         radius = line.radius(s)
         cylinder = np.stack((radius, wall.back + s), axis=-1)
         if line is wall.outer and back_fillet:
@@ -84,20 +101,27 @@ def meridian(cup: CupGeometry, recipe: CupRecipe, layers: int = 1) -> Meridian:
             up, along = fillet_points(-s[on] / back_fillet, back_fillet)
             cylinder[on] = np.stack((radius[on] + up, wall.back + along), axis=-1)
         arms = np.stack((side * along_r * np.cos(angle), along_z * np.sin(angle)), axis=-1)
-        lines.append(np.concatenate((cylinder, wall.center + arms, np.stack((r, np.full_like(r, face)), axis=-1))))
+        lines.append(
+            np.concatenate(
+                (cylinder, wall.center + arms, np.stack((r, np.full_like(r, face)), axis=-1))
+            )
+        )
     return Meridian(lines[0], lines[1], len(s) - 1, len(s) - 1 + recipe.fillet)
 
 
 def attached_quads(section: CrossSection, root_too: bool) -> NDArray[np.bool_]:
-    """Return the mask (n_quad,) of the quadrilaterals of the cross-section that the cup continues."""
+    """Return the mask (n_quad,) of the quadrilaterals of the cross-section that the cup
+    continues."""
     return section.rim_layer | section.root_layer if root_too else section.rim_layer
 
 
 def depth_fractions(section: CrossSection, grid: Ints, r_inner: float, thickness: float) -> Floats:
-    """Return the fraction (n_node,) of the wall at the nodes of a `wall_grid`: 0 at its inner, 1 at its outer surface.
+    """Return the fraction (n_node,) of the wall at the nodes of a `wall_grid`: 0 at its inner, 1 at
+    its outer surface.
 
-    Where the layers below the root are attached, their top follows the root and the teeth; the fraction then
-    counts layers instead of radius, and the cup's outer surface is level from its first station on.
+    Where the layers below the root are attached, their top follows the root and the teeth; the
+    fraction then counts layers instead of radius, and the cup's outer surface is level from its
+    first station on.
     """
     fraction = np.zeros(len(section.coords))
     fraction[grid] = (np.hypot(*section.coords[grid].transpose(2, 0, 1)) - r_inner) / thickness
@@ -116,7 +140,8 @@ class CupSlice:
     coords : (n, 3) mm, of the nodes that are not those of the toothed part;  hexes : (n_elem, 8)
     cw, ccw : (n_pair,) nodes on the sides of the sector, without those of the toothed part
     bore : (n_bore,) nodes of the bore, or of the rim of the flange
-    end : (n_face, 4) faces of the closed end or flange, on both sides, whose right-hand normal points outwards
+    end : (n_face, 4) faces of the closed end or flange, on both sides, whose right-hand normal
+    points outwards
     """
 
     coords: Floats
@@ -130,7 +155,8 @@ class CupSlice:
 def wall_grid(section: CrossSection, attached: NDArray[np.bool_]) -> Ints:
     """Return the nodes (n_layer + 1, n_column + 1) of the cross-section that the cup continues.
 
-    Rows go from the free surface outwards, columns from the clockwise to the counter-clockwise side.
+    Rows go from the free surface outwards, columns from the clockwise to the counter-clockwise
+    side.
     """
     opposite = {}
     for quad in section.quads[attached].tolist():
@@ -144,17 +170,20 @@ def wall_grid(section: CrossSection, attached: NDArray[np.bool_]) -> Ints:
 
 
 def rounded_back(drive: DriveGeometry, section: CrossSection, back: Floats) -> Floats:
-    """Nodes (n_section, 3), mm, of the back of the teeth, those near the corner with the wall moved onto its fillet.
+    """Nodes (n_section, 3), mm, of the back of the teeth, those near the corner with the wall moved
+    onto its fillet.
 
-    The layer of nodes below the root that is nearest to the end of the fillet becomes its end. Without such a layer the
-    fillet has a node in its middle only.
+    The layer of nodes below the root that is nearest to the end of the fillet becomes its end.
+    Without such a layer the fillet has a node in its middle only.
     """
     cup, rim_thickness = drive.cup, drive.gears["flexible_spline"].rim
     thickness = cup.thickness_coef * rim_thickness
     if cup.back_fillet == 0.0:
         return back
     rows = wall_grid(section, attached_quads(section, root_too=True))
-    rim = len(wall_grid(section, attached_quads(section, root_too=False))) - 1  # the row of the corner
+    rim = (
+        len(wall_grid(section, attached_quads(section, root_too=False))) - 1
+    )  # the row of the corner
     step, under = rim_thickness - thickness, len(rows) - 1 - rim
     last = under
     if cup.back_fillet < step * (1.0 - 1e-9):
@@ -165,7 +194,9 @@ def rounded_back(drive: DriveGeometry, section: CrossSection, back: Floats) -> F
     moved, z = radius.copy(), back[rows, 2]
     moved[rim : rim + len(up)] = (drive.inner_radius + thickness + up)[:, None]
     z[rim : rim + len(up)] += along[:, None]
-    inside = (radius[:rim] - drive.inner_radius) / thickness  # in the rim in proportion to the distance from inside
+    inside = (
+        radius[:rim] - drive.inner_radius
+    ) / thickness  # in the rim in proportion to the distance from inside
     moved[:rim] += inside * up[0]
     z[:rim] += inside * along[0]
     new = back.copy()
@@ -175,7 +206,8 @@ def rounded_back(drive: DriveGeometry, section: CrossSection, back: Floats) -> F
 
 
 def joined_columns(n_column: int) -> list[int]:
-    """Return numbers of columns that become one: threes, and in the middle single ones that are left over."""
+    """Return numbers of columns that become one: threes, and in the middle single ones that are
+    left over."""
     threes, rest = divmod(n_column // 2, 3)
     return [*[3] * threes, *[1] * (2 * rest), *[3] * threes]
 
@@ -204,12 +236,15 @@ def transition(below: Ints, above: Ints, between: Ints, groups: list[int]) -> In
             ]
             inside += 2
         column += width
-    faces = np.array(quads).transpose(2, 0, 1)  # (n_layer + 1, n_quad, 4), counter-clockwise seen from outside
+    faces = np.array(quads).transpose(
+        2, 0, 1
+    )  # (n_layer + 1, n_quad, 4), counter-clockwise seen from outside
     return np.concatenate((faces[:-1], faces[1:]), axis=-1).reshape(-1, 8).astype(np.int32)
 
 
 def transition_station(drive: DriveGeometry, recipe: CupRecipe, layers: int) -> int:
-    """Station after which columns are joined: of the cylinder, a pitch or more behind the teeth if there is one."""
+    """Station after which columns are joined: of the cylinder, a pitch or more behind the teeth if
+    there is one."""
     lines = meridian(drive.cup, recipe, layers)
     z = lines.inner[: lines.wall, 1]
     behind = np.flatnonzero(z - z[0] >= np.pi * drive.module)
@@ -217,7 +252,13 @@ def transition_station(drive: DriveGeometry, recipe: CupRecipe, layers: int) -> 
 
 
 def cup_slice(
-    drive: DriveGeometry, recipe: CupRecipe, section: CrossSection, root_too: bool, back: Ints, first: int, layers: int
+    drive: DriveGeometry,
+    recipe: CupRecipe,
+    section: CrossSection,
+    root_too: bool,
+    back: Ints,
+    first: int,
+    layers: int,
 ) -> CupSlice:
     """Return the cup beyond the back of the teeth.
 
@@ -232,20 +273,28 @@ def cup_slice(
     lines = meridian(drive.cup, recipe, layers)
     inner, outer = lines.inner, lines.outer
     spline = drive.gears["flexible_spline"]
-    fraction = depth_fractions(section, grid, drive.inner_radius, drive.cup.thickness_coef * spline.rim)
+    fraction = depth_fractions(
+        section, grid, drive.inner_radius, drive.cup.thickness_coef * spline.rim
+    )
     angle = np.arctan2(*section.coords.T)
     if recipe.joined_columns:
         angle[grid] = angle[grid[0]]  # radial columns, below the root too
 
     def positions(rz_inner: Floats, rz_outer: Floats, columns: Ints) -> Floats:
-        """Nodes (n_station, n, 3) mm on the lines between points (n_station, 2) of the inner and outer surface."""
+        """Nodes (n_station, n, 3) mm on the lines between points (n_station, 2) of the inner and
+        outer surface."""
         rz = rz_inner[:, None] + fraction[None, columns, None] * (rz_outer - rz_inner)[:, None]
-        return np.stack((rz[..., 0] * np.sin(angle[columns]), rz[..., 0] * np.cos(angle[columns]), rz[..., 1]), axis=-1)
+        return np.stack(
+            (rz[..., 0] * np.sin(angle[columns]), rz[..., 0] * np.cos(angle[columns]), rz[..., 1]),
+            axis=-1,
+        )
 
     number = np.full((len(inner), len(section.coords)), -1, dtype=np.int32)
     number[0] = back
     columns = np.unique(grid)
-    last = len(inner) - 1 if not recipe.joined_columns else transition_station(drive, recipe, layers)
+    last = (
+        len(inner) - 1 if not recipe.joined_columns else transition_station(drive, recipe, layers)
+    )
     number[1 : last + 1, columns] = first + np.arange(last * len(columns)).reshape(last, -1)
     coords = [positions(inner[1 : last + 1], outer[1 : last + 1], columns).reshape(-1, 3)]
     hexes = [sweep_quads(section.quads[attached], number[: last + 1])]
@@ -261,13 +310,19 @@ def cup_slice(
         length = inner[last + 1, 1] - inner[last, 1]
         width = 2.0 * np.pi * drive.inner_radius / spline.profile.n_teeth / (grid.shape[1] - 1)
         share = 1.0 - min(0.5, width / length)
-        ring = [line[last : last + 1] + share * (line[last + 1] - line[last]) for line in (inner, outer)]
+        ring = [
+            line[last : last + 1] + share * (line[last + 1] - line[last]) for line in (inner, outer)
+        ]
         coords.append(positions(*ring, grid[:, dropped].ravel()).reshape(-1, 3))
         first += between.size
-        number[last + 1 :, kept] = first + np.arange((len(inner) - 1 - last) * len(kept)).reshape(-1, len(kept))
+        number[last + 1 :, kept] = first + np.arange((len(inner) - 1 - last) * len(kept)).reshape(
+            -1, len(kept)
+        )
         coords.append(positions(inner[last + 1 :], outer[last + 1 :], kept).reshape(-1, 3))
         hexes.append(transition(number[last][grid], number[last + 1][coarse], between, groups))
-        quads = np.stack((coarse[:-1, 1:], coarse[:-1, :-1], coarse[1:, :-1], coarse[1:, 1:]), axis=-1).reshape(-1, 4)
+        quads = np.stack(
+            (coarse[:-1, 1:], coarse[:-1, :-1], coarse[1:, :-1], coarse[1:, 1:]), axis=-1
+        ).reshape(-1, 4)
         hexes.append(sweep_quads(quads, number[last + 1 :]))
     edge = section.edge[np.isin(section.edge, columns)]
     lines_behind = grid if last == len(inner) - 1 else coarse

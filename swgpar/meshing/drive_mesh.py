@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
 
 class WholeBody(NamedTuple):
-    """A body with all its teeth. points : (n, 3) mm;  cells : (m, 8), or (m, 4) in the plane model, in VTK order"""
+    """A body with all its teeth. points : (n, 3) mm;  cells : (m, 8), or (m, 4) in the plane model,
+    in VTK order"""
 
     points: np.ndarray
     cells: np.ndarray
@@ -54,7 +55,8 @@ class DriveMesh:
 
     @cached_property
     def quality(self) -> dict[str, dict[str, float]]:
-        """Counts and worst element quality of every body, by its name (see `swgpar.meshing.export.mesh_report`)."""
+        """Counts and worst element quality of every body, by its name (see
+        `swgpar.meshing.export.mesh_report`)."""
         return mesh_report(self.sectors)
 
     def write(self, folder: str | Path, formats: Sequence[str] = FORMATS) -> list[Path]:
@@ -74,12 +76,15 @@ class DriveMesh:
         return write_mesh(self.sectors, self.materials, self.thickness, folder, formats)
 
     def grid(self) -> pyvista.UnstructuredGrid:
-        """The mesh for PyVista; the cell data "body" is 0 for the flexible spline and 1 for the ring gear."""
+        """The mesh for PyVista; the cell data "body" is 0 for the flexible spline and 1 for the
+        ring gear."""
         import pyvista
 
         bodies = list(self.bodies.values())
         first = np.cumsum([0, *(len(body.points) for body in bodies)])
-        cells = np.concatenate([body.cells + start for start, body in zip(first, bodies, strict=False)])
+        cells = np.concatenate(
+            [body.cells + start for start, body in zip(first, bodies, strict=False)]
+        )
         corners = cells.shape[1]
         kind = pyvista.CellType.HEXAHEDRON if corners == 8 else pyvista.CellType.QUAD
         grid = pyvista.UnstructuredGrid(
@@ -87,5 +92,7 @@ class DriveMesh:
             np.full(len(cells), kind),
             np.concatenate([body.points for body in bodies]),
         )
-        grid.cell_data["body"] = np.repeat(np.arange(len(bodies)), [len(body.cells) for body in bodies])
+        grid.cell_data["body"] = np.repeat(
+            np.arange(len(bodies)), [len(body.cells) for body in bodies]
+        )
         return grid

@@ -25,8 +25,13 @@ HOUSING = "housing"
 
 
 def sector_numbers(mesh: SectorMesh) -> Ints:
-    """Return the number (n_sectors, n_node) of every sector's nodes in the body; shared nodes have one."""
-    own = np.ones(len(mesh.coords), dtype=bool) if not mesh.plane else mesh.lower_nodes == np.arange(len(mesh.coords))
+    """Return the number (n_sectors, n_node) of every sector's nodes in the body; shared nodes have
+    one."""
+    own = (
+        np.ones(len(mesh.coords), dtype=bool)
+        if not mesh.plane
+        else mesh.lower_nodes == np.arange(len(mesh.coords))
+    )
     own[mesh.ccw_nodes] = False
     own_number = np.cumsum(own) - 1
     n_own = int(own.sum())
@@ -38,7 +43,8 @@ def sector_numbers(mesh: SectorMesh) -> Ints:
 
 
 def whole_body(mesh: SectorMesh) -> tuple[Floats, Ints]:
-    """Return the nodes (n, 3), mm, and elements (m, 8 or 4) of all sectors, numbered as by `sector_numbers`."""
+    """Return the nodes (n, 3), mm, and elements (m, 8 or 4) of all sectors, numbered as by
+    `sector_numbers`."""
     numbers = sector_numbers(mesh)
     angle = mesh.phase + 2.0 * np.pi / mesh.n_sectors * np.arange(mesh.n_sectors)[:, None]
     x, y, z = mesh.coords.T
@@ -60,25 +66,31 @@ def named_nodes(mesh: SectorMesh) -> dict[str, Ints]:
 
 
 def named_surfaces(meshes: dict[str, SectorMesh]) -> dict[str, Ints]:
-    """Return element and face (n, 2), both from 0, of the surfaces of all bodies, numbered one after another."""
+    """Return element and face (n, 2), both from 0, of the surfaces of all bodies, numbered one
+    after another."""
     surfaces, first = {}, 0
     for mesh in meshes.values():
         quads = dict(mesh.faces)
         if mesh.flanks:
             grids = [flank.nodes for flank in mesh.flanks]
-            corners = [np.stack([g[:-1, :-1], g[1:, :-1], g[1:, 1:], g[:-1, 1:]], axis=-1) for g in grids]
+            corners = [
+                np.stack([g[:-1, :-1], g[1:, :-1], g[1:, 1:], g[:-1, 1:]], axis=-1) for g in grids
+            ]
             quads["flanks"] = np.concatenate([corner.reshape(-1, 4) for corner in corners])
         number = first + element_numbers(mesh)
         for name, facets in quads.items():
             element, face = element_faces(mesh, facets).T
             faces = np.broadcast_to(face, (mesh.n_sectors, len(face)))
-            surfaces[f"{mesh.body}_{name}"] = np.stack((number[:, element], faces), axis=-1).reshape(-1, 2)
+            surfaces[f"{mesh.body}_{name}"] = np.stack(
+                (number[:, element], faces), axis=-1
+            ).reshape(-1, 2)
         first += number.size
     return surfaces
 
 
 def element_numbers(mesh: SectorMesh) -> Ints:
-    """Numbers (n_sectors, n_elem), from 0, of the elements of a whole body: one part after the other, by sectors."""
+    """Numbers (n_sectors, n_elem), from 0, of the elements of a whole body: one part after the
+    other, by sectors."""
     number, first = np.empty((mesh.n_sectors, len(mesh.elements)), dtype=np.int32), 0
     for part in mesh.parts:
         count = mesh.n_sectors * len(part)
@@ -101,19 +113,28 @@ def whole_drive(meshes: dict[str, SectorMesh]) -> meshio.Mesh:
         by_sector = elements.reshape(mesh.n_sectors, -1, elements.shape[1]) + offset
         for name, part in zip((mesh.body, HOUSING), mesh.parts):
             cells.append(
-                ("hexahedron" if not mesh.plane else "quad", by_sector[:, part].reshape(-1, elements.shape[1]))
+                (
+                    "hexahedron" if not mesh.plane else "quad",
+                    by_sector[:, part].reshape(-1, elements.shape[1]),
+                )
             )
             names.append(name)
         point_sets |= {name: nodes + offset for name, nodes in named_nodes(mesh).items()}
         offset += len(coords)
-    body = [np.full(len(elements), number, dtype=np.int32) for number, (_, elements) in enumerate(cells)]
+    body = [
+        np.full(len(elements), number, dtype=np.int32) for number, (_, elements) in enumerate(cells)
+    ]
     empty = np.empty(0, dtype=np.int64)
     cell_sets = {
         name: [np.arange(len(block)) if k == number else empty for k, block in enumerate(body)]
         for number, name in enumerate(names)
     }
     return meshio.Mesh(
-        np.concatenate(points), cells, cell_data={"body": body}, point_sets=point_sets, cell_sets=cell_sets
+        np.concatenate(points),
+        cells,
+        cell_data={"body": body},
+        point_sets=point_sets,
+        cell_sets=cell_sets,
     )
 
 
@@ -142,7 +163,8 @@ def write_mesh(
     directory: str | Path,
     formats: Sequence[str] = FORMATS,
 ) -> list[Path]:
-    """Write the full drive, all sectors of all bodies, as ``drive_120_122.vtu``, ``.msh`` and ``.inp``.
+    """Write the full drive, all sectors of all bodies, as ``drive_120_122.vtu``, ``.msh`` and
+    ``.inp``.
 
     Parameters
     ----------
@@ -163,7 +185,9 @@ def write_mesh(
     """
     for name in formats:
         if name not in FORMATS:
-            raise InputError(f'mesh format = "{name}" is not available: allowed {", ".join(FORMATS)}')
+            raise InputError(
+                f'mesh format = "{name}" is not available: allowed {", ".join(FORMATS)}'
+            )
     drive = whole_drive(meshes)
     teeth = "_".join(str(meshes[gear].n_sectors) for gear in ("flexible_spline", "ring_gear"))
     folder = Path(directory)
@@ -180,7 +204,9 @@ def write_mesh(
                 write_inp(path, drive, named_surfaces(meshes), materials, thickness)
             written.append(path)
     except OSError as error:
-        raise OutputError(f"the mesh cannot be written to {folder}: {error.strerror or error}") from None
+        raise OutputError(
+            f"the mesh cannot be written to {folder}: {error.strerror or error}"
+        ) from None
     return written
 
 
@@ -190,8 +216,8 @@ def mesh_report(meshes: dict[str, SectorMesh]) -> dict[str, dict[str, float]]:
     Returns
     -------
     dict of dict
-        For each body ``nodes`` and ``elements`` (all sectors), ``sector_elements``, ``volume`` (mm³) and the
-        mesh's quality.
+        For each body ``nodes`` and ``elements`` (all sectors), ``sector_elements``, ``volume``
+        (mm³) and the mesh's quality.
     """
     report = {}
     for body, mesh in meshes.items():

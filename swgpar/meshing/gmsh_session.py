@@ -1,4 +1,5 @@
-"""Gmsh for a few calls: started when it is not running, without files of settings and without its signals."""
+"""Gmsh for a few calls: started when it is not running, without files of settings and without its
+signals."""
 
 from __future__ import annotations
 
@@ -17,8 +18,15 @@ def gmsh_model(name: str) -> Iterator[ModuleType]:
 
     owner = not gmsh.isInitialized()
     if owner:
-        with hidden_variables():  # Gmsh has a PETSc of its own, which reads files and takes signals as the other
-            arguments = ["gmsh", "-v", "0", NO_FILES]  # without the warning that the option is not one of Gmsh
+        with (
+            hidden_variables()
+        ):  # Gmsh has a PETSc of its own, which reads files and takes signals as the other
+            arguments = [
+                "gmsh",
+                "-v",
+                "0",
+                NO_FILES,
+            ]  # without the warning that the option is not one of Gmsh
             gmsh.initialize(argv=arguments, readConfigFiles=False, interruptible=False)
         watch.rearm()
     try:

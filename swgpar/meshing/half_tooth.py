@@ -1,10 +1,10 @@
 r"""Cross-section of one tooth: mapped quadrilaterals that follow the flank.
 
-Half a tooth is cut into blocks (shown for an external tooth, centre line on the left; an internal one is the
-same with the radial direction reversed)::
+Half a tooth is cut into blocks (shown for an external tooth, centre line on the left; an internal
+one is the same with the radial direction reversed)::
 
     M---T.            M  centre of the top land, T start of the flank (addendum circle)
-    |  cap K          K  end of the rounded tip edge, where the normal rises 60 degrees above the horizontal, or T
+    |  cap K          K  end of the rounded tip edge, normal 60 degrees above horizontal, or T
     A---I   \         Q  on the root arc, where it rises 45 degrees
     |    \ s \        R  end of the flank (dedendum circle), E  middle of the root
     | core\ i \       B  below Q on the interface circle
@@ -12,11 +12,12 @@ same with the radial direction reversed)::
     |       \ e  Q..      C  centre line on the interface circle
     W--------J-'  ''R--E
     |  under     | root|
-    C------------B-----E'   interface circle: the lower rim continues from here with straight radial lines
+    C------------B-----E'   interface circle, from which the lower rim has straight radial lines
     |  lower rim |     |
-    '------------'-----'    free circle (inner surface of the flexible spline, outer one of the ring gear)
+    '------------'-----'    free circle: inside of the flexible spline, outside of the ring gear
 
-Three lines meet at I: the flank is smooth at K, so a block that had its corner there would be degenerate.
+Three lines meet at I: the flank is smooth at K, so a block that had its corner there would be
+degenerate.
 """
 
 from __future__ import annotations
@@ -41,7 +42,8 @@ Sides = tuple[Floats, Floats, Floats, Floats]
 def stations(profile: ToothProfile, first: float, last: float, n: int) -> Floats:
     """Return n + 1 arc lengths from `first` to `last`, mm.
 
-    The ends of the segments are among them when there are elements enough; else the distances are equal.
+    The ends of the segments are among them when there are elements enough; else the distances are
+    equal.
     """
     margin = 1e-9 * profile.length
     breaks = profile.breaks[(profile.breaks > first + margin) & (profile.breaks < last - margin)]
@@ -54,9 +56,12 @@ def stations(profile: ToothProfile, first: float, last: float, n: int) -> Floats
 
 
 def inclination(profile: ToothProfile, s: Floats) -> Floats:
-    """Return the angle (n,), rad, of the flank's normal above the tangential direction, towards the tip."""
+    """Return the angle (n,), rad, of the flank's normal above the tangential direction, towards the
+    tip."""
     x, y = profile.point(s).T
-    towards_tip = np.stack((x, y), axis=-1) / np.hypot(x, y)[:, None] * (1.0 if profile.external else -1.0)
+    towards_tip = (
+        np.stack((x, y), axis=-1) / np.hypot(x, y)[:, None] * (1.0 if profile.external else -1.0)
+    )
     return np.arcsin(np.clip(np.einsum("ij,ij->i", profile.normal(s), towards_tip), -1.0, 1.0))
 
 
@@ -96,7 +101,9 @@ class HalfTooth:
         Radii of the interface circle and of the free surface of the rim.
     """
 
-    def __init__(self, profile: ToothProfile, recipe: ToothRecipe, interface: float, free: float) -> None:
+    def __init__(
+        self, profile: ToothProfile, recipe: ToothRecipe, interface: float, free: float
+    ) -> None:
         self.profile = profile
         self.recipe = recipe
         self.interface = interface
@@ -126,7 +133,8 @@ class HalfTooth:
         return s_root, np.concatenate((profile.point(s_root), land[1:]))
 
     def blocks(self) -> list[Sides]:
-        """Return the sides of all blocks: cap, side, core, under, root, the lower rim under tooth and root."""
+        """Return the sides of all blocks: cap, side, core, under, root, the lower rim under tooth
+        and root."""
         recipe, interface = self.recipe, self.interface
         side = self.profile.point(self.s_side)
         k, q = side[0], side[-1]
@@ -157,10 +165,14 @@ class HalfTooth:
             (polar(self.free, root_angles), rim[2], root_bottom, rim[1]),
         ]
 
-    def _core_sides(self, side: Floats, i: Floats, a: Floats, j: Floats, w: Floats) -> tuple[Floats, Floats]:
-        """Nodes (n, 2) from I to J and on the centre line from A to W, for the nodes `side` (n, 2) from K to Q; mm."""
+    def _core_sides(
+        self, side: Floats, i: Floats, a: Floats, j: Floats, w: Floats
+    ) -> tuple[Floats, Floats]:
+        """Nodes (n, 2) from I to J and on the centre line from A to W, for the nodes `side` (n, 2)
+        from K to Q; mm."""
         k, q = side[0], side[-1]
-        # the inner line lies between the flank's shape (good for the side) and a straight one (for the core)
+        # the inner line lies between the flank's shape (good for the side) and a straight one (for
+        # the core)
         t = ((self.s_side - self.s_side[0]) / (self.s_side[-1] - self.s_side[0]))[:, None]
         parallel = side + (1.0 - t) * (i - k) + t * (j - q)
         inner = 0.5 * parallel + 0.5 * (i + t * (j - i))
@@ -175,7 +187,8 @@ class HalfTooth:
         return angles, polar(self.interface, angles)
 
     def _split_angle(self, q: Floats) -> float:
-        """Return the polar angle of B, rad: between a line square to the root arc and even widths."""
+        """Return the polar angle of B, rad: between a line square to the root arc and even
+        widths."""
         recipe = self.recipe
         n_base = recipe.tip + recipe.layers
         uniform = self.half_pitch * n_base / (n_base + recipe.root)
@@ -187,7 +200,8 @@ class HalfTooth:
 
     def _shoulder(self, q: Floats, b: Floats, fraction: float) -> tuple[Floats, Floats]:
         """Return J and W, the inner corners of the row of elements that ends at Q."""
-        # halfway between the flank above Q and the line to B, so that the angles at Q are about equal
+        # halfway between the flank above Q and the line to B, so that the angles at Q are about
+        # equal
         upwards = -self.profile.tangent(self.s_side[-1])[0]
         to_b = (b - q) / np.hypot(*(b - q))
         direction = upwards + to_b

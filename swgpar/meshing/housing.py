@@ -16,9 +16,11 @@ GROWTH = 1.6
 
 
 def housing_radii(ring: GearGeometry, thickness: float, recipe: ToothRecipe) -> Floats:
-    """Radii (n + 1,), mm, of the circles between the layers of the housing; one circle where its thickness is 0.
+    """Radii (n + 1,), mm, of the circles between the layers of the housing; one circle where its
+    thickness is 0.
 
-    The first layer is about as thick as those of the ring gear's rim, each of the others `GROWTH` times the one before.
+    The first layer is about as thick as those of the ring gear's rim, each of the others `GROWTH`
+    times the one before.
     """
     inner = ring.profile.r_root_circle + ring.rim
     if thickness == 0.0:
@@ -30,7 +32,8 @@ def housing_radii(ring: GearGeometry, thickness: float, recipe: ToothRecipe) -> 
 
 
 def with_housing(section: CrossSection, radii: Floats) -> CrossSection:
-    """The cross-section with a layer of quadrilaterals beyond its free circle for each of `radii` but the first."""
+    """The cross-section with a layer of quadrilaterals beyond its free circle for each of `radii`
+    but the first."""
     layers, width, known = len(radii) - 1, len(section.free), len(section.coords)
     if not layers:
         return section
@@ -39,7 +42,9 @@ def with_housing(section: CrossSection, radii: Floats) -> CrossSection:
     grid = np.concatenate((section.free[None], new))
     inside, outside = grid[:-1], grid[1:]
     # the free circle runs from the clockwise to the counter-clockwise side
-    quads = np.stack((inside[:, :-1], outside[:, :-1], outside[:, 1:], inside[:, 1:]), axis=-1).reshape(-1, 4)
+    quads = np.stack(
+        (inside[:, :-1], outside[:, :-1], outside[:, 1:], inside[:, 1:]), axis=-1
+    ).reshape(-1, 4)
     added = np.ones(len(quads), dtype=bool)
     return replace(
         section,

@@ -1,7 +1,8 @@
-"""The mesh as an input file of CalculiX or Abaqus: what a job needs besides supports, loads and steps.
+"""The mesh as an input file of CalculiX or Abaqus: what a job needs besides supports, loads and
+steps.
 
-Nodes, elements, node sets, element-face surfaces for contact, the material and the sections: a job names the file by
-*INCLUDE and goes on with its *BOUNDARY and *STEP.
+Nodes, elements, node sets, element-face surfaces for contact, the material and the sections: a job
+names the file by *INCLUDE and goes on with its *BOUNDARY and *STEP.
 """
 
 from __future__ import annotations
@@ -17,23 +18,31 @@ from swgpar.geometry.arrays import Ints
 from swgpar.materials import Isotropic, Material
 from swgpar.meshing.sector import SectorMesh
 
-HEX_FACES = np.array([[0, 1, 2, 3], [4, 7, 6, 5], [0, 4, 5, 1], [1, 5, 6, 2], [2, 6, 7, 3], [3, 7, 4, 0]])
+HEX_FACES = np.array(
+    [[0, 1, 2, 3], [4, 7, 6, 5], [0, 4, 5, 1], [1, 5, 6, 2], [2, 6, 7, 3], [3, 7, 4, 0]]
+)
 QUAD_FACES = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
-"""Nodes of the faces S1, S2, ... of an element of these programs, a hexahedron's clockwise seen from outside."""
+"""Nodes of the faces S1, S2, ... of an element of these programs, a hexahedron's clockwise seen
+from outside."""
 
 
 def element_faces(mesh: SectorMesh, quads: Ints) -> Ints:
     """Element and face (n, 2), both from 0, of surface quadrilaterals (n, 4) of one sector.
 
-    In the plane, where a quadrilateral spans both layers of nodes, the face is an edge of the element.
+    In the plane, where a quadrilateral spans both layers of nodes, the face is an edge of the
+    element.
     """
     if mesh.plane:
         quads = mesh.lower_nodes[quads]
         quads = np.array([np.unique(quad) for quad in quads], dtype=np.int32).reshape(-1, 2)
     table = HEX_FACES if not mesh.plane else QUAD_FACES
     faces = np.sort(mesh.elements[:, table], axis=-1)
-    face_of = {tuple(nodes): (k, f) for k, row in enumerate(faces.tolist()) for f, nodes in enumerate(row)}
-    return np.array([face_of[tuple(quad)] for quad in np.sort(quads, axis=1).tolist()], dtype=np.int32).reshape(-1, 2)
+    face_of = {
+        tuple(nodes): (k, f) for k, row in enumerate(faces.tolist()) for f, nodes in enumerate(row)
+    }
+    return np.array(
+        [face_of[tuple(quad)] for quad in np.sort(quads, axis=1).tolist()], dtype=np.int32
+    ).reshape(-1, 2)
 
 
 def _lines(numbers: Ints) -> Iterator[str]:
@@ -52,13 +61,16 @@ def _constants(material: Material, plane_stress: bool) -> str:
     alike[:2, 2] = alike[2, :2] = s[0, 2]
     if not np.allclose(s, alike, rtol=1e-9, atol=1e-9 * s[0, 0]):
         raise InputError(
-            "the axes of a material have no place in the format inp: allowed a law that is the same in all directions "
+            "the axes of a material have no place in the format inp: allowed a law that is the "
+            "same in all directions "
             "across z"
         )
     e, shear, shear_z = 1.0 / s[0, 0], 1.0 / s[3, 3], 1.0 / s[4, 4]
     nu, nu_z = -s[0, 1] * e, 0.0 if plane_stress else -s[0, 2] * e
     constants = (e, e, 1.0 / s[2, 2], nu, nu_z, nu_z, shear, shear_z)
-    return f", TYPE=ENGINEERING CONSTANTS\n{', '.join(f'{c:.12g}' for c in constants)}\n{shear_z:.12g}"
+    return (
+        f", TYPE=ENGINEERING CONSTANTS\n{', '.join(f'{c:.12g}' for c in constants)}\n{shear_z:.12g}"
+    )
 
 
 def write_inp(
@@ -84,10 +96,11 @@ def write_inp(
     thickness : float, mm
         Of the plane model.
     plane_stress : bool
-        Gives hexahedra a material without transverse contraction along z. With no displacement along z they are then
-        in plane stress.
+        Gives hexahedra a material without transverse contraction along z. With no displacement
+        along z they are then in plane stress.
 
-    Raises InputError for a material that is not the same in all directions across z: its axes are not in the file.
+    Raises InputError for a material that is not the same in all directions across z: its axes are
+    not in the file.
 
     meshio's own writer of this format has neither these element types nor surfaces.
     """
@@ -95,7 +108,10 @@ def write_inp(
     with path.open("w", encoding="ascii") as file:
         file.write("*HEADING\nstrain wave gear drive; lengths as in the design file\n")
         if not solid:
-            file.write("** the elements of swgpar have incompatible modes: CPS4I of Abaqus; CalculiX has CPS4 only\n")
+            file.write(
+                "** the elements of swgpar have incompatible modes: CPS4I of Abaqus; CalculiX has "
+                "CPS4 only\n"
+            )
         file.write("*NODE, NSET=ALL_NODES\n")
         numbers = np.arange(1, len(drive.points) + 1)
         # CalculiX reads the first 20 characters of a field
@@ -114,7 +130,8 @@ def write_inp(
             np.savetxt(file, faces + 1, fmt="%d, S%d")
         for body in drive.cell_sets:
             file.write(
-                f"*MATERIAL, NAME={body.upper()}_MATERIAL\n*ELASTIC{_constants(materials[body], plane_stress)}\n"
+                f"*MATERIAL, NAME={body.upper()}_MATERIAL\n"
+                f"*ELASTIC{_constants(materials[body], plane_stress)}\n"
             )
         for body in drive.cell_sets:
             file.write(f"*SOLID SECTION, ELSET={body.upper()}, MATERIAL={body.upper()}_MATERIAL\n")

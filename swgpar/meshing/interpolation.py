@@ -10,27 +10,35 @@ from swgpar.errors import InputError
 from swgpar.meshing.sector import SectorMesh
 
 FLAT = 1e-3
-"""Cells smaller than this share of the median cell volume are not used: their weights are dominated by round-off."""
+"""Cells smaller than this share of the median cell volume are not used: their weights are dominated
+by round-off."""
 
 NEIGHBOURS = 4
 """Nearest nodes whose cells are tried for a point outside of all cells."""
 
 
 def interpolation(coarse: SectorMesh, fine: SectorMesh) -> csr_matrix:
-    """Matrix (n_fine, n_coarse) that maps nodal values of the coarse sector to the nodes of the fine one.
+    """Matrix (n_fine, n_coarse) that maps nodal values of the coarse sector to the nodes of the
+    fine one.
 
-    The values are linear in the Delaunay tetrahedra (triangles in the plane) of the coarse nodes, in cylindrical
-    coordinates, in which rim and cup are flat. Values at nodes outside are extrapolated from the adjacent cell in which
-    their smallest weight is largest. Raises InputError where the coarse nodes have no such tetrahedra.
+    The values are linear in the Delaunay tetrahedra (triangles in the plane) of the coarse nodes,
+    in cylindrical coordinates, in which rim and cup are flat. Values at nodes outside are
+    extrapolated from the adjacent cell in which their smallest weight is largest. Raises InputError
+    where the coarse nodes have no such tetrahedra.
     """
     plane = coarse.plane
     nodes = np.unique(coarse.lower_nodes) if plane else np.arange(len(coarse.coords))
     radius = float(np.hypot(*coarse.coords[:, :2].T).max())
-    known, sought = _unrolled(coarse.coords[nodes], radius, plane), _unrolled(fine.coords, radius, plane)
+    known, sought = (
+        _unrolled(coarse.coords[nodes], radius, plane),
+        _unrolled(fine.coords, radius, plane),
+    )
     try:
         mesh, dims = Delaunay(known), known.shape[1]
     except QhullError as error:
-        raise InputError(f"no state can be taken from the other mesh: {str(error).splitlines()[0]}") from None
+        raise InputError(
+            f"no state can be taken from the other mesh: {str(error).splitlines()[0]}"
+        ) from None
     cell = _cells(mesh, known, sought)
     weight = _barycentric(mesh, cell, sought)
     entries = np.repeat(np.arange(len(sought)), dims + 1), nodes[mesh.simplices[cell].ravel()]
@@ -38,7 +46,8 @@ def interpolation(coarse: SectorMesh, fine: SectorMesh) -> csr_matrix:
 
 
 def _cells(mesh: Delaunay, known: np.ndarray, sought: np.ndarray) -> np.ndarray:
-    """Cell (n,) of each of the points `sought` (n, dims), or the adjacent one for a point outside."""
+    """Cell (n,) of each of the points `sought` (n, dims), or the adjacent one for a point
+    outside."""
     cell = mesh.find_simplex(sought, tol=1e-9)
     volume = np.abs(np.linalg.det(known[mesh.simplices[:, 1:]] - known[mesh.simplices[:, :1]]))
     usable = volume > FLAT * np.median(volume)
@@ -56,7 +65,8 @@ def _cells(mesh: Delaunay, known: np.ndarray, sought: np.ndarray) -> np.ndarray:
 
 
 def _unrolled(points: np.ndarray, radius: float, plane: bool) -> np.ndarray:
-    """Points (n, 3), mm, near +y as arc length at `radius`, distance from the axis and, in space, z; mm."""
+    """Points (n, 3), mm, near +y as arc length at `radius`, distance from the axis and, in space,
+    z; mm."""
     distance = np.hypot(points[:, 0], points[:, 1])
     arc = np.arctan2(points[:, 0], points[:, 1]) * radius
     return np.column_stack([arc, distance] if plane else [arc, distance, points[:, 2]])

@@ -13,7 +13,8 @@ from swgpar.meshing.gmsh_session import gmsh_model
 
 
 class MeshError(Exception):
-    """Blocks that cannot be meshed: their sides do not fit, cross each other, or have points that coincide."""
+    """Blocks that cannot be meshed: their sides do not fit, cross each other, or have points that
+    coincide."""
 
 
 @dataclass(frozen=True)
@@ -38,13 +39,14 @@ class QuadMesh:
 class MappedBlocks:
     """Four-sided blocks whose sides are chains of given nodes; gmsh fills in the interior nodes.
 
-    Every given point becomes a node with exactly its coordinates: a side is passed to gmsh as straight curves of one
-    element each. Points that coincide within `tolerance` are one node.
+    Every given point becomes a node with exactly its coordinates: a side is passed to gmsh as
+    straight curves of one element each. Points that coincide within `tolerance` are one node.
 
     Attributes
     ----------
     scale : float, mm
-        Length that gmsh sees as 1, so that its absolute tolerances do not depend on the unit system.
+        Length that gmsh sees as 1, so that its absolute tolerances do not depend on the unit
+        system.
     tolerance : float
         Coincidence of points, in units of `scale`.
     """
@@ -60,7 +62,8 @@ class MappedBlocks:
         indices = []
         for x, y in np.asarray(xy, dtype=np.float64):
             key = (round(x / self.scale / self.tolerance), round(y / self.scale / self.tolerance))
-            # a coordinate that falls on the border of a rounding cell may end up in either of two cells
+            # a coordinate that falls on the border of a rounding cell may end up in either of two
+            # cells
             near = [(key[0] + i, key[1] + j) for i in (0, -1, 1) for j in (0, -1, 1)]
             hit = next((self._index[k] for k in near if k in self._index), None)
             if hit is None:
@@ -70,10 +73,15 @@ class MappedBlocks:
         return indices
 
     def add_block(self, bottom: Floats, right: Floats, top: Floats, left: Floats) -> None:
-        """Add a block: `bottom` and `top` (n, 2) run left to right, `left` and `right` (m, 2) upwards."""
+        """Add a block: `bottom` and `top` (n, 2) run left to right, `left` and `right` (m, 2)
+        upwards."""
         sides = [self.add_points(side) for side in (bottom, right, top, left)]
         b, r, t, lf = sides
-        if (b[-1], r[-1], t[0], lf[0]) != (r[0], t[-1], lf[-1], b[0]) or len(b) != len(t) or len(r) != len(lf):
+        if (
+            (b[-1], r[-1], t[0], lf[0]) != (r[0], t[-1], lf[-1], b[0])
+            or len(b) != len(t)
+            or len(r) != len(lf)
+        ):
             raise MeshError("the sides of a block do not close or do not match")
         self.blocks.append((b, r, t, lf))
 
@@ -116,7 +124,9 @@ class MappedBlocks:
         for k, (b, r, t, lf) in enumerate(self.blocks):
             loop = geo.addCurveLoop(chain(b) + chain(r) + chain(t[::-1]) + chain(lf[::-1]))
             surface = geo.addPlaneSurface([loop], tag=k + 1)
-            geo.mesh.setTransfiniteSurface(surface, cornerTags=[b[0] + 1, b[-1] + 1, t[-1] + 1, t[0] + 1])
+            geo.mesh.setTransfiniteSurface(
+                surface, cornerTags=[b[0] + 1, b[-1] + 1, t[-1] + 1, t[0] + 1]
+            )
             geo.mesh.setRecombine(2, surface)
         geo.synchronize()
 
@@ -133,7 +143,9 @@ class MappedBlocks:
             cells = np.searchsorted(tags, nodes).reshape(-1, 4)
             expected = (len(self.blocks[k][0]) - 1) * (len(self.blocks[k][1]) - 1)
             if len(cells) != expected:
-                raise MeshError(f"gmsh made {len(cells)} quadrilaterals where {expected} were asked for")
+                raise MeshError(
+                    f"gmsh made {len(cells)} quadrilaterals where {expected} were asked for"
+                )
             quads.append(cells)
             block.append(np.full(len(cells), k))
         node = np.array([mesh.getNodes(0, k + 1)[0][0] for k in range(len(self.points))])
@@ -143,4 +155,6 @@ class MappedBlocks:
         x, y = np.moveaxis(coords[quads], -1, 0)
         area = np.sum(x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1), axis=1)
         quads[area < 0.0] = quads[area < 0.0][:, ::-1]
-        return QuadMesh(coords, quads.astype(np.int32), np.concatenate(block).astype(np.int32)), node.astype(np.int32)
+        return QuadMesh(
+            coords, quads.astype(np.int32), np.concatenate(block).astype(np.int32)
+        ), node.astype(np.int32)

@@ -7,7 +7,16 @@ import numpy as np
 from swgpar.geometry.arrays import Floats, Ints
 
 CORNERS = np.array(
-    [(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1), (-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1)],
+    [
+        (-1, -1, -1),
+        (1, -1, -1),
+        (1, 1, -1),
+        (-1, 1, -1),
+        (-1, -1, 1),
+        (1, -1, 1),
+        (1, 1, 1),
+        (-1, 1, 1),
+    ],
     dtype=float,
 )
 """Natural coordinates (8, 3) of the nodes of a hexahedron, in VTK order."""
@@ -20,12 +29,15 @@ GAUSS = CORNERS / np.sqrt(3.0)
 
 
 def jacobian_matrices(coords: Floats, hexes: Ints, points: Floats) -> Floats:
-    """Return d X / d xi, (n_elem, n_point, 3, 3) in mm, at the natural coordinates `points` (n_point, 3)."""
+    """Return d X / d xi, (n_elem, n_point, 3, 3) in mm, at the natural coordinates `points`
+    (n_point, 3)."""
     factor = 1.0 + CORNERS * points[:, None, :]
     gradient = np.empty((len(points), 8, 3))
     for k in range(3):
         others = [axis for axis in range(3) if axis != k]
-        gradient[:, :, k] = 0.125 * CORNERS[:, k] * factor[:, :, others[0]] * factor[:, :, others[1]]
+        gradient[:, :, k] = (
+            0.125 * CORNERS[:, k] * factor[:, :, others[0]] * factor[:, :, others[1]]
+        )
     return np.einsum("eai,qak->eqik", coords[hexes], gradient, optimize=True)
 
 
@@ -50,7 +62,22 @@ def scaled_jacobians(coords: Floats, hexes: Ints) -> Floats:
 def aspect_ratios(coords: Floats, hexes: Ints) -> Floats:
     """Return the longest over the shortest edge of each element (n_elem,)."""
     x = coords[hexes]
-    pairs = np.array([(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)])
+    pairs = np.array(
+        [
+            (0, 1),
+            (1, 2),
+            (2, 3),
+            (3, 0),
+            (4, 5),
+            (5, 6),
+            (6, 7),
+            (7, 4),
+            (0, 4),
+            (1, 5),
+            (2, 6),
+            (3, 7),
+        ]
+    )
     lengths = np.linalg.norm(x[:, pairs[:, 0]] - x[:, pairs[:, 1]], axis=-1)
     return lengths.max(axis=1) / lengths.min(axis=1)
 
@@ -66,8 +93,8 @@ def hex_quality(coords: Floats, hexes: Ints) -> dict[str, float]:
     Returns
     -------
     dict
-        ``min_scaled_jacobian``; ``min_jacobian`` and ``max_jacobian``, mm³, determinants at the 2x2x2 Gauss
-        points; ``max_aspect_ratio``, longest over shortest edge.
+        ``min_scaled_jacobian``; ``min_jacobian`` and ``max_jacobian``, mm³, determinants at the
+        2x2x2 Gauss points; ``max_aspect_ratio``, longest over shortest edge.
     """
     gauss = determinants(jacobian_matrices(coords, hexes, GAUSS))
     return {
@@ -79,7 +106,8 @@ def hex_quality(coords: Floats, hexes: Ints) -> dict[str, float]:
 
 
 def plane_jacobian_matrices(coords: Floats, quads: Ints, points: Floats) -> Floats:
-    """Return d X / d xi, (n_elem, n_point, 2, 2) in mm, at the natural coordinates `points` (n_point, 2)."""
+    """Return d X / d xi, (n_elem, n_point, 2, 2) in mm, at the natural coordinates `points`
+    (n_point, 2)."""
     factor = 1.0 + PLANE_CORNERS * points[:, None, :]
     gradient = 0.25 * PLANE_CORNERS * factor[:, :, ::-1]
     return np.einsum("eai,qak->eqik", coords[quads][..., :2], gradient, optimize=True)
@@ -88,7 +116,8 @@ def plane_jacobian_matrices(coords: Floats, quads: Ints, points: Floats) -> Floa
 def quad_quality(coords: Floats, quads: Ints) -> dict[str, float]:
     """Return the worst quality of a plane mesh; quads : (n_elem, 4) int32, counter-clockwise.
 
-    Keys as those of `hex_quality`; the Jacobian determinants, mm², are those at the 2x2 Gauss points.
+    Keys as those of `hex_quality`; the Jacobian determinants, mm², are those at the 2x2 Gauss
+    points.
     """
     gauss = np.linalg.det(plane_jacobian_matrices(coords, quads, PLANE_CORNERS / np.sqrt(3.0)))
     corner = plane_jacobian_matrices(coords, quads, PLANE_CORNERS)

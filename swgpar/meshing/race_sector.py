@@ -15,8 +15,11 @@ SAME = 1e-9
 """Share of a sector below which coordinates are the same."""
 
 
-def race_sector(spline: SectorMesh, outer: float, thickness: float, width: float, radial: int) -> SectorMesh:
-    """Sector of the outer race of a bearing, whose outer surface has its nodes opposite those of the flexible spline.
+def race_sector(
+    spline: SectorMesh, outer: float, thickness: float, width: float, radial: int
+) -> SectorMesh:
+    """Sector of the outer race of a bearing, whose outer surface has its nodes opposite those of
+    the flexible spline.
 
     Parameters
     ----------
@@ -34,16 +37,19 @@ def race_sector(spline: SectorMesh, outer: float, thickness: float, width: float
 
 
 def race_grid(race: SectorMesh, surface: str) -> np.ndarray:
-    """Nodes (n_around + 1, n_z) of the surface ``inner`` or ``outer`` of a race's sector, clockwise side first."""
+    """Nodes (n_around + 1, n_z) of the surface ``inner`` or ``outer`` of a race's sector, clockwise
+    side first."""
     angle, z = _grid(race, surface)
     nodes = np.unique(race.faces[surface])
     return nodes.reshape(len(z), len(angle)).T
 
 
 def opposite_cells(spline: SectorMesh, race: SectorMesh) -> tuple[np.ndarray, np.ndarray]:
-    """Cells of the race's outer surface opposite the spline's faces ``inner``, by their first nodes.
+    """Cells of the race's outer surface opposite the spline's faces ``inner``, by their first
+    nodes.
 
-    Returns columns (n_face,) around and layers (n_face,) along z; layer -1 beyond the width of the race.
+    Returns columns (n_face,) around and layers (n_face,) along z; layer -1 beyond the width of the
+    race.
     """
     angle, z = _grid(race, "outer")
     corners = spline.coords[spline.faces["inner"]]
@@ -53,7 +59,9 @@ def opposite_cells(spline: SectorMesh, race: SectorMesh) -> tuple[np.ndarray, np
     height = np.where(np.abs(height) < z[-1], height, 0.5 * (inward + np.copysign(z[-1], height)))
     layer = np.searchsorted(z, height) - 1
     reached = np.abs(inward) < z[-1] * (1.0 - SAME)
-    return np.searchsorted(angle, np.arctan2(-x, y)) - 1, np.where(spline.plane | reached, layer, -1)
+    return np.searchsorted(angle, np.arctan2(-x, y)) - 1, np.where(
+        spline.plane | reached, layer, -1
+    )
 
 
 def _grid(mesh: SectorMesh, surface: str = "inner") -> tuple[np.ndarray, np.ndarray]:
@@ -77,7 +85,9 @@ def annular_sector(
     rows = number.reshape(len(number), -1)
     grid = number[0]
     # counter-clockwise seen from +z: angles run counter-clockwise, radii outward
-    quads = np.stack([grid[:-1, 1:], grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:]], axis=-1).reshape(-1, 4)
+    quads = np.stack([grid[:-1, 1:], grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:]], axis=-1).reshape(
+        -1, 4
+    )
     hexes = sweep_quads(quads, rows)
     surface = number[:1] if plane else number
     return SectorMesh(

@@ -10,14 +10,16 @@ from swgpar.input.quantities import Section, quantity, show, show_key
 from swgpar.input.toml_file import read_toml, validate
 
 RECIPES = ("coarse", "forces", "medium", "full", "plane_coarse", "plane", "plane_fine")
-"""Names of the recipes that belong to the package, coarse to fine: of the cup drive, of the plane model."""
+"""Names of the recipes that belong to the package, coarse to fine: of the cup drive, of the plane
+model."""
 
 
 class ToothRecipe(Section):
     """Elements of half a tooth cross-section of one gear, and of its rim."""
 
     tip: int = quantity(
-        text="elements over the tip, from the centre of the top land to the end of the rounded tip edge",
+        text="elements over the tip, from the centre of the top land to the end of the rounded tip "
+        "edge",
         ge=2,
         le=40,
     )
@@ -28,20 +30,35 @@ class ToothRecipe(Section):
         ge=1.0,
         le=3.0,
     )
-    flank: int = quantity(text="elements along the flank, from the tip edge to the split in the root arc", ge=1, le=400)
-    root: int = quantity(text="elements from the split in the root arc to the middle of the root", ge=2, le=200)
-    under: int = quantity(text="layers of elements between the root and the lower rim", ge=1, le=100)
-    rim: int = quantity(text="layers of elements in the lower rim (flexible spline: through the cup)", ge=1, le=100)
+    flank: int = quantity(
+        text="elements along the flank, from the tip edge to the split in the root arc",
+        ge=1,
+        le=400,
+    )
+    root: int = quantity(
+        text="elements from the split in the root arc to the middle of the root", ge=2, le=200
+    )
+    under: int = quantity(
+        text="layers of elements between the root and the lower rim", ge=1, le=100
+    )
+    rim: int = quantity(
+        text="layers of elements in the lower rim (flexible spline: through the cup)", ge=1, le=100
+    )
 
 
 class FaceWidthRecipe(Section):
     """Elements along the face width."""
 
     elements: int = quantity(
-        text="elements along the face width; in a pancake drive along that of each ring gear", ge=2, le=400
+        text="elements along the face width; in a pancake drive along that of each ring gear",
+        ge=2,
+        le=400,
     )
     end_ratio: float = quantity(
-        1.0, text="length of the middle elements over that of the elements at both ends", ge=1.0, le=10.0
+        1.0,
+        text="length of the middle elements over that of the elements at both ends",
+        ge=1.0,
+        le=10.0,
     )
 
 
@@ -58,7 +75,8 @@ class CupRecipe(Section):
         le=20.0,
     )
     joined_columns: bool = quantity(
-        False, text="whether three columns of elements become one in the wall, a pitch behind the teeth"
+        False,
+        text="whether three columns of elements become one in the wall, a pitch behind the teeth",
     )
 
 
@@ -72,7 +90,8 @@ class MeshRecipe(Section):
 
 
 def is_recipe_name(mesh: str | Path) -> bool:
-    """Whether `mesh` is a plain word, which names a recipe of the package, and not the path of a file."""
+    """Whether `mesh` is a plain word, which names a recipe of the package, and not the path of a
+    file."""
     path = Path(mesh)
     return path.name == str(path) and not path.suffix
 
@@ -95,7 +114,8 @@ def recipe_path(mesh: str | Path) -> Path:
         return Path(__file__).with_name("recipes") / f"{path}.toml"
     if is_recipe_name(path) and not _is_file(path):
         raise InputError(
-            f"mesh = {show(str(path))} is not available: allowed {', '.join(RECIPES)} or the path of a mesh recipe"
+            f"mesh = {show(str(path))} is not available: allowed {', '.join(RECIPES)} or the path "
+            f"of a mesh recipe"
         )
     return path
 
@@ -118,5 +138,8 @@ def make_recipe(table: dict[str, Any]) -> MeshRecipe:
     for key, value in table.items():
         if key not in MeshRecipe.model_fields:
             allowed = ", ".join(MeshRecipe.model_fields)
-            raise InputError(f"{show_key(key)} = {show(value)} is not a section of a mesh recipe: allowed {allowed}")
+            raise InputError(
+                f"{show_key(key)} = {show(value)} is not a section of a mesh recipe: allowed "
+                f"{allowed}"
+            )
     return validate(MeshRecipe, table)

@@ -1,4 +1,5 @@
-"""Mesh recipes with other element counts: coarser meshes for a start, finer ones for an accuracy."""
+"""Mesh recipes with other element counts: coarser meshes for a start, finer ones for an
+accuracy."""
 
 from __future__ import annotations
 
@@ -15,18 +16,26 @@ RATIO = 1.5
 
 
 def with_counts(recipe: MeshRecipe, count: Callable[[str, str, int], int]) -> MeshRecipe:
-    """The recipe with ``count(section, name, elements)`` in place of every element count. Gradings stay.
+    """The recipe with ``count(section, name, elements)`` in place of every element count. Gradings
+    stay.
 
-    The parity of the elements along the face width is kept, so that its middle stays a node or an element: a crowned
-    cam touches there. With another parity the ring takes a shape that differs by 0.1 micrometres, and a finer mesh has
-    to find its contacts anew. Raises InputError where a count is out of range.
+    The parity of the elements along the face width is kept, so that its middle stays a node or an
+    element: a crowned cam touches there. With another parity the ring takes a shape that differs by
+    0.1 micrometres, and a finer mesh has to find its contacts anew. Raises InputError where a count
+    is out of range.
     """
 
     def section(title: str, counts: dict[str, int | float]) -> dict[str, int | float]:
         # a flag is an int too
-        return {name: count(title, name, value) if type(value) is int else value for name, value in counts.items()}
+        return {
+            name: count(title, name, value) if type(value) is int else value
+            for name, value in counts.items()
+        }
 
-    content = {title: section(title, counts) for title, counts in recipe.model_dump(exclude_none=True).items()}
+    content = {
+        title: section(title, counts)
+        for title, counts in recipe.model_dump(exclude_none=True).items()
+    }
     if recipe.face_width is not None:
         width = content["face_width"]
         width["elements"] += (width["elements"] + recipe.face_width.elements) % 2
@@ -39,5 +48,8 @@ def coarser(recipe: MeshRecipe) -> MeshRecipe:
 
 
 def resized(recipe: MeshRecipe, ratio: float) -> MeshRecipe:
-    """The recipe with so many times the elements in every direction; raises InputError where a count is too large."""
-    return with_counts(recipe, lambda _, name, count: max(SMALLEST.get(name, 1), round(ratio * count)))
+    """The recipe with so many times the elements in every direction; raises InputError where a
+    count is too large."""
+    return with_counts(
+        recipe, lambda _, name, count: max(SMALLEST.get(name, 1), round(ratio * count))
+    )

@@ -1,4 +1,5 @@
-"""Crowning in the mesh: the flank's nodes move inwards, the inside of the tooth follows smoothly."""
+"""Crowning in the mesh: the flank's nodes move inwards, the inside of the tooth follows
+smoothly."""
 
 from __future__ import annotations
 
@@ -24,7 +25,10 @@ _GRADIENT = 0.25 * np.stack(
 
 def boundary_nodes(section: CrossSection) -> np.ndarray:
     """Return the nodes (n,) on the boundary of the cross-section."""
-    edges = np.sort(np.stack((section.quads, np.roll(section.quads, -1, axis=1)), axis=-1).reshape(-1, 2), axis=1)
+    edges = np.sort(
+        np.stack((section.quads, np.roll(section.quads, -1, axis=1)), axis=-1).reshape(-1, 2),
+        axis=1,
+    )
     unique, times = np.unique(edges, axis=0, return_counts=True)
     return np.unique(unique[times == 1])
 
@@ -44,8 +48,8 @@ def laplacian(section: CrossSection) -> coo_matrix:
 def relief_field(section: CrossSection, profile: ToothProfile) -> Floats:
     """Return the displacement (n_node, 2) of the cross-section per unit of crowning.
 
-    The flanks move by the crowning weight against their normal; the other boundaries and the rim stay, and
-    the displacement in between is harmonic.
+    The flanks move by the crowning weight against their normal; the other boundaries and the rim
+    stay, and the displacement in between is harmonic.
     """
     field = np.zeros((len(section.coords), 2))
     move = -profile.crowning_weight(section.s)[:, None] * profile.normal(section.s)

@@ -33,12 +33,14 @@ class FlankGrid:
 
 @dataclass(frozen=True)
 class SectorMesh:
-    """The tooth sector centred on +y; copy k of it is rotated by ``phase + 2 pi k / n_sectors`` about z.
+    """The tooth sector centred on +y; copy k of it is rotated by ``phase + 2 pi k / n_sectors``
+    about z.
 
     Attributes
     ----------
     body : str
-        ``flexible_spline``, ``ring_gear``, ``dynamic_spline`` or ``outer_race``, or ``ring`` for a plain one.
+        ``flexible_spline``, ``ring_gear``, ``dynamic_spline`` or ``outer_race``, or ``ring`` for a
+        plain one.
     n_sectors : int
         Number of teeth of the full gear.
     phase : float, rad
@@ -47,20 +49,21 @@ class SectorMesh:
     hexes : (n_elem, 8) int32
         Nodes in VTK order.
     ccw_nodes, cw_nodes : (n_pair,) int32
-        Nodes on the counter-clockwise and on the clockwise side: the first of sector k coincide with the
-        second of sector k + 1, in this order.
+        Nodes on the counter-clockwise and on the clockwise side: the first of sector k coincide
+        with the second of sector k + 1, in this order.
     faces : dict of (n_face, 4) int32
-        Quadrilaterals whose right-hand normal points out of the material: ``inner`` (flexible spline, the
-        cylinder of the inner radius within the face width), ``end`` (both faces of the cup's closed end or
-        flange) or ``outer`` (ring gear, with its housing if it has one).
+        Quadrilaterals whose right-hand normal points out of the material: ``inner`` (flexible
+        spline, the cylinder of the inner radius within the face width), ``end`` (both faces of the
+        cup's closed end or flange) or ``outer`` (ring gear, with its housing if it has one).
     node_sets : dict of (n,) int32
         ``bore`` (flexible spline; the rim of a flange) or ``outer`` (ring gear, as above).
     flanks : tuple of FlankGrid
         Side +1, then side -1; none on a plain ring, which has no profile either.
     profile : ToothProfile or None
     quality : dict of float
-        ``min_scaled_jacobian``, ``min_jacobian`` and ``max_jacobian`` (mm³, determinants at the 2x2x2 Gauss
-        points), ``max_aspect_ratio``; of the quadrilaterals (mm², 2x2 points) in the plane model.
+        ``min_scaled_jacobian``, ``min_jacobian`` and ``max_jacobian`` (mm³, determinants at the
+        2x2x2 Gauss points), ``max_aspect_ratio``; of the quadrilaterals (mm², 2x2 points) in the
+        plane model.
     tooth : (n,) int32
         Elements of the tooth above its rim; none on a plain ring.
     housing : (n,) int32
@@ -92,15 +95,18 @@ class SectorMesh:
 
     @property
     def elements(self) -> Ints:
-        """Nodes of the finite elements: the hexahedra, or their lower faces in the plane model; (n_elem, 8 or 4)."""
+        """Nodes of the finite elements: the hexahedra, or their lower faces in the plane model;
+        (n_elem, 8 or 4)."""
         return self.hexes if not self.plane else self.hexes[:, :4]
 
     @property
     def parts(self) -> tuple[Ints, ...]:
-        """Elements of each material: those of the gear, then those of its housing if there is one."""
+        """Elements of each material: those of the gear, then those of its housing if there is
+        one."""
         every = np.arange(len(self.hexes), dtype=np.int32)
         return (np.setdiff1d(every, self.housing), self.housing) if len(self.housing) else (every,)
 
     def nodes_of(self, part: int) -> Ints:
-        """Nodes (n,) of a part, those on its boundary with the other one included; in the plane of both layers."""
+        """Nodes (n,) of a part, those on its boundary with the other one included; in the plane of
+        both layers."""
         return np.unique(self.hexes[self.parts[part]])

@@ -1,6 +1,8 @@
-"""Elements and nodes of tooth sectors by their recipe, without a mesh: what a run will need is known before it begins.
+"""Elements and nodes of tooth sectors by their recipe, without a mesh: what a run will need is
+known before it begins.
 
-The numbers follow from the blocks of half a tooth (`half_tooth.py`) and from the sweep (`tooth_sector.py`, `cup.py`).
+The numbers follow from the blocks of half a tooth (`half_tooth.py`) and from the sweep
+(`tooth_sector.py`, `cup.py`).
 """
 
 from __future__ import annotations
@@ -21,7 +23,8 @@ class SectorCounts:
     n_sectors : teeth of the gear
     elements, nodes : of the sector; in the plane those of one layer
     shared : nodes on one of its sides, which belong to the next sector as well
-    outer : nodes of the outer surface of a ring gear or its housing, without those shared ones; 0 for a flexible spline
+    outer : nodes of the outer surface of a ring gear or its housing, without those shared ones; 0
+    for a flexible spline
     """
 
     n_sectors: int
@@ -55,7 +58,11 @@ def _counts(drive: DriveGeometry, recipe: MeshRecipe, gear: str) -> SectorCounts
     n_sectors = drive.gears[gear].profile.n_teeth
     if gear == "ring_gear":
         housing = len(housing_radii(drive.gears[gear], drive.housing, teeth)) - 1
-        quads, nodes, side = quads + housing * around, nodes + housing * (around + 1), side + housing
+        quads, nodes, side = (
+            quads + housing * around,
+            nodes + housing * (around + 1),
+            side + housing,
+        )
     if drive.model == "plane":
         return SectorCounts(n_sectors, quads, nodes, side, 0 if external else around)
     layers = recipe.face_width.elements
@@ -69,7 +76,11 @@ def _counts(drive: DriveGeometry, recipe: MeshRecipe, gear: str) -> SectorCounts
         with_all, joined, threes = stations, around, 0
         if cup.joined_columns:
             groups = joined_columns(around)
-            with_all, joined, threes = transition_station(drive, cup, teeth.under), len(groups), groups.count(3)
+            with_all, joined, threes = (
+                transition_station(drive, cup, teeth.under),
+                len(groups),
+                groups.count(3),
+            )
             elements += (around + threes) * depth  # of the transition
             nodes += 2 * threes * (depth + 1)
         behind = stations - with_all

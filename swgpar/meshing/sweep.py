@@ -1,4 +1,5 @@
-"""Sweeping a plane mesh through stations: hexahedra, and the quadrilaterals that its lines leave behind."""
+"""Sweeping a plane mesh through stations: hexahedra, and the quadrilaterals that its lines leave
+behind."""
 
 from __future__ import annotations
 
@@ -17,7 +18,9 @@ def sweep_quads(quads: Ints, rows: Ints) -> Ints:
     rows : (n_step + 1, n_column) int32
         Nodes of each copy.
     """
-    return np.concatenate((rows[:-1, quads], rows[1:, quads]), axis=-1).reshape(-1, 8).astype(np.int32)
+    return (
+        np.concatenate((rows[:-1, quads], rows[1:, quads]), axis=-1).reshape(-1, 8).astype(np.int32)
+    )
 
 
 def sweep_line(line: Ints, rows: Ints) -> Ints:
@@ -30,7 +33,8 @@ def sweep_line(line: Ints, rows: Ints) -> Ints:
 
 
 def symmetric_steps(n: int, ratio: float) -> Floats:
-    """Return n + 1 numbers from 0 to 1; the middle steps are `ratio` times as long as those at both ends."""
+    """Return n + 1 numbers from 0 to 1; the middle steps are `ratio` times as long as those at both
+    ends."""
     middle = np.abs((np.arange(n) + 0.5) / n * 2.0 - 1.0)
     reach = 1.0 - 1.0 / n  # of the outermost step
     steps = ratio ** (1.0 - middle / reach) if n > 1 else np.ones(1)
@@ -54,8 +58,8 @@ def axial_stations(width: float, n: int, ratio: float, inner_width: float) -> Fl
     z = (symmetric_steps(n, ratio) - 0.5) * width
     if inner_width < width:
         half = 0.5 * inner_width
-        # the nearest pair moves to the ends of the wave generator, the others are stretched with it; at least
-        # one element stays on either side
+        # the nearest pair moves to the ends of the wave generator, the others are stretched with
+        # it; at least one element stays on either side
         k = int(np.clip(np.argmin(np.abs(z[: (n + 1) // 2] + half)), 1, max(1, (n - 1) // 2)))
         ends = np.array((-0.5 * width, -half, half, 0.5 * width))
         z = np.interp(z, (z[0], z[k], z[n - k], z[n]), ends)

@@ -24,7 +24,8 @@ from swgpar.meshing.sweep import axial_stations, sweep_line, sweep_quads, symmet
 
 
 def _radii(drive: DriveGeometry, gear: str, recipe: ToothRecipe) -> tuple[float, float, bool]:
-    """Return interface and free radius, mm, and whether the cup takes in the layers below the root."""
+    """Return interface and free radius, mm, and whether the cup takes in the layers below the
+    root."""
     rim, r_root = drive.gears[gear].rim, drive.gears[gear].profile.r_root_circle
     # layers of equal thickness from the root to the free surface (section 4.11.2 of the source)
     lower = rim * recipe.rim / (recipe.rim + recipe.under)
@@ -49,14 +50,17 @@ def _no_mesh(gear: str, recipe: ToothRecipe, result: str) -> str:
     """The sentence for a tooth whose recipe, sizes and profile do not go together."""
     counts = ", ".join(f"{name} = {value:g}" for name, value in recipe.model_dump().items())
     return (
-        f"{gear} {result}, with {counts} of the mesh recipe: allowed are counts, a {gear}.rim and a {gear}.profile "
+        f"{gear} {result}, with {counts} of the mesh recipe: allowed are counts, a {gear}.rim and "
+        f"a {gear}.profile "
         "that leave all Jacobians above 0"
     )
 
 
 def _check(gear: str, quality: dict[str, float], recipe: ToothRecipe, unit: str) -> None:
     if not quality["min_jacobian"] > 0.0:
-        result = f"has an element that is inside out (Jacobian {quality['min_jacobian']:.3g} {unit})"
+        result = (
+            f"has an element that is inside out (Jacobian {quality['min_jacobian']:.3g} {unit})"
+        )
         raise InputError(_no_mesh(gear, recipe, result))
 
 
@@ -64,8 +68,10 @@ def _check(gear: str, quality: dict[str, float], recipe: ToothRecipe, unit: str)
 class Swept:
     """Nodes and elements of a sector.
 
-    coords : (n_node, 3) mm;  hexes : (n_elem, 8);  cw, ccw : (n_pair,) nodes on the sides of the sector
-    rows : (n_z + 1, n_section) nodes of the toothed part, one row for each station along the face width
+    coords : (n_node, 3) mm;  hexes : (n_elem, 8);  cw, ccw : (n_pair,) nodes on the sides of the
+    sector
+    rows : (n_z + 1, n_section) nodes of the toothed part, one row for each station along the face
+    width
     """
 
     coords: Floats
@@ -85,7 +91,8 @@ def _toothed_part(section: CrossSection, z: Floats, relief: Floats, amount: Floa
 def _with_cup(
     drive: DriveGeometry, recipe: MeshRecipe, section: CrossSection, teeth: Swept, root_too: bool
 ) -> tuple[Swept, Ints, Ints]:
-    """The sector with the slice of the cup behind its teeth, nodes (n,) of the bore, faces (n, 4) of the closed end."""
+    """The sector with the slice of the cup behind its teeth, nodes (n,) of the bore, faces (n, 4)
+    of the closed end."""
     back = teeth.rows[-1]
     layers = recipe.flexible_spline.under
     cup = cup_slice(drive, recipe.cup, section, root_too, back, len(teeth.coords), layers)
@@ -104,7 +111,8 @@ def _with_cup(
 def _relief(
     crowned: FlankCrowning | None, section: CrossSection, profile: ToothProfile, z: Floats
 ) -> tuple[Floats, Floats]:
-    """Crowning (n_z + 1,) mm along the width, and the displacement (n_section, 2) of the section per unit of it."""
+    """Crowning (n_z + 1,) mm along the width, and the displacement (n_section, 2) of the section
+    per unit of it."""
     if crowned is None or crowned.amount == 0.0:
         return np.zeros_like(z), np.zeros_like(section.coords)
     amount = crowning(crowned.amount, z, crowned.width, crowned.shape)[0]
@@ -112,8 +120,11 @@ def _relief(
 
 
 def _elements(quads: NDArray[np.bool_], layers: int) -> Ints:
-    """Return the elements (n,) of the quadrilaterals of a mask (n_quad,), in all layers along the face width."""
-    return (np.flatnonzero(quads) + len(quads) * np.arange(layers)[:, None]).ravel().astype(np.int32)
+    """Return the elements (n,) of the quadrilaterals of a mask (n_quad,), in all layers along the
+    face width."""
+    return (
+        (np.flatnonzero(quads) + len(quads) * np.arange(layers)[:, None]).ravel().astype(np.int32)
+    )
 
 
 def tooth_recipe(recipe: MeshRecipe, gear: str) -> ToothRecipe:
@@ -122,7 +133,8 @@ def tooth_recipe(recipe: MeshRecipe, gear: str) -> ToothRecipe:
 
 
 def gap_elements(drive: DriveGeometry, recipe: MeshRecipe) -> int:
-    """Elements along the gap between both ring gears of a pancake drive: as long as the others, one at least."""
+    """Elements along the gap between both ring gears of a pancake drive: as long as the others, one
+    at least."""
     gap = drive.gears["dynamic_spline"].ends[0] - drive.gears["ring_gear"].ends[1]
     return max(1, round(gap / (drive.face_width - gap) * 2 * recipe.face_width.elements))
 
@@ -130,8 +142,8 @@ def gap_elements(drive: DriveGeometry, recipe: MeshRecipe) -> int:
 def _stations(drive: DriveGeometry, recipe: MeshRecipe, gear: str) -> Floats:
     """Coordinates z (n,) mm of the nodes along the face width of a gear.
 
-    In a pancake drive each ring gear has the recipe's elements along its own width, and the flexible spline has the
-    stations of both.
+    In a pancake drive each ring gear has the recipe's elements along its own width, and the
+    flexible spline has the stations of both.
     """
     number, ratio = recipe.face_width.elements, recipe.face_width.end_ratio
     if drive.cup is not None:
@@ -151,7 +163,8 @@ def _stations(drive: DriveGeometry, recipe: MeshRecipe, gear: str) -> Floats:
 def build_sector(drive: DriveGeometry, recipe: MeshRecipe, gear: str) -> SectorMesh:
     """Mesh the tooth sector of a gear; one layer of it for the plane model.
 
-    Raises InputError for a recipe or a profile that gives elements with a Jacobian that is not above 0.
+    Raises InputError for a recipe or a profile that gives elements with a Jacobian that is not
+    above 0.
     """
     counts = tooth_recipe(recipe, gear)
     profile = drive.gears[gear].profile
@@ -164,21 +177,30 @@ def build_sector(drive: DriveGeometry, recipe: MeshRecipe, gear: str) -> SectorM
         section = with_housing(section, housing_radii(drive.gears[gear], drive.housing, counts))
     plane = drive.model == "plane"
     z = np.array([-0.5, 0.5]) * drive.face_width if plane else _stations(drive, recipe, gear)
-    amount, relief = _relief(drive.crowning if gear == "flexible_spline" else None, section, profile, z)
+    amount, relief = _relief(
+        drive.crowning if gear == "flexible_spline" else None, section, profile, z
+    )
     sector = _toothed_part(section, z, relief, amount)
     rows = sector.rows
     if gear == "flexible_spline":
         faces = {"inner": sweep_line(section.free, rows)}
-        # in the plane the torque acts on the inner surface, of which the lower layer stands for both
+        # in the plane the torque acts on the inner surface, of which the lower layer stands for
+        # both
         node_sets = {"bore": np.sort(rows[0, section.free])}
         if drive.model == "pancake":
             node_sets["bore"] = np.unique(faces["inner"])
         elif not plane:
-            sector, node_sets["bore"], faces["end"] = _with_cup(drive, recipe, section, sector, root_too)
+            sector, node_sets["bore"], faces["end"] = _with_cup(
+                drive, recipe, section, sector, root_too
+            )
     else:
         faces = {"outer": sweep_line(section.free[::-1], rows)}
         node_sets = {"outer": np.unique(rows[:1, section.free] if plane else faces["outer"])}
-    quality = quad_quality(sector.coords, sector.hexes[:, :4]) if plane else hex_quality(sector.coords, sector.hexes)
+    quality = (
+        quad_quality(sector.coords, sector.hexes[:, :4])
+        if plane
+        else hex_quality(sector.coords, sector.hexes)
+    )
     _check(gear, quality, counts, "mm2" if plane else "mm3")
     flanks = tuple(
         FlankGrid(np.ascontiguousarray(rows[:, nodes].T), section.s, z, side)
@@ -207,7 +229,9 @@ def require_sections(model: str, recipe: MeshRecipe) -> None:
     """Raise InputError where the recipe lacks a section that the model needs."""
     for name, models in (("face_width", ("cup", "pancake")), ("cup", ("cup",))):
         if model in models and getattr(recipe, name) is None:
-            raise InputError(f'[{name}] is missing in the mesh recipe: drive.model = "{model}" needs it')
+            raise InputError(
+                f'[{name}] is missing in the mesh recipe: drive.model = "{model}" needs it'
+            )
 
 
 def build_sector_meshes(drive: DriveGeometry, recipe: MeshRecipe) -> dict[str, SectorMesh]:

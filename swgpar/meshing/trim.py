@@ -13,8 +13,8 @@ from swgpar.meshing.sector import SectorMesh
 def trimmed(mesh: SectorMesh, keep: NDArray[np.bool_]) -> SectorMesh:
     """The sector with the elements of the mask `keep` (n_elem,) only.
 
-    The node set ``cut`` holds the nodes that kept and removed elements share. Sets, faces and flanks keep what is left
-    of them; flanks must be left whole.
+    The node set ``cut`` holds the nodes that kept and removed elements share. Sets, faces and
+    flanks keep what is left of them; flanks must be left whole.
     """
     used = np.zeros(len(mesh.coords), dtype=bool)
     used[mesh.hexes[keep]] = True
@@ -33,7 +33,9 @@ def trimmed(mesh: SectorMesh, keep: NDArray[np.bool_]) -> SectorMesh:
         hexes=renumbered(mesh.hexes[keep]),
         ccw_nodes=renumbered(mesh.ccw_nodes[pairs]),
         cw_nodes=renumbered(mesh.cw_nodes[pairs]),
-        faces={name: renumbered(faces[used[faces].all(axis=1)]) for name, faces in mesh.faces.items()},
+        faces={
+            name: renumbered(faces[used[faces].all(axis=1)]) for name, faces in mesh.faces.items()
+        },
         node_sets=node_sets | {"cut": renumbered(np.flatnonzero(used & removed))},
         flanks=tuple(replace(grid, nodes=renumbered(grid.nodes)) for grid in mesh.flanks),
     )

@@ -1,4 +1,5 @@
-"""The parts of a drive's model that a bearing adds: outer race, balls, their contacts and the race's support."""
+"""The parts of a drive's model that a bearing adds: outer race, balls, their contacts and the
+race's support."""
 
 from __future__ import annotations
 
@@ -22,12 +23,15 @@ from swgpar.meshing.race_sector import opposite_cells, race_grid, race_sector
 from swgpar.meshing.sector import SectorMesh
 
 RADIAL = 1
-"""Elements through the thickness of the outer race: with incompatible modes one is exact in bending."""
+"""Elements through the thickness of the outer race: with incompatible modes one is exact in
+bending."""
 
 
 def build_race(design: DriveDesign, spline: SectorMesh) -> Body:
     """The outer race. Its sectors lie opposite to those of the flexible spline."""
-    mesh = race_sector(spline, design.inner_radius, design.bearing.race_thickness, design.race_width, RADIAL)
+    mesh = race_sector(
+        spline, design.inner_radius, design.bearing.race_thickness, design.race_width, RADIAL
+    )
     return Body(mesh, (design.material_of("bearing"),), design.race_width)
 
 
@@ -57,7 +61,9 @@ def build_ball_contact(design: DriveDesign, elements: Elements) -> BallContact:
     race = elements.bodies[OUTER_RACE]
     nodes = race_grid(race.layout.mesh, "inner")
     z = race.layout.mesh.coords[nodes[0], 2]
-    share = np.array([np.interp(0.0, z, unit) for unit in np.eye(len(z))])  # shape functions in the mid-plane
+    share = np.array(
+        [np.interp(0.0, z, unit) for unit in np.eye(len(z))]
+    )  # shape functions in the mid-plane
     sector = 2.0 * np.pi * design.bearing_sizes.outer_groove / race.layout.mesh.n_sectors
     return BallContact(
         race,
@@ -71,12 +77,15 @@ def build_ball_contact(design: DriveDesign, elements: Elements) -> BallContact:
 def build_race_contact(
     design: DriveDesign, elements: Elements, half_width: float, pressure_limit: float
 ) -> RaceContact:
-    """Contact of the race with the flexible spline. half_width : mm, of the race;  pressure_limit : MPa"""
+    """Contact of the race with the flexible spline. half_width : mm, of the race;  pressure_limit :
+    MPa"""
     spline, race = elements.bodies[FLEXIBLE_SPLINE], elements.bodies[OUTER_RACE]
     micro = design.micro_geometry
 
     def relief(z: np.ndarray) -> np.ndarray:
-        return crowning(micro.wg_crowning, z, design.wave_generator.face_width, micro.crowning_shape)[0]
+        return crowning(
+            micro.wg_crowning, z, design.wave_generator.face_width, micro.crowning_shape
+        )[0]
 
     column, layer = opposite_cells(spline.layout.mesh, race.layout.mesh)
     return RaceContact(
@@ -96,4 +105,6 @@ def build_race_contact(
 
 def race_coupling(partition: Partition, elements: Elements, spline: NodeMeans) -> RaceCoupling:
     """Support of the race. spline : coupling of the flexible spline"""
-    return RaceCoupling(DistributingCoupling(partition, elements.bodies[OUTER_RACE], "outer", spline.images), spline)
+    return RaceCoupling(
+        DistributingCoupling(partition, elements.bodies[OUTER_RACE], "outer", spline.images), spline
+    )

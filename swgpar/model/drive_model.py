@@ -1,4 +1,5 @@
-"""The drive as it is computed: meshes, ownership, elements, contacts, supports and solver, built by factories."""
+"""The drive as it is computed: meshes, ownership, elements, contacts, supports and solver, built by
+factories."""
 
 from __future__ import annotations
 
@@ -11,7 +12,13 @@ from mpi4py import MPI
 
 from swgpar.constraints.distributing_coupling import DistributingCoupling, NodeMeans, RadialGuide
 from swgpar.constraints.rigid_attachment import RigidAttachment, face_sides
-from swgpar.constraints.supports import RING_COUPLING, SPLINE_COUPLING, FixedRing, FloatingRing, Supports
+from swgpar.constraints.supports import (
+    RING_COUPLING,
+    SPLINE_COUPLING,
+    FixedRing,
+    FloatingRing,
+    Supports,
+)
 from swgpar.contact.ball_contact import BallContact
 from swgpar.contact.contact import NO_KEYS, PenaltyContact, largest
 from swgpar.contact.flank_state import SearchRange
@@ -39,14 +46,16 @@ from swgpar.solve.newton import NewtonSolver
 from swgpar.solve.solve_state import NewtonSettings
 
 PRESSURE_LIMIT = 0.02
-"""Bound of contact pressures in the tangent's geometric terms, as a share of E: above any real pressure."""
+"""Bound of contact pressures in the tangent's geometric terms, as a share of E: above any real
+pressure."""
 
 NEAR = 0.25
 REACH = 0.1
 TOUCH = 0.01
 TIP_MARGIN = 0.1
-"""Distances of the contact search over the module: faces that are evaluated, those of a flank one of which is closer
-than the second distance; faces with blocks in the tangent's pattern; radial distance of the tips."""
+"""Distances of the contact search over the module: faces that are evaluated, those of a flank one
+of which is closer than the second distance; faces with blocks in the tangent's pattern; radial
+distance of the tips."""
 
 FOOT_REACH = 0.5
 """Largest gap over the module at which a foot point is looked for."""
@@ -64,11 +73,15 @@ EDGE = 1.0 + 1e-9
 
 
 def search_distance(design: DriveDesign, share: float = NEAR) -> float:
-    """Distance (mm) within which flanks are followed: under torque all those that the backlash may bring together.
+    """Distance (mm) within which flanks are followed: under torque all those that the backlash may
+    bring together.
 
     share : of the module, at least
     """
-    return max(share * design.drive.module, TOUCH * design.drive.module + max(design.backlash, design.dynamic_backlash))
+    return max(
+        share * design.drive.module,
+        TOUCH * design.drive.module + max(design.backlash, design.dynamic_backlash),
+    )
 
 
 @dataclass(eq=False, kw_only=True)
@@ -92,18 +105,22 @@ class DriveModel:
     phases: PhaseTimes
 
     def destroy(self) -> None:
-        """Release the solver and its factor; collective. PETSc's objects refer to each other, so Python does not."""
+        """Release the solver and its factor; collective. PETSc's objects refer to each other, so
+        Python does not."""
         self.solver.destroy()
 
     @property
     def copies(self) -> int:
-        """How many times the model makes the whole drive: 2 where it is half of it, 3 where it is a third."""
+        """How many times the model makes the whole drive: 2 where it is half of it, 3 where it is a
+        third."""
         return self.design.copies
 
     @property
     def part_remark(self) -> str:
         """What a message adds to the unknowns of the model."""
-        return {1: "", 2: " (half of it, by symmetry)", 3: " (a third of it, by symmetry)"}[self.copies]
+        return {1: "", 2: " (half of it, by symmetry)", 3: " (a third of it, by symmetry)"}[
+            self.copies
+        ]
 
     @property
     def fixed_body(self) -> str:
@@ -111,7 +128,8 @@ class DriveModel:
         return self.design.standing_gear
 
     def omitted_bending_stress(self) -> float:
-        """Stress (MPa) that condensed sectors leave out in the present state: E theta^2 / 8 where they bend most."""
+        """Stress (MPa) that condensed sectors leave out in the present state: E theta^2 / 8 where
+        they bend most."""
         body = self.elements.bodies[FLEXIBLE_SPLINE]
         if body.layout.condensed is None:
             return 0.0
@@ -119,12 +137,19 @@ class DriveModel:
         theta = relative_end_rotation(
             body.layout.mesh, angle, body.displacement(self.problem.displacement())[body.owned]
         )
-        return largest(self.comm, self.design.modulus_of("flexible_spline") * float((theta**2).max(initial=0.0)) / 8.0)
+        return largest(
+            self.comm,
+            self.design.modulus_of("flexible_spline") * float((theta**2).max(initial=0.0)) / 8.0,
+        )
 
     @cached_property
     def regions(self) -> dict[str, dict[bool, np.ndarray]]:
-        """Regions of the nodes of a sector of flexible spline and ring gear by name, see `sector_regions`."""
-        return {name: sector_regions(self.design, self.meshes[name]) for name in (FLEXIBLE_SPLINE, RING_GEAR)}
+        """Regions of the nodes of a sector of flexible spline and ring gear by name, see
+        `sector_regions`."""
+        return {
+            name: sector_regions(self.design, self.meshes[name])
+            for name in (FLEXIBLE_SPLINE, RING_GEAR)
+        }
 
     def n_elements(self) -> int:
         """Elements of the whole drive."""
@@ -135,12 +160,15 @@ class DriveModel:
         return {name: body_counts(layout) for name, layout in self.partition.layouts.items()}
 
     def stresses(self) -> tuple[dict[str, float], dict[str, dict[str, np.ndarray]]]:
-        """Largest stresses (MPa) by body and kind ("fs_s1", "race_vm", …), and the nodal fields by body."""
+        """Largest stresses (MPa) by body and kind ("fs_s1", "race_vm", …), and the nodal fields by
+        body."""
         u = self.problem.displacement()
         values, fields = {}, {}
         for name, body in self.elements.bodies.items():
             fields[name] = body_fields(body, u)
-            for prefix, largest_of in zip(PREFIXES[name], part_maxima(self.comm, body, u, fields[name])):
+            for prefix, largest_of in zip(
+                PREFIXES[name], part_maxima(self.comm, body, u, fields[name])
+            ):
                 values.update({f"{prefix}_{k}": v for k, v in largest_of.items()})
         return values, fields
 
@@ -176,18 +204,26 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
         symmetric = design.contact.friction == 0.0
         elements = Elements(partition, symmetric=symmetric)
     supports = build_supports(design, partition=partition, elements=elements)
-    surface_contacts, balls, coupling_keys = build_wave_generator_contacts(design, elements=elements)
+    surface_contacts, balls, coupling_keys = build_wave_generator_contacts(
+        design, elements=elements
+    )
     problem = DiscreteProblem(
         partition=partition,
         elements=elements,
         supports=supports,
         surface_contacts=surface_contacts,
         balls=balls,
-        flanks=build_flank_contacts(design, partition=partition, elements=elements, supports=supports),
+        flanks=build_flank_contacts(
+            design, partition=partition, elements=elements, supports=supports
+        ),
         contact_search=contact_search(design),
         module=design.drive.module,
-        ring_sectors=RingSectors(partition.layouts[RING_GEAR].count) if _leaves_out_sectors(design) else None,
-        whole_teeth=[WholeTeeth(layout.count, layout.name) for layout in layouts if layout.tooth is not None],
+        ring_sectors=RingSectors(partition.layouts[RING_GEAR].count)
+        if _leaves_out_sectors(design)
+        else None,
+        whole_teeth=[
+            WholeTeeth(layout.count, layout.name) for layout in layouts if layout.tooth is not None
+        ],
         coupling_keys=coupling_keys,
         phases=phases,
     )
@@ -244,7 +280,8 @@ def _condenses_teeth(design: DriveDesign) -> bool:
 
 
 def build_supports(design: DriveDesign, *, partition: Partition, elements: Elements) -> Supports:
-    """Couplings of the spline, of a ring gear that is not clamped and of a bearing; the guide of a rotating ring."""
+    """Couplings of the spline, of a ring gear that is not clamped and of a bearing; the guide of a
+    rotating ring."""
     spline = elements.bodies[FLEXIBLE_SPLINE]
     copies = design.copies
     # a plane section with deviations is centred by its cam alone: the wall of the cup gives way
@@ -254,13 +291,20 @@ def build_supports(design: DriveDesign, *, partition: Partition, elements: Eleme
     if design.has_attachment:
         cup, penalty = design.cup, design.penalty("flexible_spline")
         attachment = RigidAttachment(
-            partition, spline, "end", cup.is_attached, cup.attached_width, penalty=penalty, images=copies > 1
+            partition,
+            spline,
+            "end",
+            cup.is_attached,
+            cup.attached_width,
+            penalty=penalty,
+            images=copies > 1,
         )
         couplings.append(attachment)
         longest = float(face_sides(spline.layout.mesh, "end").max())
         if design.is_bolted and longest > cup.washer_diameter:
             logger.warning(
-                "elements of the closed end or flange are up to %.3g mm long, a washer is %.3g mm wide: a mesh with "
+                "elements of the closed end or flange are up to %.3g mm long, a washer is %.3g mm "
+                "wide: a mesh with "
                 "shorter elements there holds the bolts better",
                 longest,
                 cup.washer_diameter,
@@ -295,14 +339,20 @@ def build_supports(design: DriveDesign, *, partition: Partition, elements: Eleme
 def build_wave_generator_contacts(
     design: DriveDesign, *, elements: Elements
 ) -> tuple[list[PenaltyContact], BallContact | None, np.ndarray]:
-    """Contacts of the inner surface, balls of a bearing, and keys (n,) of the tangent's blocks that they need."""
+    """Contacts of the inner surface, balls of a bearing, and keys (n,) of the tangent's blocks that
+    they need."""
     if design.bearing is None:
         return [*build_rigid_contacts(design, elements=elements)], None, NO_KEYS
     race = build_race_contact(
-        design, elements, 0.5 * design.race_width * EDGE, PRESSURE_LIMIT * design.modulus_of("bearing")
+        design,
+        elements,
+        0.5 * design.race_width * EDGE,
+        PRESSURE_LIMIT * design.modulus_of("bearing"),
     )
     balls = build_ball_contact(design, elements)
-    keys = np.unique(np.concatenate([elements.block_keys(conn).ravel() for conn in (race.conn, balls.windows)]))
+    keys = np.unique(
+        np.concatenate([elements.block_keys(conn).ravel() for conn in (race.conn, balls.windows)])
+    )
     return [race], balls, keys[keys >= 0]
 
 
@@ -338,7 +388,9 @@ def build_flank_contacts(
                 partition,
                 elements.bodies[FLEXIBLE_SPLINE],
                 elements.bodies[name],
-                FixedRing() if fixed else FloatingRing(supports.couplings[RING_COUPLING], partition.comm),
+                FixedRing()
+                if fixed
+                else FloatingRing(supports.couplings[RING_COUPLING], partition.comm),
                 order=design.contact.quadrature,
                 crowning=design.crowning,
                 penalty=design.penalty("flexible_spline", name),

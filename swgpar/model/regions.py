@@ -1,4 +1,5 @@
-"""Regions of a tooth sector: tooth root, flank, rim, cup wall, ..., and where a stress has no limit to converge to."""
+"""Regions of a tooth sector: tooth root, flank, rim, cup wall, ..., and where a stress has no limit
+to converge to."""
 
 from __future__ import annotations
 
@@ -14,7 +15,8 @@ ATTACHED = "attachment"
 """Region of the clamped ring of closed end or flange, or of the ring in which its bolts lie."""
 
 TOOTH_ROOT, TOOTH_END, UNDER_CONTACT = "tooth root", "tooth end", "flank under contact"
-"""Regions of the roots and of the ends of the teeth; of the flanks that touch and of what is close below them."""
+"""Regions of the roots and of the ends of the teeth; of the flanks that touch and of what is close
+below them."""
 
 END = 0.45
 """Share of the face width from its middle beyond which a place belongs to the end of a tooth."""
@@ -32,20 +34,28 @@ CLAMPED = "at the edge of a rigid attachment: no limit to converge to"
 
 
 def sector_regions(design: DriveDesign, mesh: SectorMesh) -> dict[bool, np.ndarray]:
-    """Regions (n_node,) of the nodes of a sector, by whether a contact of flanks presses on them."""
+    """Regions (n_node,) of the nodes of a sector, by whether a contact of flanks presses on
+    them."""
     nodes = range(len(mesh.coords))
-    return {touched: np.array([region_of(design, mesh, node, touched) for node in nodes]) for touched in (False, True)}
+    return {
+        touched: np.array([region_of(design, mesh, node, touched) for node in nodes])
+        for touched in (False, True)
+    }
 
 
 def region_of(design: DriveDesign, mesh: SectorMesh, node: int, touched: bool) -> str:
-    """Region of a node of a tooth sector. touched : whether a contact of flanks presses on it, or close to it"""
+    """Region of a node of a tooth sector. touched : whether a contact of flanks presses on it, or
+    close to it"""
     x, y, z = mesh.coords[node]
     radius, half = float(np.hypot(x, y)), 0.5 * design.drive.face_width
     if not mesh.plane and _at_the_back(design, mesh, radius, float(z)):
         return BACK
     if not mesh.plane and z > half * (1.0 + 1e-9):
         return _region_of_the_cup(design, mesh, node, radius, float(z))
-    inner = mesh.body == "flexible_spline" and radius < design.inner_radius + 0.5 * design.flexible_spline.rim
+    inner = (
+        mesh.body == "flexible_spline"
+        and radius < design.inner_radius + 0.5 * design.flexible_spline.rim
+    )
     if inner:
         return "rim inside"
     for grid in mesh.flanks:
@@ -59,11 +69,19 @@ def region_of(design: DriveDesign, mesh: SectorMesh, node: int, touched: bool) -
         outer = root + design.ring_gear.rim
         if radius < root - near:
             return "tip" if radius < mesh.profile.r_tip_circle + near else inside
-        return "outer surface" if radius > outer - near else "rim" if radius > root + near else TOOTH_ROOT
+        return (
+            "outer surface"
+            if radius > outer - near
+            else "rim"
+            if radius > root + near
+            else TOOTH_ROOT
+        )
     if design.has_cup and abs(z - half) < near and radius < root + near:
         return "notch"
     if radius < root + near:
-        return TOOTH_END if abs(z) > END * design.drive.face_width and not mesh.plane else TOOTH_ROOT
+        return (
+            TOOTH_END if abs(z) > END * design.drive.face_width and not mesh.plane else TOOTH_ROOT
+        )
     if radius > mesh.profile.r_tip_circle - near:
         return "tip"
     at_end = abs(z) > END * design.drive.face_width and not mesh.plane
@@ -74,12 +92,21 @@ def _at_the_back(design: DriveDesign, mesh: SectorMesh, radius: float, z: float)
     """Whether a point (mm) lies on the fillet at the back of the teeth, or close below it."""
     if mesh.body != "flexible_spline" or design.cup is None or design.cup.back_fillet == 0.0:
         return False
-    fillet, wall, near = design.cup.back_fillet, design.inner_radius + design.cup_thickness, NEAR * design.drive.module
+    fillet, wall, near = (
+        design.cup.back_fillet,
+        design.inner_radius + design.cup_thickness,
+        NEAR * design.drive.module,
+    )
     back = 0.5 * design.drive.face_width
-    return back - near < z < back + fillet + near and wall - near < radius < mesh.profile.r_root_circle + near
+    return (
+        back - near < z < back + fillet + near
+        and wall - near < radius < mesh.profile.r_root_circle + near
+    )
 
 
-def _region_of_the_flank(design: DriveDesign, mesh: SectorMesh, s: float, z: float, touched: bool) -> str:
+def _region_of_the_flank(
+    design: DriveDesign, mesh: SectorMesh, s: float, z: float, touched: bool
+) -> str:
     if abs(z) > END * design.drive.face_width and not mesh.plane and not touched:
         return TOOTH_END
     if s >= mesh.profile.breaks[-2]:
@@ -87,7 +114,9 @@ def _region_of_the_flank(design: DriveDesign, mesh: SectorMesh, s: float, z: flo
     return UNDER_CONTACT if touched else "flank"
 
 
-def _region_of_the_cup(design: DriveDesign, mesh: SectorMesh, node: int, radius: float, z: float) -> str:
+def _region_of_the_cup(
+    design: DriveDesign, mesh: SectorMesh, node: int, radius: float, z: float
+) -> str:
     wall = design.cup_wall
     if _is_attached(design, radius) and z > min(wall.faces) - NEAR * design.drive.module:
         return ATTACHED
@@ -101,7 +130,8 @@ def _region_of_the_cup(design: DriveDesign, mesh: SectorMesh, node: int, radius:
 
 
 def _is_attached(design: DriveDesign, radius: float) -> bool:
-    """Whether points at a radius (mm) of closed end or flange are clamped, or lie under bolts or between them."""
+    """Whether points at a radius (mm) of closed end or flange are clamped, or lie under bolts or
+    between them."""
     cup, near = design.cup, NEAR * design.drive.module
     if cup.attachment == "bolted":
         return abs(radius - 0.5 * cup.bolt_circle) < 0.5 * cup.washer_diameter + near
@@ -110,7 +140,8 @@ def _is_attached(design: DriveDesign, radius: float) -> bool:
 
 
 def warning_of(design: DriveDesign, region: str, point: np.ndarray) -> str:
-    """Why a stress at a point (3,) mm of a region has no limit, or depends on the mesh; empty where it converges."""
+    """Why a stress at a point (3,) mm of a region has no limit, or depends on the mesh; empty where
+    it converges."""
     if region == UNDER_CONTACT:
         return AVERAGE
     if region == "notch":

@@ -1,4 +1,5 @@
-"""Search for the best design: variables within bounds, objectives and constraints from the results of runs."""
+"""Search for the best design: variables within bounds, objectives and constraints from the results
+of runs."""
 
 from swgpar.optimisation.result import OptimisationResult
 from swgpar.optimisation.run_optimisation import run_optimisation

@@ -19,7 +19,8 @@ ENOUGH = 5
 """Feasible designs from which the axis of an objective is theirs."""
 
 SHOWN = {"minimise": (0.0, 75.0), "maximise": (25.0, 100.0)}
-"""Percentiles of the values that the axis of an objective covers: a few bad designs are far away."""
+"""Percentiles of the values that the axis of an objective covers: a few bad designs are far
+away."""
 
 COLOURS = {"feasible": "#2f7fd0", "infeasible": "#c9c9c9"}
 
@@ -52,15 +53,29 @@ def progress(problem: Problem, result: OptimisationResult) -> bytes:
     import matplotlib.pyplot as plt
 
     objectives, last = problem.section.objective, max(result.evaluations)
-    figure, axes = plt.subplots(1, len(objectives), figsize=(6.0 * len(objectives), 3.6), squeeze=False)
+    figure, axes = plt.subplots(
+        1, len(objectives), figsize=(6.0 * len(objectives), 3.6), squeeze=False
+    )
     for objective, panel in zip(objectives, axes[0]):
         for status, colour in reversed(COLOURS.items()):
-            panel.plot(*_values(result, objective.quantity, status), "o", ms=4, color=colour, label=status)
+            panel.plot(
+                *_values(result, objective.quantity, status), "o", ms=4, color=colour, label=status
+            )
         numbers, values = _values(result, objective.quantity, "feasible")
         if values:
             best = (np.minimum if objective.goal == "minimise" else np.maximum).accumulate(values)
-            panel.step([*numbers, last], [*best, best[-1]], where="post", color="#d07a20", label="best so far")
-        known = values if len(values) >= ENOUGH else values + _values(result, objective.quantity, "infeasible")[1]
+            panel.step(
+                [*numbers, last],
+                [*best, best[-1]],
+                where="post",
+                color="#d07a20",
+                label="best so far",
+            )
+        known = (
+            values
+            if len(values) >= ENOUGH
+            else values + _values(result, objective.quantity, "infeasible")[1]
+        )
         if known:
             low, high = np.percentile(known, SHOWN[objective.goal])
             span = max(high - low, 1e-3 * abs(high))
@@ -74,7 +89,8 @@ def progress(problem: Problem, result: OptimisationResult) -> bytes:
 
 
 def pareto(problem: Problem, result: OptimisationResult) -> list[bytes]:
-    """Every pair of objectives against each other, with the Pareto front; none with one objective."""
+    """Every pair of objectives against each other, with the Pareto front; none with one
+    objective."""
     import matplotlib.pyplot as plt
 
     pictures = []
@@ -82,11 +98,30 @@ def pareto(problem: Problem, result: OptimisationResult) -> list[bytes]:
     for x, y in itertools.combinations(names, 2):
         figure, panel = plt.subplots(figsize=(6.0, 4.2))
         for status, colour in reversed(COLOURS.items()):
-            found = [each.quantities for each in result.evaluations.values() if each.status == status]
+            found = [
+                each.quantities for each in result.evaluations.values() if each.status == status
+            ]
             found = [each for each in found if x in each and y in each]
-            panel.plot([each[x] for each in found], [each[y] for each in found], "o", ms=4, color=colour, label=status)
-        front = sorted((result.evaluations[n].quantities[x], result.evaluations[n].quantities[y]) for n in result.best)
-        panel.plot([a for a, _ in front], [b for _, b in front], "s-", ms=5, color="#d07a20", label="Pareto front")
+            panel.plot(
+                [each[x] for each in found],
+                [each[y] for each in found],
+                "o",
+                ms=4,
+                color=colour,
+                label=status,
+            )
+        front = sorted(
+            (result.evaluations[n].quantities[x], result.evaluations[n].quantities[y])
+            for n in result.best
+        )
+        panel.plot(
+            [a for a, _ in front],
+            [b for _, b in front],
+            "s-",
+            ms=5,
+            color="#d07a20",
+            label="Pareto front",
+        )
         panel.set_xlabel(_label(problem, x))
         panel.set_ylabel(_label(problem, y))
         panel.legend(fontsize=8)
@@ -100,7 +135,9 @@ def importance(result: OptimisationResult) -> bytes:
 
     found = result.importance
     rows = len(next(iter(found.values())))
-    figure, axes = plt.subplots(1, len(found), figsize=(6.0 * len(found), 0.8 + 0.35 * rows), squeeze=False)
+    figure, axes = plt.subplots(
+        1, len(found), figsize=(6.0 * len(found), 0.8 + 0.35 * rows), squeeze=False
+    )
     for (name, shares), panel in zip(found.items(), axes[0]):
         ordered = sorted(shares.items(), key=lambda item: item[1])
         panel.barh([key for key, _ in ordered], [share for _, share in ordered], color="#2f7fd0")

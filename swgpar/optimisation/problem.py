@@ -1,4 +1,5 @@
-"""From the values of the variables to a design, its run, and what objectives and constraints make of it."""
+"""From the values of the variables to a design, its run, and what objectives and constraints make
+of it."""
 
 from __future__ import annotations
 
@@ -25,7 +26,8 @@ from swgpar.studies.job import run_planned
 from swgpar.systems import System, system_of_table
 
 FAILED = 100.0
-"""Violation of a design that is refused or whose run fails: those of limits are about 1 where a value is twice one."""
+"""Violation of a design that is refused or whose run fails: those of limits are about 1 where a
+value is twice one."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +35,8 @@ class Evaluation:
     """What became of a design.
 
     values : of the variables, by name
-    status : "feasible", "infeasible" (a constraint is violated) or "failed" (refused, or the run ended in an error)
+    status : "feasible", "infeasible" (a constraint is violated) or "failed" (refused, or the run
+    ended in an error)
     reason : one sentence, empty when feasible
     quantities : those of objectives and constraints by name, as far as they are known
     violations : of the constraints, by their description; 0 and less is allowed
@@ -52,10 +55,12 @@ class Evaluation:
 class Problem:
     """A checked problem.
 
-    table, run_table : content of the design file with `set`, and the same as it is run, without output
+    table, run_table : content of the design file with `set`, and the same as it is run, without
+    output
     mesh, recipe : of a drive
     units : of the variables, by name
-    known : quantities by name, derived ones included;  derived : names of those that follow without a run
+    known : quantities by name, derived ones included;  derived : names of those that follow without
+    a run
     """
 
     section: OptimiseSection
@@ -76,9 +81,26 @@ class Problem:
     @property
     def identity(self) -> str:
         """A number that stands for what is computed: a search is only continued with the same."""
-        kept = {"evaluations", "storage", "parallel", "title", "remarks", "first", "sampler", "seed", "design", "mesh"}
-        content = self.section.model_dump(exclude=kept), self.run_table, self.recipe and self.recipe.model_dump()
-        return hashlib.sha256(json.dumps(content, sort_keys=True, default=str).encode()).hexdigest()[:16]
+        kept = {
+            "evaluations",
+            "storage",
+            "parallel",
+            "title",
+            "remarks",
+            "first",
+            "sampler",
+            "seed",
+            "design",
+            "mesh",
+        }
+        content = (
+            self.section.model_dump(exclude=kept),
+            self.run_table,
+            self.recipe and self.recipe.model_dump(),
+        )
+        return hashlib.sha256(
+            json.dumps(content, sort_keys=True, default=str).encode()
+        ).hexdigest()[:16]
 
     def applied(self, table: dict[str, Any], values: dict[str, Any]) -> dict[str, Any]:
         """The content of a design file with the values of the variables, by name."""
@@ -89,7 +111,10 @@ class Problem:
         return table
 
     def evaluate(
-        self, values: dict[str, Any], comm: MPI.Comm, on_increment: Callable[[], None] = lambda: None
+        self,
+        values: dict[str, Any],
+        comm: MPI.Comm,
+        on_increment: Callable[[], None] = lambda: None,
     ) -> Evaluation:
         """Run a design; collective. A design that is refused or fails is an outcome."""
         design, refusal, quantities = None, "", {}
@@ -105,7 +130,9 @@ class Problem:
             return self._ended(values, refusal, quantities, 0.0)
         planned = PlannedRun(self.system, design, self.recipe, str(self.mesh or ""))
         outcome = run_planned(planned, RunOptions(comm=comm, on_increment=on_increment))
-        quantities |= {name: float(outcome.values[name]) for name in self.names if name in outcome.values}
+        quantities |= {
+            name: float(outcome.values[name]) for name in self.names if name in outcome.values
+        }
         reason = outcome.reason
         missing = [name for name in self.names if not np.isfinite(quantities.get(name, np.nan))]
         if not reason and missing:
@@ -119,17 +146,24 @@ class Problem:
                 found |= constraint.violations(quantities[constraint.quantity])
         return found
 
-    def _ended(self, values: dict[str, Any], failure: str, quantities: dict[str, float], wall_s: float) -> Evaluation:
+    def _ended(
+        self, values: dict[str, Any], failure: str, quantities: dict[str, float], wall_s: float
+    ) -> Evaluation:
         violations = self._violations(quantities)
         broken = [text for text, amount in violations.items() if amount > 0.0]
         if failure:
-            return Evaluation(values, "failed", failure, quantities, violations | {"failed": FAILED}, wall_s)
+            return Evaluation(
+                values, "failed", failure, quantities, violations | {"failed": FAILED}, wall_s
+            )
         reason = f"{', '.join(broken)} is not kept" if broken else ""
-        return Evaluation(values, "infeasible" if broken else "feasible", reason, quantities, violations, wall_s)
+        return Evaluation(
+            values, "infeasible" if broken else "feasible", reason, quantities, violations, wall_s
+        )
 
 
 def make_problem(spec: Specification, screen: bool = False) -> Problem:
-    """The checked problem of a file, or that of its screen; every problem of the file is an InputError."""
+    """The checked problem of a file, or that of its screen; every problem of the file is an
+    InputError."""
     section = spec.section
     try:
         return _make(section, spec.folder, screen)
@@ -143,7 +177,9 @@ def _make(section: OptimiseSection, folder: Path, screen: bool) -> Problem:
     run_table = apply_overrides(table, cheaper.set) if cheaper else table
     system = system_of_table(table)
     # what the file does not ask for itself is left out, as in studies
-    quiet = apply_overrides(system.without_output(run_table), [*section.set, *(cheaper.set if cheaper else ())])
+    quiet = apply_overrides(
+        system.without_output(run_table), [*section.set, *(cheaper.set if cheaper else ())]
+    )
     mesh, recipe = None, None
     named = (cheaper.mesh if cheaper else "") or section.mesh
     if "mesh" in system.options:
@@ -170,7 +206,8 @@ def _make(section: OptimiseSection, folder: Path, screen: bool) -> Problem:
 
 
 def _require_key(problem: Problem, name: str, value: Any) -> None:
-    """Refuse a variable that is no key of the design; a value that does not fit the others is no matter here."""
+    """Refuse a variable that is no key of the design; a value that does not fit the others is no
+    matter here."""
     try:
         problem.system.load(problem.applied(problem.run_table, {name: value}))
     except InputError as error:

@@ -1,4 +1,5 @@
-"""optimise.html: the problem, the best designs with their files, figures and all evaluations, in one file."""
+"""optimise.html: the problem, the best designs with their files, figures and all evaluations, in
+one file."""
 
 from __future__ import annotations
 
@@ -26,7 +27,9 @@ class Figures(NamedTuple):
     importance: Picture | None
 
 
-def make_report(spec: Specification, problem: Problem, result: OptimisationResult, designs: Mapping[int, str]) -> bytes:
+def make_report(
+    spec: Specification, problem: Problem, result: OptimisationResult, designs: Mapping[int, str]
+) -> bytes:
     """The whole page; call it on one rank. designs : texts of the winning design files by number"""
     drawn = None
     failed_figures = ""
@@ -72,32 +75,62 @@ def _quantities(problem: Problem) -> Table:
     wanted: list[tuple[str, str]] = [(o.quantity, o.goal) for o in problem.section.objective]
     for c in problem.section.constraint:
         limits = (("at most", c.at_most), ("at least", c.at_least))
-        wanted.append((c.quantity, ", ".join(f"{word} {limit:g}" for word, limit in limits if limit is not None)))
-    rows = [Row([name, goal, problem.known[name].meaning, problem.known[name].unit]) for name, goal in wanted]
+        wanted.append(
+            (
+                c.quantity,
+                ", ".join(f"{word} {limit:g}" for word, limit in limits if limit is not None),
+            )
+        )
+    rows = [
+        Row([name, goal, problem.known[name].meaning, problem.known[name].unit])
+        for name, goal in wanted
+    ]
     return Table(["quantity", "goal or limit", "meaning", "unit"], rows)
 
 
 def _ranked(problem: Problem, result: OptimisationResult) -> list[dict[str, Any]]:
-    """Rows of optimise.csv: feasible designs with their rank by the first objective, infeasible ones, failed ones."""
+    """Rows of optimise.csv: feasible designs with their rank by the first objective, infeasible
+    ones, failed ones."""
     first = problem.section.objective[0]
     sign = 1.0 if first.goal == "minimise" else -1.0
 
     def order(row: dict[str, Any]) -> tuple[int, float]:
         violations = result.evaluations[row["evaluation"]].violations.values()
-        amount = sign * row[first.quantity] if row["status"] == "feasible" else max(violations, default=0.0)
+        amount = (
+            sign * row[first.quantity]
+            if row["status"] == "feasible"
+            else max(violations, default=0.0)
+        )
         return STATUS.index(row["status"]), amount
 
     rows = sorted(result.rows, key=order)
-    return [{"rank": k if row["status"] == "feasible" else None, **row} for k, row in enumerate(rows, start=1)]
+    return [
+        {"rank": k if row["status"] == "feasible" else None, **row}
+        for k, row in enumerate(rows, start=1)
+    ]
 
 
 def _table(problem: Problem, rows: list[dict[str, Any]], *, ranked: bool = False) -> Table:
-    units = problem.units | {name: problem.known[name].unit for name in problem.names} | {"wall_s": "s"}
-    heads = [with_unit("time" if name == "wall_s" else name, units.get(name, "")) for name in rows[0]]
-    return Table(heads, [Row(list(row.values()), row.get("status") == "failed") for row in rows], ranked)
+    units = (
+        problem.units | {name: problem.known[name].unit for name in problem.names} | {"wall_s": "s"}
+    )
+    heads = [
+        with_unit("time" if name == "wall_s" else name, units.get(name, "")) for name in rows[0]
+    ]
+    return Table(
+        heads, [Row(list(row.values()), row.get("status") == "failed") for row in rows], ranked
+    )
 
 
 def _figures(problem: Problem, result: OptimisationResult) -> Figures:
-    pareto = [Picture(png, "objectives against each other") for png in figures.pareto(problem, result)]
-    importance = Picture(figures.importance(result), "importance of the variables") if result.importance else None
-    return Figures(Picture(figures.progress(problem, result), "objectives by evaluation"), pareto, importance)
+    pareto = [
+        Picture(png, "objectives against each other") for png in figures.pareto(problem, result)
+    ]
+    importance = (
+        Picture(figures.importance(result), "importance of the variables")
+        if result.importance
+        else None
+    )
+    return Figures(
+        Picture(figures.progress(problem, result), "objectives by evaluation"), pareto, importance
+    )

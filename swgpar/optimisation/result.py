@@ -18,7 +18,8 @@ class OptimisationResult:
     evaluations : dict of Evaluation
         All designs that were tried, by number.
     best : list of int
-        Numbers of the best design, or of those of the Pareto front; empty where no design is feasible.
+        Numbers of the best design, or of those of the Pareto front; empty where no design is
+        feasible.
     importance : dict
         Share of every variable in every objective; empty with few feasible designs.
     designs : dict of dict
@@ -44,7 +45,9 @@ class OptimisationResult:
     @property
     def rows(self) -> list[dict[str, Any]]:
         """Rows of optimise.csv: number, variables, status, quantities, wall seconds, reason."""
-        quantities = list(dict.fromkeys(name for each in self.evaluations.values() for name in each.quantities))
+        quantities = list(
+            dict.fromkeys(name for each in self.evaluations.values() for name in each.quantities)
+        )
         return [
             {
                 "evaluation": number,

@@ -1,4 +1,5 @@
-"""A whole optimisation: an optional search on a cheaper model, the search proper, tables, report and best designs."""
+"""A whole optimisation: an optional search on a cheaper model, the search proper, tables, report
+and best designs."""
 
 from __future__ import annotations
 
@@ -63,19 +64,31 @@ def run_optimisation(
     url, name = spec.section.storage, Path(spec.name).stem
     storage = open_storage(url, folder, comm)
     first = spec.section.first
-    with log.session(comm if spec.section.parallel == "ranks" else MPI.COMM_SELF, terminal=False, shown=False):
+    with log.session(
+        comm if spec.section.parallel == "ranks" else MPI.COMM_SELF, terminal=False, shown=False
+    ):
         if screen is not None:
             search = Search(screen, storage, f"{name} {SCREEN}", comm, first, not url)
             _search(search, screen, spec.section.screen.evaluations, comm, terminal)
             found = search.evaluations()
-            first = [*first, *(found[n].values for n in search.ranked()[: spec.section.screen.best])]
+            first = [
+                *first,
+                *(found[n].values for n in search.ranked()[: spec.section.screen.best]),
+            ]
         search = Search(problem, storage, name, comm, first, not url)
         _search(search, problem, spec.section.evaluations, comm, terminal)
     content = None
     if comm.rank == 0:
         best, every = search.best(), search.evaluations()
         designs = {n: problem.applied(problem.table, every[n].values) for n in best}
-        content = every, best, search.importance(), designs, folder.absolute(), time.perf_counter() - begin
+        content = (
+            every,
+            best,
+            search.importance(),
+            designs,
+            folder.absolute(),
+            time.perf_counter() - begin,
+        )
     result = OptimisationResult(*comm.bcast(content))
     _write(spec, problem, result, comm)
     return result
@@ -100,7 +113,8 @@ def _prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> None:
             present = [path for path in (out / JOURNAL, out / TABLE) if path.exists()]
             if present and not restart and not overwrite:
                 raise OutputError(
-                    f"{out} already holds an optimisation: continue it with restart = true (--restart), replace it "
+                    f"{out} already holds an optimisation: continue it with restart = true "
+                    f"(--restart), replace it "
                     "with overwrite = true (--overwrite), or choose another folder"
                 )
             if overwrite and not restart:
@@ -108,7 +122,9 @@ def _prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> None:
                     path.unlink(missing_ok=True)
 
 
-def _write(spec: Specification, problem: Problem, result: OptimisationResult, comm: MPI.Comm) -> None:
+def _write(
+    spec: Specification, problem: Problem, result: OptimisationResult, comm: MPI.Comm
+) -> None:
     """Write table, report and the winning design files; collective."""
     with agreed(comm, result.folder):
         if comm.rank == 0:

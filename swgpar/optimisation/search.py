@@ -31,13 +31,16 @@ def import_optuna() -> Any:
     try:
         import optuna
     except ImportError:
-        raise InputError("swgpar optimise needs the package optuna: install it with pip install optuna") from None
+        raise InputError(
+            "swgpar optimise needs the package optuna: install it with pip install optuna"
+        ) from None
     optuna.logging.set_verbosity(optuna.logging.ERROR)
     return optuna
 
 
 def _stored(comm: MPI.Comm, where: str, task: Callable[[], T]) -> T:
-    """Result of a task on a storage, on every rank its own; an error of any library becomes an OutputError of all."""
+    """Result of a task on a storage, on every rank its own; an error of any library becomes an
+    OutputError of all."""
 
     def guarded() -> T:
         try:
@@ -51,13 +54,16 @@ def _stored(comm: MPI.Comm, where: str, task: Callable[[], T]) -> T:
 
 
 def open_storage(url: str, folder: Path, comm: MPI.Comm) -> optuna.storages.BaseStorage:
-    """The database of a URL, or the journal in the folder; collective. Rank 0 opens it first, and makes its tables."""
+    """The database of a URL, or the journal in the folder; collective. Rank 0 opens it first, and
+    makes its tables."""
 
     def opened() -> optuna.storages.BaseStorage:
         optuna = import_optuna()
         if url:
             return optuna.storages.RDBStorage(url)
-        return optuna.storages.JournalStorage(optuna.storages.journal.JournalFileBackend(str(folder / JOURNAL)))
+        return optuna.storages.JournalStorage(
+            optuna.storages.journal.JournalFileBackend(str(folder / JOURNAL))
+        )
 
     where = url.rpartition("@")[2] or str(folder / JOURNAL)  # without a password
     first = _stored(comm, where, lambda: opened() if comm.rank == 0 else None)
@@ -68,7 +74,11 @@ def _sampler(section: OptimiseSection, rank: int) -> optuna.samplers.BaseSampler
     samplers, seed = import_optuna().samplers, section.seed + rank
     if section.sampler == "tpe":
         return samplers.TPESampler(seed=seed)
-    return samplers.NSGAIISampler(seed=seed) if section.sampler == "nsga2" else samplers.RandomSampler(seed=seed)
+    return (
+        samplers.NSGAIISampler(seed=seed)
+        if section.sampler == "nsga2"
+        else samplers.RandomSampler(seed=seed)
+    )
 
 
 def distribution(variable: Variable) -> optuna.distributions.BaseDistribution:
@@ -90,7 +100,8 @@ class Search:
     storage : of this rank
     name : of the search in the storage
     first : designs that are tried first, when the search is new
-    own : whether nobody else uses the storage, so that evaluations without an end belong to a call that was interrupted
+    own : whether nobody else uses the storage, so that evaluations without an end belong to a call
+    that was interrupted
     """
 
     def __init__(
@@ -103,20 +114,32 @@ class Search:
         own: bool,
     ) -> None:
         self.problem, self.comm, self.name = problem, comm, name
-        self._distributions = {variable.name: distribution(variable) for variable in problem.section.variable}
+        self._distributions = {
+            variable.name: distribution(variable) for variable in problem.section.variable
+        }
         sampler = _sampler(problem.section, comm.rank)
-        _stored(comm, f"of {name}", lambda: self._create(storage, first, own) if comm.rank == 0 else None)
+        _stored(
+            comm,
+            f"of {name}",
+            lambda: self._create(storage, first, own) if comm.rank == 0 else None,
+        )
         self.study = _stored(
             comm,
             f"of {name}",
             lambda: import_optuna().load_study(study_name=name, storage=storage, sampler=sampler),
         )
 
-    def _create(self, storage: optuna.storages.BaseStorage, first: list[dict[str, Any]], own: bool) -> None:
+    def _create(
+        self, storage: optuna.storages.BaseStorage, first: list[dict[str, Any]], own: bool
+    ) -> None:
         """Make the search or continue one of the same problem; on one rank."""
         optuna, problem = import_optuna(), self.problem
-        directions = [objective.goal.replace("ise", "ize") for objective in problem.section.objective]
-        study = optuna.create_study(storage=storage, study_name=self.name, directions=directions, load_if_exists=True)
+        directions = [
+            objective.goal.replace("ise", "ize") for objective in problem.section.objective
+        ]
+        study = optuna.create_study(
+            storage=storage, study_name=self.name, directions=directions, load_if_exists=True
+        )
         identity = study.user_attrs.get("identity")
         if identity is None:
             study.set_user_attr("identity", problem.identity)
@@ -124,7 +147,8 @@ class Search:
                 study.enqueue_trial(values)
         elif identity != problem.identity:
             raise InputError(
-                f"the storage holds a search {self.name} of another problem: allowed are the same variables, "
+                f"the storage holds a search {self.name} of another problem: allowed are the same "
+                f"variables, "
                 "objectives, constraints, design and mesh, or overwrite = true (--overwrite)"
             )
         state = optuna.trial.TrialState
@@ -163,7 +187,8 @@ class Search:
             receive((trial.number, found))
 
     def _tell(self, trial: optuna.Trial, found: Evaluation) -> None:
-        """Store an evaluation. A failed design is one of the worst values that violates a constraint."""
+        """Store an evaluation. A failed design is one of the worst values that violates a
+        constraint."""
         for key in ("status", "reason", "quantities", "wall_s"):
             trial.set_user_attr(key, getattr(found, key))
         for text, amount in found.violations.items():
@@ -176,7 +201,9 @@ class Search:
 
     def best(self) -> list[int]:
         """Numbers of the best feasible design, or of those of the Pareto front; not collective."""
-        feasible = {number for number, found in self.evaluations().items() if found.status == "feasible"}
+        feasible = {
+            number for number, found in self.evaluations().items() if found.status == "feasible"
+        }
         if not feasible:
             return []
         if len(self.problem.section.objective) > 1:
@@ -184,7 +211,8 @@ class Search:
         return self.ranked()[:1]
 
     def ranked(self) -> list[int]:
-        """Numbers of the feasible designs by their first objective, the best one first; not collective."""
+        """Numbers of the feasible designs by their first objective, the best one first; not
+        collective."""
         objective = self.problem.section.objective[0]
         sign = 1.0 if objective.goal == "minimise" else -1.0
         found = {n: each for n, each in self.evaluations().items() if each.status == "feasible"}
@@ -211,16 +239,25 @@ class Search:
             for trial in trials:
                 study.add_trial(
                     optuna.trial.create_trial(
-                        params=trial.params, distributions=trial.distributions, value=trial.values[index]
+                        params=trial.params,
+                        distributions=trial.distributions,
+                        value=trial.values[index],
                     )
                 )
             evaluator = optuna.importance.PedAnovaImportanceEvaluator()
-            found[objective.quantity] = optuna.importance.get_param_importances(study, evaluator=evaluator)
+            found[objective.quantity] = optuna.importance.get_param_importances(
+                study, evaluator=evaluator
+            )
         return found
 
 
 def _evaluation(trial: optuna.trial.FrozenTrial) -> Evaluation:
     kept = trial.user_attrs
     return Evaluation(
-        dict(trial.params), kept["status"], kept["reason"], kept["quantities"], dict(trial.constraints), kept["wall_s"]
+        dict(trial.params),
+        kept["status"],
+        kept["reason"],
+        kept["quantities"],
+        dict(trial.constraints),
+        kept["wall_s"],
     )

@@ -1,4 +1,5 @@
-"""The optimisation file: variables with bounds, objectives, constraints, and how they are searched."""
+"""The optimisation file: variables with bounds, objectives, constraints, and how they are
+searched."""
 
 from __future__ import annotations
 
@@ -38,7 +39,9 @@ class Objective(Section):
 class Constraint(Section):
     """One `[[optimise.constraint]]`."""
 
-    at_most: float | None = quantity(None, text="largest value allowed, in the unit of the quantity")
+    at_most: float | None = quantity(
+        None, text="largest value allowed, in the unit of the quantity"
+    )
     at_least: float | None = quantity(None, text="least value allowed")
     quantity: str = quantity(text="quantity of a run, or of swgpar check")
 
@@ -46,19 +49,28 @@ class Constraint(Section):
         """How far a value is beyond the limits, over their sizes; 0 and less is allowed."""
         found = {}
         if self.at_most is not None:
-            found[f"{self.quantity} at most {self.at_most:g}"] = (value - self.at_most) / (abs(self.at_most) or 1.0)
+            found[f"{self.quantity} at most {self.at_most:g}"] = (value - self.at_most) / (
+                abs(self.at_most) or 1.0
+            )
         if self.at_least is not None:
-            found[f"{self.quantity} at least {self.at_least:g}"] = (self.at_least - value) / (abs(self.at_least) or 1.0)
+            found[f"{self.quantity} at least {self.at_least:g}"] = (self.at_least - value) / (
+                abs(self.at_least) or 1.0
+            )
         return found
 
 
 class Screen(Section):
-    """`[optimise.screen]`: a search on a cheaper model, whose best designs begin the search proper."""
+    """`[optimise.screen]`: a search on a cheaper model, whose best designs begin the search
+    proper."""
 
     set: list[str] = quantity([], text='"section.key=value" that make the model cheaper')
-    mesh: str = quantity("", text="mesh recipe of the cheaper model; else that of the search proper")
+    mesh: str = quantity(
+        "", text="mesh recipe of the cheaper model; else that of the search proper"
+    )
     evaluations: int = quantity(text="runs of the cheaper model", ge=1, le=100_000)
-    best: int = quantity(5, text="its best designs that are tried first in the search proper", ge=1, le=1000)
+    best: int = quantity(
+        5, text="its best designs that are tried first in the search proper", ge=1, le=1000
+    )
 
 
 class OptimiseSection(Section):
@@ -69,7 +81,9 @@ class OptimiseSection(Section):
     design: str = quantity(text="the design file, relative to this file")
     mesh: str = quantity("", text="mesh recipe of a drive, relative to this file")
     set: list[str] = quantity([], text='"section.key=value" for all designs')
-    evaluations: int = quantity(text="designs that are tried, refused and failed ones included", ge=1, le=100_000)
+    evaluations: int = quantity(
+        text="designs that are tried, refused and failed ones included", ge=1, le=100_000
+    )
     sampler: Literal["tpe", "nsga2", "random"] = quantity(
         "tpe", text="tree-structured Parzen estimator, NSGA-II, or random designs"
     )
@@ -97,7 +111,8 @@ class _File(Section):
 
 @dataclass(frozen=True)
 class Specification:
-    """The checked content of an optimisation file. folder : paths are relative to it;  text : for the report"""
+    """The checked content of an optimisation file. folder : paths are relative to it;  text : for
+    the report"""
 
     name: str
     folder: Path
@@ -111,13 +126,17 @@ class Specification:
 
 
 def load_specification(path: str | Path) -> Specification:
-    """Read and check an optimisation file; every problem is an `InputError` of one sentence that names the file."""
+    """Read and check an optimisation file; every problem is an `InputError` of one sentence that
+    names the file."""
     path = Path(path)
     table = read_toml(path)
     try:
         for key, value in table.items():
             if key != "optimise" or not isinstance(value, dict):
-                raise InputError(f"{show_key(key)} = {show(value)} is no section of this file: allowed [optimise]")
+                raise InputError(
+                    f"{show_key(key)} = {show(value)} is no section of this file: allowed "
+                    f"[optimise]"
+                )
         section = validate(_File, table).optimise
         section = section.model_copy(update={"first": [flat(entry) for entry in section.first]})
         _check(section)
@@ -137,11 +156,17 @@ def _check(section: OptimiseSection) -> None:
         _check_variable(variable, seen)
     for constraint in section.constraint:
         if constraint.at_most is None and constraint.at_least is None:
-            raise InputError(f"optimise.constraint {show(constraint.quantity)} has no limit: give at_most or at_least")
+            raise InputError(
+                f"optimise.constraint {show(constraint.quantity)} has no limit: give at_most or "
+                f"at_least"
+            )
     for number, first in enumerate(section.first, start=1):
         for key in first:
             if key not in seen:
-                raise InputError(f"optimise.first {number}: {show_key(key)} is no variable: allowed {', '.join(seen)}")
+                raise InputError(
+                    f"optimise.first {number}: {show_key(key)} is no variable: allowed "
+                    f"{', '.join(seen)}"
+                )
 
 
 def _check_variable(variable: Variable, seen: set[str]) -> None:
@@ -153,11 +178,15 @@ def _check_variable(variable: Variable, seen: set[str]) -> None:
             raise InputError(f"{where}: {show_key(key)} is varied twice: allowed once")
         seen.add(key)
     bounds = variable.low, variable.high
-    if bool(variable.choices) == (None not in bounds) or (variable.choices and bounds != (None, None)):
+    if bool(variable.choices) == (None not in bounds) or (
+        variable.choices and bounds != (None, None)
+    ):
         raise InputError(f"{where} needs low and high, or choices: allowed is one of both")
     if variable.choices:
         if not all(isinstance(choice, (bool, int, float, str)) for choice in variable.choices):
-            raise InputError(f"{where}: choices = {show(variable.choices)}: allowed are numbers and texts")
+            raise InputError(
+                f"{where}: choices = {show(variable.choices)}: allowed are numbers and texts"
+            )
         return
     low, high = float(variable.low), float(variable.high)
     if not low < high:
@@ -165,4 +194,6 @@ def _check_variable(variable: Variable, seen: set[str]) -> None:
     if variable.log and low <= 0.0:
         raise InputError(f"{where}: low = {low:g} is out of range: allowed above 0 with log = true")
     if variable.integer and not (low.is_integer() and high.is_integer()):
-        raise InputError(f"{where}: low = {low:g}, high = {high:g}: allowed whole numbers with integer = true")
+        raise InputError(
+            f"{where}: low = {low:g}, high = {high:g}: allowed whole numbers with integer = true"
+        )

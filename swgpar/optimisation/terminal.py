@@ -22,7 +22,12 @@ class OptimiseProgress:
     """
 
     def __init__(
-        self, name: str, section: OptimiseSection, known: Mapping[int, Evaluation], wanted: int, terminal: bool
+        self,
+        name: str,
+        section: OptimiseSection,
+        known: Mapping[int, Evaluation],
+        wanted: int,
+        terminal: bool,
     ) -> None:
         self._name = name
         self._objectives = section.objective
@@ -48,21 +53,35 @@ class OptimiseProgress:
         watch.doing(f"{self._done} of {self._wanted} evaluations have ended")
         if not self._shown:
             return
-        words = [f"{self._name}  {self._done}/{self._wanted}  evaluation {number}", f"{evaluation.wall_s:.1f} s"]
+        words = [
+            f"{self._name}  {self._done}/{self._wanted}  evaluation {number}",
+            f"{evaluation.wall_s:.1f} s",
+        ]
         for objective in self._objectives:
             name = objective.quantity
             value, best = evaluation.quantities.get(name), self._best.get(name)
             if value is not None:
-                words.append(f"{name} {value:.5g}" + (f" (best {best:.5g})" if best is not None else ""))
-        words.append(evaluation.status if not evaluation.reason else f"{evaluation.status}: {evaluation.reason}")
-        with suppress(OSError, SystemExit):  # the reader of our output has gone: the others are at work
+                words.append(
+                    f"{name} {value:.5g}" + (f" (best {best:.5g})" if best is not None else "")
+                )
+        words.append(
+            evaluation.status
+            if not evaluation.reason
+            else f"{evaluation.status}: {evaluation.reason}"
+        )
+        with suppress(
+            OSError, SystemExit
+        ):  # the reader of our output has gone: the others are at work
             console.print("  ".join(words), markup=False)
             watch.note_output()
 
 
 def print_result(result: OptimisationResult) -> None:
     """Print the best designs."""
-    counts = {s: sum(e.status == s for e in result.evaluations.values()) for s in ("feasible", "infeasible", "failed")}
+    counts = {
+        s: sum(e.status == s for e in result.evaluations.values())
+        for s in ("feasible", "infeasible", "failed")
+    }
     console.print(", ".join(f"{count} {status}" for status, count in counts.items()))
     if not result.best:
         return
@@ -73,6 +92,8 @@ def print_result(result: OptimisationResult) -> None:
         table.add_column(name, justify="right", overflow="fold")
     for number in result.best[:20]:
         row = {**result.evaluations[number].values, **result.evaluations[number].quantities}
-        texts = [f"{row[name]:.5g}" if isinstance(row[name], float) else str(row[name]) for name in names]
+        texts = [
+            f"{row[name]:.5g}" if isinstance(row[name], float) else str(row[name]) for name in names
+        ]
         table.add_row(str(number), *texts)
     console.print(table)

@@ -17,7 +17,8 @@ def value_text(value: float) -> str:
 
 
 def error_text(error: float | None) -> str:
-    """An error with two digits, without a power of ten and without a break of the line; empty where it is unknown."""
+    """An error with two digits, without a power of ten and without a break of the line; empty where
+    it is unknown."""
     if error is None:
         return ""
     digits = 1 - int(np.floor(np.log10(error))) if 0.0 < error < np.inf else 0

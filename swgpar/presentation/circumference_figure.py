@@ -1,4 +1,5 @@
-"""Stress of the flexible spline around its circumference: the largest of every tooth's sector, by part."""
+"""Stress of the flexible spline around its circumference: the largest of every tooth's sector, by
+part."""
 
 from __future__ import annotations
 
@@ -16,7 +17,8 @@ FIELDS = {"s1": "tension s1 (MPa)", "vm": "von Mises stress (MPa)"}
 
 
 def parts(design: DriveDesign, points: np.ndarray) -> dict[str, np.ndarray]:
-    """Whether nodes of the undeformed flexible spline at points (n, 3) mm belong to a part, by the name of the part."""
+    """Whether nodes of the undeformed flexible spline at points (n, 3) mm belong to a part, by the
+    name of the part."""
     radius, z = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
     toothed = np.abs(z) <= 0.5 * design.drive.face_width * (1.0 + 1e-9)
     inner = radius < design.inner_radius + 0.5 * design.flexible_spline.rim
@@ -25,16 +27,23 @@ def parts(design: DriveDesign, points: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def largest_by_tooth(values: np.ndarray, chosen: np.ndarray, teeth: int) -> np.ndarray:
-    """Largest of the chosen nodes of every sector (teeth,). values, chosen : (n,), nodes sector by sector"""
+    """Largest of the chosen nodes of every sector (teeth,). values, chosen : (n,), nodes sector by
+    sector"""
     return np.where(chosen, values, -np.inf).reshape(teeth, -1).max(axis=1)
 
 
 def draw_circumference(
-    design: DriveDesign, points: np.ndarray, fields: Mapping[str, np.ndarray], teeth: int, wg_angle: float, title: str
+    design: DriveDesign,
+    points: np.ndarray,
+    fields: Mapping[str, np.ndarray],
+    teeth: int,
+    wg_angle: float,
+    title: str,
 ) -> Figure:
     """Largest s1 and von Mises stress of every modelled tooth, over its angle from the major axis.
 
-    points : (n, 3) mm, undeformed, sector by sector;  fields : name -> (n,) MPa;  teeth : that are modelled
+    points : (n, 3) mm, undeformed, sector by sector;  fields : name -> (n,) MPa;  teeth : that are
+    modelled
     wg_angle : rad, of the wave generator;  title : where in the run this is
     """
     from matplotlib.figure import Figure
@@ -54,6 +63,8 @@ def draw_circumference(
         axes.set(ylabel=label, xlim=(-180.0, 180.0), xticks=range(-180, 181, 45))
         axes.grid(alpha=0.3)
     figure.suptitle(f"flexible spline, largest of every tooth's sector\n{title}", fontsize=10)
-    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=8)
+    figure.legend(
+        *panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=8
+    )
     panels[-1].set_xlabel("tooth, from the major axis (degrees)")
     return figure

@@ -29,7 +29,8 @@ def _from_lobe(pairs: Columns, lobes: int) -> np.ndarray:
 
 
 def draw_pairs(pairs: Columns, lobes: int = 2) -> Figure:
-    """Force and largest pressure of the pairs over the tooth's angle. pairs : columns of pairs.csv"""
+    """Force and largest pressure of the pairs over the tooth's angle. pairs : columns of
+    pairs.csv"""
     from matplotlib.figure import Figure
 
     position = _from_lobe(pairs, lobes)
@@ -41,19 +42,32 @@ def draw_pairs(pairs: Columns, lobes: int = 2) -> Figure:
                 chosen = (pairs["flank"] == side) & (pairs["edge"] == edge)
                 label = f"{side} flank" + (", on an edge" if edge else "")
                 if chosen.any():
-                    axes.plot(position[chosen], pairs[name][chosen], "o", ms=4, mec=colour, mfc=fill, label=label)
+                    axes.plot(
+                        position[chosen],
+                        pairs[name][chosen],
+                        "o",
+                        ms=4,
+                        mec=colour,
+                        mfc=fill,
+                        label=label,
+                    )
         axes.set_ylim(bottom=0.0)
         axes.grid(alpha=0.3)
-    panels[0].set(ylabel="normal force (N)", title="pairs of flanks in contact, at all computed angles")
+    panels[0].set(
+        ylabel="normal force (N)", title="pairs of flanks in contact, at all computed angles"
+    )
     panels[1].set(ylabel="largest pressure (MPa)", xlabel="tooth, from the major axis (degrees)")
-    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, fontsize=8)
+    figure.legend(
+        *panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, fontsize=8
+    )
     return figure
 
 
 def draw_load_sharing(pairs: Columns, history: Columns, title: str, lobes: int = 2) -> Figure:
     """Share of every pair in the force, and the number of pairs.
 
-    pairs, history : columns of these tables;  title : of the axis with the angle of the wave generator
+    pairs, history : columns of these tables;  title : of the axis with the angle of the wave
+    generator
     """
     from matplotlib.figure import Figure
 
@@ -67,13 +81,24 @@ def draw_load_sharing(pairs: Columns, history: Columns, title: str, lobes: int =
             chosen = (pairs["flank"] == side) & end
             if chosen.any():
                 label = f"{side} flank" + (other if mark == "x" else "")
-                upper.plot(angle[chosen], share[chosen], mark, ms=5, mec=colour, mfc="none", label=label)
+                upper.plot(
+                    angle[chosen], share[chosen], mark, ms=5, mec=colour, mfc="none", label=label
+                )
     upper.set(xlabel="pair, from the major axis (degrees)", ylabel="share of the force (%)")
-    upper.set_title("force of a pair over that of all pairs of its ring gear, at all computed angles", fontsize=10)
+    upper.set_title(
+        "force of a pair over that of all pairs of its ring gear, at all computed angles",
+        fontsize=10,
+    )
     figure.legend(loc="outside lower center", ncols=3, fontsize=8)
     rows = np.unique(pairs["increment"]).astype(int) - 1
     if "pairs_in_contact" in history:  # not in a result of another version
-        lower.step(history["wg_angle_deg"][rows], history["pairs_in_contact"][rows], "o-", where="mid", ms=4)
+        lower.step(
+            history["wg_angle_deg"][rows],
+            history["pairs_in_contact"][rows],
+            "o-",
+            where="mid",
+            ms=4,
+        )
     lower.set(xlabel=title, ylabel="pairs in contact")
     for axes in (upper, lower):
         axes.set_ylim(bottom=0.0)
@@ -85,7 +110,8 @@ def draw_contact_pattern(pairs: Columns, lines: Columns, step: int | None, plane
     """Pressure on all loaded flanks.
 
     pairs, lines : columns of pairs.csv and contact_lines.csv
-    step : of the history; None for that with the largest pressure. Raises InputError where no flank touches at it
+    step : of the history; None for that with the largest pressure. Raises InputError where no flank
+    touches at it
     """
     from matplotlib.figure import Figure
 
@@ -96,12 +122,16 @@ def draw_contact_pattern(pairs: Columns, lines: Columns, step: int | None, plane
     increment = pairs["increment"][pairs["step"] == step].max(initial=0.0)  # the last one of a step
     chosen = np.flatnonzero((pairs["increment"] == increment) & np.isfinite(pairs["pressure_MPa"]))
     if not len(chosen):
-        raise InputError(f"step = {step} has no flanks in contact: allowed are steps of result.pairs")
+        raise InputError(
+            f"step = {step} has no flanks in contact: allowed are steps of result.pairs"
+        )
     chosen = np.sort(chosen[np.argsort(-pairs["force_N"][chosen])][:MOST_FLANKS])
     flanks = [_Flank(pairs, lines, int(k)) for k in chosen]
     figure = Figure(figsize=(10.0, 6.0), layout="constrained")
     angle = pairs["wg_angle_deg"][chosen[0]]
-    figure.suptitle(f"contact of the flanks, angle of the wave generator {angle:.3g} degrees", fontsize=10)
+    figure.suptitle(
+        f"contact of the flanks, angle of the wave generator {angle:.3g} degrees", fontsize=10
+    )
     if plane:
         _draw_pressure_lines(figure, flanks)
     else:
@@ -131,12 +161,15 @@ class _Flank:
         self.half_width, self.peak = lines["half_width_mm"][here], lines["pressure_MPa"][here]
 
     def at(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Middle and half width (n,) mm and largest pressure (n,) MPa at z (n,) mm, linear between stations."""
+        """Middle and half width (n,) mm and largest pressure (n,) MPa at z (n,) mm, linear between
+        stations."""
         peak = np.interp(z, self.z, self.peak, left=0.0, right=0.0)
         return np.interp(z, self.z, self.s), np.interp(z, self.z, self.half_width), peak
 
 
-def _half_ellipse(s: np.ndarray, middle: np.ndarray, half_width: np.ndarray, peak: np.ndarray) -> np.ndarray:
+def _half_ellipse(
+    s: np.ndarray, middle: np.ndarray, half_width: np.ndarray, peak: np.ndarray
+) -> np.ndarray:
     return peak * np.sqrt(np.clip(1.0 - ((s - middle) / half_width) ** 2, 0.0, None))
 
 
@@ -144,8 +177,12 @@ def _draw_pressure_lines(figure: Figure, flanks: list[_Flank]) -> None:
     axes = figure.add_subplot()
     for flank in flanks:
         s = flank.s[0] + flank.half_width[0] * np.linspace(-1.1, 1.1, 101)
-        axes.plot(s, _half_ellipse(s, flank.s[0], flank.half_width[0], flank.peak[0]), label=flank.name)
-    axes.set(xlabel="arc length from the tip (mm)", ylabel="contact pressure (MPa)", ylim=(0.0, None))
+        axes.plot(
+            s, _half_ellipse(s, flank.s[0], flank.half_width[0], flank.peak[0]), label=flank.name
+        )
+    axes.set(
+        xlabel="arc length from the tip (mm)", ylabel="contact pressure (MPa)", ylim=(0.0, None)
+    )
     axes.grid(alpha=0.3)
     axes.legend(fontsize=8)
 
@@ -164,7 +201,9 @@ def _draw_pressure_maps(figure: Figure, flanks: list[_Flank], along: str) -> Non
     top = max(flank.peak.max() for flank in flanks)
     for axes, flank in zip(panels, flanks):
         pressure = _half_ellipse(s, *flank.at(z))
-        image = axes.pcolormesh(z, s[:, 0], pressure, shading="nearest", vmin=0.0, vmax=top, cmap="magma")
+        image = axes.pcolormesh(
+            z, s[:, 0], pressure, shading="nearest", vmin=0.0, vmax=top, cmap="magma"
+        )
         axes.set_title(flank.name, fontsize=8 if rows == 1 else 7)
         axes.tick_params(labelsize=8)
     panels[0].invert_yaxis()

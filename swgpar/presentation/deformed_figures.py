@@ -1,4 +1,5 @@
-"""Figures of the deformed drive, true to scale: the whole, the loaded teeth on the cam, sections of the cup."""
+"""Figures of the deformed drive, true to scale: the whole, the loaded teeth on the cam, sections of
+the cup."""
 
 from __future__ import annotations
 
@@ -32,10 +33,15 @@ CAM_GRID = 400
 
 def colour_limit(grids: Sequence[pyvista.UnstructuredGrid]) -> float:
     """End of the colour range (MPa) of the von Mises stress of several bodies."""
-    return float(np.percentile(np.concatenate([grid.point_data["vm"] for grid in grids]), PERCENTILE)) or 1.0
+    return (
+        float(np.percentile(np.concatenate([grid.point_data["vm"] for grid in grids]), PERCENTILE))
+        or 1.0
+    )
 
 
-def deformed(grids: Sequence[pyvista.UnstructuredGrid], factor: float) -> list[pyvista.UnstructuredGrid]:
+def deformed(
+    grids: Sequence[pyvista.UnstructuredGrid], factor: float
+) -> list[pyvista.UnstructuredGrid]:
     """The grids with their nodes moved by their displacements. factor : magnification of these"""
     moved = [grid.copy() for grid in grids]
     for grid in moved:
@@ -43,7 +49,9 @@ def deformed(grids: Sequence[pyvista.UnstructuredGrid], factor: float) -> list[p
     return moved
 
 
-def draw_deformed(grids: Sequence[pyvista.UnstructuredGrid], factor: float, *, plane: bool, title: str) -> Figure:
+def draw_deformed(
+    grids: Sequence[pyvista.UnstructuredGrid], factor: float, *, plane: bool, title: str
+) -> Figure:
     """Both deformed gears: seen from the open end of the cup, a plane model along its axis.
 
     factor : magnification of the displacements;  title : where in the run this is
@@ -53,7 +61,12 @@ def draw_deformed(grids: Sequence[pyvista.UnstructuredGrid], factor: float, *, p
     for grid in deformed(grids, factor):
         surface = grid.extract_surface(algorithm="dataset_surface")
         plotter.add_mesh(
-            surface, scalars="vm", cmap=COLOURS, clim=(0.0, limit), smooth_shading=False, show_scalar_bar=False
+            surface,
+            scalars="vm",
+            cmap=COLOURS,
+            clim=(0.0, limit),
+            smooth_shading=False,
+            show_scalar_bar=False,
         )
     if plane:
         plotter.enable_parallel_projection()
@@ -69,17 +82,27 @@ def draw_deformed(grids: Sequence[pyvista.UnstructuredGrid], factor: float, *, p
     axes[0].imshow(picture)
     axes[0].set_axis_off()
     _colour_bar(figure, axes, limit)
-    scale = "true to scale" if factor == 1.0 else f"displacements x {factor:g}, bodies may seem to cross"
+    scale = (
+        "true to scale"
+        if factor == 1.0
+        else f"displacements x {factor:g}, bodies may seem to cross"
+    )
     _title(figure, title, scale, limit)
     return figure
 
 
 def draw_loaded_teeth(
-    grids: Sequence[pyvista.UnstructuredGrid], design: DriveDesign, wg_angle: float, angle: float, z: float, title: str
+    grids: Sequence[pyvista.UnstructuredGrid],
+    design: DriveDesign,
+    wg_angle: float,
+    angle: float,
+    z: float,
+    title: str,
 ) -> Figure:
     """Close-up of the deformed teeth and of the cam below them, across the axis.
 
-    wg_angle : rad, of the wave generator;  angle : rad, of the middle of the close-up from +y, counter-clockwise
+    wg_angle : rad, of the wave generator;  angle : rad, of the middle of the close-up from +y,
+    counter-clockwise
     z : mm, of the section;  title : where in the run this is
     """
     limit, pitch = colour_limit(grids), np.pi * design.drive.module
@@ -92,7 +115,12 @@ def draw_loaded_teeth(
         cut = grid.slice(normal="z", origin=(0.0, 0.0, z))
         at = rotated(np.asarray(cut.points)[:, :2], -angle)
         _draw_cut(axes, cut, at, limit, (-half, half, low, high))
-    axes.set(xlim=(-half, half), ylim=(low, high), xlabel="mm, along the circumference", ylabel="radius (mm)")
+    axes.set(
+        xlim=(-half, half),
+        ylim=(low, high),
+        xlabel="mm, along the circumference",
+        ylabel="radius (mm)",
+    )
     _colour_bar(figure, [axes], limit)
     ring = "ring gear" if design.dynamic_spline is None or z < 0.0 else "dynamic spline"
     axes.text(0.0, high - 0.15 * pitch, ring, color="w", ha="center", va="top")
@@ -107,7 +135,8 @@ def draw_loaded_teeth(
 def draw_cup_section(
     grids: Sequence[pyvista.UnstructuredGrid], design: DriveDesign, wg_angle: float, title: str
 ) -> Figure:
-    """Half sections of the deformed cup drive along its axis, through a lobe of the cam and between two lobes.
+    """Half sections of the deformed cup drive along its axis, through a lobe of the cam and between
+    two lobes.
 
     wg_angle : rad, of the wave generator;  title : where in the run this is
     """
@@ -127,7 +156,12 @@ def draw_cup_section(
             cut = grid.slice(normal=(np.cos(angle), np.sin(angle), 0.0), origin=(0.0, 0.0, 0.0))
             points = np.asarray(cut.points)
             _draw_cut(axes, cut, np.column_stack([points[:, 2], points @ axis]), limit, box)
-        axes.set(xlabel="z (mm), open end at negative z", title=f"through the {name}", xlim=box[:2], ylim=box[2:])
+        axes.set(
+            xlabel="z (mm), open end at negative z",
+            title=f"through the {name}",
+            xlim=box[:2],
+            ylim=box[2:],
+        )
     panels[0].set_ylabel("radius (mm)")
     _colour_bar(figure, panels, limit)
     _title(figure, title, "true to scale", limit)
@@ -146,7 +180,8 @@ def _figure(panels: int, size: tuple[float, float]) -> tuple[Figure, list[Axes]]
 
 def _title(figure: Figure, when: str, what: str, limit: float) -> None:
     figure.suptitle(
-        f"{when}\n{what}; colours end at {limit:.4g} MPa ({PERCENTILE:g} % of the nodes are below)", fontsize=10
+        f"{when}\n{what}; colours end at {limit:.4g} MPa ({PERCENTILE:g} % of the nodes are below)",
+        fontsize=10,
     )
 
 
@@ -164,19 +199,30 @@ def _colour_bar(figure: Figure, axes: Sequence[Axes], limit: float) -> None:
 
 
 def _draw_cut(
-    axes: Axes, cut: pyvista.PolyData, at: np.ndarray, limit: float, box: tuple[float, float, float, float]
+    axes: Axes,
+    cut: pyvista.PolyData,
+    at: np.ndarray,
+    limit: float,
+    box: tuple[float, float, float, float],
 ) -> None:
-    """Draw a plane cut through a body with its outline. at : (n, 2) mm, places of its points in the figure"""
+    """Draw a plane cut through a body with its outline. at : (n, 2) mm, places of its points in the
+    figure"""
     from matplotlib.collections import LineCollection
 
     if not cut.n_points:
         return
     flat = cut.copy()
     flat.points = np.column_stack([at, np.zeros(len(at))])
-    flat = flat.clip_box((*box, -1.0, 1.0), invert=False).extract_surface(algorithm="dataset_surface").triangulate()
+    flat = (
+        flat.clip_box((*box, -1.0, 1.0), invert=False)
+        .extract_surface(algorithm="dataset_surface")
+        .triangulate()
+    )
     if not flat.n_cells:
         return
-    flat = flat.clean(tolerance=1e-5, absolute=True)  # sectors have nodes of their own where they meet
+    flat = flat.clean(
+        tolerance=1e-5, absolute=True
+    )  # sectors have nodes of their own where they meet
     points, triangles = np.asarray(flat.points), flat.regular_faces
     axes.tripcolor(
         points[:, 0],
@@ -193,15 +239,24 @@ def _draw_cut(
         boundary_edges=True, feature_edges=False, manifold_edges=False, non_manifold_edges=False
     )
     lines = edges.lines.reshape(-1, 3)[:, 1:]
-    axes.add_collection(LineCollection(np.asarray(edges.points)[lines][:, :, :2], colors="#222", linewidths=0.5))
+    axes.add_collection(
+        LineCollection(np.asarray(edges.points)[lines][:, :, :2], colors="#222", linewidths=0.5)
+    )
 
 
-def _draw_cam(axes: Axes, design: DriveDesign, turn: float, z: float, box: tuple[float, float, float, float]) -> None:
-    """Fill the cam at z (mm) where it is in the box. turn : rad, of its major axis from the middle of the figure"""
+def _draw_cam(
+    axes: Axes, design: DriveDesign, turn: float, z: float, box: tuple[float, float, float, float]
+) -> None:
+    """Fill the cam at z (mm) where it is in the box. turn : rad, of its major axis from the middle
+    of the figure"""
     if design.bearing is not None:
         return  # the spline lies on a race that the run models
     x, y = np.meshgrid(np.linspace(*box[:2], CAM_GRID), np.linspace(*box[2:], CAM_GRID))
     points = rotated(np.column_stack([x.ravel(), y.ravel()]), -turn)
-    distance = design.cam_surface().evaluate(np.column_stack([points, np.full(len(points), z)]))[0].reshape(x.shape)
+    distance = (
+        design.cam_surface()
+        .evaluate(np.column_stack([points, np.full(len(points), z)]))[0]
+        .reshape(x.shape)
+    )
     axes.contourf(x, y, distance, levels=[-np.inf, 0.0], colors=[CAM_COLOUR])
     axes.contour(x, y, distance, levels=[0.0], colors="#222", linewidths=0.8)

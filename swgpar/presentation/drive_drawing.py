@@ -1,7 +1,8 @@
-"""Drawings of a drive with its dimensions: along the axis, the teeth at the major axis, the section of the cup.
+"""Drawings of a drive with its dimensions: along the axis, the teeth at the major axis, the section
+of the cup.
 
-The flexible spline is drawn as the wave generator deflects it before it is loaded: an inextensible ring, whose teeth
-move as rigid bodies. Profiles, cam and walls are the exact curves.
+The flexible spline is drawn as the wave generator deflects it before it is loaded: an inextensible
+ring, whose teeth move as rigid bodies. Profiles, cam and walls are the exact curves.
 """
 
 from __future__ import annotations
@@ -24,7 +25,12 @@ SIZE = 560.0
 
 FLANK_POINTS = 12
 
-FILLS = {"housing": "#e3e3da", "ring_gear": "#c9d6e6", "flexible_spline": "#f0c987", "wave_generator": "#d9d9d9"}
+FILLS = {
+    "housing": "#e3e3da",
+    "ring_gear": "#c9d6e6",
+    "flexible_spline": "#f0c987",
+    "wave_generator": "#d9d9d9",
+}
 
 
 class Outline(NamedTuple):
@@ -56,7 +62,8 @@ class Text(NamedTuple):
 
 @dataclass
 class Sheet:
-    """Pixels of a drawing and what lies on it: (x, y) in mm is at (left + scale x, top - scale y)."""
+    """Pixels of a drawing and what lies on it: (x, y) in mm is at (left + scale x, top - scale
+    y)."""
 
     scale: float
     left: float
@@ -75,7 +82,8 @@ class Sheet:
     def outline(self, points: Sequence[np.ndarray], name: str) -> None:
         """Closed curves of a body, each (n, 2) mm, filled between them."""
         path = " ".join(
-            "M" + "L".join(f"{x:.2f} {y:.2f}" for x, y in (self.at(*p) for p in curve)) + "Z" for curve in points
+            "M" + "L".join(f"{x:.2f} {y:.2f}" for x, y in (self.at(*p) for p in curve)) + "Z"
+            for curve in points
         )
         self.outlines.append(Outline(path, FILLS[name], name.replace("_", " ")))
 
@@ -88,14 +96,17 @@ class Sheet:
         self.texts.append(Text(x, y, text, anchor))
 
     def across(self, x1: float, x2: float, y_from: float, y: float, text: str) -> None:
-        """A horizontal dimension from x1 to x2 mm at the height y (pixels), with lines from y_from mm."""
+        """A horizontal dimension from x1 to x2 mm at the height y (pixels), with lines from y_from
+        mm."""
         (a, start), (b, _) = self.at(x1, y_from), self.at(x2, y_from)
         for x in (a, b):
             self.line(x, start, x, y + (4 if y > start else -4), style="thin")
         self.line(a, y, b, y)
         self.text(0.5 * (a + b), y - 4, text)
 
-    def upright(self, y1: float, y2: float, x_from: float, x: float, text: str, anchor: str = "start") -> None:
+    def upright(
+        self, y1: float, y2: float, x_from: float, x: float, text: str, anchor: str = "start"
+    ) -> None:
         """A vertical dimension from y1 to y2 mm at x (pixels), with lines from x_from mm."""
         (start, a), (_, b) = self.at(x_from, y1), self.at(x_from, y2)
         for y in (a, b):
@@ -115,13 +126,16 @@ def _tooth(design: DriveDesign, gear: str) -> np.ndarray:
     """One tooth (n, 2), mm, centred on +y, from its clockwise to its counter-clockwise root."""
     profile = design.profile(gear)
     ends = profile.breaks
-    s = np.concatenate([np.linspace(a, b, FLANK_POINTS // len(ends) + 3)[:-1] for a, b in zip(ends[:-1], ends[1:])])
+    s = np.concatenate(
+        [np.linspace(a, b, FLANK_POINTS // len(ends) + 3)[:-1] for a, b in zip(ends[:-1], ends[1:])]
+    )
     flank = profile.point(np.append(s, ends[-1]))[::-1]
     return np.concatenate([flank, (flank * [-1.0, 1.0])[::-1]])
 
 
 def _curves(design: DriveDesign) -> dict[str, list[np.ndarray]]:
-    """Closed curves of the gears and the cam, mm, the spline deflected with its major axis along +y."""
+    """Closed curves of the gears and the cam, mm, the spline deflected with its major axis along
+    +y."""
     drive, half, lobes = design.drive, 0.5 * design.deflection, design.lobes
     angle = 2.0 * np.pi / drive.teeth_rg * (np.arange(drive.teeth_rg) + 0.5)
     ring = rotated(_tooth(design, "ring_gear")[None], angle[:, None]).reshape(-1, 2)
@@ -129,13 +143,16 @@ def _curves(design: DriveDesign) -> dict[str, list[np.ndarray]]:
     r = design.inner_radius + 0.5 * design.flexible_spline.rim
 
     def moved(psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Points of the mid-line (n, 2) that were at the angles psi, and the rotation of the ring there."""
+        """Points of the mid-line (n, 2) that were at the angles psi, and the rotation of the ring
+        there."""
         w, v = half * np.cos(lobes * psi), -half / lobes * np.sin(lobes * psi)
         place = ((r + w) * np.array([-np.sin(psi + v / r), np.cos(psi + v / r)])).T
         return place, psi + (v + lobes * half * np.sin(lobes * psi)) / r
 
     place, turned = moved(2.0 * np.pi / drive.teeth_fs * np.arange(drive.teeth_fs))
-    teeth = place[:, None] + rotated(_tooth(design, "flexible_spline")[None] - [0.0, r], turned[:, None])
+    teeth = place[:, None] + rotated(
+        _tooth(design, "flexible_spline")[None] - [0.0, r], turned[:, None]
+    )
     place, turned = moved(np.linspace(0.0, 2.0 * np.pi, 721)[:-1])
     inside = place + rotated(np.array([[0.0, -0.5 * design.flexible_spline.rim]]), turned)
     housing = {"housing": [_circle(design.outer_radius), _circle(outer)]} if design.housing else {}
@@ -158,7 +175,9 @@ def _front(design: DriveDesign, curves: dict[str, list[np.ndarray]]) -> Sheet:
     for name, closed in curves.items():
         sheet.outline(closed, name)
     for x1, y1, x2, y2 in ((-1.04, 0.0, 1.04, 0.0), (0.0, -1.04, 0.0, 1.04)):
-        sheet.line(*sheet.at(x1 * outer, y1 * outer), *sheet.at(x2 * outer, y2 * outer), style="axis")
+        sheet.line(
+            *sheet.at(x1 * outer, y1 * outer), *sheet.at(x2 * outer, y2 * outer), style="axis"
+        )
     cam = curves["wave_generator"][0]
     width, low, high = float(cam[:, 0].max()), float(cam[:, 1].min()), float(cam[:, 1].max())
     sheet.across(-outer, outer, 0.0, 20.0, f"⌀ {2 * outer:.4g}")
@@ -166,8 +185,10 @@ def _front(design: DriveDesign, curves: dict[str, list[np.ndarray]]) -> Sheet:
     sheet.upright(low, high, 0.0, 478.0, f"{high - low:.5g}")
     drive = design.drive
     sheet.caption = (
-        f"Along the axis, in mm: {drive.teeth_fs} teeth of the flexible spline (bore {2 * design.inner_radius:.5g}), "
-        f"{drive.teeth_rg} of the ring gear, module {drive.module:g}, deflection {design.deflection:.4g}; "
+        f"Along the axis, in mm: {drive.teeth_fs} teeth of the flexible spline (bore "
+        f"{2 * design.inner_radius:.5g}), "
+        f"{drive.teeth_rg} of the ring gear, module {drive.module:g}, deflection "
+        f"{design.deflection:.4g}; "
         f"{design.wave_generator.type.replace('_', ' ')} cam. Before it is loaded."
     )
     return sheet
@@ -176,7 +197,10 @@ def _front(design: DriveDesign, curves: dict[str, list[np.ndarray]]) -> Sheet:
 def _teeth(design: DriveDesign, curves: dict[str, list[np.ndarray]]) -> Sheet:
     pitch = np.pi * design.drive.module
     spline, ring = (design.profile(gear) for gear in GEARS)
-    low, high = design.major_semi_axis - 0.3 * pitch, ring.r_root_circle + min(design.ring_gear.rim, 0.5 * pitch)
+    low, high = (
+        design.major_semi_axis - 0.3 * pitch,
+        ring.r_root_circle + min(design.ring_gear.rim, 0.5 * pitch),
+    )
     half = max(1.6 * pitch, 0.5 * (high - low))
     scale = 0.5 * (SIZE - 210.0) / half
     sheet = Sheet(scale, 0.5 * SIZE, 25.0 + scale * high, 50.0 + scale * (high - low))
@@ -186,13 +210,29 @@ def _teeth(design: DriveDesign, curves: dict[str, list[np.ndarray]]) -> Sheet:
         sheet.outline([_cut(curve, half, low, high) for curve in closed], name)
     a, edge = 0.5 * design.deflection, SIZE - 90.0
     # dimensions of the spline are drawn where its tooth is deflected to
-    sheet.upright(spline.r_root_circle + a, spline.r_tip_circle + a, 0.0, edge, f"{_height(spline):.4g} spline")
-    sheet.upright(design.major_semi_axis, spline.r_root_circle + a, 0.0, edge, f"{design.flexible_spline.rim:.4g} rim")
-    sheet.upright(ring.r_tip_circle, ring.r_root_circle, -half, 90.0, f"{_height(ring):.4g} ring", "end")
+    sheet.upright(
+        spline.r_root_circle + a,
+        spline.r_tip_circle + a,
+        0.0,
+        edge,
+        f"{_height(spline):.4g} spline",
+    )
+    sheet.upright(
+        design.major_semi_axis,
+        spline.r_root_circle + a,
+        0.0,
+        edge,
+        f"{design.flexible_spline.rim:.4g} rim",
+    )
+    sheet.upright(
+        ring.r_tip_circle, ring.r_root_circle, -half, 90.0, f"{_height(ring):.4g} ring", "end"
+    )
     sheet.caption = (
-        f"Teeth at the major axis, in mm: {design.flexible_spline.profile.type.replace('_', ' ')} on "
+        f"Teeth at the major axis, in mm: {design.flexible_spline.profile.type.replace('_', ' ')} "
+        f"on "
         f"{design.ring_gear.profile.type.replace('_', ' ')}, backlash "
-        f"{max(round(design.backlash, 6), 0.0):.3g} at the pitch circle, face width {design.drive.face_width:g}."
+        f"{max(round(design.backlash, 6), 0.0):.3g} at the pitch circle, face width "
+        f"{design.drive.face_width:g}."
     )
     return sheet
 
@@ -202,7 +242,8 @@ def _height(profile: ToothProfile) -> float:
 
 
 def _cut(curve: np.ndarray, half: float, low: float, high: float) -> np.ndarray:
-    """The part of a closed curve at the top of a drive, closed below the window and clipped to it."""
+    """The part of a closed curve at the top of a drive, closed below the window and clipped to
+    it."""
     curve = np.roll(curve, -int(curve[:, 1].argmin()), axis=0)
     near = curve[(np.abs(curve[:, 0]) < 1.3 * half) & (curve[:, 1] > 0.0)]
     below = np.array([[near[-1, 0], low], [near[0, 0], low]])
@@ -218,9 +259,13 @@ def _meridian(design: DriveDesign) -> Sheet:
     top = max(outer, wall.edge)
     scale = min((SIZE - 150.0) / length, 420.0 / top)
     sheet = Sheet(scale, 60.0 + scale * back, 55.0 + scale * top, 100.0 + scale * top)
-    lines = meridian(design.geometry.cup, CupRecipe(cylinder=48 if cup.contour else 1, fillet=24, closed_end=1))
+    lines = meridian(
+        design.geometry.cup, CupRecipe(cylinder=48 if cup.contour else 1, fillet=24, closed_end=1)
+    )
     inner_line, outer_line = lines.inner, lines.outer
-    tooth = np.array([[spline.r_tip_circle, back], [spline.r_tip_circle, -back], [design.inner_radius, -back]])
+    tooth = np.array(
+        [[spline.r_tip_circle, back], [spline.r_tip_circle, -back], [design.inner_radius, -back]]
+    )
     body = np.concatenate([inner_line, outer_line[::-1], tooth])
     half = 0.5 * design.wave_generator.face_width
     boxes = {
@@ -232,7 +277,9 @@ def _meridian(design: DriveDesign) -> Sheet:
         box = np.array([[-reach, r1], [reach, r1], [reach, r2], [-reach, r2]])
         sheet.outline([box], name)
     sheet.outline([body[:, ::-1]], "flexible_spline")
-    sheet.line(*sheet.at(-0.6 * width, 0.0), *sheet.at(back + cup.length + 0.1 * length, 0.0), style="axis")
+    sheet.line(
+        *sheet.at(-0.6 * width, 0.0), *sheet.at(back + cup.length + 0.1 * length, 0.0), style="axis"
+    )
     end = back + cup.length
     sheet.across(-back, back, outer, 22.0, f"{width:g}")
     sheet.across(back, end, outer_line[0, 0], 44.0, f"{cup.length:g}")
@@ -247,17 +294,25 @@ def _meridian(design: DriveDesign) -> Sheet:
     sheet.height = bottom + 20.0
     micro = design.micro_geometry
     sheet.caption = (
-        "Half section, in mm, undeformed, teeth without their backlash. Micro-geometry: cam crowning "
+        "Half section, in mm, undeformed, teeth without their backlash. Micro-geometry: cam "
+        "crowning "
         f"{micro.wg_crowning:g}, slope {micro.wg_slope:g}; flank crowning {micro.fs_crowning:g}."
     )
     return sheet
 
 
 def _thicknesses(design: DriveDesign) -> str:
-    """Thickness of the wall in words: where it changes from place to place, with that of the closed end or flange."""
-    wall = " / ".join(f"{thickness:.3g}" for thickness in _changes([t for _, _, t, _ in design.wall_points]))
+    """Thickness of the wall in words: where it changes from place to place, with that of the closed
+    end or flange."""
+    wall = " / ".join(
+        f"{thickness:.3g}" for thickness in _changes([t for _, _, t, _ in design.wall_points])
+    )
     end, last = design.end_thickness, design.wall_points[-1][2]
-    return wall if end == last else f"{wall}, {'flange' if design.cup_wall.outwards else 'end'} {end:.3g}"
+    return (
+        wall
+        if end == last
+        else f"{wall}, {'flange' if design.cup_wall.outwards else 'end'} {end:.3g}"
+    )
 
 
 def _changes(values: Sequence[float]) -> list[float]:
@@ -270,7 +325,14 @@ def _draw_attachment(sheet: Sheet, design: DriveDesign) -> None:
     cup, wall = design.cup, design.cup_wall
     x = sheet.at(min(wall.faces), 0.0)[0] - 14.0
     if cup.attachment == "clamped":
-        sheet.upright(0.0, cup.clamping_radius, min(wall.faces), x, f"clamped r {cup.clamping_radius:g}", "end")
+        sheet.upright(
+            0.0,
+            cup.clamping_radius,
+            min(wall.faces),
+            x,
+            f"clamped r {cup.clamping_radius:g}",
+            "end",
+        )
         return
     radius = 0.5 * cup.bolt_circle
     (x1, y), (x2, _) = (sheet.at(z, radius) for z in (min(wall.faces), max(wall.faces)))

@@ -48,7 +48,8 @@ def drive_report(result: DriveResult) -> bytes:
     details = [answer for answer in summary.values() if answer.detail]
     return result_page(
         TEMPLATE,
-        f"Strain wave gear {design.drive.teeth_fs}/{design.drive.teeth_rg}, {design.load.torque:g} N·m",
+        f"Strain wave gear {design.drive.teeth_fs}/{design.drive.teeth_rg}, {design.load.torque:g} "
+        f"N·m",
         RunFacts(result.design_table, summary.versions, summary.ranks, summary.wall_s, memory),
         result.folder,
         result.plot.names,
@@ -71,7 +72,8 @@ def _description(summary: DriveSummary) -> str:
     model = {"plane": "plane model", "cup": "cup drive", "pancake": "pancake drive"}[drive.model]
     mesh = f"mesh {Path(summary.recipe).stem}, " if summary.recipe else ""
     return (
-        f"{model}, ratio {summary.ratio:g}, {FIXED[drive.layout]}; {mesh}{summary.elements} elements, "
+        f"{model}, ratio {summary.ratio:g}, {FIXED[drive.layout]}; {mesh}{summary.elements} "
+        f"elements, "
         f"{summary.increments} increments."
     )
 

@@ -9,7 +9,8 @@ from swgpar.presentation.figures import DriveFigures
 class DriveResult(DriveData):
     """What a run of a drive gives, with figures; the same on every rank.
 
-    Attributes are those of `DriveData`: ``history``, ``summary``, ``pairs`` and further tables, ``folder``.
+    Attributes are those of `DriveData`: ``history``, ``summary``, ``pairs`` and further tables,
+    ``folder``.
 
     Examples
     --------
@@ -26,11 +27,15 @@ class DriveResult(DriveData):
 
     @property
     def plot(self) -> DriveFigures:
-        """The figures: ``plot.stress()`` and so on return matplotlib figures, ``plot.names`` lists them."""
-        return DriveFigures(self, self.comm, gathered=self.fields is not None and self.fields.gathered)
+        """The figures: ``plot.stress()`` and so on return matplotlib figures, ``plot.names`` lists
+        them."""
+        return DriveFigures(
+            self, self.comm, gathered=self.fields is not None and self.fields.gathered
+        )
 
     def view(self) -> None:
-        """Open a window that shows the deformed drive; call it on one rank, of a result from a folder.
+        """Open a window that shows the deformed drive; call it on one rank, of a result from a
+        folder.
 
         Raises
         ------

@@ -17,10 +17,14 @@ SHOWN = (0.5, 20.0)
 """Safety factors at the ends of the colour scale, which is logarithmic."""
 
 
-def draw_haigh(sector: SectorFields, cycle: dict[str, np.ndarray], summary: DriveSummary, angle: str) -> Figure:
-    """Amplitude over mean (MPa) of all nodes by region with the lines of Goodman and of yield, above the worst cycle.
+def draw_haigh(
+    sector: SectorFields, cycle: dict[str, np.ndarray], summary: DriveSummary, angle: str
+) -> Figure:
+    """Amplitude over mean (MPa) of all nodes by region with the lines of Goodman and of yield,
+    above the worst cycle.
 
-    summary : of a run with [fatigue];  angle : title of the axis with the angle of the wave generator
+    summary : of a run with [fatigue];  angle : title of the axis with the angle of the wave
+    generator
     """
     from matplotlib.figure import Figure
 
@@ -32,20 +36,40 @@ def draw_haigh(sector: SectorFields, cycle: dict[str, np.ndarray], summary: Driv
         here = fields["region"] == number
         hollow = bool(found.regions[region].warning)
         label = region + (" (depends on the mesh)" if hollow else "")
-        axes.plot(fields["mean"][here], fields["amplitude"][here], "x" if hollow else ".", ms=4, label=label)
+        axes.plot(
+            fields["mean"][here],
+            fields["amplitude"][here],
+            "x" if hollow else ".",
+            ms=4,
+            label=label,
+        )
     limit, tensile = found.fatigue_limit_of_the_part_MPa, strengths.tensile_strength
     most = strengths.yield_strength
     low = min(0.0, 1.05 * float(fields["mean"].min()))
     axes.plot([low, 0.0, tensile], [limit, limit, 0.0], "k-", label="Goodman, safety 1")
-    axes.plot([max(low, -most), 0.0, most], [most + max(low, -most), most, 0.0], "k--", lw=0.8, label="yield")
+    axes.plot(
+        [max(low, -most), 0.0, most],
+        [most + max(low, -most), most, 0.0],
+        "k--",
+        lw=0.8,
+        label="yield",
+    )
     worst = found.least["goodman"]
-    axes.plot(worst.mean_MPa, worst.amplitude_MPa, "r*", ms=12, label=f"least safety {worst.safety:.3g}")
+    axes.plot(
+        worst.mean_MPa, worst.amplitude_MPa, "r*", ms=12, label=f"least safety {worst.safety:.3g}"
+    )
     axes.set(xlabel="mean of the normal stress (MPa)", ylabel="amplitude (MPa)")
-    axes.set(xlim=(low, 1.05 * tensile), ylim=(0.0, 1.1 * max(limit, float(fields["amplitude"].max()))))
+    axes.set(
+        xlim=(low, 1.05 * tensile), ylim=(0.0, 1.1 * max(limit, float(fields["amplitude"].max())))
+    )
     axes.set_title("Haigh's diagram, on the critical plane of every node", fontsize=10)
     axes.legend(fontsize=7)
     of_program = "step" in cycle
-    below.plot(cycle["step" if of_program else "wg_angle_deg"], cycle["normal_stress_MPa"], ".-" if of_program else "-")
+    below.plot(
+        cycle["step" if of_program else "wg_angle_deg"],
+        cycle["normal_stress_MPa"],
+        ".-" if of_program else "-",
+    )
     what = "point of the load program (step)" if of_program else angle
     below.set(xlabel=what, ylabel="normal stress (MPa)")
     below.set_title(f"cycle where the safety is the least: {worst.region}", fontsize=10)
@@ -55,11 +79,14 @@ def draw_haigh(sector: SectorFields, cycle: dict[str, np.ndarray], summary: Driv
 
 
 def sector_picture(sector: SectorFields, plane: bool) -> np.ndarray:
-    """Picture (height, width, 3) of a sector coloured by Goodman's safety factor: a plane one along its axis."""
+    """Picture (height, width, 3) of a sector coloured by Goodman's safety factor: a plane one along
+    its axis."""
     import pyvista
 
     cells = np.hstack([np.full((len(sector.cells), 1), 8), sector.cells]).ravel()
-    grid = pyvista.UnstructuredGrid(cells, np.full(len(sector.cells), pyvista.CellType.HEXAHEDRON), sector.points)
+    grid = pyvista.UnstructuredGrid(
+        cells, np.full(len(sector.cells), pyvista.CellType.HEXAHEDRON), sector.points
+    )
     grid.point_data["safety"] = np.clip(sector.fields["safety_goodman"], *SHOWN)
     plotter = off_screen_plotter(1200, 900)
     plotter.add_mesh(

@@ -75,27 +75,39 @@ class DriveFigures(FigureSet):
         return found
 
     def stress(self) -> Figure:
-        """Largest stresses of both bodies (MPa) against the angle of the wave generator, under load."""
+        """Largest stresses of both bodies (MPa) against the angle of the wave generator, under
+        load."""
         figure, (axes,) = self._panels(1)
         for name in STRESSES:
             self._draw(axes, name, COLUMNS[name].label)
         root = self._result.summary.root_stress
         if root and root.period:
             angle, value = np.array(root.period).T
-            axes.plot(angle, value, "k^--", ms=4, lw=0.8, label="flexible spline, s1 at the teeth by windows")
-        axes.set(ylabel="stress (MPa)", title="largest stresses (nodal averages)" + self._over_period())
+            axes.plot(
+                angle,
+                value,
+                "k^--",
+                ms=4,
+                lw=0.8,
+                label="flexible spline, s1 at the teeth by windows",
+            )
+        axes.set(
+            ylabel="stress (MPa)", title="largest stresses (nodal averages)" + self._over_period()
+        )
         axes.set_ylim(bottom=0.0)
         figure.legend(loc="outside lower center", ncols=2, fontsize=8)
         return figure
 
     def torque(self) -> Figure:
-        """Input torque (N·mm) against the angle of the wave generator, beside that of the energy balance."""
+        """Input torque (N·mm) against the angle of the wave generator, beside that of the energy
+        balance."""
         figure, (axes,) = self._panels(1)
         self._draw_torque(axes)
         return figure
 
     def transmission_error(self) -> Figure:
-        """Angle of the output less its kinematic value (arc seconds) against the angle of the wave generator."""
+        """Angle of the output less its kinematic value (arc seconds) against the angle of the wave
+        generator."""
         figure, (axes,) = self._panels(1)
         self._draw_transmission_error(axes)
         return figure
@@ -108,7 +120,8 @@ class DriveFigures(FigureSet):
         return figure
 
     def transmission_error_spectrum(self) -> Figure:
-        """Transmission error (arc seconds) over the angle of the input, and its orders of the input's turn.
+        """Transmission error (arc seconds) over the angle of the input, and its orders of the
+        input's turn.
 
         Over whole turns with deviations, or over the sampled period of the ideal drive.
         """
@@ -116,18 +129,32 @@ class DriveFigures(FigureSet):
 
         rows, found = self._result.transmission_error, self._result.summary.transmission_error
         if not rows or found is None:
-            raise InputError("this run has no transmission error: allowed with steps.samples or [deviations]")
+            raise InputError(
+                "this run has no transmission error: allowed with steps.samples or [deviations]"
+            )
         figure = Figure(figsize=(7.0, 6.0), layout="constrained")
         upper, lower = figure.subplots(2, 1)
         error = rows["transmission_error_arcsec"]
-        upper.plot(rows["wg_angle_deg"], error - error.mean(), lw=1.0, marker="o" if len(error) < 40 else None, ms=3)
-        upper.set(xlabel=self._angle, ylabel="arc seconds", title="transmission error less its mean")
+        upper.plot(
+            rows["wg_angle_deg"],
+            error - error.mean(),
+            lw=1.0,
+            marker="o" if len(error) < 40 else None,
+            ms=3,
+        )
+        upper.set(
+            xlabel=self._angle, ylabel="arc seconds", title="transmission error less its mean"
+        )
         order, amplitude, _ = orders(found.turns, rows)
         lower.vlines(order, 0.0, amplitude, lw=1.2)
         named = found.spectrum[:4]
         for line in named:
-            lower.plot(line.order, line.amplitude, "o", ms=4, label=f"{line.order:.4g}: {line.cause}")
-        lower.set(xlabel="order of the input's turn", ylabel="amplitude (arc seconds)", ylim=(0.0, None))
+            lower.plot(
+                line.order, line.amplitude, "o", ms=4, label=f"{line.order:.4g}: {line.cause}"
+            )
+        lower.set(
+            xlabel="order of the input's turn", ylabel="amplitude (arc seconds)", ylim=(0.0, None)
+        )
         if named:
             lower.legend(fontsize=7)
         for axes in (upper, lower):
@@ -148,35 +175,46 @@ class DriveFigures(FigureSet):
 
     def _draw_transmission_error(self, axes: Axes) -> None:
         self._draw(axes, "transmission_error", None)
-        axes.set(ylabel="arc seconds", title="transmission error: output angle less its kinematic value")
+        axes.set(
+            ylabel="arc seconds", title="transmission error: output angle less its kinematic value"
+        )
 
     def torque_against_rotation(self) -> Figure:
         """Torque on the output (N·m) against its rotation (arc minutes), along a load program."""
         if not self._result.program:
-            raise InputError("this run has no load program: allowed with load.program, [stiffness] or [ratcheting]")
+            raise InputError(
+                "this run has no load program: allowed with load.program, [stiffness] or "
+                "[ratcheting]"
+            )
         return torque_against_rotation(self._result.program, self._result.summary)
 
     def pairs(self) -> Figure:
-        """Force (N) and largest contact pressure (MPa) of the pairs, over the tooth's angle from the major axis.
+        """Force (N) and largest contact pressure (MPa) of the pairs, over the tooth's angle from
+        the major axis.
 
-        All computed increments under load are drawn: a tooth goes through these positions one after the other. Pairs
-        whose contact lies on an edge have hollow marks: their pressure is no property of the drive.
+        All computed increments under load are drawn: a tooth goes through these positions one after
+        the other. Pairs whose contact lies on an edge have hollow marks: their pressure is no
+        property of the drive.
         """
         return draw_pairs(self._pairs(), self._lobes)
 
     def load_sharing(self) -> Figure:
-        """Share (%) of every pair in the forces between the flanks, over its angle from the major axis.
+        """Share (%) of every pair in the forces between the flanks, over its angle from the major
+        axis.
 
         All computed increments under load are drawn, and below the number of pairs at these angles.
         """
         return draw_load_sharing(self._pairs(), self._result.history, self._angle, self._lobes)
 
     def haigh(self) -> Figure:
-        """Haigh's diagram of all nodes of a sector, and the normal stress over the cycle where the safety is the least.
+        """Haigh's diagram of all nodes of a sector, and the normal stress over the cycle where the
+        safety is the least.
 
         Runs with the section [fatigue] have it.
         """
-        return draw_haigh(self._fatigue(), self._result.fatigue_cycle, self._result.summary, self._angle)
+        return draw_haigh(
+            self._fatigue(), self._result.fatigue_cycle, self._result.summary, self._angle
+        )
 
     def safety(self) -> Figure:
         """One sector of the flexible spline, coloured by Goodman's safety factor."""
@@ -188,7 +226,9 @@ class DriveFigures(FigureSet):
 
     def _pairs(self) -> dict[str, np.ndarray]:
         if not self._result.pairs:
-            raise InputError("this run has no flanks in contact under load: allowed with load.torque above 0")
+            raise InputError(
+                "this run has no flanks in contact under load: allowed with load.torque above 0"
+            )
         return self._result.pairs
 
     def _fatigue(self) -> SectorFields:
@@ -225,7 +265,8 @@ class DriveFigures(FigureSet):
         return ", over one period" if self._design.steps.samples else ""
 
     def ball_loads(self) -> Figure:
-        """Loads of a bearing's balls (N) over the angle from the major axis, and the largest during the rotation."""
+        """Loads of a bearing's balls (N) over the angle from the major axis, and the largest during
+        the rotation."""
         from matplotlib.figure import Figure
 
         balls, bearing = self._result.balls, self._result.summary.bearing
@@ -240,10 +281,22 @@ class DriveFigures(FigureSet):
         for increment in increments:
             here = shown["increment"] == increment
             order = np.argsort(shown["cam_angle_deg"][here])
-            upper.plot(shown["cam_angle_deg"][here][order], shown["load_N"][here][order], "o-", ms=3, lw=0.6)
+            upper.plot(
+                shown["cam_angle_deg"][here][order],
+                shown["load_N"][here][order],
+                "o-",
+                ms=3,
+                lw=0.6,
+            )
             angles.append(shown["wg_angle_deg"][here][0])
-        upper.set(xlabel="angle from the major axis (degrees)", ylabel="ball load (N)", xlim=(-180.0, 180.0))
-        upper.set_title(f"loads of {len(shown['ball']) // len(increments)} balls at {len(increments)} angles")
+        upper.set(
+            xlabel="angle from the major axis (degrees)",
+            ylabel="ball load (N)",
+            xlim=(-180.0, 180.0),
+        )
+        upper.set_title(
+            f"loads of {len(shown['ball']) // len(increments)} balls at {len(increments)} angles"
+        )
         peaks = shown["load_N"].reshape(len(increments), -1).max(axis=1)
         lower.plot(angles, peaks, "o-", ms=4)
         fixed = ", balls fixed to the cam" if bearing and bearing.balls_fixed_to_cam else ""
@@ -256,12 +309,16 @@ class DriveFigures(FigureSet):
     def contact_pattern(self, step: int | None = None) -> Figure:
         """Pressure (MPa) on all loaded flanks, over arc length and face width.
 
-        In the plane model over arc length. step : of the history; None for that with the largest pressure
+        In the plane model over arc length. step : of the history; None for that with the largest
+        pressure
         """
-        return draw_contact_pattern(self._pairs(), self._result.contact_lines, step, self._result.is_plane)
+        return draw_contact_pattern(
+            self._pairs(), self._result.contact_lines, step, self._result.is_plane
+        )
 
     def deformed(self, increment: int = -1, magnification: float = 1.0) -> Figure:
-        """The deformed drive, coloured by von Mises stress: seen from its open end, a plane model along its axis.
+        """The deformed drive, coloured by von Mises stress: seen from its open end, a plane model
+        along its axis.
 
         Parameters
         ----------
@@ -269,37 +326,52 @@ class DriveFigures(FigureSet):
         magnification : of the displacements; above 1 bodies may seem to cross
         """
         return draw_deformed(
-            self._grids(increment), magnification, plane=self._result.is_plane, title=self._when(increment)
+            self._grids(increment),
+            magnification,
+            plane=self._result.is_plane,
+            title=self._when(increment),
         )
 
     def loaded_teeth(self, increment: int = -1) -> Figure:
-        """Close-up of the pair of flanks with the largest force and the cam below it, by von Mises stress.
+        """Close-up of the pair of flanks with the largest force and the cam below it, by von Mises
+        stress.
 
-        A cup drive is cut across its axis where the pressure of this pair is the largest. Without a pair in contact
+        A cup drive is cut across its axis where the pressure of this pair is the largest. Without a
+        pair in contact
         the teeth at the major axis are shown. increment : as in `DriveData.field`
         """
         result, row = self._result, self._row(increment)
         cam_angle = self._cam_angle(row)
         angle, z, pairs = cam_angle, 0.0, result.pairs
-        here = np.flatnonzero(pairs["increment"] == row + 1) if pairs else np.zeros(0, dtype=np.int64)
+        here = (
+            np.flatnonzero(pairs["increment"] == row + 1) if pairs else np.zeros(0, dtype=np.int64)
+        )
         if len(here):
             largest = here[np.argmax(pairs["force_N"][here])]
             angle = cam_angle + float(np.radians(pairs["angle_deg"][largest]))
             z = float(np.nan_to_num(pairs["z_mm"][largest]))
-        return draw_loaded_teeth(self._grids(increment), self._design, cam_angle, angle, z, self._when(increment))
+        return draw_loaded_teeth(
+            self._grids(increment), self._design, cam_angle, angle, z, self._when(increment)
+        )
 
     def cup_section(self, increment: int = -1) -> Figure:
-        """Sections of the deformed cup along its axis, through the major and the minor axis, by von Mises stress.
+        """Sections of the deformed cup along its axis, through the major and the minor axis, by von
+        Mises stress.
 
         increment : as in `DriveData.field`
         """
         if not self._has_cup:
-            raise InputError(f'drive.model = "{self._design.drive.model}" has no cup: allowed with "cup"')
+            raise InputError(
+                f'drive.model = "{self._design.drive.model}" has no cup: allowed with "cup"'
+            )
         cam_angle = self._cam_angle(self._row(increment))
-        return draw_cup_section(self._grids(increment), self._design, cam_angle, self._when(increment))
+        return draw_cup_section(
+            self._grids(increment), self._design, cam_angle, self._when(increment)
+        )
 
     def stress_around(self, increment: int = -1) -> Figure:
-        """Largest s1 and von Mises stress (MPa) of every tooth's sector of the flexible spline, around it.
+        """Largest s1 and von Mises stress (MPa) of every tooth's sector of the flexible spline,
+        around it.
 
         increment : as in `DriveData.field`
         """
@@ -323,25 +395,33 @@ class DriveFigures(FigureSet):
         return self._result.summary.design
 
     def _grids(self, increment: int) -> list[pyvista.UnstructuredGrid]:
-        """Both whole bodies with their fields; collective where these are gathered. What follows is not."""
+        """Both whole bodies with their fields; collective where these are gathered. What follows is
+        not."""
         return [self._result.grid(increment, body, whole=True) for body in self._result.gears]
 
     def _row(self, increment: int) -> int:
         """Row of the history, from 0, of an increment with fields."""
         known = self._result.field_increments
         if not -len(known) <= increment < len(known):
-            raise InputError(f"increment = {increment} has no fields: allowed from {-len(known)} to {len(known) - 1}")
+            raise InputError(
+                f"increment = {increment} has no fields: allowed from {-len(known)} to "
+                f"{len(known) - 1}"
+            )
         return known[increment] - 1
 
     def _cam_angle(self, row: int) -> float:
-        """Angle (rad) of the cam in the fields of a row of the history; 0 where the wave generator is fixed."""
+        """Angle (rad) of the cam in the fields of a row of the history; 0 where the wave generator
+        is fixed."""
         if self._design.drive.layout == "wave_generator_fixed":
             return 0.0
         return float(np.radians(self._result.history["wg_angle_deg"][row]))
 
     def _when(self, increment: int) -> str:
         row = self._row(increment)
-        return f"increment {row + 1}, wave generator at {self._result.history['wg_angle_deg'][row]:.3g} degrees"
+        return (
+            f"increment {row + 1}, wave generator at "
+            f"{self._result.history['wg_angle_deg'][row]:.3g} degrees"
+        )
 
 
 def _as_figure(picture: np.ndarray) -> Figure:

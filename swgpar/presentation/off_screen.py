@@ -14,7 +14,8 @@ if TYPE_CHECKING:
 
 @contextmanager
 def errors_only() -> Iterator[None]:
-    """VTK says only errors: it warns of a display that it does not find before it draws without one."""
+    """VTK says only errors: it warns of a display that it does not find before it draws without
+    one."""
     from vtkmodules.vtkCommonCore import vtkLogger
 
     before = vtkLogger.GetCurrentVerbosityCutoff()
@@ -40,7 +41,10 @@ def has_display() -> bool:
     from vtkmodules.vtkRenderingCore import vtkRenderWindow
 
     with errors_only():
-        return vtkRenderWindow().GetClassName() not in ("vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow")
+        return vtkRenderWindow().GetClassName() not in (
+            "vtkEGLRenderWindow",
+            "vtkOSOpenGLRenderWindow",
+        )
 
 
 def without_margin(picture: np.ndarray) -> np.ndarray:

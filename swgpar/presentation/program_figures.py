@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 
 
 def torque_against_rotation(program: Mapping[str, np.ndarray], summary: DriveSummary) -> Figure:
-    """Torque on the output (N·m) against its rotation (arc minutes), a line for every stage, or every position.
+    """Torque on the output (N·m) against its rotation (arc minutes), a line for every stage, or
+    every position.
 
     program : columns of program.csv;  summary : of the run
     """
@@ -31,13 +32,31 @@ def torque_against_rotation(program: Mapping[str, np.ndarray], summary: DriveSum
         if not summary.stiffness:  # a stage begins where the one before has ended
             here[first] = True
         label = f"wave generator at {value:.3g}°" if summary.stiffness else str(value)
-        axes.plot(program["rotation_arcmin"][here], program["torque_Nm"][here], "o-", ms=3, lw=1.0, label=label)
+        axes.plot(
+            program["rotation_arcmin"][here],
+            program["torque_Nm"][here],
+            "o-",
+            ms=3,
+            lw=1.0,
+            label=label,
+        )
     if summary.stiffness:
         _mark_chords(axes, summary.stiffness)
     if found := summary.ratcheting:
-        axes.plot(60.0 * found.peak_rotation_deg, found.peak_torque_Nm, "k*", ms=12, label="largest torque")
-    axes.set(xlabel="rotation of the output by the torque (arc minutes)", ylabel="torque on the output (N·m)")
-    axes.set_title("torque against rotation, wave generator locked" if summary.stiffness else "load program")
+        axes.plot(
+            60.0 * found.peak_rotation_deg,
+            found.peak_torque_Nm,
+            "k*",
+            ms=12,
+            label="largest torque",
+        )
+    axes.set(
+        xlabel="rotation of the output by the torque (arc minutes)",
+        ylabel="torque on the output (N·m)",
+    )
+    axes.set_title(
+        "torque against rotation, wave generator locked" if summary.stiffness else "load program"
+    )
     axes.axhline(0.0, color="0.6", lw=0.6)
     axes.grid(alpha=0.3)
     axes.legend(fontsize=8)

@@ -1,7 +1,8 @@
-"""The deformed drive as a view that turns in a page of HTML, without a network: the surface and a drawer in WebGL.
+"""The deformed drive as a view that turns in a page of HTML, without a network: the surface and a
+drawer in WebGL.
 
-All sectors of a body are congruent: the triangles of one are stored, and places, displacements and stresses of all.
-Places have 16 bits, stresses 8.
+All sectors of a body are congruent: the triangles of one are stored, and places, displacements and
+stresses of all. Places have 16 bits, stresses 8.
 """
 
 from __future__ import annotations
@@ -21,7 +22,9 @@ MOST_NODES = 400_000
 PERCENTILE = 99.9
 """Of the von Mises stress: the end of the colour range."""
 
-HEX_FACES = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])
+HEX_FACES = np.array(
+    [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
+)
 
 SCRIPT = "presentation/scene.js"
 
@@ -36,24 +39,31 @@ class Scene:
 
 
 def sector_surface(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
-    """Triangles (n, 3) of the surface of one sector, without the sides where it meets its neighbours.
+    """Triangles (n, 3) of the surface of one sector, without the sides where it meets its
+    neighbours.
 
     points : (n, 3) mm, of the sector;  cells : (m, 8) hexahedra in VTK order
     """
     faces = cells[:, HEX_FACES].reshape(-1, 4)
-    _, first, count = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
+    _, first, count = np.unique(
+        np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True
+    )
     outside = faces[first[count == 1]]
     axis = points[:, :2].mean(axis=0)
     angle = np.arctan2(points[:, :2] @ [-axis[1], axis[0]], points[:, :2] @ axis)
     # the sides lie in planes through the axis, at the largest and the smallest angle
     at = angle[outside]
-    sides = [np.all(np.abs(at - end) < 1e-6 * np.ptp(angle), axis=1) for end in (angle.min(), angle.max())]
+    sides = [
+        np.all(np.abs(at - end) < 1e-6 * np.ptp(angle), axis=1)
+        for end in (angle.min(), angle.max())
+    ]
     quads = outside[~(sides[0] | sides[1])]
     return np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
 
 
 def scene(result: DriveData) -> Scene | None:
-    """The view of the last increment with fields; None without fields, or where it would be too large.
+    """The view of the last increment with fields; None without fields, or where it would be too
+    large.
 
     Reads files only: one rank may call it alone.
     """

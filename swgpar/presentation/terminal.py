@@ -36,26 +36,38 @@ def print_drive(history: Mapping[str, np.ndarray], summary: DriveSummary) -> Non
     _print_history({name: values[: summary.increments] for name, values in history.items()})
     if further := len(history["step"]) - summary.increments:
         end = history["wg_angle_deg"][-1]
-        console.print(f"history.csv repeats this period: {further} further rows up to {end:.4g} degrees")
+        console.print(
+            f"history.csv repeats this period: {further} further rows up to {end:.4g} degrees"
+        )
     for answers in summary.groups():
         _print_answers(answers)
-    console.print(f"\n{summary.wall_s:.0f} s on {summary.ranks} ranks; summary.json has all answers")
+    console.print(
+        f"\n{summary.wall_s:.0f} s on {summary.ranks} ranks; summary.json has all answers"
+    )
 
 
 def _print_history(history: Mapping[str, np.ndarray]) -> None:
     driven = {"wg_angle_deg": "input_angle_deg", "wg_torque_Nmm": "input_torque_Nmm"}
     names = [driven.get(name, name) if driven.get(name) in history else name for name in COLUMNS]
-    title = "largest stresses over the bodies (MPa, nodal averages); torque in N·mm, angles in degrees"
+    title = (
+        "largest stresses over the bodies (MPa, nodal averages); torque in N·mm, angles in degrees"
+    )
     table = Table(title=title, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))  # fits into 80 columns
     for heading, _ in COLUMNS.values():
         table.add_column(heading, justify="right", no_wrap=True)
     for values in zip(*(history[name] for name in names), strict=True):
-        table.add_row(*(format(value, spec) for value, (_, spec) in zip(values, COLUMNS.values(), strict=True)))
+        table.add_row(
+            *(
+                format(value, spec)
+                for value, (_, spec) in zip(values, COLUMNS.values(), strict=True)
+            )
+        )
     console.print(table)
 
 
 def _print_answers(answers: AnswerGroup) -> None:
-    """The answers of a group without details, each with its place and remark below it, then its remarks."""
+    """The answers of a group without details, each with its place and remark below it, then its
+    remarks."""
     shown = [answer for answer in answers.answers() if not answer.detail]
     if not shown:
         return
@@ -64,7 +76,11 @@ def _print_answers(answers: AnswerGroup) -> None:
     for justify in ("right", "left", "left"):
         table.add_column(justify=justify, no_wrap=True)
     for answer in shown:
-        below = [Padding(Text(words), (0, 0, 0, 2)) for words in (answer.place, remark_text(answer)) if words]
+        below = [
+            Padding(Text(words), (0, 0, 0, 2))
+            for words in (answer.place, remark_text(answer))
+            if words
+        ]
         what = Padding(Group(answer.text, *below), (0, 0, 0, 2))
         table.add_row(what, value_text(answer.value), error_text(answer.error), answer.unit)
     console.print(f"\n{answers.TITLE}", style="bold", markup=False)

@@ -30,15 +30,16 @@ def require_display() -> None:
         shown = os.environ.get("DISPLAY")
         reason = f"DISPLAY = {shown} cannot be reached" if shown else "DISPLAY is not set"
         raise InputError(
-            f"view needs a display, and {reason}: report.html of the results folder shows the same drive in a browser"
+            f"view needs a display, and {reason}: report.html of the results folder shows the same "
+            f"drive in a browser"
         )
 
 
 def view_plotter(result: DriveData, *, off_screen: bool = False) -> pyvista.Plotter:
     """Both gears with all teeth, at the last increment with fields, coloured by von Mises stress.
 
-    Sliders choose the increment and the magnification of displacements. The keys 1, 2 and 3 colour by von Mises stress,
-    s1 and s3; f and r hide the flexible spline and the ring gear.
+    Sliders choose the increment and the magnification of displacements. The keys 1, 2 and 3 colour
+    by von Mises stress, s1 and s3; f and r hide the flexible spline and the ring gear.
 
     Raises
     ------
@@ -60,14 +61,23 @@ def view_plotter(result: DriveData, *, off_screen: bool = False) -> pyvista.Plot
         surfaces[body], places[body] = surface, surface.points.copy()
         surface.point_data["shown"] = surface.point_data["vm"]
         actors[body] = plotter.add_mesh(
-            surface, scalars="shown", cmap="turbo", smooth_shading=False, show_scalar_bar=False, name=body
+            surface,
+            scalars="shown",
+            cmap="turbo",
+            smooth_shading=False,
+            show_scalar_bar=False,
+            name=body,
         )
-    plotter.add_scalar_bar(title=COLOURED["vm"], fmt="%.4g", mapper=actors[result.gears[0]].mapper, vertical=True)
+    plotter.add_scalar_bar(
+        title=COLOURED["vm"], fmt="%.4g", mapper=actors[result.gears[0]].mapper, vertical=True
+    )
 
     def update() -> None:
         largest = []
         for body, surface in surfaces.items():
-            fields = result.grid(shown["increment"], body, whole=True).extract_surface(algorithm="dataset_surface")
+            fields = result.grid(shown["increment"], body, whole=True).extract_surface(
+                algorithm="dataset_surface"
+            )
             surface.points = places[body] + shown["factor"] * fields.point_data["displacement"]
             surface.point_data["shown"] = fields.point_data[shown["field"]]
             largest.append(np.percentile(np.abs(surface.point_data["shown"]), PERCENTILE))
@@ -104,7 +114,9 @@ def view_plotter(result: DriveData, *, off_screen: bool = False) -> pyvista.Plot
     for key, name in zip("123", COLOURED):
         plotter.add_key_event(key, lambda name=name: set_value("field", name))
     for body in result.gears:
-        plotter.add_key_event(body[0], lambda body=body: actors[body].SetVisibility(not actors[body].GetVisibility()))
+        plotter.add_key_event(
+            body[0], lambda body=body: actors[body].SetVisibility(not actors[body].GetVisibility())
+        )
     keys = "   ".join(f"{body[0]} {body.replace('_', ' ')}" for body in result.gears)
     plotter.add_text(f"1 von Mises   2 s1   3 s3   {keys}   q close", font_size=9)
     if result.is_plane:

@@ -1,7 +1,7 @@
 """Files that are written completely or not at all, and errors that are raised on all ranks.
 
-A file is written under a temporary name in the same folder, flushed to the disk and renamed. A process
-that is killed leaves the previous file, never a part of a new one.
+A file is written under a temporary name in the same folder, flushed to the disk and renamed. A
+process that is killed leaves the previous file, never a part of a new one.
 """
 
 from __future__ import annotations
@@ -45,7 +45,8 @@ def raise_first(comm: MPI.Comm, error: SwgparError | None) -> None:
 
 
 def on_all(comm: MPI.Comm, task: Callable[[], T]) -> T:
-    """What `task` returns; collective. If it fails on one rank, the error is raised on all, so that none waits.
+    """What `task` returns; collective. If it fails on one rank, the error is raised on all, so that
+    none waits.
 
     `task` must not contain collective calls after a statement that can fail on one rank only.
     """
@@ -60,7 +61,8 @@ def on_all(comm: MPI.Comm, task: Callable[[], T]) -> T:
 
 @contextmanager
 def agreed(comm: MPI.Comm, path: Path, action: str = "write") -> Iterator[None]:
-    """Run a block in which a rank may fail alone, and raise the error, or OutputError, on all ranks if one did.
+    """Run a block in which a rank may fail alone, and raise the error, or OutputError, on all ranks
+    if one did.
 
     The block must not contain collective calls after a statement that can fail on one rank only.
     It is collective itself: every rank enters and leaves it.

@@ -1,7 +1,7 @@
 """The last converged state in one file, independent of the number of ranks that wrote it.
 
-The file has the version of its content, and sums by which damage is found: one of the attributes, and one of every
-data set, the same however its rows are distributed.
+The file has the version of its content, and sums by which damage is found: one of the attributes,
+and one of every data set, the same however its rows are distributed.
 """
 
 from __future__ import annotations
@@ -41,11 +41,13 @@ def write_checkpoint(path: Path, comm: MPI.Comm, blocks: Mapping[str, Block], co
     ----------
     path : the file
     blocks : rows by name
-    content : a dataclass, what else the state is made of, as JSON can hold it (numbers keep all digits); of rank 0
+    content : a dataclass, what else the state is made of, as JSON can hold it (numbers keep all
+    digits); of rank 0
     """
     rows = dict(blocks)
     sums = {body: comm.allreduce(_sum(block.array, block.first)) for body, block in rows.items()}
-    # An HDF5 attribute ends at 64 KiB, the history of a long run does not: the text goes into a data set.
+    # An HDF5 attribute ends at 64 KiB, the history of a long run does not: the text goes into a
+    # data set.
     text = comm.bcast(to_json({_CONTENT: content, _SUMS: sums}) if comm.rank == 0 else None)
     for key, values in (
         (_ATTRS, np.frombuffer(text, dtype=np.uint8)),
@@ -78,11 +80,14 @@ def read_checkpoint(path: Path, comm: MPI.Comm, kind: type[T]) -> T:
     try:
         return TypeAdapter(kind).validate_python(json.loads(text)[_CONTENT])
     except ValidationError as error:
-        raise _damaged(path, f"{error.errors()[0]['loc'][-1]} is not what a checkpoint has") from None
+        raise _damaged(
+            path, f"{error.errors()[0]['loc'][-1]} is not what a checkpoint has"
+        ) from None
 
 
 def require_undamaged(path: Path, comm: MPI.Comm) -> None:
-    """Read the whole checkpoint, each rank a part of it; raises OutputError on all ranks where it is damaged."""
+    """Read the whole checkpoint, each rank a part of it; raises OutputError on all ranks where it
+    is damaged."""
     sums: dict[str, int] = {}
     with agreed(comm, path, "read"):
         sums = json.loads(_read_attrs(path))[_SUMS]
@@ -104,14 +109,17 @@ def _read_attrs(path: Path) -> bytes:
             names = set(file)
             if _ATTRS not in names:
                 raise OutputError(
-                    f"{path} is no checkpoint of swgpar: restore the one of this run, or start again with overwrite = "
+                    f"{path} is no checkpoint of swgpar: restore the one of this run, or start "
+                    f"again with overwrite = "
                     "true (--overwrite)"
                 )
             version = int(file[_VERSION][0]) if {_VERSION, _DIGEST} <= names else 0
             if version != VERSION:
                 raise OutputError(
-                    f"{path} was written by another version of swgpar (version {version} of checkpoints, this one "
-                    f"reads {VERSION}): continue with that version, or start again with overwrite = true (--overwrite)"
+                    f"{path} was written by another version of swgpar (version {version} of "
+                    f"checkpoints, this one "
+                    f"reads {VERSION}): continue with that version, or start again with overwrite "
+                    f"= true (--overwrite)"
                 )
             text, digest = file[_ATTRS][:].tobytes(), file[_DIGEST][:].tobytes()
     except (OSError, RuntimeError, ValueError, KeyError, TypeError, IndexError) as error:
@@ -125,10 +133,13 @@ def _read_attrs(path: Path) -> bytes:
 
 def _damaged(path: Path, reason: str) -> OutputError:
     return OutputError(
-        f"{path} is damaged: {reason}; restore it from a copy, or start again with overwrite = true (--overwrite)"
+        f"{path} is damaged: {reason}; restore it from a copy, or start again with overwrite = "
+        f"true (--overwrite)"
     )
 
 
 def _sum(rows: np.ndarray, first: int) -> int:
     """Sum over rows of their CRC, each begun with the number of its row: it adds up over ranks."""
-    return sum(zlib.crc32(np.ascontiguousarray(row).tobytes(), first + k) for k, row in enumerate(rows))
+    return sum(
+        zlib.crc32(np.ascontiguousarray(row).tobytes(), first + k) for k, row in enumerate(rows)
+    )

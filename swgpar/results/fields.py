@@ -1,8 +1,9 @@
 """fields.h5 and fields.xdmf: nodal fields of every increment, for ParaView.
 
-Every increment is a part file of its own, `fields/increment_0001.h5`, written by all ranks at once; `fields.h5`
-is a small file of links to the mesh and to the increments, `fields.xdmf` describes them. Nodes are stored sector
-by sector, so those between two sectors appear twice, with the same values.
+Every increment is a part file of its own, `fields/increment_0001.h5`, written by all ranks at once;
+`fields.h5` is a small file of links to the mesh and to the increments, `fields.xdmf` describes
+them. Nodes are stored sector by sector, so those between two sectors appear twice, with the same
+values.
 """
 
 from __future__ import annotations
@@ -41,7 +42,8 @@ TIME_STEP = 1e-3
 def times(angles: Sequence[float] | np.ndarray) -> np.ndarray:
     """Times (n,) of increments at these angles of the wave generator (n,), degrees.
 
-    They are the angles, made to increase: the increments that assemble the drive are all at the first one.
+    They are the angles, made to increase: the increments that assemble the drive are all at the
+    first one.
     """
     found = np.array(angles, dtype=float)
     for k in range(1, len(found)):
@@ -54,9 +56,11 @@ TENSOR6 = [0, 3, 5, 1, 4, 2]
 
 
 def stored(name: str, values: np.ndarray) -> np.ndarray:
-    """Nodal values (n_sectors, n_local[, n_components]) in the form in which they are kept, on disk and in memory.
+    """Nodal values (n_sectors, n_local[, n_components]) in the form in which they are kept, on disk
+    and in memory.
 
-    Tensors have the components xx xy xz yy yz zz. Displacements are float64, all other fields float32.
+    Tensors have the components xx xy xz yy yz zz. Displacements are float64, all other fields
+    float32.
     """
     if values.ndim == 3 and values.shape[2] == 6:
         values = values[..., TENSOR6]
@@ -122,7 +126,9 @@ class FieldWriter:
             n_sectors, n_local = part.points.shape[:2]
             sector = np.arange(part.first, part.first + n_sectors)[:, None, None] * n_local
             blocks[f"{name}/points"] = part.block(part.points.reshape(-1, 3), n_local)
-            blocks[f"{name}/cells"] = part.block((part.cells + sector).reshape(-1, 8), len(part.cells))
+            blocks[f"{name}/cells"] = part.block(
+                (part.cells + sector).reshape(-1, 8), len(part.cells)
+            )
             if part.flanks is not None:
                 grids = zip(FLANKS, part.flanks, strict=True)
                 blocks |= {f"{name}/{key}": Block.of_root(self.comm, array) for key, array in grids}
@@ -133,7 +139,8 @@ class FieldWriter:
         return (self.out / FOLDER / f"{increment_name(index)}.h5").exists()
 
     def write_increment(self, index: int, fields: Mapping[str, Mapping[str, np.ndarray]]) -> None:
-        """Write nodal fields of the bodies: body -> name -> (n_sectors, n_local[, n_components])."""
+        """Write nodal fields of the bodies: body -> name -> (n_sectors, n_local[,
+        n_components])."""
         blocks = {
             f"{body}/{name}": self._bodies[body].block(stored(name, array), array.shape[1])
             for body, values in fields.items()
@@ -141,8 +148,11 @@ class FieldWriter:
         }
         parallel_hdf5.write(self.out / FOLDER / f"{increment_name(index)}.h5", self.comm, blocks)
 
-    def write_index(self, increments: Sequence[tuple[int, float]], names: Mapping[str, Mapping[str, int]]) -> None:
-        """Rewrite fields.h5 and fields.xdmf: increments (index, cam angle), body -> field -> components."""
+    def write_index(
+        self, increments: Sequence[tuple[int, float]], names: Mapping[str, Mapping[str, int]]
+    ) -> None:
+        """Rewrite fields.h5 and fields.xdmf: increments (index, cam angle), body -> field ->
+        components."""
         path = self.out / INDEX
         with agreed(self.comm, path):
             if self.comm.rank == 0:
@@ -153,21 +163,27 @@ class FieldWriter:
                 finish(temporary, path)
         write_from_root(self.comm, self.out / "fields.xdmf", self._xdmf(increments, names).encode())
 
-    def _xdmf(self, increments: Sequence[tuple[int, float]], names: Mapping[str, Mapping[str, int]]) -> str:
+    def _xdmf(
+        self, increments: Sequence[tuple[int, float]], names: Mapping[str, Mapping[str, int]]
+    ) -> str:
         when = times([angle for _, angle in increments]).tolist()
         # a series for each body: VTK adds [1], [2] ... to names that return
         return xdmf.document(
             xdmf.series(
                 body,
                 [
-                    xdmf.grid(f"{body}_{index:04d}", self._grid(body, index, angle, time, names[body]))
+                    xdmf.grid(
+                        f"{body}_{index:04d}", self._grid(body, index, angle, time, names[body])
+                    )
                     for time, (index, angle) in zip(when, increments, strict=True)
                 ],
             )
             for body in self._bodies
         )
 
-    def _grid(self, body: str, index: int, angle: float, time: float, names: Mapping[str, int]) -> Iterator[str]:
+    def _grid(
+        self, body: str, index: int, angle: float, time: float, names: Mapping[str, int]
+    ) -> Iterator[str]:
         """Content of the grid of a body at an increment. names : components of its fields"""
         part = self._bodies[body]
         count = part.total * part.points.shape[1]

@@ -28,7 +28,8 @@ Drawings = Mapping[str, "Callable[[], Figure]"]
 
 
 def import_matplotlib() -> None:
-    """Import matplotlib without the settings that a file matplotlibrc of the working directory may hold."""
+    """Import matplotlib without the settings that a file matplotlibrc of the working directory may
+    hold."""
     if "matplotlib" in sys.modules:
         return
     here = os.open(".", os.O_RDONLY)
@@ -50,7 +51,8 @@ class FigureSet(ABC):
     Parameters
     ----------
     comm : communicator of the result
-    gathered : whether figures show fields that are gathered from all ranks, so that all have to draw
+    gathered : whether figures show fields that are gathered from all ranks, so that all have to
+    draw
     """
 
     def __init__(self, comm: MPI.Comm, *, gathered: bool = False) -> None:
@@ -69,7 +71,8 @@ class FigureSet(ABC):
     def save(self, folder: str | Path) -> list[Path]:
         """Write every figure as ``folder``/figures/NAME.png and return the files; collective.
 
-        The ranks share the figures among them, unless these show gathered fields: then rank 0 writes all.
+        The ranks share the figures among them, unless these show gathered fields: then rank 0
+        writes all.
 
         Raises
         ------
@@ -91,7 +94,9 @@ class FigureSet(ABC):
             try:
                 figure = self.drawings[name]()
                 if writes:
-                    figure.savefig(path, dpi=figure.dpi if name in self.exact_size else DOTS_PER_INCH)
+                    figure.savefig(
+                        path, dpi=figure.dpi if name in self.exact_size else DOTS_PER_INCH
+                    )
             except Exception as error:  # whatever a drawing library raises
                 failure = failure or OutputError(f"cannot draw {path}: {sentence(error)}")
         raise_first(comm, failure)
@@ -110,7 +115,8 @@ class FigureSet(ABC):
 
 
 class NamedFigures(FigureSet):
-    """Figures whose names follow from the result: ``plot.NAME()`` draws one, ``plot.names`` lists them."""
+    """Figures whose names follow from the result: ``plot.NAME()`` draws one, ``plot.names`` lists
+    them."""
 
     def __init__(self, drawings: Drawings, comm: MPI.Comm) -> None:
         super().__init__(comm)
@@ -123,14 +129,17 @@ class NamedFigures(FigureSet):
     def __getattr__(self, name: str) -> Callable[[], Figure]:
         if not name.startswith("_") and name in self._drawings:
             return self._drawings[name]
-        raise AttributeError(f"there is no figure {name!r}: the result has {', '.join(self.__dict__['_drawings'])}")
+        raise AttributeError(
+            f"there is no figure {name!r}: the result has {', '.join(self.__dict__['_drawings'])}"
+        )
 
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self._drawings]
 
 
 def save_figures(figures: FigureSet, folder: Path) -> None:
-    """Write the figures of a finished run; a figure that fails must not cost the run. Collective."""
+    """Write the figures of a finished run; a figure that fails must not cost the run.
+    Collective."""
     try:
         for path in figures.save(folder):
             logger.info("figure %s", path)

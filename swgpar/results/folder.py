@@ -88,7 +88,8 @@ RESULTS = (
 
 
 def given_folder(out: str | Path | None) -> Path | None:
-    """The folder that a user has given; raises InputError for an empty text, which would be the working directory."""
+    """The folder that a user has given; raises InputError for an empty text, which would be the
+    working directory."""
     if isinstance(out, str) and not out.strip():
         raise InputError(f"out = {show(out)} names no folder: give the path of one")
     return None if out is None else Path(out)
@@ -107,8 +108,9 @@ def prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> bool:
 
     The function that runs releases the lock: it is decorated with `lock.releasing`.
 
-    Results of an earlier run are refused unless `restart` continues them or `overwrite` replaces them. Returns whether
-    there is a checkpoint to continue from: a run that ended before its first checkpoint starts again.
+    Results of an earlier run are refused unless `restart` continues them or `overwrite` replaces
+    them. Returns whether there is a checkpoint to continue from: a run that ended before its first
+    checkpoint starts again.
     """
     with agreed(comm, out):
         if comm.rank == 0:
@@ -123,7 +125,8 @@ def prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> bool:
     saved = comm.bcast((out / checkpoint.NAME).exists() if comm.rank == 0 else None)
     if present and not restart and not overwrite:
         raise OutputError(
-            f"{out} already holds results: continue them with restart = true (--restart), replace them with "
+            f"{out} already holds results: continue them with restart = true (--restart), replace "
+            f"them with "
             "overwrite = true (--overwrite), or choose another folder"
         )
     if overwrite and not restart:
@@ -152,5 +155,6 @@ def read_summary(folder: Path) -> dict[str, Any]:
 
 
 def read_design(folder: Path) -> dict[str, Any]:
-    """The design of a finished run, as in its summary.json; raises OutputError as `read_summary`."""
+    """The design of a finished run, as in its summary.json; raises OutputError as
+    `read_summary`."""
     return read_summary(folder)["design"]

@@ -1,7 +1,8 @@
 """history.csv: one row per increment, numbers that read back to the last bit.
 
-`COLUMNS` declares every column once. Tables, figures, quantities and the reference take names, units and meanings from
-there. A file has those columns that its drive has, and is read by their names: one more or less is no obstacle.
+`COLUMNS` declares every column once. Tables, figures, quantities and the reference take names,
+units and meanings from there. A file has those columns that its drive has, and is read by their
+names: one more or less is no obstacle.
 """
 
 from __future__ import annotations
@@ -51,13 +52,21 @@ class Column:
     drives: str = "all"
 
 
-def _stresses(prefix: str, body: str, *, periodic: bool = True, drives: str = "all") -> tuple[Column, ...]:
+def _stresses(
+    prefix: str, body: str, *, periodic: bool = True, drives: str = "all"
+) -> tuple[Column, ...]:
     """Columns of the largest stresses of a body."""
     return tuple(
-        Column(f"{prefix}_{name}", "MPa", meaning, f"{body}, {label}", periodic=periodic, drives=drives)
+        Column(
+            f"{prefix}_{name}", "MPa", meaning, f"{body}, {label}", periodic=periodic, drives=drives
+        )
         for name, label, meaning in (
             ("s1", "tensile s1", f"largest tensile stress in the {body} (first principal stress)"),
-            ("s3", "compressive |s3|", f"largest compressive stress in the {body}, as a positive number"),
+            (
+                "s3",
+                "compressive |s3|",
+                f"largest compressive stress in the {body}, as a positive number",
+            ),
             ("vm", "von Mises", f"largest von Mises stress in the {body}"),
         )
     )
@@ -67,10 +76,15 @@ DECLARED = (
     Column(
         "step",
         "",
-        "load step: 1 deflection, 2 engagement, 3 load, 4 and on rotation; with a load program 3 and on its points",
+        "load step: 1 deflection, 2 engagement, 3 load, 4 and on rotation; with a load program 3 "
+        "and on its points",
         whole=True,
     ),
-    Column("wg_angle_deg", "deg", "angle of the wave generator; where it is fixed, against the ring gear"),
+    Column(
+        "wg_angle_deg",
+        "deg",
+        "angle of the wave generator; where it is fixed, against the ring gear",
+    ),
     Column("output_angle_deg", "deg", "angle of the output, within half a turn: -180 to 180"),
     *_stresses("fs", "flexible spline"),
     *_stresses("rg", "ring gear"),
@@ -88,7 +102,12 @@ DECLARED = (
     Column("max_penetration_mm", "mm", "largest penetration of a contact"),
     Column("newton_iterations", "", "Newton iterations of the increment", whole=True),
     Column("wall_s", "s", "wall time of the increment"),
-    Column("input_angle_deg", "deg", "angle of the ring gear, which is driven", drives="wave generator fixed"),
+    Column(
+        "input_angle_deg",
+        "deg",
+        "angle of the ring gear, which is driven",
+        drives="wave generator fixed",
+    ),
     Column(
         "input_torque_Nmm",
         "N·mm",
@@ -125,10 +144,17 @@ def columns_of(drives: str) -> tuple[Column, ...]:
 
 
 def plain_row(row: Mapping[str, Any]) -> Row:
-    """A row with Python's own types, in the order of the columns; ValueError for one that is not declared."""
+    """A row with Python's own types, in the order of the columns; ValueError for one that is not
+    declared."""
     if unknown := sorted(row.keys() - COLUMNS.keys()):
-        raise ValueError(f"history row: {', '.join(unknown)} is not declared in swgpar.results.history")
-    return {name: (int if column.whole else float)(row[name]) for name, column in COLUMNS.items() if name in row}
+        raise ValueError(
+            f"history row: {', '.join(unknown)} is not declared in swgpar.results.history"
+        )
+    return {
+        name: (int if column.whole else float)(row[name])
+        for name, column in COLUMNS.items()
+        if name in row
+    }
 
 
 def format_rows(rows: Iterable[Mapping[str, Any]]) -> bytes:
@@ -154,15 +180,22 @@ def read_history(path: Path) -> list[Row]:
     Raises ValueError for columns of a newer version, or without those of `REQUIRED`.
     """
     description = path.with_name(DESCRIPTION)
-    version = json.loads(description.read_text(encoding="utf-8"))["version"] if description.exists() else 1
+    version = (
+        json.loads(description.read_text(encoding="utf-8"))["version"]
+        if description.exists()
+        else 1
+    )
     if version > VERSION:
-        raise ValueError(f"its columns are of version {version}, and swgpar {__version__} reads up to {VERSION}")
+        raise ValueError(
+            f"its columns are of version {version}, and swgpar {__version__} reads up to {VERSION}"
+        )
     found = read_columns(path)
     if missing := [name for name in REQUIRED if name not in found]:
         raise ValueError(f"{NAME} has no column {missing[0]}")
     known = {name for name in found if name in COLUMNS}
     return [
-        plain_row({name: row[name] for name in known}) | {n: v for n, v in row.items() if n not in known}
+        plain_row({name: row[name] for name in known})
+        | {n: v for n, v in row.items() if n not in known}
         for row in as_rows(found)
     ]
 
@@ -189,7 +222,8 @@ def wrapped(angle: np.ndarray) -> np.ndarray:
 
 
 def loaded_increments(history: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Indices of the increments under load: the last of the loading, all of the rotation. All, if there are none.
+    """Indices of the increments under load: the last of the loading, all of the rotation. All, if
+    there are none.
 
     history : columns, as `columns` gives them
     """
@@ -204,8 +238,10 @@ def loaded_increments(history: Mapping[str, np.ndarray]) -> np.ndarray:
 class Curves:
     """The history under load, ready to be drawn.
 
-    angle, values : (n,) degrees of the wave generator, and columns by name, where they were computed
-    fine_angle, fine : (m,) and the periodic columns between them; the points where the rotation was not sampled
+    angle, values : (n,) degrees of the wave generator, and columns by name, where they were
+    computed
+    fine_angle, fine : (m,) and the periodic columns between them; the points where the rotation was
+    not sampled
     """
 
     angle: np.ndarray
@@ -214,12 +250,16 @@ class Curves:
     fine: Mapping[str, np.ndarray]
 
 
-def curves(history: Mapping[str, np.ndarray], samples: int, increments: int, period: float, ratio: float) -> Curves:
-    """Columns of the increments under load; one period of it, joined by periodic splines, where it was sampled.
+def curves(
+    history: Mapping[str, np.ndarray], samples: int, increments: int, period: float, ratio: float
+) -> Curves:
+    """Columns of the increments under load; one period of it, joined by periodic splines, where it
+    was sampled.
 
     Parameters
     ----------
-    samples : angles in a period, 0 where every increment was computed;  increments : that were computed
+    samples : angles in a period, 0 where every increment was computed;  increments : that were
+    computed
     period : degrees;  ratio : change of `wg_angle_deg` over that of `output_angle_deg`, on average
     """
     shown = dict(history)
@@ -237,6 +277,11 @@ def curves(history: Mapping[str, np.ndarray], samples: int, increments: int, per
     knots = np.append(angle, angle[0] + period)
     fine_angle = np.linspace(knots[0], knots[-1], FINE)
     periodic = {TRANSMISSION_ERROR, *(name for name, column in COLUMNS.items() if column.periodic)}
-    closed = {name: np.append(column, column[0]) for name, column in values.items() if name in periodic}
-    fine = {name: CubicSpline(knots, column, bc_type="periodic")(fine_angle) for name, column in closed.items()}
+    closed = {
+        name: np.append(column, column[0]) for name, column in values.items() if name in periodic
+    }
+    fine = {
+        name: CubicSpline(knots, column, bc_type="periodic")(fine_angle)
+        for name, column in closed.items()
+    }
     return Curves(angle, values, fine_angle, fine)

@@ -1,7 +1,8 @@
-"""Pages of HTML that are one file and need nothing else: templates of the package, and the tables and pictures in them.
+"""Pages of HTML that are one file and need nothing else: templates of the package, and the tables
+and pictures in them.
 
-Templates lie in the room of their page as `*.html.j2`. They escape every value. A page names its scripts, and its
-content security policy lets no others run.
+Templates lie in the room of their page as `*.html.j2`. They escape every value. A page names its
+scripts, and its content security policy lets no others run.
 """
 
 from __future__ import annotations
@@ -17,7 +18,8 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 RANK = "results/rank.js"
-"""Script that puts the rows of ranked tables in the order of the column whose heading is clicked."""
+"""Script that puts the rows of ranked tables in the order of the column whose heading is
+clicked."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +32,8 @@ class Row:
 
 @dataclass(frozen=True)
 class Table:
-    """Texts stand on the left, numbers on the right. ranked : whether headings order the rows, by `RANK` on the page"""
+    """Texts stand on the left, numbers on the right. ranked : whether headings order the rows, by
+    `RANK` on the page"""
 
     header: Sequence[str]
     rows: Sequence[Row]
@@ -39,12 +42,15 @@ class Table:
     @property
     def has_texts(self) -> list[bool]:
         """Of every column: whether all its cells are texts."""
-        return [all(isinstance(row.cells[k], str) for row in self.rows) for k in range(len(self.header))]
+        return [
+            all(isinstance(row.cells[k], str) for row in self.rows) for k in range(len(self.header))
+        ]
 
 
 @dataclass(frozen=True)
 class Picture:
-    """A picture in the file itself. text : what it shows;  wide : whether it takes the width of the page"""
+    """A picture in the file itself. text : what it shows;  wide : whether it takes the width of the
+    page"""
 
     png: bytes
     text: str
@@ -59,12 +65,17 @@ def page(template: str, title: str, *, scripts: Sequence[str] = (), **values: An
     sources = [_source(name) for name in scripts]
     hashes = [base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in sources]
     allowed = " ".join(f"'sha256-{text}'" for text in hashes) or "'none'"
-    shown = {"title": title, "scripts": [Markup(text) for text in sources], "allowed_scripts": Markup(allowed)}
+    shown = {
+        "title": title,
+        "scripts": [Markup(text) for text in sources],
+        "allowed_scripts": Markup(allowed),
+    }
     return render(template, **shown, **values).encode()
 
 
 def render(template: str, **values: Any) -> str:
-    """The text of a template of the package, every value escaped; a path below the package, and what it shows."""
+    """The text of a template of the package, every value escaped; a path below the package, and
+    what it shows."""
     return _environment().get_template(template).render(**values)
 
 

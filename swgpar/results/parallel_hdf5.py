@@ -1,8 +1,9 @@
 """One HDF5 file written by all ranks at once, completely or not at all.
 
-Rank 0 lays out the file (contiguous data sets, space set aside on the disk) and closes it. All ranks then write
-their own rows with MPI-IO, at the offsets of the data sets in the file, and rank 0 renames it. HDF5 is used by one
-process at a time and needs no MPI. A full disk is found by rank 0 before the first row is written.
+Rank 0 lays out the file (contiguous data sets, space set aside on the disk) and closes it. All
+ranks then write their own rows with MPI-IO, at the offsets of the data sets in the file, and rank 0
+renames it. HDF5 is used by one process at a time and needs no MPI. A full disk is found by rank 0
+before the first row is written.
 """
 
 from __future__ import annotations
@@ -77,10 +78,15 @@ def write(
         raise
 
 
-def _lay_out(temporary: Path, blocks: Mapping[str, Block], attrs: Mapping[str, Mapping[str, Any]]) -> dict[str, int]:
+def _lay_out(
+    temporary: Path, blocks: Mapping[str, Block], attrs: Mapping[str, Mapping[str, Any]]
+) -> dict[str, int]:
     """Make the file without its rows; returns where in the file the rows of each data set begin."""
     shapes = {name: (block.total, *block.array.shape[1:]) for name, block in blocks.items()}
-    size = sum(int(np.prod(shapes[name])) * blocks[name].array.dtype.itemsize for name in blocks) + LAYOUT_BYTES
+    size = (
+        sum(int(np.prod(shapes[name])) * blocks[name].array.dtype.itemsize for name in blocks)
+        + LAYOUT_BYTES
+    )
     discard(temporary)
     reserve(temporary, size)
     early = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
@@ -106,9 +112,15 @@ def _lay_out(temporary: Path, blocks: Mapping[str, Block], attrs: Mapping[str, M
     return offsets
 
 
-def _fill(temporary: Path, path: Path, comm: MPI.Comm, blocks: Mapping[str, Block], offsets: Mapping[str, int]) -> None:
-    # Opening, flushing and closing are collective, writing one's own rows is not: a rank that fails never leaves
-    # the others waiting in a call that it skipped.
+def _fill(
+    temporary: Path,
+    path: Path,
+    comm: MPI.Comm,
+    blocks: Mapping[str, Block],
+    offsets: Mapping[str, int],
+) -> None:
+    # Opening, flushing and closing are collective, writing one's own rows is not: a rank that fails
+    # never leaves the others waiting in a call that it skipped.
     with agreed(comm, path):
         file = MPI.File.Open(comm, str(temporary), MPI.MODE_WRONLY)
     failure: Exception | None = None
@@ -116,7 +128,12 @@ def _fill(temporary: Path, path: Path, comm: MPI.Comm, blocks: Mapping[str, Bloc
         for name, (array, first, _) in blocks.items():
             if len(array):
                 _write_rows(file, offsets[name], array, first)
-    except (OSError, RuntimeError, ValueError, TypeError) as error:  # MPI.Exception is a RuntimeError
+    except (
+        OSError,
+        RuntimeError,
+        ValueError,
+        TypeError,
+    ) as error:  # MPI.Exception is a RuntimeError
         failure = error
     with agreed(comm, path):
         try:
@@ -133,17 +150,24 @@ def _write_rows(file: MPI.File, begin: int, array: np.ndarray, first: int) -> No
     row_bytes = rows.nbytes // len(rows)
     content = rows.reshape(-1).view(np.uint8)
     for start in range(0, len(content), PIECE_BYTES):
-        file.Write_at(begin + first * row_bytes + start, [content[start : start + PIECE_BYTES], MPI.BYTE])
+        file.Write_at(
+            begin + first * row_bytes + start, [content[start : start + PIECE_BYTES], MPI.BYTE]
+        )
 
 
-def read_rows(path: Path, comm: MPI.Comm, ranges: Mapping[str, tuple[int, int]]) -> dict[str, np.ndarray]:
-    """Rows first .. first + count - 1 of data sets; each rank reads its own, errors are raised on all."""
+def read_rows(
+    path: Path, comm: MPI.Comm, ranges: Mapping[str, tuple[int, int]]
+) -> dict[str, np.ndarray]:
+    """Rows first .. first + count - 1 of data sets; each rank reads its own, errors are raised on
+    all."""
     arrays: dict[str, np.ndarray] = {}
     with agreed(comm, path, "read"), h5py.File(path, "r") as file:
         for name, (first, count) in ranges.items():
             if name not in file:
                 raise ValueError(f"it has no data set {name!r}")
             if first + count > file[name].shape[0]:
-                raise ValueError(f"{name!r} has {file[name].shape[0]} rows, {first + count} are needed")
+                raise ValueError(
+                    f"{name!r} has {file[name].shape[0]} rows, {first + count} are needed"
+                )
             arrays[name] = file[name][first : first + count]
     return arrays

@@ -1,4 +1,5 @@
-"""Parts that the reports of all systems have: the figures of the results folder, the design, versions and times."""
+"""Parts that the reports of all systems have: the figures of the results folder, the design,
+versions and times."""
 
 from __future__ import annotations
 
@@ -17,7 +18,8 @@ class RunFacts:
     """What a report says of the program and the inputs.
 
     design : the whole design, defaults included;  versions : by program
-    ranks : MPI ranks;  wall_s : time, s;  memory_MB : largest of every rank. None or empty where it is not known
+    ranks : MPI ranks;  wall_s : time, s;  memory_MB : largest of every rank. None or empty where it
+    is not known
     """
 
     design: Mapping[str, Any]
@@ -40,12 +42,14 @@ def result_page(
 ) -> bytes:
     """The whole page from a template that extends `results/result_page.html.j2`.
 
-    figures : names of those that are shown where the results folder has them;  wide : those of them that take the
-    width of the page;  scripts, values : as of `page`
+    figures : names of those that are shown where the results folder has them;  wide : those of them
+    that take the width of the page;  scripts, values : as of `page`
     """
     paths = [folder / FOLDER / f"{name}.png" for name in figures] if folder is not None else []
     pictures = [
-        Picture(path.read_bytes(), path.stem.replace("_", " "), path.stem in wide) for path in paths if path.exists()
+        Picture(path.read_bytes(), path.stem.replace("_", " "), path.stem in wide)
+        for path in paths
+        if path.exists()
     ]
     common = {"figures": pictures, "inputs": to_toml(facts.design), "versions": _versions(facts)}
     return page(template, title, scripts=scripts, **common, **values)

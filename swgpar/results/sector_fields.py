@@ -32,7 +32,9 @@ class SectorFields:
 def write_sector(folder: Path, comm: MPI.Comm, sector: SectorFields) -> None:
     """Write the files from rank 0; collective."""
     arrays = {"points": sector.points, "cells": sector.cells.astype(np.int64), **sector.fields}
-    parallel_hdf5.write(folder / SECTOR, comm, {name: Block.of_root(comm, array) for name, array in arrays.items()})
+    parallel_hdf5.write(
+        folder / SECTOR, comm, {name: Block.of_root(comm, array) for name, array in arrays.items()}
+    )
     write_from_root(comm, folder / SECTOR_XDMF, _xdmf(sector).encode())
 
 
@@ -47,6 +49,9 @@ def read_sector(folder: Path) -> SectorFields | None:
 
 def _xdmf(sector: SectorFields) -> str:
     n = len(sector.points)
-    items = [xdmf.hexahedra(f"{SECTOR}:/cells", len(sector.cells)), xdmf.points(f"{SECTOR}:/points", n)]
+    items = [
+        xdmf.hexahedra(f"{SECTOR}:/cells", len(sector.cells)),
+        xdmf.points(f"{SECTOR}:/points", n),
+    ]
     items += [xdmf.attribute(name, f"{SECTOR}:/{name}", n) for name in sector.fields]
     return xdmf.document([xdmf.grid("sector", items)])

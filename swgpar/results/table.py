@@ -1,4 +1,5 @@
-"""CSV tables: floats as the shortest text that reads back the same, empty where there is no value."""
+"""CSV tables: floats as the shortest text that reads back the same, empty where there is no
+value."""
 
 from __future__ import annotations
 
@@ -27,7 +28,8 @@ def format_csv(rows: Sequence[Mapping[str, Any]]) -> bytes:
 
 
 def _cell(value: Any) -> Any:
-    """A value as a file has it: a text that a spreadsheet would compute begins with an apostrophe."""
+    """A value as a file has it: a text that a spreadsheet would compute begins with an
+    apostrophe."""
     if isinstance(value, float):
         return repr(float(value))  # NumPy 2 shows the type of its own numbers
     if not isinstance(value, str):
@@ -51,9 +53,13 @@ def format_columns(columns: Mapping[str, Sequence[Any] | np.ndarray]) -> bytes:
 
 
 def as_columns(rows: Sequence[Mapping[str, Any]]) -> dict[str, np.ndarray]:
-    """The columns of a table given by its rows, as `read_columns` reads them from its file; none without rows."""
+    """The columns of a table given by its rows, as `read_columns` reads them from its file; none
+    without rows."""
     found = {name: np.array([row[name] for row in rows]) for name in (rows[0] if rows else {})}
-    return {name: values.astype(float) if values.dtype.kind in "if" else values for name, values in found.items()}
+    return {
+        name: values.astype(float) if values.dtype.kind in "if" else values
+        for name, values in found.items()
+    }
 
 
 def read_columns(path: Path) -> dict[str, np.ndarray]:
@@ -71,4 +77,7 @@ def read_columns(path: Path) -> dict[str, np.ndarray]:
 
 def as_rows(columns: Mapping[str, np.ndarray]) -> list[dict[str, Any]]:
     """The rows of a table given by its columns, with Python's own types."""
-    return [dict(zip(columns, values)) for values in zip(*(column.tolist() for column in columns.values()))]
+    return [
+        dict(zip(columns, values))
+        for values in zip(*(column.tolist() for column in columns.values()))
+    ]

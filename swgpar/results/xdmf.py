@@ -13,7 +13,9 @@ KINDS = {1: "Scalar", 3: "Vector", 6: "Tensor6"}
 
 
 def _item(place: str, size: str, precision: int = 8, kind: str = "Float") -> str:
-    start = f'<DataItem Format="HDF" NumberType="{kind}" Precision="{precision}" Dimensions="{size}">'
+    start = (
+        f'<DataItem Format="HDF" NumberType="{kind}" Precision="{precision}" Dimensions="{size}">'
+    )
     return f"{start}{place}</DataItem>"
 
 
@@ -31,7 +33,10 @@ def points(place: str, count: int) -> str:
 def attribute(name: str, place: str, count: int, components: int = 1, precision: int = 8) -> str:
     """A nodal field (count,) or (count, components). precision : bytes of a number"""
     item = _item(place, f"{count}" if components == 1 else f"{count} {components}", precision)
-    return f'<Attribute Name={quoteattr(name)} AttributeType="{KINDS[components]}" Center="Node">{item}</Attribute>'
+    return (
+        f'<Attribute Name={quoteattr(name)} AttributeType="{KINDS[components]}" '
+        f'Center="Node">{item}</Attribute>'
+    )
 
 
 def grid(name: str, content: Iterable[str]) -> str:
@@ -43,7 +48,10 @@ def grid(name: str, content: Iterable[str]) -> str:
 def series(name: str, grids: Iterable[str]) -> str:
     """Grids over time."""
     lines = "\n".join(grids)
-    return f'<Grid Name={quoteattr(name)} GridType="Collection" CollectionType="Temporal">\n{lines}\n</Grid>'
+    return (
+        f'<Grid Name={quoteattr(name)} GridType="Collection" '
+        f'CollectionType="Temporal">\n{lines}\n</Grid>'
+    )
 
 
 def document(grids: Iterable[str]) -> str:

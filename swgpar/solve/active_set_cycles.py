@@ -1,33 +1,40 @@
 """Active contact sets that return: their detection in Newton's iteration, and the cycle breaker.
 
-Newton's iteration on contact is an iteration over sets: which points of cam, pins and flanks touch, and which points of
-the flanks slip. It cycles when a set returns although the residual has not decreased meanwhile. It sticks where the
-residual does not decrease at all. It always ends: after `solver.max_iterations` the residual has to halve within every
-`HALVING` further iterations, a solve has at most `MAX_ITERATIONS_FACTOR` times that many, and an increment is halved at
-most `solver.max_cutbacks` times.
+Newton's iteration on contact is an iteration over sets: which points of cam, pins and flanks touch,
+and which points of the flanks slip. It cycles when a set returns although the residual has not
+decreased meanwhile. It sticks where the residual does not decrease at all. It always ends: after
+`solver.max_iterations` the residual has to halve within every `HALVING` further iterations, a solve
+has at most `MAX_ITERATIONS_FACTOR` times that many, and an increment is halved at most
+`solver.max_cutbacks` times.
 
-The cycle breaker combines a line search that ends on the descending side (`LineSearch.descending`) with frozen segments
-of the flanks. Where that converges the segments are cut anew, and the iteration goes on from there. Without friction,
-residual and tangent are the derivatives of a potential. With frozen segments and a convex potential the active set
-cannot cycle, because the potential decreases in every step:
+The cycle breaker combines a line search that ends on the descending side (`LineSearch.descending`)
+with frozen segments of the flanks. Where that converges the segments are cut anew, and the
+iteration goes on from there. Without friction, residual and tangent are the derivatives of a
+potential. With frozen segments and a convex potential the active set cannot cycle, because the
+potential decreases in every step:
 
-1. Along a Newton step s from x the slope of the potential starts at -F . s < 0. By convexity it only grows.
-2. The step ends where the slope is still negative. The slope was negative before, so the potential decreases.
-3. Hence no state is met twice. The step also leaves at most half of the slope (or is the full one), and the slope
-   changes at a rate of at most L |s|^2. The potential therefore decreases by (F . s)^2 / (4 L |s|^2) or more in every
-   step. It is bounded below, so that F . s, and with it F, goes to zero.
+1. Along a Newton step s from x the slope of the potential starts at -F . s < 0. By convexity it
+only grows.
+2. The step ends where the slope is still negative. The slope was negative before, so the potential
+decreases.
+3. Hence no state is met twice. The step also leaves at most half of the slope (or is the full one),
+and the slope
+   changes at a rate of at most L |s|^2. The potential therefore decreases by (F . s)^2 / (4 L
+   |s|^2) or more in every step. It is bounded below, so that F . s, and with it F, goes to zero.
 
-The line search usually ends at a slope of up to half of its start on either side. That takes about a quarter fewer
-residuals and has no such proof.
+The line search usually ends at a slope of up to half of its start on either side. That takes about
+a quarter fewer residuals and has no such proof.
 
-With friction there is no potential, because the friction bound follows the pressure. For given friction bounds there is
-one, but for the change of the master's metric (Tresca's problem). The cycle breaker solves such problems. The bounds of
-each one are the pressures of the last one, until they agree (Licht, Pratt and Raous, 1991: they do where the
-coefficient is small). Friction follows the pressure again when the iteration goes on with segments cut anew.
+With friction there is no potential, because the friction bound follows the pressure. For given
+friction bounds there is one, but for the change of the master's metric (Tresca's problem). The
+cycle breaker solves such problems. The bounds of each one are the pressures of the last one, until
+they agree (Licht, Pratt and Raous, 1991: they do where the coefficient is small). Friction follows
+the pressure again when the iteration goes on with segments cut anew.
 
-Where one face carries all load, segments can move farther with the state than the state with them. An iteration that
-cuts them anew then runs away from any solution. What remains is the solution on the frozen segments: forces balance on
-them as on any others, and only the position of the quadrature points depends on the path of the solve.
+Where one face carries all load, segments can move farther with the state than the state with them.
+An iteration that cuts them anew then runs away from any solution. What remains is the solution on
+the frozen segments: forces balance on them as on any others, and only the position of the
+quadrature points depends on the path of the solve.
 """
 
 from __future__ import annotations
@@ -39,15 +46,17 @@ import numpy as np
 from mpi4py import MPI
 
 MAX_ITERATIONS_FACTOR, HALVING = 8, 10
-"""Largest number of Newton iterations of a solve over `solver.max_iterations`; iterations in which a residual has to
-halve beyond these."""
+"""Largest number of Newton iterations of a solve over `solver.max_iterations`; iterations in which
+a residual has to halve beyond these."""
 
 PATIENCE, MIN_DECREASE = 8, 0.9
-"""Number of iterations in which the residual has to fall below this share of its smallest value before."""
+"""Number of iterations in which the residual has to fall below this share of its smallest value
+before."""
 
 
 def fingerprint(comm: MPI.Comm, parts: Iterable[np.ndarray]) -> int:
-    """A number for the arrays of all ranks together, the same on every rank: equal for equal arrays. Collective."""
+    """A number for the arrays of all ranks together, the same on every rank: equal for equal
+    arrays. Collective."""
     digest = hashlib.blake2b(digest_size=8, person=comm.rank.to_bytes(8, "little"))
     for part in parts:
         digest.update(len(part).to_bytes(8, "little"))
@@ -61,7 +70,8 @@ def is_decreasing(residuals: Sequence[float], within: int, share: float) -> bool
 
 
 def is_exhausted(residuals: Sequence[float], allowed: int) -> bool:
-    """Whether Newton's iteration with these residuals, from the first one on, has used up its iterations."""
+    """Whether Newton's iteration with these residuals, from the first one on, has used up its
+    iterations."""
     return len(residuals) > allowed and not is_decreasing(residuals, HALVING, 0.5)
 
 
@@ -73,7 +83,8 @@ class VisitedSets:
         self.last: int | None = None
 
     def returns(self, active_set: int, residual: float) -> bool:
-        """Whether the set `active_set` was left meanwhile and returns without a smaller residual."""
+        """Whether the set `active_set` was left meanwhile and returns without a smaller
+        residual."""
         before = self.best.get(active_set, np.inf)
         returned = active_set != self.last and residual >= before < np.inf
         self.best[active_set], self.last = min(before, residual), active_set

@@ -13,22 +13,26 @@ from swgpar.solve.linear_solver import LinearSolver
 
 
 class BorderedSystem:
-    """Preconditioner (PETSc `PC` of type python) for [K, C^T; C, 0] with solutions of K' = K + B B^T.
+    """Preconditioner (PETSc `PC` of type python) for [K, C^T; C, 0] with solutions of K' = K + B
+    B^T.
 
-    K alone is singular while the drive floats; the grounded K' is not. With Z = K'^-1 [B, C^T] the small system
+    K alone is singular while the drive floats; the grounded K' is not. With Z = K'^-1 [B, C^T] the
+    small system
 
         (1 - B^T Z_B) s + B^T Z_C l = B^T z,     C Z_B s - C Z_C l = r_l - C z,     z = K'^-1 r_u
 
-    gives x = z + Z_B s - Z_C l exactly, whether K is symmetric or not. The grounding has no influence on x.
+    gives x = z + Z_B s - Z_C l exactly, whether K is symmetric or not. The grounding has no
+    influence on x.
 
-    The last border is the motion of the output. Where it is loaded and not prescribed, its Newton step is the one at
-    which its l vanishes. That step is bounded: a drive without touching flanks floats, and its step is unlimited. All
-    other unknowns follow the bounded motion.
+    The last border is the motion of the output. Where it is loaded and not prescribed, its Newton
+    step is the one at which its l vanishes. That step is bounded: a drive without touching flanks
+    floats, and its step is unlimited. All other unknowns follow the bounded motion.
 
     Parameters
     ----------
     partition : ownership;  solver : solves with K'
-    reuse : use a factor for later tangents too, see `ReusedFactor`; without effect where the solver has none
+    reuse : use a factor for later tangents too, see `ReusedFactor`; without effect where the solver
+    has none
 
     K has no rows of nodes that nothing acts on. Their part of every solution is zero.
     """
@@ -49,7 +53,9 @@ class BorderedSystem:
         self.failed = False
         self.reused: ReusedFactor | None = None
         if reuse and solver.is_factor:
-            self.reused = ReusedFactor(create_vector(partition), self.multiply, self.solve_with_factor)
+            self.reused = ReusedFactor(
+                create_vector(partition), self.multiply, self.solve_with_factor
+            )
 
     def destroy(self) -> None:
         """Release the solvers and their matrices; collective."""
@@ -113,7 +119,9 @@ class BorderedSystem:
 
     def setUp(self, pc: PETSc.PC) -> None:
         """Factorise the matrix of the last `set_system`, unless the reused factor is still good."""
-        if self.reused is None or not self.reused.is_good_for(self._layout(), self.solver.price(self.matrix)):
+        if self.reused is None or not self.reused.is_good_for(
+            self._layout(), self.solver.price(self.matrix)
+        ):
             self.factorise()
 
     def _layout(self) -> tuple[int, ...]:
@@ -163,14 +171,20 @@ class BorderedSystem:
             self.reused.set_tolerance(right)
         if self.uses_old_factor:
             # the bound needs the answer to a unit of load, which GMRES does not give
-            if self.reused.solve(right, x) and (self.bound is None or abs(self.border[-1].dot(x)) < self.bound):
+            if self.reused.solve(right, x) and (
+                self.bound is None or abs(self.border[-1].dot(x)) < self.bound
+            ):
                 return
             self.factorise()
         self.solve_with_factor(right, x, self.bound)
 
     def multiply(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
-        """y = [K' - B B^T, C^T; C, 0] x of the last `set_system`; multipliers that it does not use stand alone."""
-        n, last = self.partition.n_multipliers, self.partition.comm.rank == self.partition.comm.size - 1
+        """y = [K' - B B^T, C^T; C, 0] x of the last `set_system`; multipliers that it does not use
+        stand alone."""
+        n, last = (
+            self.partition.n_multipliers,
+            self.partition.comm.rank == self.partition.comm.size - 1,
+        )
         used = self.rows[: len(self.border) - self.n_loaded]
         multipliers = read_multipliers(self.partition, x)
         moved = x.copy()
@@ -190,7 +204,8 @@ class BorderedSystem:
         moved.destroy()
 
     def solve_with_factor(self, right: PETSc.Vec, x: PETSc.Vec, bound: float | None = None) -> None:
-        """Solution of the system of the factor; without `bound` the output moves freely where it is loaded."""
+        """Solution of the system of the factor; without `bound` the output moves freely where it is
+        loaded."""
         if not self.failed:
             self.solve_grounded(right, x)
         if self.failed or self.solver.failure:

@@ -1,4 +1,5 @@
-"""What is decided after every Newton iteration: whether it goes on, and what changes before the next one."""
+"""What is decided after every Newton iteration: whether it goes on, and what changes before the
+next one."""
 
 from __future__ import annotations
 
@@ -7,7 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from swgpar.solve.active_set_cycles import MIN_DECREASE, PATIENCE, fingerprint, is_decreasing, is_exhausted
+from swgpar.solve.active_set_cycles import (
+    MIN_DECREASE,
+    PATIENCE,
+    fingerprint,
+    is_decreasing,
+    is_exhausted,
+)
 from swgpar.solve.discrete_problem import DiscreteProblem, ResidualInfo
 from swgpar.solve.solve_state import NewtonSettings, Phase, SolveState
 from swgpar.solve.time_limit import passed
@@ -16,17 +23,20 @@ SOFT_TOLERANCE = 1e-2
 """Residual over contact force at which a run with softened penalties ends."""
 
 FREEZING_POWER = 0.6
-"""Power of the tolerance that gives the residual over contact force below which segments are frozen.
+"""Power of the tolerance that gives the residual over contact force below which segments are
+frozen.
 
-Newton's iteration is then quadratic: the next step or the one after it is the last. With segments frozen at 1e-3 the
-input torque depends on the path to the solution by 4e-5 where teeth are wedged, at 1e-4 by 1e-6. Frozen later, a solve
-takes some iterations more."""
+Newton's iteration is then quadratic: the next step or the one after it is the last. With segments
+frozen at 1e-3 the input torque depends on the path to the solution by 4e-5 where teeth are wedged,
+at 1e-4 by 1e-6. Frozen later, a solve takes some iterations more."""
 
 MAX_REPEATED_SEARCHES = 12
-"""Contact searches of a solve because nodes have moved: each begins the iteration anew, with its patience."""
+"""Contact searches of a solve because nodes have moved: each begins the iteration anew, with its
+patience."""
 
 SEARCH_DISTANCE = 0.25
-"""Displacement (modules) of a node since the last contact search after which a Newton iteration searches again."""
+"""Displacement (modules) of a node since the last contact search after which a Newton iteration
+searches again."""
 
 ROUND_OFF_SHARE = 0.05
 """Share of the round-off below which a residual counts as zero; runs reach 0.01 to 0.06 of it."""
@@ -53,7 +63,8 @@ class Decision:
     near_solution : the segments of the flanks are to be frozen
     cycles : contacts do not settle, the cycle is to be broken
     search_is_outdated : nodes have moved far since the last contact search
-    goal : N, residual at which the iteration ends at the latest; None where it has not been asked for
+    goal : N, residual at which the iteration ends at the latest; None where it has not been asked
+    for
     time_limit : s, once it has passed
     """
 
@@ -81,11 +92,19 @@ class ConvergenceTest:
         return max(last.contact_force, self.problem.force_floor)
 
     def decide(
-        self, state: SolveState, iteration: int, norm: float, last: ResidualInfo, *, descending: bool, bounded: bool
+        self,
+        state: SolveState,
+        iteration: int,
+        norm: float,
+        last: ResidualInfo,
+        *,
+        descending: bool,
+        bounded: bool,
     ) -> Decision:
         """The decision for a state whose last residual has this norm (N).
 
-        descending : the line search is descending already;  bounded : flanks may touch, steps are bounded
+        descending : the line search is descending already;  bounded : flanks may touch, steps are
+        bounded
         """
         time_limit = passed(self.problem.partition.comm)
         if time_limit is not None:
@@ -107,21 +126,27 @@ class ConvergenceTest:
                 verdict = Verdict.EXHAUSTED
             else:
                 cycles = not descending and self._is_cycling(state)
-        return Decision(verdict, near_solution=near, cycles=cycles, search_is_outdated=outdated, goal=goal)
+        return Decision(
+            verdict, near_solution=near, cycles=cycles, search_is_outdated=outdated, goal=goal
+        )
 
     def _search_is_outdated(self, state: SolveState) -> bool:
-        """Whether the nodes have moved so far since the last contact search that other flanks may meet; collective."""
+        """Whether the nodes have moved so far since the last contact search that other flanks may
+        meet; collective."""
         if state.breaker.solution is not None or state.repeated_searches == MAX_REPEATED_SEARCHES:
             return False
         return self.problem.moved_since_search() > SEARCH_DISTANCE * self.problem.module
 
     def _is_round_off(self, state: SolveState, iteration: int, norm: float) -> bool:
-        """Whether a residual is round-off: that of positions with 16 digits, or one near it that does not decrease."""
+        """Whether a residual is round-off: that of positions with 16 digits, or one near it that
+        does not decrease."""
         stalled = iteration > 1 and state.residuals[-1] > STALL * state.residuals[-2]
         return norm <= (1.0 if stalled else ROUND_OFF_SHARE) * self.problem.round_off
 
     def _is_cycling(self, state: SolveState) -> bool:
         """Whether an active set returns, or the residual does not decrease."""
         sets = self.problem.active_sets(state.load_state)
-        returns = state.visited.returns(fingerprint(self.problem.partition.comm, sets), state.residual)
+        returns = state.visited.returns(
+            fingerprint(self.problem.partition.comm, sets), state.residual
+        )
         return returns or not is_decreasing(state.residuals, PATIENCE, MIN_DECREASE)

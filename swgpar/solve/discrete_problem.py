@@ -24,7 +24,14 @@ from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
 from swgpar.fem.sectors_in_reach import RingSectors, SectorsInReach, WholeTeeth
-from swgpar.fem.sparse import BlockRows, MatrixRows, add_unit_diagonal, create_matrix, fill_matrix, matrix_rows
+from swgpar.fem.sparse import (
+    BlockRows,
+    MatrixRows,
+    add_unit_diagonal,
+    create_matrix,
+    fill_matrix,
+    matrix_rows,
+)
 from swgpar.fem.vectors import Exchange, create_vector, read_multipliers
 from swgpar.geometry.rotation import to_owners
 from swgpar.load.load_states import LoadState
@@ -33,15 +40,16 @@ from swgpar.petsc import PETSc
 from swgpar.solve.torque_control import TorqueControl
 
 FORCE_FLOOR = 1e-6
-"""Contact force below which a residual is not judged by it, as a share of E times the module squared."""
+"""Contact force below which a residual is not judged by it, as a share of E times the module
+squared."""
 
 
 @dataclass(frozen=True)
 class ContactSearch:
     """How far the contact search of the flanks looks.
 
-    tip_margin : mm, radial distance of a tooth's tip inside the ring gear's tip circle up to which its flanks are
-    followed
+    tip_margin : mm, radial distance of a tooth's tip inside the ring gear's tip circle up to which
+    its flanks are followed
     distances : of the faces
     outer_radius : mm, radius that no tooth is farther out than
     """
@@ -72,22 +80,27 @@ class DiscreteProblem:
     supports : couplings, guide, grounding and load
     surface_contacts : of the inner surface: with cam and pins, or with a bearing's outer race
     balls : of the bearing, or None
-    flanks, contact_search : contacts of the tooth flanks, one for each ring gear, and their search; none and None for a
-    body without teeth
+    flanks, contact_search : contacts of the tooth flanks, one for each ring gear, and their search;
+    none and None for a body without teeth
     boundary_terms : what holds and loads a part that is cut out
     module : mm, length that bounds and floors refer to
     ring_sectors : ring-gear sectors that are modelled; None where all are
-    whole_teeth : teeth of the flexible spline and of the ring gear that are not one element; none where all are
+    whole_teeth : teeth of the flexible spline and of the ring gear that are not one element; none
+    where all are
     coupling_keys : (n,) of blocks that contacts of two bodies need, row * n_global + column, sorted
     phases : wall seconds
 
     Attributes
     ----------
-    contacts : all of them;  penalty_contacts : those with multipliers;  force_terms : all that is evaluated
+    contacts : all of them;  penalty_contacts : those with multipliers;  force_terms : all that is
+    evaluated
     segments : freezing of the flanks' segments;  torque_control : of the output's motion
-    x : state vector: displacements (mm) and multipliers;  accepted : the last state found in equilibrium
-    matrix : the tangent of the last `tangent`;  rows : its blocks on this rank;  matrix_rows : which of them it has
-    round_off : N, largest force that a last-digit error of the positions makes, of the last `tangent`
+    x : state vector: displacements (mm) and multipliers;  accepted : the last state found in
+    equilibrium
+    matrix : the tangent of the last `tangent`;  rows : its blocks on this rank;  matrix_rows :
+    which of them it has
+    round_off : N, largest force that a last-digit error of the positions makes, of the last
+    `tangent`
     """
 
     def __init__(
@@ -120,7 +133,9 @@ class DiscreteProblem:
         self.segments = FrozenSegments(self.flanks, partition.comm)
         self.force_terms: list[ForceTerm] = [*self.contacts, *boundary_terms]
         clearances = [
-            FlankClearance(contact, partition.comm, module=module, outer_radius=contact_search.outer_radius)
+            FlankClearance(
+                contact, partition.comm, module=module, outer_radius=contact_search.outer_radius
+            )
             for contact in flanks
         ]
         self.torque_control = TorqueControl(supports, clearances)
@@ -155,14 +170,15 @@ class DiscreteProblem:
         """Smallest contact force (N) that residuals are compared with."""
         return FORCE_FLOOR * self.scale * self.module
 
-    # -- local data ------------------------------------------------------------------------------------
+    # -- local data --------------------------------------------------------------------------------
 
     def displacement(self, x: PETSc.Vec | None = None) -> np.ndarray:
         """Displacement (n_local, 3) mm of the state x (default: `self.x`), ghosts included."""
         return self.exchange(self.x if x is None else x)
 
     def positions(self) -> np.ndarray:
-        """Undeformed positions (n_local, 3) mm as their owners see them; zero for the multipliers."""
+        """Undeformed positions (n_local, 3) mm as their owners see them; zero for the
+        multipliers."""
         out = np.zeros((len(self.local_nodes), 3))
         for body in self.elements.bodies.values():
             seen, position = body.local >= 0, to_owners(body.positions(), body.sixths)
@@ -179,16 +195,22 @@ class DiscreteProblem:
             unused = self.supports.unused_multipliers(state)
             self.x.array[-len(unused) :][unused] = 0.0
 
-    # -- contact search --------------------------------------------------------------------------------
+    # -- contact search ----------------------------------------------------------------------------
 
     def search(self, state: LoadState) -> None:
-        """Find the flanks and faces that can meet at the present x; make room for them in the tangent; collective."""
+        """Find the flanks and faces that can meet at the present x; make room for them in the
+        tangent; collective."""
         with self.phases("search"):
             self.complete()
             self._searched = self.x.array_r.copy()
-            pairs = [self._facing_pairs(flanks, state, self.contact_search.tip_margin) for flanks in self.flanks]
+            pairs = [
+                self._facing_pairs(flanks, state, self.contact_search.tip_margin)
+                for flanks in self.flanks
+            ]
             further = [flanks.node_numbers(facing) for flanks, facing in zip(self.flanks, pairs)]
-            self.local_nodes = self.elements.local.extended(np.concatenate([np.zeros(0, dtype=np.int64), *further]))
+            self.local_nodes = self.elements.local.extended(
+                np.concatenate([np.zeros(0, dtype=np.int64), *further])
+            )
             self.exchange.destroy()
             self.exchange = Exchange(self.partition, self.local_nodes.number)
             pattern = self.coupling_keys
@@ -198,7 +220,9 @@ class DiscreteProblem:
                     accepted = self.displacement(self.accepted)
                 u = self.displacement()
                 for flanks, facing in zip(self.flanks, pairs):
-                    keys = flanks.search(facing, self.local_nodes, u, self.contact_search.distances, accepted)
+                    keys = flanks.search(
+                        facing, self.local_nodes, u, self.contact_search.distances, accepted
+                    )
                     pattern = np.union1d(pattern, keys)
                 self._choose_modelled_sectors()
         for contact in self.surface_contacts:
@@ -225,17 +249,23 @@ class DiscreteProblem:
             moved = moved[: -self.partition.n_multipliers]
         return largest(self.partition.comm, float(moved.max(initial=0.0)))
 
-    def _facing_pairs(self, flanks: FlankContact, state: LoadState, margin: float) -> list[FlankPair]:
-        """Pairs of flanks that can meet at x, of this rank; none while the flanks are switched off."""
+    def _facing_pairs(
+        self, flanks: FlankContact, state: LoadState, margin: float
+    ) -> list[FlankPair]:
+        """Pairs of flanks that can meet at x, of this rank; none while the flanks are switched
+        off."""
         if not flanks.is_active(state):
             return []
         u = self.displacement()
         rotation = flanks.ring_motion.ring_rotation(u)
-        pairs = facing_flanks(self.partition, flanks.spline, flanks.ring.layout, u, rotation, margin)
+        pairs = facing_flanks(
+            self.partition, flanks.spline, flanks.ring.layout, u, rotation, margin
+        )
         return [pair for pair in pairs if flanks.takes_part(pair)]
 
     def _choose_modelled_sectors(self) -> None:
-        """Leave out sectors of the ring gear, and condense teeth, that are out of reach; collective."""
+        """Leave out sectors of the ring gear, and condense teeth, that are out of reach;
+        collective."""
         within: dict[str, list[np.ndarray]] = {}
         near: dict[str, np.ndarray] = {}
         for flanks in self.flanks:
@@ -244,7 +274,10 @@ class DiscreteProblem:
             spline, ring, near[name] = (np.concatenate(part) for part in zip(*parts))
             within.setdefault(FLEXIBLE_SPLINE, []).append(spline)
             within[name] = [ring]
-        changed = [teeth.update(np.concatenate(within[teeth.body]), self.elements) for teeth in self.whole_teeth]
+        changed = [
+            teeth.update(np.concatenate(within[teeth.body]), self.elements)
+            for teeth in self.whole_teeth
+        ]
         if self.ring_sectors is not None:
             changed.append(self.ring_sectors.update(near[RING_GEAR], self.elements))
         if any(changed):
@@ -261,11 +294,15 @@ class DiscreteProblem:
         with self.phases("search"):
             self.complete()
             u = self.displacement()
-            overlooked = [flanks.overlooked(self._facing_pairs(flanks, state, 0.0), u, state) for flanks in self.flanks]
+            overlooked = [
+                flanks.overlooked(self._facing_pairs(flanks, state, 0.0), u, state)
+                for flanks in self.flanks
+            ]
         return bool(self.partition.comm.allreduce(int(any(overlooked)), op=MPI.MAX))
 
     def set_pattern(self, pattern: np.ndarray) -> None:
-        """Make room in the tangent for contact blocks, keys row * n_global + column (n,), where they are other ones."""
+        """Make room in the tangent for contact blocks, keys row * n_global + column (n,), where
+        they are other ones."""
         with self.phases("pattern"):
             changed = self.pattern is None or not np.array_equal(pattern, self.pattern)
             if not self.partition.comm.allreduce(int(changed), op=MPI.MAX):
@@ -284,12 +321,13 @@ class DiscreteProblem:
         """Make room for further contact blocks, keys (n,) that `tangent` returned; collective."""
         self.set_pattern(np.union1d(self.pattern, missing))
 
-    # -- residual and tangent --------------------------------------------------------------------------
+    # -- residual and tangent ----------------------------------------------------------------------
 
     def _evaluate_terms(
         self, u: np.ndarray, state: LoadState, residual: np.ndarray | None, rows: BlockRows | None
     ) -> np.ndarray:
-        """Add the forces and blocks of all force terms; returns keys of blocks that the pattern lacks."""
+        """Add the forces and blocks of all force terms; returns keys of blocks that the pattern
+        lacks."""
         missing = [term.evaluate(u, state, residual, rows) for term in self.force_terms]
         return np.concatenate([NO_KEYS, *missing])
 
@@ -315,19 +353,22 @@ class DiscreteProblem:
         return ResidualInfo(float(contact_force), collapsed)
 
     def tangent(self, u: np.ndarray, state: LoadState) -> np.ndarray:
-        """Fill `matrix`, the grounded tangent K' = K + B B^T, at displacement u (n_local, 3) mm; collective.
+        """Fill `matrix`, the grounded tangent K' = K + B B^T, at displacement u (n_local, 3) mm;
+        collective.
 
-        Symmetric: without friction, where residual and tangent are derivatives of a potential (`symmetric`). With it
-        all blocks are stored, also where nothing slips.
+        Symmetric: without friction, where residual and tangent are derivatives of a potential
+        (`symmetric`). With it all blocks are stored, also where nothing slips.
 
-        Definite: K is singular where contacts or multipliers alone hold a body; the grounding B makes K' positive
-        definite where K is semi-definite, as in the undeformed drive. Geometric terms make K' indefinite: those of
-        elements where a thin rim under compression gives way between contacts, those of pressures on curved surfaces
-        and of balls. That happens in early iterations; the line search then reverses the step. PETSc is told that a
-        symmetric K' is positive definite, so that MUMPS factorises it without pivoting whether it is or not.
+        Definite: K is singular where contacts or multipliers alone hold a body; the grounding B
+        makes K' positive definite where K is semi-definite, as in the undeformed drive. Geometric
+        terms make K' indefinite: those of elements where a thin rim under compression gives way
+        between contacts, those of pressures on curved surfaces and of balls. That happens in early
+        iterations; the line search then reverses the step. PETSc is told that a symmetric K' is
+        positive definite, so that MUMPS factorises it without pivoting whether it is or not.
 
-        It lacks the second variation of a coupling's rotation, the motion of the cuts between segments, and pressures
-        beyond the bound of the geometric terms. The multipliers couple through the border (`BorderedSystem`).
+        It lacks the second variation of a coupling's rotation, the motion of the cuts between
+        segments, and pressures beyond the bound of the geometric terms. The multipliers couple
+        through the border (`BorderedSystem`).
 
         Returns keys (n,) of contact blocks on this rank that have no room in it.
         """
@@ -345,22 +386,30 @@ class DiscreteProblem:
     def _round_off(self) -> float:
         """Norm (N) of the forces that follow from a last-digit error of every position."""
         own = np.arange(self.partition.row_start, self.partition.row_start + self.partition.n_own)
-        keys = np.delete(own * self.partition.n_global + own, self.elements.pattern.nodes_without_elements)
+        keys = np.delete(
+            own * self.partition.n_global + own, self.elements.pattern.nodes_without_elements
+        )
         diagonal = self.rows.values[np.searchsorted(self.rows.keys, keys)]
         squares = float(np.einsum("nkk,nkk->", diagonal, diagonal))
         squares = self.partition.comm.allreduce(squares, op=MPI.SUM)
         return float(np.finfo(float).eps * self._extent * np.sqrt(squares))
 
     def closing_rotation(self, state: LoadState) -> float:
-        """Rotation (rad) of the output that brings flanks together, see `TorqueControl`; after a search. Collective."""
+        """Rotation (rad) of the output that brings flanks together, see `TorqueControl`; after a
+        search. Collective."""
         self.search(state)
         return self.torque_control.closing_rotation(self.displacement(), state)
 
-    # -- state -----------------------------------------------------------------------------------------
+    # -- state -------------------------------------------------------------------------------------
 
     def active_sets(self, state: LoadState) -> list[np.ndarray]:
         """Active sets of the contacts that the load state switches on, on this rank."""
-        return [part for contact in self.contacts if contact.is_active(state) for part in contact.active_sets()]
+        return [
+            part
+            for contact in self.contacts
+            if contact.is_active(state)
+            for part in contact.active_sets()
+        ]
 
     def scale_penalties(self, share: float) -> None:
         """Use this share of the full penalty in every contact."""
@@ -370,7 +419,8 @@ class DiscreteProblem:
     def penetration(self) -> float:
         """Largest penetration (mm) of the last evaluation, over all ranks; collective."""
         return largest(
-            self.partition.comm, max((contact.penetration() for contact in self.penalty_contacts), default=0.0)
+            self.partition.comm,
+            max((contact.penetration() for contact in self.penalty_contacts), default=0.0),
         )
 
     def touching_pairs(self) -> int:

@@ -1,8 +1,10 @@
-"""A factor that is reused for later systems: GMRES on the present system, preconditioned by the old factor.
+"""A factor that is reused for later systems: GMRES on the present system, preconditioned by the old
+factor.
 
-One factorisation costs as much as some 4 solves with it in the plane, 5 (coarse) to 15 (full) in the cup drive, the
-analysis of another pattern once or twice that, and from one Newton iteration to the next, or one increment to
-the next, the tangent changes by the rotation of the elements and by some contact points.
+One factorisation costs as much as some 4 solves with it in the plane, 5 (coarse) to 15 (full) in
+the cup drive, the analysis of another pattern once or twice that, and from one Newton iteration to
+the next, or one increment to the next, the tangent changes by the rotation of the elements and by
+some contact points.
 """
 
 from __future__ import annotations
@@ -12,12 +14,12 @@ from collections.abc import Callable
 from swgpar.petsc import PETSc, accepted_options
 
 RTOL = 1e-2
-"""Relative tolerance of GMRES. While contacts switch, a Newton step reduces the residual tenfold at best; the last
-steps are solved as exactly as the end of Newton's iteration needs."""
+"""Relative tolerance of GMRES. While contacts switch, a Newton step reduces the residual tenfold at
+best; the last steps are solved as exactly as the end of Newton's iteration needs."""
 
 GOAL_SHARE, LOOSEST = 0.2, 0.1
-"""Share of the residual at which Newton's iteration ends that GMRES leaves, and of the present one at most: more
-exactness is of no use to the last step."""
+"""Share of the residual at which Newton's iteration ends that GMRES leaves, and of the present one
+at most: more exactness is of no use to the last step."""
 
 MAX_ITERATIONS = 40
 """Iterations of GMRES after which a factor is made at once."""
@@ -34,8 +36,9 @@ class ReusedFactor:
     like : vector of the system
     multiply, solve : with the present system; with the factor
 
-    `goal` is the residual's norm that ends Newton's iteration at the latest; `fresh` says that the factor is that of
-    the present system, `discarded` that it is to be renewed before its next use; `iterations` are those of all solves.
+    `goal` is the residual's norm that ends Newton's iteration at the latest; `fresh` says that the
+    factor is that of the present system, `discarded` that it is to be renewed before its next use;
+    `iterations` are those of all solves.
     """
 
     def __init__(self, like: PETSc.Vec, multiply: Operation, solve: Operation) -> None:
@@ -46,7 +49,9 @@ class ReusedFactor:
         self.fewest = MAX_ITERATIONS
         self.surplus = 0
         self.last = 0
-        operator = PETSc.Mat().createPython([like.getSizes()] * 2, _Multiply(multiply), comm=like.comm)
+        operator = PETSc.Mat().createPython(
+            [like.getSizes()] * 2, _Multiply(multiply), comm=like.comm
+        )
         operator.setUp()
         self.ksp = PETSc.KSP().create(comm=like.comm)
         self.ksp.setOptionsPrefix("reuse_")
@@ -65,19 +70,22 @@ class ReusedFactor:
         self.ksp.destroy()
 
     def renew(self, layout: tuple[int, ...]) -> None:
-        """The factor is that of the present system now. layout : what a system must share to be served"""
+        """The factor is that of the present system now. layout : what a system must share to be
+        served"""
         self.fresh, self.discarded, self.layout = True, False, layout
         self.fewest, self.surplus, self.last = MAX_ITERATIONS, 0, 0
 
     def is_good_for(self, layout: tuple[int, ...], price: float) -> bool:
         """Whether the factor is to be reused for a new system.
 
-        price : of a factor of that system, in iterations. It is due when the iterations beyond those of the old one's
-        best solve have cost its price, which takes at most twice the time of the best choice, or when one solve has
-        cost more than that.
+        price : of a factor of that system, in iterations. It is due when the iterations beyond
+        those of the old one's best solve have cost its price, which takes at most twice the time of
+        the best choice, or when one solve has cost more than that.
         """
         self.fresh = False
-        return not self.discarded and self.layout == layout and max(self.surplus, self.last) <= price
+        return (
+            not self.discarded and self.layout == layout and max(self.surplus, self.last) <= price
+        )
 
     def set_tolerance(self, right: PETSc.Vec) -> None:
         """Set the tolerance by Newton's residual, the right-hand side of the present system."""

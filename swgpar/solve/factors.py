@@ -15,11 +15,13 @@ FACTORISATIONS = ("lu", "cholesky")
 """PETSc's preconditioners that are factors."""
 
 USUAL_PRICE = 10.0
-"""Solves that take as long as a factorisation, for packages that do not count their operations: 4 to 15 with MUMPS."""
+"""Solves that take as long as a factorisation, for packages that do not count their operations: 4
+to 15 with MUMPS."""
 
 QUASI_DENSE, NESTED_DISSECTION = 6, 4
-"""Orderings of the unknowns for MUMPS (its ICNTL(7)) in the plane and of solids: with nested dissection (PORD) a
-factorisation of the reference drive takes a fifth less time than by minimum degree, and a solve a quarter."""
+"""Orderings of the unknowns for MUMPS (its ICNTL(7)) in the plane and of solids: with nested
+dissection (PORD) a factorisation of the reference drive takes a fifth less time than by minimum
+degree, and a solve a quarter."""
 
 MORE_MEMORY, OUT_OF_ESTIMATE = (120, 240, 480), (-8, -9)
 """Per cent above MUMPS' estimate that are tried after these errors of its INFOG(1)."""
@@ -28,16 +30,18 @@ NO_MEMORY = (-5, -7, -13)
 """Errors of MUMPS' INFOG(1) for allocations that failed."""
 
 INTENSITY = 40.0
-"""Operations on an entry of the factor, of a factorisation that takes as long as a solve with it: 22 to 54 on meshes of
-60,000 to 920,000 unknowns (docs/verification/data/scaling.csv), the most on large ones."""
+"""Operations on an entry of the factor, of a factorisation that takes as long as a solve with it:
+22 to 54 on meshes of 60,000 to 920,000 unknowns (docs/verification/data/scaling.csv), the most on
+large ones."""
 
 ANALYSIS = 1.0
-"""Factorisations that cost as much as the analysis of another pattern: 0.8 to 1.4 in the loaded drive on full and
-forces."""
+"""Factorisations that cost as much as the analysis of another pattern: 0.8 to 1.4 in the loaded
+drive on full and forces."""
 
 
 class Factor(LinearSolver):
-    """A factor of any package: PETSc's own, SuperLU_DIST and others. LU, which all of them have, unless options say."""
+    """A factor of any package: PETSc's own, SuperLU_DIST and others. LU, which all of them have,
+    unless options say."""
 
     is_factor = True
     ksp_type = "preonly"
@@ -60,7 +64,8 @@ class Factor(LinearSolver):
         return 0.0 if self.matrix is None or self.failure else USUAL_PRICE
 
     def solve_many(self, rights: np.ndarray, guesses: np.ndarray) -> np.ndarray:
-        """Solutions (n, m) for right sides (n, m), all at once: a solve is bound by reading the factor."""
+        """Solutions (n, m) for right sides (n, m), all at once: a solve is bound by reading the
+        factor."""
         solutions = np.zeros_like(rights)
         if self.failure or not rights.shape[1]:
             return solutions
@@ -79,7 +84,8 @@ class Factor(LinearSolver):
 
 @dataclass(frozen=True)
 class FactorCounts:
-    """What MUMPS counts: entries of the factor, operations of its making, estimated memory of all ranks (GB)."""
+    """What MUMPS counts: entries of the factor, operations of its making, estimated memory of all
+    ranks (GB)."""
 
     entries: float
     operations: float
@@ -87,7 +93,8 @@ class FactorCounts:
 
 
 class MumpsFactor(Factor):
-    """A factor of MUMPS, Cholesky's where the matrices are symmetric; made again with more memory where it ran out."""
+    """A factor of MUMPS, Cholesky's where the matrices are symmetric; made again with more memory
+    where it ran out."""
 
     def __init__(self, kind: MatrixKind, options_prefix: str) -> None:
         self._memory_share = 60  # per cent above MUMPS' estimate
@@ -101,14 +108,19 @@ class MumpsFactor(Factor):
     def set_preconditioner(self, pc: PETSc.PC) -> None:
         """Cholesky's or LU."""
         usual = PETSc.PC.Type.CHOLESKY if self.kind.symmetric else PETSc.PC.Type.LU
-        pc.setType(PETSc.Options(self.options_prefix).getString("pc_type", usual))  # another type forgets the package
+        pc.setType(
+            PETSc.Options(self.options_prefix).getString("pc_type", usual)
+        )  # another type forgets the package
         pc.setFactorSolverType("mumps")
 
     def defaults(self, ksp_type: str) -> dict[str, object]:
         """Ordering and memory."""
         return {
-            "mat_mumps_icntl_7": QUASI_DENSE if self.kind.unknowns_per_node == 2 else NESTED_DISSECTION,
-            "mat_mumps_icntl_13": 1,  # no ScaLAPACK root: its Cholesky refuses the indefinite tangents of first steps
+            "mat_mumps_icntl_7": QUASI_DENSE
+            if self.kind.unknowns_per_node == 2
+            else NESTED_DISSECTION,
+            # no ScaLAPACK root: its Cholesky refuses the indefinite tangents of first steps
+            "mat_mumps_icntl_13": 1,
             "mat_mumps_icntl_14": self._memory_share,
         }
 
@@ -118,7 +130,8 @@ class MumpsFactor(Factor):
         return storage.replace("seq", "").replace("mpi", "") in (blocked, "aij")
 
     def set_up(self) -> None:
-        """Factorise, and again with more memory where MUMPS ran out of what it had estimated (users' guide, section 8).
+        """Factorise, and again with more memory where MUMPS ran out of what it had estimated
+        (users' guide, section 8).
 
         Raises OutOfMemoryError.
         """
@@ -139,7 +152,8 @@ class MumpsFactor(Factor):
             memory = self.counts().memory
             needed = f"about {memory:.3g} GB" if memory > 0 else "more"
             raise OutOfMemoryError(
-                f"not enough memory: the factor of {operator.getSize()[0]:,} unknowns needs {needed} on all ranks: "
+                f"not enough memory: the factor of {operator.getSize()[0]:,} unknowns needs "
+                f"{needed} on all ranks: "
                 'take a coarser mesh, more memory, or solver.linear = "iterative"'
             )
         if error < 0:
@@ -156,8 +170,13 @@ class MumpsFactor(Factor):
         )
 
     def price(self, matrix: PETSc.Mat) -> float:
-        """From counts and not from measured seconds, so that a run makes the same decisions every time."""
+        """From counts and not from measured seconds, so that a run makes the same decisions every
+        time."""
         counts = None if self.matrix is None else self.counts()
         if counts is None or not counts.entries:
             return 0.0
-        return counts.operations / (INTENSITY * counts.entries) * (1.0 if matrix is self.matrix else 1.0 + ANALYSIS)
+        return (
+            counts.operations
+            / (INTENSITY * counts.entries)
+            * (1.0 if matrix is self.matrix else 1.0 + ANALYSIS)
+        )

@@ -1,4 +1,5 @@
-"""Krylov methods with a preconditioner: any of PETSc's, and smoothed aggregation as the program sets it up."""
+"""Krylov methods with a preconditioner: any of PETSc's, and smoothed aggregation as the program
+sets it up."""
 
 from __future__ import annotations
 
@@ -36,14 +37,16 @@ class KrylovSolver(LinearSolver):
         """The options name it."""
 
     def defaults(self, ksp_type: str) -> dict[str, object]:
-        """Tolerance and limits. The true residual is judged: a preconditioned one hides the soft modes of a thin cup.
+        """Tolerance and limits. The true residual is judged: a preconditioned one hides the soft
+        modes of a thin cup.
 
         Raises InputError for a method that does not solve.
         """
         pc_type = PETSc.Options(self.options_prefix).getString("pc_type", "")
         if ksp_type in NO_SOLVERS and pc_type not in EXACT:
             raise InputError(
-                f"options of PETSc: -{self.options_prefix}ksp_type {ksp_type} {NO_SOLVERS[ksp_type]}: "
+                f"options of PETSc: -{self.options_prefix}ksp_type {ksp_type} "
+                f"{NO_SOLVERS[ksp_type]}: "
                 "take gmres, or leave the option out"
             )
         options: dict[str, object] = {"ksp_rtol": 1e-6, "ksp_max_it": 2000}
@@ -81,6 +84,8 @@ class SmoothedAggregation(KrylovSolver):
     def operator(self, matrix: PETSc.Mat, positions: np.ndarray) -> PETSc.Mat:
         """The matrix in AIJ with the rigid-body modes."""
         operator = super().operator(matrix, positions)
-        place = PETSc.Vec().createWithArray(positions.ravel(), bsize=self.kind.unknowns_per_node, comm=self.kind.comm)
+        place = PETSc.Vec().createWithArray(
+            positions.ravel(), bsize=self.kind.unknowns_per_node, comm=self.kind.comm
+        )
         operator.setNearNullSpace(PETSc.NullSpace().createRigidBody(place))
         return operator

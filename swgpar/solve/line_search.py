@@ -12,29 +12,35 @@ from swgpar.petsc import PETSc
 from swgpar.solve.bordered_system import BorderedSystem
 
 CONSTRAINT_SHARE = 0.1
-"""Share of the slope up to which constraints may contribute to it; the slope is then that of the potential."""
+"""Share of the slope up to which constraints may contribute to it; the slope is then that of the
+potential."""
 
 
 class LineSearch:
-    """Newton step with a line search along the potential: the `PC` (type python) of SNES's linear solve.
+    """Newton step with a line search along the potential: the `PC` (type python) of SNES's linear
+    solve.
 
-    Contact switches on and off along a step, so that a full step can overshoot by orders of magnitude. The step is
-    scaled by t in (0, 1] such that the slope F(x - t step) . step has fallen below half of its start: a point near
-    the minimum of the potential on the line. The full step is tried first and taken near the solution. (PETSc's own
-    line searches judge by the residual's norm, which grows while contact is being established, or take one secant
-    step. petsc4py 3.18 cannot replace them, hence the scaling inside the preconditioner.)
+    Contact switches on and off along a step, so that a full step can overshoot by orders of
+    magnitude. The step is scaled by t in (0, 1] such that the slope F(x - t step) . step has fallen
+    below half of its start: a point near the minimum of the potential on the line. The full step is
+    tried first and taken near the solution. (PETSc's own line searches judge by the residual's
+    norm, which grows while contact is being established, or take one secant step. petsc4py 3.18
+    cannot replace them, hence the scaling inside the preconditioner.)
 
-    A point of the flanks that begins to stick changes the slope over a ten-thousandth of a usual step. With few trials
-    the sign of its slip changes in every step instead. With `descending` the search ends only where the potential still
-    decreases, with trials down to the last digit, see `swgpar.solve.active_set_cycles`.
+    A point of the flanks that begins to stick changes the slope over a ten-thousandth of a usual
+    step. With few trials the sign of its slip changes in every step instead. With `descending` the
+    search ends only where the potential still decreases, with trials down to the last digit, see
+    `swgpar.solve.active_set_cycles`.
 
-    The tangent may be indefinite (`DiscreteProblem.tangent`). A step along which the potential grows is then reversed,
-    unless the residual halves along it all the same, as it does near a solution.
+    The tangent may be indefinite (`DiscreteProblem.tangent`). A step along which the potential
+    grows is then reversed, unless the residual halves along it all the same, as it does near a
+    solution.
 
     Parameters
     ----------
     system : linear system of the step;  x : present state;  phases : wall seconds
-    residual : sets its second argument to the residual at the first; returns whether an element has collapsed
+    residual : sets its second argument to the residual at the first; returns whether an element has
+    collapsed
 
     Attributes
     ----------
@@ -58,7 +64,8 @@ class LineSearch:
         self.descending, self.max_node_step = False, np.inf
 
     def _residual(self, step: PETSc.Vec, t: float) -> bool:
-        """Set `force` to the residual after t times the step; returns whether an element has collapsed there."""
+        """Set `force` to the residual after t times the step; returns whether an element has
+        collapsed there."""
         # rounded as SNES does it with the scaled step, so that it meets the same point
         step.copy(self.trial)
         self.trial.scale(t)
@@ -66,7 +73,8 @@ class LineSearch:
         return self.residual(self.trial, self.force)
 
     def _halves(self, right: PETSc.Vec, step: PETSc.Vec) -> bool:
-        """Whether the full step halves the residual; one that is bounded hardly does, even towards a maximum."""
+        """Whether the full step halves the residual; one that is bounded hardly does, even towards
+        a maximum."""
         return not self._residual(step, 1.0) and self.force.norm() < 0.5 * right.norm()
 
     def _nodal(self, vector: PETSc.Vec) -> np.ndarray:
@@ -78,9 +86,12 @@ class LineSearch:
     def _grows(self, right: PETSc.Vec, step: PETSc.Vec, start: float) -> bool:
         """Whether the potential grows along a step whose slope `start` is negative.
 
-        It is no measure of a step towards constraints that are not met yet, the multipliers' part of the slope.
+        It is no measure of a step towards constraints that are not met yet, the multipliers' part
+        of the slope.
         """
-        slope = self.system.partition.comm.allreduce(float(self._nodal(right) @ self._nodal(step)), op=MPI.SUM)
+        slope = self.system.partition.comm.allreduce(
+            float(self._nodal(right) @ self._nodal(step)), op=MPI.SUM
+        )
         return abs(start - slope) < CONSTRAINT_SHARE * abs(slope)
 
     def _bound(self, step: PETSc.Vec) -> None:
@@ -123,7 +134,9 @@ class LineSearch:
         high = 1.0
         high_value = slope(1.0)
         t, value = 1.0, high_value
-        least, trials = (0.0, self.DESCENDING_TRIALS) if self.descending else (-self.TARGET, self.TRIALS)
+        least, trials = (
+            (0.0, self.DESCENDING_TRIALS) if self.descending else (-self.TARGET, self.TRIALS)
+        )
         for _ in range(trials):
             if least <= value <= self.TARGET or (t == 1.0 and value > 0.0):
                 break

@@ -19,15 +19,16 @@ from swgpar.petsc import PETSc, accepted_options
 class OptionDefaults:
     """PETSc options that the program sets unless the user has set them.
 
-    PETSc keeps options for all solvers of a prefix and reads some of them late, so that one table serves a process: it
-    distinguishes the program's own options from the user's.
+    PETSc keeps options for all solvers of a prefix and reads some of them late, so that one table
+    serves a process: it distinguishes the program's own options from the user's.
     """
 
     def __init__(self) -> None:
         self._own: dict[str, set[str]] = {}
 
     def set(self, prefix: str, defaults: Mapping[str, object]) -> None:
-        """Set the options that the user has not set, and remove those of other solvers of the prefix."""
+        """Set the options that the user has not set, and remove those of other solvers of the
+        prefix."""
         options, own = PETSc.Options(prefix), self._own.setdefault(prefix, set())
         for name in own - set(defaults):
             options.delValue(name)
@@ -61,14 +62,17 @@ class MatrixKind:
         return self.positions.shape[1]
 
 
-REASONS = {value: name for name, value in vars(PETSc.KSP.ConvergedReason).items() if isinstance(value, int)}
+REASONS = {
+    value: name for name, value in vars(PETSc.KSP.ConvergedReason).items() if isinstance(value, int)
+}
 """Names of PETSc's reasons for the end of a linear solve."""
 
 
 class LinearSolver(ABC):
     """Solves with one matrix after the other, by PETSc's `KSP` with the options of a prefix.
 
-    All methods are collective. A solver that fails says so: its answers are then of no use, `failure` says why.
+    All methods are collective. A solver that fails says so: its answers are then of no use,
+    `failure` says why.
 
     Parameters
     ----------
@@ -76,8 +80,8 @@ class LinearSolver(ABC):
 
     Attributes
     ----------
-    is_factor : whether what is made of a matrix solves exactly, with many right sides at once, and may serve later
-    matrices as a preconditioner
+    is_factor : whether what is made of a matrix solves exactly, with many right sides at once, and
+    may serve later matrices as a preconditioner
     matrix : that of the last `prepare`, None before it
     failure : why the last `prepare` or `solve` failed; empty where it has not
     """
@@ -95,11 +99,12 @@ class LinearSolver(ABC):
         self._out: PETSc.Vec | None = None
         self.ksp = self._create_ksp()
 
-    # -- of each kind ----------------------------------------------------------------------------------
+    # -- of each kind ------------------------------------------------------------------------------
 
     @classmethod
     def takes(cls, pc_type: str, package: str) -> bool:
-        """Whether this kind handles the preconditioner and the package of a factor that options name."""
+        """Whether this kind handles the preconditioner and the package of a factor that options
+        name."""
         return False
 
     @abstractmethod
@@ -111,14 +116,16 @@ class LinearSolver(ABC):
         """PETSc options for a Krylov method, by their names without the prefix."""
 
     def reads(self, storage: str) -> bool:
-        """Whether the preconditioner reads matrices of PETSc's type `storage`; others are converted to AIJ."""
+        """Whether the preconditioner reads matrices of PETSc's type `storage`; others are converted
+        to AIJ."""
         return storage.endswith("aij") and not storage.endswith("baij")
 
     def price(self, matrix: PETSc.Mat) -> float:
-        """Solves that take as long as the next `prepare` with this matrix; 0 where nothing is to be reused."""
+        """Solves that take as long as the next `prepare` with this matrix; 0 where nothing is to be
+        reused."""
         return 0.0
 
-    # -- of all kinds ----------------------------------------------------------------------------------
+    # -- of all kinds ------------------------------------------------------------------------------
 
     def _create_ksp(self) -> PETSc.KSP:
         ksp = PETSc.KSP().create(comm=self.kind.comm)
@@ -155,7 +162,8 @@ class LinearSolver(ABC):
         """Make the factor, or set up the preconditioner.
 
         active : (n,) own nodes that the matrix has rows of
-        keep : the same Mat is filled with other values later, and what is made of it now is to be kept
+        keep : the same Mat is filled with other values later, and what is made of it now is to be
+        kept
         """
         if self.failure:
             self.renew()  # MUMPS does not try again by itself, and then solves without a factor
@@ -177,7 +185,8 @@ class LinearSolver(ABC):
         self.ksp.setUp()
 
     def operator(self, matrix: PETSc.Mat, positions: np.ndarray) -> PETSc.Mat:
-        """The matrix as the preconditioner reads it. positions : (n, 2 or 3) mm, of the nodes with rows"""
+        """The matrix as the preconditioner reads it. positions : (n, 2 or 3) mm, of the nodes with
+        rows"""
         if self.reads(matrix.getType()):
             return matrix
         if self._converted is not None:
@@ -187,10 +196,13 @@ class LinearSolver(ABC):
 
     def _note_failure(self) -> None:
         reason = self.ksp.getConvergedReason()
-        self.failure = "" if reason >= 0 else f"linear solver ({self.name}): {REASONS.get(reason, reason)}"
+        self.failure = (
+            "" if reason >= 0 else f"linear solver ({self.name}): {REASONS.get(reason, reason)}"
+        )
 
     def solve(self, right: np.ndarray, guess: np.ndarray | None = None) -> np.ndarray:
-        """Solution (n,) for a right side (n,), of this rank's rows. guess : (n,) or None for zero"""
+        """Solution (n,) for a right side (n,), of this rank's rows. guess : (n,) or None for
+        zero"""
         self._into.array[:] = right
         iterates = guess is not None and self.ksp.getType() != PETSc.KSP.Type.PREONLY
         if iterates:
@@ -204,7 +216,8 @@ class LinearSolver(ABC):
         return self._out.array_r.copy()
 
     def solve_many(self, rights: np.ndarray, guesses: np.ndarray) -> np.ndarray:
-        """Solutions (n, m) for right sides (n, m); zero from the first one on that fails. guesses : (n, m)"""
+        """Solutions (n, m) for right sides (n, m); zero from the first one on that fails. guesses :
+        (n, m)"""
         solutions = np.zeros_like(rights)
         for k in range(rights.shape[1]):
             solution = self.solve(rights[:, k], guesses[:, k])

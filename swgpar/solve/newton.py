@@ -1,7 +1,8 @@
-"""Equilibrium of one load state: Newton's iteration on SNES, contact searches, cycle breaker, augmentation.
+"""Equilibrium of one load state: Newton's iteration on SNES, contact searches, cycle breaker,
+augmentation.
 
-A solve goes through phases (`Phase`). Every phase is one run of SNES; `NewtonSolver` decides by its outcome which phase
-follows:
+A solve goes through phases (`Phase`). Every phase is one run of SNES; `NewtonSolver` decides by its
+outcome which phase follows:
 
     SOFTENED   contact is being established: reduced penalties, loose tolerance
     FULL       full penalties; segments of the flanks are cut anew until the solution is near
@@ -43,16 +44,20 @@ SOFT_PENALTIES = (1e-3, 3e-2)
 """Shares of the penalty of the first rough runs, while contact is established."""
 
 MAX_FURTHER_SEARCHES = 3
-"""Further contact searches of a solve, in states where flanks touch that the last search left out."""
+"""Further contact searches of a solve, in states where flanks touch that the last search left
+out."""
 
 MAX_NODE_STEP = 0.2
-"""Largest displacement (modules) of a node in a Newton step while flanks may touch: the tangent ignores clearances."""
+"""Largest displacement (modules) of a node in a Newton step while flanks may touch: the tangent
+ignores clearances."""
 
 SETTLED = 0.1
-"""Residual over the contact force above which contacts change too much, before the rotation, for an old factor."""
+"""Residual over the contact force above which contacts change too much, before the rotation, for an
+old factor."""
 
 MAX_FRICTION_ROUNDS, FRICTION_AGREEMENT = 20, 1e-3
-"""Largest number of problems with given friction bounds, and the relative agreement of the last two."""
+"""Largest number of problems with given friction bounds, and the relative agreement of the last
+two."""
 
 
 PETSC_REASONS = {
@@ -66,7 +71,8 @@ PETSC_REASONS = {
 """SNES's reason for each verdict, None to go on."""
 
 IterationMonitor = Callable[[LoadState, int, float], None]
-"""Called after every Newton iteration with load state, iteration and residual over the contact force."""
+"""Called after every Newton iteration with load state, iteration and residual over the contact
+force."""
 
 
 class NewtonSolver:
@@ -91,7 +97,9 @@ class NewtonSolver:
         self.last_residual = ResidualInfo(0.0, False)
         self._trial_cache: tuple[np.ndarray, np.ndarray] | None = None
         positions = problem.positions()[: problem.partition.n_own]
-        kind = MatrixKind(problem.partition.comm, positions[:, : problem.partition.dims], problem.symmetric)
+        kind = MatrixKind(
+            problem.partition.comm, positions[:, : problem.partition.dims], problem.symmetric
+        )
         solver = make_linear_solver(settings.linear, kind, "stiffness_")
         self.system = BorderedSystem(problem.partition, solver, reuse=settings.reuse_factor)
         self.line_search = LineSearch(self.system, self._trial_residual, problem.x, problem.phases)
@@ -112,8 +120,8 @@ class NewtonSolver:
         ksp.getPC().setPythonContext(self.line_search)
         with accepted_options(problem.partition.comm):
             snes.setFromOptions()
-        # SNES sees vectors of three unknowns per node. The matrix has two in the plane: only the bordered system knows
-        # it.
+        # SNES sees vectors of three unknowns per node. The matrix has two in the plane: only the
+        # bordered system knows it.
         shell = PETSc.Mat().create(comm=problem.partition.comm)
         shell.setSizes([problem.x.getSizes()] * 2)
         shell.setType(PETSc.Mat.Type.SHELL)
@@ -127,7 +135,7 @@ class NewtonSolver:
         self.system.destroy()
         self.problem.destroy()
 
-    # -- callbacks of SNES -----------------------------------------------------------------------------
+    # -- callbacks of SNES -------------------------------------------------------------------------
 
     def _residual(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
         cached, self._trial_cache = self._trial_cache, None
@@ -147,7 +155,9 @@ class NewtonSolver:
 
     def _tangent(self, snes: PETSc.SNES, x: PETSc.Vec, j: PETSc.Mat, p: PETSc.Mat) -> None:
         problem, state = self.problem, self.state
-        PETSc.garbage_cleanup(problem.partition.comm)  # frees PETSc objects without Python references: the last border
+        PETSc.garbage_cleanup(
+            problem.partition.comm
+        )  # frees PETSc objects without Python references: the last border
         u = problem.displacement(x)
         state.pattern_misses = problem.tangent(u, state.load_state)
         missing = int(len(state.pattern_misses) > 0)
@@ -160,7 +170,9 @@ class NewtonSolver:
         grounding, active = problem.supports.grounding(u), problem.matrix_rows.active
         self.system.set_system(problem.matrix, active, grounding, border, rows, bound)
 
-    def _test_convergence(self, snes: PETSc.SNES, its: int, norms: tuple[float, float, float]) -> int | None:
+    def _test_convergence(
+        self, snes: PETSc.SNES, its: int, norms: tuple[float, float, float]
+    ) -> int | None:
         """Convergence test of SNES: its reason, or None to go on."""
         state, norm = self.state, norms[2]
         state.residuals.append(norm / self.convergence_test.reference(self.last_residual))
@@ -186,7 +198,9 @@ class NewtonSolver:
         if decision.near_solution:
             self.problem.segments.freeze()
         if decision.cycles:
-            logger.info("   contacts do not settle in Newton iteration %d: descending line search", its)
+            logger.info(
+                "   contacts do not settle in Newton iteration %d: descending line search", its
+            )
             self._break_cycle()
 
     def _break_cycle(self) -> None:
@@ -200,7 +214,7 @@ class NewtonSolver:
             if state.breaker.active:
                 logger.info("   segments of the flanks are frozen until the contacts have settled")
 
-    # -- solve -----------------------------------------------------------------------------------------
+    # -- solve -------------------------------------------------------------------------------------
 
     def solve(
         self,
@@ -210,10 +224,12 @@ class NewtonSolver:
         max_iterations: int | None = None,
         search: bool = True,
     ) -> SolveResult:
-        """Solve for equilibrium from the present x; x is the solution, or not valid when the result says not converged.
+        """Solve for equilibrium from the present x; x is the solution, or not valid when the result
+        says not converged.
 
         establish_contact : contacts are switched on: approach through softened penalties
-        max_iterations : of all phases together, at most a multiple of that of the settings; None for that
+        max_iterations : of all phases together, at most a multiple of that of the settings; None
+        for that
         search : look for pairs of flanks first; False where those of the last search are near still
         """
         self.state = state = self._begin(load_state, establish_contact, search)
@@ -248,7 +264,9 @@ class NewtonSolver:
         else:
             problem.reset_contacts()
         softenings = list(SOFT_PENALTIES) if establish_contact else []
-        return SolveState(load_state, softenings, MAX_ITERATIONS_FACTOR * self.settings.max_iterations)
+        return SolveState(
+            load_state, softenings, MAX_ITERATIONS_FACTOR * self.settings.max_iterations
+        )
 
     def _iterate(self, state: SolveState) -> Outcome:
         """One run of Newton's iteration in the present phase."""
@@ -285,11 +303,14 @@ class NewtonSolver:
         self.problem.scale_penalties(share)
 
     def _after_failure(self, state: SolveState) -> None:
-        """Go back to what the cycle breaker or the step before an augmentation has found, or end the solve."""
+        """Go back to what the cycle breaker or the step before an augmentation has found, or end
+        the solve."""
         self.system.discard_factor()
         breaker, before = state.breaker, state.before_augmentation
         if breaker.solution is not None and state.iterations < state.max_iterations:
-            logger.info("   the frozen segments stay: with segments cut anew the contacts do not settle")
+            logger.info(
+                "   the frozen segments stay: with segments cut anew the contacts do not settle"
+            )
             x, segments = breaker.solution
             x.copy(self.problem.x)
             self.problem.segments.restore(segments)
@@ -299,26 +320,36 @@ class NewtonSolver:
             state.result = SolveResult(True, state.iterations, before.residual, "converged")
         else:
             reason = self.snes.getConvergedReason()
-            text = REASONS.get(reason, str(reason)) if reason < 0 else f"{state.iterations} iterations in all"
+            text = (
+                REASONS.get(reason, str(reason))
+                if reason < 0
+                else f"{state.iterations} iterations in all"
+            )
             text = self.system.solver.failure or text
             state.result = SolveResult(False, state.iterations, state.residual, text)
 
     def _after_frozen(self, state: SolveState) -> None:
-        """Repeat with friction bounds from the present pressures until they agree; then cut the segments anew."""
+        """Repeat with friction bounds from the present pressures until they agree; then cut the
+        segments anew."""
         breaker = state.breaker
         change, top = self.problem.segments.freeze_friction_bounds()
         if breaker.rounds < MAX_FRICTION_ROUNDS and change > FRICTION_AGREEMENT * top:
             breaker.rounds += 1
             return
-        breaker.active, breaker.solution = False, (self.problem.x.copy(), self.problem.segments.saved())
+        breaker.active, breaker.solution = (
+            False,
+            (self.problem.x.copy(), self.problem.segments.saved()),
+        )
         self.problem.segments.release()
 
     def _after_converged(self, state: SolveState) -> None:
-        """Search again where contact was overlooked; else augment while the penetration is too large; else accept."""
+        """Search again where contact was overlooked; else augment while the penetration is too
+        large; else accept."""
         problem, settings = self.problem, self.settings
         state.breaker.solution = None
         if problem.overlooked(state.load_state):
-            # the state of the last search was too far off; the present one is closer to the solution
+            # the state of the last search was too far off; the present one is closer to the
+            # solution
             if state.searches == MAX_FURTHER_SEARCHES:
                 reason = f"contact outside of {MAX_FURTHER_SEARCHES + 1} searches"
                 state.result = SolveResult(False, state.iterations, state.residual, reason)
@@ -328,7 +359,10 @@ class NewtonSolver:
             state.before_augmentation = None
             return
         penetration = problem.penetration()
-        if penetration > settings.penetration_tolerance and state.augmentations < settings.max_augmentations:
+        if (
+            penetration > settings.penetration_tolerance
+            and state.augmentations < settings.max_augmentations
+        ):
             self._augment(state)
             return
         if penetration > settings.penetration_tolerance and settings.max_augmentations:
@@ -339,7 +373,9 @@ class NewtonSolver:
     def _augment(self, state: SolveState) -> None:
         contacts = self.problem.penalty_contacts
         multipliers = [contact.multiplier for contact in contacts]
-        state.before_augmentation = AcceptableState(state.residual, self.problem.x.copy(), multipliers)
+        state.before_augmentation = AcceptableState(
+            state.residual, self.problem.x.copy(), multipliers
+        )
         state.augmentations += 1
         for contact in contacts:
             contact.augment()
@@ -356,4 +392,8 @@ class NewtonSolver:
         problem.accept()
 
     def _warn(self, state: SolveState, penetration: float) -> None:
-        logger.warning("   penetration of %.2g mm remains after %d augmentations", penetration, state.augmentations)
+        logger.warning(
+            "   penetration of %.2g mm remains after %d augmentations",
+            penetration,
+            state.augmentations,
+        )

@@ -32,7 +32,8 @@ class Outcome(enum.Enum):
 
 @dataclass(frozen=True)
 class SolveResult:
-    """Result of a solve: whether it converged, Newton iterations, last residual over the contact force, reason."""
+    """Result of a solve: whether it converged, Newton iterations, last residual over the contact
+    force, reason."""
 
     converged: bool
     iterations: int
@@ -66,7 +67,8 @@ class CycleBreaker:
     active : segments and friction bounds are frozen, and the line search is descending
     started : it is or was active; afterwards the iteration starts close to the solution
     rounds : problems with given friction bounds that were solved
-    solution : state found with frozen segments, as long as the iteration with segments cut anew has not converged
+    solution : state found with frozen segments, as long as the iteration with segments cut anew has
+    not converged
     """
 
     active: bool = False
@@ -77,7 +79,8 @@ class CycleBreaker:
 
 @dataclass
 class AcceptableState:
-    """State before an augmentation: acceptable if the augmentation fails. multipliers : of all penalty contacts, MPa"""
+    """State before an augmentation: acceptable if the augmentation fails. multipliers : of all
+    penalty contacts, MPa"""
 
     residual: float
     x: PETSc.Vec
@@ -121,7 +124,8 @@ class SolveState:
 
     @property
     def phase(self) -> Phase:
-        """Phase of the present run, from its penalty, the cycle breaker and the augmentations so far."""
+        """Phase of the present run, from its penalty, the cycle breaker and the augmentations so
+        far."""
         if self.penalty_share != 1.0:
             return Phase.SOFTENED
         if self.breaker.active:
@@ -137,11 +141,18 @@ class SolveState:
         """The sentence for a time limit that has passed."""
         here = self.load_state
         return (
-            f"the time limit of {self.time_limit:g} s (solver.time_limit) has passed in step {here.step} "
-            f"({here.stage.label}) at a wave-generator angle of {np.degrees(here.angle):.4g} degrees, after "
-            f"{self.iterations} Newton iterations, residual {self.residual:.1e} of the contact force"
+            f"the time limit of {self.time_limit:g} s (solver.time_limit) has passed in step "
+            f"{here.step} "
+            f"({here.stage.label}) at a wave-generator angle of {np.degrees(here.angle):.4g} "
+            f"degrees, after "
+            f"{self.iterations} Newton iterations, residual {self.residual:.1e} of the contact "
+            f"force"
         )
 
 
-REASONS = {value: name for name, value in vars(PETSc.SNES.ConvergedReason).items() if isinstance(value, int)}
+REASONS = {
+    value: name
+    for name, value in vars(PETSc.SNES.ConvergedReason).items()
+    if isinstance(value, int)
+}
 """Names of PETSc's reasons."""

@@ -1,4 +1,5 @@
-"""The time limit of a run, for all solvers that work for it: on its own mesh and on coarser ones."""
+"""The time limit of a run, for all solvers that work for it: on its own mesh and on coarser
+ones."""
 
 from __future__ import annotations
 
@@ -24,7 +25,8 @@ def limited(seconds: float | None) -> Iterator[None]:
 
 
 def passed(comm: MPI.Comm) -> float | None:
-    """The limit (s) when it has passed by the clock of rank 0, else None; collective where there is a limit."""
+    """The limit (s) when it has passed by the clock of rank 0, else None; collective where there is
+    a limit."""
     limit = _limit.get()
     if limit is None:
         return None

@@ -13,7 +13,8 @@ from swgpar.load.load_states import LoadState
 
 
 class TorqueControl:
-    """Bounds and closes the clearance of the flanks that carry the torque; all methods are collective.
+    """Bounds and closes the clearance of the flanks that carry the torque; all methods are
+    collective.
 
     supports : of the drive;  clearances : of the flanks, one for each ring gear
     """
@@ -22,18 +23,22 @@ class TorqueControl:
         self.supports, self.clearances = supports, clearances
 
     def output_step_bound(self, state: LoadState) -> float | None:
-        """Bound of the output's motion in a Newton step, in units of the last border; None where it is prescribed."""
+        """Bound of the output's motion in a Newton step, in units of the last border; None where it
+        is prescribed."""
         if state.control != "torque":
             return None
         return self.supports.scale * min(
-            clearance.largest_rotation(self._loaded_side(clearance.flanks, state)) for clearance in self.clearances
+            clearance.largest_rotation(self._loaded_side(clearance.flanks, state))
+            for clearance in self.clearances
         )
 
     def closing_rotation(self, u: np.ndarray, state: LoadState) -> float:
-        """Rotation (rad) of the output, in the direction of the torque of `state`, that brings flanks together.
+        """Rotation (rad) of the output, in the direction of the torque of `state`, that brings
+        flanks together.
 
-        They are those of the output, or where the flexible spline rotates with it those of the fixed ring gear. 0 where
-        they are so close that a Newton step does the rest, or where none is near.
+        They are those of the output, or where the flexible spline rotates with it those of the
+        fixed ring gear. 0 where they are so close that a Newton step does the rest, or where none
+        is near.
 
         u : (n_local, 3) mm, of the last search
         """
@@ -48,6 +53,7 @@ class TorqueControl:
         return self.supports.output_gear != SPLINE_COUPLING and flanks.ring_motion.floats
 
     def _loaded_side(self, flanks: FlankContact, state: LoadState) -> int:
-        """Side of the flanks that carry the torque of `state`, on the flexible spline or on the ring gear."""
+        """Side of the flanks that carry the torque of `state`, on the flexible spline or on the
+        ring gear."""
         counter_clockwise = (state.torque >= 0.0) != self._is_output(flanks)
         return LOADED_SIDE if counter_clockwise else -LOADED_SIDE

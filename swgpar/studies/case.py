@@ -74,8 +74,10 @@ class Case:
 
     varied : value of every varied key as the study file has it
     design : None when it is refused, for the reason in `refusal`
-    known : its quantities by name, empty when refused;  shown : names of those in tables and figures
-    meshes : recipes, coarse to fine, none of a gear train;  compared : index of the one for published values
+    known : its quantities by name, empty when refused;  shown : names of those in tables and
+    figures
+    meshes : recipes, coarse to fine, none of a gear train;  compared : index of the one for
+    published values
     section : its part of the study file;  system : the kind of its design
     """
 
@@ -131,8 +133,11 @@ def named(name: str, known: Mapping[str, Quantity]) -> list[str]:
     return [key for key in known if key == name or key.startswith(f"{name}[")]
 
 
-def not_known(where: str, known: Mapping[str, Quantity], system: System[Any, Any], name: str) -> InputError:
-    """The refusal of a name that is no quantity, with the one most likely meant. where : text in front of the name"""
+def not_known(
+    where: str, known: Mapping[str, Quantity], system: System[Any, Any], name: str
+) -> InputError:
+    """The refusal of a name that is no quantity, with the one most likely meant. where : text in
+    front of the name"""
     near = difflib.get_close_matches(name, known, n=1)
     hint = f"did you mean {near[0]}?" if near else f"allowed {system.describe_names(known)}"
     return InputError(f"{where}{show_key(name)} is not a quantity of a run: {hint}")

@@ -23,8 +23,8 @@ from swgpar.systems import System, system_of_table
 def expand(study: Study) -> list[Job]:
     """All jobs of a study in the order of its tables.
 
-    Raises InputError when the study file cannot be used; a refused design is a case with a `refusal`, and only when
-    there is no other case a reason to raise.
+    Raises InputError when the study file cannot be used; a refused design is a case with a
+    `refusal`, and only when there is no other case a reason to raise.
     """
     try:
         jobs = _expand(study)
@@ -49,7 +49,9 @@ def _expand(study: Study) -> list[Job]:
         compared = stems.index(wanted) if wanted in stems else len(stems) - 1
         recipes.update({mesh: load_recipe(mesh) for mesh in meshes if mesh not in recipes})
         for varied, suffix in combinations(section.vary, section.mode):
-            name = "_".join(part for part in (entry.name, suffix) if part) or Path(section.design).stem
+            name = (
+                "_".join(part for part in (entry.name, suffix) if part) or Path(section.design).stem
+            )
             name = folder_name(name)
             design, refusal, known = None, "", {}
             try:
@@ -62,7 +64,9 @@ def _expand(study: Study) -> list[Job]:
             except InputError as error:
                 design, refusal = None, str(error)
             shown = _shown(section.quantities, known, system)
-            cases.append(Case(name, varied, design, refusal, known, shown, meshes, compared, entry, system))
+            cases.append(
+                Case(name, varied, design, refusal, known, shown, meshes, compared, entry, system)
+            )
     _check_names(study, cases)
     return [
         Job(case, mesh, recipes.get(mesh), max(len(case.meshes) - 1 - index, 0))
@@ -79,12 +83,14 @@ def _check_number(study: Study) -> None:
     runs = together * sum(max(len(case.meshes or section.meshes), 1) for case in study.cases)
     if runs > section.max_cases:
         raise InputError(
-            f"the study has {show(runs)} runs: allowed up to study.max_cases = {section.max_cases}, which may be raised"
+            f"the study has {show(runs)} runs: allowed up to study.max_cases = "
+            f"{section.max_cases}, which may be raised"
         )
 
 
 def _meshes(study: Study, case: CaseSection, system: System) -> tuple[Path, ...]:
-    """Recipes of a case, coarse to fine: names in the package, or paths relative to the study file."""
+    """Recipes of a case, coarse to fine: names in the package, or paths relative to the study
+    file."""
     section = study.section
     if "mesh" not in system.options:
         for key, given in (
@@ -93,18 +99,27 @@ def _meshes(study: Study, case: CaseSection, system: System) -> tuple[Path, ...]
             (f"study.case {show(case.name)}: meshes", case.meshes),
         ):
             if given:
-                raise InputError(f"{key} = {show(given)} has no meaning for {system.noun}: leave it out")
+                raise InputError(
+                    f"{key} = {show(given)} has no meaning for {system.noun}: leave it out"
+                )
         return ()
     if not section.meshes:
         given = " = [] is empty" if "meshes" in section.model_fields_set else " is missing"
-        raise InputError(f"study.meshes{given}: give a list of texts, one mesh recipe or more, coarse to fine")
+        raise InputError(
+            f"study.meshes{given}: give a list of texts, one mesh recipe or more, coarse to fine"
+        )
     if section.compared and section.compared not in section.meshes:
-        raise InputError(f"study.compared = {show(section.compared)} is none of study.meshes = {show(section.meshes)}")
+        raise InputError(
+            f"study.compared = {show(section.compared)} is none of study.meshes = "
+            f"{show(section.meshes)}"
+        )
     wanted = case.meshes or section.meshes
     meshes = tuple(Path(mesh) if is_recipe_name(mesh) else study.folder / mesh for mesh in wanted)
     stems = [folder_name(mesh.stem) for mesh in meshes]
     if len(set(stems)) < len(stems):
-        raise InputError(f"meshes = {show(stems)} have a name twice: allowed are recipes of different names")
+        raise InputError(
+            f"meshes = {show(stems)} have a name twice: allowed are recipes of different names"
+        )
     return meshes
 
 
@@ -116,15 +131,23 @@ def _shown(names: list[str], known: dict[str, Quantity], system: System) -> tupl
 
 
 def _check_names(study: Study, cases: list[Case]) -> None:
-    """Refuse cases of one name, and names of quantities that no case has or a compared case has not."""
+    """Refuse cases of one name, and names of quantities that no case has or a compared case has
+    not."""
     twice = [name for name, count in Counter(case.name for case in cases).items() if count > 1]
     if twice:
-        raise InputError(f"{show(twice[0])} is the name of two cases: allowed are different names and values")
+        raise InputError(
+            f"{show(twice[0])} is the name of two cases: allowed are different names and values"
+        )
     designed = [case for case in cases if case.design is not None]
     for case in designed:
         for name in case.section.published:
             if name not in case.known:
-                raise not_known(f"study.case {show(case.section.name)}: published.", case.known, case.system, name)
+                raise not_known(
+                    f"study.case {show(case.section.name)}: published.",
+                    case.known,
+                    case.system,
+                    name,
+                )
     together = {name: quantity for case in designed for name, quantity in case.known.items()}
     for name in study.section.quantities if designed else ():
         if not named(name, together):
@@ -132,7 +155,8 @@ def _check_names(study: Study, cases: list[Case]) -> None:
 
 
 def combinations(vary: dict[str, list[Any]], mode: str) -> list[tuple[dict[str, Any], str]]:
-    """Values by key, and the name they give a case, for all combinations ("grid") or in step ("sweep")."""
+    """Values by key, and the name they give a case, for all combinations ("grid") or in step
+    ("sweep")."""
     if not vary:
         return [({}, "")]
     last = Counter(key.rpartition(".")[2] for key in vary)
@@ -140,18 +164,26 @@ def combinations(vary: dict[str, list[Any]], mode: str) -> list[tuple[dict[str, 
     for key, values in vary.items():
         short = key.rpartition(".")[2]
         title = short if last[short] == 1 else key
-        columns.append([(key, value, f"{title}={label}") for value, label in zip(values, labels(values))])
+        columns.append(
+            [(key, value, f"{title}={label}") for value, label in zip(values, labels(values))]
+        )
     chosen = itertools.product(*columns) if mode == "grid" else zip(*columns)
-    return [({key: value for key, value, _ in row}, "_".join(text for *_, text in row)) for row in chosen]
+    return [
+        ({key: value for key, value, _ in row}, "_".join(text for *_, text in row))
+        for row in chosen
+    ]
 
 
 def labels(values: list[Any]) -> list[str]:
-    """A short text for each value, fit for the name of a folder; tables by type, or by their number in the list."""
+    """A short text for each value, fit for the name of a folder; tables by type, or by their number
+    in the list."""
     texts = []
     for number, value in enumerate(values, start=1):
         text = value.get("type", str(number)) if isinstance(value, dict) else value
         text = ",".join(show(item) for item in text) if isinstance(text, list) else text
-        texts.append(re.sub(r"[^A-Za-z0-9_.,+=-]", "-", text if isinstance(text, str) else show(text)))
+        texts.append(
+            re.sub(r"[^A-Za-z0-9_.,+=-]", "-", text if isinstance(text, str) else show(text))
+        )
     count = Counter(texts)
     of_tables = [isinstance(value, dict) for value in values]
     return [

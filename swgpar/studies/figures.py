@@ -51,16 +51,28 @@ def over_angle(results: Sequence[Result]) -> Iterator[bytes]:
             for k, (label, columns) in enumerate(part):
                 loaded = loaded_increments(columns)
                 if name in columns:
-                    panel.plot(columns["wg_angle_deg"][loaded], columns[name][loaded], label=label, **_style(k))
+                    panel.plot(
+                        columns["wg_angle_deg"][loaded],
+                        columns[name][loaded],
+                        label=label,
+                        **_style(k),
+                    )
             column = COLUMNS[name]
-            _name(panel, column.label, f"stress ({column.unit})", "angle of the wave generator (degrees)")
+            _name(
+                panel,
+                column.label,
+                f"stress ({column.unit})",
+                "angle of the wave generator (degrees)",
+            )
         yield _png(figure, axes)
 
 
 def over_key(results: Sequence[Result], key: str, *, in_step: bool) -> Iterator[bytes]:
-    """Quantities against a varied key; a line for each combination of all else. None without numbers.
+    """Quantities against a varied key; a line for each combination of all else. None without
+    numbers.
 
-    in_step : whether the other varied keys change with this one, so that they make no lines of their own
+    in_step : whether the other varied keys change with this one, so that they make no lines of
+    their own
     """
     lines: dict[str, list[tuple[float, Outcome]]] = {}
     for case, outcomes in by_case(results):
@@ -81,7 +93,9 @@ def over_key(results: Sequence[Result], key: str, *, in_step: bool) -> Iterator[
             for (name, quantity), panel in zip(panels, axes):
                 for k, (label, points) in enumerate(part):
                     known = [(x, o.values[name]) for x, o in points if name in o.values]
-                    panel.plot([x for x, _ in known], [y for _, y in known], label=label, **_style(k))
+                    panel.plot(
+                        [x for x, _ in known], [y for _, y in known], label=label, **_style(k)
+                    )
                 _name(panel, quantity.meaning, with_unit(name, quantity.unit), with_unit(key, unit))
                 panel.set_xscale(scale)
             yield _png(figure, axes)
@@ -106,7 +120,12 @@ def _parts(items: Sequence[Any], size: int = LINES) -> Iterator[Sequence[Any]]:
 
 
 def _style(k: int) -> dict[str, Any]:
-    return {"color": f"C{k % 10}", "marker": MARKERS[k % len(MARKERS)], "ms": 3, "ls": "-" if k < 10 else "--"}
+    return {
+        "color": f"C{k % 10}",
+        "marker": MARKERS[k % len(MARKERS)],
+        "ms": 3,
+        "ls": "-" if k < 10 else "--",
+    }
 
 
 def _axes(count: int) -> tuple[Figure, list[Axes]]:

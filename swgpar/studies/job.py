@@ -22,7 +22,8 @@ from swgpar.studies.case import Outcome, PlannedRun
 from swgpar.systems import System
 
 STATUS = "status.json"
-"""In the folder of a run: status ("started", "failed", "finished"), identity of what is computed, reason."""
+"""In the folder of a run: status ("started", "failed", "finished"), identity of what is computed,
+reason."""
 
 
 def read_status(folder: Path) -> dict[str, Any]:
@@ -35,10 +36,11 @@ def read_status(folder: Path) -> dict[str, Any]:
 
 
 def run_planned(planned: PlannedRun, options: RunOptions) -> Outcome:
-    """Run a design without shortcuts; collective. Failures are returned, and recorded in the folder of the options.
+    """Run a design without shortcuts; collective. Failures are returned, and recorded in the folder
+    of the options.
 
-    Only an error that swgpar does not know is raised when several ranks share the run: one rank may have met it
-    alone, and the others then wait for it.
+    Only an error that swgpar does not know is raised when several ranks share the run: one rank may
+    have met it alone, and the others then wait for it.
     """
     record: dict[str, Any] = {"identity": ""}
     folder, comm = options.out, options.comm
@@ -51,7 +53,9 @@ def run_planned(planned: PlannedRun, options: RunOptions) -> Outcome:
             outcome, same = _earlier(planned.system, folder, comm, record, options.restart)
             if outcome is not None:
                 return outcome
-            options = replace(options, restart=options.restart and same, overwrite=options.overwrite or not same)
+            options = replace(
+                options, restart=options.restart and same, overwrite=options.overwrite or not same
+            )
         outcome = _compute(planned, options)
     except SwgparError as error:
         if getattr(error, "alone", False) and comm.size > 1:
@@ -64,7 +68,10 @@ def run_planned(planned: PlannedRun, options: RunOptions) -> Outcome:
         if comm.size > 1:
             if folder is not None:
                 with suppress(OSError):
-                    write_file(folder / STATUS, to_json({"status": "failed", **record, "reason": outcome.reason}))
+                    write_file(
+                        folder / STATUS,
+                        to_json({"status": "failed", **record, "reason": outcome.reason}),
+                    )
             raise
     log.close_file()
     _release(comm)
@@ -77,7 +84,8 @@ def run_planned(planned: PlannedRun, options: RunOptions) -> Outcome:
 def _earlier(
     system: System[Any, Any], folder: Path, comm: MPI.Comm, record: dict[str, Any], restart: bool
 ) -> tuple[Outcome | None, bool]:
-    """Outcome of a run that an earlier call finished, else None; and whether the folder holds this design's results.
+    """Outcome of a run that an earlier call finished, else None; and whether the folder holds this
+    design's results.
 
     Marks the run as started unless there is an outcome; collective.
     """
@@ -85,13 +93,18 @@ def _earlier(
     same = old.get("identity", record["identity"]) == record["identity"]
     if restart and old.get("status") == "finished":
         if not same:
-            reason = f"{folder} holds results of another design: rename the case, or overwrite = true (--overwrite)"
+            reason = (
+                f"{folder} holds results of another design: rename the case, or overwrite = true "
+                f"(--overwrite)"
+            )
             return Outcome("failed", reason), same
         complete = comm.bcast((folder / "summary.json").exists() if comm.rank == 0 else None)
         if complete and all(old.get(key) == value for key, value in record.items()):
             return _kept(system, folder, comm), same
     if comm.rank == 0:
-        with suppress(OSError):  # whether the folder can be written is found out below, by all ranks
+        with suppress(
+            OSError
+        ):  # whether the folder can be written is found out below, by all ranks
             folder.mkdir(parents=True, exist_ok=True)
     write_from_root(comm, folder / STATUS, to_json({"status": "started", **record}))
     return None, same
@@ -99,7 +112,9 @@ def _earlier(
 
 def _compute(planned: PlannedRun, options: RunOptions) -> Outcome:
     system = planned.system
-    if "restart" not in system.options:  # an interrupted run begins anew, and may have left its first tables
+    if (
+        "restart" not in system.options
+    ):  # an interrupted run begins anew, and may have left its first tables
         options = replace(options, restart=False, overwrite=options.overwrite or options.restart)
     result = system.run(planned.design, options)
     if options.out is not None and planned.design.output.figures:
@@ -121,11 +136,14 @@ def _kept(system: System[Any, Any], folder: Path, comm: MPI.Comm) -> Outcome:
     outcome = None
     with agreed(comm, folder / "summary.json", "read"):
         if comm.rank == 0:
-            outcome = Outcome.finished(system.measure(system.open(folder, MPI.COMM_SELF)), kept=True)
+            outcome = Outcome.finished(
+                system.measure(system.open(folder, MPI.COMM_SELF)), kept=True
+            )
     return comm.bcast(outcome)
 
 
 def _release(comm: MPI.Comm) -> None:
-    """Free the model of the last case; PETSc keeps what Python lets go of until this collective call."""
+    """Free the model of the last case; PETSc keeps what Python lets go of until this collective
+    call."""
     gc.collect()
     PETSc.garbage_cleanup(comm)

@@ -56,7 +56,11 @@ class FigureSection:
 
 
 def make_report(
-    study: Study, results: Sequence[Result], comparisons: Sequence[Comparison], out: Path, missing: int = 0
+    study: Study,
+    results: Sequence[Result],
+    comparisons: Sequence[Comparison],
+    out: Path,
+    missing: int = 0,
 ) -> bytes:
     """The whole page; reads the logs of failed cases below `out`. Call it on one rank.
 
@@ -100,14 +104,17 @@ def _cases(results: Sequence[Result]) -> Table:
     if any(notes.values()):
         header.append("note")
         rows = [{**row, "note": notes[row["case"]]} for row in rows]
-    units = units_of_keys(results) | {name: quantity.unit for name, quantity in shown_quantities(results).items()}
+    units = units_of_keys(results) | {
+        name: quantity.unit for name, quantity in shown_quantities(results).items()
+    }
     heads = [HEADINGS.get(name) or with_unit(name, units.get(name, "")) for name in header]
     shown = [Row([row[name] for name in header], row["status"] == "failed") for row in rows]
     return Table(heads, shown, ranked=True)
 
 
 def _extremes(results: Sequence[Result]) -> Table:
-    """Which case has the smallest and the largest value of every quantity, each case on its finest mesh."""
+    """Which case has the smallest and the largest value of every quantity, each case on its finest
+    mesh."""
     found = [(case.name, outcomes[-1].values) for case, outcomes in by_case(results)]
     rows = []
     for name, quantity in shown_quantities(results).items():
@@ -138,8 +145,27 @@ def _estimates(results: Sequence[Result]) -> Table:
                 values = [outcome.values[name] for outcome in outcomes[-2:]]
                 percent = 100.0 * found.error / abs(values[1]) if values[1] else None
                 unit = case.known[name].unit if name in case.known else ""
-                rows.append(Row([case.name, with_unit(name, unit), *values, found.converged, found.error, percent]))
-    header = ["case", "quantity", "coarser mesh", "finest mesh", "converged", "error estimate", "error estimate (%)"]
+                rows.append(
+                    Row(
+                        [
+                            case.name,
+                            with_unit(name, unit),
+                            *values,
+                            found.converged,
+                            found.error,
+                            percent,
+                        ]
+                    )
+                )
+    header = [
+        "case",
+        "quantity",
+        "coarser mesh",
+        "finest mesh",
+        "converged",
+        "error estimate",
+        "error estimate (%)",
+    ]
     return Table(header, rows)
 
 
@@ -160,5 +186,9 @@ def _figures(study: Study, results: Sequence[Result]) -> list[FigureSection]:
     sections = [FigureSection("Stresses against the angle of the wave generator", over_angle)]
     for key in dict.fromkeys(key for job, _ in results for key in job.case.varied):
         drawn = figures.over_key(results, key, in_step=study.section.mode == "sweep")
-        sections.append(FigureSection(f"Against {key}", [Picture(png, f"quantities against {key}") for png in drawn]))
+        sections.append(
+            FigureSection(
+                f"Against {key}", [Picture(png, f"quantities against {key}") for png in drawn]
+            )
+        )
     return sections

@@ -1,4 +1,5 @@
-"""The study file: which designs are computed, drives on which meshes, and what they are compared with."""
+"""The study file: which designs are computed, drives on which meshes, and what they are compared
+with."""
 
 from __future__ import annotations
 
@@ -25,7 +26,8 @@ LONGEST_NAME = 100
 def folder_name(text: str) -> str:
     """A name for a folder inside another one, made from keys, values and names of files.
 
-    Letters that do not fit are replaced, a long text by its beginning and a number that stands for the whole of it.
+    Letters that do not fit are replaced, a long text by its beginning and a number that stands for
+    the whole of it.
     """
     name = re.sub(r"[^\w.,+=-]", "-", text)
     name = name if name[0].isalnum() else f"_{name}"
@@ -53,15 +55,25 @@ class StudySection(Section):
     title: str = quantity("", text="title of the report")
     remarks: str = quantity("", text="text for the report; a blank line ends a paragraph")
     design: str = quantity(text="the design file, relative to the study file")
-    meshes: list[str] = quantity([], text="mesh recipes of a drive, coarse to fine, relative to the study file")
-    compared: str = quantity("", text="the one of the meshes that published values are compared on; else the last")
-    quantities: list[str] = quantity([], text="quantities in tables and figures; else the usual ones")
+    meshes: list[str] = quantity(
+        [], text="mesh recipes of a drive, coarse to fine, relative to the study file"
+    )
+    compared: str = quantity(
+        "", text="the one of the meshes that published values are compared on; else the last"
+    )
+    quantities: list[str] = quantity(
+        [], text="quantities in tables and figures; else the usual ones"
+    )
     set: list[str] = quantity([], text='"section.key=value" for all cases')
     parallel: Literal["cases", "ranks"] = quantity(
         "cases", text="every rank works on cases of its own, or all on one case after the other"
     )
-    mode: Literal["grid", "sweep"] = quantity("grid", text="all combinations of the varied values, or in step")
-    max_cases: int = quantity(100_000, text="largest number of runs, cases times meshes", ge=1, le=100_000_000)
+    mode: Literal["grid", "sweep"] = quantity(
+        "grid", text="all combinations of the varied values, or in step"
+    )
+    max_cases: int = quantity(
+        100_000, text="largest number of runs, cases times meshes", ge=1, le=100_000_000
+    )
     vary: dict[str, Any] = quantity({}, text="keys of the design file with lists of values")
 
 
@@ -77,7 +89,8 @@ class _StudyFile(Section):
 class Study:
     """The checked content of a study file.
 
-    name : the file in messages;  folder : the other paths are relative to it;  text : the content, for the report
+    name : the file in messages;  folder : the other paths are relative to it;  text : the content,
+    for the report
     section : [study];  cases : its [[study.case]], one without a name when there are none
     """
 
@@ -94,7 +107,8 @@ class Study:
 
 
 def load_study(path: str | Path) -> Study:
-    """Read and check a study file; every problem is an `InputError` of one sentence that names the file."""
+    """Read and check a study file; every problem is an `InputError` of one sentence that names the
+    file."""
     path = Path(path)
     table = read_toml(path)
     return _make_study(table, str(path), path.parent, path.read_text(encoding="utf-8-sig"))
@@ -109,14 +123,19 @@ def _make_study(table: Mapping[str, Any], name: str, folder: Path, text: str) ->
     try:
         for key, value in table.items():
             if key != "study" or not isinstance(value, dict):
-                raise InputError(f"{show_key(key)} = {show(value)} is not a section of a study file: allowed [study]")
+                raise InputError(
+                    f"{show_key(key)} = {show(value)} is not a section of a study file: allowed "
+                    f"[study]"
+                )
         study = dict(table.get("study", {}))
         tables = study.pop("case", [])
         if isinstance(study.get("vary"), dict):
             study["vary"] = flat(study["vary"])
         section = validate(_StudyFile, {"study": study}).study
         if not isinstance(tables, list):
-            raise InputError(f"study.case = {show(tables)} is not a list of cases: write [[study.case]]")
+            raise InputError(
+                f"study.case = {show(tables)} is not a list of cases: write [[study.case]]"
+            )
         cases = tuple(_case(number, entry) for number, entry in enumerate(tables, start=1))
         _check_study(section)
         for case in cases:
@@ -136,25 +155,39 @@ def _case(number: int, table: dict[str, Any]) -> CaseSection:
 
 
 def _numbers(table: dict[str, Any]) -> dict[str, Any]:
-    """`published` and `tolerance` by single numbers: a list gives name[1], name[2].., its tolerance stands for all."""
-    given = {key: flat(table[key]) for key in ("published", "tolerance") if isinstance(table.get(key), dict)}
-    lengths = {name: len(value) for name, value in given.get("published", {}).items() if isinstance(value, list)}
+    """`published` and `tolerance` by single numbers: a list gives name[1], name[2].., its tolerance
+    stands for all."""
+    given = {
+        key: flat(table[key])
+        for key in ("published", "tolerance")
+        if isinstance(table.get(key), dict)
+    }
+    lengths = {
+        name: len(value)
+        for name, value in given.get("published", {}).items()
+        if isinstance(value, list)
+    }
     out: dict[str, Any] = {key: {} for key in given}
     for key, values in given.items():
         for name, value in values.items():
             if name in lengths:
                 numbers = value if isinstance(value, list) else [value] * lengths[name]
-                out[key] |= {f"{name}[{index}]": number for index, number in enumerate(numbers, start=1)}
+                out[key] |= {
+                    f"{name}[{index}]": number for index, number in enumerate(numbers, start=1)
+                }
             else:
                 out[key][name] = value
     return out
 
 
 def flat(table: dict[str, Any], above: str = "") -> dict[str, Any]:
-    """Tables in tables as one with dotted keys: in TOML, load.torque = 1 and "load.torque" = 1 then mean the same."""
+    """Tables in tables as one with dotted keys: in TOML, load.torque = 1 and "load.torque" = 1 then
+    mean the same."""
     out: dict[str, Any] = {}
     for key, value in table.items():
-        out.update(flat(value, f"{above}{key}.") if isinstance(value, dict) else {f"{above}{key}": value})
+        out.update(
+            flat(value, f"{above}{key}.") if isinstance(value, dict) else {f"{above}{key}": value}
+        )
     return out
 
 
@@ -164,38 +197,59 @@ def _check_study(study: StudySection) -> None:
     for key, values in study.vary.items():
         where = f'study.vary."{show_key(key)}"'
         if not isinstance(values, list) or not values:
-            raise InputError(f"{where} = {show(values)} is not a list of values: allowed one value or more")
+            raise InputError(
+                f"{where} = {show(values)} is not a list of values: allowed one value or more"
+            )
         if "." not in key and not all(isinstance(value, dict) for value in values):
-            raise InputError(f'{where} holds a value: allowed "section.key", or tables for a whole section')
+            raise InputError(
+                f'{where} holds a value: allowed "section.key", or tables for a whole section'
+            )
         for other in study.vary:
             if other.startswith(f"{key}."):
-                raise InputError(f'{where} replaces study.vary."{show_key(other)}": allowed is one of both')
+                raise InputError(
+                    f'{where} replaces study.vary."{show_key(other)}": allowed is one of both'
+                )
     lengths = {key: len(values) for key, values in study.vary.items()}
     if study.mode == "sweep" and len(set(lengths.values())) > 1:
         counted = ", ".join(f"{show_key(key)} has {n}" for key, n in lengths.items())
-        raise InputError(f'study.mode = "sweep" takes values in step: allowed are lists of one length, but {counted}')
+        raise InputError(
+            f'study.mode = "sweep" takes values in step: allowed are lists of one length, but '
+            f"{counted}"
+        )
 
 
 def _check_case(case: CaseSection, study: StudySection) -> None:
     where = f"study.case {show(case.name)}"
     if not NAME.fullmatch(case.name) or len(case.name) > LONGEST_NAME:
         raise InputError(
-            f"study.case.name = {show(case.name)} names no folder: allowed letters, digits and _ . , + = -, at most "
+            f"study.case.name = {show(case.name)} names no folder: allowed letters, digits and _ . "
+            f", + = -, at most "
             f"{LONGEST_NAME}"
         )
     for override in case.set:
         key, _ = split_override(override)
         for varied in study.vary:
             if f"{key}.".startswith(f"{varied}.") or varied.startswith(f"{key}."):
-                raise InputError(f"{where} sets {show_key(key)}, which study.vary varies: allowed in one of both")
+                raise InputError(
+                    f"{where} sets {show_key(key)}, which study.vary varies: allowed in one of both"
+                )
     for name, value in case.section.items():
         if not isinstance(value, dict):
-            raise InputError(f"{where}: section.{show_key(name)} = {show(value)} is not a section: allowed a table")
+            raise InputError(
+                f"{where}: section.{show_key(name)} = {show(value)} is not a section: allowed a "
+                f"table"
+            )
     for name, percent in case.tolerance.items():
         tolerance = f"{where}: tolerance.{show_key(name)}"
         if name not in case.published:
-            raise InputError(f"{tolerance} has no published value: allowed {', '.join(case.published)}")
+            raise InputError(
+                f"{tolerance} has no published value: allowed {', '.join(case.published)}"
+            )
         if percent <= 0.0:
-            raise InputError(f"{tolerance} = {show(percent)} is out of range: allowed above 0 to inf %")
+            raise InputError(
+                f"{tolerance} = {show(percent)} is out of range: allowed above 0 to inf %"
+            )
         if case.published[name] == 0.0:
-            raise InputError(f"{tolerance} is a share of a published 0: allowed for other values only")
+            raise InputError(
+                f"{tolerance} is a share of a published 0: allowed for other values only"
+            )

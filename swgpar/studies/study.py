@@ -59,7 +59,8 @@ class StudyResult:
 
     @property
     def rows(self) -> list[dict[str, Any]]:
-        """Rows of study.csv: case, mesh, varied keys, status, quantities, wall seconds, reason of a failure."""
+        """Rows of study.csv: case, mesh, varied keys, status, quantities, wall seconds, reason of a
+        failure."""
         return study_rows(self.results)
 
     @property
@@ -81,7 +82,9 @@ class StudyResult:
     @property
     def failed(self) -> dict[str, str]:
         """Reason of every case that failed, by its name and mesh."""
-        return {job.title: outcome.reason for job, outcome in self.results if outcome.status == "failed"}
+        return {
+            job.title: outcome.reason for job, outcome in self.results if outcome.status == "failed"
+        }
 
     @property
     def report(self) -> Path | None:
@@ -94,7 +97,8 @@ SHARE = 0.05
 
 
 class _Book:
-    """What rank 0 knows: outcomes by job. Tables and report on the disk follow them, for a study that is stopped."""
+    """What rank 0 knows: outcomes by job. Tables and report on the disk follow them, for a study
+    that is stopped."""
 
     def __init__(self, study: Study, jobs: Sequence[Job], out: Path | None, terminal: bool) -> None:
         self.study, self.jobs, self.out = study, jobs, out
@@ -116,9 +120,19 @@ class _Book:
         if self.progress is not None:
             self.progress.outcome(number, outcome)
         begin = time.perf_counter()
-        if self.out is not None and begin >= self.next_writing and len(self.outcomes) < len(self.jobs):
+        if (
+            self.out is not None
+            and begin >= self.next_writing
+            and len(self.outcomes) < len(self.jobs)
+        ):
             with suppress(OutputError):  # the others are at work: said at the end, when all write
-                _write(self.study, self.results(), self.out, MPI.COMM_SELF, len(self.jobs) - len(self.outcomes))
+                _write(
+                    self.study,
+                    self.results(),
+                    self.out,
+                    MPI.COMM_SELF,
+                    len(self.jobs) - len(self.outcomes),
+                )
             end = time.perf_counter()
             self.next_writing = end + (end - begin) / SHARE
 
@@ -142,8 +156,10 @@ def run_study(
     Parameters
     ----------
     source : a study file (TOML), or its content
-    out : folder of the study, with tables, report and the results of every case; None keeps everything in memory
-    restart : keep what is finished in the folder, continue what was interrupted, try again what failed
+    out : folder of the study, with tables, report and the results of every case; None keeps
+    everything in memory
+    restart : keep what is finished in the folder, continue what was interrupted, try again what
+    failed
     overwrite : replace a study that the folder already holds
     terminal : whether rank 0 reports on the terminal
 
@@ -162,10 +178,15 @@ def run_study(
         if comm.rank == 0:
             statuses = [read_status(job.folder(folder)).get("status") for job in jobs]
     elif restart:
-        raise InputError("restart = true needs the folder of the study: a study in memory leaves nothing to continue")
+        raise InputError(
+            "restart = true needs the folder of the study: a study in memory leaves nothing to "
+            "continue"
+        )
     order = queue(jobs, comm.bcast(statuses))
     run = partial(_run_one, jobs, folder, restart, overwrite)
-    with log.session(MPI.COMM_SELF if study.section.parallel == "cases" else comm, terminal=False, shown=False):
+    with log.session(
+        MPI.COMM_SELF if study.section.parallel == "cases" else comm, terminal=False, shown=False
+    ):
         results = _run_all(study, jobs, order, run, folder, terminal, comm)
     if folder is not None:
         _write(study, results, folder, comm)
@@ -173,14 +194,25 @@ def run_study(
 
 
 def _run_all(
-    study: Study, jobs: list[Job], order: list[int], run: Run, out: Path | None, terminal: bool, comm: MPI.Comm
+    study: Study,
+    jobs: list[Job],
+    order: list[int],
+    run: Run,
+    out: Path | None,
+    terminal: bool,
+    comm: MPI.Comm,
 ) -> list[Result]:
     """All jobs and their outcomes, on every rank."""
     book = _Book(study, jobs, out, terminal) if comm.rank == 0 else None
     receive: Report = book.receive if book is not None else lambda _: None
     try:
         if study.section.parallel == "cases":
-            share_tasks(comm, len(order), lambda index, send: run(order[index], MPI.COMM_SELF, send), receive)
+            share_tasks(
+                comm,
+                len(order),
+                lambda index, send: run(order[index], MPI.COMM_SELF, send),
+                receive,
+            )
         else:
             for number in order:
                 run(number, comm, receive)
@@ -214,7 +246,8 @@ def _prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> None:
     present = comm.bcast((out / "cases").exists() if comm.rank == 0 else None)
     if present and not restart and not overwrite:
         raise OutputError(
-            f"{out} already holds a study: continue it with restart = true (--restart), replace it with "
+            f"{out} already holds a study: continue it with restart = true (--restart), replace it "
+            f"with "
             "overwrite = true (--overwrite), or choose another folder"
         )
     with agreed(comm, out):
@@ -229,12 +262,22 @@ def _prepare(out: Path, comm: MPI.Comm, restart: bool, overwrite: bool) -> None:
 
 
 def queue(jobs: Sequence[Job], statuses: Sequence[str | None]) -> list[int]:
-    """Numbers of the jobs in the order in which they are begun: long ones first, those that failed before last."""
-    return sorted(range(len(jobs)), key=lambda k: (statuses[k] == "failed", jobs[k].finer, -jobs[k].increments))
+    """Numbers of the jobs in the order in which they are begun: long ones first, those that failed
+    before last."""
+    return sorted(
+        range(len(jobs)),
+        key=lambda k: (statuses[k] == "failed", jobs[k].finer, -jobs[k].increments),
+    )
 
 
 def _run_one(
-    jobs: Sequence[Job], out: Path | None, restart: bool, overwrite: bool, number: int, comm: MPI.Comm, report: Report
+    jobs: Sequence[Job],
+    out: Path | None,
+    restart: bool,
+    overwrite: bool,
+    number: int,
+    comm: MPI.Comm,
+    report: Report,
 ) -> None:
     """Run a job and report its increments, as None, and its outcome."""
     job = jobs[number]
@@ -248,7 +291,9 @@ def _run_one(
     report((number, run_planned(job.planned, options)))
 
 
-def _write(study: Study, results: Sequence[Result], out: Path, comm: MPI.Comm, missing: int = 0) -> None:
+def _write(
+    study: Study, results: Sequence[Result], out: Path, comm: MPI.Comm, missing: int = 0
+) -> None:
     """Write tables and report; collective. missing : number of jobs that have not ended"""
     comparisons = compare(complete(results))
     write_from_root(comm, out / TABLE, format_csv(study_rows(results)))

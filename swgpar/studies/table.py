@@ -24,7 +24,8 @@ class Comparison:
 
     mesh : the one it was computed on, or empty
     estimate : from the two finest meshes, its error that of the computed value
-    difference : percent of the published value;  verdict : "inside", "MISS", or empty without a tolerance
+    difference : percent of the published value;  verdict : "inside", "MISS", or empty without a
+    tolerance
     """
 
     case: str
@@ -49,13 +50,22 @@ def by_case(results: Sequence[Result]) -> list[tuple[Case, list[Outcome]]]:
 
 def complete(results: Sequence[Result]) -> list[Result]:
     """Results of the cases that have ended on all of their meshes."""
-    ended = {case.name for case, outcomes in by_case(results) if len(outcomes) == max(len(case.meshes), 1)}
+    ended = {
+        case.name
+        for case, outcomes in by_case(results)
+        if len(outcomes) == max(len(case.meshes), 1)
+    }
     return [(job, outcome) for job, outcome in results if job.case.name in ended]
 
 
 def shown_quantities(results: Sequence[Result]) -> dict[str, Quantity]:
     """The quantities in tables and figures, of all cases."""
-    return {name: job.case.known[name] for job, _ in results for name in job.case.shown if name in job.case.known}
+    return {
+        name: job.case.known[name]
+        for job, _ in results
+        for name in job.case.shown
+        if name in job.case.known
+    }
 
 
 def units_of_keys(results: Sequence[Result]) -> dict[str, str]:
@@ -89,14 +99,27 @@ def compare(results: Sequence[Result]) -> list[Comparison]:
                 difference = 100.0 * (computed - published) / abs(published)
             tolerance, verdict = case.section.tolerance.get(name), ""
             if tolerance is not None:
-                verdict = "inside" if difference is not None and abs(difference) <= tolerance else "MISS"
+                verdict = (
+                    "inside" if difference is not None and abs(difference) <= tolerance else "MISS"
+                )
             found = estimate_of(case, outcomes, name)
             if found is not None and computed is not None:
                 found = Estimate(found.converged, abs(found.converged - computed))
             mesh = case.meshes[case.compared].stem if case.meshes else ""
             unit = case.known[name].unit if name in case.known else ""
             rows.append(
-                Comparison(case.name, mesh, name, unit, published, computed, difference, tolerance, verdict, found)
+                Comparison(
+                    case.name,
+                    mesh,
+                    name,
+                    unit,
+                    published,
+                    computed,
+                    difference,
+                    tolerance,
+                    verdict,
+                    found,
+                )
             )
     return rows
 
@@ -107,7 +130,11 @@ def study_rows(results: Sequence[Result]) -> list[dict[str, Any]]:
     names = list(dict.fromkeys(name for job, _ in results for name in job.case.shown))
     rows = []
     for job, outcome in results:
-        details = {"mesh": job.mesh_name, "elements": outcome.elements, "newton_mean": outcome.newton_mean}
+        details = {
+            "mesh": job.mesh_name,
+            "elements": outcome.elements,
+            "newton_mean": outcome.newton_mean,
+        }
         row: dict[str, Any] = {"case": job.case.name}
         if "mesh" in job.case.system.options:
             row.update(details)
@@ -123,7 +150,11 @@ def shown(value: Any) -> Any:
     """A varied value in a table: numbers and texts as they are, all else as in TOML."""
     if value is None:
         return None
-    return value if isinstance(value, (float, int, str)) and not isinstance(value, bool) else toml_value(value)
+    return (
+        value
+        if isinstance(value, (float, int, str)) and not isinstance(value, bool)
+        else toml_value(value)
+    )
 
 
 def published_rows(comparisons: Iterable[Comparison]) -> list[dict[str, Any]]:

@@ -1,4 +1,5 @@
-"""Terminal output of a study: a line for each case and mesh, a bar if there is a terminal, tables at the end."""
+"""Terminal output of a study: a line for each case and mesh, a bar if there is a terminal, tables
+at the end."""
 
 from __future__ import annotations
 
@@ -54,7 +55,9 @@ class StudyProgress:
             words.append("finished before" if outcome.kept else "finished")
         else:
             words.append(f"failed: {outcome.reason}")
-        with suppress(OSError, SystemExit):  # the reader of our output has gone: the others are at work
+        with suppress(
+            OSError, SystemExit
+        ):  # the reader of our output has gone: the others are at work
             console.print("  ".join(words), markup=False)
             watch.note_output()
         self._update()
@@ -72,7 +75,9 @@ class StudyProgress:
 def print_results(results: Sequence[Result], comparisons: Sequence[Comparison]) -> None:
     """Print the first quantities of all cases, then published beside computed values."""
     quantities = list(shown_quantities(results).items())[:COLUMNS]
-    cases = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))  # long names are folded into 80 columns
+    cases = Table(
+        box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0)
+    )  # long names are folded into 80 columns
     cases.add_column("case", overflow="fold")
     for name, quantity in quantities:
         unit = f" {quantity.unit}" if quantity.unit else ""
@@ -96,6 +101,9 @@ def print_results(results: Sequence[Result], comparisons: Sequence[Comparison]) 
     for c in comparisons:
         numbers = [c.published, c.computed, c.difference, c.estimate.error if c.estimate else None]
         published.add_row(
-            c.case, c.quantity, *("" if value is None else f"{value:.5g}" for value in numbers), c.verdict
+            c.case,
+            c.quantity,
+            *("" if value is None else f"{value:.5g}" for value in numbers),
+            c.verdict,
         )
     console.print(published)

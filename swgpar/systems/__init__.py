@@ -1,4 +1,5 @@
-"""Kinds of systems that swgpar computes: drives on meshes, and gear trains. `registry` lists them."""
+"""Kinds of systems that swgpar computes: drives on meshes, and gear trains. `registry` lists
+them."""
 
 from swgpar.systems.protocol import Measured, Result, System
 from swgpar.systems.registry import SYSTEMS, system_of, system_of_section, system_of_table

@@ -28,7 +28,8 @@ from swgpar.systems.protocol import Measured, System
 
 
 class Drives(System[DriveDesign, DriveResult]):
-    """The drive's adapter: analysis, results and quantities under the names that all systems share."""
+    """The drive's adapter: analysis, results and quantities under the names that all systems
+    share."""
 
     noun = "a drive"
     options = frozenset({"mesh", "accuracy", "restart", "plain"})
@@ -58,7 +59,9 @@ class Drives(System[DriveDesign, DriveResult]):
 
     def without_output(self, table: dict[str, Any]) -> dict[str, Any]:
         # fields fill the disk, and windows take time that few studies need
-        return apply_overrides(table, [f"output.{key}=false" for key in ("fields", "figures", "root_stress")])
+        return apply_overrides(
+            table, [f"output.{key}=false" for key in ("fields", "figures", "root_stress")]
+        )
 
     def quantities(self, design: DriveDesign) -> dict[str, Quantity]:
         return quantities(design)
@@ -74,7 +77,8 @@ class Drives(System[DriveDesign, DriveResult]):
             steps = design.steps
             if (steps.start_levels or steps.bent_start) and name.startswith(("step1.", "step2.")):
                 raise InputError(
-                    f"steps.start_levels = {steps.start_levels} or steps.bent_start leaves out {name}: allowed 0 and "
+                    f"steps.start_levels = {steps.start_levels} or steps.bent_start leaves out "
+                    f"{name}: allowed 0 and "
                     "false with it"
                 )
 
@@ -85,7 +89,10 @@ class Drives(System[DriveDesign, DriveResult]):
         return 2 if design.drive.model == "plane" else 3
 
     def identity(self, design: DriveDesign, recipe: MeshRecipe | None) -> dict[str, Any]:
-        found: dict[str, Any] = {"identity": identity(design, recipe, None), "rotation": design.steps.rotation}
+        found: dict[str, Any] = {
+            "identity": identity(design, recipe, None),
+            "rotation": design.steps.rotation,
+        }
         return found | ({"root_stress": True} if design.output.root_stress else {})
 
     def measure(self, result: DriveResult) -> Measured:

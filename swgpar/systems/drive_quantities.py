@@ -13,7 +13,8 @@ MAIN = ("mean.fs_s1", "mean.fs_s3", "mean.fs_vm", "mean.rg_vm", "mean.wg_torque_
 
 
 def quantities(design: DriveDesign) -> dict[str, Quantity]:
-    """Known quantities of a design: "mean.fs_s1" over the rotation, "step1.fs_s1" at the end of a step, and so on."""
+    """Known quantities of a design: "mean.fs_s1" over the rotation, "step1.fs_s1" at the end of a
+    step, and so on."""
     return {name: Quantity(kind.text, kind.unit) for name, kind in known_answers(design).items()}
 
 
@@ -22,7 +23,9 @@ def main_quantities(known: Mapping[str, Quantity]) -> tuple[str, ...]:
     if MAIN[0] in known:
         return MAIN
     of_program = tuple(name for name in known if name.startswith(("stiffness.", "ratcheting.")))
-    return of_program or tuple(name for name in known if name.endswith((".torque_Nm", ".rotation_arcmin")))
+    return of_program or tuple(
+        name for name in known if name.endswith((".torque_Nm", ".rotation_arcmin"))
+    )
 
 
 def describe_names(known: Mapping[str, Quantity]) -> str:

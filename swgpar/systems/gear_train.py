@@ -16,7 +16,14 @@ from swgpar.gear_trains.common_sections import TrainDesign
 from swgpar.gear_trains.published import numbered
 from swgpar.gear_trains.result import TrainResult
 from swgpar.gear_trains.terminal import print_compared
-from swgpar.gear_trains.train import make_train, model_of, open_train, reported_arithmetic, require_finite, run_train
+from swgpar.gear_trains.train import (
+    make_train,
+    model_of,
+    open_train,
+    reported_arithmetic,
+    require_finite,
+    run_train,
+)
 from swgpar.input.toml_file import apply_overrides
 from swgpar.meshing import MeshRecipe
 from swgpar.results.atomic import to_json
@@ -26,7 +33,8 @@ from swgpar.systems.protocol import Measured, System
 
 
 class GearTrains(System[TrainDesign, TrainResult]):
-    """The gear trains' adapter: their runs, results and quantities under the names that all systems share."""
+    """The gear trains' adapter: their runs, results and quantities under the names that all systems
+    share."""
 
     noun = "a gear train"
     options = frozenset()
@@ -55,7 +63,8 @@ class GearTrains(System[TrainDesign, TrainResult]):
         return train_report(result)
 
     def without_output(self, table: dict[str, Any]) -> dict[str, Any]:
-        # published values of the file belong to its own design, and may name what a varied one does not compute
+        # published values of the file belong to its own design, and may name what a varied one does
+        # not compute
         table = {key: value for key, value in table.items() if key != "published"}
         return apply_overrides(table, ["output.figures=false"])
 

@@ -47,8 +47,10 @@ class Measured:
     """Numbers that a study takes from a run.
 
     values : all quantities by name, without those that the run does not have
-    wall_s : seconds;  elements, newton_mean : of the mesh, and Newton iterations of an increment; None without a mesh
-    history : columns of the history that are drawn against the angle of the wave generator; empty without one
+    wall_s : seconds;  elements, newton_mean : of the mesh, and Newton iterations of an increment;
+    None without a mesh
+    history : columns of the history that are drawn against the angle of the wave generator; empty
+    without one
     """
 
     values: dict[str, float]
@@ -63,7 +65,8 @@ R = TypeVar("R", bound=Result)
 
 
 class System(ABC, Generic[D, R]):
-    """A kind of systems: its design files, runs and results. D is the class of its designs, R that of its results.
+    """A kind of systems: its design files, runs and results. D is the class of its designs, R that
+    of its results.
 
     Attributes
     ----------
@@ -76,7 +79,8 @@ class System(ABC, Generic[D, R]):
 
     @abstractmethod
     def load(self, table: dict[str, Any]) -> D:
-        """A checked design from the content of its file; every problem is an InputError of one sentence."""
+        """A checked design from the content of its file; every problem is an InputError of one
+        sentence."""
 
     @abstractmethod
     def check(self, design: D) -> dict[str, float]:
@@ -88,7 +92,8 @@ class System(ABC, Generic[D, R]):
 
     @abstractmethod
     def run(self, design: D, options: RunOptions) -> R:
-        """Run a design; collective. Options have values as far as `options` of this class names them."""
+        """Run a design; collective. Options have values as far as `options` of this class names
+        them."""
 
     @abstractmethod
     def open(self, folder: Path, comm: MPI.Comm) -> R:
@@ -134,7 +139,8 @@ class System(ABC, Generic[D, R]):
 
     @abstractmethod
     def identity(self, design: D, recipe: MeshRecipe | None) -> dict[str, Any]:
-        """What is computed, for restarts: "identity", and further values that a finished run must have in common."""
+        """What is computed, for restarts: "identity", and further values that a finished run must
+        have in common."""
 
     @abstractmethod
     def measure(self, result: R) -> Measured:

@@ -1,4 +1,5 @@
-"""The kinds of systems. A new one is an entry of `SYSTEMS`; command line, Python API and studies then know it."""
+"""The kinds of systems. A new one is an entry of `SYSTEMS`; command line, Python API and studies
+then know it."""
 
 from __future__ import annotations
 
@@ -14,8 +15,9 @@ SYSTEMS = {
     "gear_train": "swgpar.systems.gear_train.GEAR_TRAIN",
     "drive": "swgpar.systems.drive.DRIVE",
 }
-"""Section by which a design file is recognised -> where its system is. A system is imported when it is needed: a run
-does not load what other systems compute with. A file with none of the sections is read as the last one."""
+"""Section by which a design file is recognised -> where its system is. A system is imported when it
+is needed: a run does not load what other systems compute with. A file with none of the sections is
+read as the last one."""
 
 
 def system_of_section(section: str) -> System[Any, Any]:
@@ -35,4 +37,6 @@ def system_of(design: Design) -> System[Any, Any]:
     for section in SYSTEMS:
         if section in type(design).model_fields:
             return system_of_section(section)
-    raise InputError(f"{type(design).__name__} is not a design: allowed what swgpar.load_design returns")
+    raise InputError(
+        f"{type(design).__name__} is not a design: allowed what swgpar.load_design returns"
+    )

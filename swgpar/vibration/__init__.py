@@ -1,1 +1,2 @@
-"""Numerics of lumped models: meshes with backlash, elastic rings, statistical linearisation, random samples."""
+"""Numerics of lumped models: meshes with backlash, elastic rings, statistical linearisation, random
+samples."""

@@ -1,9 +1,13 @@
-"""A mesh with backlash: force and energy, and their expectations for a normally distributed deflection.
+"""A mesh with backlash: force and energy, and their expectations for a normally distributed
+deflection.
 
-    f(d) = k (d - b) beyond b, k (d + b) below -b, 0 between;    P(d) = k (|d| - b)² / 2 outside, 0 between
+    f(d) = k (d - b) beyond b, k (d + b) below -b, 0 between;    P(d) = k (|d| - b)² / 2 outside, 0
+    between
 
-P is the integral of f. Equation 4.32 of the source lacks k b² / 2: its energy jumps at the ends of the gap.
-Arrays broadcast; stiffness k in N/m, deflections d, half backlash b and deviations s in m, s = 0 allowed.
+P is the integral of f. Equation 4.32 of the source lacks k b² / 2: its energy jumps at the ends of
+the gap.
+Arrays broadcast; stiffness k in N/m, deflections d, half backlash b and deviations s in m, s = 0
+allowed.
 """
 
 from __future__ import annotations
@@ -29,8 +33,11 @@ def energy(stiffness: Array, deflection: Array, half_backlash: Array) -> np.ndar
     return 0.5 * stiffness * dead_zone(deflection, half_backlash) ** 2
 
 
-def _beyond(mean: Array, deviation: Array, half_backlash: Array) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Expectations of 1, of x and of x² over x = d - b where d > b and over x = -d - b where d < -b, (2, ...)."""
+def _beyond(
+    mean: Array, deviation: Array, half_backlash: Array
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Expectations of 1, of x and of x² over x = d - b where d > b and over x = -d - b where d <
+    -b, (2, ...)."""
     m, s = np.asarray(mean, dtype=float), np.asarray(deviation, dtype=float)
     x = np.array([m - half_backlash, -m - half_backlash])
     ratio = x / np.where(s > 0.0, s, 1.0)
@@ -45,7 +52,9 @@ def mean_force(stiffness: Array, mean: Array, deviation: Array, half_backlash: A
     return mean_force_and_stiffness(stiffness, mean, deviation, half_backlash)[0]
 
 
-def mean_stiffness(stiffness: Array, mean: Array, deviation: Array, half_backlash: Array) -> np.ndarray:
+def mean_stiffness(
+    stiffness: Array, mean: Array, deviation: Array, half_backlash: Array
+) -> np.ndarray:
     """E[df/dd], N/m: the equivalent stiffness of the force-based linearisation (eq. 3.39)."""
     return mean_force_and_stiffness(stiffness, mean, deviation, half_backlash)[1]
 
@@ -58,26 +67,34 @@ def mean_force_and_stiffness(
     return stiffness * (first[0] - first[1]), stiffness * (share[0] + share[1])
 
 
-def mean_energy(stiffness: Array, mean: Array, deviation: Array, half_backlash: Array) -> np.ndarray:
+def mean_energy(
+    stiffness: Array, mean: Array, deviation: Array, half_backlash: Array
+) -> np.ndarray:
     """E[P], J."""
     return 0.5 * stiffness * _beyond(mean, deviation, half_backlash)[2].sum(axis=0)
 
 
-def energy_stiffness(stiffness: Array, mean: Array, deviation: Array, half_backlash: Array) -> np.ndarray:
+def energy_stiffness(
+    stiffness: Array, mean: Array, deviation: Array, half_backlash: Array
+) -> np.ndarray:
     """The equivalent stiffness of the energy-based linearisation, N/m.
 
     The mean square of P(d) - P(m) - k_e (d - m)² / 2 - f_0 (d - m) has its minimum at
 
         k_e = 2/3 (E[df/dd] + (E[P] - P(m)) / s²),    f_0 = E[f].
 
-    The energy counts from that of the mean deflection m. In print (eqs 4.31, 4.43) it counts from zero. Then k_e is
-    wrong even for a mesh that never leaves contact: k (1 + (m - b)² / (3 s²)) instead of k. With a free constant in the
-    energy the minimum is at E[df/dd], the force-based stiffness.
+    The energy counts from that of the mean deflection m. In print (eqs 4.31, 4.43) it counts from
+    zero. Then k_e is wrong even for a mesh that never leaves contact: k (1 + (m - b)² / (3 s²))
+    instead of k. With a free constant in the energy the minimum is at E[df/dd], the force-based
+    stiffness.
     """
     s2 = np.asarray(deviation, dtype=float) ** 2
     slope = mean_stiffness(stiffness, mean, deviation, half_backlash)
-    # for smaller deviations the difference of the energies is round-off; its limit is half the slope
+    # for smaller deviations the difference of the energies is round-off; its limit is half the
+    # slope
     scale = np.abs(mean) + half_backlash
     resolved = s2 > 1e-10 * scale**2
-    rise = mean_energy(stiffness, mean, deviation, half_backlash) - energy(stiffness, mean, half_backlash)
+    rise = mean_energy(stiffness, mean, deviation, half_backlash) - energy(
+        stiffness, mean, half_backlash
+    )
     return np.where(resolved, 2.0 / 3.0 * (slope + rise / np.where(resolved, s2, 1.0)), slope)

@@ -1,17 +1,21 @@
-"""Curved-beam element of a thin ring with exact static shape functions, and the ring of such elements.
+"""Curved-beam element of a thin ring with exact static shape functions, and the ring of such
+elements.
 
-Displacements of the centre line at the angle a: u outward, w counter-clockwise, and the rotation r = (w - u') / R of
-its cross-section. The energy is that of Flügge's thin ring,
+Displacements of the centre line at the angle a: u outward, w counter-clockwise, and the rotation r
+= (w - u') / R of its cross-section. The energy is that of Flügge's thin ring,
 
     U = 1/2 ∫ (E A e² + E I k²) R da,    e = (w' + u) / R,    k = (u + u'') / R²,
 
-with the kinetic energy of u, w and r. Its exact solutions without load are six functions of a; they are the source's
-(eqs 3.17 to 3.19 and 6.1 to 6.3, with its radial displacement inward; J.-S. Wu, L.-K. Chiang, Dynamic analysis of an
-arch due to a moving load, Journal of Sound and Vibration 269 (2004) 511-534), the stretching one with
-J = 1 + I / (A R²). Stiffness and mass follow from the energy and are symmetric. Deviations from print:
+with the kinetic energy of u, w and r. Its exact solutions without load are six functions of a; they
+are the source's (eqs 3.17 to 3.19 and 6.1 to 6.3, with its radial displacement inward; J.-S. Wu,
+L.-K. Chiang, Dynamic analysis of an arch due to a moving load, Journal of Sound and Vibration 269
+(2004) 511-534), the stretching one with J = 1 + I / (A R²). Stiffness and mass follow from the
+energy and are symmetric. Deviations from print:
 
-- shape functions are P(a) Q⁻¹, not P Qᵀ (eqs 3.67, 6.5); eq. 3.18 lacks the G4 term and has one of G3 for it;
-- the stiffness is Q⁻ᵀ (∫ of the strains' products) Q⁻¹; the printed V Q⁻¹ (eqs 5.3, 6.21; D of eq. 3.61) has signs and
+- shape functions are P(a) Q⁻¹, not P Qᵀ (eqs 3.67, 6.5); eq. 3.18 lacks the G4 term and has one of
+G3 for it;
+- the stiffness is Q⁻ᵀ (∫ of the strains' products) Q⁻¹; the printed V Q⁻¹ (eqs 5.3, 6.21; D of eq.
+3.61) has signs and
   an entry R⁻¹ in the rows of the moments that make it unsymmetric.
 """
 
@@ -28,7 +32,8 @@ QUADRATURE = 8
 
 @dataclass(frozen=True)
 class BeamSection:
-    """Of a ring. E : Pa;  density : kg/m³;  radius : m, of the centre line;  area : m²;  inertia : m⁴"""
+    """Of a ring. E : Pa;  density : kg/m³;  radius : m, of the centre line;  area : m²;  inertia :
+    m⁴"""
 
     E: float
     density: float
@@ -37,7 +42,9 @@ class BeamSection:
     inertia: float
 
     @classmethod
-    def rectangle(cls, E: float, density: float, radius: float, thickness: float, width: float) -> BeamSection:
+    def rectangle(
+        cls, E: float, density: float, radius: float, thickness: float, width: float
+    ) -> BeamSection:
         """A rectangular section. E : Pa;  density : kg/m³;  radius, thickness, width : m"""
         return cls(E, density, radius, width * thickness, width * thickness**3 / 12.0)
 
@@ -48,7 +55,8 @@ class BeamSection:
 
 
 def solutions(section: BeamSection, angle: float) -> np.ndarray:
-    """P: (3, 6), values of u, w (m) and r (rad) of the six solutions at an angle from the element's middle."""
+    """P: (3, 6), values of u, w (m) and r (rad) of the six solutions at an angle from the element's
+    middle."""
     a = angle
     c = np.cos(angle)
     s = np.sin(angle)
@@ -68,13 +76,16 @@ def _strains(section: BeamSection, angle: float) -> np.ndarray:
     """(2, 6): e and k of the six solutions."""
     out = np.zeros((2, 6))
     out[0, 0] = -section.slenderness / section.radius
-    out[1, [0, 3, 5]] = np.array([1.0, 2.0 * np.cos(angle), -2.0 * np.sin(angle)]) / section.radius**2
+    out[1, [0, 3, 5]] = (
+        np.array([1.0, 2.0 * np.cos(angle), -2.0 * np.sin(angle)]) / section.radius**2
+    )
     return out
 
 
 @dataclass(frozen=True)
 class Element:
-    """An element over an angle. bending, stretching : both parts of the stiffness (6, 6);  mass : (6, 6)
+    """An element over an angle. bending, stretching : both parts of the stiffness (6, 6);  mass :
+    (6, 6)
 
     inverse : Q⁻¹ (6, 6)
     """
@@ -89,11 +100,15 @@ class Element:
     @classmethod
     def over(cls, section: BeamSection, angle: float) -> Element:
         """The element of a ring whose ends are `angle` rad apart."""
-        inverse = np.linalg.inv(np.vstack([solutions(section, -0.5 * angle), solutions(section, 0.5 * angle)]))
+        inverse = np.linalg.inv(
+            np.vstack([solutions(section, -0.5 * angle), solutions(section, 0.5 * angle)])
+        )
         points, weights = np.polynomial.legendre.leggauss(QUADRATURE)
         inertial = section.density * np.diag([section.area, section.area, section.inertia])
         bending, stretching, mass = (np.zeros((6, 6)) for _ in range(3))
-        for x, weight in zip(0.5 * angle * points, 0.5 * angle * section.radius * weights, strict=True):
+        for x, weight in zip(
+            0.5 * angle * points, 0.5 * angle * section.radius * weights, strict=True
+        ):
             strain, value = _strains(section, x) @ inverse, solutions(section, x) @ inverse
             stretching += weight * section.E * section.area * np.outer(strain[0], strain[0])
             bending += weight * section.E * section.inertia * np.outer(strain[1], strain[1])
@@ -106,12 +121,14 @@ class Element:
         return self.bending + self.stretching
 
     def shape_functions(self, angle: float) -> np.ndarray:
-        """(3, 6): u, w, r at an angle from the middle per displacements of the two nodes (eq. 6.5)."""
+        """(3, 6): u, w, r at an angle from the middle per displacements of the two nodes (eq.
+        6.5)."""
         return solutions(self.section, angle) @ self.inverse
 
 
 class Ring:
-    """A ring: nodes at equal angles from 0 with three unknowns (u, w, r) each, supports and tooth masses.
+    """A ring: nodes at equal angles from 0 with three unknowns (u, w, r) each, supports and tooth
+    masses.
 
     Parameters
     ----------
@@ -144,13 +161,17 @@ class Ring:
         return 3 * self.elements
 
     def modes(self) -> tuple[np.ndarray, np.ndarray]:
-        """Natural frequencies (unknowns,) in rad/s, growing, and their shapes (unknowns, unknowns) of unit mass."""
+        """Natural frequencies (unknowns,) in rad/s, growing, and their shapes (unknowns, unknowns)
+        of unit mass."""
         squares, shapes = eigh(self.stiffness, self.mass)
         return np.sqrt(squares.clip(0.0)), shapes
 
     def bending_share(self, shapes: np.ndarray) -> np.ndarray:
-        """Bending's share of the strain energy of displacements (unknowns, n); 0 for a rigid motion."""
-        bending, elastic = (np.einsum("ik,ij,jk->k", shapes, m, shapes) for m in (self.bending, self.elastic))
+        """Bending's share of the strain energy of displacements (unknowns, n); 0 for a rigid
+        motion."""
+        bending, elastic = (
+            np.einsum("ik,ij,jk->k", shapes, m, shapes) for m in (self.bending, self.elastic)
+        )
         return np.where(elastic > 0.0, bending / np.where(elastic > 0.0, elastic, 1.0), 0.0)
 
     def unknowns(self, element: int) -> np.ndarray:
@@ -164,7 +185,9 @@ class Ring:
         turned = angle % (2.0 * np.pi)
         number = min(int(turned / width), self.elements - 1)
         rows = np.zeros((3, self.size))
-        rows[:, self.unknowns(number)] = self.element.shape_functions(turned - (number + 0.5) * width)
+        rows[:, self.unknowns(number)] = self.element.shape_functions(
+            turned - (number + 0.5) * width
+        )
         return rows
 
     def _assembled(self, matrix: np.ndarray) -> np.ndarray:
@@ -180,11 +203,18 @@ class Ring:
             matrix[indices, indices] += values
 
 
-def supports_restrain_ring(supports: int, radial: float, tangential: float, torsional: float, radius: float) -> bool:
-    """Whether equally spaced supports (N/m, N/m, N·m/rad) hold a ring of some radius (m) against all rigid motions."""
+def supports_restrain_ring(
+    supports: int, radial: float, tangential: float, torsional: float, radius: float
+) -> bool:
+    """Whether equally spaced supports (N/m, N/m, N·m/rad) hold a ring of some radius (m) against
+    all rigid motions."""
     angle = 2.0 * np.pi * np.arange(supports) / supports
     none, one = np.zeros(supports), np.ones(supports)
-    motions = (np.cos(angle), np.sin(angle), none), (-np.sin(angle), np.cos(angle), one), (none, none, one)
+    motions = (
+        (np.cos(angle), np.sin(angle), none),
+        (-np.sin(angle), np.cos(angle), one),
+        (none, none, one),
+    )
     springs = radial, tangential, torsional / radius**2
     stiffness = sum(k * np.array(m) @ np.array(m).T for k, m in zip(springs, motions, strict=True))
     lowest, _, highest = np.linalg.eigvalsh(stiffness)
@@ -192,7 +222,8 @@ def supports_restrain_ring(supports: int, radial: float, tangential: float, tors
 
 
 def free_frequencies(section: BeamSection, waves: int) -> np.ndarray:
-    """Both natural frequencies (2,) in rad/s of a free ring with `waves` waves around it: bending, then stretching.
+    """Both natural frequencies (2,) in rad/s of a free ring with `waves` waves around it: bending,
+    then stretching.
 
     Exact for the energy above: u = U cos(n a), w = W sin(n a).
     """

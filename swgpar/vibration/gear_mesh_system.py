@@ -1,11 +1,13 @@
-"""Masses, springs and dampers with gear meshes under a steady load and white noise, and their time integration.
+"""Masses, springs and dampers with gear meshes under a steady load and white noise, and their time
+integration.
 
     M q'' + C q' + K q + sum_j w_j f_j(w_j . q) = F + B W(t)
 
-f_j is the force of mesh j (backlash.py), w_j its deflection per coordinate, W a vector of independent white noises of
-unit intensity. Time steps are those of the stochastic Newmark scheme (eq. 4.52; P. Bernard, G. Fleury, Stochastic
-Newmark scheme, Probabilistic Engineering Mechanics 17 (2002) 45-61), the trapezoidal rule with the exact covariance of
-the noise's integrals over a step h:
+f_j is the force of mesh j (backlash.py), w_j its deflection per coordinate, W a vector of
+independent white noises of unit intensity. Time steps are those of the stochastic Newmark scheme
+(eq. 4.52; P. Bernard, G. Fleury, Stochastic Newmark scheme, Probabilistic Engineering Mechanics 17
+(2002) 45-61), the trapezoidal rule with the exact covariance of the noise's integrals over a step
+h:
 
     M (v1 - v0) + C (q1 - q0) + h/2 (p0 + p1) = h F + sqrt(h) B N1,    p = K q + sum_j w_j f_j,
     M (q1 - q0) - h/2 M (v0 + v1) = h sqrt(h/12) B N2,
@@ -55,9 +57,11 @@ class GearMeshSystem:
         return self.stiffness + deflection_rows.T @ (equivalent[:, None] * deflection_rows)
 
     def newmark(self, stiffness: np.ndarray, h: float) -> tuple[np.ndarray, np.ndarray]:
-        """Left matrix of the scheme at the end of a step and right matrix at its start, (2 n, 2 n) each, for p = K q.
+        """Left matrix of the scheme at the end of a step and right matrix at its start, (2 n, 2 n)
+        each, for p = K q.
 
-        stiffness : K at that moment (n, n). The right matrix of a step is to be taken with the K of its start.
+        stiffness : K at that moment (n, n). The right matrix of a step is to be taken with the K of
+        its start.
         """
         m, c, k = self.mass, self.damping, 0.5 * h * stiffness
         return np.block([[c + k, m], [m, -0.5 * h * m]]), np.block([[c - k, m], [m, 0.5 * h * m]])

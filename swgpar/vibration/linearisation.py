@@ -1,14 +1,16 @@
-"""Statistical linearisation: mean and covariance over time of a gear-mesh system with normally distributed coordinates.
+"""Statistical linearisation: mean and covariance over time of a gear-mesh system with normally
+distributed coordinates.
 
-Each mesh is replaced by the linear law f_0 + k_e (d - E[d]) with f_0 = E[f] and an equivalent stiffness k_e. Both
-follow from mean and standard deviation of the mesh deflection d at the same time. The mean q of the coordinates obeys
+Each mesh is replaced by the linear law f_0 + k_e (d - E[d]) with f_0 = E[f] and an equivalent
+stiffness k_e. Both follow from mean and standard deviation of the mesh deflection d at the same
+time. The mean q of the coordinates obeys
 
     M q'' + C q' + K q + sum_j w_j f_0j = F
 
-and the covariance is that of the linear system with the stiffnesses k_ej. Both are integrated by the Newmark scheme of
-`GearMeshSystem`, so that the covariance stays symmetric and positive semi-definite. Mean and covariance of a step are
-solved together, to convergence. In print (eq. 4.51) k_e acts on the mean as well, beside f_0: then the mesh counts
-twice.
+and the covariance is that of the linear system with the stiffnesses k_ej. Both are integrated by
+the Newmark scheme of `GearMeshSystem`, so that the covariance stays symmetric and positive
+semi-definite. Mean and covariance of a step are solved together, to convergence. In print (eq.
+4.51) k_e acts on the mean as well, beside f_0: then the mesh counts twice.
 """
 
 from __future__ import annotations
@@ -20,16 +22,25 @@ from typing import Literal
 import numpy as np
 
 from swgpar.errors import ConvergenceError
-from swgpar.vibration.backlash import energy_stiffness, mean_force, mean_force_and_stiffness, mean_stiffness
+from swgpar.vibration.backlash import (
+    energy_stiffness,
+    mean_force,
+    mean_force_and_stiffness,
+    mean_stiffness,
+)
 from swgpar.vibration.gear_mesh_system import GearMeshSystem
 from swgpar.vibration.moments import Moments
 
 Criterion = Literal["energy", "force"]
-EQUIVALENT: dict[Criterion, Callable[..., np.ndarray]] = {"energy": energy_stiffness, "force": mean_stiffness}
+EQUIVALENT: dict[Criterion, Callable[..., np.ndarray]] = {
+    "energy": energy_stiffness,
+    "force": mean_stiffness,
+}
 """Equivalent stiffness of a mesh by criterion."""
 
 TOLERANCE, MAX_ITERATIONS = 1e-10, 60
-"""Relative change of mean forces and equivalent stiffnesses in the last iteration of a step; limit of iterations."""
+"""Relative change of mean forces and equivalent stiffnesses in the last iteration of a step; limit
+of iterations."""
 
 MEAN_TOLERANCE = 1e-8
 """Relative change in the last Newton iteration of the mean; convergence is quadratic."""
@@ -39,7 +50,8 @@ MEAN_TOLERANCE = 1e-8
 class CoordinateMoments:
     """time : (rows,) s;  mean : (rows, n) of the coordinates, m
 
-    covariance : (rows, 2 n, 2 n) of coordinates and velocities, m and m/s; symmetric up to round-off
+    covariance : (rows, 2 n, 2 n) of coordinates and velocities, m and m/s; symmetric up to
+    round-off
     """
 
     time: np.ndarray
@@ -47,7 +59,8 @@ class CoordinateMoments:
     covariance: np.ndarray
 
     def of(self, rows: np.ndarray) -> Moments:
-        """Moments without the start of values whose `rows` (values, n) are theirs per coordinate."""
+        """Moments without the start of values whose `rows` (values, n) are theirs per
+        coordinate."""
         n = self.mean.shape[1]
         variances = np.einsum("ki,tij,kj->tk", rows, self.covariance[1:, :n, :n], rows)
         return Moments(self.mean[1:] @ rows.T, np.sqrt(np.maximum(variances, 0.0)))
@@ -57,7 +70,8 @@ class CoordinateMoments:
 class _MeshState:
     """Meshes at the end of a step.
 
-    stiffness : (m,) N/m;  rows : (m, n), mesh deflections per coordinate;  deviation : (m,) m, of the deflections
+    stiffness : (m,) N/m;  rows : (m, n), mesh deflections per coordinate;  deviation : (m,) m, of
+    the deflections
     forces : (m,) N, expected forces;  equivalent : (m,) N/m, equivalent stiffnesses
     """
 
@@ -69,13 +83,23 @@ class _MeshState:
 
 
 def linearise(
-    system: GearMeshSystem, start: np.ndarray, h: float, count: int, every: int, criterion: Criterion
+    system: GearMeshSystem,
+    start: np.ndarray,
+    h: float,
+    count: int,
+    every: int,
+    criterion: Criterion,
 ) -> CoordinateMoments:
-    """Moments of a system that starts at rest at `start` (n,), after every `every` of `count` steps of h seconds."""
+    """Moments of a system that starts at rest at `start` (n,), after every `every` of `count` steps
+    of h seconds."""
     n, half_backlash, equivalent = system.size, system.half_backlash, EQUIVALENT[criterion]
     q, v, covariance = start.astype(float), np.zeros(n), np.zeros((2 * n, 2 * n))
     saved = [(0.0, q, covariance)]
-    stiffness, rows, deviation = system.mesh_stiffness(0.0), system.deflection_rows(0.0), np.zeros(len(half_backlash))
+    stiffness, rows, deviation = (
+        system.mesh_stiffness(0.0),
+        system.deflection_rows(0.0),
+        np.zeros(len(half_backlash)),
+    )
     meshes = _MeshState(
         stiffness,
         rows,
@@ -101,7 +125,8 @@ def _step(
     meshes: _MeshState,
     criterion: Criterion,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Mean coordinates (n,), mean velocities (n,) and covariance (2 n, 2 n) at time t, h seconds after `moments`.
+    """Mean coordinates (n,), mean velocities (n,) and covariance (2 n, 2 n) at time t, h seconds
+    after `moments`.
 
     Updates `meshes`, which belong to the start of the step, to its end.
     """
@@ -129,18 +154,29 @@ def _step(
         meshes.forces, meshes.equivalent = mean_force(*law), equivalent(*law)
         change = np.abs(meshes.forces - old_forces).max()
         change /= (np.abs(meshes.stiffness) * half_backlash + np.abs(meshes.forces)).max()
-        if max(change, np.abs((meshes.equivalent - old_equivalent) / meshes.stiffness).max()) < TOLERANCE:
+        if (
+            max(change, np.abs((meshes.equivalent - old_equivalent) / meshes.stiffness).max())
+            < TOLERANCE
+        ):
             return new_q, 2.0 / h * (new_q - q) - v, new
     raise ConvergenceError(f"the linearisation did not converge at {t:g} s")
 
 
 def _mean(
-    left: np.ndarray, known: np.ndarray, weight: float, q: np.ndarray, meshes: _MeshState, half_backlash: np.ndarray
+    left: np.ndarray,
+    known: np.ndarray,
+    weight: float,
+    q: np.ndarray,
+    meshes: _MeshState,
+    half_backlash: np.ndarray,
 ) -> np.ndarray:
-    """Solve left q + weight sum_j w_j E[f_j](w_j . q) = known by Newton's method, with E[df/dd] as E[f]'."""
+    """Solve left q + weight sum_j w_j E[f_j](w_j . q) = known by Newton's method, with E[df/dd] as
+    E[f]'."""
     rows = meshes.rows
     for _ in range(MAX_ITERATIONS):
-        forces, slope = mean_force_and_stiffness(meshes.stiffness, rows @ q, meshes.deviation, half_backlash)
+        forces, slope = mean_force_and_stiffness(
+            meshes.stiffness, rows @ q, meshes.deviation, half_backlash
+        )
         residual = left @ q + weight * rows.T @ forces - known
         change = np.linalg.solve(left + weight * rows.T @ (slope[:, None] * rows), residual)
         q = q - change

@@ -1,4 +1,5 @@
-"""Exact time steps of separate modes under forces that vary linearly within a step, and white noise."""
+"""Exact time steps of separate modes under forces that vary linearly within a step, and white
+noise."""
 
 from __future__ import annotations
 
@@ -9,7 +10,8 @@ from scipy.linalg import expm
 
 
 class ModalStepper:
-    """Separate unit masses with stiffness k and damping c (modes,), advanced exactly by steps of h seconds.
+    """Separate unit masses with stiffness k and damping c (modes,), advanced exactly by steps of h
+    seconds.
 
     The force is linear in a step; white noise has unit intensity, one and the same for all modes.
     """
@@ -31,26 +33,36 @@ class ModalStepper:
 
     @cached_property
     def noise(self) -> np.ndarray:
-        """Covariance (2, 2, modes, modes) that the noise of a step leaves: of A X + X A^T = E Q E^T - Q."""
+        """Covariance (2, 2, modes, modes) that the noise of a step leaves: of A X + X A^T = E Q E^T
+        - Q."""
         rates = self.rates
         n, eye = len(rates), np.eye(2)
-        left = np.einsum("iab,cd->iacbd", rates, eye)[:, None] + np.einsum("ab,jcd->jacbd", eye, rates)[None]
+        left = (
+            np.einsum("iab,cd->iacbd", rates, eye)[:, None]
+            + np.einsum("ab,jcd->jacbd", eye, rates)[None]
+        )
         e = self.of_state[:, 1]  # (2, modes): what becomes of a unit of velocity
         right = np.einsum("ai,bj->ijab", e, e)
         right[:, :, 1, 1] -= 1.0
         solved = np.linalg.solve(left.reshape(n, n, 4, 4), right.reshape(n, n, 4, 1))
         return solved.reshape(n, n, 2, 2).transpose(2, 3, 0, 1)
 
-    def step(self, q: np.ndarray, v: np.ndarray, start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def step(
+        self, q: np.ndarray, v: np.ndarray, start: np.ndarray, end: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
         """State (..., modes) after a step in which the forces (modes,) go from `start` to `end`."""
         (qq, qv), (vq, vv) = self.of_state
         p = self.of_start * start + self.of_end * end
         return qq * q + qv * v + p[0], vq * q + vv * v + p[1]
 
     def spread(self, old: np.ndarray, noises: np.ndarray) -> np.ndarray:
-        """Covariance (2, 2, modes, modes) of displacements and velocities after a step with noises (modes, loads)."""
+        """Covariance (2, 2, modes, modes) of displacements and velocities after a step with noises
+        (modes, loads)."""
         e, common = self.of_state, noises @ noises.T
-        rows = [[e[a, 0][:, None] * old[0, c] + e[a, 1][:, None] * old[1, c] for c in (0, 1)] for a in (0, 1)]
+        rows = [
+            [e[a, 0][:, None] * old[0, c] + e[a, 1][:, None] * old[1, c] for c in (0, 1)]
+            for a in (0, 1)
+        ]
         new = np.empty_like(old)
         for a in (0, 1):
             for c in (0, 1):

@@ -1,4 +1,5 @@
-"""Means and standard deviations over time: of linearised systems, and of samples that are drawn block by block."""
+"""Means and standard deviations over time: of linearised systems, and of samples that are drawn
+block by block."""
 
 from __future__ import annotations
 
@@ -34,7 +35,8 @@ class SampleMoments:
     Attributes
     ----------
     count : number of samples
-    mean : (rows, values), sample means;  squares : (rows, values), sums of the squared differences from them
+    mean : (rows, values), sample means;  squares : (rows, values), sums of the squared differences
+    from them
     final : (count,), the last value of every sample at the last row
     """
 
@@ -45,7 +47,8 @@ class SampleMoments:
 
     @classmethod
     def of(cls, rows: Iterable[np.ndarray]) -> SampleMoments:
-        """Moments of the samples of a block. rows : (values, samples) at one moment of time after the other"""
+        """Moments of the samples of a block. rows : (values, samples) at one moment of time after
+        the other"""
         means, squares = [], []
         for values in rows:
             means.append(values.mean(axis=1))
@@ -69,15 +72,22 @@ class SampleMoments:
 def largest(moments: HasMoments, names: Iterable[str]) -> dict[str, float]:
     """Largest size of the mean and largest deviation over time, of every value by name."""
     columns = {"mean": np.abs(moments.mean), "deviation": moments.deviation}
-    return {f"{kind}_{name}": float(c[:, k].max()) for k, name in enumerate(names) for kind, c in columns.items()}
+    return {
+        f"{kind}_{name}": float(c[:, k].max())
+        for k, name in enumerate(names)
+        for kind, c in columns.items()
+    }
 
 
 def percent_errors(linearised: HasMoments, simulated: HasMoments) -> dict[str, list[float]]:
-    """Errors of linearised means and deviations against simulated ones, averaged over the second half of the time."""
+    """Errors of linearised means and deviations against simulated ones, averaged over the second
+    half of the time."""
 
     def error(of_one: np.ndarray, of_other: np.ndarray) -> list[float]:
         settled = slice(len(of_one) // 2, None)
-        return (100.0 * (of_one[settled].mean(axis=0) / of_other[settled].mean(axis=0) - 1.0)).tolist()
+        return (
+            100.0 * (of_one[settled].mean(axis=0) / of_other[settled].mean(axis=0) - 1.0)
+        ).tolist()
 
     return {
         "mean": error(linearised.mean, simulated.mean),
@@ -86,14 +96,23 @@ def percent_errors(linearised: HasMoments, simulated: HasMoments) -> dict[str, l
 
 
 def columns(
-    parts: Sequence[HasMoments], names: Iterable[str], unit: str, scale: float = 1.0, method: str = ""
+    parts: Sequence[HasMoments],
+    names: Iterable[str],
+    unit: str,
+    scale: float = 1.0,
+    method: str = "",
 ) -> dict[str, np.ndarray]:
-    """Columns of a table: means and deviations of every value by name, the parts in blocks below each other.
+    """Columns of a table: means and deviations of every value by name, the parts in blocks below
+    each other.
 
     unit, scale : of the columns;  method : in front of their names
     """
     out = {}
     for k, name in enumerate(names):
-        out[f"{method}mean_{name}_{unit}"] = scale * np.concatenate([part.mean[:, k] for part in parts])
-        out[f"{method}deviation_{name}_{unit}"] = scale * np.concatenate([part.deviation[:, k] for part in parts])
+        out[f"{method}mean_{name}_{unit}"] = scale * np.concatenate(
+            [part.mean[:, k] for part in parts]
+        )
+        out[f"{method}deviation_{name}_{unit}"] = scale * np.concatenate(
+            [part.deviation[:, k] for part in parts]
+        )
     return out

@@ -1,7 +1,7 @@
 """Random samples that do not depend on the number of ranks, and tasks dealt over the ranks.
 
-Samples are drawn block by block. Every block has a counter-based stream of its own (Philox, keyed by the seed and the
-block's number), so that it does not matter who draws it or when.
+Samples are drawn block by block. Every block has a counter-based stream of its own (Philox, keyed
+by the seed and the block's number), so that it does not matter who draws it or when.
 """
 
 from __future__ import annotations
@@ -28,7 +28,8 @@ def block_sizes(count: int, size: int) -> list[int]:
 
 
 def run_tasks(comm: MPI.Comm, tasks: Sequence[Callable[[], Any]]) -> tuple[list[Any], list[float]]:
-    """Results of all tasks and their seconds, in order and on every rank; each runs on one rank only. Collective.
+    """Results of all tasks and their seconds, in order and on every rank; each runs on one rank
+    only. Collective.
 
     A ConvergenceError of a task is raised on all ranks.
     """

@@ -1,8 +1,9 @@
-"""What ends a command and what shows that it lives: signals, and a line where nothing else is written for long.
+"""What ends a command and what shows that it lives: signals, and a line where nothing else is
+written for long.
 
-Both work while the interpreter is in a long call of a library, a factorisation or the wait for another rank. A signal
-ends the process at once: results are complete on the disk after every increment. mpirun then ends the other ranks.
-The sentence comes from rank 0.
+Both work while the interpreter is in a long call of a library, a factorisation or the wait for
+another rank. A signal ends the process at once: results are complete on the disk after every
+increment. mpirun then ends the other ranks. The sentence comes from rank 0.
 """
 
 from __future__ import annotations
@@ -34,7 +35,8 @@ CLEAN = "\r\x1b[K\x1b[?25h"
 
 @dataclass(frozen=True)
 class _Command:
-    """What the sentence of the present command is made of; `kind` is empty where this process says nothing."""
+    """What the sentence of the present command is made of; `kind` is empty where this process says
+    nothing."""
 
     armed: bool = False
     kind: str = ""
@@ -53,7 +55,8 @@ def _set_command(command: _Command) -> None:
 
 @contextmanager
 def armed() -> Iterator[None]:
-    """Let signals end the process inside the block with one sentence, and exit code 130 (SIGINT) or 143.
+    """Let signals end the process inside the block with one sentence, and exit code 130 (SIGINT) or
+    143.
 
     A signal that the process was started to ignore (nohup) stays ignored.
     """
@@ -73,13 +76,16 @@ def armed() -> Iterator[None]:
 
 
 def rearm() -> None:
-    """Handle the signals again after a library has taken them, inside `armed`: PETSc does when it starts."""
+    """Handle the signals again after a library has taken them, inside `armed`: PETSc does when it
+    starts."""
     for number in SIGNALS if _command.armed else ():
         if signal.getsignal(number) is signal.SIG_IGN:
             signal.signal(number, signal.SIG_IGN)
         else:
             _watch.arm(number)
-    if _command.armed:  # PETSc ends all ranks when the reader of the output has gone; Python raises BrokenPipeError
+    if (
+        _command.armed
+    ):  # PETSc ends all ranks when the reader of the output has gone; Python raises BrokenPipeError
         signal.signal(signal.SIGPIPE, signal.SIG_IGN)
 
 
@@ -94,7 +100,11 @@ def begin(kind: str, out: str, *, restarts: bool, terminal: bool) -> None:
     terminal : whether a progress bar may be on the terminal; without one there are signs of life
     """
     saved_in = shortened(printable(out), PATH_LETTERS)
-    _set_command(replace(_command, kind=kind, saved=saved_in, restarts=restarts, before=CLEAN if terminal else ""))
+    _set_command(
+        replace(
+            _command, kind=kind, saved=saved_in, restarts=restarts, before=CLEAN if terminal else ""
+        )
+    )
     saved(kind, 0, 0)
     doing("still computing")
     if not terminal:
@@ -102,10 +112,14 @@ def begin(kind: str, out: str, *, restarts: bool, terminal: bool) -> None:
 
 
 def saved(kind: str, done: int, total: int) -> None:
-    """So many increments or cases are complete on the disk. Counts that the command does not ask for are left out."""
+    """So many increments or cases are complete on the disk. Counts that the command does not ask
+    for are left out."""
     if kind != _command.kind:
         return
-    how = f"{done} of {total} {kind} are saved in {_command.saved}; the same command with --restart continues"
+    how = (
+        f"{done} of {total} {kind} are saved in {_command.saved}; the same command with --restart "
+        f"continues"
+    )
     if not (done and _command.restarts):
         how = f"nothing is saved in {_command.saved}; the same command starts again"
     _watch.set_sentence(f"{_command.before}swgpar: stopped by ".encode(), f": {how}\n".encode())

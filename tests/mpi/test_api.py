@@ -20,10 +20,20 @@ SMALL = [*PLANE, *NO_SHORTCUTS, "steps.rotation=2.0", "steps.increment=2.0", "ou
 
 def numbers(result: swgpar.DriveResult) -> list[np.ndarray]:
     """History without times and iterations, means, mesh and fields."""
-    columns = [v for k, v in result.history.items() if k not in ("wall_s", "newton_iterations", "torque_balance_Nmm")]
+    columns = [
+        v
+        for k, v in result.history.items()
+        if k not in ("wall_s", "newton_iterations", "torque_balance_Nmm")
+    ]
     fields = [result.field(name) for name in ("displacement", "vm", "pressure")]
     means = np.array(list(result.summary.rotation.means.values()))
-    return [*columns, means, *result.mesh("flexible_spline"), *fields, result.field("s1", 0, "ring_gear")]
+    return [
+        *columns,
+        means,
+        *result.mesh("flexible_spline"),
+        *fields,
+        result.field("s1", 0, "ring_gear"),
+    ]
 
 
 @pytest.mark.parallel([1, 2])
@@ -39,7 +49,10 @@ def test_every_rank_has_the_result_of_one() -> None:
     for value, reference in zip(found, expected, strict=True):
         np.testing.assert_allclose(value, reference, rtol=1e-5, atol=1e-6 * np.abs(reference).max())
     summaries = comm.allgather(together.summary)
-    assert all(summary == summaries[0] for summary in summaries) and together.summary.ranks == comm.size
+    assert (
+        all(summary == summaries[0] for summary in summaries)
+        and together.summary.ranks == comm.size
+    )
 
 
 @pytest.fixture
@@ -54,7 +67,9 @@ def test_figures_of_fields_in_memory_are_saved_by_all_ranks(folder: Path) -> Non
     result = swgpar.run(swgpar.load_design(DESIGN, SMALL), RECIPE)
     files = result.plot.save(folder)
     assert files == [folder / "figures" / f"{name}.png" for name in result.plot.names]
-    assert {"pairs", "contact_pattern", "deformed_drive", "loaded_teeth", "stress_around"} < set(result.plot.names)
+    assert {"pairs", "contact_pattern", "deformed_drive", "loaded_teeth", "stress_around"} < set(
+        result.plot.names
+    )
     assert all(path.stat().st_size > 0 for path in files)
     comm.Barrier()
     if comm.rank == 0:
@@ -81,13 +96,17 @@ def test_a_figure_that_fails_on_one_rank(folder: Path, monkeypatch: pytest.Monke
 
 
 @pytest.mark.parallel([1, 2])
-def test_a_run_in_a_folder_is_the_same_on_all_ranks(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_run_in_a_folder_is_the_same_on_all_ranks(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """At its end no rank reads history and summary back: those of rank 0 are the result."""
     comm = MPI.COMM_WORLD
     with monkeypatch.context() as patch:
         for name in ("results.folder.read_summary", "results.history.read_history"):
             patch.setattr(f"swgpar.{name}", None)
-        result = swgpar.run(swgpar.load_design(DESIGN, [*SMALL, "output.figures=false"]), RECIPE, folder / "run")
+        result = swgpar.run(
+            swgpar.load_design(DESIGN, [*SMALL, "output.figures=false"]), RECIPE, folder / "run"
+        )
     opened = swgpar.open_result(folder / "run")
     for mine, other in zip(numbers(result), numbers(opened), strict=True):
         np.testing.assert_array_equal(mine, other)

@@ -1,4 +1,5 @@
-"""The assembled tangent against differences of the residual, with all contacts on; on any number of ranks."""
+"""The assembled tangent against differences of the residual, with all contacts on; on any number of
+ranks."""
 
 from __future__ import annotations
 
@@ -38,14 +39,22 @@ CONDENSED = (*PLANE, CONDENSE)
 @pytest.mark.parallel([1, 2, 3])
 def test_tangent_is_the_derivative_of_the_residual(overrides: tuple[str, ...]) -> None:
     design = load_design(DESIGN, [key for key in overrides if key != CONDENSE])
-    # unchecked: condensed sectors of 40 teeth leave out too much for a result, which is of no account here
+    # unchecked: condensed sectors of 40 teeth leave out too much for a result, which is of no
+    # account here
     solver = design.solver.model_copy(update={"condensed_sectors": CONDENSE in overrides})
     design = design.model_copy(update={"solver": solver})
     model = build_drive_model(design, load_recipe(RECIPE), comm=MPI.COMM_WORLD)
     problem, partition, dims = model.problem, model.partition, model.partition.dims
-    # undeformed, the cam overlaps at the major axis; shrunk teeth overlap slightly at the minor axis
+    # undeformed, the cam overlaps at the major axis; shrunk teeth overlap slightly at the minor
+    # axis
     state = LoadState(
-        Stage.ROTATE, 4, angle=0.01, cam_clearance=-0.001, flank_clearance=-0.02, control="torque", torque=2000.0
+        Stage.ROTATE,
+        4,
+        angle=0.01,
+        cam_clearance=-0.001,
+        flank_clearance=-0.02,
+        control="torque",
+        torque=2000.0,
     )
     rng = np.random.default_rng(3)
     own = slice(partition.row_start, partition.row_start + partition.n_own)
@@ -54,7 +63,8 @@ def test_tangent_is_the_derivative_of_the_residual(overrides: tuple[str, ...]) -
     before[:, dims:] = 0.0
     problem.accepted.array[:] = before[own].ravel()
     problem.search(state)
-    # the overlaps here are far beyond any real pressure: the bound of the geometric terms must not act
+    # the overlaps here are far beyond any real pressure: the bound of the geometric terms must not
+    # act
     for contact in problem.contacts:
         contact.pressure_limit = np.inf
     base = 1e-5 * rng.standard_normal((partition.n_global, 3))
@@ -79,14 +89,21 @@ def test_tangent_is_the_derivative_of_the_residual(overrides: tuple[str, ...]) -
     difference = sides[0].copy()
     difference.axpy(-1.0, product)
     if partition.comm.rank == partition.comm.size - 1:
-        difference.array[-partition.n_multipliers :] = 0.0  # the couplings' rows are in the border, not in the matrix
+        difference.array[-partition.n_multipliers :] = (
+            0.0  # the couplings' rows are in the border, not in the matrix
+        )
     assert problem.penetration() > 0.0
     if design.contact.friction:
         active = problem.flanks[0].saved_segments()
-        slipping = 0 if active is None else np.count_nonzero(np.linalg.norm(active.friction.current, axis=2))
+        slipping = (
+            0
+            if active is None
+            else np.count_nonzero(np.linalg.norm(active.friction.current, axis=2))
+        )
         assert partition.comm.allreduce(slipping) > 0
     print(f"relative difference {difference.norm() / sides[0].norm():.1e}")
-    # left out of the tangent: the second derivative of the coupling's rotation, and that flanks turn with a ring gear
-    # that is the output, their height over the chord (0.01 of the radius here) times the slope of normals to it
+    # left out of the tangent: the second derivative of the coupling's rotation, and that flanks
+    # turn with a ring gear that is the output, their height over the chord (0.01 of the radius
+    # here) times the slope of normals to it
     tolerance = 1e-6 if design.drive.layout == "ring_fixed" else 1e-5
     assert difference.norm() < tolerance * sides[0].norm()

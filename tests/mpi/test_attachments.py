@@ -1,4 +1,5 @@
-"""Closed ends and flanges that are clamped or bolted: exact invariants, on several ranks and on half of the drive."""
+"""Closed ends and flanges that are clamped or bolted: exact invariants, on several ranks and on
+half of the drive."""
 
 from __future__ import annotations
 
@@ -40,7 +41,8 @@ def test_torques_balance_and_the_attached_area_is_rigid(name: str) -> None:
     rotation = coupling.evaluate(u).value[ROTATION]
     assert rotation == pytest.approx(np.radians(row["output_angle_deg"]), rel=1e-12)
     moved = coupling.undeformed + u[coupling.nodes] - rotated(coupling.undeformed, rotation)
-    # nodes carry with the area that is attached: those of elements wider than a washer move beside it
+    # nodes carry with the area that is attached: those of elements wider than a washer move beside
+    # it
     mean = np.sqrt(coupling.sum(coupling.weight * (moved**2).sum(axis=1)))
     print(f"{name}: mean displacement from the rigid flange {1000.0 * mean:.3f} um")
     assert mean < (1e-4 if "clamped" in name else 2e-3) and abs(rotation) > 1e-4
@@ -65,7 +67,8 @@ def test_the_areas_are_those_of_ring_and_washers() -> None:
     ):
         stepper, _ = on(name)
         area = stepper.problem.supports.couplings[0].total * stepper.model.copies
-        # the mesh has chords of 9 degrees, 0.4 % less; the rims of washers are met by points 0.1 mm apart
+        # the mesh has chords of 9 degrees, 0.4 % less; the rims of washers are met by points 0.1 mm
+        # apart
         assert area == pytest.approx(exact, rel=0.01 if "clamped" in name else 0.05), name
 
 
@@ -78,7 +81,10 @@ def test_any_number_of_ranks_gives_the_same(changes: Changes) -> None:
 
 @pytest.mark.parametrize("changes", [CLAMPED, bolted(8)], ids=["clamped", "bolted"])
 def test_half_the_drive_equals_the_whole(changes: Changes) -> None:
-    (_, half), (stepper, whole) = loaded(shaped(changes)), loaded(shaped(changes, "solver.symmetry=false"))
+    (_, half), (stepper, whole) = (
+        loaded(shaped(changes)),
+        loaded(shaped(changes, "solver.symmetry=false")),
+    )
     assert stepper.model.copies == 1
     assert_agree(half, whole, PHYSICAL, 1e-6)
 
@@ -89,9 +95,12 @@ def test_an_odd_number_of_bolts_takes_the_whole_drive() -> None:
     parallel_assert(row["torque_balance_Nmm"] < 1e-6 * TORQUE)
 
 
-@pytest.mark.parametrize("changes", [CLAMPED, HAT_CLAMPED, bolted(40, 1.0)], ids=["clamped", "hat", "a bolt per tooth"])
+@pytest.mark.parametrize(
+    "changes", [CLAMPED, HAT_CLAMPED, bolted(40, 1.0)], ids=["clamped", "hat", "a bolt per tooth"]
+)
 def test_period_and_work(changes: Changes) -> None:
-    """Where all teeth are alike the state repeats after a pitch, and the mean input torque is T / ratio."""
+    """Where all teeth are alike the state repeats after a pitch, and the mean input torque is T /
+    ratio."""
     stepper, _ = loaded(shaped(changes))
     pitch, samples = 2.0 * np.pi / 42, 6
     first = rotate(stepper, 0.2 * pitch)
@@ -105,7 +114,8 @@ def test_period_and_work(changes: Changes) -> None:
 
 
 def test_work_of_bolts_over_the_period_that_they_leave() -> None:
-    """Eight bolts on 40 teeth: the drive repeats after five pitches of the wave, half of it is modelled."""
+    """Eight bolts on 40 teeth: the drive repeats after five pitches of the wave, half of it is
+    modelled."""
     stepper, _ = loaded(shaped(bolted(8)))
     pitch, samples = 2.0 * np.pi / 42, 6
     first = rotate(stepper, 0.2 * pitch)
@@ -120,4 +130,7 @@ def test_the_other_layout() -> None:
     """The spline stands still on its clamped ring, the ring gear turns with the load."""
     _, row = loaded(shaped(CLAMPED, 'drive.layout="spline_fixed"', "load.torque=2.1"), WORLD)
     assert row["output_torque_Nmm"] == pytest.approx(-2100.0)
-    assert abs(row["tooth_torque_Nmm"] + 2100.0) < 1e-6 * TORQUE and row["torque_balance_Nmm"] < 1e-6 * TORQUE
+    assert (
+        abs(row["tooth_torque_Nmm"] + 2100.0) < 1e-6 * TORQUE
+        and row["torque_balance_Nmm"] < 1e-6 * TORQUE
+    )

@@ -1,4 +1,5 @@
-"""The small plane drive with a flexible bearing: balance, limits, ranks, shares of the compliance."""
+"""The small plane drive with a flexible bearing: balance, limits, ranks, shares of the
+compliance."""
 
 from __future__ import annotations
 
@@ -43,7 +44,12 @@ def test_same_on_any_ranks() -> None:
     stepper = jumped(*BEARING, "wave_generator.bearing.first_ball=4.0")
     found, values = loads(stepper), row(stepper)
     stepper.model.destroy()
-    alone = jumped(*BEARING, "wave_generator.bearing.first_ball=4.0", "solver.symmetry=false", comm=MPI.COMM_SELF)
+    alone = jumped(
+        *BEARING,
+        "wave_generator.bearing.first_ball=4.0",
+        "solver.symmetry=false",
+        comm=MPI.COMM_SELF,
+    )
     parallel_assert(np.abs(found - loads(alone)).max() < 1e-6 * found.max())
     assert_agree(values, row(alone), [*NAMES, "wg_torque_Nmm"], rel=1e-6)
     parallel_assert(values["torque_balance_Nmm"] < 1e-6 * 200.0)
@@ -52,7 +58,8 @@ def test_same_on_any_ranks() -> None:
 
 @pytest.mark.parallel([1, 2])
 def test_cup() -> None:
-    """The small cup on a bearing: torques balance, all balls carry, those near the major axis most."""
+    """The small cup on a bearing: torques balance, all balls carry, those near the major axis
+    most."""
     stepper = jumped(*BEARING, "micro_geometry.wg_slope=0", model="cup")
     found, values = loads(stepper), row(stepper)
     parallel_assert(found.min() > 0.0 and found.argmax() % 10 in (9, 0, 1))
@@ -62,8 +69,11 @@ def test_cup() -> None:
 
 @pytest.mark.parallel([1, 2])
 def test_balls_balance_the_force_on_the_spline() -> None:
-    """Forces and moments of the balls are those on the spline. All of the drive is modelled: their number is odd."""
-    stepper = jumped(*BEARING, "wave_generator.bearing.balls=19", "wave_generator.bearing.first_ball=3.0")
+    """Forces and moments of the balls are those on the spline. All of the drive is modelled: their
+    number is odd."""
+    stepper = jumped(
+        *BEARING, "wave_generator.bearing.balls=19", "wave_generator.bearing.first_ball=3.0"
+    )
     problem, state = stepper.problem, stepper.load_state
     u = problem.displacement()
     place = problem.positions() + u
@@ -90,14 +100,16 @@ def test_balls_balance_the_force_on_the_spline() -> None:
     parallel_assert(total > 100.0)
     parallel_assert(np.abs(on_spline + on_race)[:2].max() < 1e-9 * total)
     parallel_assert(np.abs(of_balls + on_race)[:2].max() < 1e-7 * total)
-    # the race's support carries no torque but for the mesh: a hundred-thousandth of the forces times the radius
+    # the race's support carries no torque but for the mesh: a hundred-thousandth of the forces
+    # times the radius
     parallel_assert(abs(of_balls[2] + on_race[2]) < 1e-5 * total * 18.6)
     stepper.model.destroy()
 
 
 @pytest.mark.parallel(1)
 def test_rigid_limit() -> None:
-    """Rigid balls close to each other and a thin race: the stresses and the rotation of the rigid cam to 0.5 %."""
+    """Rigid balls close to each other and a thin race: the stresses and the rotation of the rigid
+    cam to 0.5 %."""
     limit = ("balls=360", "ball_diameter=0.3", "race_thickness=0.05", "stiffness_factor=1e3")
     stepper = jumped(*(f"wave_generator.bearing.{key}" for key in limit))
     rigid, expected = loaded(small("plane"))
@@ -118,13 +130,19 @@ def test_shares_of_compliance() -> None:
         rows = ball_rows(stepper.model, stepper.load_state, 1, 3)
         rotation = np.radians(row(stepper)["output_angle_deg"])
         states.append(
-            (torque, rotation, *(np.array([ball[key] for ball in rows]) for key in ("load_N", "approach_um")))
+            (
+                torque,
+                rotation,
+                *(np.array([ball[key] for ball in rows]) for key in ("load_N", "approach_um")),
+            )
         )
     change = [after - before for before, after in zip(*states)]
     work = np.sum(change[2] * 1e-3 * change[3]) / (change[0] * change[1])
     parallel_assert(shares["torsional"].balls == pytest.approx(work, rel=1e-3))
     for share in shares.values():
-        parallel_assert(0.0 < share.balls < 1.0 and 0.0 < share.race < 1.0 and share.balls + share.race < 1.0)
+        parallel_assert(
+            0.0 < share.balls < 1.0 and 0.0 < share.race < 1.0 and share.balls + share.race < 1.0
+        )
     stepper.model.destroy()
 
 
@@ -159,7 +177,9 @@ def test_tangent() -> None:
         product = np.zeros_like(u)
         np.add.at(product, rows, np.einsum("plk,pl->pk", blocks, along[columns]))
         below = rows != columns
-        np.add.at(product, columns[below], np.einsum("plk,pk->pl", blocks[below], along[rows[below]]))
+        np.add.at(
+            product, columns[below], np.einsum("plk,pk->pl", blocks[below], along[rows[below]])
+        )
         ahead, behind = np.zeros_like(u), np.zeros_like(u)
         contact.evaluate(u + step * along, state, ahead, None)
         contact.evaluate(u - step * along, state, behind, None)

@@ -1,4 +1,5 @@
-"""Checkpoints that are damaged, foreign or of another version are refused in a sentence that says what to do."""
+"""Checkpoints that are damaged, foreign or of another version are refused in a sentence that says
+what to do."""
 
 from __future__ import annotations
 
@@ -47,7 +48,9 @@ CONTENT = Content("x", [{"a": 0.1, "b": "c"}], 1.5, Stage.LOAD, INNER, {"one": I
 def write(folder: Path, comm: MPI.Comm) -> Path:
     first, end = (len(ROWS) * rank // comm.size for rank in (comm.rank, comm.rank + 1))
     path = folder / checkpoint.NAME
-    checkpoint.write_checkpoint(path, comm, {"body": Block(ROWS[first:end], first, len(ROWS))}, CONTENT)
+    checkpoint.write_checkpoint(
+        path, comm, {"body": Block(ROWS[first:end], first, len(ROWS))}, CONTENT
+    )
     return path
 
 
@@ -77,15 +80,30 @@ DAMAGE = {
     "cut off": (lambda path: path.write_bytes(path.read_bytes()[:-200]), "is damaged"),
     "empty": (lambda path: path.write_bytes(b""), "is damaged"),
     "a text": (lambda path: path.write_text("hello"), "is damaged"),
-    "a bit of the rows": (lambda path: flip(path, of_rows(path) + 100), "is damaged: body is not what was written"),
+    "a bit of the rows": (
+        lambda path: flip(path, of_rows(path) + 100),
+        "is damaged: body is not what was written",
+    ),
     "a bit of the attributes": (
         lambda path: edit(path, lambda file: file["attrs_json"].__setitem__(5, 65)),
         "is damaged: its attributes are not",
     ),
-    "rows are gone": (lambda path: edit(path, lambda file: remove(file, "body")), "is damaged: body is not"),
-    "another program's": (lambda path: edit(path, lambda file: remove(file, "attrs_json")), "is no checkpoint of"),
-    "older": (lambda path: edit(path, lambda file: remove(file, "version", "attrs_sha256")), "by another version"),
-    "newer": (lambda path: edit(path, lambda file: file["version"].__setitem__(0, 99)), "by another version"),
+    "rows are gone": (
+        lambda path: edit(path, lambda file: remove(file, "body")),
+        "is damaged: body is not",
+    ),
+    "another program's": (
+        lambda path: edit(path, lambda file: remove(file, "attrs_json")),
+        "is no checkpoint of",
+    ),
+    "older": (
+        lambda path: edit(path, lambda file: remove(file, "version", "attrs_sha256")),
+        "by another version",
+    ),
+    "newer": (
+        lambda path: edit(path, lambda file: file["version"].__setitem__(0, 99)),
+        "by another version",
+    ),
 }
 
 
@@ -93,13 +111,17 @@ def test_what_is_written_is_read(tmp_path: Path) -> None:
     path = write(tmp_path, MPI.COMM_SELF)
     checkpoint.require_undamaged(path, MPI.COMM_SELF)
     assert checkpoint.read_checkpoint(path, MPI.COMM_SELF, Content) == CONTENT
-    assert (parallel_hdf5.read_rows(path, MPI.COMM_SELF, {"body": (2, 3)})["body"] == ROWS[2:5]).all()
+    assert (
+        parallel_hdf5.read_rows(path, MPI.COMM_SELF, {"body": (2, 3)})["body"] == ROWS[2:5]
+    ).all()
 
 
 def test_versions_are_named(tmp_path: Path) -> None:
     path = write(tmp_path, MPI.COMM_SELF)
     edit(path, lambda file: file["version"].__setitem__(0, 99))
-    with pytest.raises(OutputError, match=rf"\(version 99 of checkpoints, this one reads {checkpoint.VERSION}\)"):
+    with pytest.raises(
+        OutputError, match=rf"\(version 99 of checkpoints, this one reads {checkpoint.VERSION}\)"
+    ):
         checkpoint.read_checkpoint(path, MPI.COMM_SELF, Content)
 
 
@@ -122,7 +144,8 @@ def test_damage_is_found(tmp_path: Path, name: str) -> None:
 
 @pytest.mark.parallel(2)
 def test_on_ranks(tmp_path: Path) -> None:
-    """The sums do not depend on the number of ranks, and all ranks find damage that one of them reads."""
+    """The sums do not depend on the number of ranks, and all ranks find damage that one of them
+    reads."""
     comm = MPI.COMM_WORLD
     folder = comm.bcast(tmp_path)
     path = write(folder, comm)

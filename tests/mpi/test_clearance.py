@@ -1,4 +1,5 @@
-"""Drives with backlash under torque: the teeth are found from afar, and found again where they have parted."""
+"""Drives with backlash under torque: the teeth are found from afar, and found again where they have
+parted."""
 
 from __future__ import annotations
 
@@ -36,7 +37,10 @@ def backlash(c_p: float, *more: str) -> tuple[LoadStepper, dict[str, float]]:
 @pytest.mark.parallel([1, 2])
 def test_large_backlash_closes_in_one_solve(more: tuple[str, ...], c_p: float) -> None:
     stepper, row = backlash(c_p, *more)
-    print(f"{c_p}: {row['newton_iterations']} iterations, output at {row['output_angle_deg']:.4f} degrees")
+    print(
+        f"{c_p}: {row['newton_iterations']} iterations, output at {row['output_angle_deg']:.4f} "
+        f"degrees"
+    )
     assert row["newton_iterations"] <= 8  # 5 to 7 are needed
     assert row["pairs_in_contact"] > 0
     torque = 1000.0 * stepper.design.load.torque
@@ -47,17 +51,21 @@ def test_large_backlash_closes_in_one_solve(more: tuple[str, ...], c_p: float) -
 
 @pytest.mark.parallel([1, 2])
 def test_the_output_turns_through_the_backlash() -> None:
-    """Against the output's motion, by eq. 6.4; what the teeth and the bent spline give is common to both drives."""
+    """Against the output's motion, by eq. 6.4; what the teeth and the bent spline give is common to
+    both drives."""
     (a, near), (b, far) = backlash(0.9, *PLANE), backlash(0.8, *PLANE)
     turned = far["output_angle_deg"] - near["output_angle_deg"]
     # contact moves along the flanks, which are not radial: a per cent
-    assert turned == pytest.approx(np.degrees(b.design.backlash_angle - a.design.backlash_angle), rel=0.01)
+    assert turned == pytest.approx(
+        np.degrees(b.design.backlash_angle - a.design.backlash_angle), rel=0.01
+    )
     assert near["output_angle_deg"] > 0.0
 
 
 @pytest.mark.parallel([1, 2])
 def test_a_drive_that_has_parted_is_loaded_again() -> None:
-    """From the middle of its backlash, where nothing holds the output, the torque brings it back to the same state."""
+    """From the middle of its backlash, where nothing holds the output, the torque brings it back to
+    the same state."""
     design = load_design(DESIGN, [*PLANE, "ring_gear.c_P=0.8"])
     stepper = load_stepper(design)
     items = [item for item in load_sequence(design).states if item.stage <= Stage.LOAD]

@@ -1,4 +1,5 @@
-"""Features of one design file together, on the small plane drive: bearing, deviations, friction, programs, fatigue."""
+"""Features of one design file together, on the small plane drive: bearing, deviations, friction,
+programs, fatigue."""
 
 from __future__ import annotations
 
@@ -30,7 +31,8 @@ WEAK = (
     "fatigue.basquin_coefficient=400",
     "fatigue.tensile_strength=4000",
 )
-"""SafetyAndLife limits that the small drive exceeds; a tensile strength that it does not, or its life would be 0."""
+"""SafetyAndLife limits that the small drive exceeds; a tensile strength that it does not, or its
+life would be 0."""
 
 UP, DOWN = '{name="up", torque=0.2}', '{name="down", torque=-0.2}'
 AGAIN = ', {name="up again", torque=0.2}, {name="down again", torque=-0.2}'
@@ -42,7 +44,8 @@ def run(*overrides: str) -> DriveResult:
 
 @pytest.mark.parallel(1)
 def test_fatigue_over_a_program() -> None:
-    """The program twice does twice the damage with the same safety; the stress is that of every sector."""
+    """The program twice does twice the damage with the same safety; the stress is that of every
+    sector."""
     results = [run(*WEAK, f"load.program=[{UP}, {DOWN}{more}]") for more in ("", AGAIN)]
     one, two = (result.summary.fatigue for result in results)
     assert (one.phases, two.phases) == (2, 4)
@@ -57,7 +60,8 @@ def test_fatigue_over_a_program() -> None:
 
 @pytest.mark.parallel([1, 2, 3])
 def test_fatigue_over_a_program_on_any_ranks() -> None:
-    """Every rank has the histories of its sectors; the worst of them is that of one rank with all."""
+    """Every rank has the histories of its sectors; the worst of them is that of one rank with
+    all."""
     design = small("plane", *WEAK, f"load.program=[{UP}, {DOWN}]")
 
     def found(comm: MPI.Comm) -> SafetyAndLife:
@@ -81,18 +85,28 @@ def test_fatigue_over_a_program_on_any_ranks() -> None:
 
 @pytest.mark.parallel(1)
 def test_losses_and_fatigue_with_a_bearing() -> None:
-    """The balls' loads act at the circle of their centres; the terminal names both results and what is missing."""
+    """The balls' loads act at the circle of their centres; the terminal names both results and what
+    is missing."""
     result = run(*BEARING, *SAMPLED, "losses.bearing_friction=0.002", "fatigue.size_factor=1.0")
     losses, loads = result.summary.losses, result.balls["load_N"].reshape(-1, 20)[-2:]
     assert losses.cam_force_N == pytest.approx(loads.sum(axis=1).mean(), rel=1e-9)
     centres = 18.6 - 0.5 - 1.0
     expected = 0.002 * loads.sum(axis=1).mean() * centres * (1.0 + 2.0 / 40.0)
     assert losses.parts_Nmm.bearing == pytest.approx(expected, rel=1e-9)
-    assert result.summary.fatigue.least["goodman"].safety > 0.0 and result.summary.bearing.balls_fixed_to_cam
+    assert (
+        result.summary.fatigue.least["goodman"].safety > 0.0
+        and result.summary.bearing.balls_fixed_to_cam
+    )
     with console.capture() as captured:
         print_drive(result.history, result.summary)
     shown = " ".join(captured.get().split())
-    for words in ("largest ball load", "share of the bearing", "is not resolved by windows", "losses take", "L10"):
+    for words in (
+        "largest ball load",
+        "share of the bearing",
+        "is not resolved by windows",
+        "losses take",
+        "L10",
+    ):
         assert words in shown, words
 
 
@@ -111,7 +125,8 @@ def test_friction_with_a_bearing() -> None:
 
 @pytest.mark.parallel(1)
 def test_stiffness_with_a_bearing() -> None:
-    """The compliance without the bearing's share, found at the largest torque, is still more than that on the cam.
+    """The compliance without the bearing's share, found at the largest torque, is still more than
+    that on the cam.
 
     Between the balls the spline yields where the cam would support it.
     """
@@ -134,12 +149,15 @@ def turn_points(*overrides: str, indices: tuple[int, ...] = (0, 1)) -> dict[int,
 
 @pytest.mark.parallel(1)
 def test_deviations_with_a_bearing() -> None:
-    """An eccentric ring gear on the bearing: its transmission error is near that on the cam, and not the same."""
+    """An eccentric ring gear on the bearing: its transmission error is near that on the cam, and
+    not the same."""
     ring = ("deviations.ring_gear.eccentricity=0.01", "deviations.ring_gear.direction=90")
     errors = []
     for bearing in (BEARING, ()):
         found = turn_points(*bearing, *ring)
-        errors.append(np.degrees(found[1].output_angle - found[0].output_angle) + 360.0 / 42.0 / 20.0)
+        errors.append(
+            np.degrees(found[1].output_angle - found[0].output_angle) + 360.0 / 42.0 / 20.0
+        )
     print(errors)
     assert errors[0] == pytest.approx(errors[1], rel=0.2)
     assert errors[0] != errors[1]
@@ -151,16 +169,32 @@ REFUSED = [
     ((DEVIATIONS, PROGRAM), "[deviations] is not available with load.program"),
     ((DEVIATIONS, "stiffness.positions=1"), "[deviations] is not available with [stiffness]"),
     ((DEVIATIONS, "ratcheting.limit=0.2"), "[deviations] is not available with [ratcheting]"),
-    ((DEVIATIONS, "contact.friction=0.1"), "contact.friction = 0.1 is out of range: allowed 0 with [deviations]"),
+    (
+        (DEVIATIONS, "contact.friction=0.1"),
+        "contact.friction = 0.1 is out of range: allowed 0 with [deviations]",
+    ),
     (
         (*BEARING, "deviations.wave_generator.eccentricity=0.01"),
-        "deviations.wave_generator.eccentricity = 0.01 is out of range: allowed only 0 with wave_generator.bearing",
+        "deviations.wave_generator.eccentricity = 0.01 is out of range: allowed only 0 with "
+        "wave_generator.bearing",
     ),
-    ((*BEARING, "output.root_stress=true"), "output.root_stress = true is out of range: allowed only false with"),
+    (
+        (*BEARING, "output.root_stress=true"),
+        "output.root_stress = true is out of range: allowed only false with",
+    ),
     (("losses.loss_factor=0.001", PROGRAM), "[losses] is not available with load.program"),
-    (("losses.loss_factor=0.001", "stiffness.positions=1"), "[losses] is not available with [stiffness]"),
-    (("fatigue.size_factor=1.0", "stiffness.positions=1"), "[fatigue] is not available with [stiffness]"),
-    (("fatigue.size_factor=1.0", "ratcheting.limit=0.2"), "[fatigue] is not available with [ratcheting]"),
+    (
+        ("losses.loss_factor=0.001", "stiffness.positions=1"),
+        "[losses] is not available with [stiffness]",
+    ),
+    (
+        ("fatigue.size_factor=1.0", "stiffness.positions=1"),
+        "[fatigue] is not available with [stiffness]",
+    ),
+    (
+        ("fatigue.size_factor=1.0", "ratcheting.limit=0.2"),
+        "[fatigue] is not available with [ratcheting]",
+    ),
     (("stiffness.positions=1", PROGRAM), "load.program and [stiffness] are both given"),
     ((*SAMPLED, PROGRAM), "steps.samples = 2 is out of range: allowed only 0 with load.program"),
 ]

@@ -20,9 +20,11 @@ WORLD = MPI.COMM_WORLD
 
 @dataclass
 class Block:
-    """A block on a spring that sticks to the ground: k x + mu min(1, |x| / width) sign(x) = f, a convex potential.
+    """A block on a spring that sticks to the ground: k x + mu min(1, |x| / width) sign(x) = f, a
+    convex potential.
 
-    Below mu it sticks, and slipping either way the tangent k of the slip sends it to slip the other way.
+    Below mu it sticks, and slipping either way the tangent k of the slip sends it to slip the other
+    way.
     Stands for the linear solver too (`BorderedSystem`), with a multiplier that nothing uses.
     """
 
@@ -61,7 +63,9 @@ def newton(block: Block, watch: bool, longest: float = 1e9) -> tuple[float, int,
     k = 0
     block.residual(block.x, force)
     while force.norm() > 1e-12 and k < 50:
-        returned = visited.returns(fingerprint(MPI.COMM_SELF, block.sets()), force.norm()) or returned
+        returned = (
+            visited.returns(fingerprint(MPI.COMM_SELF, block.sets()), force.norm()) or returned
+        )
         search.descending = watch and returned
         search.apply(None, force, step)
         block.x.axpy(-1.0, step)
@@ -97,7 +101,8 @@ class Valleys(Block):
 
 @pytest.mark.parametrize(("start", "end"), [(0.45, 1.0), (-0.45, -1.0), (0.55, 1.0)])
 def test_indefinite_tangent_leads_down_all_the_same(start: float, end: float) -> None:
-    """Newton's own steps go uphill and across; a bounded one the other way ends in the valley it starts above."""
+    """Newton's own steps go uphill and across; a bounded one the other way ends in the valley it
+    starts above."""
     valleys = Valleys(width=1.0)
     valleys.x.array[0] = start
     residual, iterations, _ = newton(valleys, watch=False, longest=0.2)
@@ -107,7 +112,8 @@ def test_indefinite_tangent_leads_down_all_the_same(start: float, end: float) ->
 
 @dataclass
 class Quadratic(Block):
-    """A node and three multipliers; the minimum of the potential is one Newton step away from zero."""
+    """A node and three multipliers; the minimum of the potential is one Newton step away from
+    zero."""
 
     NEWTON = np.array([0.3, 0.0, 0.4, 7.0, 0.0, 0.0])
 
@@ -136,12 +142,16 @@ def test_residuals_that_fall_get_more_iterations() -> None:
     slow = [0.9**k for k in range(40)]  # halves within seven
     stuck = slow[:20] + [slow[19]] * 20
     assert not any(is_exhausted(slow[:k], 10) for k in range(1, 40))
-    assert is_exhausted(stuck, 10) and not is_exhausted(stuck, 40) and not is_exhausted(stuck[:22], 10)
+    assert (
+        is_exhausted(stuck, 10) and not is_exhausted(stuck, 40) and not is_exhausted(stuck[:22], 10)
+    )
 
 
 def test_sets_that_return() -> None:
     visited = VisitedSets()
-    assert [visited.returns(*seen) for seen in ((1, 5.0), (1, 6.0), (2, 9.0), (1, 4.0), (2, 8.0))] == [False] * 5
+    assert [
+        visited.returns(*seen) for seen in ((1, 5.0), (1, 6.0), (2, 9.0), (1, 4.0), (2, 8.0))
+    ] == [False] * 5
     assert visited.returns(1, 4.0)  # left meanwhile, and no smaller residual than before
     assert not visited.returns(2, 7.0)
 

@@ -1,4 +1,5 @@
-"""The drive with deviations over whole turns: renamed states, spectra, symmetries that are kept, ranks."""
+"""The drive with deviations over whole turns: renamed states, spectra, symmetries that are kept,
+ranks."""
 
 from __future__ import annotations
 
@@ -34,7 +35,9 @@ PITCH = [f"deviations.{gear}.pitch_errors={errors}" for gear, errors in (
 
 def deviating(*overrides: str, model: str = "plane", comm: MPI.Comm = WORLD) -> DeviatingDrive:
     """The small drive on its smallest mesh."""
-    return DeviatingDrive(small(model, 'deviations.mesh="same"', *overrides), load_recipe(RECIPE), comm)
+    return DeviatingDrive(
+        small(model, 'deviations.mesh="same"', *overrides), load_recipe(RECIPE), comm
+    )
 
 
 def points(drive: DeviatingDrive, indices: Iterable[int] | None = None) -> dict[int, TurnPoint]:
@@ -48,7 +51,10 @@ def points(drive: DeviatingDrive, indices: Iterable[int] | None = None) -> dict[
 
 def error(found: dict[int, TurnPoint]) -> np.ndarray:
     """Transmission error (n,) arc seconds."""
-    return np.degrees([found[k].output_angle - found[k].wg_angle / RATIO for k in sorted(found)]) * 3600.0
+    return (
+        np.degrees([found[k].output_angle - found[k].wg_angle / RATIO for k in sorted(found)])
+        * 3600.0
+    )
 
 
 def loaded_stepper(design: DriveDesign) -> LoadStepper:
@@ -61,7 +67,8 @@ def loaded_stepper(design: DriveDesign) -> LoadStepper:
 
 @pytest.mark.parametrize("layout", ["ring_fixed", "spline_fixed"])
 def test_renamed_deviations_are_those_of_a_drive_that_is_rotated(layout: str) -> None:
-    """States of a turn by renaming equal those of a drive whose wave generator is rotated step by step."""
+    """States of a turn by renaming equal those of a drive whose wave generator is rotated step by
+    step."""
     overrides = (
         *PITCH,
         "deviations.angles_per_pitch=2",
@@ -82,8 +89,12 @@ def test_renamed_deviations_are_those_of_a_drive_that_is_rotated(layout: str) ->
     for index in (0, 1, 7):
         row = rotate(stepper, index * step) if index else stepper.row()
         kinematic = np.degrees(index * step / ratio)
-        mine, brute = np.degrees(found[index].output_angle) - kinematic, row["output_angle_deg"] - kinematic
-        # deviations of a ring gear that rotates keep their directions: step by step they are off by its angle
+        mine, brute = (
+            np.degrees(found[index].output_angle) - kinematic,
+            row["output_angle_deg"] - kinematic,
+        )
+        # deviations of a ring gear that rotates keep their directions: step by step they are off by
+        # its angle
         rel = 1e-6 if layout == "ring_fixed" else 1e-6 + abs(index * step / ratio)
         print(layout, index, mine, brute, found[index].wg_torque, row["wg_torque_Nmm"])
         assert mine == pytest.approx(brute, rel=rel)
@@ -119,20 +130,25 @@ def test_amplitudes_are_linear_in_small_deviations() -> None:
 
 
 def test_an_eccentric_ring_gear_is_seen_twice_per_turn() -> None:
-    """Both waves pass it: even orders only, the second the largest. An eccentric cam beside it adds the first."""
+    """Both waves pass it: even orders only, the second the largest. An eccentric cam beside it adds
+    the first."""
     ring = "deviations.ring_gear.eccentricity=0.01"
     order, amplitude = spectrum(error(points(deviating(ONE_ANGLE, ring))), 1)
     odd = order % 2 == 1
     assert amplitude[odd].max() < 1e-6 * amplitude.max()
     assert order[amplitude.argmax()] == 2
-    _, both = spectrum(error(points(deviating(ONE_ANGLE, ring, "deviations.wave_generator.eccentricity=0.005"))), 1)
+    _, both = spectrum(
+        error(points(deviating(ONE_ANGLE, ring, "deviations.wave_generator.eccentricity=0.005"))), 1
+    )
     print(amplitude[:4], both[:4])
     assert both[0] > 0.05 * both.max()
 
 
 def test_an_eccentric_spline_is_seen_twice_per_turn_against_it() -> None:
     """A whole turn of the output: multiples of 2 (1 - 1 / ratio) = 2.1 only."""
-    drive = deviating(ONE_ANGLE, "deviations.turns=20", "deviations.flexible_spline.eccentricity=0.01")
+    drive = deviating(
+        ONE_ANGLE, "deviations.turns=20", "deviations.flexible_spline.eccentricity=0.01"
+    )
     assert drive.periods == (TEETH_FS, 1)
     found = points(drive)
     assert sum(point.iterations > 0 for point in found.values()) <= TEETH_FS
@@ -157,7 +173,10 @@ def test_an_oval_ring_gear_keeps_half_of_the_model() -> None:
 @pytest.mark.parallel(2)
 def test_ranks_do_not_matter() -> None:
     indices = (0, 5)
-    several, one = points(deviating(*PITCH), indices), points(deviating(*PITCH, comm=MPI.COMM_SELF), indices)
+    several, one = (
+        points(deviating(*PITCH), indices),
+        points(deviating(*PITCH, comm=MPI.COMM_SELF), indices),
+    )
     for k in indices:
         parallel_assert(several[k].output_angle == pytest.approx(one[k].output_angle, rel=1e-6))
         parallel_assert(several[k].wg_torque == pytest.approx(one[k].wg_torque, rel=1e-5))
@@ -166,7 +185,9 @@ def test_ranks_do_not_matter() -> None:
 @pytest.mark.parallel([1, 2, 3])
 def test_ranks_share_the_states_of_a_turn() -> None:
     design = small("plane", "deviations.ring_gear.ovality=0.02", *TURN_ONLY)
-    several, one = (swgpar.run(design, RECIPE, comm=comm, plain=True) for comm in (WORLD, MPI.COMM_SELF))
+    several, one = (
+        swgpar.run(design, RECIPE, comm=comm, plain=True) for comm in (WORLD, MPI.COMM_SELF)
+    )
     for name, rel in (("output_angle_deg", 1e-6), ("wg_torque_Nmm", 1e-5)):
         found, expected = several.transmission_error[name], one.transmission_error[name]
         parallel_assert(len(found) == TEETH_RG and found == pytest.approx(expected, rel=rel), name)
@@ -185,14 +206,20 @@ def test_a_state_that_fails_on_one_rank_ends_all(monkeypatch: pytest.MonkeyPatch
 
     monkeypatch.setattr(DeviatingDrive, "points", failing)
     with pytest.raises(ConvergenceError, match="no state here"):
-        swgpar.run(small("plane", "deviations.ring_gear.ovality=0.02", *TURN_ONLY), RECIPE, comm=WORLD, plain=True)
+        swgpar.run(
+            small("plane", "deviations.ring_gear.ovality=0.02", *TURN_ONLY),
+            RECIPE,
+            comm=WORLD,
+            plain=True,
+        )
 
 
 def test_only_the_relative_position_of_the_axes_matters() -> None:
-    """A cup drive whose ring gear is displaced, and one whose cam and bore are displaced the other way.
+    """A cup drive whose ring gear is displaced, and one whose cam and bore are displaced the other
+    way.
 
-    A tilt of the ring gear is taken along the normals of the facing flanks and at the axial travel of the teeth at the
-    major axis: some per cent of what it changes.
+    A tilt of the ring gear is taken along the normals of the facing flanks and at the axial travel
+    of the teeth at the major axis: some per cent of what it changes.
     """
 
     def output(tilt: float, *displaced: str, angle: float) -> float:

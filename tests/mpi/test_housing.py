@@ -1,4 +1,5 @@
-"""The elastic housing of the ring gear: exact invariants, limits, and the formula of a ring under two loads."""
+"""The elastic housing of the ring gear: exact invariants, limits, and the formula of a ring under
+two loads."""
 
 from __future__ import annotations
 
@@ -31,7 +32,14 @@ HOUSING = ("ring_gear.housing.thickness=4.0", "ring_gear.housing.material={E=70e
 OTHER = "drive.layout=spline_fixed"
 TORQUE = {"cup": 2000.0, "plane": 200.0}
 STRESSES = ("fs_s1", "fs_s3", "fs_vm", "rg_s1", "rg_s3", "rg_vm")
-PHYSICAL = (*STRESSES, "housing_s1", "housing_s3", "housing_vm", "wg_torque_Nmm", "tooth_torque_Nmm")
+PHYSICAL = (
+    *STRESSES,
+    "housing_s1",
+    "housing_s3",
+    "housing_vm",
+    "wg_torque_Nmm",
+    "tooth_torque_Nmm",
+)
 
 
 @lru_cache
@@ -42,20 +50,30 @@ def in_housing(model: str, *overrides: str) -> tuple[LoadStepper, dict[str, floa
 @pytest.mark.parametrize("overrides", [(), (OTHER,), ("ring_gear.housing.outside=held", OTHER)])
 @pytest.mark.parametrize("model", ["cup", "plane"])
 def test_torques_balance(model: str, overrides: tuple[str, ...]) -> None:
-    """Of the spline, and of a ring gear that is supported in the mean: its support carries the torque of the teeth."""
+    """Of the spline, and of a ring gear that is supported in the mean: its support carries the
+    torque of the teeth."""
     _, r = in_housing(model, *overrides)
     assert abs(r["output_torque_Nmm"]) == pytest.approx(TORQUE[model])
     assert r["torque_balance_Nmm"] < 1e-6 * TORQUE[model]
     assert r["housing_vm"] > 0.0 and r["pairs_in_contact"] > 0
 
 
-@pytest.mark.parametrize("overrides", [(), ("drive.layout=wave_generator_fixed",), ("stiffness.torque=0.2",)])
+@pytest.mark.parametrize(
+    "overrides", [(), ("drive.layout=wave_generator_fixed",), ("stiffness.torque=0.2",)]
+)
 def test_a_study_measures_what_it_offers(overrides: tuple[str, ...]) -> None:
     design = small("plane", *HOUSING, *overrides)
-    measured, offered = DRIVE.measure(swgpar.run(design, RECIPE, progress=False)).values, DRIVE.quantities(design)
+    measured, offered = (
+        DRIVE.measure(swgpar.run(design, RECIPE, progress=False)).values,
+        DRIVE.quantities(design),
+    )
     assert {"housing.s1", "housing.vm", "housing.bulge"} <= set(measured) & set(offered)
     assert min(measured[f"housing.{name}"] for name in ("s1", "vm", "bulge")) > 0.0
-    assert ("input.torque" in measured) == ("input.torque" in offered) == design.wave_generator_is_fixed
+    assert (
+        ("input.torque" in measured)
+        == ("input.torque" in offered)
+        == design.wave_generator_is_fixed
+    )
 
 
 @pytest.mark.parallel([2, 3])
@@ -81,7 +99,8 @@ def test_half_the_drive_equals_the_whole(layout: tuple[str, ...]) -> None:
 
 @pytest.mark.parametrize(("layout", "teeth", "ratio"), [((), 42, -20.0), ((OTHER,), 40, 21.0)])
 def test_period_and_work(layout: tuple[str, ...], teeth: int, ratio: float) -> None:
-    """After a pitch of the fixed gear the state repeats; the housing stores energy, but its mean work is none."""
+    """After a pitch of the fixed gear the state repeats; the housing stores energy, but its mean
+    work is none."""
     stepper, _ = loaded(small("plane", *HOUSING, *layout))
     pitch, samples = 2.0 * np.pi / teeth, 24
     first = rotate(stepper, 0.2 * pitch)
@@ -98,8 +117,8 @@ def test_period_and_work(layout: tuple[str, ...], teeth: int, ratio: float) -> N
 def test_a_stiff_housing_tends_to_a_rigid_one(layout: tuple[str, ...]) -> None:
     """The output's angle differs from its limit in proportion to the housing's compliance.
 
-    With the ring gear fixed the limit is that of the clamped ring gear. In the other layout that ring gear may slide
-    along its frame, and the limit is taken from the two stiffest housings.
+    With the ring gear fixed the limit is that of the clamped ring gear. In the other layout that
+    ring gear may slide along its frame, and the limit is taken from the two stiffest housings.
     """
     angles = []
     for young in (210e5, 210e6, 210e7):
@@ -133,11 +152,14 @@ def test_a_thin_held_housing_tends_to_a_rigid_frame() -> None:
     assert differences[0] == pytest.approx(2.0 * differences[1], rel=0.1)
 
 
-def growth_across(force: float, radius: float, thickness: float, width: float, young: float, nu: float) -> float:
-    """Change of the diameter (mm) across two opposite radial forces (N) that pull a ring apart, by curved-beam theory.
+def growth_across(
+    force: float, radius: float, thickness: float, width: float, young: float, nu: float
+) -> float:
+    """Change of the diameter (mm) across two opposite radial forces (N) that pull a ring apart, by
+    curved-beam theory.
 
-    Energy of a curved bar with stretching and shear (Timoshenko, Strength of Materials, part II: Winkler's theory),
-    derived by a virtual pair of forces across.
+    Energy of a curved bar with stretching and shear (Timoshenko, Strength of Materials, part II:
+    Winkler's theory), derived by a virtual pair of forces across.
     """
     area = width * thickness
     inner, outer = radius - 0.5 * thickness, radius + 0.5 * thickness
@@ -145,14 +167,17 @@ def growth_across(force: float, radius: float, thickness: float, width: float, y
     shear_modulus = young / (2.0 * (1.0 + nu))
 
     def integral(a: tuple, b: tuple) -> float:
-        """Mixed second derivative of the energy of a quarter; a, b : M, N and V as functions of the angle"""
+        """Mixed second derivative of the energy of a quarter; a, b : M, N and V as functions of the
+        angle"""
 
         def density(angle: float) -> float:
             (m, n, v), (mb, nb, vb) = ((f(angle) for f in part) for part in (a, b))
             bending = m * mb / (area * young * shift * radius) + n * nb / (area * young)
-            return (bending - (m * nb + mb * n) / (area * young * radius) + 1.2 * v * vb / (area * shear_modulus)) * (
-                radius
-            )
+            return (
+                bending
+                - (m * nb + mb * n) / (area * young * radius)
+                + 1.2 * v * vb / (area * shear_modulus)
+            ) * (radius)
 
         return float(quad(density, 0.0, 0.5 * np.pi)[0])
 
@@ -176,7 +201,8 @@ def growth_across(force: float, radius: float, thickness: float, width: float, y
 
 @pytest.mark.parametrize("halved", [True, False])
 def test_a_housing_under_two_opposite_radial_loads(halved: bool) -> None:
-    """Teeth and rim are so soft that the housing carries all; the growth across is that of a curved bar."""
+    """Teeth and rim are so soft that the housing carries all; the growth across is that of a curved
+    bar."""
     thickness, force = 2.0, 0.2
     design = small(
         "plane",
@@ -212,7 +238,12 @@ def test_a_housing_under_two_opposite_radial_loads(halved: bool) -> None:
     radius = design.outer_radius - 0.5 * thickness
     material = design.material_of("housing")
     exact = growth_across(force, radius, thickness, width, material.modulus, material.poisson)
-    thin = force * radius**3 / (material.modulus * width * thickness**3 / 12.0) * (0.5 - 2.0 / np.pi)
-    print(f"growth across: {1e3 * found:.5f} µm, curved bar {1e3 * exact:.5f}, thin ring {1e3 * thin:.5f}")
+    thin = (
+        force * radius**3 / (material.modulus * width * thickness**3 / 12.0) * (0.5 - 2.0 / np.pi)
+    )
+    print(
+        f"growth across: {1e3 * found:.5f} µm, curved bar {1e3 * exact:.5f}, thin ring "
+        f"{1e3 * thin:.5f}"
+    )
     assert found == pytest.approx(exact, rel=1e-3)  # the thin ring differs by 2.7e-3
     solver.destroy()

@@ -27,7 +27,9 @@ TORQUE = {"cup": 2000.0, "plane": 200.0}
 """N mm, at the output with the ring gear fixed."""
 
 both_models = pytest.mark.parametrize("model", MODELS)
-cup_on_two_ranks = pytest.mark.parametrize("model", [pytest.param("cup", marks=pytest.mark.parallel(2)), "plane"])
+cup_on_two_ranks = pytest.mark.parametrize(
+    "model", [pytest.param("cup", marks=pytest.mark.parallel(2)), "plane"]
+)
 
 
 @lru_cache
@@ -37,11 +39,23 @@ def base(model: str) -> tuple[LoadStepper, dict[str, float]]:
 
 @lru_cache
 def other_layout(model: str) -> tuple[LoadStepper, dict[str, float]]:
-    """The flexible spline fixed, with 21/20 of the torque: the teeth carry as much as in the first layout."""
-    return loaded(small(model, "drive.layout=spline_fixed", f"load.torque={TORQUE[model] * 21 / 20 / 1000:g}"))
+    """The flexible spline fixed, with 21/20 of the torque: the teeth carry as much as in the first
+    layout."""
+    return loaded(
+        small(model, "drive.layout=spline_fixed", f"load.torque={TORQUE[model] * 21 / 20 / 1000:g}")
+    )
 
 
-PHYSICAL = ("fs_s1", "fs_s3", "fs_vm", "rg_s1", "rg_s3", "rg_vm", "wg_torque_Nmm", "tooth_torque_Nmm")
+PHYSICAL = (
+    "fs_s1",
+    "fs_s3",
+    "fs_vm",
+    "rg_s1",
+    "rg_s3",
+    "rg_vm",
+    "wg_torque_Nmm",
+    "tooth_torque_Nmm",
+)
 
 
 def assert_same(a: dict[str, float], b: dict[str, float], rel: float) -> None:
@@ -60,7 +74,8 @@ def test_torques_balance(model: str) -> None:
 
 @cup_on_two_ranks
 def test_torques_balance_in_the_other_layout(model: str) -> None:
-    """The load acts on the ring gear: it equals the teeth's torque on the spline, whose support takes the rest."""
+    """The load acts on the ring gear: it equals the teeth's torque on the spline, whose support
+    takes the rest."""
     stepper, r = other_layout(model)
     torque = 1.05 * TORQUE[model]
     assert r["output_torque_Nmm"] == pytest.approx(-torque)
@@ -71,15 +86,19 @@ def test_torques_balance_in_the_other_layout(model: str) -> None:
 
 @both_models
 def test_layouts_agree(model: str) -> None:
-    """With the same torque at the teeth: the ring gear turns as a whole, freely along its circle, instead of standing.
+    """With the same torque at the teeth: the ring gear turns as a whole, freely along its circle,
+    instead of standing.
 
-    Its rim may slide along the housing, which lets it yield a little. The spline agrees to 0.2 %, the torque to 0.3 %.
-    The ring's own largest stress sits at the few contact points of this mesh and moves with them: 3 % in the cup.
+    Its rim may slide along the housing, which lets it yield a little. The spline agrees to 0.2 %,
+    the torque to 0.3 %. The ring's own largest stress sits at the few contact points of this mesh
+    and moves with them: 3 % in the cup.
     """
     (_, a), (_, b) = base(model), other_layout(model)
     for name in PHYSICAL:
         print(f"{model} {name}: {b[name] / a[name] - 1:+.2e}")
-        assert b[name] == pytest.approx(a[name], rel=0.035 if name.startswith("rg") else 0.005), name
+        assert b[name] == pytest.approx(a[name], rel=0.035 if name.startswith("rg") else 0.005), (
+            name
+        )
     assert a["pairs_in_contact"] == b["pairs_in_contact"]
 
 
@@ -90,7 +109,8 @@ def compare_with_one_rank(model: str) -> None:
     assert_same(parallel, alone, 1e-8)
     first, end = several.model.partition.owned_sectors(FLEXIBLE_SPLINE)
     mine, whole = (
-        nodal_pressure(r.problem, r.load_state, r.model.elements.bodies[FLEXIBLE_SPLINE]) for r in (several, one)
+        nodal_pressure(r.problem, r.load_state, r.model.elements.bodies[FLEXIBLE_SPLINE])
+        for r in (several, one)
     )
     parallel_assert(np.abs(mine - whole[first:end]).max() < 1e-6 * whole.max())
     assert parallel["output_angle_deg"] == pytest.approx(alone["output_angle_deg"], rel=1e-8)
@@ -125,7 +145,8 @@ def test_ranks_and_the_other_layout() -> None:
     ],
 )
 def test_period_and_work(model: str, layout: str, samples: int) -> None:
-    """After one pitch of the fixed gear the state repeats, the output turned by pitch / ratio; mean input T / ratio."""
+    """After one pitch of the fixed gear the state repeats, the output turned by pitch / ratio; mean
+    input T / ratio."""
     if layout == "ring_fixed":
         stepper, _ = loaded(small(model))
         pitch, ratio, torque = 2.0 * np.pi / 42, -20.0, TORQUE[model]
@@ -143,16 +164,20 @@ def test_period_and_work(model: str, layout: str, samples: int) -> None:
         assert abs(r["output_torque_Nmm"]) == pytest.approx(torque)
     mean = np.mean([r["wg_torque_Nmm"] for r in rows])
     print(f"{model}, {layout}: mean input torque / (T / ratio) = {mean * abs(ratio) / torque:.5f}")
-    # the integrand is continuous with kinks where pairs come and go: six samples a period are good to a per cent. The
-    # plane drive has one pair per lobe, and within a fortieth of a period the next one takes over, by a fifth of the
-    # mean: 24 samples are good to a fifth of their distance, 0.8 %
+    # the integrand is continuous with kinks where pairs come and go: six samples a period are good
+    # to a per cent. The plane drive has one pair per lobe, and within a fortieth of a period the
+    # next one takes over, by a fifth of the mean: 24 samples are good to a fifth of their distance,
+    # 0.8 %
     assert mean == pytest.approx(torque / abs(ratio), rel=0.01)
 
 
-@pytest.mark.parametrize(("layout", "teeth", "ratio"), [("ring_fixed", 42, -20.0), ("spline_fixed", 40, 21.0)])
+@pytest.mark.parametrize(
+    ("layout", "teeth", "ratio"), [("ring_fixed", 42, -20.0), ("spline_fixed", 40, 21.0)]
+)
 @pytest.mark.parallel([1, 2])
 def test_any_turn_of_the_output(layout: str, teeth: int, ratio: float) -> None:
-    """A quarter, nearly half, and more than half a turn of the output away, at the same place in the period."""
+    """A quarter, nearly half, and more than half a turn of the output away, at the same place in
+    the period."""
     stepper, _ = loaded(small("plane", f"drive.layout={layout}"))
     pitch = 2.0 * np.pi / teeth
     first = rotate(stepper, 0.2 * pitch)
@@ -160,14 +185,17 @@ def test_any_turn_of_the_output(layout: str, teeth: int, ratio: float) -> None:
         last = rotate(stepper, (0.2 + count) * pitch)
         assert_same(last, first, 1e-6)
         assert last["torque_balance_Nmm"] < 1e-6 * TORQUE["plane"]
-        turned = last["output_angle_deg"] - first["output_angle_deg"] - np.degrees(count * pitch) / ratio
+        turned = (
+            last["output_angle_deg"] - first["output_angle_deg"] - np.degrees(count * pitch) / ratio
+        )
         assert abs((turned + 180.0) % 360.0 - 180.0) < 1e-6, count
 
 
 @both_models
 @pytest.mark.parallel([1, 2, 3])
 def test_rotating_the_whole_spline_changes_no_stress(model: str) -> None:
-    """The loaded spline and its wave generator turned by 0.7 rad: the same stresses, the forces turned alike."""
+    """The loaded spline and its wave generator turned by 0.7 rad: the same stresses, the forces
+    turned alike."""
     stepper, _ = base(model)
     problem, state, angle = stepper.problem, stepper.load_state, 0.7
     c, s = np.cos(angle), np.sin(angle)
@@ -220,10 +248,15 @@ def stiffness(teeth: float, cam: float) -> tuple[str, str]:
     ("overrides", "augmented", "gears"),
     [
         (stiffness(200, 50), False, ("fs", "rg")),
-        # softer than the elements: the ring's stress under the contact needs the augmentation, the spline's maxima not
+        # softer than the elements: the ring's stress under the contact needs the augmentation, the
+        # spline's maxima not
         (stiffness(12.5, 12.5), False, ("fs",)),
         (
-            (*stiffness(10, 10), "contact.penetration_tolerance=5e-5", "contact.max_augmentations=10"),
+            (
+                *stiffness(10, 10),
+                "contact.penetration_tolerance=5e-5",
+                "contact.max_augmentations=10",
+            ),
             True,
             ("fs", "rg"),
         ),
@@ -237,15 +270,16 @@ def test_enforcement_does_not_show(
     stepper, other = loaded(small(model, *overrides))
     assert (stepper.solver.state.augmentations > 0) == augmented
     if model == "cup":
-        # one or two points carry a tooth here. How they share its load depends on the penalty: with other numbers of
-        # points the ring gear's maxima differ by 10 to 20 %
+        # one or two points carry a tooth here. How they share its load depends on the penalty: with
+        # other numbers of points the ring gear's maxima differ by 10 to 20 %
         gears = ("fs",)
     for name in (f"{gear}_{stress}" for gear in gears for stress in ("s1", "s3", "vm")):
         assert other[name] == pytest.approx(r[name], rel=5e-3), name
 
 
 class Poisoned:
-    """A contact without forces. Once it is augmented no residual can be evaluated, until that is taken back."""
+    """A contact without forces. Once it is augmented no residual can be evaluated, until that is
+    taken back."""
 
     def __init__(self) -> None:
         self.multiplier = np.zeros((1, 1))
@@ -257,7 +291,9 @@ class Poisoned:
     def reset(self) -> None:
         self.multiplier = np.zeros((1, 1))
 
-    def evaluate(self, u: np.ndarray, state: LoadState, residual: np.ndarray | None, rows: object) -> np.ndarray:
+    def evaluate(
+        self, u: np.ndarray, state: LoadState, residual: np.ndarray | None, rows: object
+    ) -> np.ndarray:
         if self.multiplier.any():
             raise FloatingPointError
         return NO_KEYS
@@ -297,7 +333,9 @@ def test_an_augmentation_that_leads_to_no_solution_is_taken_back() -> None:
 
     stepper, taken = loaded(design, prepare=poison)
     assert poisoned.augmentations and stepper.solver.state.augmentations == 0
-    parallel_assert(all(np.all(contact.multiplier == 0.0) for contact in stepper.problem.penalty_contacts))
+    parallel_assert(
+        all(np.all(contact.multiplier == 0.0) for contact in stepper.problem.penalty_contacts)
+    )
     assert_same(taken, without, 1e-6)
 
 
@@ -309,7 +347,8 @@ class Returning(VisitedSets):
 
 
 class Torn:
-    """A discrete problem whose residual cannot be evaluated with segments cut anew after the cycle breaker."""
+    """A discrete problem whose residual cannot be evaluated with segments cut anew after the cycle
+    breaker."""
 
     def __init__(self, solver: NewtonSolver) -> None:
         self.solver, self.problem = solver, solver.problem
@@ -336,7 +375,8 @@ class Torn:
 
 @cup_on_two_ranks
 def test_segments_are_kept_where_those_cut_anew_lead_nowhere(model: str) -> None:
-    """The cycle breaker begins in every solve, and no residual can be evaluated with segments cut anew after it."""
+    """The cycle breaker begins in every solve, and no residual can be evaluated with segments cut
+    anew after it."""
 
     def tear(stepper: LoadStepper) -> None:
         stepper.solver.visited_sets, stepper.solver.problem = Returning, Torn(stepper.solver)
@@ -344,7 +384,9 @@ def test_segments_are_kept_where_those_cut_anew_lead_nowhere(model: str) -> None
     _, r = base(model)
     stepper, state = loaded(small(model), prepare=tear)
     assert stepper.solver.problem.restored
-    assert_same(state, r, 5e-3)  # the segments are those of the iteration in which the cycle was found
+    assert_same(
+        state, r, 5e-3
+    )  # the segments are those of the iteration in which the cycle was found
 
 
 @cup_on_two_ranks
@@ -380,8 +422,12 @@ def test_units_do_not_matter(model: str) -> None:
             "drive": d.drive.model_copy(update=lengths(d.drive, "module", "face_width")),
             "flexible_spline": gear(d.flexible_spline),
             "ring_gear": gear(d.ring_gear),
-            "wave_generator": d.wave_generator.model_copy(update=lengths(d.wave_generator, "face_width")),
-            "cup": d.cup.model_copy(update=lengths(d.cup, "length", "fillet_radius", "inner_radius")),
+            "wave_generator": d.wave_generator.model_copy(
+                update=lengths(d.wave_generator, "face_width")
+            ),
+            "cup": d.cup.model_copy(
+                update=lengths(d.cup, "length", "fillet_radius", "inner_radius")
+            ),
             "micro_geometry": d.micro_geometry.model_copy(
                 update=lengths(d.micro_geometry, "wg_crowning", "wg_slope", "fs_crowning")
             ),

@@ -1,4 +1,5 @@
-"""Limits of time and iterations: a run ends on all ranks with what was tried, and can be continued."""
+"""Limits of time and iterations: a run ends on all ranks with what was tried, and can be
+continued."""
 
 from __future__ import annotations
 
@@ -19,12 +20,17 @@ COMM = MPI.COMM_WORLD
 
 def design(*more: str, **solver: float) -> swgpar.DriveDesign:
     limits = [f"solver.{key}={value}" for key, value in solver.items()]
-    return swgpar.load_design(DESIGN, [*PLANE, *SHORT, *NO_SHORTCUTS, "output.figures=false", *more, *limits])
+    return swgpar.load_design(
+        DESIGN, [*PLANE, *SHORT, *NO_SHORTCUTS, "output.figures=false", *more, *limits]
+    )
 
 
 @pytest.mark.parallel([1, 2])
 def test_a_time_limit_ends_a_run() -> None:
-    words = r"time limit of 1e-06 s \(solver.time_limit\) has passed in step 1 .* after \d+ Newton iterations, residual"
+    words = (
+        r"time limit of 1e-06 s \(solver.time_limit\) has passed in step 1 .* after \d+ Newton "
+        r"iterations, residual"
+    )
     with pytest.raises(TimeLimitError, match=words):
         swgpar.run(design(time_limit=1e-6), RECIPE)
     assert passed(COMM) is None
@@ -32,14 +38,16 @@ def test_a_time_limit_ends_a_run() -> None:
 
 @pytest.mark.parallel([1, 2])
 def test_a_run_continues_with_another_limit(tmp_path: Path) -> None:
-    """The limits do not belong to what is computed. The hardest increment needs an iteration more than it may have."""
+    """The limits do not belong to what is computed. The hardest increment needs an iteration more
+    than it may have."""
     folder, bent = COMM.bcast(tmp_path), "steps.bent_start=true"
     whole = swgpar.run(design(bent), RECIPE)
     needed = whole.history["newton_iterations"]
     hardest = 1 + int(np.argmax(needed[1:]))  # the first one is reached at once, without this limit
     limit = int(needed[hardest]) - 1
     words = (
-        rf"cut-backs: {limit} Newton iterations of one increment \(solver.iteration_limit\), .*; {hardest} increments"
+        rf"cut-backs: {limit} Newton iterations of one increment \(solver.iteration_limit\), .*; "
+        rf"{hardest} increments"
     )
     with pytest.raises(ConvergenceError, match=words):
         swgpar.run(design(bent, iteration_limit=limit), RECIPE, folder)
@@ -62,5 +70,7 @@ def test_limits_of_time_end_with_their_block() -> None:
 
 def test_the_default_is_far_from_what_drives_need() -> None:
     assert design().solver.iteration_limit == 600 and design().solver.time_limit is None
-    with pytest.raises(swgpar.InputError, match=r"solver.time_limit = 0(\.0)? is out of range: allowed above 0 to"):
+    with pytest.raises(
+        swgpar.InputError, match=r"solver.time_limit = 0(\.0)? is out of range: allowed above 0 to"
+    ):
         design(time_limit=0.0)

@@ -1,4 +1,5 @@
-"""The bordered system of a drive with all contacts on: the iterative solver against the factor, the bounded border."""
+"""The bordered system of a drive with all contacts on: the iterative solver against the factor, the
+bounded border."""
 
 from __future__ import annotations
 
@@ -27,13 +28,22 @@ from swgpar.solve.linear_solvers import make_linear_solver
 
 def system(overrides: tuple[str, ...], control: str) -> tuple[DriveModel, PETSc.Vec]:
     """A drive with its tangent set up, and a random right side."""
-    model = build_drive_model(load_design(DESIGN, overrides), load_recipe(RECIPE), comm=MPI.COMM_WORLD)
+    model = build_drive_model(
+        load_design(DESIGN, overrides), load_recipe(RECIPE), comm=MPI.COMM_WORLD
+    )
     problem, partition = model.problem, model.partition
     state = LoadState(
-        Stage.ROTATE, 4, angle=0.01, cam_clearance=-0.001, flank_clearance=-0.02, control=control, output_rotation=1e-3
+        Stage.ROTATE,
+        4,
+        angle=0.01,
+        cam_clearance=-0.001,
+        flank_clearance=-0.02,
+        control=control,
+        output_rotation=1e-3,
     )
     problem.search(state)
-    # without the geometric terms the undeformed drive's stiffness is positive: overlaps here are beyond real pressures
+    # without the geometric terms the undeformed drive's stiffness is positive: overlaps here are
+    # beyond real pressures
     for contact in problem.contacts:
         contact.pressure_limit = 0.0
     u = problem.displacement()
@@ -42,7 +52,12 @@ def system(overrides: tuple[str, ...], control: str) -> tuple[DriveModel, PETSc.
     border, rows = problem.supports.border(u, state)
     bound = problem.torque_control.output_step_bound(state)
     model.solver.system.set_system(
-        problem.matrix, problem.matrix_rows.active, problem.supports.grounding(u), border, rows, bound
+        problem.matrix,
+        problem.matrix_rows.active,
+        problem.supports.grounding(u),
+        border,
+        rows,
+        bound,
     )
     right, size = create_vector(partition), (partition.n_global, 3)
     values = np.random.default_rng(1).standard_normal(size)
@@ -62,7 +77,11 @@ def bordered(model: DriveModel, linear: str, prefix: str) -> BorderedSystem:
 
 @pytest.mark.parametrize(
     "overrides",
-    [pytest.param((), marks=pytest.mark.parallel(2)), PLANE, pytest.param(PLANE, marks=pytest.mark.parallel(3))],
+    [
+        pytest.param((), marks=pytest.mark.parallel(2)),
+        PLANE,
+        pytest.param(PLANE, marks=pytest.mark.parallel(3)),
+    ],
 )
 def test_iterative_equals_direct(overrides: tuple[str, ...]) -> None:
     model, right = system(overrides, "rotation")
@@ -71,27 +90,35 @@ def test_iterative_equals_direct(overrides: tuple[str, ...]) -> None:
     for linear in ("direct", "iterative"):
         border = bordered(model, linear, f"test_{linear}_")
         solved = solver.system
-        border.set_system(problem.matrix, problem.matrix_rows.active, solved.grounding, solved.border, solved.rows)
+        border.set_system(
+            problem.matrix, problem.matrix_rows.active, solved.grounding, solved.border, solved.rows
+        )
         pc = solver.snes.getKSP().getPC()
         border.setUp(pc)
         solutions.append(create_vector(partition))
         border.apply(pc, right, solutions[-1])
     size = solutions[0].norm()
     solutions[1].axpy(-1.0, solutions[0])
-    # GMRES stops at a residual of 1e-6; the condition number is about 1e8, the right side excites stiff modes too
+    # GMRES stops at a residual of 1e-6; the condition number is about 1e8, the right side excites
+    # stiff modes too
     assert size > 0.0 and solutions[1].norm() < 1e-4 * size
 
 
-@pytest.mark.parametrize(("option", "value", "word"), [("14", -99, "more memory"), ("23", 1, "cannot factorise")])
+@pytest.mark.parametrize(
+    ("option", "value", "word"), [("14", -99, "more memory"), ("23", 1, "cannot factorise")]
+)
 @pytest.mark.parallel([1, 2])
 def test_mumps_out_of_memory(option: str, value: int, word: str) -> None:
-    """An estimate that is too small is raised; what is forbidden gives a step that is not finite, and is named."""
+    """An estimate that is too small is raised; what is forbidden gives a step that is not finite,
+    and is named."""
     model, right = system(PLANE, "rotation")
     solver, problem, partition = model.solver, model.problem, model.partition
     PETSc.Options()[f"short_{option}_mat_mumps_icntl_{option}"] = value
     border = bordered(model, "direct", f"short_{option}_")
     solved, pc = solver.system, solver.snes.getKSP().getPC()
-    border.set_system(problem.matrix, problem.matrix_rows.active, solved.grounding, solved.border, solved.rows)
+    border.set_system(
+        problem.matrix, problem.matrix_rows.active, solved.grounding, solved.border, solved.rows
+    )
     x = create_vector(partition)
     with Messages() as said:
         border.setUp(pc)
@@ -102,11 +129,14 @@ def test_mumps_out_of_memory(option: str, value: int, word: str) -> None:
 
 @pytest.mark.parallel([1, 2])
 def test_a_factor_that_is_singular_twice() -> None:
-    """Every failure gives a step that is not finite; the next matrix that has a factor is solved."""
+    """Every failure gives a step that is not finite; the next matrix that has a factor is
+    solved."""
     model, right = system(PLANE, "rotation")
     problem, solved = model.problem, model.solver.system
     border, x = bordered(model, "direct", "singular_"), create_vector(model.partition)
-    border.set_system(problem.matrix, problem.matrix_rows.active, solved.grounding, solved.border, solved.rows)
+    border.set_system(
+        problem.matrix, problem.matrix_rows.active, solved.grounding, solved.border, solved.rows
+    )
     values, norms = problem.rows.values.copy(), []
     for share in (1.0, 0.0, 0.0, 1.0):
         problem.rows.values[:] = share * values
@@ -115,7 +145,9 @@ def test_a_factor_that_is_singular_twice() -> None:
         border.apply(None, right, x)
         norms.append(x.norm())
         parallel_assert((share == 0.0) == bool(border.solver.failure))
-    assert np.isfinite(norms).tolist() == [True, False, False, True] and norms[3] == pytest.approx(norms[0], rel=1e-9)
+    assert np.isfinite(norms).tolist() == [True, False, False, True] and norms[3] == pytest.approx(
+        norms[0], rel=1e-9
+    )
 
 
 SOLVED = (
@@ -147,18 +179,30 @@ SOLVED_OR_SAID = (
     {"pc_type": "jacobi", "ksp_type": "minres"},
     {"pc_type": "cholesky", "pc_factor_mat_solver_type": "petsc"},
     {"pc_type": "cholesky", "pc_factor_mat_solver_type": "superlu_dist"},
-    *({"pc_factor_mat_solver_type": name} for name in ("petsc", "superlu_dist", "superlu", "umfpack", "nonsense")),
+    *(
+        {"pc_factor_mat_solver_type": name}
+        for name in ("petsc", "superlu_dist", "superlu", "umfpack", "nonsense")
+    ),
 )
 """Options that a build of PETSc, a number of ranks or the matrix may be unfit for."""
 
 
-@pytest.mark.parametrize("linear", ["direct", "iterative", pytest.param("direct", marks=pytest.mark.parallel(2))])
+@pytest.mark.parametrize(
+    "linear", ["direct", "iterative", pytest.param("direct", marks=pytest.mark.parallel(2))]
+)
 def test_options_of_petsc_solve_or_end_in_a_sentence(linear: str) -> None:
-    """Any preconditioner and Krylov method: the step of MUMPS, one that is not finite with a reason, or InputError."""
+    """Any preconditioner and Krylov method: the step of MUMPS, one that is not finite with a
+    reason, or InputError."""
     model, right = system(PLANE, "rotation")
     problem, solved, comm = model.problem, model.solver.system, model.partition.comm
     reference = create_vector(model.partition)
-    arguments = problem.matrix, problem.matrix_rows.active, solved.grounding, solved.border, solved.rows
+    arguments = (
+        problem.matrix,
+        problem.matrix_rows.active,
+        solved.grounding,
+        solved.border,
+        solved.rows,
+    )
     exact = bordered(model, "direct", "exact_")
     exact.set_system(*arguments)
     exact.setUp(None)
@@ -203,14 +247,17 @@ def test_options_of_one_model_are_not_those_of_the_next() -> None:
     for overrides, dims in ((PLANE, 2), ((), 3), (PLANE, 2)):
         model, _ = system(overrides, "rotation")
         bordered(model, "direct", "both_")
-        assert options.getInt("mat_mumps_icntl_7") == (QUASI_DENSE if dims == 2 else NESTED_DISSECTION)
+        assert options.getInt("mat_mumps_icntl_7") == (
+            QUASI_DENSE if dims == 2 else NESTED_DISSECTION
+        )
         assert options.getInt("mat_mumps_icntl_13") == 0
 
 
 @pytest.mark.parametrize("overrides", [(), ("drive.layout=spline_fixed",), PLANE])
 @pytest.mark.parallel([1, 2, 3])
 def test_the_loaded_motion_is_bounded(overrides: tuple[str, ...]) -> None:
-    """Without a bound that matters the step is that of a system without the loaded border; with one it ends there."""
+    """Without a bound that matters the step is that of a system without the loaded border; with one
+    it ends there."""
     model, right = system(overrides, "torque")
     solver, problem, partition = model.solver, model.problem, model.partition
     pc, solved = solver.snes.getKSP().getPC(), solver.system
@@ -218,7 +265,9 @@ def test_the_loaded_motion_is_bounded(overrides: tuple[str, ...]) -> None:
 
     def step(border: list[PETSc.Vec], rows: list[int], bound: float | None) -> PETSc.Vec:
         test = bordered(model, "direct", "test_")
-        test.set_system(problem.matrix, problem.matrix_rows.active, solved.grounding, border, rows, bound)
+        test.set_system(
+            problem.matrix, problem.matrix_rows.active, solved.grounding, border, rows, bound
+        )
         test.setUp(pc)
         x = create_vector(partition)
         test.apply(pc, right, x)
@@ -229,7 +278,8 @@ def test_the_loaded_motion_is_bounded(overrides: tuple[str, ...]) -> None:
     motion = output.dot(free)
     assert output.dot(wide) == pytest.approx(motion, rel=1e-6)
     wide.axpy(-1.0, free)
-    # the unused multiplier is zero in one and what the unit block of the matrix makes of it in the other
+    # the unused multiplier is zero in one and what the unit block of the matrix makes of it in the
+    # other
     if partition.comm.rank == partition.comm.size - 1:
         wide.array[-partition.n_multipliers :][solved.rows[-1]] = 0.0
     assert wide.norm() < 1e-6 * free.norm()
@@ -237,7 +287,8 @@ def test_the_loaded_motion_is_bounded(overrides: tuple[str, ...]) -> None:
         bound = share * abs(motion)
         held = step(solved.border, solved.rows, bound)
         assert output.dot(held) == pytest.approx(np.sign(motion) * bound, rel=1e-6)
-        # the rest of the drive follows: what is left of its equations points along the output's motion
+        # the rest of the drive follows: what is left of its equations points along the output's
+        # motion
         left = without_grounding(problem, held)
         left.aypx(-1.0, right)
         for k, row in enumerate(solved.rows[:-1]):

@@ -1,4 +1,5 @@
-"""Identities of load programs on the small plane drive: stiffness loops, clearance, ratcheting, restart, ranks."""
+"""Identities of load programs on the small plane drive: stiffness loops, clearance, ratcheting,
+restart, ranks."""
 
 from __future__ import annotations
 
@@ -59,21 +60,34 @@ def branches(result: DriveResult, *stages: str) -> tuple[np.ndarray, np.ndarray]
 
 
 def test_a_loop_without_friction() -> None:
-    """With the major axis on a tooth and a slot: theta(-T) = -theta(T), no area, and the way back is the same."""
+    """With the major axis on a tooth and a slot: theta(-T) = -theta(T), no area, and the way back
+    is the same."""
     design = small("plane").with_values({"stiffness.positions": 1})
     result = run(design, plain=True)
     found = result.summary.stiffness
-    unloading, loading = branches(result, "positive unloading"), branches(result, "positive loading")
+    unloading, loading = (
+        branches(result, "positive unloading"),
+        branches(result, "positive loading"),
+    )
     down, back = branches(result, "negative loading"), branches(result, "negative unloading")
     assert np.allclose(unloading[1], loading[1][:-1][::-1], rtol=1e-7)
-    assert np.allclose(-down[0][:-1], unloading[0][::-1]) and np.allclose(-down[1][:-1], unloading[1][::-1], rtol=1e-7)
+    assert np.allclose(-down[0][:-1], unloading[0][::-1]) and np.allclose(
+        -down[1][:-1], unloading[1][::-1], rtol=1e-7
+    )
     assert np.allclose(back[1], down[1][:-1][::-1], rtol=1e-7)
     span = 1000.0 * TORQUE * np.radians(found.lost_motion / 60.0)
     assert abs(found.loop_work) < 1e-6 * span
     assert found.hysteresis == pytest.approx(found.backlash, rel=1e-7)
-    # the shortcuts go one way, and find the same to their tolerance: the elastic rotation is a thousandth of all
+    # the shortcuts go one way, and find the same to their tolerance: the elastic rotation is a
+    # thousandth of all
     short = run(design).summary.stiffness
-    for name, rel in (("K1", 2e-3), ("K2", 2e-3), ("K3", 2e-3), ("lost_motion", 1e-5), ("backlash", 1e-5)):
+    for name, rel in (
+        ("K1", 2e-3),
+        ("K2", 2e-3),
+        ("K3", 2e-3),
+        ("lost_motion", 1e-5),
+        ("backlash", 1e-5),
+    ):
         assert getattr(short, name) == pytest.approx(getattr(found, name), rel=rel), name
 
 
@@ -85,7 +99,8 @@ def test_torque_turns_the_output_in_its_direction(layout: str) -> None:
 
 
 def test_the_loop_with_friction_is_the_work_of_friction() -> None:
-    """With 6 x 6 points on a segment: few points see the slip of a narrow contact coarsely, and 2 x 2 miss 7 %."""
+    """With 6 x 6 points on a segment: few points see the slip of a narrow contact coarsely, and 2 x
+    2 miss 7 %."""
     values = {"stiffness.torque": 5.0, "stiffness.positions": 1, "stiffness.points": 6}
     design = small("plane", "contact.friction=0.1", "contact.quadrature=6").with_values(values)
     stepper = load_stepper(design)
@@ -106,8 +121,14 @@ def test_the_loop_with_friction_is_the_work_of_friction() -> None:
 
 
 def test_the_cup_with_friction() -> None:
-    """The loop of the small cup with friction has an area, and is wider at zero torque than its backlash."""
-    values = {"stiffness.torque": 10.0, "stiffness.positions": 1, "stiffness.points": 1, "stiffness.mesh_error": False}
+    """The loop of the small cup with friction has an area, and is wider at zero torque than its
+    backlash."""
+    values = {
+        "stiffness.torque": 10.0,
+        "stiffness.positions": 1,
+        "stiffness.points": 1,
+        "stiffness.mesh_error": False,
+    }
     found = run(small("cup", "contact.friction=0.2").with_values(values)).summary.stiffness
     span = 2e4 * np.radians((found.lost_motion - found.backlash) / 60.0)
     print(found, span)
@@ -117,14 +138,20 @@ def test_the_cup_with_friction() -> None:
 
 
 def test_lost_motion_of_a_stiff_drive_is_its_clearance() -> None:
-    """The output is turned without torque until the flanks, a gap apart so far, would meet on either side.
+    """The output is turned without torque until the flanks, a gap apart so far, would meet on
+    either side.
 
     The drive is stiff for its torque: the rotation by it is a 20,000th of the clearance.
     """
     stiff = small("plane")
-    found = run(stiff.with_values({"stiffness.positions": 1, "stiffness.mesh_error": False})).summary.stiffness
+    found = run(
+        stiff.with_values({"stiffness.positions": 1, "stiffness.mesh_error": False})
+    ).summary.stiffness
     half = 0.5 * found.lost_motion / 60.0
-    turned = [{"name": "turn", "output_rotation": 0.98 * half}, {"name": "on", "output_rotation": 0.99 * half}]
+    turned = [
+        {"name": "turn", "output_rotation": 0.98 * half},
+        {"name": "on", "output_rotation": 0.99 * half},
+    ]
     design = stiff.with_values({"load.program": turned})
     stepper, gap = load_stepper(design), []
     for state in load_sequence(design).states:
@@ -145,7 +172,8 @@ def follow(design: DriveDesign) -> list[PointRow]:
 
 
 def test_a_program_changes_between_torque_and_rotation() -> None:
-    """Held where the torque has brought it, the output needs that torque, and keeps it when it is let go."""
+    """Held where the torque has brought it, the output needs that torque, and keeps it when it is
+    let go."""
     up = {"name": "up", "torque": TORQUE}
     rows = follow(small("plane").with_values({"load.program": [up]}))
     angle = rows[0]["rotation_arcmin"] / 60.0
@@ -162,7 +190,9 @@ def test_the_wave_generator_turns_within_a_program() -> None:
     """After a pitch of the ring gear under torque the output has turned by pitch / ratio."""
     pitch = 360.0 / 42.0
     turn = {"name": "turn", "wave_generator": pitch, "points": 4}
-    rows = follow(small("plane").with_values({"load.program": [{"name": "up", "torque": TORQUE}, turn]}))
+    rows = follow(
+        small("plane").with_values({"load.program": [{"name": "up", "torque": TORQUE}, turn]})
+    )
     assert rows[-1]["wg_angle_deg"] == pytest.approx(pitch)
     assert rows[-1]["rotation_arcmin"] == pytest.approx(rows[0]["rotation_arcmin"], rel=1e-6)
     assert rows[-1]["wg_torque_Nmm"] == pytest.approx(rows[0]["wg_torque_Nmm"], rel=1e-5)
@@ -179,7 +209,8 @@ def test_ratcheting_ends_by_itself() -> None:
 
 
 def test_the_torque_repeats_after_a_jump() -> None:
-    """Turned by one pitch with the wave generator locked, the output is where its neighbouring teeth were."""
+    """Turned by one pitch with the wave generator locked, the output is where its neighbouring
+    teeth were."""
     design = small("plane").with_values(LOW_TEETH)
     pitch = pitch_angle(design)
     angles = [0.05 * pitch, 0.5 * pitch, 1.05 * pitch]
@@ -195,8 +226,14 @@ class Stopped(Exception):
 
 @pytest.mark.parametrize("friction", [0.0, 0.1])
 def test_restart(tmp_path: Path, friction: float) -> None:
-    values = {"stiffness.positions": 1 if friction else 2, "stiffness.points": 1, "contact.friction": friction}
-    values["solver.rtol"] = 1e-9  # chords of small rotations: the state is predicted anew after a restart
+    values = {
+        "stiffness.positions": 1 if friction else 2,
+        "stiffness.points": 1,
+        "contact.friction": friction,
+    }
+    values["solver.rtol"] = (
+        1e-9  # chords of small rotations: the state is predicted anew after a restart
+    )
     design = small("plane").with_values(values)
     whole = run(design, out=tmp_path / "whole")
     count = 0
@@ -236,7 +273,9 @@ def test_restart_of_ratcheting(tmp_path: Path) -> None:
         run(design, out=tmp_path, on_increment=stop)
     rest = run(design, out=tmp_path, restart=True)
     assert rest.summary.ratcheting.gave_way == whole.summary.ratcheting.gave_way
-    assert rest.summary.ratcheting.peak_torque_Nm == pytest.approx(whole.summary.ratcheting.peak_torque_Nm, rel=1e-6)
+    assert rest.summary.ratcheting.peak_torque_Nm == pytest.approx(
+        whole.summary.ratcheting.peak_torque_Nm, rel=1e-6
+    )
     # a finished run has nothing left to compute
     assert run(design, out=tmp_path, restart=True).summary.increments == rest.summary.increments
 
@@ -251,7 +290,8 @@ def test_ranks() -> None:
 
 
 def test_studies_vary_programs_and_take_their_results(tmp_path: Path) -> None:
-    """Twice the torque turns the output, flanks closed, twice as far; names that do not exist are refused."""
+    """Twice the torque turns the output, flanks closed, twice as far; names that do not exist are
+    refused."""
     stages = [{"name": "off", "torque": 0.0}, {"name": "up", "torque": TORQUE}]
     lines = [
         "[study]",
@@ -261,7 +301,9 @@ def test_studies_vary_programs_and_take_their_results(tmp_path: Path) -> None:
     ]
     quantities = [f"program.{name}.rotation_arcmin" for name in ("off", "up")]
     plane = ", ".join(f"'{item}'" for item in PLANE)
-    written = ", ".join(f'{{ name = "{stage["name"]}", torque = {stage["torque"]} }}' for stage in stages)
+    written = ", ".join(
+        f'{{ name = "{stage["name"]}", torque = {stage["torque"]} }}' for stage in stages
+    )
     lines += [f"set = [{plane}, 'load.program=[{written}]']", f"quantities = {quantities}"]
     (tmp_path / "study.toml").write_text("\n".join(lines), encoding="utf-8")
     table = swgpar.study(tmp_path / "study.toml").table

@@ -1,4 +1,5 @@
-"""Windows: the drive's own stresses on the drive's mesh, the same on any number of ranks, an error that holds."""
+"""Windows: the drive's own stresses on the drive's mesh, the same on any number of ranks, an error
+that holds."""
 
 from __future__ import annotations
 
@@ -38,7 +39,10 @@ def on_the_drive(stepper: LoadStepper, teeth: np.ndarray, share: float = 0.5) ->
     share : of the face width, from its middle to both sides
     """
     model = stepper.model
-    body, (first, _) = model.elements.bodies[FLEXIBLE_SPLINE], model.partition.owned_sectors(FLEXIBLE_SPLINE)
+    body, (first, _) = (
+        model.elements.bodies[FLEXIBLE_SPLINE],
+        model.partition.owned_sectors(FLEXIBLE_SPLINE),
+    )
     toothed = np.abs(body.layout.mesh.coords[:, 2]) <= share * model.design.drive.face_width + 1e-9
     stress = body.nodal_stress(model.problem.displacement())[:, toothed]
     mine = np.isin(first + np.arange(len(stress)), teeth % body.layout.count)
@@ -48,7 +52,8 @@ def on_the_drive(stepper: LoadStepper, teeth: np.ndarray, share: float = 0.5) ->
 @pytest.mark.parametrize("tooth", [5, 18])
 @pytest.mark.parallel([1, 2])
 def test_a_window_has_its_share_of_a_large_torque(tooth: int) -> None:
-    """In the plane the torque acts on the inner surface; here it is a hundred times that of the other tests."""
+    """In the plane the torque acts on the inner surface; here it is a hundred times that of the
+    other tests."""
     stepper, _ = loaded(small("plane", "load.torque=20"))
     window = solved(stepper, tooth)
     found = window.largest().value
@@ -67,7 +72,8 @@ def test_a_window_that_reaches_the_closed_end_has_its_clamping() -> None:
     window.destroy()
     expected = on_the_drive(stepper, np.arange(MARGIN, SECTORS - MARGIN) - SECTORS // 2, END)
     print(f"{found:.2f} and {expected:.2f} MPa")
-    # next to it the flanks' load, which is a parabola in the window, and the rim at the notch are 0.4 % off
+    # next to it the flanks' load, a parabola in the window, and the rim at the notch differ by 0.4
+    # %
     parallel_assert(found == pytest.approx(expected, rel=6e-3), f"{found} and {expected}")
 
 
@@ -82,11 +88,15 @@ def test_a_window_that_reaches_the_closed_end_has_its_clamping() -> None:
     ],
 )
 @pytest.mark.parametrize("tooth", [1, 18])
-def test_on_the_drive_s_mesh_a_window_has_the_drive_s_stress(model: str, rel: float, tooth: int) -> None:
+def test_on_the_drive_s_mesh_a_window_has_the_drive_s_stress(
+    model: str, rel: float, tooth: int
+) -> None:
     """Around tooth 18 of 20 modelled ones the window reaches into the half that is an image."""
     stepper = drive(model)
     window = solved(stepper, tooth)
-    found = max(window.largest(ends).value for ends in ((False,) if model == "plane" else (False, True)))
+    found = max(
+        window.largest(ends).value for ends in ((False,) if model == "plane" else (False, True))
+    )
     window.destroy()
     inside = tooth + np.arange(MARGIN, SECTORS - MARGIN) - SECTORS // 2
     expected = on_the_drive(stepper, inside)
@@ -101,7 +111,9 @@ def test_the_estimated_error_holds() -> None:
     levels = len(found.levels)
     reference = resolve_root_stress(stepper.model, stepper.load_state, levels + 1).s1
     true = abs(found.s1 - reference)
-    print(f"s1 {found.levels}, reference {reference:.2f}: error {found.error:.2f} for {true:.2f} MPa")
+    print(
+        f"s1 {found.levels}, reference {reference:.2f}: error {found.error:.2f} for {true:.2f} MPa"
+    )
     assert found.region in ("tooth root", "rim inside")
     assert 0.5 * true < found.error < 0.02 * found.s1
 

@@ -1,4 +1,5 @@
-"""Materials of bodies in whole runs: the body decides, not the section that its material stands in."""
+"""Materials of bodies in whole runs: the body decides, not the section that its material stands
+in."""
 
 from __future__ import annotations
 
@@ -21,9 +22,16 @@ BEARING = (
 
 
 def given(**materials: dict[str, float]) -> list[str]:
-    """Overrides for materials by the section they are in, with __ for the dot; `drive` is [material]."""
-    sections = {name: f"{name.replace('__', '.')}.material" for name in materials} | {"drive": "material"}
-    return [f"{sections[name]}.{key}={value}" for name, law in materials.items() for key, value in law.items()]
+    """Overrides for materials by the section they are in, with __ for the dot; `drive` is
+    [material]."""
+    sections = {name: f"{name.replace('__', '.')}.material" for name in materials} | {
+        "drive": "material"
+    }
+    return [
+        f"{sections[name]}.{key}={value}"
+        for name, law in materials.items()
+        for key, value in law.items()
+    ]
 
 
 def run(*overrides: str) -> DriveResult:
@@ -38,20 +46,30 @@ def assert_same(first: DriveResult, second: DriveResult, tolerance: float) -> No
             assert len(values) == len(other[name])
             if values.dtype.kind in "fi" and not name.startswith(("wall", "seconds")):
                 scale = np.nanmax(np.abs(values), initial=1e-30)
-                assert np.allclose(values, other[name], rtol=0.0, atol=tolerance * scale, equal_nan=True), name
+                assert np.allclose(
+                    values, other[name], rtol=0.0, atol=tolerance * scale, equal_nan=True
+                ), name
 
 
 @pytest.mark.parametrize("more", [(HOUSING,), BEARING])
 def test_an_equal_material_given_twice_changes_nothing(more: tuple[str, ...]) -> None:
     sections = {"flexible_spline": STEEL, "ring_gear": STEEL}
-    sections |= {"ring_gear__housing": STEEL} if more == (HOUSING,) else {"wave_generator__bearing": STEEL}
+    sections |= (
+        {"ring_gear__housing": STEEL} if more == (HOUSING,) else {"wave_generator__bearing": STEEL}
+    )
     plain = run(*PLANE, *more, *given(drive=STEEL))
     assert_same(plain, run(*PLANE, *more, *given(drive=STEEL, **sections)), 1e-12)
 
 
 def test_the_body_decides_and_not_the_section() -> None:
-    """A soft ring gear in a drive of steel, and a steel flexible spline in a soft drive: windows and losses too."""
-    more = ("output.root_stress=true", "losses.flank_friction=0.05", "steps.samples=4", "steps.rotation=18")
+    """A soft ring gear in a drive of steel, and a steel flexible spline in a soft drive: windows
+    and losses too."""
+    more = (
+        "output.root_stress=true",
+        "losses.flank_friction=0.05",
+        "steps.samples=4",
+        "steps.rotation=18",
+    )
     soft_ring = run(*more, *given(drive=STEEL, ring_gear=SOFT))
     steel_spline = run(*more, *given(drive=SOFT, flexible_spline=STEEL))
     assert_same(soft_ring, steel_spline, 1e-8)

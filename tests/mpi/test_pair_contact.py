@@ -1,4 +1,5 @@
-"""Contact of the pairs under load: Hertz where the flanks are arcs, equilibrium, the same on any number of ranks."""
+"""Contact of the pairs under load: Hertz where the flanks are arcs, equilibrium, the same on any
+number of ranks."""
 
 from __future__ import annotations
 
@@ -36,7 +37,9 @@ def test_any_number_of_ranks_gives_the_same(model: str) -> None:
             # the contact ends between two strips of a grid that depends on round-off
             rel = 2e-2 if name == "half_width_mm" else 1e-3
             same = (
-                value == b[name] if isinstance(value, (int, str)) else np.isclose(value, b[name], rtol=rel, atol=1e-6)
+                value == b[name]
+                if isinstance(value, (int, str))
+                else np.isclose(value, b[name], rtol=rel, atol=1e-6)
             )
             parallel_assert(bool(same), f"{name}: {value} and {b[name]}")
 
@@ -54,33 +57,48 @@ def test_the_torques_of_the_pairs_make_the_output_torque(model: str, layout: str
     if layout == "ring_fixed":
         expected = -(expected + row["wg_torque_Nmm"])
     parallel_assert(on_ring_gear == pytest.approx(expected, rel=1e-6))
-    parallel_assert(abs(row["output_torque_Nmm"]) == pytest.approx(1000.0 * design.load.torque, rel=1e-12))
-    parallel_assert(stepper.model.copies * sum(one.force_share for one in found) == pytest.approx(1.0, rel=1e-12))
+    parallel_assert(
+        abs(row["output_torque_Nmm"]) == pytest.approx(1000.0 * design.load.torque, rel=1e-12)
+    )
+    parallel_assert(
+        stepper.model.copies * sum(one.force_share for one in found)
+        == pytest.approx(1.0, rel=1e-12)
+    )
     parallel_assert(stepper.model.copies * len(found) == row["pairs_in_contact"])
 
 
 @pytest.mark.parallel(1)
 def test_the_forces_carry_the_torque() -> None:
-    """Tangential force at the contact; normals lie within 8 degrees of the pressure angle of 20 degrees."""
+    """Tangential force at the contact; normals lie within 8 degrees of the pressure angle of 20
+    degrees."""
     found, row = contacts("plane")
-    torque = 2.0 * sum(one.force_N * np.cos(np.radians(20.0)) * (one.radius_mm + 1.0) for one in found)
+    torque = 2.0 * sum(
+        one.force_N * np.cos(np.radians(20.0)) * (one.radius_mm + 1.0) for one in found
+    )
     assert torque == pytest.approx(abs(row["tooth_torque_Nmm"]), rel=0.06)
 
 
 @pytest.mark.parallel(1)
 def test_an_arc_on_a_straight_flank_has_the_pressure_of_hertz() -> None:
-    """The upper arc of 1 mm of the flexible spline lies on the straight part of the ring gear's flank."""
+    """The upper arc of 1 mm of the flexible spline lies on the straight part of the ring gear's
+    flank."""
     (one,) = contacts("plane")[0]
-    load, modulus = one.line_load_Nmm, contact_modulus(*[Isotropic(E=210e3, nu=0.29)] * 2, plane_stress=True)
+    load, modulus = (
+        one.line_load_Nmm,
+        contact_modulus(*[Isotropic(E=210e3, nu=0.29)] * 2, plane_stress=True),
+    )
     assert one.pressure_MPa == pytest.approx(np.sqrt(load * modulus / (np.pi * 1.0)), rel=2e-3)
-    assert one.half_width_mm == pytest.approx(np.sqrt(4.0 * load * 1.0 / (np.pi * modulus)), rel=0.01)
+    assert one.half_width_mm == pytest.approx(
+        np.sqrt(4.0 * load * 1.0 / (np.pi * modulus)), rel=0.01
+    )
     assert not one.edge
 
 
 @pytest.mark.parametrize("layout", ["ring_fixed", "spline_fixed"])
 @pytest.mark.parallel(1)
 def test_sliding_is_the_motion_between_two_angles(layout: str) -> None:
-    """Positions of both flanks at the contact, half a degree before and after the loaded state, at 1 rad/s."""
+    """Positions of both flanks at the contact, half a degree before and after the loaded state, at
+    1 rad/s."""
     design = small("plane", f"drive.layout={layout}", f"load.input_speed={30.0 / np.pi}")
     stepper, _ = loaded(design)
     (one,) = pair_contacts(stepper.model, stepper.load_state)
@@ -90,9 +108,13 @@ def test_sliding_is_the_motion_between_two_angles(layout: str) -> None:
     for angle in (-half, half):
         rotate(stepper, angle)
         pairs = [
-            p for p in stepper.problem.flanks[0].pairs if (p.sector, p.side > 0) == (one.tooth, one.flank == CLOCKWISE)
+            p
+            for p in stepper.problem.flanks[0].pairs
+            if (p.sector, p.side > 0) == (one.tooth, one.flank == CLOCKWISE)
         ]
-        ((_, tooth, _),), ((_, facing, _),) = moved_teeth(stepper.model, pairs, stepper.problem.flanks[0])
+        ((_, tooth, _),), ((_, facing, _),) = moved_teeth(
+            stepper.model, pairs, stepper.problem.flanks[0]
+        )
         places.append((tooth.sections(flat), facing.sections(flat)))
     (tooth, facing), (tooth_after, facing_after) = places
     foot = 0.5 * sum(ring.distance(flank.from_profile(s))[1] for flank, ring in places)

@@ -1,4 +1,5 @@
-"""Pancake drive: a flexible spline that contacts alone hold, between a fixed ring gear and one that is the output."""
+"""Pancake drive: a flexible spline that contacts alone hold, between a fixed ring gear and one that
+is the output."""
 
 from __future__ import annotations
 
@@ -45,12 +46,17 @@ def spline_rotation(stepper: LoadStepper) -> float:
 @pytest.mark.parallel([1, 2])
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_balance_and_period(layout: str) -> None:
-    """Both ring gears and the wave generator balance; after a pitch of the fixed ring gear the state is the same."""
+    """Both ring gears and the wave generator balance; after a pitch of the fixed ring gear the
+    state is the same."""
     ratio, teeth = LAYOUTS[layout]
     design = pancake(f"drive.layout={layout}")
     assert design.ratio == ratio
     stepper, first = loaded(design)
-    tooth, second, cam = first["tooth_torque_Nmm"], first["ds_tooth_torque_Nmm"], first["wg_torque_Nmm"]
+    tooth, second, cam = (
+        first["tooth_torque_Nmm"],
+        first["ds_tooth_torque_Nmm"],
+        first["wg_torque_Nmm"],
+    )
     at_output = second if layout == "ring_fixed" else tooth
     load = first["output_torque_Nmm"]
     parallel_assert(abs(load) == pytest.approx(TORQUE) and load * ratio < 0.0)
@@ -60,14 +66,21 @@ def test_balance_and_period(layout: str) -> None:
     contacts = pair_contacts(stepper.model, stepper.load_state)
     parallel_assert(2 * len(contacts) == first["pairs_in_contact"])
     for ring, torque in (("ring_gear", tooth), ("dynamic_spline", second)):
-        of_ring, (low, high) = [one for one in contacts if one.ring == ring], design.axial_range(ring)
-        parallel_assert(2.0 * sum(one.torque_Nmm for one in of_ring) == pytest.approx(torque, rel=1e-6))
+        of_ring, (low, high) = (
+            [one for one in contacts if one.ring == ring],
+            design.axial_range(ring),
+        )
+        parallel_assert(
+            2.0 * sum(one.torque_Nmm for one in of_ring) == pytest.approx(torque, rel=1e-6)
+        )
         stations = [station.z_mm for one in of_ring for station in one.stations]
         parallel_assert(len(stations) > 0 and low < min(stations) and max(stations) < high)
     before, pitch = spline_rotation(stepper), 2.0 * np.pi / teeth
     last = rotate(stepper, pitch)
     turned = np.degrees(pitch) / ratio
-    parallel_assert(last["output_angle_deg"] - first["output_angle_deg"] == pytest.approx(turned, abs=1e-5))
+    parallel_assert(
+        last["output_angle_deg"] - first["output_angle_deg"] == pytest.approx(turned, abs=1e-5)
+    )
     # the flexible spline rotates with the dynamic one, which is the output or fixed
     expected = np.radians(turned) if layout == "ring_fixed" else 0.0
     parallel_assert(spline_rotation(stepper) - before == pytest.approx(expected, abs=2e-7))
@@ -86,7 +99,14 @@ def test_any_number_of_ranks_gives_the_same() -> None:
 def test_half_of_the_drive_is_the_whole() -> None:
     """Nothing but the cam and the teeth centres the flexible spline in the whole drive."""
     (_, half), (_, whole) = loaded(pancake()), loaded(pancake("solver.symmetry=false"))
-    for name in ("output_angle_deg", "fs_vm", "rg_vm", "ds_vm", "wg_torque_Nmm", "pairs_in_contact"):
+    for name in (
+        "output_angle_deg",
+        "fs_vm",
+        "rg_vm",
+        "ds_vm",
+        "wg_torque_Nmm",
+        "pairs_in_contact",
+    ):
         assert whole[name] == pytest.approx(half[name], rel=1e-4), name
 
 

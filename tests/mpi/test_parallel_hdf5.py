@@ -39,7 +39,9 @@ def parts(comm: MPI.Comm) -> dict[str, Block]:
 
 @pytest.mark.parallel([1, 2, 3])
 @pytest.mark.parametrize("piece", [2**30, 64])
-def test_content_does_not_depend_on_ranks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, piece: int) -> None:
+def test_content_does_not_depend_on_ranks(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, piece: int
+) -> None:
     """piece : bytes of one call of MPI; rows larger than it are written in several"""
     monkeypatch.setattr(parallel_hdf5, "PIECE_BYTES", piece)
     path = COMM.bcast(tmp_path) / "all.h5"
@@ -56,7 +58,8 @@ def test_content_does_not_depend_on_ranks(tmp_path: Path, monkeypatch: pytest.Mo
 
 @pytest.mark.parallel([1, 2, 3])
 def test_rows_are_written_where_they_lie(tmp_path: Path) -> None:
-    """Data sets are whole, without chunks or filters: any program finds the rows at their offset."""
+    """Data sets are whole, without chunks or filters: any program finds the rows at their
+    offset."""
     path = COMM.bcast(tmp_path) / "all.h5"
     parallel_hdf5.write(path, COMM, parts(COMM))
     content = path.read_bytes()
@@ -89,5 +92,7 @@ def test_one_rank_fails(tmp_path: Path) -> None:
     with pytest.raises(OutputError, match="cannot write .*all.h5: "):
         parallel_hdf5.write(path, COMM, blocks)
     COMM.Barrier()
-    assert path.read_bytes() == before and [entry.name for entry in path.parent.iterdir()] == ["all.h5"]
+    assert path.read_bytes() == before and [entry.name for entry in path.parent.iterdir()] == [
+        "all.h5"
+    ]
     COMM.Barrier()

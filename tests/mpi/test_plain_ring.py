@@ -18,7 +18,13 @@ def test_ranks_do_not_matter(plane: bool) -> None:
     design = PlainRingDesign(136.0, 4.5, 10.0, plane, Isotropic(E=206e3, nu=0.29))
     readings = []
     for comm in (MPI.COMM_WORLD, MPI.COMM_SELF):
-        model = RingModel(design, RingCounts(40, 1, 2), simplified(design.inner_radius, 32.5), np.radians(20.0), comm)
+        model = RingModel(
+            design,
+            RingCounts(40, 1, 2),
+            simplified(design.inner_radius, 32.5),
+            np.radians(20.0),
+            comm,
+        )
         model.spread(0.5)
         readings.append([model.dial(angle, 0.1) for angle in (0.0, 0.25 * np.pi, 0.5 * np.pi)])
         model.destroy()

@@ -21,7 +21,9 @@ CASES = ((), ("drive.layout=spline_fixed",), ("solver.symmetry=false",))
 
 @pytest.fixture(scope="module", params=CASES, ids=["ring fixed", "spline fixed", "whole drive"])
 def model(request: pytest.FixtureRequest) -> DriveModel:
-    return build_drive_model(load_design(DESIGN, [*PLANE, *request.param]), load_recipe(RECIPE), comm=MPI.COMM_WORLD)
+    return build_drive_model(
+        load_design(DESIGN, [*PLANE, *request.param]), load_recipe(RECIPE), comm=MPI.COMM_WORLD
+    )
 
 
 def wave(model: DriveModel, angle: float, slip: float = 0.0) -> PETSc.Vec:
@@ -35,7 +37,11 @@ def wave(model: DriveModel, angle: float, slip: float = 0.0) -> PETSc.Vec:
     for body, layout in partition.layouts.items():
         own = np.arange(*partition.owned_sectors(body))
         coords = np.repeat(layout.mesh.coords[None], len(own), axis=0)
-        turn = 0.0 if body == model.fixed_body else angle * (1.0 - teeth[model.fixed_body] / teeth[body]) + slip
+        turn = (
+            0.0
+            if body == model.fixed_body
+            else angle * (1.0 - teeth[model.fixed_body] / teeth[body]) + slip
+        )
         at = layout.sector_angle(layout.first_tooth + own)[:, None]
         place = rotated(coords, at + turn)
         around = np.arctan2(place[..., 1], place[..., 0])
@@ -54,7 +60,9 @@ def error(model: DriveModel, known: list[float], angle: float, slip: float = 0.0
     exact, worst = wave(model, angle, slip), 0.0
     for body in model.partition.layouts:
         own = np.arange(*model.partition.owned_sectors(body))
-        gap = read_field(model.partition, body, own, x) - read_field(model.partition, body, own, exact)
+        gap = read_field(model.partition, body, own, x) - read_field(
+            model.partition, body, own, exact
+        )
         worst = max(worst, float(np.abs(gap).max(initial=0.0)))
     return model.comm.allreduce(worst, op=MPI.MAX)
 
@@ -68,13 +76,18 @@ def test_whole_pitches_are_exact(model: DriveModel, pitches: int) -> None:
 @pytest.mark.parametrize("teeth", [1, -2])
 @pytest.mark.parallel([1, 2, 3])
 def test_a_slip_by_whole_teeth_is_exact(model: DriveModel, teeth: int) -> None:
-    (moving,) = (layout.mesh.n_sectors for name, layout in model.partition.layouts.items() if name != model.fixed_body)
+    (moving,) = (
+        layout.mesh.n_sectors
+        for name, layout in model.partition.layouts.items()
+        if name != model.fixed_body
+    )
     assert error(model, [0.0], 0.0, 2.0 * np.pi * teeth / moving) < 1e-11
 
 
 @pytest.mark.parallel([1, 2, 3])
 def test_between_them_cubic_polynomials_interpolate(model: DriveModel) -> None:
-    """Error of the middle: 9/16 of a pitch (the spline's, the larger) to the fourth, over 4!, times a derivative."""
+    """Error of the middle: 9/16 of a pitch (the spline's, the larger) to the fourth, over 4!, times
+    a derivative."""
     pitch = 2.0 * np.pi / model.design.drive.teeth_fs
     middle = error(model, [0.0], 0.5 * model.design.period_angle)
     assert 0.5 < middle / (9.0 / 16.0 / 24.0 * (2.0 * pitch) ** 4) < 1.02
@@ -82,7 +95,8 @@ def test_between_them_cubic_polynomials_interpolate(model: DriveModel) -> None:
 
 @pytest.mark.parallel([1, 2, 3])
 def test_more_states_make_it_better(model: DriveModel) -> None:
-    """Halfway between two states a quarter of a pitch apart the error is that of the shorter distance."""
+    """Halfway between two states a quarter of a pitch apart the error is that of the shorter
+    distance."""
     pitch = model.design.period_angle
     alone = error(model, [0.0], 0.5 * pitch)
     close = error(model, [0.0, 0.25 * pitch, 0.75 * pitch], 0.5 * pitch)

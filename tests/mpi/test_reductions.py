@@ -59,7 +59,10 @@ def rotated(
 def assert_same(row: dict[str, float], other: dict[str, float], rel: float) -> None:
     for name in PHYSICAL:
         print(f"{name}: {row[name] / other[name] - 1.0:+.1e}")
-        parallel_assert(row[name] == pytest.approx(other[name], rel=rel), f"{name}: {row[name]} and {other[name]}")
+        parallel_assert(
+            row[name] == pytest.approx(other[name], rel=rel),
+            f"{name}: {row[name]} and {other[name]}",
+        )
 
 
 @pytest.fixture(scope="module")
@@ -85,7 +88,9 @@ def test_a_kept_factor_changes_nothing_in_the_plane() -> None:
 
 
 @pytest.mark.parametrize("cost", [0.0, 1e9])
-def test_a_factor_renewed_after_every_solve_or_never_changes_nothing(cost: float, plain: dict[str, float]) -> None:
+def test_a_factor_renewed_after_every_solve_or_never_changes_nothing(
+    cost: float, plain: dict[str, float]
+) -> None:
     def set_price(stepper: LoadStepper) -> None:
         stepper.solver.system.solver.price = lambda matrix: cost
 
@@ -119,9 +124,12 @@ def test_search_over_candidate_teeth_only() -> None:
     assert_same(all_pairs, candidates, 1e-6)
 
 
-@pytest.mark.parametrize(("override", "rel"), [("contact.friction=0.2", 1e-4), ("drive.layout=spline_fixed", 1e-6)])
+@pytest.mark.parametrize(
+    ("override", "rel"), [("contact.friction=0.2", 1e-4), ("drive.layout=spline_fixed", 1e-6)]
+)
 def test_a_kept_factor_with_friction_and_in_the_other_layout(override: str, rel: float) -> None:
-    """Friction's tractions live at segments that Newton's iterates fix, here other ones: 8e-6 of the ring's stress."""
+    """Friction's tractions live at segments that Newton's iterates fix, here other ones: 8e-6 of
+    the ring's stress."""
     stepper, row = rotated("solver.far_teeth=modelled", override, "steps.rotation=1.5")
     assert np.median(stepper.solver.system.reused.iterations) < 20
     _, alone = rotated(*PLAIN, override, "steps.rotation=1.5")
@@ -139,7 +147,9 @@ def test_a_start_from_the_bent_shape_changes_nothing(plain: dict[str, float]) ->
 
 
 @pytest.mark.parametrize("overrides", [(), ("drive.layout=spline_fixed",), ("load.torque=0",)])
-def test_a_start_from_the_bent_shape_changes_nothing_in_the_plane(overrides: tuple[str, ...]) -> None:
+def test_a_start_from_the_bent_shape_changes_nothing_in_the_plane(
+    overrides: tuple[str, ...],
+) -> None:
     _, step_by_step = rotated(*PLAIN, *PLANE, *overrides)
     _, row = rotated(*PLAIN, *PLANE, *overrides, "steps.bent_start=true")
     for name in PHYSICAL:  # without a torque the input torque vanishes
@@ -157,7 +167,8 @@ def test_a_start_on_coarser_meshes_changes_nothing_in_the_plane(count: int) -> N
 
 @pytest.mark.parallel(2)
 def test_far_teeth_change_little() -> None:
-    """80 teeth, of which a third is out of reach; measured are changes of 1e-12 in stresses and 1e-8 in the torque."""
+    """80 teeth, of which a third is out of reach; measured are changes of 1e-12 in stresses and
+    1e-8 in the torque."""
     many = ("drive.teeth_fs=80", "drive.teeth_rg=82", *PLANE, "solver.keep_factor=false")
     _, all_teeth = rotated("solver.far_teeth=modelled", *many)
     stepper, near_teeth = rotated(*many)
@@ -166,9 +177,12 @@ def test_far_teeth_change_little() -> None:
     assert_same(near_teeth, all_teeth, 1e-6)
 
 
-@pytest.mark.parametrize("overrides", [(), ("contact.friction=0.2",), ("drive.layout=spline_fixed",)])
+@pytest.mark.parametrize(
+    "overrides", [(), ("contact.friction=0.2",), ("drive.layout=spline_fixed",)]
+)
 def test_condensed_teeth_change_little(overrides: tuple[str, ...]) -> None:
-    """They leave out the bend of the tooth where it stands on the rim: with 40 teeth 5e-4 of the compression there."""
+    """They leave out the bend of the tooth where it stands on the rim: with 40 teeth 5e-4 of the
+    compression there."""
     plain_stepper, plain = rotated(*PLAIN, *overrides)
     stepper, row = rotated("solver.keep_factor=false", *overrides)
     whole = [int(teeth.active.sum()) for teeth in stepper.problem.whole_teeth]
@@ -179,8 +193,13 @@ def test_condensed_teeth_change_little(overrides: tuple[str, ...]) -> None:
     assert rows < 0.9 * all_rows
     assert_same(row, plain, 1e-3)
     # everywhere, inside too
-    for fields, others in zip(stepper.model.stresses()[1].values(), plain_stepper.model.stresses()[1].values()):
-        assert np.abs(fields["displacement"] - others["displacement"]).max() < 1e-4 * stepper.design.deflection
+    for fields, others in zip(
+        stepper.model.stresses()[1].values(), plain_stepper.model.stresses()[1].values()
+    ):
+        assert (
+            np.abs(fields["displacement"] - others["displacement"]).max()
+            < 1e-4 * stepper.design.deflection
+        )
         if "s1" in fields and not overrides:
             assert np.abs(fields["s1"] - others["s1"]).max() < 4e-3 * plain["fs_vm"]
 
@@ -212,25 +231,42 @@ CONDENSED = (*MANY, "solver.condensed_sectors=true")
         ("ring_gear.housing.thickness=4", "ring_gear.housing.material={E=70e3, nu=0.29}"),
     ],
 )
-def test_condensed_sectors_in_the_plane_leave_out_the_bend_of_a_sector(overrides: tuple[str, ...]) -> None:
-    """E theta^2 / 8 of the bending stress; half as much again for the load's part and the nodal averages."""
+def test_condensed_sectors_in_the_plane_leave_out_the_bend_of_a_sector(
+    overrides: tuple[str, ...],
+) -> None:
+    """E theta^2 / 8 of the bending stress; half as much again for the load's part and the nodal
+    averages."""
     stepper, plain = rotated(*MANY, *overrides)
     condensed_stepper, condensed = rotated(*CONDENSED, *overrides)
     design = stepper.design
     assert 0.5 * stepper.model.partition.n_global > condensed_stepper.model.partition.n_global
     left_out = condensed_stepper.model.omitted_bending_stress()
     assert stepper.model.omitted_bending_stress() == 0.0
-    bending = 0.75 * design.material.E * design.flexible_spline.rim * design.deflection / design.inner_radius**2
-    # 6.6 % more than by the formula, which is that of a smooth ring: a sector bends more between its thick teeth
+    bending = (
+        0.75
+        * design.material.E
+        * design.flexible_spline.rim
+        * design.deflection
+        / design.inner_radius**2
+    )
+    # 6.6 % more than by the formula, which is that of a smooth ring: a sector bends more between
+    # its thick teeth
     assert left_out == pytest.approx(1.066 * design.omitted_bending * bending, rel=0.01)
     share = 1.5 * design.omitted_bending
     assert 1e-3 < share < 0.015
     assert_same(condensed, plain, share)
     # everywhere, inside too
-    for fields, others in zip(condensed_stepper.model.stresses()[1].values(), stepper.model.stresses()[1].values()):
-        assert np.abs(fields["displacement"] - others["displacement"]).max(initial=0.0) < 2e-3 * design.deflection
+    for fields, others in zip(
+        condensed_stepper.model.stresses()[1].values(), stepper.model.stresses()[1].values()
+    ):
+        assert (
+            np.abs(fields["displacement"] - others["displacement"]).max(initial=0.0)
+            < 2e-3 * design.deflection
+        )
         for name in ("s1", "s3", "vm"):
-            assert np.abs(fields[name] - others[name]).max(initial=0.0) < share * plain["fs_vm"], name
+            assert np.abs(fields[name] - others[name]).max(initial=0.0) < share * plain["fs_vm"], (
+                name
+            )
 
 
 @pytest.mark.parallel([1, 2, 3])
@@ -258,7 +294,11 @@ def test_a_start_on_a_coarser_mesh_takes_over_what_is_inside() -> None:
     """The loaded state is as close as without condensed sectors."""
     iterations = []
     for condensed in (False, True):
-        overrides = [*CONDENSED[:-1], "steps.start_levels=1", f"solver.condensed_sectors={str(condensed).lower()}"]
+        overrides = [
+            *CONDENSED[:-1],
+            "steps.start_levels=1",
+            f"solver.condensed_sectors={str(condensed).lower()}",
+        ]
         design, mesh = load_design(DESIGN, overrides), load_recipe("plane_coarse")
         stepper = load_stepper(design, recipe=mesh)
         start_loaded(stepper, levels(design, mesh), load_sequence(design))
@@ -305,5 +345,7 @@ def test_a_mesh_is_chosen_alike_on_any_number_of_ranks() -> None:
         chosen.model.destroy()
     (here, stress), (alone, other) = found
     parallel_assert(here.recipe == alone.recipe)
-    parallel_assert(here.error == pytest.approx(alone.error, rel=1e-5), f"{here.error} and {alone.error}")
+    parallel_assert(
+        here.error == pytest.approx(alone.error, rel=1e-5), f"{here.error} and {alone.error}"
+    )
     parallel_assert(stress == pytest.approx(other, rel=1e-7), f"{stress} and {other}")

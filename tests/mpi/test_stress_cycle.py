@@ -1,4 +1,5 @@
-"""The stress cycle by renaming teeth: that of a whole turn, the same on any number of ranks, restartable."""
+"""The stress cycle by renaming teeth: that of a whole turn, the same on any number of ranks,
+restartable."""
 
 from __future__ import annotations
 
@@ -44,13 +45,16 @@ def test_renaming_teeth_gives_the_turn(layout: str) -> None:
     for k in range(len(renamed)):
         if k:
             rotate(stepper, 0.5 * k * cycle.model.design.period_angle)
-        found.append(sector_stress(body, stepper.model.stresses()[1][FLEXIBLE_SPLINE])[0, cycle.nodes])
+        found.append(
+            sector_stress(body, stepper.model.stresses()[1][FLEXIBLE_SPLINE])[0, cycle.nodes]
+        )
     assert np.abs(np.array(found) - renamed).max() < 1e-6 * np.abs(renamed).max()
 
 
 @pytest.mark.parallel(1)
 def test_renaming_teeth_in_the_cup() -> None:
-    """Stress at all nodes of one sector of the cup while the wave generator passes it, pitch by pitch."""
+    """Stress at all nodes of one sector of the cup while the wave generator passes it, pitch by
+    pitch."""
     design = small("cup", "steps.samples=1", "steps.rotation=9.0", *WITH)
     stepper, _ = loaded(design, MPI.COMM_SELF)
     cycle, body = StressCycle(stepper.model), stepper.model.elements.bodies[FLEXIBLE_SPLINE]
@@ -68,7 +72,10 @@ def test_renaming_teeth_in_the_cup() -> None:
 @pytest.mark.parametrize("model", ["plane", "cup"])
 @pytest.mark.parallel([1, 2, 3])
 def test_any_number_of_ranks_gives_the_same(model: str) -> None:
-    together, alone = sampled(model, "ring_fixed", WORLD), sampled(model, "ring_fixed", MPI.COMM_SELF)
+    together, alone = (
+        sampled(model, "ring_fixed", WORLD),
+        sampled(model, "ring_fixed", MPI.COMM_SELF),
+    )
     mine, stress = together.history()
     nodes, expected = alone.history()
     expected = expected[:, np.searchsorted(nodes, mine)]
@@ -97,12 +104,18 @@ def test_a_run_restarts(tmp_path: Path) -> None:
         run_drive(design, RunOptions(tmp_path / "out", recipe, comm=WORLD, on_increment=stop))
     again = swgpar.run(design, RECIPE, tmp_path / "out", restart=True, comm=WORLD)
     for part in ("fatigue", "losses"):
-        parallel_assert(same(asdict(getattr(whole.summary, part)), asdict(getattr(again.summary, part))), part)
+        parallel_assert(
+            same(asdict(getattr(whole.summary, part)), asdict(getattr(again.summary, part))), part
+        )
     opened = swgpar.open_result(tmp_path / "out")
     for result in (again, opened):
         safety = result.fatigue.fields["safety_goodman"]
-        parallel_assert(safety.min() <= whole.summary.fatigue.least["goodman"].safety * (1.0 + 1e-9))
-        parallel_assert(len(result.fatigue_cycle["normal_stress_MPa"]) == whole.summary.fatigue.phases)
+        parallel_assert(
+            safety.min() <= whole.summary.fatigue.least["goodman"].safety * (1.0 + 1e-9)
+        )
+        parallel_assert(
+            len(result.fatigue_cycle["normal_stress_MPa"]) == whole.summary.fatigue.phases
+        )
         parallel_assert(len(result.losses["bearing_Nmm"]) == 2)
 
 

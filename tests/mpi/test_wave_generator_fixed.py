@@ -1,4 +1,5 @@
-"""The layout with the ring gear driven and the wave generator fixed: the drive of `ring_fixed`, seen from its cam."""
+"""The layout with the ring gear driven and the wave generator fixed: the drive of `ring_fixed`,
+seen from its cam."""
 
 from __future__ import annotations
 
@@ -28,13 +29,27 @@ TEETH_FS, TEETH_RG, TORQUE = 40, 42, 200.0
 def run(*overrides: str) -> DriveResult:
     """The plane drive over one period in `SAMPLES` increments."""
     period = 360.0 / TEETH_RG
-    steps = (f"steps.rotation={period!r}", f"steps.increment={period / SAMPLES!r}", "output.fields=true")
-    return swgpar.run(swgpar.load_design(DESIGN, [*PLANE, *NO_SHORTCUTS, *steps, *overrides]), RECIPE, progress=False)
+    steps = (
+        f"steps.rotation={period!r}",
+        f"steps.increment={period / SAMPLES!r}",
+        "output.fields=true",
+    )
+    return swgpar.run(
+        swgpar.load_design(DESIGN, [*PLANE, *NO_SHORTCUTS, *steps, *overrides]),
+        RECIPE,
+        progress=False,
+    )
 
 
 def test_stresses_and_transmission_error_are_those_with_the_ring_gear_fixed() -> None:
     ring, wave = run(), run(FIXED)
-    for name in (*STRESSES, "wg_angle_deg", "wg_torque_Nmm", "tooth_torque_Nmm", "output_torque_Nmm"):
+    for name in (
+        *STRESSES,
+        "wg_angle_deg",
+        "wg_torque_Nmm",
+        "tooth_torque_Nmm",
+        "output_torque_Nmm",
+    ):
         assert wave.history[name] == pytest.approx(ring.history[name], rel=1e-12), name
     error = ring.summary.rotation.transmission_error_arcsec
     assert wave.summary.rotation.transmission_error_arcsec == pytest.approx(error, rel=1e-9)
@@ -53,16 +68,21 @@ def test_kinematics_balance_and_energy() -> None:
     wave = run(FIXED)
     h = wave.history
     assert wave.summary.ratio == pytest.approx(TEETH_FS / TEETH_RG)
-    assert swgpar.check(swgpar.load_design(DESIGN, [*PLANE, FIXED]))["ratio (ring gear / output)"] == pytest.approx(
-        TEETH_FS / TEETH_RG
-    )
+    assert swgpar.check(swgpar.load_design(DESIGN, [*PLANE, FIXED]))[
+        "ratio (ring gear / output)"
+    ] == pytest.approx(TEETH_FS / TEETH_RG)
     loaded = h["step"] >= 3
     assert h["input_angle_deg"] == pytest.approx(-h["wg_angle_deg"])
     total = h["input_torque_Nmm"] + h["output_torque_Nmm"] + h["wg_torque_Nmm"]
     assert np.abs(total[loaded]).max() < 1e-6 * TORQUE
-    angle, output = (np.radians(h[name][loaded]) for name in ("input_angle_deg", "output_angle_deg"))
-    assert output[-1] - output[0] == pytest.approx((angle[-1] - angle[0]) * TEETH_RG / TEETH_FS, rel=1e-6)
-    # mean over the period without its first state, which the last one repeats; kinks as in test_invariants
+    angle, output = (
+        np.radians(h[name][loaded]) for name in ("input_angle_deg", "output_angle_deg")
+    )
+    assert output[-1] - output[0] == pytest.approx(
+        (angle[-1] - angle[0]) * TEETH_RG / TEETH_FS, rel=1e-6
+    )
+    # mean over the period without its first state, which the last one repeats; kinks as in
+    # test_invariants
     work_in = h["input_torque_Nmm"][loaded][1:].mean() * (angle[-1] - angle[0])
     work_out = TORQUE * (output[-1] - output[0])
     assert work_in > 0.0 > work_out
@@ -76,7 +96,8 @@ def test_kinematics_balance_and_energy() -> None:
 
 
 def test_fields_are_those_of_a_standing_wave_generator() -> None:
-    """The deformed drive is that with the ring gear fixed, rotated back by the angle of the wave generator."""
+    """The deformed drive is that with the ring gear fixed, rotated back by the angle of the wave
+    generator."""
     ring, wave = run(), run(FIXED)
     back = -np.radians(ring.history["wg_angle_deg"][-1])
     for body in ("flexible_spline", "ring_gear"):
@@ -99,15 +120,24 @@ def test_a_rotated_tensor() -> None:
     turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
     expected = turn @ tensor @ turn.T
     found = rotated_stress(values, angle)
-    assert found == pytest.approx([expected[i] for i in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))])
+    assert found == pytest.approx(
+        [expected[i] for i in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))]
+    )
 
 
 def test_a_restart_goes_on_from_the_state_of_the_computation(tmp_path: Path) -> None:
     overrides = [*PLANE, *NO_SHORTCUTS, FIXED, "steps.increment=2", "output.fields=true"]
-    whole = swgpar.run(swgpar.load_design(DESIGN, [*overrides, "steps.rotation=6"]), RECIPE, tmp_path / "whole")
-    swgpar.run(swgpar.load_design(DESIGN, [*overrides, "steps.rotation=4"]), RECIPE, tmp_path / "parts")
+    whole = swgpar.run(
+        swgpar.load_design(DESIGN, [*overrides, "steps.rotation=6"]), RECIPE, tmp_path / "whole"
+    )
+    swgpar.run(
+        swgpar.load_design(DESIGN, [*overrides, "steps.rotation=4"]), RECIPE, tmp_path / "parts"
+    )
     parts = swgpar.run(
-        swgpar.load_design(DESIGN, [*overrides, "steps.rotation=6"]), RECIPE, tmp_path / "parts", restart=True
+        swgpar.load_design(DESIGN, [*overrides, "steps.rotation=6"]),
+        RECIPE,
+        tmp_path / "parts",
+        restart=True,
     )
     again = swgpar.open_result(tmp_path / "parts")
     for name in (*STRESSES, "input_angle_deg", "output_angle_deg", "input_torque_Nmm"):
@@ -118,10 +148,19 @@ def test_a_restart_goes_on_from_the_state_of_the_computation(tmp_path: Path) -> 
 
 
 def test_losses_refer_to_the_input() -> None:
-    """The same power is lost at the same speed of the input, of a power that is larger by the ratios."""
-    overrides = (*PLANE, "losses.bearing_diameter=30", "steps.samples=4", "steps.rotation=10", "output.fields=false")
+    """The same power is lost at the same speed of the input, of a power that is larger by the
+    ratios."""
+    overrides = (
+        *PLANE,
+        "losses.bearing_diameter=30",
+        "steps.samples=4",
+        "steps.rotation=10",
+        "output.fields=false",
+    )
     ring, wave = (
-        swgpar.run(swgpar.load_design(DESIGN, [*overrides, *layout]), RECIPE, progress=False).summary.losses
+        swgpar.run(
+            swgpar.load_design(DESIGN, [*overrides, *layout]), RECIPE, progress=False
+        ).summary.losses
         for layout in ((), (FIXED,))
     )
     assert wave.loss_torque_Nmm == pytest.approx(ring.loss_torque_Nmm, rel=1e-9)
@@ -133,7 +172,10 @@ def test_losses_refer_to_the_input() -> None:
 def test_ranks_do_not_matter() -> None:
     steps = ("steps.rotation=4", "steps.increment=2", "output.fields=true")
     design = swgpar.load_design(DESIGN, [*PLANE, *NO_SHORTCUTS, FIXED, *steps])
-    both = [swgpar.run(design, RECIPE, progress=False, comm=comm) for comm in (MPI.COMM_WORLD, MPI.COMM_SELF)]
+    both = [
+        swgpar.run(design, RECIPE, progress=False, comm=comm)
+        for comm in (MPI.COMM_WORLD, MPI.COMM_SELF)
+    ]
     for name in (*STRESSES, "input_angle_deg", "output_angle_deg", "input_torque_Nmm"):
         # the absolute part is for rows without a load
         same = both[0].history[name] == pytest.approx(both[1].history[name], rel=1e-8, abs=1e-8)

@@ -1,4 +1,5 @@
-"""An sdist, the wheel built from it, and that wheel in an empty environment: all sources and data files are there."""
+"""An sdist, the wheel built from it, and that wheel in an empty environment: all sources and data
+files are there."""
 
 from __future__ import annotations
 
@@ -18,16 +19,27 @@ from support.paths import DESIGN, ROOT
 
 PARTS = ("CMakeLists.txt", "MANIFEST.in", "CHANGELOG.md", "CITATION.cff", "LICENSE", "README.md")
 BUILD = ("pyproject.toml", "setup.cfg", "setup.py")
-HOOK = "import sys; from scikit_build_core.setuptools import build_meta; build_meta.build_{}(sys.argv[1])"
+HOOK = (
+    "import sys; from scikit_build_core.setuptools import build_meta; "
+    "build_meta.build_{}(sys.argv[1])"
+)
 
 
 def sources(*suffixes: str) -> set[str]:
-    return {str(path.relative_to(ROOT)) for path in (ROOT / "swgpar").rglob("*") if path.suffix in suffixes}
+    return {
+        str(path.relative_to(ROOT))
+        for path in (ROOT / "swgpar").rglob("*")
+        if path.suffix in suffixes
+    }
 
 
 def call(command: list[object], cwd: Path, **variables: str) -> str:
     done = subprocess.run(
-        [str(word) for word in command], cwd=cwd, capture_output=True, text=True, env={**environment(), **variables}
+        [str(word) for word in command],
+        cwd=cwd,
+        capture_output=True,
+        text=True,
+        env={**environment(), **variables},
     )
     assert done.returncode == 0, done.stderr + done.stdout
     return done.stdout
@@ -36,7 +48,9 @@ def call(command: list[object], cwd: Path, **variables: str) -> str:
 def build(kind: str, source: Path, folder: Path) -> Path:
     """An sdist or a wheel, with kernels that are compiled fast."""
     folder.mkdir()
-    call([sys.executable, "-c", HOOK.format(kind), folder], source, SKBUILD_CMAKE_BUILD_TYPE="Debug")
+    call(
+        [sys.executable, "-c", HOOK.format(kind), folder], source, SKBUILD_CMAKE_BUILD_TYPE="Debug"
+    )
     (made,) = folder.iterdir()
     return made
 
@@ -60,7 +74,8 @@ def test_sdist_has_all_sources(sdist: Path) -> None:
 
 
 def test_wheel_runs_in_an_empty_environment(sdist: Path, tmp_path: Path) -> None:
-    """The packages that it needs are those of this environment, which come after what the new one has."""
+    """The packages that it needs are those of this environment, which come after what the new one
+    has."""
     shutil.unpack_archive(sdist, tmp_path)
     (unpacked,) = tmp_path.iterdir()
     wheel = build("wheel", unpacked, tmp_path / "dist")
@@ -71,12 +86,38 @@ def test_wheel_runs_in_an_empty_environment(sdist: Path, tmp_path: Path) -> None
 
     venv.create(tmp_path / "empty", symlinks=True)
     python = tmp_path / "empty" / "bin" / "python"
-    call([sys.executable, "-m", "pip", "--python", python, "install", "--no-deps", "--no-index", wheel], tmp_path)
-    packages = Path(call([python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))"], tmp_path).strip())
+    call(
+        [
+            sys.executable,
+            "-m",
+            "pip",
+            "--python",
+            python,
+            "install",
+            "--no-deps",
+            "--no-index",
+            wheel,
+        ],
+        tmp_path,
+    )
+    packages = Path(
+        call(
+            [python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))"], tmp_path
+        ).strip()
+    )
     others = [path for path in sys.path if path and ROOT not in (Path(path), Path(path).parent)]
     (packages / "others.pth").write_text("\n".join(others), encoding="utf-8")
-    variables = {"PYTHONPATH": "", "PYTHONNOUSERSITE": "1", "HOME": str(tmp_path), "PATH": os.environ["PATH"]}
-    found = call([python, "-c", "import swgpar.kernel._elements as m; print(m.__file__)"], tmp_path, **variables)
+    variables = {
+        "PYTHONPATH": "",
+        "PYTHONNOUSERSITE": "1",
+        "HOME": str(tmp_path),
+        "PATH": os.environ["PATH"],
+    }
+    found = call(
+        [python, "-c", "import swgpar.kernel._elements as m; print(m.__file__)"],
+        tmp_path,
+        **variables,
+    )
     assert found.startswith(str(packages))
     command = tmp_path / "empty" / "bin" / "swgpar"
     told = call([command, "check", DESIGN, "--mesh", "coarse"], tmp_path, **variables)

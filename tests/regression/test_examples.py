@@ -1,8 +1,9 @@
 """Scripts of drivers/, examples of the README and scripts of the gallery: they run as they stand.
 
-They run in a folder with small designs under the names of the design files, and on the smallest mesh in place of the
-named ones. The site's build (scripts/docs) runs every script of the gallery on one rank and fails with it, with its own
-design. Those that have the line `# ranks: 1 2` run on two ranks here.
+They run in a folder with small designs under the names of the design files, and on the smallest
+mesh in place of the named ones. The site's build (scripts/docs) runs every script of the gallery on
+one rank and fails with it, with its own design. Those that have the line `# ranks: 1 2` run on two
+ranks here.
 """
 
 from __future__ import annotations
@@ -25,7 +26,15 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
 GALLERY = sorted((ROOT / "docs" / "gallery").glob("plot_*.py"))
 
 ARGUMENTS = {
-    "cup_rotation.py": ("--design", DESIGN, "--mesh", RECIPE, "--set", "steps.rotation=2", "steps.increment=2"),
+    "cup_rotation.py": (
+        "--design",
+        DESIGN,
+        "--mesh",
+        RECIPE,
+        "--set",
+        "steps.rotation=2",
+        "steps.increment=2",
+    ),
     "ring_experiment.py": ("--sectors", 24, "--radial", 1, "--axial", 1),
 }
 """Of the scripts of drivers/: small problems. A new script needs an entry."""
@@ -37,7 +46,8 @@ def blocks(language: str) -> list[str]:
 
 
 def on_the_small_mesh(text: str) -> str:
-    """Names of recipes, as options and as Python strings, give way to the smallest recipe; accuracies are low."""
+    """Names of recipes, as options and as Python strings, give way to the smallest recipe;
+    accuracies are low."""
     text = re.sub(r"--mesh (coarse|medium|full|plane\w*)\b", f"--mesh {RECIPE}", text)
     text = re.sub(r'"(coarse|medium|full|plane|plane_coarse|plane_fine)"', repr(str(RECIPE)), text)
     return re.sub(r"(accuracy[ =])[0-9.]+", r"\g<1>0.2", text)
@@ -45,7 +55,8 @@ def on_the_small_mesh(text: str) -> str:
 
 @pytest.fixture
 def checkout(tmp_path: Path) -> Path:
-    """A folder with drivers/ as the README names them: every drive is the small one, gear trains are small."""
+    """A folder with drivers/ as the README names them: every drive is the small one, gear trains
+    are small."""
     drivers = tmp_path / "drivers"
     drivers.mkdir()
     for path in DRIVERS.glob("*.py"):
@@ -69,8 +80,14 @@ def test_commands_of_the_readme(checkout: Path) -> None:
 
     Not the scripts of the checkout, which install, and no study, which has too many runs.
     """
-    lines = [re.sub(r"^mpirun -n \d+ ", "", line) for block in blocks("bash") for line in block.splitlines()]
-    commands = [line for line in lines if line.startswith(("swgpar ", "python ")) and " study " not in line]
+    lines = [
+        re.sub(r"^mpirun -n \d+ ", "", line)
+        for block in blocks("bash")
+        for line in block.splitlines()
+    ]
+    commands = [
+        line for line in lines if line.startswith(("swgpar ", "python ")) and " study " not in line
+    ]
     assert commands
     for line in commands:
         words = shlex.split(on_the_small_mesh(line), comments=True)
@@ -80,7 +97,9 @@ def test_commands_of_the_readme(checkout: Path) -> None:
 @pytest.mark.parametrize("ranks", [1, 2])
 @pytest.mark.parametrize("number", range(len(blocks("python"))))
 def test_python_of_the_readme(number: int, ranks: int, checkout: Path) -> None:
-    (checkout / "example.py").write_text(on_the_small_mesh(blocks("python")[number]), encoding="utf-8")
+    (checkout / "example.py").write_text(
+        on_the_small_mesh(blocks("python")[number]), encoding="utf-8"
+    )
     succeed([*on_ranks(ranks), sys.executable, "example.py"], cwd=checkout)
 
 
@@ -95,7 +114,9 @@ def gallery_runs() -> list[tuple[Path, int]]:
     """Scripts of the gallery that name more than one number of ranks, with the largest of them."""
     found = []
     for script in GALLERY:
-        named = re.search(r"^# ranks:((?: \d+)+)$", script.read_text(encoding="utf-8"), re.MULTILINE)
+        named = re.search(
+            r"^# ranks:((?: \d+)+)$", script.read_text(encoding="utf-8"), re.MULTILINE
+        )
         if named:
             found.append((script, max(map(int, named[1].split()))))
     return found
@@ -107,5 +128,7 @@ def gallery_runs() -> list[tuple[Path, int]]:
 def test_script_of_the_gallery(script: Path, ranks: int, checkout: Path) -> None:
     gallery = checkout / "docs" / "gallery"
     gallery.mkdir(parents=True)
-    (gallery / script.name).write_text(on_the_small_mesh(script.read_text(encoding="utf-8")), encoding="utf-8")
+    (gallery / script.name).write_text(
+        on_the_small_mesh(script.read_text(encoding="utf-8")), encoding="utf-8"
+    )
     succeed([*on_ranks(ranks), sys.executable, str(gallery / script.name)], cwd=checkout)

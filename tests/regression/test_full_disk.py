@@ -1,4 +1,5 @@
-"""A disk that fills up in the middle of a run: one sentence, nothing lost, and it goes on once there is room."""
+"""A disk that fills up in the middle of a run: one sentence, nothing lost, and it goes on once
+there is room."""
 
 from __future__ import annotations
 
@@ -56,13 +57,18 @@ def assert_one_sentence(done: subprocess.CompletedProcess[str], out: Path) -> No
     assert done.returncode == 4, done.stderr
     assert "Traceback" not in done.stderr + done.stdout
     (sentence,) = done.stderr.splitlines()
-    assert sentence.startswith(f"swgpar: error: cannot write {out}/") and "No space left on device" in sentence
+    assert (
+        sentence.startswith(f"swgpar: error: cannot write {out}/")
+        and "No space left on device" in sentence
+    )
 
 
 def assert_readable(out: Path, plain: Path, fields: bool) -> None:
     """Everything of the increments that were finished is there, and is what it should be."""
     rows, whole = (history.read_history(p / history.NAME) for p in (out, plain))
-    done = len(checkpoint.read_checkpoint(out / checkpoint.NAME, MPI.COMM_SELF, SavedRun).record.rows)
+    done = len(
+        checkpoint.read_checkpoint(out / checkpoint.NAME, MPI.COMM_SELF, SavedRun).record.rows
+    )
     # the checkpoint is written last: the increment that it misses may be in the history already
     assert 1 <= done <= len(rows) <= done + 1 < len(whole)
     for row, exact in zip(rows, whole):
@@ -72,7 +78,9 @@ def assert_readable(out: Path, plain: Path, fields: bool) -> None:
     if fields:
         with h5py.File(out / "fields.h5", "r") as file:
             for k, row in enumerate(rows):
-                assert file[f"increment_{k + 1:04d}/flexible_spline/vm"][:].max() == pytest.approx(row["fs_vm"])
+                assert file[f"increment_{k + 1:04d}/flexible_spline/vm"][:].max() == pytest.approx(
+                    row["fs_vm"]
+                )
 
 
 @pytest.mark.parametrize("ranks", [1, 2])

@@ -31,11 +31,15 @@ def test_results_are_the_same_on_any_number_of_ranks(name: str, tmp_path: Path) 
     one, two = tmp_path / "one", tmp_path / "two"
     done = succeed(run(name, one))
     succeed(run(name, two, ranks=2))
-    assert "published against computed" in done.stdout and "Warning" not in done.stderr + done.stdout
+    assert (
+        "published against computed" in done.stdout and "Warning" not in done.stderr + done.stdout
+    )
     for file in ("history.csv", "published.csv", *(f"tables/{table}.csv" for table in FILES[name])):
         assert (one / file).read_bytes() == (two / file).read_bytes(), file
     summary = json.loads((two / "summary.json").read_text(encoding="utf-8"))
-    assert summary["ranks"] == 2 and summary["design"]["gear_train"]["model"] == name.removesuffix("_moving_load")
+    assert summary["ranks"] == 2 and summary["design"]["gear_train"]["model"] == name.removesuffix(
+        "_moving_load"
+    )
     rows = read_columns(one / "published.csv")
     assert len(rows["quantity"]) >= 2
     figures = list((one / "figures").glob("*.png"))
@@ -63,6 +67,9 @@ def test_figures_are_drawn_again_and_results_kept(tmp_path: Path) -> None:
 )
 def test_refused_on_all_ranks(arguments: tuple[str, ...], reason: str, tmp_path: Path) -> None:
     out = tmp_path / "run"
-    done = execute(on_ranks(2) + swgpar("run", DRIVERS / "cascade.toml", "--out", out, *arguments), timeout=120.0)
+    done = execute(
+        on_ranks(2) + swgpar("run", DRIVERS / "cascade.toml", "--out", out, *arguments),
+        timeout=120.0,
+    )
     assert done.returncode == 2 and reason in done.stderr and len(done.stderr.splitlines()) == 1
     assert not out.exists()

@@ -1,4 +1,5 @@
-"""The pancake drive through the command: `drivers/pancake.toml`, exports, restart on another number of ranks."""
+"""The pancake drive through the command: `drivers/pancake.toml`, exports, restart on another number
+of ranks."""
 
 from __future__ import annotations
 
@@ -25,17 +26,22 @@ def run(design: Path, out: Path, *more: str, ranks: int = 1) -> list[str]:
 
 
 def test_driver(tmp_path: Path) -> None:
-    """Loaded state of the driver on the smallest mesh, with fields of three bodies, figures and report."""
+    """Loaded state of the driver on the smallest mesh, with fields of three bodies, figures and
+    report."""
     out = tmp_path / "driver"
     succeed(run(DRIVER, out, "--set", "steps.rotation=0"))
     result = swgpar.open_result(out)
     assert result.summary.numerics.balance_error_Nmm < 1e-4 * 20_000.0
-    torque = {name: result.history[f"{name}_torque_Nmm"][-1] for name in ("wg", "tooth", "ds_tooth")}
+    torque = {
+        name: result.history[f"{name}_torque_Nmm"][-1] for name in ("wg", "tooth", "ds_tooth")
+    }
     assert np.isclose(torque["ds_tooth"], 20_000.0, rtol=1e-5) and torque["wg"] > 0.0
     assert abs(sum(torque.values())) < 1e-4 * 20_000.0
     assert result.gears == GEARS
     for name, prefix in zip(GEARS, ("fs", "rg", "ds"), strict=True):
-        assert np.isclose(result.field("vm", body=name).max(), result.history[f"{prefix}_vm"][-1], rtol=1e-6)
+        assert np.isclose(
+            result.field("vm", body=name).max(), result.history[f"{prefix}_vm"][-1], rtol=1e-6
+        )
     assert set(np.unique(result.grid().cell_data["body"])) == {0, 1, 2}
     reader = pyvista.XdmfReader(str(out / "fields.xdmf"))
     assert len(reader.read()) == 3
@@ -44,9 +50,12 @@ def test_driver(tmp_path: Path) -> None:
 
 
 def test_mesh_and_exchange(tmp_path: Path) -> None:
-    """Both ring gears lie side by side, with the gap between them; the flexible spline has the stations of both."""
+    """Both ring gears lie side by side, with the gap between them; the flexible spline has the
+    stations of both."""
     mesh = swgpar.mesh(DATA / "pancake.toml", RECIPE)
-    stations = {name: np.unique(np.round(body.points[:, 2], 9)) for name, body in mesh.bodies.items()}
+    stations = {
+        name: np.unique(np.round(body.points[:, 2], 9)) for name, body in mesh.bodies.items()
+    }
     assert tuple(stations) == GEARS
     assert (stations["ring_gear"][[0, -1]] == [-3.0, -0.25]).all()
     assert (stations["dynamic_spline"][[0, -1]] == [0.25, 3.0]).all()
@@ -68,15 +77,35 @@ def test_what_is_refused(tmp_path: Path) -> None:
     design = swgpar.load_design(DATA / "pancake.toml")
     with pytest.raises(InputError, match="--accuracy 0.1 is not available"):
         swgpar.run(design, mesh=RECIPE, accuracy=0.1)
-    done = execute(command("export", DATA / "pancake.toml", "--format", "inp", "--mesh", RECIPE, "--out", tmp_path))
-    assert done.returncode == 2 and "[dynamic_spline] is not available with the format inp" in done.stderr
+    done = execute(
+        command(
+            "export", DATA / "pancake.toml", "--format", "inp", "--mesh", RECIPE, "--out", tmp_path
+        )
+    )
+    assert (
+        done.returncode == 2
+        and "[dynamic_spline] is not available with the format inp" in done.stderr
+    )
 
 
 def test_restart(tmp_path: Path) -> None:
     """From one rank to two, with the same history as a run without a stop."""
     whole, parts, increment = tmp_path / "whole", tmp_path / "parts", "steps.increment=0.5"
-    succeed(run(DATA / "pancake.toml", whole, "--set", "steps.rotation=1", increment, "solver.rtol=1e-9"))
-    succeed(run(DATA / "pancake.toml", parts, "--set", "steps.rotation=0.5", increment, "solver.rtol=1e-9"))
+    succeed(
+        run(
+            DATA / "pancake.toml", whole, "--set", "steps.rotation=1", increment, "solver.rtol=1e-9"
+        )
+    )
+    succeed(
+        run(
+            DATA / "pancake.toml",
+            parts,
+            "--set",
+            "steps.rotation=0.5",
+            increment,
+            "solver.rtol=1e-9",
+        )
+    )
     more = ("--restart", "--set", "steps.rotation=1", increment, "solver.rtol=1e-9")
     succeed(run(DATA / "pancake.toml", parts, *more, ranks=2))
     assert json.loads((parts / "summary.json").read_text(encoding="utf-8"))["ranks"] == 2

@@ -1,4 +1,5 @@
-"""Whole runs of the plane model through the command: result files, fields, figures, the spline fixed."""
+"""Whole runs of the plane model through the command: result files, fields, figures, the spline
+fixed."""
 
 from __future__ import annotations
 
@@ -23,8 +24,12 @@ def test_result_files(plain: Path) -> None:
     assert summary["numerics"]["balance_error_Nmm"] < 1e-6 * 200.0
     recipe = load_recipe(RECIPE).flexible_spline
     for body in summary["bodies"].values():
-        # half of the drive is modelled; two unknowns a node, on the ring gear none on its outer circle
-        assert body["nodes_whole"] == 2 * body["nodes"] and body["elements_whole"] == 2 * body["elements"]
+        # half of the drive is modelled; two unknowns a node, on the ring gear none on its outer
+        # circle
+        assert (
+            body["nodes_whole"] == 2 * body["nodes"]
+            and body["elements_whole"] == 2 * body["elements"]
+        )
         assert body["quality"]["max_aspect_ratio"] < 10.0
     spline = summary["bodies"]["flexible_spline"]
     assert spline["dofs"] == 2 * spline["nodes"]
@@ -36,7 +41,8 @@ def test_result_files(plain: Path) -> None:
 
 
 def test_fields_open_in_paraview(plain: Path) -> None:
-    """Plane stress: one principal stress is zero; both layers of nodes move alike, and not along the axis."""
+    """Plane stress: one principal stress is zero; both layers of nodes move alike, and not along
+    the axis."""
     rows = history.read_history(plain / "history.csv")
     reader = pyvista.XdmfReader(str(plain / "fields.xdmf"))
     assert reader.number_time_points == len(rows)

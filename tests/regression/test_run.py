@@ -1,4 +1,5 @@
-"""Whole runs of the small drive through the command: result files, kill and restart, the script in drivers/."""
+"""Whole runs of the small drive through the command: result files, kill and restart, the script in
+drivers/."""
 
 from __future__ import annotations
 
@@ -10,7 +11,14 @@ import numpy as np
 import pytest
 import pyvista
 
-from support.commands import assert_same_history, execute, kill_after, on_ranks, run_command, succeed
+from support.commands import (
+    assert_same_history,
+    execute,
+    kill_after,
+    on_ranks,
+    run_command,
+    succeed,
+)
 from support.paths import DESIGN, DRIVERS, RECIPE
 from support.small_drive import NO_SHORTCUTS, PLANE, SHORT
 from swgpar.meshing import load_recipe
@@ -24,7 +32,9 @@ def test_result_files(cup: Path) -> None:
     assert [r["step"] for r in rows] == [1, 2, 3, 4, 5]
     summary = json.loads((cup / "summary.json").read_text(encoding="utf-8"))
     assert summary["numerics"]["balance_error_Nmm"] < 1e-6 * 2000.0
-    assert summary["rotation"]["means"]["fs_s1"] == pytest.approx(np.mean([r["fs_s1"] for r in rows[3:]]))
+    assert summary["rotation"]["means"]["fs_s1"] == pytest.approx(
+        np.mean([r["fs_s1"] for r in rows[3:]])
+    )
     for name in ("fields.h5", "fields.xdmf", "checkpoint.h5", "run.log"):
         assert (cup / name).stat().st_size > 0
     for name in ("stress", "torque_and_transmission_error", "contact_pattern", "deformed_drive"):
@@ -52,7 +62,8 @@ def test_results_are_not_overwritten_by_accident(plain: Path) -> None:
 
 @pytest.mark.parametrize(("before", "after"), [(1, 1), (2, 1), (1, 2)])
 def test_kill_and_restart(plain: Path, tmp_path: Path, before: int, after: int) -> None:
-    """The same history; a restart begins with a new factor, where the whole run may have kept one, and one state."""
+    """The same history; a restart begins with a new factor, where the whole run may have kept one,
+    and one state."""
     out = tmp_path / "killed"
     kill_after(run_command(out, ranks=before), out, rows=3)
     assert not (out / "summary.json").exists()
@@ -65,7 +76,8 @@ def test_kill_and_restart(plain: Path, tmp_path: Path, before: int, after: int) 
 def test_restart_with_friction(tmp_path: Path) -> None:
     """The tractions of the flanks go through the checkpoint, on to another number of ranks.
 
-    Slip turns round at the start of the rotation: flanks stick in such small increments, and remember.
+    Slip turns round at the start of the rotation: flanks stick in such small increments, and
+    remember.
     """
     whole, parts, more = (
         tmp_path / "whole",
@@ -92,13 +104,24 @@ def test_restart_before_anything_was_saved(plain: Path, tmp_path: Path) -> None:
 
 def test_restart_with_more_rotation_and_fields(plain: Path, tmp_path: Path) -> None:
     out = tmp_path / "longer"
-    succeed(run_command(out, overrides=(*PLANE, "steps.rotation=2.0", "steps.increment=2.0", "output.fields=false")))
+    succeed(
+        run_command(
+            out,
+            overrides=(*PLANE, "steps.rotation=2.0", "steps.increment=2.0", "output.fields=false"),
+        )
+    )
     first = json.loads((out / "summary.json").read_text(encoding="utf-8"))
     succeed([*run_command(out, "--restart"), "output.fields=true"])
     assert_same_history(out, plain, iterations=False)
-    assert json.loads((out / "summary.json").read_text(encoding="utf-8"))["wall_s"] > first["wall_s"]
+    assert (
+        json.loads((out / "summary.json").read_text(encoding="utf-8"))["wall_s"] > first["wall_s"]
+    )
     assert pyvista.XdmfReader(str(out / "fields.xdmf")).number_time_points == 1
-    refused = execute(run_command(out, "--restart", overrides=(*PLANE, "steps.rotation=3.0", "steps.increment=2.0")))
+    refused = execute(
+        run_command(
+            out, "--restart", overrides=(*PLANE, "steps.rotation=3.0", "steps.increment=2.0")
+        )
+    )
     assert refused.returncode == 2 and "steps.rotation = 3" in refused.stderr
 
 
@@ -107,7 +130,9 @@ def test_script_of_the_reference_drive(cup: Path, tmp_path: Path) -> None:
     arguments = ["--design", DESIGN, "--mesh", RECIPE, "--out", out, "--set", *SHORT, *NO_SHORTCUTS]
     done = succeed([*on_ranks(2), sys.executable, str(CUP_ROTATION), *map(str, arguments)])
     assert_same_history(out, cup, iterations=False)
-    assert "\x1b" not in done.stdout  # no progress bar in a file, though mpirun gives its ranks a terminal
+    assert (
+        "\x1b" not in done.stdout
+    )  # no progress bar in a file, though mpirun gives its ranks a terminal
     printed = [line.split() for line in done.stdout.splitlines() if line.startswith("step ")]
     rows = history.read_history(cup / "history.csv")
     assert [int(words[1]) for words in printed] == [r["step"] for r in rows]
@@ -122,9 +147,15 @@ def test_unwritable_folder(place: str) -> None:
 
 
 def test_start_on_a_coarser_mesh_and_one_period(tmp_path: Path) -> None:
-    """History from step 3 on and over the whole rotation, an error of the mesh, figures; a restart goes on in it."""
+    """History from step 3 on and over the whole rotation, an error of the mesh, figures; a restart
+    goes on in it."""
     out = tmp_path / "run"
-    overrides = ["steps.start_levels=1", "steps.samples=2", "output.fields=true", "output.figures=true"]
+    overrides = [
+        "steps.start_levels=1",
+        "steps.samples=2",
+        "output.fields=true",
+        "output.figures=true",
+    ]
     command = run_command(out)
     succeed([*command, *overrides, "steps.rotation=9"])
     rows = history.read_history(out / "history.csv")
@@ -140,7 +171,8 @@ def test_start_on_a_coarser_mesh_and_one_period(tmp_path: Path) -> None:
 
 
 def test_an_accuracy_is_reached_by_refinement(tmp_path: Path) -> None:
-    """The estimate of the mesh that the run ends with is below what was asked for; a restart keeps that mesh."""
+    """The estimate of the mesh that the run ends with is below what was asked for; a restart keeps
+    that mesh."""
     out = tmp_path / "run"
     asked, pitch = 0.02, 360.0 / 42.0
     more = ("--mesh", str(RECIPE), "--accuracy", str(asked))
@@ -154,10 +186,15 @@ def test_an_accuracy_is_reached_by_refinement(tmp_path: Path) -> None:
     assert summary["accuracy"]["asked"] == asked and summary["accuracy"]["reached"]
     assert root["error"] < asked * root["value"]
     assert set(summary["rotation"]["sampling_error"]) == set(summary["rotation"]["means"])
-    restart = [word.replace("rotation=9", f"rotation={2.1 * pitch}") for word in command] + ["--restart"]
+    restart = [word.replace("rotation=9", f"rotation={2.1 * pitch}") for word in command] + [
+        "--restart"
+    ]
     other = execute([word.replace(str(asked), "0.2") for word in restart])
     assert other.returncode == 2 and "belongs to another design, recipe, accuracy" in other.stderr
     succeed(restart)
     longer = json.loads((out / "summary.json").read_text())
-    assert longer["elements"] == summary["elements"] and longer["rotation"]["means"] == summary["rotation"]["means"]
+    assert (
+        longer["elements"] == summary["elements"]
+        and longer["rotation"]["means"] == summary["rotation"]["means"]
+    )
     assert len(history.read_history(out / "history.csv")) > len(rows)

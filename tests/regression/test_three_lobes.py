@@ -1,4 +1,5 @@
-"""Runs of a drive with three lobes through the command: the design file of drivers/, restart, fields of the whole."""
+"""Runs of a drive with three lobes through the command: the design file of drivers/, restart,
+fields of the whole."""
 
 from __future__ import annotations
 
@@ -33,9 +34,12 @@ def test_restart_on_other_ranks_and_fields_of_the_whole(tmp_path: Path) -> None:
     succeed(run_command(parts, "--restart", ranks=2, overrides=keys))
     assert_same_history(parts, whole, iterations=False)
     result = swgpar.open_result(whole)
-    part, full = (result.grid(body="flexible_spline", whole=all_of_it) for all_of_it in (False, True))
+    part, full = (
+        result.grid(body="flexible_spline", whole=all_of_it) for all_of_it in (False, True)
+    )
     assert full.n_cells == 3 * part.n_cells
-    # the deformed parts join: the first nodes of an image lie on the last ones of the part before it
+    # the deformed parts join: the first nodes of an image lie on the last ones of the part before
+    # it
     for grid in (full, full.warp_by_vector("displacement")):
         first, second, third = np.split(np.asarray(grid.points), 3)
         turn = np.array([[-0.5, -np.sqrt(0.75), 0.0], [np.sqrt(0.75), -0.5, 0.0], [0.0, 0.0, 1.0]])

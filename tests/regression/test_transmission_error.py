@@ -13,24 +13,41 @@ from support.small_drive import PLANE
 from swgpar.results.folder import SUMMARY, TRANSMISSION_ERROR
 
 RATIO, TEETH_RG = -20.0, 42
-OVAL = ("deviations.ring_gear.ovality=0.02", 'deviations.mesh="same"', "steps.bent_start=true", "steps.rotation=0")
+OVAL = (
+    "deviations.ring_gear.ovality=0.02",
+    'deviations.mesh="same"',
+    "steps.bent_start=true",
+    "steps.rotation=0",
+)
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("oval")
-    swgpar.run(swgpar.load_design(DESIGN, [*PLANE, *OVAL]), mesh=RECIPE, out=out, plain=True, overwrite=True)
+    swgpar.run(
+        swgpar.load_design(DESIGN, [*PLANE, *OVAL]),
+        mesh=RECIPE,
+        out=out,
+        plain=True,
+        overwrite=True,
+    )
     return out
 
 
 def test_a_turn_with_deviations(folder: Path) -> None:
     result = swgpar.open_result(folder)
     rows, summary = result.transmission_error, result.summary.transmission_error
-    assert len(rows["wg_angle_deg"]) == TEETH_RG == summary.angles and summary.turns == pytest.approx(1.0)
+    assert len(
+        rows["wg_angle_deg"]
+    ) == TEETH_RG == summary.angles and summary.turns == pytest.approx(1.0)
     assert rows["wg_angle_deg"] == pytest.approx(360.0 / TEETH_RG * np.arange(TEETH_RG))
     error = 3600.0 * (rows["output_angle_deg"] - rows["wg_angle_deg"] / RATIO)
     assert rows["transmission_error_arcsec"] == pytest.approx(error, abs=1e-6)
-    assert summary.peak_to_peak == pytest.approx(np.ptp(error)) == pytest.approx(2.0 * summary.amplitude)
+    assert (
+        summary.peak_to_peak
+        == pytest.approx(np.ptp(error))
+        == pytest.approx(2.0 * summary.amplitude)
+    )
     # an oval ring gear repeats after half a turn: the second half is known
     assert (rows["newton_iterations"][TEETH_RG // 2 :] == 0).all()
     first = summary.spectrum[0]
@@ -54,7 +71,9 @@ def test_an_interrupted_turn_is_continued(folder: Path) -> None:
 
 
 def test_the_period_of_an_ideal_drive() -> None:
-    design = swgpar.load_design(DESIGN, [*PLANE, "steps.bent_start=true", "steps.samples=4", "steps.rotation=9"])
+    design = swgpar.load_design(
+        DESIGN, [*PLANE, "steps.bent_start=true", "steps.samples=4", "steps.rotation=9"]
+    )
     result = swgpar.run(design, mesh=RECIPE, plain=True)
     summary = result.summary.transmission_error
     assert summary.peak_to_peak == pytest.approx(result.summary.rotation.transmission_error_arcsec)

@@ -1,4 +1,5 @@
-"""Drives at the limits of their keys: the hardest cases of the groups, and some random ones; the rest is the bench's.
+"""Drives at the limits of their keys: the hardest cases of the groups, and some random ones; the
+rest is the bench's.
 
 Every case turns through one and a half pitches of the fixed gear: the state repeats.
 """
@@ -80,10 +81,20 @@ def test_random_design(number: int) -> None:
 
 
 def test_bulging_cam_is_refused() -> None:
-    """A parabola too flat for its width drives the spline's teeth through the ring gear's root circle."""
-    flat = {"type": "parabolic", "C": 1.0, "a_p": 0.008, "C_p": 0.5, "r_c": 10.0, "face_width": 10.0}
+    """A parabola too flat for its width drives the spline's teeth through the ring gear's root
+    circle."""
+    flat = {
+        "type": "parabolic",
+        "C": 1.0,
+        "a_p": 0.008,
+        "C_p": 0.5,
+        "r_c": 10.0,
+        "face_width": 10.0,
+    }
     with pytest.raises(
-        InputError, match=r"bulges .* mm beyond .* allowed up to 0.2 mm.*wave_generator\.C .*wave_generator\.a_p"
+        InputError,
+        match=r"bulges .* mm beyond .* allowed up to 0.2 mm.*wave_generator\.C "
+        r".*wave_generator\.a_p",
     ):
         make_drive(table_of(ALL["rim, plane reference"].design, {"wave_generator": flat}))
 

@@ -1,7 +1,9 @@
-"""Bad inputs of all kinds of files, drawn by Hypothesis, and what becomes of them inside this process.
+"""Bad inputs of all kinds of files, drawn by Hypothesis, and what becomes of them inside this
+process.
 
-An input begins as a file that is right. Its table is changed in one to three places, or its text is damaged. What
-comes of it is refused by one printable sentence, or accepted with finite numbers. Anything else is a fault.
+An input begins as a file that is right. Its table is changed in one to three places, or its text is
+damaged. What comes of it is refused by one printable sentence, or accepted with finite numbers.
+Anything else is a fault.
 """
 
 from __future__ import annotations
@@ -39,7 +41,8 @@ from swgpar.studies.spec import load_study
 from swgpar.systems import system_of
 
 SLOWEST = 60.0
-"""Processor seconds after which an input counts as hanging: other programs may keep this one waiting."""
+"""Processor seconds after which an input counts as hanging: other programs may keep this one
+waiting."""
 
 MESHED = 2000
 """Elements of a sector up to which an accepted input is meshed."""
@@ -50,7 +53,8 @@ Path_ = tuple[str | int, ...]
 
 @dataclass(frozen=True)
 class BadInput:
-    """kind : of the file;  files : name -> content, that of the file itself first;  what : how it was changed"""
+    """kind : of the file;  files : name -> content, that of the file itself first;  what : how it
+    was changed"""
 
     kind: str
     files: dict[str, bytes]
@@ -59,7 +63,8 @@ class BadInput:
 
 @dataclass
 class Outcome:
-    """fault : what is wrong with the way it ended, empty where nothing is;  sentence : of the refusal"""
+    """fault : what is wrong with the way it ended, empty where nothing is;  sentence : of the
+    refusal"""
 
     kind: str
     status: str
@@ -70,11 +75,13 @@ class Outcome:
     content: str = field(default="", repr=False)
 
 
-# -- right files ---------------------------------------------------------------------------------------------
+# -- right files -----------------------------------------------------------------------------------
 
 
 def _drives() -> list[Table]:
-    cup, small, plane = (read_toml(path) for path in (REFERENCE, DESIGN, DRIVERS / "plane_half_turn.toml"))
+    cup, small, plane = (
+        read_toml(path) for path in (REFERENCE, DESIGN, DRIVERS / "plane_half_turn.toml")
+    )
     flat = apply_overrides(small, PLANE)
     arcs = {"type": "double_arc", "r_addendum": 0.6, "r_dedendum": 0.3}
     involute = {"type": "involute", "cutter_radius": 0.1}
@@ -87,12 +94,21 @@ def _drives() -> list[Table]:
     ]
     changed: list[Table] = [{"wave_generator": {**wave, "face_width": 10.0}} for wave in waves]
     changed += [
-        {"flexible_spline.profile": involute, "ring_gear.profile": {**involute, "cutter_teeth": 60}},
+        {
+            "flexible_spline.profile": involute,
+            "ring_gear.profile": {**involute, "cutter_teeth": 60},
+        },
         {"flexible_spline.profile": arcs, "ring_gear.profile": arcs},
         {"fatigue": {}, "losses": {"bearing_diameter": 30.0}},
         {"stiffness": {"torque": 20.0}},
         {"ratcheting": {"rotation": 5.0}},
-        {"deviations": {"turns": 2, "seed": 3, "ring_gear": {"pitch_grade": 5, "eccentricity": 0.01}}},
+        {
+            "deviations": {
+                "turns": 2,
+                "seed": 3,
+                "ring_gear": {"pitch_grade": 5, "eccentricity": 0.01},
+            }
+        },
         {"load.program": [{"name": "up", "torque": 5.0}, {"name": "back", "rotation": 0.1}]},
         {"contact": {"friction": 0.1}, "steps": {"samples": 4}},
     ]
@@ -100,16 +116,42 @@ def _drives() -> list[Table]:
 
 
 def _trains() -> list[Table]:
-    names = ("cascade", "gear_pair", "planetary", "ring_modes", "ring_moving_load", "ring_supported")
+    names = (
+        "cascade",
+        "gear_pair",
+        "planetary",
+        "ring_modes",
+        "ring_moving_load",
+        "ring_supported",
+    )
     return [{**read_toml(DRIVERS / f"{name}.toml"), "published": {}} for name in names]
 
 
 def _studies() -> list[Table]:
     plane, pair = str(DRIVERS / "plane_half_turn.toml"), str(DRIVERS / "gear_pair.toml")
-    grid = {"design": plane, "meshes": ["plane_coarse"], "vary": {"load.torque": [1.0, 2.0], "material.nu": [0.3]}}
-    case = {"name": "one", "set": ["load.torque=1"], "published": {"mean.fs_s1": 300.0}, "tolerance": {"mean.fs_s1": 5}}
-    cases = {"title": "cases", "design": plane, "meshes": [str(RECIPE)], "quantities": ["mean.fs_vm"], "case": [case]}
-    trains = {"design": pair, "mode": "sweep", "vary": {"mesh.half_backlash": [10.0, 20.0], "load.noise": [50.0, 60.0]}}
+    grid = {
+        "design": plane,
+        "meshes": ["plane_coarse"],
+        "vary": {"load.torque": [1.0, 2.0], "material.nu": [0.3]},
+    }
+    case = {
+        "name": "one",
+        "set": ["load.torque=1"],
+        "published": {"mean.fs_s1": 300.0},
+        "tolerance": {"mean.fs_s1": 5},
+    }
+    cases = {
+        "title": "cases",
+        "design": plane,
+        "meshes": [str(RECIPE)],
+        "quantities": ["mean.fs_vm"],
+        "case": [case],
+    }
+    trains = {
+        "design": pair,
+        "mode": "sweep",
+        "vary": {"mesh.half_backlash": [10.0, 20.0], "load.noise": [50.0, 60.0]},
+    }
     return [{"study": study} for study in (grid, cases, trains)]
 
 
@@ -128,11 +170,42 @@ def right_files() -> dict[str, list[Table]]:
     }
 
 
-# -- changes -------------------------------------------------------------------------------------------------
+# -- changes ---------------------------------------------------------------------------------------
 
-EXTREME = (0.0, -0.0, 1e-320, 1e-300, 1e-15, 1e-9, 1e9, 1e15, 1e300, math.inf, -math.inf, math.nan, 1e-7, -1.0, 0.5)
-TEXTS = ("", " ", "=1+1", "../../x", "/etc/passwd", "\x1b]0;t\x07", "\u202e", "a\nb", "nan", 3000 * "x", "\0", "#")
-NUMBERS = st.one_of(st.sampled_from(EXTREME), st.floats(), st.integers(-3, 3000), st.integers(-(10**30), 10**30))
+EXTREME = (
+    0.0,
+    -0.0,
+    1e-320,
+    1e-300,
+    1e-15,
+    1e-9,
+    1e9,
+    1e15,
+    1e300,
+    math.inf,
+    -math.inf,
+    math.nan,
+    1e-7,
+    -1.0,
+    0.5,
+)
+TEXTS = (
+    "",
+    " ",
+    "=1+1",
+    "../../x",
+    "/etc/passwd",
+    "\x1b]0;t\x07",
+    "\u202e",
+    "a\nb",
+    "nan",
+    3000 * "x",
+    "\0",
+    "#",
+)
+NUMBERS = st.one_of(
+    st.sampled_from(EXTREME), st.floats(), st.integers(-3, 3000), st.integers(-(10**30), 10**30)
+)
 WORDS = st.one_of(st.sampled_from(TEXTS), st.text(max_size=20))
 SCALARS = st.one_of(NUMBERS, WORDS, st.booleans(), st.just(datetime.date(2020, 2, 29)))
 HOSTILE = st.one_of(
@@ -142,12 +215,20 @@ HOSTILE = st.one_of(
     st.builds(lambda: [[]]),
     st.builds(lambda: [{}]),
 )
-FACTORS = st.one_of(st.sampled_from((-1.0, 0.5, 2.0, 1.001)), st.integers(-12, 12).map(lambda power: 10.0**power))
+FACTORS = st.one_of(
+    st.sampled_from((-1.0, 0.5, 2.0, 1.001)), st.integers(-12, 12).map(lambda power: 10.0**power)
+)
 
 
 def leaves(value: Any, above: Path_ = ()) -> Iterator[Path_]:
     """Paths of all values and tables below a table."""
-    items = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    items = (
+        value.items()
+        if isinstance(value, dict)
+        else enumerate(value)
+        if isinstance(value, list)
+        else ()
+    )
     for key, item in items:
         yield (*above, key)
         yield from leaves(item, (*above, key))
@@ -173,14 +254,20 @@ def changed_tables(draw: st.DrawFn, kind: str) -> tuple[Table, str]:
         way = draw(st.sampled_from(("replace", "scale", "scale", "remove", "add", "swap")))
         if way == "scale" and isinstance(old, (int, float)) and not isinstance(old, bool):
             new = old * draw(FACTORS)
-            parent[path[-1]] = int(new) if isinstance(old, int) and abs(new) < 1e18 and draw(st.booleans()) else new
+            parent[path[-1]] = (
+                int(new)
+                if isinstance(old, int) and abs(new) < 1e18 and draw(st.booleans())
+                else new
+            )
         elif way == "remove":
             del parent[path[-1]]
         elif way == "add" and isinstance(old, dict):
             old[draw(WORDS)] = draw(HOSTILE)
         elif way == "swap":
             other = draw(st.sampled_from(paths))
-            if other[: len(path)] == path or path[: len(other)] == other:  # one of them is in the other
+            if (
+                other[: len(path)] == path or path[: len(other)] == other
+            ):  # one of them is in the other
                 continue
             parent[path[-1]], _at(table, other[:-1])[other[-1]] = _at(table, other), old
         else:
@@ -194,7 +281,12 @@ def damaged(draw: st.DrawFn, content: bytes) -> tuple[bytes, str]:
     """A content that is cut, or has other bytes in between."""
     begin = draw(st.integers(0, len(content)))
     end = min(len(content), begin + draw(st.integers(0, 40)))
-    new = draw(st.one_of(st.binary(max_size=40), st.sampled_from((b"[", b"]]", b'"""', b"\xff\xfe", b"\r", b"= = ="))))
+    new = draw(
+        st.one_of(
+            st.binary(max_size=40),
+            st.sampled_from((b"[", b"]]", b'"""', b"\xff\xfe", b"\r", b"= = =")),
+        )
+    )
     if draw(st.integers(0, 3)) == 0:
         return content[:begin], f"cut at {begin}"
     return content[:begin] + new + content[end:], f"bytes at {begin}"
@@ -222,7 +314,9 @@ def bad_inputs(draw: st.DrawFn, folder: Path) -> BadInput:
     if kind == "pitch file":
         content, what = draw(damaged(_pitch_file()))
         column = draw(st.sampled_from(("pitch", "pitch", "", "tooth", "none")))
-        return BadInput(kind, {"pitch.csv": content, "column": column.encode()}, f"{what}, column {column}")
+        return BadInput(
+            kind, {"pitch.csv": content, "column": column.encode()}, f"{what}, column {column}"
+        )
     table, what = draw(changed_tables(kind))
     content = tomli_w.dumps(table).encode(errors="surrogatepass")
     if draw(st.integers(0, 7)) == 0:
@@ -249,11 +343,12 @@ def draw_inputs(count: int, number: int, folder: Path, visit: Callable[[BadInput
     each()
 
 
-# -- what becomes of them ------------------------------------------------------------------------------------
+# -- what becomes of them --------------------------------------------------------------------------
 
 
 def attempt(bad: BadInput, folder: Path) -> Outcome:
-    """Use an input in this process, and judge what comes of it. folder : its files are written there"""
+    """Use an input in this process, and judge what comes of it. folder : its files are written
+    there"""
     for name, content in bad.files.items():
         (folder / name).write_bytes(content)
     begin = time.process_time()
@@ -287,7 +382,9 @@ def _use_design(folder: Path) -> str:
     derived = swgpar.check(design)
     system_of(design).remarks(design, derived)
     fault = _not_finite(derived)
-    return fault or (_use_mesh(design, load_recipe(RECIPE)) if isinstance(design, DriveDesign) else "")
+    return fault or (
+        _use_mesh(design, load_recipe(RECIPE)) if isinstance(design, DriveDesign) else ""
+    )
 
 
 def _use_recipe(folder: Path) -> str:
@@ -299,7 +396,9 @@ def _use_recipe(folder: Path) -> str:
 
 def _use_mesh(design: DriveDesign, recipe: swgpar.MeshRecipe) -> str:
     needs = forecast(design, recipe)
-    if not (needs.elements > 0 < needs.unknowns and np.isfinite([needs.memory, needs.seconds]).all()):
+    if not (
+        needs.elements > 0 < needs.unknowns and np.isfinite([needs.memory, needs.seconds]).all()
+    ):
         return f"forecast {needs}"
     if needs.elements > MESHED * design.drive.teeth_fs:
         return ""
@@ -324,7 +423,11 @@ def _use_pitch_file(folder: Path) -> str:
     table = apply_overrides(read_toml(DESIGN), PLANE)
     design = swgpar.load_design({**table, "deviations": {"ring_gear": gear}})
     errors = design.deviations.ring_gear.pitch_errors
-    return "" if len(errors) == design.drive.teeth_rg and np.isfinite(errors).all() else f"pitch errors {errors}"
+    return (
+        ""
+        if len(errors) == design.drive.teeth_rg and np.isfinite(errors).all()
+        else f"pitch errors {errors}"
+    )
 
 
 def _use_checkpoint(folder: Path) -> str:

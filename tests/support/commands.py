@@ -16,16 +16,20 @@ from support.paths import DATA, DESIGN, RECIPE
 from support.small_drive import PLANE, SHORT
 from swgpar.results import history
 
-# a process that has initialised MPI passes these on, and mpirun then takes itself for a rank of that job
+# a process that has initialised MPI passes these on, and mpirun then takes itself for a rank of
+# that job
 INHERITED = ("OMPI_COMM_", "OMPI_MCA_ess", "OMPI_MCA_orte", "PMIX_", "PMI_", "HYDI_", "MPI_LOCAL")
 
-# Open MPI runs more ranks than there are cores, and does not comment on exit codes; MPICH has no such settings
+# Open MPI runs more ranks than there are cores, and does not comment on exit codes; MPICH has no
+# such settings
 OPEN_MPI = {"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_orte_execute_quiet": "1"}
 
 
 def environment() -> dict[str, str]:
     """Of a command that is started outside of the job of this process."""
-    return {name: value for name, value in os.environ.items() if not name.startswith(INHERITED)} | OPEN_MPI
+    return {
+        name: value for name, value in os.environ.items() if not name.startswith(INHERITED)
+    } | OPEN_MPI
 
 
 def on_ranks(ranks: int) -> list[str]:
@@ -37,9 +41,23 @@ def swgpar(*arguments: object) -> list[str]:
     return [sys.executable, "-P", "-m", "swgpar.cli", *map(str, arguments)]
 
 
-def run_command(out: Path, *more: str, ranks: int = 1, overrides: Sequence[str] = (*PLANE, *SHORT)) -> list[str]:
-    """A run of the small drive without shortcuts, a plane one unless the overrides say otherwise."""
-    arguments = ("run", DESIGN, "--mesh", RECIPE, "--plain", "--out", out, *more, "--set", *overrides)
+def run_command(
+    out: Path, *more: str, ranks: int = 1, overrides: Sequence[str] = (*PLANE, *SHORT)
+) -> list[str]:
+    """A run of the small drive without shortcuts, a plane one unless the overrides say
+    otherwise."""
+    arguments = (
+        "run",
+        DESIGN,
+        "--mesh",
+        RECIPE,
+        "--plain",
+        "--out",
+        out,
+        *more,
+        "--set",
+        *overrides,
+    )
     return on_ranks(ranks) + swgpar(*arguments)
 
 
@@ -48,11 +66,14 @@ def execute(
 ) -> subprocess.CompletedProcess[str]:
     """Run to the end, keeping both streams.
 
-    cwd : not the root of a checkout, from which python -m would take the source tree, whose kernels are not built
+    cwd : not the root of a checkout, from which python -m would take the source tree, whose kernels
+    are not built
     variables : of the environment, beside those of this process
     """
     variables = {**environment(), **variables}
-    return subprocess.run(command, capture_output=True, text=True, timeout=timeout, cwd=cwd, env=variables)
+    return subprocess.run(
+        command, capture_output=True, text=True, timeout=timeout, cwd=cwd, env=variables
+    )
 
 
 def succeed(
@@ -63,13 +84,16 @@ def succeed(
     return done
 
 
-def assert_same_history(folder: Path, other: Path, rel: float | None = None, *, iterations: bool = True) -> None:
-    """Rows agree within `rel` of the largest value of their column: entries that vanish are round-off.
+def assert_same_history(
+    folder: Path, other: Path, rel: float | None = None, *, iterations: bool = True
+) -> None:
+    """Rows agree within `rel` of the largest value of their column: entries that vanish are
+    round-off.
 
-    rel : default 1e-8, and 1e-7 with other iterations: these end anywhere below a residual of 1e-9 of the contact
-    force, of which the torque on the wave generator is a small difference
-    iterations : compare Newton iterations too; on other numbers of ranks round-off may cost or save one, and a restart
-    predicts its first states from one alone
+    rel : default 1e-8, and 1e-7 with other iterations: these end anywhere below a residual of 1e-9
+    of the contact force, of which the torque on the wave generator is a small difference
+    iterations : compare Newton iterations too; on other numbers of ranks round-off may cost or save
+    one, and a restart predicts its first states from one alone
     """
     rel = rel or (1e-8 if iterations else 1e-7)
     a, b = (history.read_history(path / history.NAME) for path in (folder, other))
@@ -84,7 +108,8 @@ def assert_same_history(folder: Path, other: Path, rel: float | None = None, *, 
 
 
 def of_session(leader: int) -> list[int]:
-    """Processes of a session, and their descendants: the mpirun of MPICH gives its ranks a session of their own."""
+    """Processes of a session, and their descendants: the mpirun of MPICH gives its ranks a session
+    of their own."""
     parents, found = {}, set()
     for entry in Path("/proc").iterdir():
         if entry.name.isdigit():
@@ -115,7 +140,10 @@ def kill_after(command: list[str], out: Path, rows: int) -> None:
     process = subprocess.Popen(command, cwd=DATA, env=environment(), start_new_session=True)
     limit = time.monotonic() + 600.0
     try:
-        while not ((out / "history.csv").exists() and len(history.read_history(out / "history.csv")) >= rows):
+        while not (
+            (out / "history.csv").exists()
+            and len(history.read_history(out / "history.csv")) >= rows
+        ):
             assert process.poll() is None and time.monotonic() < limit
             time.sleep(0.05)
     finally:

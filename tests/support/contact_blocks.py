@@ -1,4 +1,5 @@
-"""Two elastic blocks pressed together: kernel and flank contact alone, solved by a dense-free Newton iteration."""
+"""Two elastic blocks pressed together: kernel and flank contact alone, solved by a dense-free
+Newton iteration."""
 
 from __future__ import annotations
 
@@ -21,14 +22,19 @@ ORDERING = "MMD_AT_PLUS_A"
 
 
 class Rows:
-    """All blocks among the first n of n_local nodes (None: n), of a symmetric matrix the upper triangle."""
+    """All blocks among the first n of n_local nodes (None: n), of a symmetric matrix the upper
+    triangle."""
 
     def __init__(self, n: int, symmetric: bool = True, n_local: int | None = None) -> None:
         first = np.arange(n) if symmetric else np.zeros(n, dtype=np.int64)
         self.start = np.concatenate([[0], np.cumsum(n - first)]).astype(np.int64)
         self.column = np.concatenate([np.arange(k, n) for k in first]).astype(np.int32)
         self.values = np.zeros((len(self.column), 3, 3))
-        self.number, self.n_own, self.symmetric = np.arange(n_local or n, dtype=np.int32), n, symmetric
+        self.number, self.n_own, self.symmetric = (
+            np.arange(n_local or n, dtype=np.int32),
+            n,
+            symmetric,
+        )
 
     def matrix(self) -> np.ndarray:
         full = np.zeros((self.n_own, 3, self.n_own, 3))
@@ -40,8 +46,11 @@ class Rows:
         return full.reshape(3 * self.n_own, -1)
 
 
-def master(points: np.ndarray, tangents: np.ndarray, s: np.ndarray, z: np.ndarray, first: int) -> MasterFlanks:
-    """One flank whose nodes are numbered from `first`; the tangent runs to +x, the outward normal to +y."""
+def master(
+    points: np.ndarray, tangents: np.ndarray, s: np.ndarray, z: np.ndarray, first: int
+) -> MasterFlanks:
+    """One flank whose nodes are numbered from `first`; the tangent runs to +x, the outward normal
+    to +y."""
     n = len(s) * len(z)
     return MasterFlanks(
         s,
@@ -59,7 +68,16 @@ def block(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.n
     """Points (n, 3), hexahedra (m, 8) and the numbers (n_x, n_y, n_z) of the nodes of a grid."""
     points = np.stack(np.meshgrid(x, y, z, indexing="ij"), -1)
     number = np.arange(points[..., 0].size).reshape(points.shape[:3])
-    corner = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+    corner = [
+        (0, 0, 0),
+        (1, 0, 0),
+        (1, 1, 0),
+        (0, 1, 0),
+        (0, 0, 1),
+        (1, 0, 1),
+        (1, 1, 1),
+        (0, 1, 1),
+    ]
     n = np.array(number.shape) - 1
     hexes = [number[a : a + n[0], b : b + n[1], c : c + n[2]].ravel() for a, b, c in corner]
     return points.reshape(-1, 3), np.stack(hexes, axis=1), number
@@ -69,9 +87,11 @@ def block(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.n
 class Blocks:
     """The flank of the lower block is the master, the faces of the upper one are the slaves.
 
-    points (n, 3) mm, hexes (m, 8), the nodes of both contact surfaces among the first n_surface ones
-    fixed (n, 3) : components with a given displacement;  order : Gauss points per direction of a segment
-    coefficient : of friction, on the way from the displacement `before` (n, 3) with the tractions `history`
+    points (n, 3) mm, hexes (m, 8), the nodes of both contact surfaces among the first n_surface
+    ones fixed (n, 3) : components with a given displacement;  order : Gauss points per direction of
+    a segment
+    coefficient : of friction, on the way from the displacement `before` (n, 3) with the tractions
+    `history`
     incompatible : elements with incompatible modes
     """
 
@@ -89,8 +109,11 @@ class Blocks:
     history: np.ndarray | None = None
     incompatible: bool = True
 
-    def press(self, u: np.ndarray, force: np.ndarray, augmentations: int = 0) -> tuple[Faces, np.ndarray, np.ndarray]:
-        """Equilibrium from u (n, 3), which is changed; its fixed components stay. Segments, pressure, contact force."""
+    def press(
+        self, u: np.ndarray, force: np.ndarray, augmentations: int = 0
+    ) -> tuple[Faces, np.ndarray, np.ndarray]:
+        """Equilibrium from u (n, 3), which is changed; its fixed components stay. Segments,
+        pressure, contact force."""
         mesh = ElementMesh(self.points, self.hexes, self.material, incompatible=self.incompatible)
         rest = 3 * (len(self.points) - self.n_surface)
         free, pick = np.flatnonzero(~self.fixed.ravel()), np.arange(len(self.placed.conn))
@@ -102,20 +125,30 @@ class Blocks:
                 if augmentation == 0:
                     corners = self.placed.corners(pick)
                     zero = np.zeros((len(pick), 4))
-                    foot = contact_flanks(self.flanks, corners, u, zero, *settings, None, None, beyond=CONTINUATION)[2]
-                    segments = cut_faces(foot, self.placed.size, self.flanks.s, self.flanks.z, self.order)
+                    foot = contact_flanks(
+                        self.flanks, corners, u, zero, *settings, None, None, beyond=CONTINUATION
+                    )[2]
+                    segments = cut_faces(
+                        foot, self.placed.size, self.flanks.s, self.flanks.z, self.order
+                    )
                     faces = self.placed.cut(pick, segments)
                     multiplier = np.zeros(faces.weight.shape)
                     if self.coefficient > 0.0:
                         law = self._friction(faces, segments, multiplier)
                 contact = np.zeros_like(r)
-                _, pressure, _, _ = contact_flanks(self.flanks, faces, u, multiplier, *settings, contact, rows, law)
+                _, pressure, _, _ = contact_flanks(
+                    self.flanks, faces, u, multiplier, *settings, contact, rows, law
+                )
                 r += contact
                 residual = np.abs(r.ravel()[free]).max() / np.abs(contact).max()
                 if residual < 1e-9:
                     break
-                stiffness = mesh.tangent(u) + block_diag([csr_matrix(rows.matrix()), csr_matrix((rest, rest))])
-                u.ravel()[free] -= spsolve(stiffness.tocsc()[free][:, free], r.ravel()[free], ORDERING)
+                stiffness = mesh.tangent(u) + block_diag(
+                    [csr_matrix(rows.matrix()), csr_matrix((rest, rest))]
+                )
+                u.ravel()[free] -= spsolve(
+                    stiffness.tocsc()[free][:, free], r.ravel()[free], ORDERING
+                )
             assert residual < 1e-7, (augmentation, residual)
             multiplier = pressure.copy()
         if law is not None:
@@ -125,6 +158,10 @@ class Blocks:
 
     def _friction(self, faces: Faces, segments: Segments, zero: np.ndarray) -> friction.Friction:
         settings = (self.penalty, 0.0, 0.2, np.inf)
-        gap, _, place, _ = contact_flanks(self.flanks, faces, self.before, zero, *settings, None, None)
-        law = friction.begin(self.coefficient, place, gap, friction.interpolated(self.history, segments))
+        gap, _, place, _ = contact_flanks(
+            self.flanks, faces, self.before, zero, *settings, None, None
+        )
+        law = friction.begin(
+            self.coefficient, place, gap, friction.interpolated(self.history, segments)
+        )
         return replace(law, stiffness=friction.STIFFNESS * self.penalty)

@@ -10,10 +10,11 @@ ORDERS = 0.2, 6.0
 
 
 def limit(values: list[float], sizes: list[float] | None = None) -> tuple[float, float | None]:
-    """Limit and order p of the last three values, as v + c h^p; sizes h are halved from each to the next by default.
+    """Limit and order p of the last three values, as v + c h^p; sizes h are halved from each to the
+    next by default.
 
-    Without such an order, or with fewer values, the last value, and no order. With halved sizes this is Aitken's
-    extrapolation.
+    Without such an order, or with fewer values, the last value, and no order. With halved sizes
+    this is Aitken's extrapolation.
     """
     if len(values) < 3:
         return values[-1], None
@@ -34,6 +35,7 @@ def limit(values: list[float], sizes: list[float] | None = None) -> tuple[float,
 
 
 def rates(errors: list[float]) -> list[float | None]:
-    """Observed orders in the element size where each mesh halves it; none for the first or beside an error of zero."""
+    """Observed orders in the element size where each mesh halves it; none for the first or beside
+    an error of zero."""
     pairs = zip(errors[:-1], errors[1:])
     return [None, *(float(np.log2(a / b)) if a > 0.0 and b > 0.0 else None for a, b in pairs)]

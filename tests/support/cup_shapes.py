@@ -13,7 +13,8 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.input.toml_file import read_toml
 
 Changes = dict[str, Any]
-"""Keys of the section [cup] that differ from those of the small drive; None: the key is left out."""
+"""Keys of the section [cup] that differ from those of the small drive; None: the key is left
+out."""
 
 CONTOUR: Changes = {
     "contour": [
@@ -25,7 +26,12 @@ CONTOUR: Changes = {
 HAT: Changes = {"shape": "hat", "inner_radius": None, "flange_radius": 26.0, "end_thickness": 0.8}
 SHORT: Changes = {"length": 6.0}
 
-SHAPES: dict[str, Changes] = {"contour": CONTOUR, "hat": HAT, "short": SHORT, "hat, contour": HAT | CONTOUR}
+SHAPES: dict[str, Changes] = {
+    "contour": CONTOUR,
+    "hat": HAT,
+    "short": SHORT,
+    "hat, contour": HAT | CONTOUR,
+}
 
 
 def shaped(changes: Changes, *overrides: str) -> DriveDesign:
@@ -40,28 +46,40 @@ def shaped(changes: Changes, *overrides: str) -> DriveDesign:
 
 
 def revolved(points: np.ndarray) -> float:
-    """Volume (mm³) of a closed polygon (n, 2) of r and z that turns about the axis, by Guldin's rule."""
+    """Volume (mm³) of a closed polygon (n, 2) of r and z that turns about the axis, by Guldin's
+    rule."""
     (r, z), (r_next, z_next) = points.T, np.roll(points, -1, axis=0).T
     return abs(float(np.sum((z_next - z) * (r**2 + r * r_next + r_next**2)))) * np.pi / 3.0
 
 
 def wall_volume(design: DriveDesign, n: int = 20001) -> float:
-    """Volume (mm³) of the wall behind the teeth without the fillet there, by a fine polygon of its section."""
+    """Volume (mm³) of the wall behind the teeth without the fillet there, by a fine polygon of its
+    section."""
     wall, cup = design.cup_wall, design.cup
     share, angle = np.linspace(0.0, 1.0, n), np.linspace(0.0, 0.5 * np.pi, n)
     lines = []
     for line, thickness in ((wall.inner, 0.0), (wall.outer, wall.thickness)):
         s = share * (cup.length - cup.fillet_radius)
         if wall.outwards:
-            a, b = cup.fillet_radius - thickness, cup.fillet_radius - (wall.end_thickness if thickness else 0.0)
+            a, b = (
+                cup.fillet_radius - thickness,
+                cup.fillet_radius - (wall.end_thickness if thickness else 0.0),
+            )
             side, face = -1.0, cup.length - (wall.end_thickness if thickness else 0.0)
         else:
             off = 0.0 if thickness else 1.0
-            a, b = cup.fillet_radius - off * wall.thickness, cup.fillet_radius - off * wall.end_thickness
+            a, b = (
+                cup.fillet_radius - off * wall.thickness,
+                cup.fillet_radius - off * wall.end_thickness,
+            )
             side, face = 1.0, cup.length - off * wall.end_thickness
         center = line.points[-1, 1] - side * a, cup.length - cup.fillet_radius
-        fillet = np.column_stack([center[0] + side * a * np.cos(angle), center[1] + b * np.sin(angle)])
-        lines.append(np.concatenate([np.column_stack([line.radius(s), s]), fillet, [[cup.edge, face]]]))
+        fillet = np.column_stack(
+            [center[0] + side * a * np.cos(angle), center[1] + b * np.sin(angle)]
+        )
+        lines.append(
+            np.concatenate([np.column_stack([line.radius(s), s]), fillet, [[cup.edge, face]]])
+        )
     return revolved(np.concatenate([lines[0], lines[1][::-1]]))
 
 

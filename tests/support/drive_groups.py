@@ -1,4 +1,5 @@
-"""Drives under numerical stress, by group: designs whose one key, or few, go to where the numbers get hard.
+"""Drives under numerical stress, by group: designs whose one key, or few, go to where the numbers
+get hard.
 
 Groups serve `tests/stability` and `scripts/bench/stability`. All run on the smallest mesh.
 """
@@ -25,7 +26,8 @@ PLANE, SMALL, CUP = DRIVERS / "plane_half_turn.toml", DESIGN, REFERENCE
 MESH = RECIPE
 
 Case = dict[str, Any]
-"""Values of the design file that a case replaces: by "section.key", or by "section" for a whole one."""
+"""Values of the design file that a case replaces: by "section.key", or by "section" for a whole
+one."""
 
 Cases = dict[str, Case]
 """Cases by name."""
@@ -41,18 +43,21 @@ def table_of(design: Path, case: Case) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Group:
-    """design : file that the cases override;  make : draws them up;  steps : whether the cases set their own"""
+    """design : file that the cases override;  make : draws them up;  steps : whether the cases set
+    their own"""
 
     design: Path
     make: Callable[[], Cases]
     steps: bool = False
 
     def cases(self) -> Cases:
-        """All cases; the wave generator turns through one and a half pitches in three increments."""
+        """All cases; the wave generator turns through one and a half pitches in three
+        increments."""
         return {name: {**self.period(case), **case} for name, case in self.make().items()}
 
     def period(self, case: Case) -> Case:
-        """Increments of half a pitch, of which the first and the last then end in the same state."""
+        """Increments of half a pitch, of which the first and the last then end in the same
+        state."""
         if self.steps:
             return {}
         try:
@@ -73,13 +78,26 @@ def crossed(cases: Cases, others: Cases) -> Cases:
 
 
 def units(design: Path = SMALL) -> Cases:
-    """A cup drive in mm and N, m and N, inch and pound; torques are a thousandth of the unit of the stresses."""
+    """A cup drive in mm and N, m and N, inch and pound; torques are a thousandth of the unit of the
+    stresses."""
     table, cases = read_toml(design), {}
     lengths = [
-        *(f"{s}.{k}" for s, k in (("drive", "module"), ("drive", "face_width"), ("wave_generator", "face_width"))),
+        *(
+            f"{s}.{k}"
+            for s, k in (
+                ("drive", "module"),
+                ("drive", "face_width"),
+                ("wave_generator", "face_width"),
+            )
+        ),
         *(f"cup.{k}" for k in ("length", "fillet_radius", "inner_radius")),
         *(f"micro_geometry.{k}" for k in ("wg_crowning", "wg_slope", "fs_crowning")),
-        *(f"{g}.profile.{k}" for g in ("flexible_spline", "ring_gear") for k in table[g]["profile"] if k != "type"),
+        *(
+            f"{g}.profile.{k}"
+            for g in ("flexible_spline", "ring_gear")
+            for k in table[g]["profile"]
+            if k != "type"
+        ),
         "flexible_spline.rim",
         "ring_gear.rim",
     ]
@@ -109,18 +127,24 @@ UNITS = (
 def teeth(numbers: Iterable[int]) -> Cases:
     """The plane drive with other numbers of teeth, its rim in proportion."""
     return {
-        f"teeth={n}": {"drive.teeth_fs": n, "drive.teeth_rg": n + 2, "flexible_spline.rim": n / 120} for n in numbers
+        f"teeth={n}": {"drive.teeth_fs": n, "drive.teeth_rg": n + 2, "flexible_spline.rim": n / 120}
+        for n in numbers
     }
 
 
 def widths(values: Iterable[float]) -> Cases:
-    """The small cup drive with another face width on the same number of elements: aspect ratios to a thousand.
+    """The small cup drive with another face width on the same number of elements: aspect ratios to
+    a thousand.
 
-    Below its own width micro-geometry and torque shrink in proportion: the full ones crush a narrow drive.
+    Below its own width micro-geometry and torque shrink in proportion: the full ones crush a narrow
+    drive.
     """
     table = read_toml(SMALL)
     own, scaled = table["drive"]["face_width"], {"load.torque": table["load"]["torque"]}
-    scaled |= {f"micro_geometry.{k}": table["micro_geometry"][k] for k in ("wg_crowning", "wg_slope", "fs_crowning")}
+    scaled |= {
+        f"micro_geometry.{k}": table["micro_geometry"][k]
+        for k in ("wg_crowning", "wg_slope", "fs_crowning")
+    }
     return {
         f"width={w:g}": {
             "drive.face_width": w,
@@ -144,13 +168,19 @@ def cams() -> Cases:
         "four_roller": {"type": "four_roller", "beta": 25.0, "r_4": 15.0},
     }
     for angle in (-0.5, 0.5):
-        wave[f"turned_parabolas={angle}"] = {"type": "asymmetric_parabolic", "rotational_angle": angle}
+        wave[f"turned_parabolas={angle}"] = {
+            "type": "asymmetric_parabolic",
+            "rotational_angle": angle,
+        }
     sides: dict[str, dict[str, float]] = {}
     for side in ("right", "left"):
         for key, values in (("a_p", (0.0095, 0.0099)), ("C_p", (0.45, 0.55)), ("r_c", (8.0, 12.0))):
             for value in values:
                 name = f"{side}_{key}={value:g}"
-                wave[name], sides[name] = {"type": "asymmetric_parabolic"}, {side: {**improved, key: value}}
+                wave[name], sides[name] = (
+                    {"type": "asymmetric_parabolic"},
+                    {side: {**improved, key: value}},
+                )
     for name, table in wave.items():
         if table["type"] == "asymmetric_parabolic":
             table |= {"C": 1.0, "right": improved, "left": improved, **sides.get(name, {})}
@@ -158,7 +188,8 @@ def cams() -> Cases:
 
 
 def random_designs(count: int, seed: int, model: str = "plane") -> Cases:
-    """Drives with any profile and cam, some with friction, backlash or the other layout, that can be built."""
+    """Drives with any profile and cam, some with friction, backlash or the other layout, that can
+    be built."""
     rng, cases = np.random.default_rng(seed), {}
     recipe, drawn = load_recipe(MESH), 0
     while len(cases) < count:
@@ -176,11 +207,12 @@ SENSIBLE, SENSIBLE_CUP = "sensible designs, plane", "sensible designs, cup"
 
 
 def sensible_designs(count: int, seed: int, model: str = "plane") -> Cases:
-    """Drives of 60 to 240 teeth and 8 to 100 mm of radius, with any cam and profile; some of them cannot be built.
+    """Drives of 60 to 240 teeth and 8 to 100 mm of radius, with any cam and profile; some of them
+    cannot be built.
 
-    They turn through a pitch and a quarter in increments of a quarter, so that the first and the last end in the same
-    state, and the last four have the mean of a period. Without friction they start from the bent shape, as `swgpar run`
-    does.
+    They turn through a pitch and a quarter in increments of a quarter, so that the first and the
+    last end in the same state, and the last four have the mean of a period. Without friction they
+    start from the bent shape, as `swgpar run` does.
     """
     rng, cases = np.random.default_rng(seed), {}
     for k in range(count):
@@ -254,7 +286,10 @@ def _draw(
     cam_kind = str(rng.choice(cams))
     wave = {"type": cam_kind, **cam[cam_kind](), "face_width": width}
     c_l = 0.0 if kind == "double_arc" else 0.5
-    rim, torque = number(0.5, 1.6) * module * teeth / 120, number(0.0, 4.0) * module**3 * teeth / 120
+    rim, torque = (
+        number(0.5, 1.6) * module * teeth / 120,
+        number(0.0, 4.0) * module**3 * teeth / 120,
+    )
     cup: Case = {}
     if model == "cup":
         torque *= 10.0
@@ -291,10 +326,11 @@ def _draw(
 
 
 REPEATED = {"fs_s1": 1e-300, "fs_s3": 1e-300, "fs_vm": 1e-300, "wg_torque_Nmm": 1.0}
-"""Columns of the history that repeat after one period, and the least value that a difference is divided by.
+"""Columns of the history that repeat after one period, and the least value that a difference is
+divided by.
 
-A torque is what is left of moments of the cam's contact forces, some 1e4 N mm, which are known to the solver's 1e-9: a
-difference of 1e-6 N mm in it says nothing.
+A torque is what is left of moments of the cam's contact forces, some 1e4 N mm, which are known to
+the solver's 1e-9: a difference of 1e-6 N mm in it says nothing.
 """
 
 
@@ -309,11 +345,14 @@ FACE_WIDTHS = (0.2, 0.3, 0.5, 1.0, 4.0, 20.0, 60.0, 200.0, 1000.0)
 FRICTION = (0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5)
 
 
-def groups(count: int, seed: int, sensible: tuple[int, int] = (0, 0), first: int = 0) -> dict[str, Group]:
+def groups(
+    count: int, seed: int, sensible: tuple[int, int] = (0, 0), first: int = 0
+) -> dict[str, Group]:
     """All groups.
 
     count, seed : number of random plane designs, and what they are drawn from
-    sensible : numbers of plane and of cup drives of sensible sizes;  first : number of the first of them in the group
+    sensible : numbers of plane and of cup drives of sensible sizes;  first : number of the first of
+    them in the group
     """
     flat = dict(override.split("=") for override in SMALL_PLANE)
     flat = {key: parse_value(value) for key, value in flat.items()}
@@ -323,26 +362,42 @@ def groups(count: int, seed: int, sensible: tuple[int, int] = (0, 0), first: int
 
     soft = {"contact.penalty_coef": 5.0, "contact.max_augmentations": 50}
     wide = {"cup.fillet_radius": 3.0}  # for the thickest rim
-    rims, torques = (0.18, 0.3, 0.5, 1.0, 1.5, 2.0, 3.0), (0.0, 0.01, 1.0, 10.0, 50.0, 100.0, 200.0, 500.0)
-    turns = {f"increment={a:g}": {"steps.increment": a, "steps.rotation": 2 * a} for a in (0.1, 0.3, 1.0, 3.0, 10.0)}
+    rims, torques = (
+        (0.18, 0.3, 0.5, 1.0, 1.5, 2.0, 3.0),
+        (0.0, 0.01, 1.0, 10.0, 50.0, 100.0, 200.0, 500.0),
+    )
+    turns = {
+        f"increment={a:g}": {"steps.increment": a, "steps.rotation": 2 * a}
+        for a in (0.1, 0.3, 1.0, 3.0, 10.0)
+    }
     return {
-        "Poisson's ratio, cup": Group(SMALL, lambda: each("material.nu", (0.0, 0.3, 0.45, 0.49, 0.499))),
+        "Poisson's ratio, cup": Group(
+            SMALL, lambda: each("material.nu", (0.0, 0.3, 0.45, 0.49, 0.499))
+        ),
         UNITS_GROUP: Group(SMALL, units),
         "penalty of the flanks, cup": Group(SMALL, lambda: each("contact.penalty_coef", DECADES)),
-        "penalty of the cam, cup": Group(SMALL, lambda: each("contact.wg_penalty_coef", [c / 10.0 for c in DECADES])),
+        "penalty of the cam, cup": Group(
+            SMALL, lambda: each("contact.wg_penalty_coef", [c / 10.0 for c in DECADES])
+        ),
         "penalty without augmentation, plane": small_plane(
             each("contact.penalty_coef", DECADES, {"contact.max_augmentations": 0})
         ),
-        "augmentation, plane": small_plane(each("contact.penetration_tolerance", (1e-2, 1e-3, 1e-4, 1e-5, 1e-6), soft)),
+        "augmentation, plane": small_plane(
+            each("contact.penetration_tolerance", (1e-2, 1e-3, 1e-4, 1e-5, 1e-6), soft)
+        ),
         "increments, plane": small_plane(turns, steps=True),
-        "gaps, plane reference": Group(PLANE, lambda: each("ring_gear.c_P", (0.5, 0.7, 0.8, 0.85, 0.9, 0.95, 0.98))),
+        "gaps, plane reference": Group(
+            PLANE, lambda: each("ring_gear.c_P", (0.5, 0.7, 0.8, 0.85, 0.9, 0.95, 0.98))
+        ),
         "overlap, plane": small_plane(each("ring_gear.c_P", (1.0, 1.01, 1.02, 1.05, 1.1))),
         "cam's slope (gaps and overlap), cup": Group(
             SMALL, lambda: each("micro_geometry.wg_slope", (-0.2, -0.1, 0.0, 0.1, 0.2, 0.4))
         ),
         "gaps and torque, cup": Group(
             SMALL,
-            lambda: crossed(each("ring_gear.c_P", (0.8, 0.9, 1.0)), each("load.torque", (0.01, 1.0, 20.0))),
+            lambda: crossed(
+                each("ring_gear.c_P", (0.8, 0.9, 1.0)), each("load.torque", (0.01, 1.0, 20.0))
+            ),
         ),
         "friction, plane": small_plane(each("contact.friction", FRICTION)),
         "friction, cup": Group(SMALL, lambda: each("contact.friction", FRICTION)),
@@ -350,15 +405,27 @@ def groups(count: int, seed: int, sensible: tuple[int, int] = (0, 0), first: int
             PLANE, lambda: each("contact.friction", FRICTION, {"load.torque": 50.0})
         ),
         "rim, plane reference": Group(PLANE, lambda: each("flexible_spline.rim", rims)),
-        "rim, cup reference": Group(CUP, lambda: each("flexible_spline.rim", (0.18, 0.3, 1.0, 3.0), wide)),
+        "rim, cup reference": Group(
+            CUP, lambda: each("flexible_spline.rim", (0.18, 0.3, 1.0, 3.0), wide)
+        ),
         "torque, plane reference": Group(PLANE, lambda: each("load.torque", torques)),
-        "torque, cup reference": Group(CUP, lambda: each("load.torque", (0.01, 20.0, 100.0, 500.0))),
-        "teeth, plane reference": Group(PLANE, lambda: teeth((20, 30, 40, 60, 80, 120, 160, 200, 320))),
+        "torque, cup reference": Group(
+            CUP, lambda: each("load.torque", (0.01, 20.0, 100.0, 500.0))
+        ),
+        "teeth, plane reference": Group(
+            PLANE, lambda: teeth((20, 30, 40, 60, 80, 120, 160, 200, 320))
+        ),
         "cams, plane reference": Group(PLANE, cams),
         "face width (aspect ratio), cup": Group(SMALL, lambda: widths(FACE_WIDTHS)),
         "random designs, plane": Group(PLANE, lambda: random_designs(count, seed)),
         ONCE_FAILED: Group(PLANE, lambda: read_toml(DATA / "once_failed.toml")),
         "random designs, cup": Group(PLANE, lambda: random_designs(count // 10, seed, "cup")),
-        SENSIBLE: Group(PLANE, lambda: from_number(first, sensible_designs(sensible[0], seed)), steps=True),
-        SENSIBLE_CUP: Group(PLANE, lambda: from_number(first, sensible_designs(sensible[1], seed, "cup")), steps=True),
+        SENSIBLE: Group(
+            PLANE, lambda: from_number(first, sensible_designs(sensible[0], seed)), steps=True
+        ),
+        SENSIBLE_CUP: Group(
+            PLANE,
+            lambda: from_number(first, sensible_designs(sensible[1], seed, "cup")),
+            steps=True,
+        ),
     }

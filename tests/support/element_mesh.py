@@ -1,4 +1,5 @@
-"""Small meshes of single elements, assembled and solved by SciPy: for tests of the element kernels."""
+"""Small meshes of single elements, assembled and solved by SciPy: for tests of the element
+kernels."""
 
 from __future__ import annotations
 
@@ -12,7 +13,8 @@ from swgpar.materials import Material
 
 
 def pinch(mesh: ElementMesh, angle: np.ndarray) -> tuple[float, float]:
-    """Quarter of a pinched thin ring, R = 58, t = b = 1, E = 210e3: changes of the diameters along and across the load.
+    """Quarter of a pinched thin ring, R = 58, t = b = 1, E = 210e3: changes of the diameters along
+    and across the load.
 
     angle : (n,) rad of the nodes, 0 under the force. In units of P R^3 / (E I).
     """
@@ -28,7 +30,8 @@ def pinch(mesh: ElementMesh, angle: np.ndarray) -> tuple[float, float]:
 
 
 class ElementMesh:
-    """Hexahedra (n, 8), or quadrilaterals (n, 4) with a thickness; every element its own reference."""
+    """Hexahedra (n, 8), or quadrilaterals (n, 4) with a thickness; every element its own
+    reference."""
 
     def __init__(
         self,
@@ -48,7 +51,9 @@ class ElementMesh:
             np.zeros((n, self.m), np.uint8),
         )
         row, col = np.repeat(self.elements, self.m, axis=1), np.tile(self.elements, (1, self.m))
-        keys, slot = np.unique(row.ravel().astype(np.int64) * len(points) + col.ravel(), return_inverse=True)
+        keys, slot = np.unique(
+            row.ravel().astype(np.int64) * len(points) + col.ravel(), return_inverse=True
+        )
         self.slot = slot.reshape(n, self.m**2)
         row, self.column = np.divmod(keys, len(points))
         self.start = np.searchsorted(row, np.arange(len(points) + 1))
@@ -71,7 +76,9 @@ class ElementMesh:
     def stress(self, u: np.ndarray) -> np.ndarray:
         return recover_stress(self.reference, *self.arrays, u)
 
-    def solve(self, fixed: np.ndarray, value: np.ndarray, load: np.ndarray, iterations: int = 1) -> np.ndarray:
+    def solve(
+        self, fixed: np.ndarray, value: np.ndarray, load: np.ndarray, iterations: int = 1
+    ) -> np.ndarray:
         """Newton's iteration; `fixed` (n, 3) bool, prescribed `value`, `load` (n, 3)."""
         u = np.where(fixed, value, 0.0)
         held = fixed.copy()

@@ -1,8 +1,10 @@
-"""Linear problems of elasticity with known answers: mesh, supports, load, and the numbers that are compared.
+"""Linear problems of elasticity with known answers: mesh, supports, load, and the numbers that are
+compared.
 
-Every problem takes a level, which doubles the elements in each direction, and whether it is meshed by quadrilaterals.
-Sources: MacNeal and Harder, Finite Elements in Analysis and Design 1 (1985), for the beams; Roark's Formulas for
-Stress and Strain for the ring; Lamé for the cylinder; Cook (1974) for the membrane.
+Every problem takes a level, which doubles the elements in each direction, and whether it is meshed
+by quadrilaterals. Sources: MacNeal and Harder, Finite Elements in Analysis and Design 1 (1985), for
+the beams; Roark's Formulas for Stress and Strain for the ring; Lamé for the cylinder; Cook (1974)
+for the membrane.
 """
 
 from __future__ import annotations
@@ -33,7 +35,8 @@ class Linear:
 
     points (n, 3), elements (m, 8) or (m, 4), thickness of quadrilaterals
     fixed (n, 3) : components that are held;  load (n, 3) : forces
-    measure : of mesh and displacement, the numbers that are compared;  exact : their closed forms, where there are any
+    measure : of mesh and displacement, the numbers that are compared;  exact : their closed forms,
+    where there are any
     """
 
     points: np.ndarray
@@ -51,7 +54,8 @@ class Linear:
         return (3 if self.elements.shape[1] == 8 else 2) * len(self.points)
 
     def solve(self, incompatible: bool = True, linear: str = "direct") -> dict[str, float]:
-        """The numbers that are compared, with MUMPS ("direct") or GAMG ("iterative") as `swgpar run` sets them up."""
+        """The numbers that are compared, with MUMPS ("direct") or GAMG ("iterative") as `swgpar
+        run` sets them up."""
         mesh = ElementMesh(self.points, self.elements, self.material, self.thickness, incompatible)
         return self.measure(mesh, solve(mesh, self.fixed, self.load, linear))
 
@@ -70,7 +74,9 @@ def solve(mesh: ElementMesh, fixed: np.ndarray, load: np.ndarray, linear: str) -
     start = np.searchsorted(row[upper], np.arange(len(free) + 1))
     csr = [v.astype(PETSc.IntType) for v in (start, mesh.column[upper])]
     size = (dims * len(free), dims * len(free))
-    matrix = PETSc.Mat().createSBAIJ(size, dims, csr=(*csr, np.ascontiguousarray(values[upper])), comm=PETSc.COMM_SELF)
+    matrix = PETSc.Mat().createSBAIJ(
+        size, dims, csr=(*csr, np.ascontiguousarray(values[upper])), comm=PETSc.COMM_SELF
+    )
     matrix.setOption(PETSc.Mat.Option.SPD, True)
     if linear == "iterative":
         PETSc.Options("element_")["ksp_rtol"] = GAMG_RTOL
@@ -102,12 +108,22 @@ def beam(shape: str, level: int, plane: bool) -> Linear:
     The shape is that of the six coarsest elements, slanted by 45 degrees; finer ones divide them.
     """
     k = 2**level
-    lines = np.linspace(0.0, 6.0, 6 * k + 1), np.linspace(0.0, 0.2, k + 1), np.linspace(0.0, 0.1, k + 1)
+    lines = (
+        np.linspace(0.0, 6.0, 6 * k + 1),
+        np.linspace(0.0, 0.2, k + 1),
+        np.linspace(0.0, 0.1, k + 1),
+    )
     box, elements = grid(*lines[:2], None if plane else lines[2])
     x, y = box[:, 0], box[:, 1]
-    sign = {"regular": 0.0, "parallelogram": 1.0, "trapezoid": np.interp(x, range(7), (-1.0) ** np.arange(7))}[shape]
+    sign = {
+        "regular": 0.0,
+        "parallelogram": 1.0,
+        "trapezoid": np.interp(x, range(7), (-1.0) ** np.arange(7)),
+    }[shape]
     points = box.copy()
-    points[:, 0] += np.interp(x, [0.0, 1.0, 5.0, 6.0], [0.0, 1.0, 1.0, 0.0]) * sign * (y - 0.1)  # the ends stay upright
+    points[:, 0] += (
+        np.interp(x, [0.0, 1.0, 5.0, 6.0], [0.0, 1.0, 1.0, 0.0]) * sign * (y - 0.1)
+    )  # the ends stay upright
     return cantilever(box, points, elements, 1, Isotropic(E=1e7, nu=0.3), 0.1)
 
 
@@ -119,7 +135,8 @@ def cantilever(
     material: Material,
     thickness: float,
 ) -> Linear:
-    """A beam clamped at x = 0, with a unit force along `axis` on its other end: mean displacement there.
+    """A beam clamped at x = 0, with a unit force along `axis` on its other end: mean displacement
+    there.
 
     box, points : (n, 3) nodes of the straight beam and of the beam itself
     """
@@ -143,12 +160,17 @@ def consistent(points: np.ndarray) -> np.ndarray:
     share = np.ones(len(points))
     for column in points.T:
         if np.ptp(column) > 0.0:
-            share *= np.where((column < column.min() + 1e-9) | (column > column.max() - 1e-9), 0.5, 1.0)
+            share *= np.where(
+                (column < column.min() + 1e-9) | (column > column.max() - 1e-9), 0.5, 1.0
+            )
     return share / share.sum()
 
 
-def arc(angles: np.ndarray, radii: np.ndarray, plane: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """A quarter of a ring, of unit width, from the y axis to the x axis: points, elements, angles and radii of points.
+def arc(
+    angles: np.ndarray, radii: np.ndarray, plane: bool
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """A quarter of a ring, of unit width, from the y axis to the x axis: points, elements, angles
+    and radii of points.
 
     With the supports of both planes of symmetry, and of the side z = 0 of hexahedra.
     """
@@ -162,11 +184,12 @@ def arc(angles: np.ndarray, radii: np.ndarray, plane: bool) -> tuple[np.ndarray,
 
 
 def pinched_ring(level: int, plane: bool) -> Linear:
-    """Quarter of a thin ring, R = 58, t = 1, pinched by two unit forces: shortening of the diameter.
+    """Quarter of a thin ring, R = 58, t = 1, pinched by two unit forces: shortening of the
+    diameter.
 
-    P R^3 / (E I) (k1 pi / 4 - 2 k2^2 / pi) with k1 = 1 - alpha + beta, k2 = 1 - alpha (Roark's Formulas for Stress and
-    Strain, ring under two opposite forces): alpha = I / (A R^2) from the curvature and the normal force, beta = alpha
-    E / G times 6/5 from shear; nu = 0.
+    P R^3 / (E I) (k1 pi / 4 - 2 k2^2 / pi) with k1 = 1 - alpha + beta, k2 = 1 - alpha (Roark's
+    Formulas for Stress and Strain, ring under two opposite forces): alpha = I / (A R^2) from the
+    curvature and the normal force, beta = alpha E / G times 6/5 from shear; nu = 0.
     """
     n, radius, young = 8 * 2**level, 58.0, 210e3
     lines = np.linspace(0.0, 0.5 * np.pi, n + 1), radius + np.linspace(-0.5, 0.5, 2**level + 1)
@@ -176,16 +199,23 @@ def pinched_ring(level: int, plane: bool) -> Linear:
     load[top, 1] = 0.5 * share
     alpha = 1.0 / (12.0 * radius**2)
     beta = 1.2 * 2.0 * alpha
-    exact = radius**3 / (young / 12.0) * ((1.0 - alpha + beta) * np.pi / 4.0 - 2.0 * (1.0 - alpha) ** 2 / np.pi)
+    exact = (
+        radius**3
+        / (young / 12.0)
+        * ((1.0 - alpha + beta) * np.pi / 4.0 - 2.0 * (1.0 - alpha) ** 2 / np.pi)
+    )
 
     def measure(mesh: ElementMesh, u: np.ndarray) -> dict[str, float]:
         return {"displacement": 2.0 * float(share @ u[top, 1])}
 
-    return Linear(points, elements, Isotropic(E=young, nu=0.0), fixed, load, measure, {"displacement": exact})
+    return Linear(
+        points, elements, Isotropic(E=young, nu=0.0), fixed, load, measure, {"displacement": exact}
+    )
 
 
 def thick_cylinder(poisson: float, level: int, plane: bool) -> Linear:
-    """Quarter of a cylinder, radii 3 and 9, under unit pressure inside: displacement and hoop stress there (Lamé).
+    """Quarter of a cylinder, radii 3 and 9, under unit pressure inside: displacement and hoop
+    stress there (Lamé).
 
     Hexahedra in plane strain, quadrilaterals in plane stress.
     """
@@ -193,11 +223,15 @@ def thick_cylinder(poisson: float, level: int, plane: bool) -> Linear:
     a = 3.0
     b = 9.0
     young = 1000.0
-    points, elements, fixed, flat = arc(np.linspace(0.0, 0.5 * np.pi, 3 * k + 1), np.linspace(a, b, 5 * k + 1), plane)
+    points, elements, fixed, flat = arc(
+        np.linspace(0.0, 0.5 * np.pi, 3 * k + 1), np.linspace(a, b, 5 * k + 1), plane
+    )
     fixed[:, 2] = True
     inner = np.flatnonzero(flat[:, 1] < a + 1e-9)
     angle, step = flat[inner, 0], 0.5 * np.pi / (3 * k)
-    share = np.where((angle < 1e-9) | (angle > 0.5 * np.pi - 1e-9), 0.5, 1.0) * (1.0 if plane else 0.5)
+    share = np.where((angle < 1e-9) | (angle > 0.5 * np.pi - 1e-9), 0.5, 1.0) * (
+        1.0 if plane else 0.5
+    )
     normal = np.column_stack([np.sin(angle), np.cos(angle)])
     load = np.zeros_like(points)
     load[inner, :2] = a * np.sin(step) * share[:, None] * normal  # on the chords of the elements
@@ -212,13 +246,17 @@ def thick_cylinder(poisson: float, level: int, plane: bool) -> Linear:
     def measure(mesh: ElementMesh, u: np.ndarray) -> dict[str, float]:
         top = inner[angle < 1e-9]  # on the y axis, where the hoop stress acts along x
         hoop = mesh.stress(u)[..., 0][np.isin(mesh.elements, top)].mean()
-        return {"displacement": float((u[inner, :2] * normal).sum(axis=1).mean()), "hoop stress": float(hoop)}
+        return {
+            "displacement": float((u[inner, :2] * normal).sum(axis=1).mean()),
+            "hoop stress": float(hoop),
+        }
 
     return Linear(points, elements, Isotropic(E=young, nu=poisson), fixed, load, measure, exact)
 
 
 def cook(level: int, plane: bool) -> Linear:
-    """Cook's membrane, E = 1, nu = 1/3, in plane stress: deflection of the tip's middle under a unit force."""
+    """Cook's membrane, E = 1, nu = 1/3, in plane stress: deflection of the tip's middle under a
+    unit force."""
     k = 2 * 2**level
     flat, elements = grid(np.linspace(0.0, 1.0, k + 1), np.linspace(0.0, 1.0, k + 1), None)
     s, t = flat[:, 0], flat[:, 1]
@@ -238,25 +276,40 @@ def cook(level: int, plane: bool) -> Linear:
 def twisted_beam(level: int, plane: bool) -> Linear:
     """Beam 12 x 1.1 x 0.32 twisted by a right angle, unit force along its width at the tip."""
     k = 2**level
-    lines = np.linspace(0.0, 12.0, 12 * k + 1), np.linspace(0.0, 1.1, 2 * k + 1), np.linspace(0.0, 0.32, k + 1)
+    lines = (
+        np.linspace(0.0, 12.0, 12 * k + 1),
+        np.linspace(0.0, 1.1, 2 * k + 1),
+        np.linspace(0.0, 0.32, k + 1),
+    )
     box, hexes = grid(*lines)
     x, y, z = box[:, 0], box[:, 1] - 0.55, box[:, 2] - 0.16
     c, s = np.cos(0.5 * np.pi * x / 12.0), np.sin(0.5 * np.pi * x / 12.0)
     return cantilever(
-        box, np.column_stack([x, c * y - s * z, s * y + c * z]), hexes, 2, Isotropic(E=29e6, nu=0.22), 1.0
+        box,
+        np.column_stack([x, c * y - s * z, s * y + c * z]),
+        hexes,
+        2,
+        Isotropic(E=29e6, nu=0.22),
+        1.0,
     )
 
 
-ELEMENTS = {"C3D8I": (False, True), "C3D8": (False, False), "CPS4I": (True, True), "CPS4": (True, False)}
+ELEMENTS = {
+    "C3D8I": (False, True),
+    "C3D8": (False, False),
+    "CPS4I": (True, True),
+    "CPS4": (True, False),
+}
 """In the plane, with incompatible modes; by the names of Abaqus and CalculiX."""
 
 
 @dataclass(frozen=True)
 class Problem:
-    """make : of level and plane;  plane, solid : numbers of levels;  like : the problem whose limit this one shares
+    """make : of level and plane;  plane, solid : numbers of levels;  like : the problem whose limit
+    this one shares
 
-    rates : in the element size, of the elements with incompatible modes, where theory gives them for a smooth solution:
-    2 for displacements, 1 for stresses on a boundary
+    rates : in the element size, of the elements with incompatible modes, where theory gives them
+    for a smooth solution: 2 for displacements, 1 for stresses on a boundary
     """
 
     make: Callable[[int, bool], Linear]
@@ -277,5 +330,9 @@ PROBLEMS = {
     "Cook's membrane": Problem(cook, 9, 0),
     "twisted beam": Problem(twisted_beam, 0, 4),
 }
-ITERATIVE = {("thick cylinder, nu = 0.3", "C3D8I"): 5, ("twisted beam", "C3D8I"): 4, ("Cook's membrane", "CPS4I"): 8}
+ITERATIVE = {
+    ("thick cylinder, nu = 0.3", "C3D8I"): 5,
+    ("twisted beam", "C3D8I"): 4,
+    ("Cook's membrane", "CPS4I"): 8,
+}
 """Problems and elements that are solved with GAMG too, with the number of levels."""

@@ -1,4 +1,5 @@
-"""Work of the friction between the flanks, from the tangential forces and the slip of consecutive states."""
+"""Work of the friction between the flanks, from the tangential forces and the slip of consecutive
+states."""
 
 from __future__ import annotations
 
@@ -16,7 +17,8 @@ from swgpar.kernel import contact_flanks
 
 @dataclass
 class Forces:
-    """Tangential forces (N) on the points of the flanks of a state, and where these are on the master (mm)."""
+    """Tangential forces (N) on the points of the flanks of a state, and where these are on the
+    master (mm)."""
 
     keys: list
     segments: Segments
@@ -25,19 +27,34 @@ class Forces:
 
 
 def foot_points(flanks: FlankContact, faces: Faces, u: np.ndarray) -> np.ndarray:
-    """Foot points (n_face, n_q, 2) mm, arc length and z on the master, at displacement u (n_local, 3) mm."""
+    """Foot points (n_face, n_q, 2) mm, arc length and z on the master, at displacement u (n_local,
+    3) mm."""
     rotation = flanks.ring_motion.ring_rotation(u)
-    settings = flanks.penalty, 0.0, flanks.max_gap, flanks.pressure_limit, None, None, None, rotation
-    return contact_flanks(flanks.flank_pairs.masters, faces, u, np.zeros_like(faces.weight), *settings)[2]
+    settings = (
+        flanks.penalty,
+        0.0,
+        flanks.max_gap,
+        flanks.pressure_limit,
+        None,
+        None,
+        None,
+        rotation,
+    )
+    return contact_flanks(
+        flanks.flank_pairs.masters, faces, u, np.zeros_like(faces.weight), *settings
+    )[2]
 
 
 def forces(stepper: LoadStepper) -> tuple[Forces, float]:
-    """Forces of the present state, and their work over the slip since the one before; metric taken as one."""
+    """Forces of the present state, and their work over the slip since the one before; metric taken
+    as one."""
     flanks, u = stepper.problem.flanks[0], stepper.problem.displacement()
     active = flanks.saved_segments()
     if active is None or active.friction is None:
         none = np.zeros((0, 4, 2))
-        return Forces([], Segments(np.zeros(0, dtype=np.int64), *np.zeros((3, 0, 4))), none, none), 0.0
+        return Forces(
+            [], Segments(np.zeros(0, dtype=np.int64), *np.zeros((3, 0, 4))), none, none
+        ), 0.0
     place = foot_points(flanks, active.faces, u)
     force = active.faces.weight[..., None] * active.friction.current
     force[~flanks.flank_pairs.owned[active.faces.patch]] = 0.0
@@ -54,13 +71,18 @@ def onward(stepper: LoadStepper, old: Forces) -> float:
     keep = np.flatnonzero((new >= 0) & (np.abs(old.force).sum(axis=(1, 2)) > 0.0))
     if not len(keep):
         return 0.0
-    part = Segments(np.arange(len(keep)), *(getattr(old.segments, n)[keep] for n in ("a", "b", "share")))
-    place = foot_points(flanks, flanks.flank_pairs.faces.cut(new[keep] * flanks.n_face + local[keep], part), u)
+    part = Segments(
+        np.arange(len(keep)), *(getattr(old.segments, n)[keep] for n in ("a", "b", "share"))
+    )
+    place = foot_points(
+        flanks, flanks.flank_pairs.faces.cut(new[keep] * flanks.n_face + local[keep], part), u
+    )
     return float(np.nansum(old.force[keep] * (place - old.foot_point[keep])))
 
 
 class FrictionWork:
-    """Sums up the work over all solves of a stepper, those of cut-backs too, by the trapezoidal rule."""
+    """Sums up the work over all solves of a stepper, those of cut-backs too, by the trapezoidal
+    rule."""
 
     def __init__(self, stepper: LoadStepper) -> None:
         self.stepper, self.problem, self.total = stepper, stepper.problem, 0.0

@@ -22,7 +22,9 @@ class Page(HTMLParser):
         super().__init__()
         self.open: list[str] = []
         self.tags: list[str] = []
-        self.links: list[str] = [link for style in re.findall(r"url\(([^)]*)\)", text) for link in [style.strip("'\"")]]
+        self.links: list[str] = [
+            link for style in re.findall(r"url\(([^)]*)\)", text) for link in [style.strip("'\"")]
+        ]
         self.tables: list[tuple[list[str], bool]] = []
         self._classes: list[str] = []
         self._heading = False
@@ -30,7 +32,9 @@ class Page(HTMLParser):
 
     def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
         self.tags.append(tag)
-        self.links += [value or "" for name, value in attributes if name in ("src", "href", "srcset", "action")]
+        self.links += [
+            value or "" for name, value in attributes if name in ("src", "href", "srcset", "action")
+        ]
         if tag == "table":
             self.tables.append(([], any("scroll" in classes.split() for classes in self._classes)))
         if tag == "th" and self.tables:
@@ -52,7 +56,8 @@ class Page(HTMLParser):
 
 
 def assert_needs_nothing_else(text: str) -> Page:
-    """Every tag is closed, tables scroll in containers, and nothing comes from outside; returns the page."""
+    """Every tag is closed, tables scroll in containers, and nothing comes from outside; returns the
+    page."""
     page = Page(text)
     assert page.open == []
     assert all(link.startswith(("data:", "#")) for link in page.links)

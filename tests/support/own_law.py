@@ -1,4 +1,5 @@
-"""Patch test of the law of the flexible spline of a design file, for a package to which that law has been added.
+"""Patch test of the law of the flexible spline of a design file, for a package to which that law
+has been added.
 
 python own_law.py DESIGN
 """
@@ -20,19 +21,24 @@ STRAIN = np.array([2.0, -1.0, 3.0, 0.5, 1.5, -2.0]) * 1e-6
 
 
 def main(path: str) -> None:
-    """Stresses of distorted hexahedra under a constant strain are those of the law; a wrong section is refused."""
+    """Stresses of distorted hexahedra under a constant strain are those of the law; a wrong section
+    is refused."""
     design = load_design(path)
     material = design.material_of("flexible_spline")
     assert not isinstance(material, Isotropic)
     points, hexes, inner = distorted_grid(3, 0.25, np.random.default_rng(0))
     mesh = ElementMesh(points, hexes, material)
     xx, yy, zz, xy, yz, zx = STRAIN
-    gradient = np.array([[xx, 0.5 * xy, 0.5 * zx], [0.5 * xy, yy, 0.5 * yz], [0.5 * zx, 0.5 * yz, zz]])
+    gradient = np.array(
+        [[xx, 0.5 * xy, 0.5 * zx], [0.5 * xy, yy, 0.5 * yz], [0.5 * zx, 0.5 * yz, zz]]
+    )
     u = points @ gradient
     fixed = np.repeat(~inner[:, None], 3, axis=1)
     stress = mesh.stress(mesh.solve(fixed, np.where(fixed, u, 0.0), np.zeros_like(u)))
     exact = np.linalg.solve(material.compliance(), STRAIN)
-    assert np.abs(stress - exact).max() < 1e-4 * np.abs(exact).max()  # the rotation is of second order
+    assert (
+        np.abs(stress - exact).max() < 1e-4 * np.abs(exact).max()
+    )  # the rotation is of second order
     try:
         design.with_values({"flexible_spline.material.nu_z": 0.99})
     except InputError as error:

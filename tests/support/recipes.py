@@ -11,7 +11,8 @@ from swgpar.meshing.recipe_counts import with_counts
 
 
 def refined(mesh: str, path: Path, factor: float, keys: Sequence[str] = ()) -> Path:
-    """Write a recipe with `factor` times as many elements: by the given keys (section.key), or in every direction."""
+    """Write a recipe with `factor` times as many elements: by the given keys (section.key), or in
+    every direction."""
     recipe = load_recipe(mesh)
     finer = with_counts(recipe, lambda *count: -int(-factor * count[-1] // 1))
     if keys:

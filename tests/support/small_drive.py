@@ -9,7 +9,12 @@ PLANE = (
 )
 """Overrides that make the plane model of the small drive; it carries a tenth of the torque."""
 
-NO_SHORTCUTS = ("steps.bent_start=false", "steps.samples=0", "steps.start_levels=0", "solver.rtol=1e-9")
+NO_SHORTCUTS = (
+    "steps.bent_start=false",
+    "steps.samples=0",
+    "steps.start_levels=0",
+    "solver.rtol=1e-9",
+)
 """Overrides that set the keys of all shortcuts."""
 
 SHORT = ("steps.rotation=4.0", "steps.increment=2.0")

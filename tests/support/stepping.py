@@ -1,4 +1,5 @@
-"""The small drive on its smallest mesh, brought to load states in this process, for tests of what is computed."""
+"""The small drive on its smallest mesh, brought to load states in this process, for tests of what
+is computed."""
 
 from __future__ import annotations
 
@@ -32,7 +33,9 @@ def small(model: str, *overrides: str) -> DriveDesign:
     return load_design(DESIGN, [*MODELS[model], *overrides])
 
 
-def load_stepper(design: DriveDesign, comm: MPI.Comm = WORLD, recipe: MeshRecipe | None = None) -> LoadStepper:
+def load_stepper(
+    design: DriveDesign, comm: MPI.Comm = WORLD, recipe: MeshRecipe | None = None
+) -> LoadStepper:
     """The undeformed drive; on the smallest mesh if no recipe is given."""
     return LoadStepper(build_drive_model(design, recipe or load_recipe(RECIPE), comm=comm))
 
@@ -42,9 +45,12 @@ def row(stepper: LoadStepper) -> Row:
 
 
 def loaded(
-    design: DriveDesign, comm: MPI.Comm = WORLD, prepare: Callable[[LoadStepper], None] = lambda stepper: None
+    design: DriveDesign,
+    comm: MPI.Comm = WORLD,
+    prepare: Callable[[LoadStepper], None] = lambda stepper: None,
 ) -> tuple[LoadStepper, Row]:
-    """The drive under its torque, the wave generator not yet rotated. prepare : called on the undeformed drive"""
+    """The drive under its torque, the wave generator not yet rotated. prepare : called on the
+    undeformed drive"""
     stepper = load_stepper(design, comm)
     prepare(stepper)
     for state in load_sequence(design).states:
@@ -62,4 +68,6 @@ def rotate(stepper: LoadStepper, angle: float) -> Row:
 def assert_agree(a: Row, b: Row, names: Iterable[str], rel: float) -> None:
     """Named quantities of two states agree on every rank, relative to those of the second."""
     for name in names:
-        parallel_assert(a[name] == pytest.approx(b[name], rel=rel), f"{name}: {a[name]} and {b[name]}")
+        parallel_assert(
+            a[name] == pytest.approx(b[name], rel=rel), f"{name}: {a[name]} and {b[name]}"
+        )

@@ -22,7 +22,8 @@ def inline(value: Any) -> str:
 
 @pytest.fixture
 def design_file(tmp_path: Path) -> Callable[[dict[str, dict]], Path]:
-    """Function that writes the reference design with the given sections ("ring_gear.profile" too) replaced."""
+    """Function that writes the reference design with the given sections ("ring_gear.profile" too)
+    replaced."""
 
     def write(sections: dict[str, dict]) -> Path:
         table = tomllib.loads(REFERENCE.read_text(encoding="utf-8"))
@@ -33,7 +34,9 @@ def design_file(tmp_path: Path) -> Callable[[dict[str, dict]], Path]:
                 target = target[part]
             target[last] = section
         path = tmp_path / "design.toml"
-        path.write_text("\n".join(f"{key} = {inline(value)}" for key, value in table.items()), encoding="utf-8")
+        path.write_text(
+            "\n".join(f"{key} = {inline(value)}" for key, value in table.items()), encoding="utf-8"
+        )
         return path
 
     return write

@@ -25,7 +25,13 @@ from swgpar.analysis.mesh_refinement import (
 from swgpar.analysis.shortcuts import with_shortcuts
 from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError
-from swgpar.evaluation.windows.root_stress import BETWEEN, ENDS, LEVELS, RootStress, resolve_root_stress
+from swgpar.evaluation.windows.root_stress import (
+    BETWEEN,
+    ENDS,
+    LEVELS,
+    RootStress,
+    resolve_root_stress,
+)
 from swgpar.input.toml_file import to_toml
 from swgpar.load.load_sequence import load_sequence
 from swgpar.meshing import load_recipe
@@ -34,11 +40,21 @@ from swgpar.meshing.recipe_counts import RATIO, resized
 LOADED = ["steps.rotation=0", "steps.bent_start=true"]
 
 
-def chosen(accuracy: float, *overrides: str, times: float = 1.0, largest: int | None = None) -> ChosenMesh:
-    """The small plane drive on the mesh for an accuracy. times : elements in every direction of the first mesh"""
+def chosen(
+    accuracy: float, *overrides: str, times: float = 1.0, largest: int | None = None
+) -> ChosenMesh:
+    """The small plane drive on the mesh for an accuracy. times : elements in every direction of the
+    first mesh"""
     design = with_accuracy(load_design(DESIGN, [*PLANE, *LOADED, *overrides]), accuracy)
     sequence = load_sequence(design)
-    return choose_mesh(design, resized(load_recipe(RECIPE), times), sequence, accuracy, MPI.COMM_SELF, largest=largest)
+    return choose_mesh(
+        design,
+        resized(load_recipe(RECIPE), times),
+        sequence,
+        accuracy,
+        MPI.COMM_SELF,
+        largest=largest,
+    )
 
 
 def test_a_resized_recipe_scales_every_count_and_no_grading() -> None:
@@ -78,8 +94,18 @@ def test_accuracies_that_cannot_be_had() -> None:
 
 def windows(levels: list[float], part: str = BETWEEN) -> RootStress:
     """The largest stress, on these windows."""
-    place = {"region": "", "warning": "", "tooth": 0, "radius": 0.0, "z": 0.0, "angle_deg": 0.0, "elements": 1}
-    return RootStress(s1=levels[-1], error=0.0, on_mesh=0.0, part=part, by_part={part: levels}, **place)
+    place = {
+        "region": "",
+        "warning": "",
+        "tooth": 0,
+        "radius": 0.0,
+        "z": 0.0,
+        "angle_deg": 0.0,
+        "elements": 1,
+    }
+    return RootStress(
+        s1=levels[-1], error=0.0, on_mesh=0.0, part=part, by_part={part: levels}, **place
+    )
 
 
 def test_the_error_of_the_drive_s_mesh_follows_from_two_meshes() -> None:
@@ -89,7 +115,9 @@ def test_the_error_of_the_drive_s_mesh_follows_from_two_meshes() -> None:
     expected = 9.0 / RATIO**ORDER * fine.s1 / fine.levels[1]
     assert drive_error({BETWEEN: coarse}, fine, RATIO, 0.004) == pytest.approx(expected)
     # the first was not computed
-    assert drive_error({BETWEEN: [float("nan"), coarse[1]]}, fine, RATIO, 0.004) == pytest.approx(expected)
+    assert drive_error({BETWEEN: [float("nan"), coarse[1]]}, fine, RATIO, 0.004) == pytest.approx(
+        expected
+    )
     # changes that are small by chance
     same, fine = {BETWEEN: [270.0, 290.0]}, windows([270.0, 290.0, 300.0])
     assert drive_error(same, fine, RATIO, 0.004) == pytest.approx(0.004 * 300.0)
@@ -105,7 +133,10 @@ def test_the_same_part_of_the_teeth_is_compared_between_two_meshes() -> None:
 
 def test_contacts_on_edges_leave_more_of_an_error() -> None:
     involute = {"type": "involute", "pressure_angle": 20.0, "cutter_radius": 0.2}
-    profiles = {"flexible_spline.profile": involute, "ring_gear.profile": {**involute, "cutter_teeth": 80}}
+    profiles = {
+        "flexible_spline.profile": involute,
+        "ring_gear.profile": {**involute, "cutter_teeth": 80},
+    }
     recipe = load_recipe("plane_coarse")
     for values, least in ((profiles, LEAST_WITH_EDGES), ({}, LEAST["plane"])):
         design = with_shortcuts(load_design(PLANE_DRIVE, values), recipe, levels=False).design
@@ -115,7 +146,8 @@ def test_contacts_on_edges_leave_more_of_an_error() -> None:
 
 
 def test_the_error_holds() -> None:
-    """Against a mesh of the drive with twice the elements in every direction and a further window."""
+    """Against a mesh of the drive with twice the elements in every direction and a further
+    window."""
     found = chosen(0.2, times=2.0)
     error, s1, design = found.root_stress.total_error, found.root_stress.s1, found.model.design
     found.model.destroy()
@@ -134,7 +166,10 @@ def test_the_best_mesh_is_returned_where_the_accuracy_is_out_of_reach() -> None:
     elements = found.model.n_elements()
     found.model.destroy()
     assert found.error > 0.001 and elements <= 10_000
-    assert any("no finer mesh is taken: the drive has at most 10000 elements" in text for text in messages.texts)
+    assert any(
+        "no finer mesh is taken: the drive has at most 10000 elements" in text
+        for text in messages.texts
+    )
 
 
 def test_with_friction_every_mesh_is_loaded_step_by_step() -> None:

@@ -22,7 +22,8 @@ CASES: list[dict[str, Any]] = [
     {"flexible_spline.profile": {"type": "involute", "cutter_radius": 0.9}},
 ]
 SENTENCE = re.compile(
-    r"make (?P<key>\S+) (?P<way>larger|smaller): allowed (?P<low>\S+) to (?P<high>\S+) mm .*example (?P<x>\S+)"
+    r"make (?P<key>\S+) (?P<way>larger|smaller): allowed (?P<low>\S+) to (?P<high>\S+) mm "
+    r".*example (?P<x>\S+)"
 )
 
 
@@ -41,9 +42,13 @@ def test_the_range_that_is_named_passes(values: dict[str, Any]) -> None:
     gear, _, name = key.partition(".profile.")
 
     def passes(value: float) -> bool:
-        profile = swgpar.load_design(DESIGN).model_dump()[gear]["profile"] | values.get(f"{gear}.profile", {})
+        profile = swgpar.load_design(DESIGN).model_dump()[gear]["profile"] | values.get(
+            f"{gear}.profile", {}
+        )
         given = {k: v for k, v in values.items() if not k.startswith(f"{gear}.profile")}
-        own = {k.rpartition(".")[2]: v for k, v in values.items() if k.startswith(f"{gear}.profile.")}
+        own = {
+            k.rpartition(".")[2]: v for k, v in values.items() if k.startswith(f"{gear}.profile.")
+        }
         profile = values.get(f"{gear}.profile", profile) | own | {name: value}
         try:
             swgpar.load_design(DESIGN, {**given, f"{gear}.profile": profile})
@@ -60,7 +65,9 @@ def test_the_range_that_is_named_passes(values: dict[str, Any]) -> None:
 
 def test_radii_that_fit_together_where_no_single_one_helps() -> None:
     values = {"flexible_spline.profile.r_tip": 5.0, "flexible_spline.profile.r_root": 7.0}
-    with pytest.raises(InputError, match="several keys of flexible_spline.profile do not fit") as refused:
+    with pytest.raises(
+        InputError, match="several keys of flexible_spline.profile do not fit"
+    ) as refused:
         swgpar.load_design(DESIGN, values)
     pairs = re.findall(r"(\w+) = ([\d.]+)", str(refused.value).partition("example")[2])
     found = {f"flexible_spline.profile.{key}": float(value) for key, value in pairs}

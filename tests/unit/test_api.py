@@ -22,7 +22,13 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.input.toml_file import read_toml
 from swgpar.presentation.figures import DriveFigures
 
-OVERRIDES = [*PLANE, *NO_SHORTCUTS, "steps.rotation=4.0", "steps.increment=2.0", "output.fields=true"]
+OVERRIDES = [
+    *PLANE,
+    *NO_SHORTCUTS,
+    "steps.rotation=4.0",
+    "steps.increment=2.0",
+    "output.fields=true",
+]
 
 
 @pytest.fixture(scope="module")
@@ -37,12 +43,17 @@ def result(design: DriveDesign) -> swgpar.DriveResult:
 
 @pytest.fixture(scope="module")
 def on_disk(design: DriveDesign, tmp_path_factory: pytest.TempPathFactory) -> swgpar.DriveResult:
-    return swgpar.run(design.with_values({"output.figures": True}), RECIPE, tmp_path_factory.mktemp("run") / "out")
+    return swgpar.run(
+        design.with_values({"output.figures": True}), RECIPE, tmp_path_factory.mktemp("run") / "out"
+    )
 
 
 def test_the_package_is_light() -> None:
     """Importing it starts neither MPI nor PETSc."""
-    code = "import swgpar, sys; print([m for m in ('mpi4py', 'petsc4py', 'numpy') if m in sys.modules])"
+    code = (
+        "import swgpar, sys; print([m for m in ('mpi4py', 'petsc4py', 'numpy') if m in "
+        "sys.modules])"
+    )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
 
@@ -51,9 +62,12 @@ def test_a_drive_loads_no_other_system(tmp_path: Path) -> None:
     """A run needs neither gear trains nor studies."""
     code = (
         f"import swgpar, sys; swgpar.check({str(DESIGN)!r}); "
-        "print([m for m in sys.modules if m.startswith(('swgpar.gear_trains', 'swgpar.studies', 'matplotlib'))])"
+        "print([m for m in sys.modules if m.startswith(('swgpar.gear_trains', 'swgpar.studies', "
+        "'matplotlib'))])"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=tmp_path)
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=tmp_path
+    )
     assert done.stdout.strip() == "[]"
 
 
@@ -71,11 +85,16 @@ def test_designs_from_files_and_tables(design: DriveDesign) -> None:
     assert swgpar.load_design(table, {"load.torque": np.float64(3.0)}).load.torque == 3.0
     assert swgpar.load_design(DRIVERS / "cascade.toml").gear_train.model == "cascade"
     assert table == read_toml(DESIGN)
-    assert swgpar.load_design(design) is design and swgpar.load_design(design, {"load.torque": 3.0}).load.torque == 3.0
+    assert (
+        swgpar.load_design(design) is design
+        and swgpar.load_design(design, {"load.torque": 3.0}).load.torque == 3.0
+    )
     with pytest.raises(swgpar.InputError, match="did you mean load.torque"):
         swgpar.load_design(DESIGN, {"load.torqe": 3.0})
     for function in (swgpar.load_design, swgpar.run, swgpar.check):
-        with pytest.raises(swgpar.InputError, match="design is of the type int: allowed are a path, a dict"):
+        with pytest.raises(
+            swgpar.InputError, match="design is of the type int: allowed are a path, a dict"
+        ):
             function(3)
     with pytest.raises(swgpar.InputError, match="study is of the type int: allowed are a path"):
         swgpar.study(3)
@@ -83,7 +102,8 @@ def test_designs_from_files_and_tables(design: DriveDesign) -> None:
 
 @pytest.mark.parametrize("file", sorted(DRIVERS.glob("*.toml")), ids=lambda file: file.stem)
 def test_changed_designs_are_checked(file: Path) -> None:
-    """`with_values` of nothing is the same design, with the same keys given; a wrong value is refused."""
+    """`with_values` of nothing is the same design, with the same keys given; a wrong value is
+    refused."""
     design = swgpar.load_design(file)
     same = design.with_values({})
     assert same == design and same.model_fields_set == design.model_fields_set
@@ -98,14 +118,22 @@ def test_recipes_by_name_path_and_table() -> None:
     with pytest.raises(swgpar.InputError, match="mesh is of the type float"):
         swgpar.load_mesh(1.5)
     with pytest.raises(
-        swgpar.InputError, match='mesh = "corse" is not available: allowed coarse, forces, medium, full'
+        swgpar.InputError,
+        match='mesh = "corse" is not available: allowed coarse, forces, medium, full',
     ):
         swgpar.load_mesh("corse")
 
 
 def test_a_recipe_of_one_s_own(tmp_path: Path) -> None:
     out = tmp_path / "recipe.toml"
-    command = [sys.executable, str(ROOT / "mesh" / "refined_root.py"), "--recipe", str(RECIPE), "--out", str(out)]
+    command = [
+        sys.executable,
+        str(ROOT / "mesh" / "refined_root.py"),
+        "--recipe",
+        str(RECIPE),
+        "--out",
+        str(out),
+    ]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     assert "ring_gear: " in done.stdout
     old, new = (swgpar.load_mesh(path).flexible_spline for path in (RECIPE, out))
@@ -113,7 +141,10 @@ def test_a_recipe_of_one_s_own(tmp_path: Path) -> None:
 
 
 def test_a_run_in_memory_leaves_no_files(
-    design: DriveDesign, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+    design: DriveDesign,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("TMPDIR", str(tmp_path))
@@ -130,9 +161,13 @@ def test_history_and_summary(result: swgpar.DriveResult) -> None:
     assert summary["mean.fs_s1"].value == pytest.approx(rotation["fs_s1"].mean(), rel=1e-14)
     assert summary["maximum.fs_s1"].value == rotation["fs_s1"].max()
     torque = rotation["wg_torque_Nmm"]
-    assert summary.rotation.torque_ripple == pytest.approx((torque.max() - torque.min()) / torque.mean(), rel=1e-12)
+    assert summary.rotation.torque_ripple == pytest.approx(
+        (torque.max() - torque.min()) / torque.mean(), rel=1e-12
+    )
     error = 3600.0 * (rotation["output_angle_deg"] - rotation["wg_angle_deg"] / summary.ratio)
-    assert summary.rotation.transmission_error_arcsec == pytest.approx(error.max() - error.min(), abs=1e-9)
+    assert summary.rotation.transmission_error_arcsec == pytest.approx(
+        error.max() - error.min(), abs=1e-9
+    )
 
 
 def test_the_stress_at_the_teeth_is_resolved_where_it_is_asked_for(
@@ -140,14 +175,22 @@ def test_the_stress_at_the_teeth_is_resolved_where_it_is_asked_for(
 ) -> None:
     """Once, in the loaded state; a restart keeps it."""
     assert result.summary.root_stress is None
-    asked = design.with_values({"output.root_stress": True, "output.fields": False, "steps.rotation": 2.0})
+    asked = design.with_values(
+        {"output.root_stress": True, "output.fields": False, "steps.rotation": 2.0}
+    )
     found = swgpar.run(asked, RECIPE, tmp_path / "run")
     root = found.summary.root_stress
     (loaded,) = np.flatnonzero(found.history["step"] == 3)
     assert root.on_mesh == pytest.approx(found.history["fs_s1"][loaded], rel=1e-9)
     assert root.levels[-1] == root.s1 > root.on_mesh and 0.0 < root.error < 0.05 * root.s1
-    longer = swgpar.run(asked.with_values({"steps.rotation": 4.0}), RECIPE, tmp_path / "run", restart=True)
-    assert longer.summary.stresses.places["fs_s1"].value >= found.summary.stresses.places["fs_s1"].value > 0.0
+    longer = swgpar.run(
+        asked.with_values({"steps.rotation": 4.0}), RECIPE, tmp_path / "run", restart=True
+    )
+    assert (
+        longer.summary.stresses.places["fs_s1"].value
+        >= found.summary.stresses.places["fs_s1"].value
+        > 0.0
+    )
     assert longer.summary.root_stress == root and longer.summary.phases_s["windows"] > 0.0
 
 
@@ -162,12 +205,17 @@ def test_fields(result: swgpar.DriveResult) -> None:
     assert result.field("displacement").shape == (len(result.mesh().points), 3)
     assert result.field("stress").shape[1] == 6
     flanks = result.flank_pressure()
-    assert flanks.pressure.shape == (20, 2, len(flanks.s), len(flanks.z)) and flanks.pressure.max() > 0.0
+    assert (
+        flanks.pressure.shape == (20, 2, len(flanks.s), len(flanks.z))
+        and flanks.pressure.max() > 0.0
+    )
     assert np.isin(flanks.pressure, result.field("pressure")).all()
 
 
 def test_what_is_not_there_is_refused(result: swgpar.DriveResult, design: DriveDesign) -> None:
-    with pytest.raises(swgpar.InputError, match="field 'mises' is not available on flexible_spline: allowed disp"):
+    with pytest.raises(
+        swgpar.InputError, match="field 'mises' is not available on flexible_spline: allowed disp"
+    ):
         result.field("mises")
     with pytest.raises(swgpar.InputError, match="increment = 5 has no fields: allowed -5 to 4"):
         result.field("vm", 5)
@@ -193,7 +241,9 @@ def test_grids(result: swgpar.DriveResult) -> None:
     assert np.abs(centre[:2]).max() < 1e-9
 
 
-def test_a_folder_gives_what_memory_gives(result: swgpar.DriveResult, on_disk: swgpar.DriveResult) -> None:
+def test_a_folder_gives_what_memory_gives(
+    result: swgpar.DriveResult, on_disk: swgpar.DriveResult
+) -> None:
     again = swgpar.open_result(on_disk.folder)
     for other in (on_disk, again):
         assert other.increments == result.increments
@@ -212,7 +262,14 @@ def test_a_folder_gives_what_memory_gives(result: swgpar.DriveResult, on_disk: s
 
 def test_figures(result: swgpar.DriveResult) -> None:
     plot = result.plot
-    for draw in (plot.stress, plot.torque, plot.transmission_error, plot.pairs, plot.contact_pattern, plot.deformed):
+    for draw in (
+        plot.stress,
+        plot.torque,
+        plot.transmission_error,
+        plot.pairs,
+        plot.contact_pattern,
+        plot.deformed,
+    ):
         assert draw().axes
     assert "contact_pattern" in plot.names
 
@@ -268,12 +325,17 @@ def test_a_gear_train(tmp_path: Path) -> None:
     here = swgpar.run(DRIVERS / "ring_supported.toml")
     there = swgpar.run(DRIVERS / "ring_supported.toml", out=tmp_path / "ring")
     assert here.plot.names == there.plot.names == ("mode_shapes",)
-    assert here.plot.mode_shapes().axes and (tmp_path / "ring" / "figures" / "mode_shapes.png").exists()
+    assert (
+        here.plot.mode_shapes().axes
+        and (tmp_path / "ring" / "figures" / "mode_shapes.png").exists()
+    )
     again = swgpar.open_result(tmp_path / "ring")
     for name, column in here.history.items():
         np.testing.assert_allclose(again.history[name], column, rtol=1e-12)
     assert again.quantities == here.quantities and again.compared == here.compared
-    with pytest.raises(AttributeError, match="there is no figure 'modes': the result has mode_shapes"):
+    with pytest.raises(
+        AttributeError, match="there is no figure 'modes': the result has mode_shapes"
+    ):
         here.plot.modes  # noqa: B018
 
 
@@ -301,9 +363,14 @@ def test_a_study_in_memory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.chdir(tmp_path)
     found = swgpar.study({"study": content})
     assert found.folder is None and found.report is None and not list(tmp_path.iterdir())
-    assert found.table["load.torque"] == [0.1, -1.0] and found.table["status"] == ["finished", "failed"]
+    assert found.table["load.torque"] == [0.1, -1.0] and found.table["status"] == [
+        "finished",
+        "failed",
+    ]
     assert found.table["mean.fs_s1"][0] > 0.0 and found.table["mean.fs_s1"][1] is None
-    assert found.failed == {"torque=-1 tiny": "load.torque = -1 is out of range: allowed 0 to 1000000000 N·m"}
+    assert found.failed == {
+        "torque=-1 tiny": "load.torque = -1 is out of range: allowed 0 to 1000000000 N·m"
+    }
 
 
 @pytest.mark.parametrize(
@@ -313,9 +380,13 @@ def test_a_study_in_memory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
 )
 def test_figures_of_what_a_run_does_not_have(name: str) -> None:
     """One sentence that says when there is such a figure."""
-    tables = dict.fromkeys(("pairs", "contact_lines", "balls", "program", "transmission_error", "history"), {})
+    tables = dict.fromkeys(
+        ("pairs", "contact_lines", "balls", "program", "transmission_error", "history"), {}
+    )
     summary = SimpleNamespace(bearing=None, transmission_error=None)
-    result = SimpleNamespace(**tables, fatigue=None, fatigue_cycle={}, summary=summary, is_plane=True, increments=0)
+    result = SimpleNamespace(
+        **tables, fatigue=None, fatigue_cycle={}, summary=summary, is_plane=True, increments=0
+    )
     plot = DriveFigures(result, MPI.COMM_SELF, gathered=False)
     with pytest.raises(swgpar.InputError, match=r"^this run has no .*: allowed with "):
         getattr(plot, name)()

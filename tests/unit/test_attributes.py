@@ -24,7 +24,8 @@ def assigned(node: ast.AST) -> set[str]:
 
 
 def is_filled(cls: ast.ClassDef) -> bool:
-    """Whether annotations alone make attributes: of a dataclass, a NamedTuple, a Protocol or a section of a design."""
+    """Whether annotations alone make attributes: of a dataclass, a NamedTuple, a Protocol or a
+    section of a design."""
     names = {ast.unparse(item).partition("(")[0] for item in (*cls.decorator_list, *cls.bases)}
     return bool(names & {"dataclass", "NamedTuple", "Protocol", "Section"})
 
@@ -35,19 +36,31 @@ def added(cls: ast.ClassDef) -> Iterator[str]:
     fields = [item for item in cls.body if isinstance(item, ast.AnnAssign)]
     known = {item.target.id for item in fields if item.value is not None or is_filled(cls)}
     assignments = [item for item in cls.body if isinstance(item, ast.Assign)]
-    known |= {name.id for item in assignments for name in ast.walk(item) if isinstance(name, ast.Name)}
-    known = known.union(*(assigned(function) for function in functions if function.name in CONSTRUCTORS))
+    known |= {
+        name.id for item in assignments for name in ast.walk(item) if isinstance(name, ast.Name)
+    }
+    known = known.union(
+        *(assigned(function) for function in functions if function.name in CONSTRUCTORS)
+    )
     for function in functions:
-        yield from (f"{cls.name}.{function.name} adds {name}" for name in sorted(assigned(function) - known))
+        yield from (
+            f"{cls.name}.{function.name} adds {name}" for name in sorted(assigned(function) - known)
+        )
 
 
 def test_no_attribute_appears_outside_a_constructor() -> None:
-    trees = [ast.parse(path.read_text(encoding="utf-8")) for path in Path(swgpar.__file__).parent.rglob("*.py")]
+    trees = [
+        ast.parse(path.read_text(encoding="utf-8"))
+        for path in Path(swgpar.__file__).parent.rglob("*.py")
+    ]
     classes = [node for tree in trees for node in ast.walk(tree) if isinstance(node, ast.ClassDef)]
     assert not [found for cls in classes for found in added(cls)]
 
 
 def test_a_bare_annotation_makes_no_attribute() -> None:
     method = "    def set(self) -> None:\n        self.x = 1"
-    plain, data = (ast.parse(f"{head}:\n    x: int\n{method}").body[0] for head in ("class A", "@dataclass\nclass B"))
+    plain, data = (
+        ast.parse(f"{head}:\n    x: int\n{method}").body[0]
+        for head in ("class A", "@dataclass\nclass B")
+    )
     assert list(added(plain)) == ["A.set adds x"] and not list(added(data))

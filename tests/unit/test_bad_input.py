@@ -48,7 +48,11 @@ OVERRIDES = [
     ("ring_gear.housing.thickness=0", "ring_gear.housing.thickness", "above 0"),
     ("ring_gear.housing.thickness=500", "ring_gear.housing.thickness", "0.01 to 100 mm"),
     ("ring_gear.housing.material={E=70e3, nu=0.3}", "ring_gear.housing.thickness", "missing"),
-    ('ring_gear.housing={thickness=5, outside="bolted"}', "ring_gear.housing.outside", '"free" or "held"'),
+    (
+        'ring_gear.housing={thickness=5, outside="bolted"}',
+        "ring_gear.housing.outside",
+        '"free" or "held"',
+    ),
     ("ring_gear.profile.r_root=5.0", "ring_gear.profile", "allowed"),
     ("ring_gear.profile.straight_l=-1", "ring_gear.profile.straight_l", "0"),
     ('ring_gear.profile.type="square"', "ring_gear.profile.type", "square"),
@@ -83,7 +87,11 @@ OVERRIDES = [
     ("contact.friction=-0.1", "contact.friction", "allowed 0 to 1"),
     ("contact.friction=1.5", "contact.friction", "allowed 0 to 1"),
     ('contact.friction="low"', "contact.friction", "a number"),
-    ("solver.condensed_sectors=true", "solver.condensed_sectors", 'allowed only with drive.model = "plane"'),
+    (
+        "solver.condensed_sectors=true",
+        "solver.condensed_sectors",
+        'allowed only with drive.model = "plane"',
+    ),
     ("solver.max_iterations=0", "solver.max_iterations", "1"),
     ('solver.linear="magic"', "solver.linear", "direct"),
     ("nonsense=1", "nonsense", "section.key=value"),
@@ -101,9 +109,13 @@ def test_one_sentence_with_key_and_reason(override: str, key: str, reason: str) 
     assert caught.value.exit_code == 2
 
 
-@pytest.mark.parametrize("design", [REFERENCE, REFERENCE.with_name("plane_half_turn.toml")], ids=["cup", "plane"])
+@pytest.mark.parametrize(
+    "design", [REFERENCE, REFERENCE.with_name("plane_half_turn.toml")], ids=["cup", "plane"]
+)
 def test_friction_needs_the_direct_solver(design: Path) -> None:
-    with pytest.raises(InputError, match='solver.linear = "iterative" .* contact.friction = 0.1: allowed "direct"'):
+    with pytest.raises(
+        InputError, match='solver.linear = "iterative" .* contact.friction = 0.1: allowed "direct"'
+    ):
         load_design(design, ["contact.friction=0.1", 'solver.linear="iterative"'])
 
 
@@ -111,7 +123,9 @@ def test_condensed_sectors_that_bend_too_much() -> None:
     plane = REFERENCE.with_name("plane_half_turn.toml")
     load_design(plane, ["solver.condensed_sectors=true"])
     few = ["solver.condensed_sectors=true", "drive.teeth_fs=40", "drive.teeth_rg=42"]
-    with pytest.raises(InputError, match="solver.condensed_sectors = true leaves out 0.019 .* allowed up to 0.01"):
+    with pytest.raises(
+        InputError, match="solver.condensed_sectors = true leaves out 0.019 .* allowed up to 0.01"
+    ):
         load_design(plane, few)
     load_design(plane, few[1:])
 
@@ -122,22 +136,43 @@ PANCAKE = [
     (("dynamic_spline.face_width=5.5",), "dynamic_spline.face_width = 5.5", "below 5.5 mm"),
     (("dynamic_spline.rim=200",), "dynamic_spline.rim = 200", "0.01 to 100 mm"),
     (("dynamic_spline.profile.r_tip=9",), "dynamic_spline.profile.r_tip = 9", "smaller"),
-    (("dynamic_spline.profile={type='conjugate',r_root=0.3}",), "dynamic_spline.profile.type", "the other profiles"),
+    (
+        ("dynamic_spline.profile={type='conjugate',r_root=0.3}",),
+        "dynamic_spline.profile.type",
+        "the other profiles",
+    ),
     (("wave_generator.face_width=5",), "wave_generator.face_width = 5", "only 6 mm"),
     (("contact.friction=0.1",), "contact.friction = 0.1", "allowed 0"),
     (("solver.condensed_sectors=true",), "solver.condensed_sectors = true", "allowed false"),
     (("ratcheting.limit=1",), "a load program, stiffness or ratcheting", "allowed load.torque"),
-    (("wave_generator.bearing={balls=20,ball_diameter=2.0,race_thickness=0.5}",), "wave_generator.bearing", "without"),
+    (
+        ("wave_generator.bearing={balls=20,ball_diameter=2.0,race_thickness=0.5}",),
+        "wave_generator.bearing",
+        "without",
+    ),
     (("drive.model=cup", "wave_generator.face_width=6"), "dynamic_spline is given", 'not "cup"'),
-    (("drive.layout=wave_generator_fixed",), 'drive.layout = "wave_generator_fixed"', "spline_fixed"),
+    (
+        ("drive.layout=wave_generator_fixed",),
+        'drive.layout = "wave_generator_fixed"',
+        "spline_fixed",
+    ),
     (("ring_gear.housing.thickness=2",), "ring_gear.housing", "allowed without it"),
     (("drive.model=plane",), "dynamic_spline is given", 'not "plane"'),
     (("fatigue.surface_factor=0.9",), "fatigue is not available", "allowed without it"),
     (("losses.loss_factor=1e-4",), "losses is not available", "allowed without them"),
-    (("deviations.ring_gear.eccentricity=0.01",), "deviations is not available", "allowed without them"),
-    (("cup.length=5", "cup.fillet_radius=1", "cup.inner_radius=3"), "cup is given", 'only with drive.model = "cup"'),
+    (
+        ("deviations.ring_gear.eccentricity=0.01",),
+        "deviations is not available",
+        "allowed without them",
+    ),
+    (
+        ("cup.length=5", "cup.fillet_radius=1", "cup.inner_radius=3"),
+        "cup is given",
+        'only with drive.model = "cup"',
+    ),
 ]
-"""Overrides of the small pancake drive, the start of the sentence that refuses them, and a part of its end."""
+"""Overrides of the small pancake drive, the start of the sentence that refuses them, and a part of
+its end."""
 
 
 @pytest.mark.parametrize(("overrides", "key", "reason"), PANCAKE)
@@ -164,7 +199,9 @@ def test_a_spline_is_at_least_half_as_wide_as_its_rim_is_thick() -> None:
     rim = load_design(REFERENCE).flexible_spline.rim
     narrow = [f"{section}.face_width={0.4 * rim}" for section in ("drive", "wave_generator")]
     straight = [f"micro_geometry.{key}=0" for key in ("wg_crowning", "wg_slope", "fs_crowning")]
-    with pytest.raises(InputError, match=rf"drive.face_width = .* allowed {0.5 * rim:g} mm \(axial travel of"):
+    with pytest.raises(
+        InputError, match=rf"drive.face_width = .* allowed {0.5 * rim:g} mm \(axial travel of"
+    ):
         load_design(REFERENCE, [*narrow, *straight])
 
 
@@ -174,14 +211,18 @@ def test_teeth_do_not_travel_out_of_the_face_width() -> None:
     assert small.axial_travel == pytest.approx(0.4854, abs=1e-4)
     straight = [f"micro_geometry.{key}=0" for key in ("wg_crowning", "wg_slope", "fs_crowning")]
     narrow = [f"{section}.face_width=0.45" for section in ("drive", "wave_generator")]
-    with pytest.raises(InputError, match="drive.face_width = 0.45 is out of range: allowed 0.4854 mm"):
+    with pytest.raises(
+        InputError, match="drive.face_width = 0.45 is out of range: allowed 0.4854 mm"
+    ):
         load_design(DESIGN, [*narrow, *straight])
 
 
 def test_a_cup_drive_needs_a_cup(design_file: Callable[[dict[str, dict]], Path]) -> None:
     path = design_file({})
     lines = path.read_text(encoding="utf-8").splitlines()
-    path.write_text("\n".join(line for line in lines if not line.startswith("cup =")), encoding="utf-8")
+    path.write_text(
+        "\n".join(line for line in lines if not line.startswith("cup =")), encoding="utf-8"
+    )
     with pytest.raises(InputError) as caught:
         load_design(path)
     assert str(caught.value) == 'cup is missing: allowed only with drive.model = "plane"'
@@ -193,7 +234,9 @@ def test_a_cup_drive_needs_a_cup(design_file: Callable[[dict[str, dict]], Path])
 def test_missing_key(tmp_path: Path, key: str) -> None:
     lines = REFERENCE.read_text(encoding="utf-8").splitlines()
     file = tmp_path / "design.toml"
-    file.write_text("\n".join(line for line in lines if not line.startswith(f"{key} =")), encoding="utf-8")
+    file.write_text(
+        "\n".join(line for line in lines if not line.startswith(f"{key} =")), encoding="utf-8"
+    )
     with pytest.raises(InputError, match=f"{key} is missing"):
         load_design(file)
 
@@ -213,8 +256,19 @@ def test_unreadable_files(tmp_path: Path) -> None:
 
 
 def test_exit_code_and_no_traceback() -> None:
-    command = [sys.executable, "-P", "-m", "swgpar.cli", "check", str(REFERENCE), "--set", "load.torque=-3"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120, cwd=REFERENCE.parent)
+    command = [
+        sys.executable,
+        "-P",
+        "-m",
+        "swgpar.cli",
+        "check",
+        str(REFERENCE),
+        "--set",
+        "load.torque=-3",
+    ]
+    done = subprocess.run(
+        command, capture_output=True, text=True, timeout=120, cwd=REFERENCE.parent
+    )
     assert done.returncode == 2
     assert "load.torque = -3" in done.stderr and "Traceback" not in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1

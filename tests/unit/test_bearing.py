@@ -32,12 +32,15 @@ def test_contact_of_spheres() -> None:
 
 
 def surface_displacement(contact, force: float, x: float, y: float) -> float:
-    """Displacement of half spaces below the ellipse, by integration of p / r over all chords through a point."""
+    """Displacement of half spaces below the ellipse, by integration of p / r over all chords
+    through a point."""
     a, b = contact.minor * np.cbrt(force), contact.major * np.cbrt(force)
     angle = np.pi * (np.arange(20000) + 0.5) / 20000
     c, s = np.cos(angle), np.sin(angle)
     square, linear = (c / a) ** 2 + (s / b) ** 2, x * c / a**2 + y * s / b**2
-    chords = 0.5 * np.pi * (1.0 - (x / a) ** 2 - (y / b) ** 2 + linear**2 / square) / np.sqrt(square)
+    chords = (
+        0.5 * np.pi * (1.0 - (x / a) ** 2 - (y / b) ** 2 + linear**2 / square) / np.sqrt(square)
+    )
     return contact.pressure(force) / (np.pi * STEEL) * float(chords.mean()) * np.pi
 
 
@@ -51,7 +54,9 @@ def test_contact_in_a_groove(conformity: float) -> None:
     x, y = 0.5 * contact.minor * np.cbrt(force), 0.4 * contact.major * np.cbrt(force)
     for px, py in ((x, 0.0), (0.0, y)):
         gap = 0.5 * (along * px**2 + across * py**2)
-        assert approach - surface_displacement(contact, force, px, py) == pytest.approx(gap, rel=1e-5)
+        assert approach - surface_displacement(contact, force, px, py) == pytest.approx(
+            gap, rel=1e-5
+        )
 
 
 def test_ball_between_two_races() -> None:
@@ -64,7 +69,8 @@ def test_ball_between_two_races() -> None:
 
 
 def test_smooth_curve_lies_on_the_circle() -> None:
-    """The curve through nodes on a circle, at uneven distances, leaves it by less than a thousandth of the sagitta."""
+    """The curve through nodes on a circle, at uneven distances, leaves it by less than a thousandth
+    of the sagitta."""
     angle = np.array([-0.05, 0.0, 0.04, 0.1])
     nodes = 20.0 * np.column_stack([-np.sin(angle), np.cos(angle)])
     place = np.linspace(0.0, 1.0, 11)
@@ -77,7 +83,8 @@ def test_smooth_curve_lies_on_the_circle() -> None:
 
 
 def test_balls_are_inside_of_the_cam() -> None:
-    """Centres lie at their angles and at their distance from the cam's curve; a round cam has them on a circle."""
+    """Centres lie at their angles and at their distance from the cam's curve; a round cam has them
+    on a circle."""
     cam, angle = EllipticalCam(21.0, 19.0), np.linspace(-3.0, 3.0, 13)
     centre, normal, _ = ball_lines(cam, 2.5, angle)
     assert np.arctan2(-centre[:, 0], centre[:, 1]) == pytest.approx(angle, abs=1e-12)
@@ -92,7 +99,9 @@ def test_balls_are_inside_of_the_cam() -> None:
 def test_load_rating_of_iso_281(size: float, factor: float) -> None:
     """f_c of table 2 of ISO 281 for deep groove ball bearings, with conformities of 0.52."""
     series = BearingSeries(9, 10.0, 10.0 / size, 0.52, 0.52)
-    assert series.load_rating() == pytest.approx(1.3 * factor * 9 ** (2.0 / 3.0) * 10.0**1.8, rel=0.002)
+    assert series.load_rating() == pytest.approx(
+        1.3 * factor * 9 ** (2.0 / 3.0) * 10.0**1.8, rel=0.002
+    )
 
 
 def test_life_by_equal_loads() -> None:
@@ -101,13 +110,18 @@ def test_life_by_equal_loads() -> None:
     rating = series.load_rating()
     inner, outer = series.contact_capacities(rating)
     expected = ((inner / 30.0) ** (-10.0 / 3.0) + (outer / 30.0) ** (-10.0 / 3.0)) ** -0.9
-    assert million_turns(series, rating, np.full((4, 20), 30.0)) == pytest.approx(expected, rel=1e-12)
-    assert million_turns(series, rating, np.full((4, 20), 60.0)) == pytest.approx(expected / 8.0, rel=1e-12)
+    assert million_turns(series, rating, np.full((4, 20), 30.0)) == pytest.approx(
+        expected, rel=1e-12
+    )
+    assert million_turns(series, rating, np.full((4, 20), 60.0)) == pytest.approx(
+        expected / 8.0, rel=1e-12
+    )
     assert million_turns(series, rating, np.zeros((4, 20))) == np.inf
 
 
 def test_one_loaded_ball_in_turn() -> None:
-    """A race that rotates relative to the load has the mean of power 3, the other one that of power 10 / 3."""
+    """A race that rotates relative to the load has the mean of power 3, the other one that of power
+    10 / 3."""
     series = BearingSeries(20, 2.0, 34.0, 0.52, 0.53)
     rating, loads = series.load_rating(), np.zeros(20)
     loads[3] = 30.0
@@ -157,6 +171,9 @@ def test_cage_speed() -> None:
     design = load_design(DESIGN, [*PLANE, *BEARING])
     inner, outer = 18.6 - 0.5 - 2.0, 18.6 - 0.5
     assert design.cage_speed == pytest.approx((inner - outer / 20.0) / (inner + outer), rel=1e-12)
-    assert load_design(DESIGN, [*PLANE, *BEARING, "wave_generator.bearing.cage_speed=0.4"]).cage_speed == 0.4
+    assert (
+        load_design(DESIGN, [*PLANE, *BEARING, "wave_generator.bearing.cage_speed=0.4"]).cage_speed
+        == 0.4
+    )
     sampled = load_design(DESIGN, [*PLANE, *BEARING, "steps.samples=4", "steps.rotation=9.0"])
     assert sampled.cage_speed == 1.0 and np.isinf(sampled.ball_passing_angle)

@@ -1,4 +1,5 @@
-"""The shape of the bent flexible spline: its length, its place on the cam, and that of an exact ring on an ellipse."""
+"""The shape of the bent flexible spline: its length, its place on the cam, and that of an exact
+ring on an ellipse."""
 
 from __future__ import annotations
 
@@ -27,7 +28,9 @@ def moved(spline: BentSpline, points: np.ndarray) -> np.ndarray:
 
 def test_the_first_harmonic_on_an_elliptical_cam_is_half_of_the_deflection() -> None:
     design = load_design(PLANE)
-    shape = bent_ring(design.cam(), design.inner_radius, design.inner_radius + 0.5 * design.flexible_spline.rim)
+    shape = bent_ring(
+        design.cam(), design.inner_radius, design.inner_radius + 0.5 * design.flexible_spline.rim
+    )
     assert shape[1] == pytest.approx(0.5 * design.deflection, rel=1e-3)
     assert np.abs(shape[2:]).max() < 0.005 * abs(shape[1])
     # a ring that bends without stretching shrinks by 3 a² / (4 r)

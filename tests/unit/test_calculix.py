@@ -1,4 +1,5 @@
-"""The job of CalculiX: its cam, its constraints, and what it refuses; `tests/verification` runs it."""
+"""The job of CalculiX: its cam, its constraints, and what it refuses; `tests/verification` runs
+it."""
 
 from __future__ import annotations
 
@@ -25,7 +26,9 @@ from swgpar.meshing.quality import hex_volumes
 ROLLERS = ("wave_generator.type=four_roller", "wave_generator.beta=30", "wave_generator.r_4=4")
 
 
-@pytest.mark.parametrize("overrides", [(), PLANE, (*PLANE, *ROLLERS)], ids=["cup", "plane", "rollers"])
+@pytest.mark.parametrize(
+    "overrides", [(), PLANE, (*PLANE, *ROLLERS)], ids=["cup", "plane", "rollers"]
+)
 def test_facets_lie_on_the_cam(overrides: tuple[str, ...]) -> None:
     design = load_design(DESIGN, overrides)
     inset = 5e-4
@@ -46,7 +49,9 @@ def test_facets_lie_on_the_cam(overrides: tuple[str, ...]) -> None:
 @pytest.mark.parametrize("overrides", [(), PLANE], ids=["cup", "plane"])
 def test_equations_give_the_mean_motion(overrides: tuple[str, ...], layout: str) -> None:
     """A small rigid motion, and the waves of a bent spline, which have no mean."""
-    model = JobModel(load_design(DESIGN, [*overrides, f"drive.layout={layout}"]), load_recipe(RECIPE))
+    model = JobModel(
+        load_design(DESIGN, [*overrides, f"drive.layout={layout}"]), load_recipe(RECIPE)
+    )
     bodies = {"bore": model.spline} | ({"outer": model.ring} if layout == "spline_fixed" else {})
     move, turn = np.array([2e-3, -1e-3, 3e-3]), np.array([1e-4, -2e-4, 3e-4])
     for name, mesh in bodies.items():
@@ -65,16 +70,25 @@ def test_equations_give_the_mean_motion(overrides: tuple[str, ...], layout: str)
         else:  # on their circle, by the angle at which the flanks meet
             u[:, :2] = rotated(x[:, :2], model.closing_rotation) - x[:, :2]
             tilt[2] = np.sin(model.closing_rotation)
-        values = {(len(u), k): shift[k - 1] for k in (1, 2, 3)} | {(len(u) + 1, k): tilt[k - 1] for k in (1, 2, 3)}
+        values = {(len(u), k): shift[k - 1] for k in (1, 2, 3)} | {
+            (len(u) + 1, k): tilt[k - 1] for k in (1, 2, 3)
+        }
         equations = list(model.mean_motion(surface, len(u), in_housing=housed))
         dependent = [terms[0][:2] for terms in equations]
-        assert len(set(dependent)) == len(equations) == (1 if housed else 3) + (0 if model.plane else 3)
+        assert (
+            len(set(dependent))
+            == len(equations)
+            == (1 if housed else 3) + (0 if model.plane else 3)
+        )
         for terms in equations:
             assert not {term[:2] for term in terms[1:]} & set(dependent)
             found = sum(f * (values[n, k] if n >= len(u) else u[n, k - 1]) for n, k, f in terms)
             assert abs(found) < 1e-12 * sum(abs(f) for *_, f in terms)
         if housed:
-            assert all(abs(sum(f * u[n, k - 1] for n, k, f in terms)) < 1e-12 for terms in model.housing(surface))
+            assert all(
+                abs(sum(f * u[n, k - 1] for n, k, f in terms)) < 1e-12
+                for terms in model.housing(surface)
+            )
 
 
 def test_forces_have_the_torque_of_the_design(tmp_path: Path) -> None:
@@ -94,8 +108,14 @@ def test_forces_have_the_torque_of_the_design(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "change, words",
     [
-        ("contact.friction=0.1", "contact.friction = 0.1 is not available with the format inp: allowed 0"),
-        ("load.torque=0", "load.torque = 0 N·m is not available with the format inp: allowed above"),
+        (
+            "contact.friction=0.1",
+            "contact.friction = 0.1 is not available with the format inp: allowed 0",
+        ),
+        (
+            "load.torque=0",
+            "load.torque = 0 N·m is not available with the format inp: allowed above",
+        ),
         ("load.torque=1e-5", "load.torque = 1e-05 N·m"),
         (BEARING, "[wave_generator.bearing] is not available"),
         ("deviations.flexible_spline.eccentricity=0.01", "[deviations] is not available"),
@@ -103,7 +123,9 @@ def test_forces_have_the_torque_of_the_design(tmp_path: Path) -> None:
         ("ratcheting.increment=0.1", "[ratcheting] is not available"),
     ],
 )
-def test_what_the_job_does_not_carry(tmp_path: Path, change: str | tuple[str, ...], words: str) -> None:
+def test_what_the_job_does_not_carry(
+    tmp_path: Path, change: str | tuple[str, ...], words: str
+) -> None:
     design = load_design(DESIGN, [*PLANE, *([change] if isinstance(change, str) else change)])
     with pytest.raises(InputError) as raised:
         swgpar.export(design, tmp_path, ["inp"], mesh=RECIPE)
@@ -111,7 +133,9 @@ def test_what_the_job_does_not_carry(tmp_path: Path, change: str | tuple[str, ..
 
 
 def test_a_clamped_flange_is_not_carried(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match='cup.attachment = "clamped" is not available with the format inp'):
+    with pytest.raises(
+        InputError, match='cup.attachment = "clamped" is not available with the format inp'
+    ):
         swgpar.export(load_design(DRIVERS / "silk_hat.toml"), tmp_path, ["inp"], mesh="coarse")
 
 
@@ -128,10 +152,15 @@ def test_a_standing_wave_generator_changes_nothing_up_to_the_loaded_state(tmp_pa
     for layout in ("ring_fixed", "wave_generator_fixed"):
         folder = tmp_path / layout
         folder.mkdir()
-        job, _ = write_calculix(load_design(DESIGN, [*PLANE, f"drive.layout={layout}"]), load_recipe(RECIPE), folder)
+        job, _ = write_calculix(
+            load_design(DESIGN, [*PLANE, f"drive.layout={layout}"]), load_recipe(RECIPE), folder
+        )
         jobs.append(job.read_text().replace(",", " ").split())
     number = re.compile(r"-?\d\.\d+e[+-]\d+")
-    words, values = ([[w for w in job if bool(number.fullmatch(w)) == real] for job in jobs] for real in (False, True))
+    words, values = (
+        [[w for w in job if bool(number.fullmatch(w)) == real] for job in jobs]
+        for real in (False, True)
+    )
     assert words[0] == words[1]
     first, second = (np.array(found, dtype=float) for found in values)
     assert second == pytest.approx(first, rel=1e-9, abs=1e-12)

@@ -1,4 +1,5 @@
-"""The cam's surface: distance, normal and curvature against dense searches, joints, perimeters, pins, derivatives."""
+"""The cam's surface: distance, normal and curvature against dense searches, joints, perimeters,
+pins, derivatives."""
 
 from __future__ import annotations
 
@@ -31,7 +32,8 @@ A, B, R_FS = 59.2, 57.2, 58.2
 
 @dataclass(frozen=True)
 class Curve:
-    """A piece x(t) of a reference curve, low <= t <= high, with its first two derivatives: functions (n,) to (n, 2)."""
+    """A piece x(t) of a reference curve, low <= t <= high, with its first two derivatives:
+    functions (n,) to (n, 2)."""
 
     low: float
     high: float
@@ -41,7 +43,9 @@ class Curve:
 
     def turned(self) -> Curve:
         """The piece after half a turn."""
-        return Curve(self.low, self.high, *(lambda t, f=f: -f(t) for f in (self.x, self.dx, self.ddx)))
+        return Curve(
+            self.low, self.high, *(lambda t, f=f: -f(t) for f in (self.x, self.dx, self.ddx))
+        )
 
 
 def columns(x, y) -> np.ndarray:
@@ -85,12 +89,26 @@ def harmonic(a: float, b: float, lobes: int) -> list[Curve]:
         (r, dr, ddr), c, s = wave(t), np.cos(t), np.sin(t)
         return columns((ddr - r) * c - 2.0 * dr * s, (ddr - r) * s + 2.0 * dr * c)
 
-    return [Curve(0.0, 2.0 * np.pi, lambda t: columns(wave(t)[0] * np.cos(t), wave(t)[0] * np.sin(t)), first, second)]
+    return [
+        Curve(
+            0.0,
+            2.0 * np.pi,
+            lambda t: columns(wave(t)[0] * np.cos(t), wave(t)[0] * np.sin(t)),
+            first,
+            second,
+        )
+    ]
 
 
 def stadium(a: float, r: float) -> list[Curve]:
     h = a - r
-    side = Curve(-h, h, lambda t: columns(r, t), lambda t: columns(0.0, 1.0 + 0.0 * t), lambda t: columns(0.0, 0.0 * t))
+    side = Curve(
+        -h,
+        h,
+        lambda t: columns(r, t),
+        lambda t: columns(0.0, 1.0 + 0.0 * t),
+        lambda t: columns(0.0, 0.0 * t),
+    )
     top = arc(0.0, h, r, 0.0, np.pi)
     return [side, top, side.turned(), top.turned()]
 
@@ -104,8 +122,11 @@ def oval(a: float, b: float, beta: float) -> list[Curve]:
     return [side, top, side.turned(), top.turned()]
 
 
-def quarter(a: float, b: float, a_p: float, C_p: float, r_c: float, tilt: float, mirror: float) -> list[Curve]:
-    """Right side of a lobe from eqs 3.5 to 3.11, its aperture by a root of the source's equation; mirror = -1: left."""
+def quarter(
+    a: float, b: float, a_p: float, C_p: float, r_c: float, tilt: float, mirror: float
+) -> list[Curve]:
+    """Right side of a lobe from eqs 3.5 to 3.11, its aperture by a root of the source's equation;
+    mirror = -1: left."""
     c, s = np.cos(tilt), np.sin(tilt)
 
     def placed(x, y):
@@ -134,7 +155,11 @@ def quarter(a: float, b: float, a_p: float, C_p: float, r_c: float, tilt: float,
     if mirror > 0.0:
         return [arc(b - r_l, 0.0, r_l, 0.0, alpha), arc(cx, cy, r_c, alpha, theta), curve]
     pi = np.pi
-    return [curve, arc(-cx, cy, r_c, pi - theta, pi - alpha), arc(r_l - b, 0.0, r_l, pi - alpha, pi)]
+    return [
+        curve,
+        arc(-cx, cy, r_c, pi - theta, pi - alpha),
+        arc(r_l - b, 0.0, r_l, pi - alpha, pi),
+    ]
 
 
 def parabola(a: float, b: float, right: tuple, left: tuple, tilt: float) -> list[Curve]:
@@ -161,7 +186,10 @@ CAMS = {
     "simplified-0.5": (simplified(A, 0.5 * B), stadium(A, 0.5 * B)),
     "arcs": (arcs(A, B, 0.8, "beta"), oval(A, B, 0.8)),
     "arcs-0.5": (arcs(A, 0.5 * B, 0.8, "beta"), oval(A, 0.5 * B, 0.8)),
-    "parabolic": (parabolic(A, B, Side(*IMPROVED), Side(*IMPROVED)), parabola(A, B, IMPROVED, IMPROVED, 0.0)),
+    "parabolic": (
+        parabolic(A, B, Side(*IMPROVED), Side(*IMPROVED)),
+        parabola(A, B, IMPROVED, IMPROVED, 0.0),
+    ),
     "parabolic-0.5": (
         parabolic(A, 0.5 * B, Side(0.01, 0.5, 10.0), Side(0.01, 0.5, 10.0)),
         parabola(A, 0.5 * B, (0.01, 0.5, 10.0), (0.01, 0.5, 10.0), 0.0),
@@ -178,7 +206,10 @@ CAMS = {
         parabolic(A, B, Side(*IMPROVED), Side(*IMPROVED), LAMBDA),
         parabola(A, B, IMPROVED, IMPROVED, LAMBDA),
     ),
-    "bilateral": (parabolic(A, B, Side(*OTHER), Side(*IMPROVED)), parabola(A, B, OTHER, IMPROVED, 0.0)),
+    "bilateral": (
+        parabolic(A, B, Side(*OTHER), Side(*IMPROVED)),
+        parabola(A, B, OTHER, IMPROVED, 0.0),
+    ),
     "four_roller": (four_roller(A, BETA, 8.0), rollers(A, BETA, 8.0)),
 }
 CHAINS = [name for name, (cam, _) in CAMS.items() if isinstance(cam, PiecewiseCam)]
@@ -202,7 +233,8 @@ SECTIONS = {
 
 
 def nearest(pieces: list[Curve], p: np.ndarray) -> tuple[float, np.ndarray, np.ndarray, float]:
-    """Distance of p, foot, outward normal and curvature there: a dense search, then the root of (x - p) . x'."""
+    """Distance of p, foot, outward normal and curvature there: a dense search, then the root of (x
+    - p) . x'."""
     best = (np.inf,)
     for piece in pieces:
         t = np.linspace(piece.low, piece.high, 1001)
@@ -212,14 +244,20 @@ def nearest(pieces: list[Curve], p: np.ndarray) -> tuple[float, np.ndarray, np.n
         def slope(t: float, piece: Curve = piece) -> float:
             return float((piece.x(np.array(t)) - p) @ piece.dx(np.array(t)))
 
-        foot = brentq(slope, low, high, xtol=1e-15, rtol=1e-15) if slope(low) * slope(high) < 0.0 else t[i]
+        foot = (
+            brentq(slope, low, high, xtol=1e-15, rtol=1e-15)
+            if slope(low) * slope(high) < 0.0
+            else t[i]
+        )
         gap = float(np.hypot(*(piece.x(np.array(foot)) - p)))
         if gap < best[0]:
             best = (gap, piece, np.array(foot))
     gap, piece, t = best
     x, dx, ddx = piece.x(t), piece.dx(t), piece.ddx(t)
     bend = (dx[0] * ddx[1] - dx[1] * ddx[0]) / np.hypot(*dx) ** 3
-    normal = np.array([dx[1], -dx[0]]) / np.hypot(*dx) * np.sign(bend or dx[1] * x[0] - dx[0] * x[1])
+    normal = (
+        np.array([dx[1], -dx[0]]) / np.hypot(*dx) * np.sign(bend or dx[1] * x[0] - dx[0] * x[1])
+    )
     return gap, x, normal, abs(float(bend))
 
 
@@ -245,20 +283,29 @@ def test_distance_normal_and_curvature_against_a_dense_search(name: str) -> None
             signed = gap * np.sign((p - foot) @ expected)
             assert d == pytest.approx(signed, rel=1e-9)
             assert np.abs(n - expected).max() < 1e-9
-            assert bend == pytest.approx(curvature / (1.0 + curvature * signed), rel=1e-9, abs=1e-15)
+            assert bend == pytest.approx(
+                curvature / (1.0 + curvature * signed), rel=1e-9, abs=1e-15
+            )
 
 
 @pytest.mark.parametrize("name", CHAINS)
 def test_chains_are_closed_and_smooth(name: str) -> None:
     cam = CAMS[name][0]
     assert np.abs(np.hypot(*cam.tangents.T) - 1.0).max() < 1e-14
-    for joint, tangent, before, after in zip(cam.joints, cam.tangents, cam.pieces, cam.pieces[1:], strict=False):
+    for joint, tangent, before, after in zip(
+        cam.joints, cam.tangents, cam.pieces, cam.pieces[1:], strict=False
+    ):
         for piece in (before, after):
             distance, normal, _ = piece.evaluate(joint[None])
             assert abs(distance[0]) < 1e-12 * A
             assert abs(normal[0] @ tangent) < 1e-12
-    first, last = cam.pieces[0].evaluate(-cam.outline(2)[1:]), cam.pieces[-1].evaluate(cam.outline(2)[1:])
-    assert first[1][0] == pytest.approx([1.0, 0.0], abs=1e-12) and last[1][0] == pytest.approx([-1.0, 0.0], abs=1e-12)
+    first, last = (
+        cam.pieces[0].evaluate(-cam.outline(2)[1:]),
+        cam.pieces[-1].evaluate(cam.outline(2)[1:]),
+    )
+    assert first[1][0] == pytest.approx([1.0, 0.0], abs=1e-12) and last[1][0] == pytest.approx(
+        [-1.0, 0.0], abs=1e-12
+    )
     x = cam.outline(3600)
     assert np.abs(cam.evaluate(x)[0]).max() < 1e-11
     edge = np.roll(x, -1, axis=0) - x
@@ -273,12 +320,17 @@ def test_a_turn_by_a_lobe_changes_nothing(name: str) -> None:
     x = x[np.abs(x[:, 1]) > 1e-9]  # on the minor axis the curvature may jump
     turn = 2.0 * np.pi / (3 if "three" in name else 2)
     here, there = cam.evaluate(x), cam.evaluate(rotated(x, turn))
-    assert np.allclose(here[0], there[0], atol=1e-12) and np.allclose(rotated(here[1], turn), there[1], atol=1e-12)
+    assert np.allclose(here[0], there[0], atol=1e-12) and np.allclose(
+        rotated(here[1], turn), there[1], atol=1e-12
+    )
     assert np.allclose(here[2], there[2], atol=1e-12)
 
 
 def perimeter(pieces: list[Curve]) -> float:
-    return sum(quad(lambda t, f=piece.dx: np.hypot(*f(np.array(t))), piece.low, piece.high)[0] for piece in pieces)
+    return sum(
+        quad(lambda t, f=piece.dx: np.hypot(*f(np.array(t))), piece.low, piece.high)[0]
+        for piece in pieces
+    )
 
 
 @pytest.mark.parametrize("name", CAMS)
@@ -338,7 +390,9 @@ def test_pins_fit_into_the_spline_and_end_at_the_cam(name: str, design_file: Cal
         x, y = cam.center
         assert travel == pytest.approx(y - np.sqrt((R_FS - cam.radius) ** 2 - x**2), rel=1e-5)
     assert start_state(design).pin_inset == travel
-    assert [i.pin_inset for i in load_sequence(design).states if i.stage == Stage.DEFLECT][-1] == 0.0
+    assert [i.pin_inset for i in load_sequence(design).states if i.stage == Stage.DEFLECT][
+        -1
+    ] == 0.0
 
 
 def assert_derivatives(surface: WaveGeneratorSurface, x: np.ndarray) -> None:
@@ -378,7 +432,8 @@ def test_derivatives_of_the_slope_on_three_lobes() -> None:
 
 
 def test_each_lobe_has_a_pin() -> None:
-    """Three circles of the spline's inner radius, each drawn out by the travel, touch the cam at its tips."""
+    """Three circles of the spline's inner radius, each drawn out by the travel, touch the cam at
+    its tips."""
     cam = HarmonicCam(59.9, 56.7, 3)
     travel = pin_travel(cam, 58.4, 3)
     assert travel == pytest.approx(1.5, abs=1e-12)
@@ -409,8 +464,14 @@ def test_crowning_is_the_amount_at_the_edges_and_nothing_in_the_middle(shape: st
         (keys("parabolic", a_p=0.0097, C_p=0.9, r_c=60.0), "wave_generator.r_c = 60"),
         (keys("parabolic", a_p=0.0097, C_p=0.51), "wave_generator.r_c is missing"),
         (keys("parabolic", beta=10.0), "wave_generator.beta = 10"),
-        (keys("asymmetric_parabolic", right=SIDE, left={**SIDE, "r_c": 900.0}), "wave_generator.left.r_c = 900"),
-        (keys("asymmetric_parabolic", right={**SIDE, "r_c": -1.0}, left=SIDE), "wave_generator.right.r_c = -1"),
+        (
+            keys("asymmetric_parabolic", right=SIDE, left={**SIDE, "r_c": 900.0}),
+            "wave_generator.left.r_c = 900",
+        ),
+        (
+            keys("asymmetric_parabolic", right={**SIDE, "r_c": -1.0}, left=SIDE),
+            "wave_generator.right.r_c = -1",
+        ),
         (keys("asymmetric_parabolic", right=SIDE), "wave_generator.left is missing"),
         (
             keys("asymmetric_parabolic", rotational_angle=20.0, right=SIDE, left=SIDE),
@@ -426,24 +487,37 @@ def test_crowning_is_the_amount_at_the_edges_and_nothing_in_the_middle(shape: st
         (keys("four_roller", lobes=3, beta=10.0, r_4=8.0), "wave_generator.lobes = 3"),
         (keys("harmonic", lobes=3), "drive.teeth_rg - drive.teeth_fs = 2"),
         (
-            keys("harmonic", bearing={"balls": 20, "ball_diameter": 4.0, "race_thickness": 1.0}, lobes=3),
+            keys(
+                "harmonic",
+                bearing={"balls": 20, "ball_diameter": 4.0, "race_thickness": 1.0},
+                lobes=3,
+            ),
             "drive.teeth_rg - drive.teeth_fs = 2",
         ),
         (keys("harmonic", lobes=4), "wave_generator.lobes = 4"),
         (keys("round"), 'wave_generator.type = "round"'),
     ],
 )
-def test_cams_that_cannot_be_built_are_refused(section: dict, key: str, design_file: Callable) -> None:
+def test_cams_that_cannot_be_built_are_refused(
+    section: dict, key: str, design_file: Callable
+) -> None:
     with pytest.raises(InputError) as caught:
         load_design(design_file({"wave_generator": section}))
     message = str(caught.value)
-    assert key in message and ("allowed" in message or "missing" in message) and "\n" not in message, message
+    assert (
+        key in message and ("allowed" in message or "missing" in message) and "\n" not in message
+    ), message
 
 
 @pytest.mark.parametrize(("lobes", "least"), [(2, "0.5386"), (3, "0.6797")])
 def test_a_cam_so_concave_that_feet_are_not_unique_is_refused(lobes: int, least: str) -> None:
     path = DRIVERS / ("three_lobes.toml" if lobes == 3 else "plane_half_turn.toml")
-    design = load_design(path).with_values({"wave_generator": {"type": "harmonic", "lobes": lobes, "face_width": 10.0}})
+    design = load_design(path).with_values(
+        {"wave_generator": {"type": "harmonic", "lobes": lobes, "face_width": 10.0}}
+    )
     design.with_values({"wave_generator.C": 0.7})
-    with pytest.raises(InputError, match=rf"wave_generator.C = 0.5 is out of range: allowed {least} \(a concave cam"):
+    with pytest.raises(
+        InputError,
+        match=rf"wave_generator.C = 0.5 is out of range: allowed {least} \(a concave cam",
+    ):
         design.with_values({"wave_generator.C": 0.5})

@@ -32,7 +32,9 @@ CAMS = {
 
 @pytest.mark.parametrize("cam", CAMS)
 @pytest.mark.parametrize("profile", PROFILES)
-def test_check(profile: str, cam: str, design_file: Callable, capsys: pytest.CaptureFixture) -> None:
+def test_check(
+    profile: str, cam: str, design_file: Callable, capsys: pytest.CaptureFixture
+) -> None:
     spline, ring, c_P, c_l = PROFILES[profile]
     path = design_file(
         {
@@ -42,12 +44,19 @@ def test_check(profile: str, cam: str, design_file: Callable, capsys: pytest.Cap
         }
     )
     assert main(["check", str(path)]) == 0
-    lines = [line for line in capsys.readouterr().out.splitlines() if not line.startswith("warning:")]
+    lines = [
+        line for line in capsys.readouterr().out.splitlines() if not line.startswith("warning:")
+    ]
     values = {line[:-12].strip(): float(line.split()[-1]) for line in lines}
     assert all(np.isfinite(value) for value in values.values())
     design = load_design(path)
     assert (design.wave_generator.type, design.flexible_spline.profile.type) == (cam, profile)
     tip = design.cam().evaluate(np.array([[0.0, design.major_semi_axis]]))[0]
     # between the rollers there is no tip: their centres are 10 degrees and a - r_4 away
-    gap = np.hypot(design.major_semi_axis - 51.2 * np.cos(np.radians(10)), 51.2 * np.sin(np.radians(10))) - 8.0
+    gap = (
+        np.hypot(
+            design.major_semi_axis - 51.2 * np.cos(np.radians(10)), 51.2 * np.sin(np.radians(10))
+        )
+        - 8.0
+    )
     assert tip == pytest.approx(gap if cam == "four_roller" else 0.0, abs=1e-12)

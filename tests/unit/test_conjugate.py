@@ -1,4 +1,5 @@
-"""Conjugate teeth: the exact motion of a tooth, the envelope of the other flank, and what is refused."""
+"""Conjugate teeth: the exact motion of a tooth, the envelope of the other flank, and what is
+refused."""
 
 from __future__ import annotations
 
@@ -15,8 +16,13 @@ from swgpar.errors import InputError
 RING = {"type": "conjugate", "r_root": 0.2}
 
 
-def design(gear: str = "ring_gear", profile: dict[str, Any] = RING, **values: Any) -> swgpar.DriveDesign:
-    changed = {f"{gear}.profile": profile, **{key.replace("__", "."): value for key, value in values.items()}}
+def design(
+    gear: str = "ring_gear", profile: dict[str, Any] = RING, **values: Any
+) -> swgpar.DriveDesign:
+    changed = {
+        f"{gear}.profile": profile,
+        **{key.replace("__", "."): value for key, value in values.items()},
+    }
     return swgpar.load_design(PLANE, changed)
 
 
@@ -31,7 +37,9 @@ def test_the_neutral_line_is_closed_and_keeps_its_length() -> None:
     assert lengths == pytest.approx(1.0, abs=1e-6)
     # its tangent turns by the tilt that the motion uses
     tilt = line.tilt(theta[:-1] + 0.5 * step)[0]
-    assert np.angle(np.diff(points) / (-np.exp(1j * (theta[:-1] + 0.5 * step + tilt)))) == pytest.approx(0.0, abs=1e-7)
+    assert np.angle(
+        np.diff(points) / (-np.exp(1j * (theta[:-1] + 0.5 * step + tilt)))
+    ) == pytest.approx(0.0, abs=1e-7)
 
 
 def test_the_motion_has_its_derivatives_and_its_inverse() -> None:
@@ -55,7 +63,10 @@ def test_rigid_teeth_transmit_without_error(gear: str) -> None:
 
 def test_the_quadruple_arc_has_a_transmission_error() -> None:
     """The same measure sees the error of teeth that are not conjugate."""
-    assert swgpar.load_design(PLANE).rigid_teeth().mesh(phases=5, n_points=200).transmission_error > 0.3
+    assert (
+        swgpar.load_design(PLANE).rigid_teeth().mesh(phases=5, n_points=200).transmission_error
+        > 0.3
+    )
 
 
 def test_teeth_that_overlap_at_every_rotation_have_no_transmission_error() -> None:
@@ -75,7 +86,9 @@ def test_the_curvature_is_that_of_the_tangents() -> None:
     for begin, end in zip(flank.breaks[:-1], flank.breaks[1:]):
         s, h = np.linspace(begin, end, 9)[1:-1], 1e-6
         change = (flank.tangent(s + h) - flank.tangent(s - h)) / (2.0 * h)
-        assert np.einsum("ij,ij->i", change, flank.normal(s)) == pytest.approx(flank.curvature(s), abs=1e-4)
+        assert np.einsum("ij,ij->i", change, flank.normal(s)) == pytest.approx(
+            flank.curvature(s), abs=1e-4
+        )
         along = (flank.point(s + h) - flank.point(s - h)) / (2.0 * h)
         assert along == pytest.approx(flank.tangent(s), abs=1e-6)
 
@@ -102,6 +115,8 @@ def test_backlash_and_relief_are_taken_from_the_teeth() -> None:
         (RING, {"flexible_spline__profile": RING}, "one gear only"),
     ],
 )
-def test_what_gives_no_teeth_is_refused(profile: dict[str, Any], values: dict[str, Any], words: str) -> None:
+def test_what_gives_no_teeth_is_refused(
+    profile: dict[str, Any], values: dict[str, Any], words: str
+) -> None:
     with pytest.raises(InputError, match=words):
         design(profile=profile, **values)

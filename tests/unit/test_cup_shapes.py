@@ -47,7 +47,10 @@ def test_a_contour_that_is_straight_changes_no_bit_of_the_mesh(recipe: str) -> N
 def test_volume_behind_the_teeth_tends_to_that_of_the_solid_of_revolution(shape: str) -> None:
     case, recipe, errors = shaped(SHAPES[shape]), load_recipe("full"), []
     for factor in (1, 2, 4):
-        counts = {name: factor * getattr(recipe.cup, name) for name in ("cylinder", "fillet", "closed_end")}
+        counts = {
+            name: factor * getattr(recipe.cup, name)
+            for name in ("cylinder", "fillet", "closed_end")
+        }
         cup = recipe.cup.model_copy(update=counts | {"joined_columns": False})
         finer = recipe.model_copy(update={"cup": cup})
         mesh = build_sector(case.geometry, finer, "flexible_spline")
@@ -61,7 +64,8 @@ def test_volume_behind_the_teeth_tends_to_that_of_the_solid_of_revolution(shape:
 
 @shapes
 def test_surfaces_of_the_mesh_are_those_of_the_drawing(shape: str) -> None:
-    """Every corner of the contour is a node; the last nodes are those of the bore, or of the rim of the flange."""
+    """Every corner of the contour is a node; the last nodes are those of the bore, or of the rim of
+    the flange."""
     case = shaped(SHAPES[shape])
     mesh, end = spline(case, "medium"), 0.5 * case.drive.face_width + case.cup.length
     radius, z = np.hypot(*mesh.coords[:, :2].T), mesh.coords[:, 2]
@@ -75,9 +79,13 @@ def test_surfaces_of_the_mesh_are_those_of_the_drawing(shape: str) -> None:
 
 
 def test_rounded_corners_are_arcs_that_are_tangent_to_both_sides() -> None:
-    line = RoundedLine(np.array([[0.0, 5.0], [3.0, 5.0], [6.0, 7.0], [9.0, 6.0]]), np.array([0.0, 2.0, 1.5, 0.0]))
+    line = RoundedLine(
+        np.array([[0.0, 5.0], [3.0, 5.0], [6.0, 7.0], [9.0, 6.0]]), np.array([0.0, 2.0, 1.5, 0.0])
+    )
     assert np.sign(line.turning()).tolist() == [1.0, -1.0]
-    for arc, radius, before, after in zip(line.arcs(), (2.0, 1.5), (0.0, 2.0 / 3.0), (2.0 / 3.0, -1.0 / 3.0)):
+    for arc, radius, before, after in zip(
+        line.arcs(), (2.0, 1.5), (0.0, 2.0 / 3.0), (2.0 / 3.0, -1.0 / 3.0)
+    ):
         s = np.linspace(arc.start[0], arc.end[0], 101)
         r = line.radius(s)
         assert np.hypot(s - arc.center[0], r - arc.center[1]) == pytest.approx(radius, rel=1e-12)
@@ -92,7 +100,10 @@ def test_counts_are_those_of_the_model(shape: str) -> None:
     found = forecast(case, recipe)
     model = build_drive_model(case, recipe, comm=MPI.COMM_SELF)
     counts = model.counts().values()
-    assert (found.elements, found.unknowns) == (model.n_elements(), sum(count["dofs"] for count in counts))
+    assert (found.elements, found.unknowns) == (
+        model.n_elements(),
+        sum(count["dofs"] for count in counts),
+    )
     model.destroy()
 
 
@@ -133,7 +144,10 @@ def test_corners_that_are_close_to_each_other_are_in_the_mesh() -> None:
         thickness = np.hypot(*(lines.outer - lines.inner).T)
         for at, expected in corners:
             k = int(np.abs(distance - at).argmin())
-            assert distance[k] == pytest.approx(at) and thickness[k] == pytest.approx(expected), (name, at)
+            assert distance[k] == pytest.approx(at) and thickness[k] == pytest.approx(expected), (
+                name,
+                at,
+            )
 
 
 REFUSED = [
@@ -145,36 +159,62 @@ REFUSED = [
     (point(distance=11.0, thickness=0.4), "cup.contour.2.distance = 11 ", "to 10 mm (the fillet)"),
     (point(distance=4.0, thickness=0.03), "cup.contour.2.thickness = 0.03 ", "0.06 to 2.48 mm"),
     (point(distance=3.0, thickness=1.6), "cup.contour.2.thickness = 1.6 ", "0.06 to 1.48 mm"),
-    (point(distance=3.0, thickness=0.4, radius=16.0), "cup.contour.2.radius = 16 ", "17.6 to 19.6 mm"),
-    (point(distance=3.0, thickness=0.4, rounding=90.0), "cup.contour.2.rounding = 90 ", "half of the shorter side"),
-    ({"end_thickness": 2.5}, "cup.end_thickness = 2.5 ", "0.06 (0.1 rims) to 1.90476 mm (cup.fillet_radius"),
-    ({"fillet_radius": 0.48}, "cup.fillet_radius = 0.48 ", "0.504 (1.05 times the cup's thickness) to inf mm"),
+    (
+        point(distance=3.0, thickness=0.4, radius=16.0),
+        "cup.contour.2.radius = 16 ",
+        "17.6 to 19.6 mm",
+    ),
+    (
+        point(distance=3.0, thickness=0.4, rounding=90.0),
+        "cup.contour.2.rounding = 90 ",
+        "half of the shorter side",
+    ),
+    (
+        {"end_thickness": 2.5},
+        "cup.end_thickness = 2.5 ",
+        "0.06 (0.1 rims) to 1.90476 mm (cup.fillet_radius",
+    ),
+    (
+        {"fillet_radius": 0.48},
+        "cup.fillet_radius = 0.48 ",
+        "0.504 (1.05 times the cup's thickness) to inf mm",
+    ),
     ({"shape": "hat"}, "cup.inner_radius = 6 is not available", 'cup.shape = "cup"'),
-    (HAT | {"flange_radius": None}, "cup.flange_radius is missing", 'needed with cup.shape = "hat"'),
+    (
+        HAT | {"flange_radius": None},
+        "cup.flange_radius is missing",
+        'needed with cup.shape = "hat"',
+    ),
     ({"inner_radius": None}, "cup.inner_radius is missing", 'needed with cup.shape = "cup"'),
     (HAT | {"flange_radius": 20.0}, "cup.flange_radius = 20 ", "above 20.6 mm"),
 ]
 
 
 def assert_refused(changes: Changes, key: str, words: str) -> None:
-    """The small drive with these keys of the cup is refused in a sentence that begins with the key."""
+    """The small drive with these keys of the cup is refused in a sentence that begins with the
+    key."""
     with pytest.raises(InputError) as refusal:
         shaped(changes)
     assert str(refusal.value).startswith(key) and words in str(refusal.value), str(refusal.value)
 
 
 @pytest.mark.parametrize(("changes", "key", "words"), REFUSED)
-def test_what_does_not_fit_is_refused_in_one_sentence(changes: Changes, key: str, words: str) -> None:
+def test_what_does_not_fit_is_refused_in_one_sentence(
+    changes: Changes, key: str, words: str
+) -> None:
     assert_refused(changes, key, words)
 
 
 def test_a_contour_that_slopes_from_the_teeth_on_leaves_no_room_for_a_fillet_there() -> None:
-    with pytest.raises(InputError, match=r"cup.back_fillet = 0.1 is .*as far as cup.contour is straight"):
+    with pytest.raises(
+        InputError, match=r"cup.back_fillet = 0.1 is .*as far as cup.contour is straight"
+    ):
         shaped({"contour": [{"distance": 4.0, "thickness": 0.4}], "back_fillet": 0.1})
 
 
 def torsional_stiffness(mesh: SectorMesh, case: DriveDesign, begin: float, end: float) -> float:
-    """Torque over angle (N mm / rad) of the wall between two planes z (mm) that rotate rigidly, of small rotations.
+    """Torque over angle (N mm / rad) of the wall between two planes z (mm) that rotate rigidly, of
+    small rotations.
 
     Under torsion all sectors move alike: one with equal motions of both its sides stands for all.
     """
@@ -182,7 +222,8 @@ def torsional_stiffness(mesh: SectorMesh, case: DriveDesign, begin: float, end: 
     used = (z[mesh.hexes].min(axis=1) > begin - 1e-6) & (z[mesh.hexes].max(axis=1) < end + 1e-6)
     elements = mesh.hexes[used]
     stiffness = element_matrices(mesh.coords[elements], case.material).stiffness
-    # tangential, radial and axial components at a node, those of a pair of nodes on the sides are the same
+    # tangential, radial and axial components at a node, those of a pair of nodes on the sides are
+    # the same
     x, y = mesh.coords[:, :2].T / np.hypot(*mesh.coords[:, :2].T)
     frame = np.zeros((len(x), 3, 3))
     frame[:, 0, 0] = -y
@@ -193,11 +234,16 @@ def torsional_stiffness(mesh: SectorMesh, case: DriveDesign, begin: float, end: 
     number = np.arange(len(x))
     number[mesh.ccw_nodes] = mesh.cw_nodes
     local = np.einsum(
-        "enmNM,enma,eNMb->enaNb", stiffness.reshape(-1, 8, 3, 8, 3), *[frame[elements]] * 2, optimize=True
+        "enmNM,enma,eNMb->enaNb",
+        stiffness.reshape(-1, 8, 3, 8, 3),
+        *[frame[elements]] * 2,
+        optimize=True,
     )
     at = (3 * number[elements][..., None] + np.arange(3)).reshape(len(elements), -1)
     row, column = np.broadcast_arrays(at[:, :, None], at[:, None, :])
-    matrix = coo_matrix((local.ravel(), (row.ravel(), column.ravel())), shape=(3 * len(x), 3 * len(x))).tocsr()
+    matrix = coo_matrix(
+        (local.ravel(), (row.ravel(), column.ravel())), shape=(3 * len(x), 3 * len(x))
+    ).tocsr()
     nodes = np.unique(number[elements])
     fixed = nodes[(np.abs(z[nodes] - begin) < 1e-6) | (np.abs(z[nodes] - end) < 1e-6)]
     motion = np.zeros(3 * len(x))
@@ -210,19 +256,30 @@ def torsional_stiffness(mesh: SectorMesh, case: DriveDesign, begin: float, end: 
 
 @pytest.mark.parametrize("shape", ["straight", "thicker", "conical"])
 def test_torsion_of_a_wall_of_varying_thickness(shape: str) -> None:
-    """The angle is that of the integral of T / (G J) along the wall; where it is a cone, of its sections."""
+    """The angle is that of the integral of T / (G J) along the wall; where it is a cone, of its
+    sections."""
     changes = {
-        "straight": {"contour": [{"distance": 5.0, "thickness": 0.48}, {"distance": 9.0, "thickness": 0.3}]},
-        "thicker": {"contour": [{"distance": 1.0, "thickness": 0.48}, {"distance": 9.0, "thickness": 0.9}]},
+        "straight": {
+            "contour": [{"distance": 5.0, "thickness": 0.48}, {"distance": 9.0, "thickness": 0.3}]
+        },
+        "thicker": {
+            "contour": [{"distance": 1.0, "thickness": 0.48}, {"distance": 9.0, "thickness": 0.9}]
+        },
         "conical": {
-            "contour": [{"distance": 1.0, "thickness": 0.48}, {"distance": 9.0, "thickness": 0.9, "radius": 18}]
+            "contour": [
+                {"distance": 1.0, "thickness": 0.48},
+                {"distance": 9.0, "thickness": 0.9, "radius": 18},
+            ]
         },
     }[shape]
     begin, end = {"straight": (0.0, 5.0), "thicker": (1.0, 9.0), "conical": (1.0, 9.0)}[shape]
     case = shaped(changes)
     mesh, back = spline(case), 0.5 * case.drive.face_width
     s = np.linspace(begin, end, 2001)
-    (inner, outer), shear = (line.radius(s) for line in (case.cup_wall.inner, case.cup_wall.outer)), 0.5 * 210e3 / 1.29
+    (inner, outer), shear = (
+        (line.radius(s) for line in (case.cup_wall.inner, case.cup_wall.outer)),
+        0.5 * 210e3 / 1.29,
+    )
     exact = shear / trapezoid(2.0 / np.pi / (outer**4 - inner**4), s)
     found = torsional_stiffness(mesh, case, back + begin, back + end)
     print(f"{shape}: torsional stiffness over the integral {found / exact:.5f}")
@@ -230,14 +287,19 @@ def test_torsion_of_a_wall_of_varying_thickness(shape: str) -> None:
 
 
 def test_the_silk_hat_of_the_drivers_runs(tmp_path: Path) -> None:
-    """One period without fields and figures on the smallest mesh: the mean input torque is that of the energy."""
+    """One period without fields and figures on the smallest mesh: the mean input torque is that of
+    the energy."""
     overrides = {"output.fields": False, "output.figures": False, "output.root_stress": False}
     case = load_design(DRIVERS / "silk_hat.toml").with_values(overrides)
     result = swgpar.run(case, RECIPE, tmp_path / "run")
     mean = float(np.mean(result.history["wg_torque_Nmm"]))
     assert mean == pytest.approx(1000.0 * case.load.torque / 50.0, rel=0.01)
     page = (tmp_path / "run" / "report.html").read_text(encoding="utf-8")
-    assert "flange r 34" in page and "clamped r 29" in page and "wall 0.4 / 0.55, flange 0.8, fillet r 1" in page
+    assert (
+        "flange r 34" in page
+        and "clamped r 29" in page
+        and "wall 0.4 / 0.55, flange 0.8, fillet r 1" in page
+    )
 
 
 @pytest.mark.parametrize("shape", ["short", "hat"])
@@ -245,18 +307,36 @@ def test_starters_of_other_shapes(shape: str) -> None:
     case = swgpar.new(ratio=100.0, diameter=50.8, torque=20.0, shape=shape)
     assert case.cup.shape == ("hat" if shape == "hat" else "cup")
     usual = swgpar.new(ratio=100.0, diameter=50.8, torque=20.0)
-    assert case.cup.length == pytest.approx((0.5 if shape == "short" else 1.0) * usual.cup.length, rel=1e-3)
+    assert case.cup.length == pytest.approx(
+        (0.5 if shape == "short" else 1.0) * usual.cup.length, rel=1e-3
+    )
     with pytest.raises(InputError, match='shape = "hat" is not available with model = "plane"'):
         swgpar.new(ratio=100.0, diameter=50.8, torque=20.0, shape="hat", model="plane")
 
 
 ATTACHED = bolted(8)
 BAD_ATTACHMENTS = [
-    ({"clamping_radius": 8.0}, "cup.clamping_radius = 8 is not available", 'cup.attachment = "clamped"'),
-    ({"attachment": "clamped"}, "cup.clamping_radius is missing", 'needed with cup.attachment = "clamped"'),
+    (
+        {"clamping_radius": 8.0},
+        "cup.clamping_radius = 8 is not available",
+        'cup.attachment = "clamped"',
+    ),
+    (
+        {"attachment": "clamped"},
+        "cup.clamping_radius is missing",
+        'needed with cup.attachment = "clamped"',
+    ),
     (CLAMPED | {"clamping_radius": 18.0}, "cup.clamping_radius = 18 ", "6 to 17.08 mm"),
-    (CLAMPED | {"clamping_radius": 6.0}, "cup.clamping_radius = 6 ", "0.048 mm or more from its edge"),
-    (CLAMPED | {"clamping_radius": 6.01}, "cup.clamping_radius = 6.01 ", "0.048 mm or more from its edge"),
+    (
+        CLAMPED | {"clamping_radius": 6.0},
+        "cup.clamping_radius = 6 ",
+        "0.048 mm or more from its edge",
+    ),
+    (
+        CLAMPED | {"clamping_radius": 6.01},
+        "cup.clamping_radius = 6.01 ",
+        "0.048 mm or more from its edge",
+    ),
     (ATTACHED | {"bolt_circle": 13.0}, "cup.bolt_circle = 13 ", "14 to 32.16 mm"),
     (ATTACHED | {"washer_diameter": 12.0}, "cup.washer_diameter = 12 ", "0.048 to 11.08 mm"),
     (ATTACHED | {"washer_diameter": 0.01}, "cup.washer_diameter = 0.01 ", "0.048 to 11.08 mm"),
@@ -269,7 +349,9 @@ def test_attachments_that_do_not_fit_are_refused(changes: Changes, key: str, wor
     assert_refused(changes, key, words)
 
 
-@pytest.mark.parametrize("override", ["steps.samples=2", "losses.loss_factor=0.001", "stiffness.positions=2"])
+@pytest.mark.parametrize(
+    "override", ["steps.samples=2", "losses.loss_factor=0.001", "stiffness.positions=2"]
+)
 def test_bolts_refuse_what_needs_a_period(override: str) -> None:
     with pytest.raises(InputError, match="which does not repeat after a pitch"):
         shaped(bolted(8), "steps.rotation=45.0", override)
@@ -281,7 +363,9 @@ def test_elements_wider_than_a_washer_are_warned_of(
     elements: int, warned: bool, caplog: pytest.LogCaptureFixture
 ) -> None:
     recipe = load_recipe(RECIPE)
-    recipe = recipe.model_copy(update={"cup": recipe.cup.model_copy(update={"closed_end": elements})})
+    recipe = recipe.model_copy(
+        update={"cup": recipe.cup.model_copy(update={"closed_end": elements})}
+    )
     with caplog.at_level("WARNING"):
         build_drive_model(shaped(bolted(4, 6.0)), recipe, comm=MPI.COMM_SELF).destroy()
     assert ("a washer is 6 mm wide" in caplog.text) == warned and len(caplog.records) == warned

@@ -1,4 +1,5 @@
-"""Deviations of teeth: tolerances of ISO 1328-1, random pitch errors, moved flanks, files, spectra and causes."""
+"""Deviations of teeth: tolerances of ISO 1328-1, random pitch errors, moved flanks, files, spectra
+and causes."""
 
 from __future__ import annotations
 
@@ -25,7 +26,8 @@ def plane(*overrides: str) -> DriveDesign:
 
 
 def test_tolerances_of_iso_1328() -> None:
-    """Module 3 mm, 40 teeth, class 6, by hand: (0.12 + 1.2 + 5) and (0.24 + 6.0249 + 2.1 + 12) times sqrt(2)."""
+    """Module 3 mm, 40 teeth, class 6, by hand: (0.12 + 1.2 + 5) and (0.24 + 6.0249 + 2.1 + 12)
+    times sqrt(2)."""
     found = pitch_tolerances(120.0, 3.0, 6)
     assert found.single == pytest.approx(8.938, abs=1e-3)
     assert found.total == pytest.approx(28.800, abs=1e-3)
@@ -40,7 +42,9 @@ def test_random_pitch_errors_just_meet_their_grade(teeth: int, grade: int) -> No
     for seed in range(5):
         errors = random_pitch_errors(teeth, tolerances, (seed,))
         single, total = np.abs(errors - np.roll(errors, 1)).max(), np.ptp(errors)
-        assert single <= tolerances.single * (1.0 + 1e-12) and total <= tolerances.total * (1.0 + 1e-12)
+        assert single <= tolerances.single * (1.0 + 1e-12) and total <= tolerances.total * (
+            1.0 + 1e-12
+        )
         assert max(single / tolerances.single, total / tolerances.total) == pytest.approx(1.0)
         assert abs(errors.mean()) < 1e-12
     assert not np.allclose(errors, random_pitch_errors(teeth, tolerances, (0,)))
@@ -54,19 +58,26 @@ def test_heights_are_those_of_moved_flanks(side: int) -> None:
     s = np.linspace(0.1, profile.breaks[-2] * 0.95, 40)
     mirror = MIRROR if side < 0 else np.ones(2)
     angle, amount = np.array([0.0, 0.7]), 1e-4
-    deviations = GearDeviations(60.0, np.array([amount, -amount]), np.array([0.5 * amount, 2.0 * amount]))
+    deviations = GearDeviations(
+        60.0, np.array([amount, -amount]), np.array([0.5 * amount, 2.0 * amount])
+    )
     heights = deviations.heights(profile, s, np.zeros_like(s), angle, side)
     for k, pitch in enumerate(deviations.pitch):
-        points = rotated(profile.point(s) * mirror, pitch / 60.0) + rotated(deviations.shift, -angle[k])
+        points = rotated(profile.point(s) * mirror, pitch / 60.0) + rotated(
+            deviations.shift, -angle[k]
+        )
         distance, _ = profile.distance(points * mirror)
         assert heights[k] == pytest.approx(distance, abs=2e-3 * amount)
         moved, turned = deviations.flank_shift(profile, s, angle, side)
         assert profile.point(s) * mirror + moved[k] == pytest.approx(points, abs=1e-9)
-        assert turned[k] == pytest.approx(pitch / 60.0 * profile.tangent(s) * mirror @ [[0.0, 1.0], [-1.0, 0.0]])
+        assert turned[k] == pytest.approx(
+            pitch / 60.0 * profile.tangent(s) * mirror @ [[0.0, 1.0], [-1.0, 0.0]]
+        )
 
 
 def test_an_oval_ring_does_not_stretch() -> None:
-    """The diameter changes by half of the ovality, and the circumferential strain v' + w vanishes."""
+    """The diameter changes by half of the ovality, and the circumferential strain v' + w
+    vanishes."""
     angle = np.linspace(0.0, 2.0 * np.pi, 401)
     deviations = GearDeviations(60.0, np.zeros(401), ovality=0.02, oval_angle=0.3)
     moved = deviations.moved(np.array([[0.0, 60.0]]), angle)[:, 0]
@@ -89,11 +100,15 @@ def test_profile_deviations_have_their_size() -> None:
 def test_pitch_errors_from_a_file(tmp_path: Path) -> None:
     path = tmp_path / "pitch.csv"
     path.write_text("tooth,F_um\n" + "".join(f"{k},{k % 3}.5\n" for k in range(122)))
-    design = plane(f'deviations.ring_gear.pitch_file="{path}"', "deviations.ring_gear.pitch_column=F_um")
+    design = plane(
+        f'deviations.ring_gear.pitch_file="{path}"', "deviations.ring_gear.pitch_column=F_um"
+    )
     assert design.deviations.ring_gear.pitch_errors[:4] == [0.5, 1.5, 2.5, 0.5]
     again = design.with_values({"deviations.turns": 2})
     assert again.deviations.ring_gear.pitch_errors == design.deviations.ring_gear.pitch_errors
-    with pytest.raises(InputError, match='pitch_column = "F" is not a column of .*: allowed tooth, F_um'):
+    with pytest.raises(
+        InputError, match='pitch_column = "F" is not a column of .*: allowed tooth, F_um'
+    ):
         plane(f'deviations.ring_gear.pitch_file="{path}"', "deviations.ring_gear.pitch_column=F")
     with pytest.raises(InputError, match="cannot be read: No such file"):
         plane('deviations.ring_gear.pitch_file="nowhere.csv"')
@@ -112,7 +127,9 @@ def test_seeds_and_gears_are_independent() -> None:
 
 def test_amplitudes_of_a_spectrum() -> None:
     angle = 2.0 * np.pi * np.arange(96) / 48  # two turns
-    values = 5.0 + 3.0 * np.cos(2.0 * angle) + 0.5 * np.sin(3.5 * angle) + 0.25 * np.cos(24.0 * angle)
+    values = (
+        5.0 + 3.0 * np.cos(2.0 * angle) + 0.5 * np.sin(3.5 * angle) + 0.25 * np.cos(24.0 * angle)
+    )
     order, amplitude = spectrum(values, 2)
     found = dict(zip(order, amplitude))
     assert (found[2.0], found[3.5], found[24.0]) == pytest.approx((3.0, 0.5, 0.25))
@@ -120,14 +137,19 @@ def test_amplitudes_of_a_spectrum() -> None:
 
 
 def test_causes() -> None:
-    design = plane("deviations.ring_gear.pitch_grade=6", "deviations.flexible_spline.eccentricity=0.01")
+    design = plane(
+        "deviations.ring_gear.pitch_grade=6", "deviations.flexible_spline.eccentricity=0.01"
+    )
     causes = Causes(design, 60)
     assert causes.of(2.0) == "ring gear (pitch), 2 per turn against it"
     assert causes.of(2.0 * 61 / 60) == "flexible spline (eccentricity), 2 per turn against it"
     assert causes.of(2 / 60) == "output, 2 per turn"
     assert causes.of(122.0) == "mesh of the teeth"
     assert " or " in Causes(design, 1).of(2.0)
-    assert Causes(plane("drive.teeth_fs=119", "drive.teeth_rg=121"), 1).of(242.0) == "mesh of the teeth"
+    assert (
+        Causes(plane("drive.teeth_fs=119", "drive.teeth_rg=121"), 1).of(242.0)
+        == "mesh of the teeth"
+    )
 
 
 BAD = [

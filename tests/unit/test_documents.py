@@ -34,7 +34,9 @@ by_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relat
 
 def quoted(page: Path) -> list[str]:
     """Code spans outside of code blocks."""
-    text = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+    text = re.sub(
+        r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL
+    )
     return re.findall(r"`([^`\n]+)`", text)
 
 
@@ -42,7 +44,10 @@ def quoted(page: Path) -> list[str]:
 def sources() -> str:
     folders = ("swgpar", "scripts", "tests")
     files = [
-        path for folder in folders for path in (ROOT / folder).rglob("*") if path.suffix in (".py", ".hpp", ".pyx")
+        path
+        for folder in folders
+        for path in (ROOT / folder).rglob("*")
+        if path.suffix in (".py", ".hpp", ".pyx")
     ]
     return "\n".join(path.read_text(encoding="utf-8") for path in files)
 
@@ -52,7 +57,10 @@ def test_files_and_tests_exist(page: Path) -> None:
     for name in quoted(page):
         path, _, test = name.partition("::")
         if re.fullmatch(r"[\w./]+/[\w.]+\.(py|hpp|pyx|toml|md)", path):
-            places = [folder / path for folder in (ROOT, ROOT / "swgpar", ROOT / "swgpar" / "gear_trains", DOCS)]
+            places = [
+                folder / path
+                for folder in (ROOT, ROOT / "swgpar", ROOT / "swgpar" / "gear_trains", DOCS)
+            ]
             assert any(place.exists() for place in places), name
         if test:
             assert f"def {test}(" in sources(), name
@@ -70,7 +78,9 @@ def classes() -> dict[str, tuple[set[str], list[str]]]:
                 for part in ast.walk(node):
                     if isinstance(part, ast.FunctionDef):
                         members.add(part.name)
-                    elif isinstance(part, (ast.Name, ast.Attribute)) and isinstance(part.ctx, ast.Store):
+                    elif isinstance(part, (ast.Name, ast.Attribute)) and isinstance(
+                        part.ctx, ast.Store
+                    ):
                         members.add(part.id if isinstance(part, ast.Name) else part.attr)
     return found
 
@@ -95,7 +105,7 @@ def test_lines_wrap(page: Path) -> None:
         assert len(line) <= COLUMNS or generated, f"{page.name}:{number}"
 
 
-# -- statements that the code decides ------------------------------------------------------------------
+# -- statements that the code decides --------------------------------------------------------------
 
 
 def table_after(page: Path, head: str) -> list[list[str]]:
@@ -107,19 +117,30 @@ def table_after(page: Path, head: str) -> list[list[str]]:
 
 
 def test_who_imports_drives_and_gear_trains() -> None:
-    """CONTRIBUTING.md: gear trains are imported by `systems` alone, drives by neither studies nor optimisation."""
+    """CONTRIBUTING.md: gear trains are imported by `systems` alone, drives by neither studies nor
+    optimisation."""
     imports = GRAPH.import_graph(ROOT / "swgpar")
     assert [room for room, needs in imports.items() if "gear_trains" in needs] == ["systems"]
     for room in ("studies", "optimisation"):
-        assert not imports[room] & {"design", "model", "evaluation", "drive_results", "presentation"}, room
+        assert not imports[room] & {
+            "design",
+            "model",
+            "evaluation",
+            "drive_results",
+            "presentation",
+        }, room
 
 
 def test_files_of_gear_trains() -> None:
     """CONTRIBUTING.md: every gear train has these files, and offers what `TrainModel` lists."""
     for package in (cascade, gear_pair, planetary, ring):
         folder = Path(package.__file__).parent
-        assert {"design.py", "quantities.py", "run.py", "figures.py"} <= {path.name for path in folder.iterdir()}
-        assert all(hasattr(package, field.name) for field in fields(TrainModel) if field.name != "design")
+        assert {"design.py", "quantities.py", "run.py", "figures.py"} <= {
+            path.name for path in folder.iterdir()
+        }
+        assert all(
+            hasattr(package, field.name) for field in fields(TrainModel) if field.name != "design"
+        )
 
 
 def test_dataclasses_that_are_frozen_and_those_that_are_not() -> None:
@@ -131,16 +152,26 @@ def test_dataclasses_that_are_frozen_and_those_that_are_not() -> None:
 
 
 def test_who_solves_without_a_search() -> None:
-    """developer/frozen_point.md: a solve begins with a search, but for the states of a drive with deviations."""
+    """developer/frozen_point.md: a solve begins with a search, but for the states of a drive with
+    deviations."""
     assert inspect.signature(NewtonSolver.solve).parameters["search"].default is True
-    without = [p for p in (ROOT / "swgpar").rglob("*.py") if "search=False" in p.read_text(encoding="utf-8")]
+    without = [
+        p
+        for p in (ROOT / "swgpar").rglob("*.py")
+        if "search=False" in p.read_text(encoding="utf-8")
+    ]
     assert without == [ROOT / "swgpar" / "analysis" / "deviating_drive.py"]
 
 
 def test_surfaces_that_can_touch() -> None:
     """theory/contact.md lists every class of contact."""
-    listed = {row[2].strip("`") for row in table_after(DOCS / "theory" / "contact.md", "| pair | kind | class |")}
-    sources = [path.read_text(encoding="utf-8") for path in (ROOT / "swgpar" / "contact").glob("*.py")]
+    listed = {
+        row[2].strip("`")
+        for row in table_after(DOCS / "theory" / "contact.md", "| pair | kind | class |")
+    }
+    sources = [
+        path.read_text(encoding="utf-8") for path in (ROOT / "swgpar" / "contact").glob("*.py")
+    ]
     found = re.findall(r"^class (\w+Contact)(?!\w|.*Protocol)", "\n".join(sources), re.MULTILINE)
     assert listed == set(found) - {"PointContact"}  # a law for one ball, no pair of surfaces
 
@@ -148,10 +179,18 @@ def test_surfaces_that_can_touch() -> None:
 def test_default_meshes() -> None:
     """howto/mesh.md and the README: the recipe that a run takes when none is named."""
     rows = table_after(DOCS / "howto" / "mesh.md", "| recipe | model |")
-    default = {model: row[0].strip("`") for row in rows if "default" in row[3] for model in row[1].split(", ")}
+    default = {
+        model: row[0].strip("`")
+        for row in rows
+        if "default" in row[3]
+        for model in row[1].split(", ")
+    }
     assert default == MESHES
     readme = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
-    assert f"Without `--mesh` the mesh is `{MESHES['cup']}`, for a plane model `{MESHES['plane']}`." in readme
+    assert (
+        f"Without `--mesh` the mesh is `{MESHES['cup']}`, for a plane model `{MESHES['plane']}`."
+        in readme
+    )
 
 
 def test_sources_that_clang_format_checks() -> None:
@@ -162,7 +201,8 @@ def test_sources_that_clang_format_checks() -> None:
 
 
 def test_stations_of_a_number_exist() -> None:
-    """developer/number.md: the files and functions of the stations exist; `quoted` covers their names."""
+    """developer/number.md: the files and functions of the stations exist; `quoted` covers their
+    names."""
     rows = table_after(DOCS / "developer" / "number.md", "| station | file |")
     for _, places, _ in rows:
         files = re.findall(r"`([\w/]+\.py)`", places)

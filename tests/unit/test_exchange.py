@@ -19,7 +19,13 @@ from support.small_drive import PLANE, SHORT
 from swgpar.design.drive_design import DriveDesign
 from swgpar.design.sections import Housing
 from swgpar.errors import InputError
-from swgpar.exchange.outlines import FLANK_POINTS, TOLERANCE, cam_outlines, flank_edges, gear_outline
+from swgpar.exchange.outlines import (
+    FLANK_POINTS,
+    TOLERANCE,
+    cam_outlines,
+    flank_edges,
+    gear_outline,
+)
 from swgpar.exchange.step import closed_curve
 from swgpar.exchange.tables import write_look_up
 from swgpar.exchange.vtkhdf import step_times
@@ -33,21 +39,30 @@ def small(**request: object) -> DriveDesign:
 
 
 def drive_with(profile: str, cam: str, model: str) -> DriveDesign:
-    """A drive with any profile and cam: `swgpar.new` has neither conjugate teeth nor asymmetric cams."""
+    """A drive with any profile and cam: `swgpar.new` has neither conjugate teeth nor asymmetric
+    cams."""
     if profile == "conjugate":
-        return swgpar.load_design(drive_groups.PLANE, {"ring_gear.profile": {"type": "conjugate", "r_root": 0.2}})
+        return swgpar.load_design(
+            drive_groups.PLANE, {"ring_gear.profile": {"type": "conjugate", "r_root": 0.2}}
+        )
     if cam != "asymmetric_parabolic":
         return small(profile=profile, cam=cam, model=model)
     design = small(profile=profile, cam="parabolic", model=model)
     section = design.wave_generator
     side = {"a_p": section.a_p, "C_p": section.C_p, "r_c": section.r_c}
-    values = {"type": cam, "face_width": section.face_width, "C": section.C, "rotational_angle": 2.0}
+    values = {
+        "type": cam,
+        "face_width": section.face_width,
+        "C": section.C,
+        "rotational_angle": 2.0,
+    }
     sides = {"right": side, "left": {**side, "C_p": 0.9 * section.C_p}}
     return design.with_values({"wave_generator": {**values, **sides}})
 
 
 def section_area(design: DriveDesign, gear: str) -> float:
-    """Area within the toothed outline, by Green's theorem on a fine polygon of the exact flank and exact arcs."""
+    """Area within the toothed outline, by Green's theorem on a fine polygon of the exact flank and
+    exact arcs."""
     profile = design.profile(gear)
     x, y = profile.point(np.linspace(0.0, profile.length, 20001)).T
     flank = -0.5 * np.sum(x[:-1] * y[1:] - x[1:] * y[:-1])
@@ -65,8 +80,17 @@ def wall_volume(design: DriveDesign) -> float:
     end = np.pi * (middle**2 - cup.inner_radius**2) * t
     outer, inner = cup.fillet_radius, cup.fillet_radius - t
     a = cup.back_fillet  # the corner less a quarter of a disc: area and radius of its centroid
-    corner = (1.0 - 0.25 * np.pi) * a**2 * 2.0 * np.pi * (r + t + a * (1.0 - (1.0 / 6.0) / (1.0 - 0.25 * np.pi)))
-    quarter = [0.25 * np.pi * x**2 * 2.0 * np.pi * (middle + 4.0 * x / (3.0 * np.pi)) for x in (outer, inner)]
+    corner = (
+        (1.0 - 0.25 * np.pi)
+        * a**2
+        * 2.0
+        * np.pi
+        * (r + t + a * (1.0 - (1.0 / 6.0) / (1.0 - 0.25 * np.pi)))
+    )
+    quarter = [
+        0.25 * np.pi * x**2 * 2.0 * np.pi * (middle + 4.0 * x / (3.0 * np.pi))
+        for x in (outer, inner)
+    ]
     return float(cylinder + end + corner + quarter[0] - quarter[1])
 
 
@@ -82,9 +106,15 @@ def wall_volume(design: DriveDesign) -> float:
     ],
 )
 def test_volumes_of_step_files(
-    tmp_path: Path, profile: str, cam: str, model: str, fillet: float, capfd: pytest.CaptureFixture[str]
+    tmp_path: Path,
+    profile: str,
+    cam: str,
+    model: str,
+    fillet: float,
+    capfd: pytest.CaptureFixture[str],
 ) -> None:
-    """Of all profiles and cams: OpenCASCADE's volumes of the bodies it reads, against integrals of the exact curves."""
+    """Of all profiles and cams: OpenCASCADE's volumes of the bodies it reads, against integrals of
+    the exact curves."""
     design = drive_with(profile, cam, model).with_values({"ring_gear.housing.thickness": 5.0})
     if fillet:
         design = design.with_values({"cup.back_fillet": fillet})
@@ -108,7 +138,9 @@ def test_volumes_of_step_files(
     for path in paths:
         with gmsh_model("read") as gmsh:
             solids = [entity for entity in gmsh.model.occ.importShapes(str(path)) if entity[0] == 3]
-            assert len(solids) == (4 if path.stem == "wave_generator" and cam == "four_roller" else 1)
+            assert len(solids) == (
+                4 if path.stem == "wave_generator" and cam == "four_roller" else 1
+            )
             volume = sum(gmsh.model.occ.getMass(*solid) for solid in solids)
             assert volume == pytest.approx(volumes[path.stem], rel=1e-4), path.stem
 
@@ -143,10 +175,13 @@ def test_outlines_close_and_follow_the_exact_flank(profile: str) -> None:
 
 @pytest.mark.parametrize("cam", ["elliptical", "parabolic", "simplified"])
 def test_curves_of_the_kernel_stay_within_their_tolerance(cam: str) -> None:
-    """The B-spline that OpenCASCADE lays through the points, against the exact cam and an exact involute."""
+    """The B-spline that OpenCASCADE lays through the points, against the exact cam and an exact
+    involute."""
     design = small(profile="involute", cam=cam, model="plane")
     (points,) = cam_outlines(design)
-    flank = max(flank_edges(design.profile("flexible_spline")), key=lambda edge: len(edge.points)).points
+    flank = max(
+        flank_edges(design.profile("flexible_spline")), key=lambda edge: len(edge.points)
+    ).points
     assert len(flank) == FLANK_POINTS
     with gmsh_model("curves") as gmsh:
         occ = gmsh.model.occ
@@ -163,7 +198,8 @@ def test_curves_of_the_kernel_stay_within_their_tolerance(cam: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "profile, cam", [("quadruple_arc", "elliptical"), ("involute", "four_roller"), ("double_arc", "simplified")]
+    "profile, cam",
+    [("quadruple_arc", "elliptical"), ("involute", "four_roller"), ("double_arc", "simplified")],
 )
 def test_dxf_passes_the_audit(tmp_path: Path, profile: str, cam: str) -> None:
     ezdxf = pytest.importorskip("ezdxf")
@@ -186,7 +222,11 @@ def test_dxf_passes_the_audit(tmp_path: Path, profile: str, cam: str) -> None:
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("exchange") / "run"
-    swgpar.run(swgpar.load_design(DESIGN, [*PLANE, *SHORT, "output.figures=false", "output.fields=true"]), RECIPE, out)
+    swgpar.run(
+        swgpar.load_design(DESIGN, [*PLANE, *SHORT, "output.figures=false", "output.fields=true"]),
+        RECIPE,
+        out,
+    )
     return out
 
 
@@ -205,10 +245,14 @@ def test_vtk_reads_the_fields(folder: Path, tmp_path: Path) -> None:
         reader.Update()
         grid, expected = reader.GetOutputDataObject(0), result.grid(step, whole=True)
         assert grid.GetNumberOfCells() == expected.n_cells
-        assert vtk_to_numpy(grid.GetPoints().GetData()) == pytest.approx(np.asarray(expected.points))
+        assert vtk_to_numpy(grid.GetPoints().GetData()) == pytest.approx(
+            np.asarray(expected.points)
+        )
         for name in ("displacement", "vm", "s1"):
             values = vtk_to_numpy(grid.GetPointData().GetArray(name))
-            assert values == pytest.approx(np.asarray(expected.point_data[name]), rel=1e-6, abs=1e-9), name
+            assert values == pytest.approx(
+                np.asarray(expected.point_data[name]), rel=1e-6, abs=1e-9
+            ), name
 
 
 def test_meshio_and_vtk_read_the_whole_drive_as_xdmf(folder: Path, tmp_path: Path) -> None:
@@ -223,7 +267,9 @@ def test_meshio_and_vtk_read_the_whole_drive_as_xdmf(folder: Path, tmp_path: Pat
         points, (cells,) = reader.read_points_cells()
         time, fields, body = reader.read_data(last)
     assert time == when[-1] == pytest.approx(result.history["wg_angle_deg"][-1])
-    assert np.array_equal(points, expected.points) and np.array_equal(cells.data, expected.cells.reshape(-1, 9)[:, 1:])
+    assert np.array_equal(points, expected.points) and np.array_equal(
+        cells.data, expected.cells.reshape(-1, 9)[:, 1:]
+    )
     assert np.array_equal(body["body"][0], expected.cell_data["body"])
     vtk_reader.set_active_time_value(when[-1])
     series = vtk_reader.read()[0]
@@ -250,7 +296,9 @@ def test_other_programs_read_the_tables(folder: Path) -> None:
         numbers = table.select_dtypes("number")
         assert len(numbers.columns) > 10
         for column in numbers:
-            assert np.array_equal(table[column], getattr(result, name)[column], equal_nan=True), column
+            assert np.array_equal(table[column], getattr(result, name)[column], equal_nan=True), (
+                column
+            )
 
 
 @pytest.mark.parametrize("model", [(), PLANE], ids=["solid", "plane"])
@@ -264,7 +312,9 @@ def test_other_programs_read_the_meshes(model: tuple[str, ...], tmp_path: Path) 
     assert np.array_equal(grid.points, points)
     assert deck.points == pytest.approx(points, abs=1e-11)
     first = 0
-    for number, (body, cells, block) in enumerate(zip(bodies.values(), split_cells(grid), deck.cells, strict=True)):
+    for number, (body, cells, block) in enumerate(
+        zip(bodies.values(), split_cells(grid), deck.cells, strict=True)
+    ):
         expected = body.cells + first
         assert np.array_equal(cells, expected) and np.array_equal(block.data, expected), number
         first += len(body.points)
@@ -297,7 +347,9 @@ def test_tables_as_parquet(folder: Path, tmp_path: Path) -> None:
     paths = swgpar.export(result, tmp_path, ["parquet"])
     assert {"history", "pairs"} <= {path.stem for path in paths}
     table = parquet.read_table(tmp_path / "history.parquet")
-    assert table.column("fs_s1").to_numpy() == pytest.approx(result.history["fs_s1"], rel=0.0, abs=0.0)
+    assert table.column("fs_s1").to_numpy() == pytest.approx(
+        result.history["fs_s1"], rel=0.0, abs=0.0
+    )
 
 
 def test_the_ripple_of_a_result(tmp_path: Path) -> None:
@@ -312,13 +364,19 @@ def test_the_ripple_of_a_result(tmp_path: Path) -> None:
     (path,) = write_look_up(Sampled(), tmp_path)
     table = read_columns(path)
     assert table["wave_generator_angle_rad"][1] == pytest.approx(0.5 * np.pi)
-    assert table["kinematic_error_rad"] * 648000.0 / np.pi == pytest.approx([0.0, 2.0, 0.0, -2.0], abs=1e-12)
+    assert table["kinematic_error_rad"] * 648000.0 / np.pi == pytest.approx(
+        [0.0, 2.0, 0.0, -2.0], abs=1e-12
+    )
 
 
 def test_formats_that_a_source_does_not_have(folder: Path, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match='format = "step" is not available for a result: allowed vtkhdf'):
+    with pytest.raises(
+        InputError, match='format = "step" is not available for a result: allowed vtkhdf'
+    ):
         swgpar.export(folder, tmp_path, ["step"])
-    with pytest.raises(InputError, match='format = "vtkhdf" is not available for a design: allowed step, dxf'):
+    with pytest.raises(
+        InputError, match='format = "vtkhdf" is not available for a design: allowed step, dxf'
+    ):
         swgpar.export(DESIGN, tmp_path, ["vtkhdf"])
     with pytest.raises(InputError, match="lookup needs a run with"):
         swgpar.export(folder, tmp_path, ["lookup"])

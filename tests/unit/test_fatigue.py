@@ -12,7 +12,14 @@ from swgpar.checks.design_file import load_design
 from swgpar.design.sections import Fatigue
 from swgpar.errors import InputError
 from swgpar.evaluation.fatigue import SafetyAndLife, _life
-from swgpar.evaluation.fatigue_criteria import critical_plane, crossland, damage, fatigue_limits, goodman, smallest_ball
+from swgpar.evaluation.fatigue_criteria import (
+    critical_plane,
+    crossland,
+    damage,
+    fatigue_limits,
+    goodman,
+    smallest_ball,
+)
 from swgpar.evaluation.losses import DriveLosses
 from swgpar.evaluation.stress_cycle import rotated_tensor
 from swgpar.systems.drive import DRIVE
@@ -41,23 +48,31 @@ def test_goodman_of_alternating_tension(mean: float, amplitude: float) -> None:
     for stress in (tension(mean, amplitude), turned(tension(mean, amplitude))):
         found = critical_plane(stress, STEEL, plane=False)
         assert found.utilisation[0] == pytest.approx(expected, rel=1e-9)
-        assert found.amplitude[0] == pytest.approx(amplitude) and found.mean[0] == pytest.approx(mean)
-    assert critical_plane(tension(mean, amplitude), STEEL, plane=True).utilisation[0] == pytest.approx(expected)
+        assert found.amplitude[0] == pytest.approx(amplitude) and found.mean[0] == pytest.approx(
+            mean
+        )
+    assert critical_plane(tension(mean, amplitude), STEEL, plane=True).utilisation[
+        0
+    ] == pytest.approx(expected)
 
 
 def test_crossland_at_the_fatigue_limits() -> None:
-    """Alternating tension and alternating torsion at their limits both give 1; a mean counts by its pressure."""
+    """Alternating tension and alternating torsion at their limits both give 1; a mean counts by its
+    pressure."""
     limit, shear = fatigue_limits(STEEL)
     torsion = np.zeros((360, 1, 6))
     torsion[:, 0, 3] = shear * np.cos(PHASE)
     for stress in (tension(0.0, limit), torsion, turned(tension(0.0, limit)), turned(torsion)):
         assert crossland(stress, STEEL)[0] == pytest.approx(1.0, rel=2e-4)
     alpha = 3.0 * shear / limit - np.sqrt(3.0)
-    assert crossland(tension(300.0, limit), STEEL)[0] == pytest.approx(1.0 + alpha * 100.0 / shear, rel=2e-4)
+    assert crossland(tension(300.0, limit), STEEL)[0] == pytest.approx(
+        1.0 + alpha * 100.0 / shear, rel=2e-4
+    )
 
 
 def test_crossland_of_tension_and_torsion_out_of_phase() -> None:
-    """With equal parts in the deviator the path is a circle: the ball is that of one of both parts."""
+    """With equal parts in the deviator the path is a circle: the ball is that of one of both
+    parts."""
     limit, shear = fatigue_limits(STEEL)
     stress = tension(0.0, limit)
     stress[:, 0, 3] = limit / np.sqrt(3.0) * np.sin(PHASE)
@@ -65,7 +80,8 @@ def test_crossland_of_tension_and_torsion_out_of_phase() -> None:
 
 
 def test_smallest_ball() -> None:
-    """Segment, triangle, and a cloud on a sphere in five dimensions with points inside; several at once."""
+    """Segment, triangle, and a cloud on a sphere in five dimensions with points inside; several at
+    once."""
     rng = np.random.default_rng(3)
     sphere = rng.normal(size=(400, 5))
     sphere *= 7.0 / np.linalg.norm(sphere, axis=1, keepdims=True)
@@ -80,7 +96,8 @@ def test_smallest_ball() -> None:
 
 
 def test_life_by_basquin() -> None:
-    """A sine with a mean does the damage of one cycle at Goodman's amplitude; below the limit it does none."""
+    """A sine with a mean does the damage of one cycle at Goodman's amplitude; below the limit it
+    does none."""
     pytest.importorskip("rainflow")
     fatigue = Fatigue(surface_factor=1.0)
     values = 200.0 + 600.0 * np.cos(PHASE)
@@ -92,7 +109,8 @@ def test_life_by_basquin() -> None:
 
 
 class OneCycle:
-    """As much of a stress cycle as its life needs: a third of a turn, in a drive without a load program."""
+    """As much of a stress cycle as its life needs: a third of a turn, in a drive without a load
+    program."""
 
     angle = 2.0 * np.pi / 3.0
 
@@ -101,9 +119,12 @@ class OneCycle:
 
 
 @pytest.mark.parametrize(
-    "of_cycle, damaged, turns", [(0.0, 0.0, None), (1e-6, 3e-6, 1e6 / 3.0), (float("inf"), None, 0.0)]
+    "of_cycle, damaged, turns",
+    [(0.0, 0.0, None), (1e-6, 3e-6, 1e6 / 3.0), (float("inf"), None, 0.0)],
 )
-def test_life_without_end_and_without_any(of_cycle: float, damaged: float | None, turns: float | None) -> None:
+def test_life_without_end_and_without_any(
+    of_cycle: float, damaged: float | None, turns: float | None
+) -> None:
     found = _life(OneCycle(), of_cycle)
     assert found.damage_per_turn == (damaged if damaged is None else pytest.approx(damaged))
     assert found.life_turns == (turns if turns is None else pytest.approx(turns))
@@ -128,8 +149,14 @@ def test_utilisation_grows_with_the_load() -> None:
 @pytest.mark.parametrize(
     ("override", "words"),
     [
-        ("fatigue.fatigue_limit=2000", "fatigue.fatigue_limit = 2000 is out of range: allowed above 0 to 1250 MPa"),
-        ("fatigue.shear_fatigue_limit=200", "fatigue.shear_fatigue_limit = 200 is out of range: allowed 323.3"),
+        (
+            "fatigue.fatigue_limit=2000",
+            "fatigue.fatigue_limit = 2000 is out of range: allowed above 0 to 1250 MPa",
+        ),
+        (
+            "fatigue.shear_fatigue_limit=200",
+            "fatigue.shear_fatigue_limit = 200 is out of range: allowed 323.3",
+        ),
         ("fatigue.shear_fatigue_limit=600", "allowed above 0 to 560 MPa"),
         ("fatigue.yield_strength=2000", "allowed above 0 to 1250 MPa"),
         ("fatigue.surface_factor=0", "fatigue.surface_factor"),
@@ -146,14 +173,23 @@ def test_bad_input_is_refused(override: str, words: str) -> None:
 
 
 def test_a_run_has_figures_and_quantities() -> None:
-    """The nodes with the least safety are those of the fields; every quantity of studies has a value."""
+    """The nodes with the least safety are those of the fields; every quantity of studies has a
+    value."""
     pytest.importorskip("rainflow")
-    sampled = [*PLANE, "steps.samples=2", "steps.rotation=9", "fatigue.size_factor=1.0", "losses.loss_factor=1e-3"]
+    sampled = [
+        *PLANE,
+        "steps.samples=2",
+        "steps.rotation=9",
+        "fatigue.size_factor=1.0",
+        "losses.loss_factor=1e-3",
+    ]
     design = swgpar.load_design(DESIGN, sampled)
     result = swgpar.run(design, RECIPE)
     found, fields = result.summary.fatigue, result.fatigue.fields
     names = list(found.regions)
-    sound = np.isin(fields["region"], [k for k, name in enumerate(names) if not found.regions[name].warning])
+    sound = np.isin(
+        fields["region"], [k for k, name in enumerate(names) if not found.regions[name].warning]
+    )
     for criterion in ("goodman", "crossland", "yield"):
         place = found.least[criterion]
         values = fields[f"safety_{criterion}"][sound]
@@ -164,7 +200,9 @@ def test_a_run_has_figures_and_quantities() -> None:
     assert worst.mean_MPa == pytest.approx(0.5 * (values.max() + values.min()))
     assert found.phases == len(values) == 2 * 20
     assert found.life.cycles_per_turn == pytest.approx(2.0 * 42.0 / 40.0)
-    assert found.root_factor is None and list(found.remarks())[-1].startswith("the strengths in [fatigue]")
+    assert found.root_factor is None and list(found.remarks())[-1].startswith(
+        "the strengths in [fatigue]"
+    )
     absent = {"fatigue.root_factor", "losses.no_load_torque"}  # without windows, and with a load
     known = {kind.name for kind in (*SafetyAndLife.kinds(design), *DriveLosses.KINDS)}
     assert known - absent <= set(DRIVE.measure(result).values) & set(DRIVE.quantities(design))
@@ -177,7 +215,9 @@ def test_windows_scale_the_tooth_root() -> None:
     pytest.importorskip("rainflow")
     sampled = [*PLANE, "steps.samples=2", "steps.rotation=9", "fatigue.size_factor=1.0"]
     plain, scaled = (
-        swgpar.run(swgpar.load_design(DESIGN, [*sampled, f"output.root_stress={flag}"]), RECIPE).summary
+        swgpar.run(
+            swgpar.load_design(DESIGN, [*sampled, f"output.root_stress={flag}"]), RECIPE
+        ).summary
         for flag in ("false", "true")
     )
     root, factor = scaled.root_stress, scaled.fatigue.root_factor

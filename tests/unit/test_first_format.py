@@ -27,12 +27,19 @@ def test_the_quantities_are_those_of_the_version_that_wrote_it(name: str, tmp_pa
     assert (tmp_path / name / "report.html").stat().st_size > 10_000
 
 
-@pytest.mark.parametrize("content", [{"format": 99}, {"format": 2, "rotation": None}, {"bodies": {}}])
-def test_another_content_is_refused_with_both_versions(content: dict[str, object], tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "content", [{"format": 99}, {"format": 2, "rotation": None}, {"bodies": {}}]
+)
+def test_another_content_is_refused_with_both_versions(
+    content: dict[str, object], tmp_path: Path
+) -> None:
     folder = tmp_path / "plane"
     shutil.copytree(FOLDERS / "plane", folder)
     table = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     del table["wall_s"]
     (folder / "summary.json").write_text(json.dumps(table | content), encoding="utf-8")
-    with pytest.raises(swgpar.OutputError, match=rf"summary.json of swgpar 0.1.0 .* swgpar {swgpar.__version__} reads"):
+    with pytest.raises(
+        swgpar.OutputError,
+        match=rf"summary.json of swgpar 0.1.0 .* swgpar {swgpar.__version__} reads",
+    ):
         swgpar.open_result(folder)

@@ -38,16 +38,21 @@ GIVEN = [one.name for one in VARIABLES if one.causality == "input"]
 
 
 class StiffnessRun:
-    """A run with [stiffness]: a loop at two positions that softens, its branches apart between its ends.
+    """A run with [stiffness]: a loop at two positions that softens, its branches apart between its
+    ends.
 
     backlash, width : arc minutes
     """
 
     transmission_error: dict[str, np.ndarray] = {}
 
-    def __init__(self, layout: str = "ring_fixed", backlash: float = 0.0, width: float = 0.5) -> None:
+    def __init__(
+        self, layout: str = "ring_fixed", backlash: float = 0.0, width: float = 0.5
+    ) -> None:
         values = {"stiffness.torque": TOP, "stiffness.positions": 2, "stiffness.points": 20}
-        self.design = small("plane", "contact.friction=0.1", f"drive.layout={layout}").with_values(values)
+        self.design = small("plane", "contact.friction=0.1", f"drive.layout={layout}").with_values(
+            values
+        )
         points = program_points(self.design)
         torque = np.array([point.value for point in points])
         stage = np.array([point.stage for point in points])
@@ -55,10 +60,17 @@ class StiffnessRun:
         lag = unloading * 0.5 * width * (1.0 - np.abs(torque) / TOP)
         rotation = windup(torque) / ARCMIN + np.sign(torque) * 0.5 * backlash + lag
         angle = np.array([point.angle for point in points])
-        self.program = {"stage": stage, "wg_angle_deg": angle, "torque_Nm": torque, "rotation_arcmin": rotation}
+        self.program = {
+            "stage": stage,
+            "wg_angle_deg": angle,
+            "torque_Nm": torque,
+            "rotation_arcmin": rotation,
+        }
         rows = [dict(zip(self.program, values)) for values in zip(*self.program.values())]
         stiffness = torsional_stiffness(self.design, rows, None)
-        self.summary = SimpleNamespace(ratio=self.design.ratio, design=self.design, stiffness=stiffness)
+        self.summary = SimpleNamespace(
+            ratio=self.design.ratio, design=self.design, stiffness=stiffness
+        )
 
 
 def windup(torque: np.ndarray) -> np.ndarray:
@@ -78,7 +90,9 @@ class SampledRun:
             "wg_angle_deg": angle,
             "transmission_error_arcsec": 20.0 + 4.0 * np.cos(phase) + 1.5 * np.sin(2.0 * phase),
         }
-        self.summary = SimpleNamespace(ratio=ratio, stiffness=None, losses=SimpleNamespace(loss_torque_Nmm=50.0))
+        self.summary = SimpleNamespace(
+            ratio=ratio, stiffness=None, losses=SimpleNamespace(loss_torque_Nmm=50.0)
+        )
 
 
 class Unit:
@@ -87,7 +101,9 @@ class Unit:
     def __init__(self, path: Path, folder: Path) -> None:
         description = fmpy.read_model_description(str(path))
         self.references = {one.name: one.valueReference for one in description.modelVariables}
-        self.unit = fmpy.instantiate_fmu(fmpy.extract(str(path), str(folder)), description, fmi_type="CoSimulation")
+        self.unit = fmpy.instantiate_fmu(
+            fmpy.extract(str(path), str(folder)), description, fmi_type="CoSimulation"
+        )
         self.unit.setupExperiment(startTime=0.0)
         self.unit.enterInitializationMode()
         self.unit.exitInitializationMode()
@@ -148,8 +164,12 @@ def test_the_same_results_give_the_same_file(fmu: Path, tmp_path: Path) -> None:
     assert again.read_bytes() == fmu.read_bytes()
 
 
-@pytest.mark.parametrize("layout, backlash", [("ring_fixed", 0.0), ("ring_fixed", 24.0), ("spline_fixed", 0.0)])
-def test_windup_under_a_torque_is_that_of_the_table(tmp_path: Path, layout: str, backlash: float) -> None:
+@pytest.mark.parametrize(
+    "layout, backlash", [("ring_fixed", 0.0), ("ring_fixed", 24.0), ("spline_fixed", 0.0)]
+)
+def test_windup_under_a_torque_is_that_of_the_table(
+    tmp_path: Path, layout: str, backlash: float
+) -> None:
     """Torques of the table act against the output's motion, those of the FMU about z."""
     run = StiffnessRun(layout, backlash)
     (path,) = write_fmu(run, tmp_path)
@@ -164,7 +184,9 @@ def test_windup_under_a_torque_is_that_of_the_table(tmp_path: Path, layout: str,
                 unit.set(output_angle=angle)
                 return unit.get("output_torque")[0] + sense * torque
 
-            assert sense * brentq(left, -0.01, 0.01, xtol=1e-14) == pytest.approx(expected, abs=1e-9)
+            assert sense * brentq(left, -0.01, 0.01, xtol=1e-14) == pytest.approx(
+                expected, abs=1e-9
+            )
 
 
 def test_the_kinematic_error_is_that_of_the_table(fmu: Path, tmp_path: Path) -> None:
@@ -179,8 +201,11 @@ def test_the_kinematic_error_is_that_of_the_table(fmu: Path, tmp_path: Path) -> 
                 assert windup == pytest.approx(0.0, abs=1e-12)
 
 
-def path_of(fmu: Path, wave: np.ndarray, output: np.ndarray, kind: str, **parameters: float) -> np.ndarray:
-    """Outputs along a motion over 1 s: angles at even times, speeds by the periodic rule of `np.gradient`."""
+def path_of(
+    fmu: Path, wave: np.ndarray, output: np.ndarray, kind: str, **parameters: float
+) -> np.ndarray:
+    """Outputs along a motion over 1 s: angles at even times, speeds by the periodic rule of
+    `np.gradient`."""
     time = np.linspace(0.0, 1.0, len(wave))
     columns = [time, wave, np.gradient(wave, time), output, np.gradient(output, time)]
     signals = np.rec.fromarrays(columns, names=["time", *GIVEN])
@@ -197,7 +222,8 @@ def path_of(fmu: Path, wave: np.ndarray, output: np.ndarray, kind: str, **parame
 
 
 def work(found: np.ndarray) -> float:
-    """Work (N·m) that goes into the drive in a cycle, by the trapezoidal rule; co-simulation ends a step before."""
+    """Work (N·m) that goes into the drive in a cycle, by the trapezoidal rule; co-simulation ends a
+    step before."""
     found = np.append(found, found[:1])
     ends = ("wave_generator", "output")
     torques, angles = ([found[f"{end}_{kind}"] for end in ends] for kind in ("torque", "angle"))
@@ -209,7 +235,8 @@ CYCLE = 2.0 * np.pi * np.linspace(0.0, 1.0, 20001)
 
 @pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
 def test_a_cycle_without_friction_takes_no_work(fmu: Path, kind: str) -> None:
-    """Wave generator and output go to and fro, out of phase, over several pitches and both signs of the torque."""
+    """Wave generator and output go to and fro, out of phase, over several pitches and both signs of
+    the torque."""
     wave = 0.3 * np.sin(CYCLE)
     output = rigid_output(wave) + 1.5e-3 * np.cos(CYCLE)
     found = path_of(fmu, wave, output, kind, friction_torque=0.0, loss_torque=0.0)
@@ -225,10 +252,14 @@ def test_a_cycle_with_friction_takes_the_area_of_the_loop(fmu: Path) -> None:
     wave = np.zeros(len(CYCLE))
     found = path_of(fmu, wave, output, "CoSimulation", friction_speed=1e-6)
     assert StiffnessRun().summary.stiffness.loop_work > 0.0
-    assert 1000.0 * work(found) == pytest.approx(StiffnessRun().summary.stiffness.loop_work, rel=1e-5)
+    assert 1000.0 * work(found) == pytest.approx(
+        StiffnessRun().summary.stiffness.loop_work, rel=1e-5
+    )
 
 
-def test_the_input_torque_averages_to_the_output_torque_over_the_ratio(fmu: Path, tmp_path: Path) -> None:
+def test_the_input_torque_averages_to_the_output_torque_over_the_ratio(
+    fmu: Path, tmp_path: Path
+) -> None:
     """Without friction, over one pitch, at a constant torque on the output."""
     torque, found = 25.0, []
     with instance(fmu, tmp_path / "unit") as unit:
@@ -255,7 +286,10 @@ def test_losses_and_damping_act_against_the_motion(fmu: Path, tmp_path: Path) ->
             before = unit.get("wave_generator_torque", "output_torque")
             unit.set(loss_torque=0.0)
             after = unit.get("wave_generator_torque", "output_torque")
-            assert before[0] - after[0] == pytest.approx(-0.05 * np.sign(speed), rel=1e-9) and before[1] == after[1]
+            assert (
+                before[0] - after[0] == pytest.approx(-0.05 * np.sign(speed), rel=1e-9)
+                and before[1] == after[1]
+            )
             unit.set(loss_torque=0.05)
         unit.set(wave_generator_speed=0.0, output_speed=2.0, damping=3.0)
         assert unit.get("output_torque")[0] == pytest.approx(-6.0, abs=1e-6)
@@ -273,23 +307,40 @@ def test_start_angles_shift_the_inputs(fmu: Path, tmp_path: Path) -> None:
 
 def test_impossible_parameters_are_refused(fmu: Path, tmp_path: Path) -> None:
     with instance(fmu, tmp_path / "unit") as unit:
-        for values in ({"friction_speed": 0.0}, {"loss_speed": -1.0}, {"windup": 0.0}, {"damping": np.nan}):
+        for values in (
+            {"friction_speed": 0.0},
+            {"loss_speed": -1.0},
+            {"windup": 0.0},
+            {"damping": np.nan},
+        ):
             with pytest.raises(fmpy.fmi1.FMICallException):
                 unit.set(**values)
 
 
 def test_the_sources_fit_the_headers_of_the_standard(fmu: Path, tmp_path: Path) -> None:
-    """The compiler compares every function with its declaration in the headers, which FMPy ships, and finds all."""
+    """The compiler compares every function with its declaration in the headers, which FMPy ships,
+    and finds all."""
     folder = Path(fmpy.extract(str(fmu), str(tmp_path / "unit")))
     headers = Path(fmpy.__file__).parent / "c-code"
     code, binary = tmp_path / "check.c", tmp_path / "check.so"
     code.write_text('#include "fmi2Functions.h"\n#include "strain_wave_spring.c"\n')
     flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-Wno-unused-parameter", "-shared", "-fPIC"]
-    command = ["cc", *flags, f"-I{headers}", f"-I{folder / 'sources'}", str(code), "-o", str(binary), "-lm"]
+    command = [
+        "cc",
+        *flags,
+        f"-I{headers}",
+        f"-I{folder / 'sources'}",
+        str(code),
+        "-o",
+        str(binary),
+        "-lm",
+    ]
     assert subprocess.run(command, capture_output=True, text=True).stderr == ""
 
 
-def test_fmpy_builds_the_sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: Any) -> None:
+def test_fmpy_builds_the_sources(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: Any
+) -> None:
     """Without a compiler the FMU has its sources alone; another program builds it."""
     monkeypatch.setenv("CC", "no-such-compiler")
     with caplog.at_level("WARNING"):
@@ -308,7 +359,9 @@ def test_what_the_results_must_have(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         write_fmu(SampledRun(), tmp_path)
     with pytest.raises(InputError, match="--ripple needs a run with steps.samples"):
         write_fmu(StiffnessRun(), tmp_path, StiffnessRun())
-    with pytest.raises(InputError, match="--ripple has the ratio 50: allowed a run of the same drive, -20"):
+    with pytest.raises(
+        InputError, match="--ripple has the ratio 50: allowed a run of the same drive, -20"
+    ):
         write_fmu(StiffnessRun(), tmp_path, SampledRun(ratio=50.0))
     with pytest.raises(InputError, match="at 3 angles: allowed 4 and more"):
         write_fmu(StiffnessRun(), tmp_path, SampledRun(samples=3))
@@ -318,7 +371,9 @@ def test_what_the_results_must_have(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         write_fmu(slack, tmp_path)
     standing = StiffnessRun()
     standing.summary.design = small("plane", "drive.layout=wave_generator_fixed")
-    with pytest.raises(InputError, match='"wave_generator_fixed" is not available with the format fmu'):
+    with pytest.raises(
+        InputError, match='"wave_generator_fixed" is not available with the format fmu'
+    ):
         write_fmu(standing, tmp_path)
     monkeypatch.setenv("CC", "false")
     with pytest.raises(OutputError, match="the C compiler false cannot build the FMU"):
@@ -327,7 +382,8 @@ def test_what_the_results_must_have(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
 @pytest.mark.parametrize("layout", ["ring_fixed", "spline_fixed"])
 def test_the_drive_of_two_runs(layout: str, tmp_path: Path) -> None:
-    """Without friction a run computes one side of the loop; the FMU has both, with the stiffness of the summary."""
+    """Without friction a run computes one side of the loop; the FMU has both, with the stiffness of
+    the summary."""
     shared = [*PLANE, f"drive.layout={layout}"]
     loop = {"stiffness.positions": 1, "stiffness.mesh_error": False}
     swgpar.run(swgpar.load_design(DESIGN, shared).with_values(loop), RECIPE, tmp_path / "stiffness")
@@ -363,7 +419,10 @@ def test_the_table_of_a_given_loop() -> None:
     lag = 0.5 * 0.5 * ARCMIN * (1.0 - np.abs(table["torque_Nm"]) / TOP)
     assert table["windup_rising_rad"] == pytest.approx(windup(table["torque_Nm"]) - lag, abs=1e-15)
     assert table["windup_falling_rad"] == pytest.approx(windup(table["torque_Nm"]) + lag, abs=1e-15)
-    assert np.array_equal(table["torque_Nm"], np.sort(table["torque_Nm"])) and table["torque_Nm"][0] == -TOP
+    assert (
+        np.array_equal(table["torque_Nm"], np.sort(table["torque_Nm"]))
+        and table["torque_Nm"][0] == -TOP
+    )
     chosen = run.program["stage"] == "positive loading"
     run.program = {name: values[chosen] for name, values in run.program.items()}
     image = spring_table(run)

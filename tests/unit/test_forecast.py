@@ -1,4 +1,5 @@
-"""Forecast of a run: counts are those of the model, needs grow with them, what does not fit is refused."""
+"""Forecast of a run: counts are those of the model, needs grow with them, what does not fit is
+refused."""
 
 from __future__ import annotations
 
@@ -10,7 +11,13 @@ from mpi4py import MPI
 import swgpar
 from support.paths import DESIGN, DRIVERS, RECIPE, REFERENCE
 from support.small_drive import PLANE
-from swgpar.analysis.forecast import Forecast, forecast, free_memory, reported_memory, require_memory
+from swgpar.analysis.forecast import (
+    Forecast,
+    forecast,
+    free_memory,
+    reported_memory,
+    require_memory,
+)
 from swgpar.checks.design_file import load_design
 from swgpar.errors import InputError, OutOfMemoryError
 from swgpar.meshing import load_recipe
@@ -43,7 +50,10 @@ def test_counts_are_those_of_the_model(overrides: tuple[str, ...]) -> None:
     found = forecast(design, recipe)
     model = build_drive_model(design, recipe, comm=MPI.COMM_SELF)
     counts = model.counts().values()
-    assert (found.elements, found.unknowns) == (model.n_elements(), sum(count["dofs"] for count in counts))
+    assert (found.elements, found.unknowns) == (
+        model.n_elements(),
+        sum(count["dofs"] for count in counts),
+    )
     model.destroy()
 
 
@@ -51,15 +61,22 @@ def test_needs_grow_with_the_mesh() -> None:
     design = load_design(REFERENCE)
     coarse, full = (forecast(design, load_recipe(name)) for name in ("coarse", "full"))
     # measured on two ranks: docs/verification/forecast.md
-    assert coarse.memory == pytest.approx(1.9, rel=0.25) and full.memory == pytest.approx(4.0, rel=0.25)
+    assert coarse.memory == pytest.approx(1.9, rel=0.25) and full.memory == pytest.approx(
+        4.0, rel=0.25
+    )
     assert full.seconds > 2.5 * coarse.seconds
 
 
 def test_what_does_not_fit_is_refused() -> None:
     require_memory(Forecast(1, 1, 0.8 * free_memory(), 1.0))
     require_memory(Forecast(1, 1, 1e6, 1.0), limit=2e6)
-    words = "1 elements and 1 unknowns, which need about 1e[+]06 GB of memory: allowed are meshes that need at most"
-    with pytest.raises(InputError, match=f"{words} the .* GB that are free; solver.memory_limit sets another limit"):
+    words = (
+        "1 elements and 1 unknowns, which need about 1e[+]06 GB of memory: allowed are meshes that "
+        "need at most"
+    )
+    with pytest.raises(
+        InputError, match=f"{words} the .* GB that are free; solver.memory_limit sets another limit"
+    ):
         require_memory(Forecast(1, 1, 1e6, 1.0))
     with pytest.raises(InputError, match=f"{words} solver.memory_limit = 10 GB"):
         require_memory(Forecast(1, 1, 1e6, 1.0), limit=10.0)
@@ -69,10 +86,19 @@ def test_a_run_that_does_not_fit_is_refused_before_it_is_meshed(tmp_path: Path) 
     """Nothing of the size of the mesh is built, and no folder is made."""
     counts = {"tip": 40, "layers": 40, "flank": 400, "root": 200, "under": 100, "rim": 100}
     cup = {"cylinder": 400, "fillet": 100, "closed_end": 400}
-    recipe = {"flexible_spline": counts, "ring_gear": counts, "face_width": {"elements": 400}, "cup": cup}
+    recipe = {
+        "flexible_spline": counts,
+        "ring_gear": counts,
+        "face_width": {"elements": 400},
+        "cup": cup,
+    }
     for design in (REFERENCE, DRIVERS / "plane_half_turn.toml"):
-        with pytest.raises(InputError, match=r"the mesh has [0-9,]* elements and .* GB of memory: allowed"):
-            swgpar.run(swgpar.load_design(design, {"solver.memory_limit": 2.0}), recipe, tmp_path / "run")
+        with pytest.raises(
+            InputError, match=r"the mesh has [0-9,]* elements and .* GB of memory: allowed"
+        ):
+            swgpar.run(
+                swgpar.load_design(design, {"solver.memory_limit": 2.0}), recipe, tmp_path / "run"
+            )
     assert not (tmp_path / "run").exists()
 
 

@@ -1,4 +1,5 @@
-"""Bad inputs of all kinds of files, drawn by Hypothesis: one sentence, or finite numbers. The rest is the bench's."""
+"""Bad inputs of all kinds of files, drawn by Hypothesis: one sentence, or finite numbers. The rest
+is the bench's."""
 
 from __future__ import annotations
 
@@ -17,7 +18,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("inputs")
 
 
-def test_bad_inputs_are_refused_or_make_sense(tmp_path_factory: pytest.TempPathFactory, folder: Path) -> None:
+def test_bad_inputs_are_refused_or_make_sense(
+    tmp_path_factory: pytest.TempPathFactory, folder: Path
+) -> None:
     @settings(
         derandomize=True,
         max_examples=COUNT,
@@ -43,7 +46,9 @@ def test_the_same_number_draws_the_same_inputs(folder: Path) -> None:
 def test_faults_are_found(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """What is no sentence, an unexpected error and a number that is not finite are faults."""
     assert (
-        not is_sentence("two\nlines of text") and not is_sentence(2000 * "x") and not is_sentence("\x1b[31m red text")
+        not is_sentence("two\nlines of text")
+        and not is_sentence(2000 * "x")
+        and not is_sentence("\x1b[31m red text")
     )
 
     def outcome(use: object) -> Outcome:

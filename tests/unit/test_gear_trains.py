@@ -1,4 +1,5 @@
-"""Design files of gear trains, published values in them, samples that do not depend on the ranks."""
+"""Design files of gear trains, published values in them, samples that do not depend on the
+ranks."""
 
 from __future__ import annotations
 
@@ -35,24 +36,84 @@ REFUSED = [
     (CASCADE, "g5.teeth=20", "g5 = a table is not a key of the design file: did you mean g"),
     (CASCADE, "g1_g1.variation=1", "g1_g1.variation = 1 is out of range: allowed 0 to below 1"),
     (CASCADE, "g1_g1.module=5", "g1_g1.module = 5 is out of range: allowed 4 mm (g1_g2.module)"),
-    (CASCADE, "flex_unit.ratio=[1, 1]", "flex_unit.ratio = [1, 1] is not a list of that many numbers"),
-    (CASCADE, "flex_unit.ratio=[1, 1, 1, 1, 1, 1, 1, 0]", "flex_unit.ratio = 0 is out of range: allowed stiffness"),
+    (
+        CASCADE,
+        "flex_unit.ratio=[1, 1]",
+        "flex_unit.ratio = [1, 1] is not a list of that many numbers",
+    ),
+    (
+        CASCADE,
+        "flex_unit.ratio=[1, 1, 1, 1, 1, 1, 1, 0]",
+        "flex_unit.ratio = 0 is out of range: allowed stiffness",
+    ),
     (CASCADE, "load.forces=[]", "load.forces = [] is not a list of that many numbers"),
-    (CASCADE, "load.peak=200", "load.forces = 207 is out of range: allowed above 0 to 200 kN (load.peak)"),
-    (CASCADE, "population.step=1", "population.step = 1 is out of range: allowed above 0 to 0.4 s (population.hold)"),
-    (CASCADE, "published.static_B_12=1", "published.static_B_12 is not a quantity of this gear train: did you mean"),
+    (
+        CASCADE,
+        "load.peak=200",
+        "load.forces = 207 is out of range: allowed above 0 to 200 kN (load.peak)",
+    ),
+    (
+        CASCADE,
+        "population.step=1",
+        "population.step = 1 is out of range: allowed above 0 to 0.4 s (population.hold)",
+    ),
+    (
+        CASCADE,
+        "published.static_B_12=1",
+        "published.static_B_12 is not a quantity of this gear train: did you mean",
+    ),
     (CASCADE, "published.braked_B=1", "published.braked_B = 1 is not a list of 8 numbers"),
-    (CASCADE, "published.overloaded_static=many", 'published.overloaded_static = "many" is not one number'),
-    (GEAR_PAIR, "gear_1.radius=0", "gear_1.radius = 0 is out of range: allowed above 0 to 1000000 mm"),
-    (GEAR_PAIR, "mesh.contact_ratio=2.5", "mesh.contact_ratio = 2.5 is out of range: allowed 1 to 2"),
-    (GEAR_PAIR, "load.output=[1.0]", "load.output = [1.0] is out of range: allowed 3 torques (load.input)"),
+    (
+        CASCADE,
+        "published.overloaded_static=many",
+        'published.overloaded_static = "many" is not one number',
+    ),
+    (
+        GEAR_PAIR,
+        "gear_1.radius=0",
+        "gear_1.radius = 0 is out of range: allowed above 0 to 1000000 mm",
+    ),
+    (
+        GEAR_PAIR,
+        "mesh.contact_ratio=2.5",
+        "mesh.contact_ratio = 2.5 is out of range: allowed 1 to 2",
+    ),
+    (
+        GEAR_PAIR,
+        "load.output=[1.0]",
+        "load.output = [1.0] is out of range: allowed 3 torques (load.input)",
+    ),
     (GEAR_PAIR, "load.input=[1.0, -1.0, 1.0]", "load.input = -1 is out of range"),
-    (GEAR_PAIR, "time.step=1", "time.step = 1 is out of range: allowed 3e-09 to 0.03 s (at most 10000000 steps)"),
-    (GEAR_PAIR, "monte_carlo.samples=1", "monte_carlo.samples = 1 is out of range: allowed 2 to 100000000"),
-    (RING, "ring.inner_radius=520", "ring.inner_radius = 520 is out of range: allowed above 0 to below 520 mm"),
-    (RING, "supports.count=5", "supports.count = 5 is out of range: allowed divisors of 36 (ring.elements)"),
-    (RING, "ring.elements=6", "ring.elements = 6 is out of range: allowed at least 12, for a node between two"),
-    (RING, "moving_load.steps=700", "moving_load.steps = 700 is out of range: allowed multiples of 3"),
+    (
+        GEAR_PAIR,
+        "time.step=1",
+        "time.step = 1 is out of range: allowed 3e-09 to 0.03 s (at most 10000000 steps)",
+    ),
+    (
+        GEAR_PAIR,
+        "monte_carlo.samples=1",
+        "monte_carlo.samples = 1 is out of range: allowed 2 to 100000000",
+    ),
+    (
+        RING,
+        "ring.inner_radius=520",
+        "ring.inner_radius = 520 is out of range: allowed above 0 to below 520 mm",
+    ),
+    (
+        RING,
+        "supports.count=5",
+        "supports.count = 5 is out of range: allowed divisors of 36 (ring.elements)",
+    ),
+    (
+        RING,
+        "ring.elements=6",
+        "ring.elements = 6 is out of range: allowed at least 12, for a node between two",
+    ),
+    (
+        RING,
+        "moving_load.steps=700",
+        "moving_load.steps = 700 is out of range: allowed multiples of 3",
+    ),
     (
         RING,
         "supports.tangential=0 supports.torsional=0",
@@ -66,25 +127,62 @@ REFUSED = [
     (
         RING,
         "moving_load.damping_mass=0 moving_load.damping_stiffness=0",
-        "moving_load.damping_stiffness = 0 is out of range: allowed above 0 to inf s without moving_load.damping_mass",
+        "moving_load.damping_stiffness = 0 is out of range: allowed above 0 to inf s without "
+        "moving_load.damping_mass",
     ),
-    (RING, "moving_load.sweep=[3.0]", "moving_load.sweep = [3.0] is out of range: allowed two speeds"),
+    (
+        RING,
+        "moving_load.sweep=[3.0]",
+        "moving_load.sweep = [3.0] is out of range: allowed two speeds",
+    ),
     (PLANETARY, "planet.count=1", "planet.count = 1 is out of range: allowed 2 to 12"),
-    (PLANETARY, "planet.count=7", "planet.count = 7 is out of range: allowed divisors of 120 (sun.teeth + ring.teeth)"),
-    (PLANETARY, "ring.teeth=100", "ring.teeth = 100 is out of range: allowed 21 (sun.teeth) and twice a planet's"),
-    (PLANETARY, "sun.teeth=27", "planet.pitch_diameter = 400.4 is out of range: allowed 287.467 mm within 0.1 %"),
+    (
+        PLANETARY,
+        "planet.count=7",
+        "planet.count = 7 is out of range: allowed divisors of 120 (sun.teeth + ring.teeth)",
+    ),
+    (
+        PLANETARY,
+        "ring.teeth=100",
+        "ring.teeth = 100 is out of range: allowed 21 (sun.teeth) and twice a planet's",
+    ),
+    (
+        PLANETARY,
+        "sun.teeth=27",
+        "planet.pitch_diameter = 400.4 is out of range: allowed 287.467 mm within 0.1 %",
+    ),
     (
         PLANETARY,
         "ring.supports=1 ring.radial=0 ring.torsional=0",
         "ring.supports = 1 is out of range: allowed supports",
     ),
-    (PLANETARY, "ring.supports=5", "ring.supports = 5 is out of range: allowed divisors of 18 (ring.elements)"),
-    (PLANETARY, "time.steps=10001", "time.steps = 10001 is out of range: allowed multiples of 500 (time.rows)"),
-    (PLANETARY, "wind.power_coefficient=0.6", "wind.power_coefficient = 0.6 is out of range: allowed above 0 to"),
+    (
+        PLANETARY,
+        "ring.supports=5",
+        "ring.supports = 5 is out of range: allowed divisors of 18 (ring.elements)",
+    ),
+    (
+        PLANETARY,
+        "time.steps=10001",
+        "time.steps = 10001 is out of range: allowed multiples of 500 (time.rows)",
+    ),
+    (
+        PLANETARY,
+        "wind.power_coefficient=0.6",
+        "wind.power_coefficient = 0.6 is out of range: allowed above 0 to",
+    ),
     (PLANETARY, "rims=1", '--set "rims=1" cannot be read'),
     (RING_MODES, "moving_load.force=1", "moving_load.damping_mass is missing: give a number"),
-    (RING_MODES, "teeth.count=63", "teeth.count = 63 is out of range: allowed divisors of 64 (ring.elements)"),
-    (RING_MODES, "ring.modes=65", "ring.modes = 65 is out of range: allowed 1 to 64 (ring.elements)"),
+    (
+        RING_MODES,
+        "teeth.count=63",
+        "teeth.count = 63 is out of range: allowed divisors of 64 (ring.elements)",
+    ),
+    (
+        RING_MODES,
+        "ring.modes=65",
+        "ring.modes = 65 is out of range: allowed 1 to 64 (ring.elements)",
+    ),
 ]
 
 
@@ -103,7 +201,9 @@ def test_drives_are_no_gear_trains() -> None:
         make_train(read_toml(REFERENCE))
 
 
-@pytest.mark.parametrize("file", [CASCADE, GEAR_PAIR, RING, RING_MODES, DRIVERS / "ring_supported.toml", PLANETARY])
+@pytest.mark.parametrize(
+    "file", [CASCADE, GEAR_PAIR, RING, RING_MODES, DRIVERS / "ring_supported.toml", PLANETARY]
+)
 def test_derived_values_are_finite(file: Path) -> None:
     design = load_design(file)
     values = model_of(design).derived(design)
@@ -138,7 +238,11 @@ def test_tasks_come_back_in_order_and_their_errors_too() -> None:
 
 
 def test_tables_read_back_to_the_last_bit(tmp_path: Path) -> None:
-    table = {"x": np.array([0.1, np.nan, 1e-300]), "n": np.array([1, 2, 3]), "name": np.array(["a", "b,c", "d"])}
+    table = {
+        "x": np.array([0.1, np.nan, 1e-300]),
+        "n": np.array([1, 2, 3]),
+        "name": np.array(["a", "b,c", "d"]),
+    }
     (tmp_path / "t.csv").write_bytes(format_columns(table))
     back = read_columns(tmp_path / "t.csv")
     assert list(back) == list(table) and (back["name"] == table["name"]).all()

@@ -30,7 +30,14 @@ def test_columns_are_read_by_their_names(tmp_path: Path) -> None:
     rows = history.read_history(path)
     assert list(rows[0]) == OLD.decode().splitlines()[0].split(",")
     assert (
-        rows[1] | {"step": 4, "pairs_in_contact": 8, "fs_s1": 102.5, "strain_energy": 3.5, "remark": "second"}
+        rows[1]
+        | {
+            "step": 4,
+            "pairs_in_contact": 8,
+            "fs_s1": 102.5,
+            "strain_energy": 3.5,
+            "remark": "second",
+        }
         == rows[1]
     )
     assert [type(rows[0][name]) for name in ("step", "wg_angle_deg")] == [int, float]
@@ -42,8 +49,12 @@ def test_a_newer_version_is_refused(tmp_path: Path) -> None:
     path = tmp_path / history.NAME
     path.write_bytes(OLD)
     description = json.loads(history.format_description())
-    (tmp_path / history.DESCRIPTION).write_text(json.dumps(description | {"version": 7}), encoding="utf-8")
-    with pytest.raises(ValueError, match=f"columns are of version 7, and swgpar .* reads up to {history.VERSION}"):
+    (tmp_path / history.DESCRIPTION).write_text(
+        json.dumps(description | {"version": 7}), encoding="utf-8"
+    )
+    with pytest.raises(
+        ValueError, match=f"columns are of version 7, and swgpar .* reads up to {history.VERSION}"
+    ):
         history.read_history(path)
 
 
@@ -66,12 +77,17 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("missing", [name for name in OF_ALL if name not in history.REQUIRED])
-def test_a_result_without_a_column_has_figures_and_a_report(run: Path, tmp_path: Path, missing: str) -> None:
+def test_a_result_without_a_column_has_figures_and_a_report(
+    run: Path, tmp_path: Path, missing: str
+) -> None:
     shutil.copytree(run, tmp_path, dirs_exist_ok=True)
     (tmp_path / history.DESCRIPTION).unlink()
     header, *lines = (tmp_path / history.NAME).read_text(encoding="utf-8").splitlines()
     index = header.split(",").index(missing)
-    kept = [",".join(cell for k, cell in enumerate(line.split(",")) if k != index) for line in (header, *lines)]
+    kept = [
+        ",".join(cell for k, cell in enumerate(line.split(",")) if k != index)
+        for line in (header, *lines)
+    ]
     (tmp_path / history.NAME).write_text("\n".join(kept) + "\n", encoding="utf-8")
     result = swgpar.open_result(tmp_path)
     assert missing not in result.history
@@ -87,6 +103,8 @@ def test_a_report_without_a_column(run: Path, tmp_path: Path) -> None:
     shutil.copytree(run, tmp_path, dirs_exist_ok=True)
     (tmp_path / history.DESCRIPTION).unlink()
     text = (tmp_path / history.NAME).read_text(encoding="utf-8")
-    (tmp_path / history.NAME).write_text(text.replace("max_penetration_mm", "other"), encoding="utf-8")
+    (tmp_path / history.NAME).write_text(
+        text.replace("max_penetration_mm", "other"), encoding="utf-8"
+    )
     save_report(swgpar.open_result(tmp_path), tmp_path)
     assert "the history does not have it" in (tmp_path / "report.html").read_text(encoding="utf-8")

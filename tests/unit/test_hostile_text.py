@@ -1,4 +1,5 @@
-"""Texts of a user in messages and tables: no control characters, no formulas, no folders elsewhere."""
+"""Texts of a user in messages and tables: no control characters, no formulas, no folders
+elsewhere."""
 
 from __future__ import annotations
 
@@ -64,7 +65,12 @@ def test_long_keys_are_shortened() -> None:
         apply_overrides({"drive": {5000 * "k": 1}}, {f"{key}.x": 1})
     assert len(str(caught.value)) < 300
     done = execute(swgpar("check", DESIGN, "--set", f"{key}=1"), timeout=120.0)
-    assert done.returncode == 2 and "drive.kkk" in done.stderr and "..." in done.stderr and len(done.stderr) < 500
+    assert (
+        done.returncode == 2
+        and "drive.kkk" in done.stderr
+        and "..." in done.stderr
+        and len(done.stderr) < 500
+    )
 
 
 def test_tables_hold_no_formulas(tmp_path: Path) -> None:
@@ -74,15 +80,32 @@ def test_tables_hold_no_formulas(tmp_path: Path) -> None:
     with open(path, newline="", encoding="utf-8") as file:
         header, *rows = csv.reader(file)
     assert header == ["'=key", "value"]
-    shown = ["'=1+1", "'+A1", "'-A1", "'@SUM(A1)", "-1.5", "+2e3", "-inf", "plain", "a=b", r"\t" + "x"]
+    shown = [
+        "'=1+1",
+        "'+A1",
+        "'-A1",
+        "'@SUM(A1)",
+        "-1.5",
+        "+2e3",
+        "-inf",
+        "plain",
+        "a=b",
+        r"\t" + "x",
+    ]
     assert [row[0] for row in rows] == shown
     assert (read_columns(path)["value"] == -1.5).all()
 
 
-@pytest.mark.parametrize("text", ["..", ".", "...", "/tmp/evil=1", "a/../../b", "-x", "a\nb", "~", "=1", 300 * "long"])
+@pytest.mark.parametrize(
+    "text", ["..", ".", "...", "/tmp/evil=1", "a/../../b", "-x", "a\nb", "~", "=1", 300 * "long"]
+)
 def test_names_of_folders_stay_inside(tmp_path: Path, text: str) -> None:
     name = folder_name(text)
-    assert (tmp_path / name).resolve().parent == tmp_path and len(name) <= LONGEST_NAME and name.isprintable()
+    assert (
+        (tmp_path / name).resolve().parent == tmp_path
+        and len(name) <= LONGEST_NAME
+        and name.isprintable()
+    )
     (tmp_path / name).mkdir()
 
 

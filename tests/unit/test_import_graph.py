@@ -1,4 +1,5 @@
-"""scripts/import_graph.py on small packages: rooms, arrows, levels, circles; and scripts/number_path.py's search."""
+"""scripts/import_graph.py on small packages: rooms, arrows, levels, circles; and
+scripts/number_path.py's search."""
 
 from __future__ import annotations
 
@@ -47,7 +48,8 @@ def test_circles_are_named(tmp_path: Path) -> None:
 
 
 def test_circles_of_files(tmp_path: Path) -> None:
-    """Names that a package hands on lead to the file that defines them; imports in functions count."""
+    """Names that a package hands on lead to the file that defines them; imports in functions
+    count."""
     sources = {
         "__init__.py": "",
         "a/__init__.py": "from house.a.one import x as y\n",
@@ -117,7 +119,8 @@ def last(plan):
 
 
 def test_the_way_through_modules_of_two_levels() -> None:
-    """Functions count once, at their first entry; a stay in a higher module than before is a climb."""
+    """Functions count once, at their first entry; a stay in a higher module than before is a
+    climb."""
     low: dict[str, Any] = {"__name__": "house.low"}
     exec(compile(LOW, "low.py", "exec"), low)
     top: dict[str, Any] = {**low, "__name__": "house.top"}
@@ -139,4 +142,9 @@ def test_the_way_through_modules_of_two_levels() -> None:
 
 
 def test_modules_in_a_circle_share_a_level() -> None:
-    assert path.module_levels({"a": {"b"}, "b": {"a", "c"}, "c": set(), "d": {"a"}}) == {"a": 1, "b": 1, "c": 0, "d": 2}
+    assert path.module_levels({"a": {"b"}, "b": {"a", "c"}, "c": set(), "d": {"a"}}) == {
+        "a": 1,
+        "b": 1,
+        "c": 0,
+        "d": 2,
+    }

@@ -1,7 +1,9 @@
-"""Arrays that do not fit a kernel are refused in a sentence before the kernel reads or writes past them.
+"""Arrays that do not fit a kernel are refused in a sentence before the kernel reads or writes past
+them.
 
-Every function is called with valid arguments, in which one array at a time is replaced by wrong ones. These are made
-from the valid array, so that an argument or a field of a record that is added is tried as well.
+Every function is called with valid arguments, in which one array at a time is replaced by wrong
+ones. These are made from the valid array, so that an argument or a field of a record that is added
+is tried as well.
 """
 
 from __future__ import annotations
@@ -20,7 +22,13 @@ from support.contact_blocks import Rows, master
 from support.element_mesh import ElementMesh
 from swgpar.contact.flank_pairs import Faces
 from swgpar.gear_trains.kernel import MESH, MESH_ERROR, SHAFT, GearboxKernel, PlanetaryStepKernel
-from swgpar.kernel import add_face_blocks, assemble_elements, contact_flanks, recover_stress, reference_elements
+from swgpar.kernel import (
+    add_face_blocks,
+    assemble_elements,
+    contact_flanks,
+    recover_stress,
+    reference_elements,
+)
 from swgpar.materials import Isotropic
 from swgpar.watch import _watch
 
@@ -38,7 +46,8 @@ N_OWN = 6
 
 @dataclass(frozen=True)
 class Call:
-    """A function with its valid arguments; arrays are found in the arguments and in the fields of records.
+    """A function with its valid arguments; arrays are found in the arguments and in the fields of
+    records.
 
     written : arrays that the kernel changes;  optional : arrays that may be None
     indices : the values from the first to below the second that an array of indices may have
@@ -57,7 +66,8 @@ class Call:
 
 
 def flank() -> Values:
-    """One face pressed into a flat flank of 3 x 4 nodes, with friction and a tangent; 4 + 12 nodes."""
+    """One face pressed into a flat flank of 3 x 4 nodes, with friction and a tangent; 4 + 12
+    nodes."""
     x, z = np.linspace(-0.4, 0.4, 3), np.linspace(-0.5, 0.5, 4)
     points = np.column_stack([x, np.zeros(3)])
     corners = np.array([[-0.15, 0.0, -0.2], [0.15, 0.0, -0.2], [0.15, 0.0, 0.2], [-0.15, 0.0, 0.2]])
@@ -111,7 +121,10 @@ def face_blocks() -> Values:
 
 def box() -> ElementMesh:
     """Two hexahedra along z."""
-    points = np.array([[x, y, z] for z in (0.0, 1.0, 2.0) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))], dtype=float)
+    points = np.array(
+        [[x, y, z] for z in (0.0, 1.0, 2.0) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))],
+        dtype=float,
+    )
     return ElementMesh(points, np.array([np.arange(8), np.arange(4, 12)]), Isotropic(E=1.0, nu=0.3))
 
 
@@ -123,7 +136,9 @@ def elements(*more: str) -> Values:
     """more : fields of the reference elements that a function reads beside those that all read"""
     mesh = box()
     ref_of, rotation, conn, sixths = mesh.arrays
-    read = {name: getattr(mesh.reference, name) for name in ("stiffness", "gradient", "coords", *more)}
+    read = {
+        name: getattr(mesh.reference, name) for name in ("stiffness", "gradient", "coords", *more)
+    }
     return {
         "ref": SimpleNamespace(**read),
         "ref_of": ref_of,
@@ -251,7 +266,13 @@ CALLS = [
     Call("GearboxKernel.forces", of_gearbox("forces"), motion),
     Call("GearboxKernel.matrices", of_gearbox("matrices"), motion),
     Call("GearboxKernel.torques", of_gearbox("torques"), torques),
-    Call("GearboxKernel.simulate", of_gearbox("simulate"), simulation, ("x", "v"), free=(("rack_force", 0),)),
+    Call(
+        "GearboxKernel.simulate",
+        of_gearbox("simulate"),
+        simulation,
+        ("x", "v"),
+        free=(("rack_force", 0),),
+    ),
     Call("PlanetaryStepKernel", PlanetaryStepKernel, steps),
     Call(
         "PlanetaryStepKernel.advance",
@@ -264,12 +285,17 @@ CALLS = [
 
 
 def paths(values: Values) -> Iterator[tuple[str, np.ndarray]]:
-    """The arrays among arguments, and in those that are records, as `argument` or `argument.field`."""
+    """The arrays among arguments, and in those that are records, as `argument` or
+    `argument.field`."""
     for name, value in values.items():
         if isinstance(value, np.ndarray):
             yield name, value
         elif hasattr(value, "__dict__"):
-            yield from ((f"{name}.{key}", array) for key, array in vars(value).items() if isinstance(array, np.ndarray))
+            yield from (
+                (f"{name}.{key}", array)
+                for key, array in vars(value).items()
+                if isinstance(array, np.ndarray)
+            )
 
 
 def replaced(values: Values, path: str, array: object) -> Values:
@@ -291,19 +317,26 @@ def wrong_arrays(call: Call, path: str, array: np.ndarray) -> Iterator[tuple[str
         yield "type", np.zeros(array.shape, OTHER_TYPE[array.dtype.kind])
     yield "more dimensions", array[None]
     yield "fewer dimensions", array[..., 0].copy()
-    for axis in [axis for axis in range(array.ndim) if array.shape[axis] > 1 and path not in call.converted][-1:]:
+    for axis in [
+        axis for axis in range(array.ndim) if array.shape[axis] > 1 and path not in call.converted
+    ][-1:]:
         yield "order", np.repeat(array, 2, axis)[(slice(None),) * axis + (slice(None, None, 2),)]
     for axis in range(array.ndim):
         if (path, axis) not in call.free or path not in call.converted:
             yield f"axis {axis} too small", np.ascontiguousarray(np.delete(array, -1, axis))
         if (path, axis) not in call.free:
-            yield f"axis {axis} too large", np.concatenate([array, np.take(array, [-1], axis)], axis)
+            yield (
+                f"axis {axis} too large",
+                np.concatenate([array, np.take(array, [-1], axis)], axis),
+            )
     if path in call.written:
         fixed = array.copy()
         fixed.flags.writeable = False
         yield "read-only", fixed
     low, end = call.indices.get(path, (0, 0))
-    for value in [v for v in (low - 1, end) if path in call.indices and v >= (-1 if low == 0 else end)]:
+    for value in [
+        v for v in (low - 1, end) if path in call.indices and v >= (-1 if low == 0 else end)
+    ]:
         if np.can_cast(np.min_scalar_type(value), array.dtype) or array.dtype.kind == "i":
             other = array.copy()
             other.flat[-1] = value
@@ -344,7 +377,8 @@ def test_rows_lie_within_their_blocks(starts: list[int]) -> None:
     values = face_blocks()
     values["rows"].start[[0, 1, 2, -1]] = starts
     with pytest.raises(
-        ValueError, match=r"^add_face_blocks: rows.start .*; expected to ascend from 0 to the 21 blocks"
+        ValueError,
+        match=r"^add_face_blocks: rows.start .*; expected to ascend from 0 to the 21 blocks",
     ):
         add_face_blocks(**values)
 
@@ -353,7 +387,10 @@ def test_rows_lie_within_their_blocks(starts: list[int]) -> None:
 def test_no_more_rows_than_nodes(n_own: int) -> None:
     values = face_blocks()
     values["rows"].n_own = n_own
-    with pytest.raises(ValueError, match=r"^add_face_blocks: rows.n_own is .*; expected from 0 to the 9 local nodes"):
+    with pytest.raises(
+        ValueError,
+        match=r"^add_face_blocks: rows.n_own is .*; expected from 0 to the 9 local nodes",
+    ):
         add_face_blocks(**values)
 
 
@@ -362,19 +399,28 @@ def test_no_more_rows_than_nodes(n_own: int) -> None:
 def test_meshes_join_gears_of_the_gearbox(field: str, gear: int) -> None:
     values = gearbox()
     values["meshes"][field][3] = gear
-    with pytest.raises(ValueError, match=rf"^GearboxKernel: meshes\['{field}'\] .*; expected from 0 to below 23"):
+    with pytest.raises(
+        ValueError, match=rf"^GearboxKernel: meshes\['{field}'\] .*; expected from 0 to below 23"
+    ):
         GearboxKernel(**values)
 
 
 @pytest.mark.parametrize("first", [-1, 1, 2**63 - 1])
 def test_steps_are_those_of_the_train(first: int) -> None:
-    with pytest.raises(ValueError, match=r"^PlanetaryStepKernel.advance: torques .*; expected a state and steps"):
+    with pytest.raises(
+        ValueError, match=r"^PlanetaryStepKernel.advance: torques .*; expected a state and steps"
+    ):
         PlanetaryStepKernel(**steps()).advance(**advance() | {"first": first})
 
 
 def test_a_mesh_too_many() -> None:
-    values = steps() | {"deflection_rows": np.zeros((4, 25, 4)), "compliance": np.zeros((4, 25, 25))}
-    with pytest.raises(ValueError, match=r"^PlanetaryStepKernel: deflection_rows .*; expected from 1 to 24 meshes"):
+    values = steps() | {
+        "deflection_rows": np.zeros((4, 25, 4)),
+        "compliance": np.zeros((4, 25, 25)),
+    }
+    with pytest.raises(
+        ValueError, match=r"^PlanetaryStepKernel: deflection_rows .*; expected from 1 to 24 meshes"
+    ):
         PlanetaryStepKernel(**values | {"damping": np.zeros(25)})
 
 
@@ -383,5 +429,7 @@ def test_texts_and_intervals_of_the_watch() -> None:
         with pytest.raises(TypeError):
             call()
     for interval in (0.0, -1.0, float("nan")):
-        with pytest.raises(ValueError, match=r"^start_heart: interval is .*; expected seconds above 0"):
+        with pytest.raises(
+            ValueError, match=r"^start_heart: interval is .*; expected seconds above 0"
+        ):
             _watch.start_heart(interval)

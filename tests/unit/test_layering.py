@@ -1,4 +1,5 @@
-"""The rooms of the package: what a module may import, no circle of files, no annotation missing that would hide one."""
+"""The rooms of the package: what a module may import, no circle of files, no annotation missing
+that would hide one."""
 
 from __future__ import annotations
 
@@ -31,15 +32,27 @@ def public_functions(body: list[ast.stmt]) -> Iterator[ast.FunctionDef]:
     for node in body:
         if isinstance(node, ast.ClassDef):
             yield from public_functions(node.body)
-        elif isinstance(node, ast.FunctionDef) and (not node.name.startswith("_") or node.name.endswith("__")):
+        elif isinstance(node, ast.FunctionDef) and (
+            not node.name.startswith("_") or node.name.endswith("__")
+        ):
             yield node
 
 
 def unannotated(function: ast.FunctionDef) -> list[str]:
     arguments = function.args
-    every = [*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs, arguments.vararg, arguments.kwarg]
+    every = [
+        *arguments.posonlyargs,
+        *arguments.args,
+        *arguments.kwonlyargs,
+        arguments.vararg,
+        arguments.kwarg,
+    ]
     missing = [a.arg for a in every if a and a.annotation is None and a.arg not in ("self", "cls")]
-    missing += [a.arg for a in every if a and a.arg == "design" and a.annotation and ast.unparse(a.annotation) == "Any"]
+    missing += [
+        a.arg
+        for a in every
+        if a and a.arg == "design" and a.annotation and ast.unparse(a.annotation) == "Any"
+    ]
     return missing + ([] if function.returns is not None else ["return"])
 
 
@@ -49,7 +62,10 @@ def test_every_module_is_in_a_room() -> None:
 
 
 def test_few_modules_are_loose() -> None:
-    assert len([module for module in MODULES if len(module.parts) == 1 and module.stem != "__init__"]) <= LOOSE
+    assert (
+        len([module for module in MODULES if len(module.parts) == 1 and module.stem != "__init__"])
+        <= LOOSE
+    )
 
 
 @pytest.mark.parametrize("room", ROOMS)
@@ -86,7 +102,9 @@ def test_public_functions_are_annotated() -> None:
     wrong = [
         f"{module}:{function.lineno} {function.name}: {', '.join(unannotated(function))}"
         for module in MODULES
-        for function in public_functions(ast.parse((ROOT / module).read_text(encoding="utf-8")).body)
+        for function in public_functions(
+            ast.parse((ROOT / module).read_text(encoding="utf-8")).body
+        )
         if unannotated(function)
     ]
     assert not wrong
@@ -95,5 +113,7 @@ def test_public_functions_are_annotated() -> None:
 def test_the_rooms_are_described_as_they_are() -> None:
     lines = (CHECKOUT / "CONTRIBUTING.md").read_text(encoding="utf-8").splitlines()
     first = lines.index("| room | purpose |") + 2
-    assert lines[first : first + len(PURPOSE)] == [f"| `{room}` | {purpose} |" for room, purpose in PURPOSE.items()]
+    assert lines[first : first + len(PURPOSE)] == [
+        f"| `{room}` | {purpose} |" for room, purpose in PURPOSE.items()
+    ]
     assert not lines[first + len(PURPOSE)].startswith("|")

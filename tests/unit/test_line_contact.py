@@ -1,4 +1,5 @@
-"""Line contact of half planes: Hertz's formulas, any start, gaps whose curvature jumps, bodies that end."""
+"""Line contact of half planes: Hertz's formulas, any start, gaps whose curvature jumps, bodies that
+end."""
 
 from __future__ import annotations
 
@@ -25,7 +26,9 @@ def hertz(radius: float, load: float) -> tuple[float, float]:
 
 def test_moduli() -> None:
     assert contact_modulus(*[Isotropic(E=2.0, nu=0.3)] * 2, plane_stress=True) == 1.0
-    assert contact_modulus(*[Isotropic(E=2.0, nu=0.3)] * 2, plane_stress=False) == pytest.approx(1.0 / 0.91)
+    assert contact_modulus(*[Isotropic(E=2.0, nu=0.3)] * 2, plane_stress=False) == pytest.approx(
+        1.0 / 0.91
+    )
 
 
 @pytest.mark.parametrize("radius", [0.5, 20.0])
@@ -51,7 +54,9 @@ def test_a_jump_of_the_curvature_lies_between_both_parabolas() -> None:
 
     found = line_contact(gap, 0.0, 0.05, 40.0, E)
     assert 1.15 * hertz(2.0, 40.0)[1] < found.peak < 0.85 * hertz(0.5, 40.0)[1]
-    assert found.middle < -0.1 * found.half_width  # the contact reaches farther where the gap is flat
+    assert (
+        found.middle < -0.1 * found.half_width
+    )  # the contact reaches farther where the gap is flat
 
 
 def test_a_body_that_ends_has_its_largest_pressure_there() -> None:

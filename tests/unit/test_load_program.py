@@ -12,7 +12,13 @@ from support.stepping import small
 from swgpar.analysis.shortcuts import with_shortcuts
 from swgpar.errors import InputError
 from swgpar.evaluation.program_results import work_by_torque
-from swgpar.evaluation.ratcheting import AT_TEETH, IN_SPLINE, NOTHING, evaluate_ratcheting, has_fallen
+from swgpar.evaluation.ratcheting import (
+    AT_TEETH,
+    IN_SPLINE,
+    NOTHING,
+    evaluate_ratcheting,
+    has_fallen,
+)
 from swgpar.evaluation.stiffness import ARC_MINUTE, by_position, torsional_stiffness
 from swgpar.load.load_program import (
     NO_TORQUE,
@@ -36,7 +42,9 @@ DOWN = {"name": "down", "torque": -0.2}
 
 
 def test_points_lie_evenly_between_the_ends_of_stages() -> None:
-    design = small("plane").with_values(program(UP, {"name": "turn", "wave_generator": 3.0, "points": 3}))
+    design = small("plane").with_values(
+        program(UP, {"name": "turn", "wave_generator": 3.0, "points": 3})
+    )
     points = program_points(design)
     assert [(p.stage, p.angle, p.value) for p in points[:2]] == [("up", 0.0, 0.1), ("up", 0.0, 0.2)]
     assert [p.angle for p in points[2:]] == pytest.approx([1.0, 2.0, 3.0])
@@ -61,7 +69,10 @@ def test_load_states_of_a_program(layout: str, sign: float) -> None:
     assert [s.stage for s in states] == [Stage.DEFLECT, Stage.ENGAGE, *[Stage.PROGRAM] * 3]
     assert [s.step for s in states] == [1, 2, 3, 4, 5] and sequence.from_loaded == states[2:]
     assert states[3].torque == pytest.approx(sign * 200.0) and states[3].control == "torque"
-    assert states[4].output_rotation == pytest.approx(np.radians(0.5)) and states[4].control == "rotation"
+    assert (
+        states[4].output_rotation == pytest.approx(np.radians(0.5))
+        and states[4].control == "rotation"
+    )
     assert states[4].angle == pytest.approx(np.radians(2.0))
 
 
@@ -74,25 +85,50 @@ REFUSED = [
     (program(UP, {"name": "a", "torque": "x"}), 'load.program.2.torque = "x" is not a number'),
     (program(UP, UP), "load.program.2.name = 'up' is not available"),
     (program({"name": "a.b"}), "load.program.1.name = 'a.b' is not available: allowed a name"),
-    (program({"name": "a", "torque": 1.0, "output_rotation": 1.0}), "are both given: allowed one of them"),
+    (
+        program({"name": "a", "torque": 1.0, "output_rotation": 1.0}),
+        "are both given: allowed one of them",
+    ),
     (
         program({"name": "a", "output_rotation": 1.0}, {**UP, "points": 2}),
         "points = 2 is out of range: allowed 1",
     ),
-    (program({"name": "a", "output_rotation": 180.0}), "load.program.1.output_rotation = 180 is out of range"),
-    (program({"name": "a", "torque": 0.0}), "load.program.1.torque = 0 is out of range: allowed beside a stage"),
+    (
+        program({"name": "a", "output_rotation": 180.0}),
+        "load.program.1.output_rotation = 180 is out of range",
+    ),
+    (
+        program({"name": "a", "torque": 0.0}),
+        "load.program.1.torque = 0 is out of range: allowed beside a stage",
+    ),
     ({"load.program": 3}, r"load.program = 3 is not a section: write \[\[load.program\]\]"),
     ({**program(UP), "stiffness.positions": 2}, r"load.program and \[stiffness\] are both given"),
-    ({**program(UP), "steps.samples": 4, "steps.rotation": 20.0}, "steps.samples = 4 .* only 0 with load.program"),
-    ({"stiffness.break_points": [0.7, 0.2]}, r"stiffness.break_points = \[0.7, 0.2\] is out of range: allowed two"),
+    (
+        {**program(UP), "steps.samples": 4, "steps.rotation": 20.0},
+        "steps.samples = 4 .* only 0 with load.program",
+    ),
+    (
+        {"stiffness.break_points": [0.7, 0.2]},
+        r"stiffness.break_points = \[0.7, 0.2\] is out of range: allowed two",
+    ),
     ({"stiffness.break_points": [0.01, 0.2]}, "stiffness.break_points .* above 0.04"),
-    ({"stiffness.lost_motion_share": 0.0005}, "stiffness.lost_motion_share = 0.0005 is out of range"),
+    (
+        {"stiffness.lost_motion_share": 0.0005},
+        "stiffness.lost_motion_share = 0.0005 is out of range",
+    ),
     ({"stiffness.positions": 2, "load.torque": 0.0}, "stiffness.torque is missing"),
-    ({"stiffness.loop": False, "contact.friction": 0.1}, "stiffness.loop = false .* allowed true with friction"),
+    (
+        {"stiffness.loop": False, "contact.friction": 0.1},
+        "stiffness.loop = false .* allowed true with friction",
+    ),
     ({"ratcheting.limit": 0.001}, "ratcheting.limit = 0.001 is out of range: allowed 0.02 pitches"),
     (
-        {**program(UP, {"name": "turn", "output_rotation": 1.0}), "drive.layout": "wave_generator_fixed"},
-        'load.program.2.torque is missing: allowed only stages with a torque with drive.layout = "wave_generator_f',
+        {
+            **program(UP, {"name": "turn", "output_rotation": 1.0}),
+            "drive.layout": "wave_generator_fixed",
+        },
+        "load.program.2.torque is missing: allowed only stages with a torque with drive.layout = "
+        '"wave_generator_f',
     ),
     ({"ratcheting.limit": 20.0}, "ratcheting.limit = 20 is out of range: allowed up to"),
 ]
@@ -135,7 +171,7 @@ def test_shortcuts_of_programs() -> None:
     assert with_shortcuts(friction, recipe).design == friction
 
 
-# -- results from given loops --------------------------------------------------------------------------
+# -- results from given loops ----------------------------------------------------------------------
 
 CHORDS, SHARES = (4.0e3, 6.0e3, 8.0e3), (0.0, 0.2, 0.65, 1.0)
 TORQUE, BACKLASH, WIDTH = 10.0, 1.0, 0.4
@@ -155,7 +191,9 @@ def rows_of(design: Any) -> list[dict[str, Any]]:
         unloading = 1.0 if "unloading" in point.stage else -1.0
         # both branches meet at the largest torque
         width = unloading * np.sign(point.value) * 0.5 * WIDTH * (1.0 - abs(point.value) / TORQUE)
-        turned = float(rotation(np.array(point.value))) + np.sign(point.value) * 0.5 * BACKLASH + width
+        turned = (
+            float(rotation(np.array(point.value))) + np.sign(point.value) * 0.5 * BACKLASH + width
+        )
         if point.stage != TRAVEL:
             row = {"stage": point.stage, "wg_angle_deg": point.angle, "torque_Nm": point.value}
             rows.append({**row, "rotation_arcmin": float(turned)})
@@ -171,20 +209,28 @@ def test_stiffness_of_a_given_loop(points: int) -> None:
     assert list(found) == pytest.approx([0.0, 180.0 / 42.0])
     for one in found.values():
         assert (one.K1, one.K2, one.K3) == pytest.approx(CHORDS, rel=1e-9)
-        assert one.lost_motion == pytest.approx(BACKLASH + 2.0 * float(rotation(np.array(0.4))), rel=1e-9)
+        assert one.lost_motion == pytest.approx(
+            BACKLASH + 2.0 * float(rotation(np.array(0.4))), rel=1e-9
+        )
         assert one.hysteresis == pytest.approx(BACKLASH + WIDTH, rel=1e-9)
         assert one.backlash == pytest.approx(BACKLASH, rel=1e-9)
         # two triangles; the torque that stands for zero cuts off their last corners
-        assert one.loop_work == pytest.approx(1000.0 * TORQUE * WIDTH * ARC_MINUTE, rel=2.5 * NO_TORQUE)
+        assert one.loop_work == pytest.approx(
+            1000.0 * TORQUE * WIDTH * ARC_MINUTE, rel=2.5 * NO_TORQUE
+        )
     summary = torsional_stiffness(design, rows, None)
-    assert summary.K1 == pytest.approx(CHORDS[0]) and summary.spread.K1 == pytest.approx(0.0, abs=1e-6)
+    assert summary.K1 == pytest.approx(CHORDS[0]) and summary.spread.K1 == pytest.approx(
+        0.0, abs=1e-6
+    )
     assert summary.mesh_error is None and len(summary.positions) == 2
 
 
 def test_one_way_of_the_loop_stands_for_both() -> None:
     values = {"stiffness.torque": TORQUE, "stiffness.positions": 3, "stiffness.loop": False}
     design = small("plane").with_values(values)
-    found = by_position(design, [{**row, "rotation_arcmin": row["torque_Nm"]} for row in rows_of(design)])
+    found = by_position(
+        design, [{**row, "rotation_arcmin": row["torque_Nm"]} for row in rows_of(design)]
+    )
     assert len(found) == 3
     for one in found.values():
         assert (one.K1, one.K2) == pytest.approx((1.0 / ARC_MINUTE, 1.0 / ARC_MINUTE))
@@ -199,21 +245,26 @@ def test_work_is_the_area_below_the_torque() -> None:
 
 @pytest.mark.parametrize(("teeth", "gave_way"), [(1.0, AT_TEETH), (-0.2, IN_SPLINE)])
 def test_what_gives_way_is_where_the_rotation_goes(teeth: float, gave_way: str) -> None:
-    """Behind the peak the teeth move on with the output, or they turn back while the spline yields."""
+    """Behind the peak the teeth move on with the output, or they turn back while the spline
+    yields."""
     design = small("plane").with_values({"ratcheting.increment": 0.1})
     torques = [1.0, 3.0, 2.9, 2.0]
     rows = [
         {"step": 3 + k, "torque_Nm": torque, "rotation_arcmin": 60.0 * k, "stage": "ratcheting"}
         for k, torque in enumerate(torques)
     ]
-    assert not has_fallen(design.ratcheting.drop, rows[:3]) and has_fallen(design.ratcheting.drop, rows)
+    assert not has_fallen(design.ratcheting.drop, rows[:3]) and has_fallen(
+        design.ratcheting.drop, rows
+    )
     moved = [0.0, 0.5, 0.5 + teeth, 0.5 + 2.0 * teeth]
     found = evaluate_ratcheting(design, rows, moved, ended_early=False)
     assert found.gave_way == gave_way and found.ended == "torque fell"
     assert (found.peak_torque_Nm, found.peak_step, found.peak_error_Nm) == (3.0, 4, 2.0)
     assert found.peak_rotation_pitches == pytest.approx(1.0 / pitch_angle(design))
     rising = evaluate_ratcheting(design, rows[:2], moved[:2], ended_early=True)
-    assert rising.gave_way == NOTHING and not rising.is_peak and rising.ended == "no equilibrium found"
+    assert (
+        rising.gave_way == NOTHING and not rising.is_peak and rising.ended == "no equilibrium found"
+    )
 
 
 def test_first_branch_begins_where_the_one_before_ended() -> None:

@@ -14,7 +14,9 @@ from swgpar.evaluation.load_sharing import LoadSharing, Spread, load_sharing
 from swgpar.systems.drive import DRIVE
 
 
-def pair(increment: int, tooth: int, share: float, torque: float, line_load: float = np.nan) -> dict[str, float]:
+def pair(
+    increment: int, tooth: int, share: float, torque: float, line_load: float = np.nan
+) -> dict[str, float]:
     return {
         "increment": increment,
         "tooth": tooth,
@@ -36,7 +38,9 @@ def test_numbers_and_shares() -> None:
     ]
     found = load_sharing(pairs, [0.0, 80.0, 79.0], (2, 3), teeth=40, copies=2)
     assert found.pairs == Spread(mean=4.0, smallest=2.0, largest=6.0)
-    assert asdict(found.teeth_share) == pytest.approx({"mean": 0.075, "smallest": 0.05, "largest": 0.1})
+    assert asdict(found.teeth_share) == pytest.approx(
+        {"mean": 0.075, "smallest": 0.05, "largest": 0.1}
+    )
     assert found.largest_force_share == 0.5
     assert found.largest_force_N == 50.0 and found.largest_line_load_Nmm == 4.0
     assert found.opposing_torque_share == pytest.approx(0.5 * 20.0 / 120.0)
@@ -45,7 +49,9 @@ def test_numbers_and_shares() -> None:
 
 
 def test_a_run_reports_it() -> None:
-    result = swgpar.run(swgpar.load_design(DESIGN, [*PLANE, "steps.samples=2", "steps.rotation=9"]), RECIPE)
+    result = swgpar.run(
+        swgpar.load_design(DESIGN, [*PLANE, "steps.samples=2", "steps.rotation=9"]), RECIPE
+    )
     found, rows = result.summary.load_sharing, result.summary.increments
     history = {name: values[:rows][-2:] for name, values in result.history.items()}
     assert found.pairs.mean == history["pairs_in_contact"].mean()
@@ -53,7 +59,9 @@ def test_a_run_reports_it() -> None:
     assert 0.0 < found.largest_force_share <= 0.5
     assert found.torque_error < 1e-9
     values = DRIVE.measure(result).values
-    assert {kind.name for kind in LoadSharing.KINDS} <= set(values) and values["sharing.pairs"] == found.pairs.mean
+    assert {kind.name for kind in LoadSharing.KINDS} <= set(values) and values[
+        "sharing.pairs"
+    ] == found.pairs.mean
     assert "load_sharing" in result.plot.names
     assert [axes.get_ylabel() for axes in result.plot.load_sharing().axes] == [
         "share of the force (%)",

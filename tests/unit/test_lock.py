@@ -1,4 +1,5 @@
-"""Locks on results folders: held by a live process, given up by one that was killed; folders without a name."""
+"""Locks on results folders: held by a live process, given up by one that was killed; folders
+without a name."""
 
 from __future__ import annotations
 
@@ -48,7 +49,9 @@ def use(folder: Path) -> None:
 
 
 def test_a_folder_in_use_is_refused(tmp_path: Path, holder: subprocess.Popen[str]) -> None:
-    with pytest.raises(OutputError, match=f"is in use by process {holder.pid} on {platform.node()} since "):
+    with pytest.raises(
+        OutputError, match=f"is in use by process {holder.pid} on {platform.node()} since "
+    ):
         use(tmp_path)
     holder.kill()
     holder.wait()
@@ -79,7 +82,12 @@ def test_the_lock_is_released_after_an_error(tmp_path: Path) -> None:
     ids=["this process", "its number before", "an ended process", "another machine"],
 )
 def test_without_locks_the_record_decides(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, host: str, process: int, begun: int | None, refused: bool
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    host: str,
+    process: int,
+    begun: int | None,
+    refused: bool,
 ) -> None:
     """As on file systems that are mounted without them."""
 
@@ -93,13 +101,17 @@ def test_without_locks_the_record_decides(
     owner.write_text(f"{process}\n{host or here}\n{begun or start}\n", encoding="utf-8")
     if refused:
         name = host or platform.node()
-        with pytest.raises(OutputError, match=f"process {process} on {name} since .*remove .*{lock.OWNER}"):
+        with pytest.raises(
+            OutputError, match=f"process {process} on {name} since .*remove .*{lock.OWNER}"
+        ):
             use(tmp_path)
     else:
         use(tmp_path)
 
 
-def test_a_lock_file_that_cannot_be_opened_is_no_missing_lock(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_lock_file_that_cannot_be_opened_is_no_missing_lock(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def forbidden(*_: object) -> None:
         raise PermissionError(errno.EPERM, "Operation not permitted")
 
@@ -119,18 +131,28 @@ def test_records_of_anything_are_read(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
-def test_two_runs_cannot_write_into_one_folder(tmp_path: Path, holder: subprocess.Popen[str], ranks: int) -> None:
+def test_two_runs_cannot_write_into_one_folder(
+    tmp_path: Path, holder: subprocess.Popen[str], ranks: int
+) -> None:
     for more in ((), ("--restart",), ("--overwrite",)):
         done = execute(run_command(tmp_path, *more, ranks=ranks), timeout=120.0)
         (sentence,) = done.stderr.splitlines()
         assert done.returncode == 4
-        assert sentence.startswith(f"swgpar: error: {tmp_path} is in use by process {holder.pid} on ")
+        assert sentence.startswith(
+            f"swgpar: error: {tmp_path} is in use by process {holder.pid} on "
+        )
     assert sorted(path.name for path in tmp_path.iterdir()) == [lock.NAME]
 
 
 @pytest.mark.parametrize("command", ["run", "study", "mesh"])
 def test_a_folder_needs_a_name(tmp_path: Path, command: str) -> None:
     mesh = ["--mesh", RECIPE] if command != "study" else []
-    done = execute([*on_ranks(1), *swgpar(command, DESIGN, *mesh, "--out", "")], cwd=tmp_path, timeout=120.0)
+    done = execute(
+        [*on_ranks(1), *swgpar(command, DESIGN, *mesh, "--out", "")], cwd=tmp_path, timeout=120.0
+    )
     (sentence,) = done.stderr.splitlines()
-    assert done.returncode == 2 and 'out = "" names no folder' in sentence and not list(tmp_path.iterdir())
+    assert (
+        done.returncode == 2
+        and 'out = "" names no folder' in sentence
+        and not list(tmp_path.iterdir())
+    )

@@ -27,12 +27,15 @@ def test_coordinates_of_the_strain_energy() -> None:
     compliance[:3, :3] = -NU / E
     np.fill_diagonal(compliance, [1.0 / E] * 3 + [2.0 * (1.0 + NU) / E] * 3)
     expected = 0.5 * np.einsum("knc,cd,knd->n", stress.conj(), compliance, stress).real
-    assert (energy_coordinates(stress, Isotropic(E=E, nu=NU)) ** 2).sum(axis=1) == pytest.approx(expected, rel=1e-12)
+    assert (energy_coordinates(stress, Isotropic(E=E, nu=NU)) ** 2).sum(axis=1) == pytest.approx(
+        expected, rel=1e-12
+    )
 
 
 def test_mass_matrices_of_a_box() -> None:
     box = np.array(
-        [[0, 0, 0], [2, 0, 0], [2, 3, 0], [0, 3, 0], [0, 0, 4], [2, 0, 4], [2, 3, 4], [0, 3, 4]], dtype=float
+        [[0, 0, 0], [2, 0, 0], [2, 3, 0], [0, 3, 0], [0, 0, 4], [2, 0, 4], [2, 3, 4], [0, 3, 4]],
+        dtype=float,
     )
     solid, flat = mass_matrices(box[None], None)[0], mass_matrices(box[None, :4], 10.0)[0]
     assert solid.sum() == pytest.approx(24.0) and flat.sum() == pytest.approx(60.0)
@@ -55,8 +58,9 @@ def test_share_of_the_force_without_a_known_contact() -> None:
 def test_hysteresis_of_a_ring_between_two_forces() -> None:
     """A thin ring of radius R under two opposite forces P bends by P R / 2 (2 / pi - |sin|).
 
-    Harmonic n of the moment is 2 P R / pi / (n^2 - 1), so that the torque is 4 P^2 R^3 / (pi E I) times the sum of
-    n / (n^2 - 1)^2 over even n. The stress is averaged at the nodes of four elements through the thickness.
+    Harmonic n of the moment is 2 P R / pi / (n^2 - 1), so that the torque is 4 P^2 R^3 / (pi E I)
+    times the sum of n / (n^2 - 1)^2 over even n. The stress is averaged at the nodes of four
+    elements through the thickness.
     """
     design = PlainRingDesign(136.0, 2.0, 10.0, plane=True, material=Isotropic(E=E, nu=NU))
     radius = 67.0
@@ -74,7 +78,9 @@ def test_hysteresis_of_a_ring_between_two_forces() -> None:
 def test_losses_of_a_run() -> None:
     """They add up, follow their coefficients, and need a sampled period."""
     sampled = [*PLANE, "steps.samples=2", "steps.rotation=9"]
-    one = swgpar.run(swgpar.load_design(DESIGN, [*sampled, "losses.loss_factor=1e-3"]), RECIPE).summary.losses
+    one = swgpar.run(
+        swgpar.load_design(DESIGN, [*sampled, "losses.loss_factor=1e-3"]), RECIPE
+    ).summary.losses
     more = ["losses.loss_factor=2e-3", "losses.bearing_friction=0.003", "losses.flank_friction=0.1"]
     other = swgpar.run(swgpar.load_design(DESIGN, [*sampled, *more]), RECIPE).summary.losses
     assert one.loss_torque_Nmm == pytest.approx(sum(asdict(one.parts_Nmm).values()))
@@ -84,22 +90,33 @@ def test_losses_of_a_run() -> None:
     useful = 200.0 * 2.0 / 40.0
     assert one.efficiency == pytest.approx(useful / (useful + one.loss_torque_Nmm))
     assert one.no_load_torque_Nmm is None
-    free = swgpar.run(swgpar.load_design(DESIGN, [*sampled, "load.torque=0", *more]), RECIPE).summary.losses
+    free = swgpar.run(
+        swgpar.load_design(DESIGN, [*sampled, "load.torque=0", *more]), RECIPE
+    ).summary.losses
     assert free.efficiency is None and free.no_load_torque_Nmm == free.loss_torque_Nmm > 0.0
     with pytest.raises(InputError, match=r"\[losses\] is not available with steps.samples = 0"):
         swgpar.run(swgpar.load_design(DESIGN, [*PLANE, *more]), RECIPE, plain=True)
 
 
 def test_friction_of_the_flanks_is_what_the_input_torque_gains() -> None:
-    """The work of friction by forces and sliding speeds, against the energy balance of a run with friction.
+    """The work of friction by forces and sliding speeds, against the energy balance of a run with
+    friction.
 
-    The ring gear is the output: its torque is conjugate to its rotation. Eight angles change either mean by 3 %, less
-    where the input torque of a run without friction is subtracted.
+    The ring gear is the output: its torque is conjugate to its rotation. Eight angles change either
+    mean by 3 %, less where the input torque of a run without friction is subtracted.
     """
-    sampled = [*PLANE, "drive.layout=spline_fixed", "steps.samples=8", "steps.rotation=18", "losses.flank_friction=0.1"]
+    sampled = [
+        *PLANE,
+        "drive.layout=spline_fixed",
+        "steps.samples=8",
+        "steps.rotation=18",
+        "losses.flank_friction=0.1",
+    ]
     means = {}
     for friction in (0.0, 0.1):
-        found = swgpar.run(swgpar.load_design(DESIGN, [*sampled, f"contact.friction={friction}"]), RECIPE).summary
+        found = swgpar.run(
+            swgpar.load_design(DESIGN, [*sampled, f"contact.friction={friction}"]), RECIPE
+        ).summary
         means[friction] = found["mean.wg_torque_Nmm"].value
         assert found.losses.flank_friction_coefficient == 0.1
     assert found.losses.parts_Nmm.flank_friction == pytest.approx(means[0.1] - means[0.0], rel=0.03)

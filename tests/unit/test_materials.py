@@ -1,4 +1,5 @@
-"""Laws of materials: matrices, contact of two materials, rings of two materials, and a law added as documented."""
+"""Laws of materials: matrices, contact of two materials, rings of two materials, and a law added as
+documented."""
 
 from __future__ import annotations
 
@@ -35,21 +36,30 @@ def test_the_closed_forms_of_the_isotropic_law_are_inverses_of_its_compliance(nu
 
 @pytest.mark.parametrize("plane_stress", [False, True])
 def test_two_cylinders_of_two_materials(plane_stress: bool) -> None:
-    """Johnson, Contact Mechanics, 4.2: p0 = sqrt(P E* / (pi R)), 1 / E* = sum of (1 - nu²) / E, and 1 / R of 1 / Ri."""
+    """Johnson, Contact Mechanics, 4.2: p0 = sqrt(P E* / (pi R)), 1 / E* = sum of (1 - nu²) / E, and
+    1 / R of 1 / Ri."""
     radii, load = (2.0, 5.0), 40.0
     radius = 1.0 / sum(1.0 / r for r in radii)
-    shares = (1.0 / 210e3, 1.0 / 70e3) if plane_stress else ((1.0 - 0.29**2) / 210e3, (1.0 - 0.33**2) / 70e3)
+    shares = (
+        (1.0 / 210e3, 1.0 / 70e3)
+        if plane_stress
+        else ((1.0 - 0.29**2) / 210e3, (1.0 - 0.33**2) / 70e3)
+    )
     modulus = contact_modulus(STEEL, ALUMINIUM, plane_stress=plane_stress)
     assert modulus == pytest.approx(1.0 / sum(shares), rel=1e-14)
     found = line_contact(lambda x: sum(0.5 * x**2 / r for r in radii), 0.0, 0.05, load, modulus)
     assert found.peak == pytest.approx(np.sqrt(load / sum(shares) / (np.pi * radius)), rel=2e-3)
-    assert found.half_width == pytest.approx(np.sqrt(4.0 * load * radius * sum(shares) / np.pi), rel=0.01)
+    assert found.half_width == pytest.approx(
+        np.sqrt(4.0 * load * radius * sum(shares) / np.pi), rel=0.01
+    )
 
 
 def test_two_rings_of_two_materials() -> None:
-    """A steel ring in one of aluminium under inner pressure, in plane stress: displacements by Lamé's equations.
+    """A steel ring in one of aluminium under inner pressure, in plane stress: displacements by
+    Lamé's equations.
 
-    The radial displacement is A r + B / r in each ring, with the stress E / (1 - nu²) ((1 + nu) A - (1 - nu) B / r²).
+    The radial displacement is A r + B / r in each ring, with the stress E / (1 - nu²) ((1 + nu) A -
+    (1 - nu) B / r²).
     """
     a = 3.0
     b = 5.0
@@ -59,7 +69,9 @@ def test_two_rings_of_two_materials() -> None:
     points, quads, fixed, flat = arc(np.linspace(0.0, 0.5 * np.pi, 2 * n + 1), radii, True)
     mesh = ElementMesh(points, quads, STEEL)
     outer = np.hypot(*points[quads].mean(axis=1)[:, :2].T) > b
-    for matrices, other in zip(mesh.reference, element_matrices(points[quads[outer]], ALUMINIUM, 1.0)):
+    for matrices, other in zip(
+        mesh.reference, element_matrices(points[quads[outer]], ALUMINIUM, 1.0)
+    ):
         matrices[outer] = other
     fixed[:, 2] = True
     inner = flat[:, 1] < a + 1e-9
@@ -99,7 +111,8 @@ def test_bodies_fall_back_on_the_material_of_the_drive() -> None:
 
 
 def test_a_law_is_added_as_the_page_says(tmp_path: Path) -> None:
-    """The file and the registry of the page, in a copy of the package: a patch test and a design with that law."""
+    """The file and the registry of the page, in a copy of the package: a patch test and a design
+    with that law."""
     law, registry = examples(PAGE, "python")
     package = tmp_path / "swgpar"
     shutil.copytree(ROOT / "swgpar", package, ignore=shutil.ignore_patterns("__pycache__"))
@@ -113,7 +126,13 @@ def test_a_law_is_added_as_the_page_says(tmp_path: Path) -> None:
     text = DESIGN.read_text(encoding="utf-8") + "\n" + section
     (tmp_path / "design.toml").write_text(text, encoding="utf-8")
     paths = os.pathsep.join([str(tmp_path), str(ROOT / "tests")])
-    check = [sys.executable, str(ROOT / "tests" / "support" / "own_law.py"), str(tmp_path / "design.toml")]
+    check = [
+        sys.executable,
+        str(ROOT / "tests" / "support" / "own_law.py"),
+        str(tmp_path / "design.toml"),
+    ]
     environment = os.environ | {"PYTHONPATH": paths}
-    done = subprocess.run(check, env=environment, cwd=tmp_path, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        check, env=environment, cwd=tmp_path, capture_output=True, text=True, check=False
+    )
     assert done.returncode == 0, done.stderr[-2000:]

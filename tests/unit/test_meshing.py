@@ -1,4 +1,5 @@
-"""Meshes: closed-form volumes, conforming sectors, positive Jacobians, exact flanks, recipes and exports."""
+"""Meshes: closed-form volumes, conforming sectors, positive Jacobians, exact flanks, recipes and
+exports."""
 
 from __future__ import annotations
 
@@ -34,21 +35,33 @@ SMALL = (
     *(
         f"{gear}.profile.{key}={radius}"
         for gear in GEARS
-        for key, radius in (("r_tip", 0.3), ("straight_l", 0.2), ("r_dedendum", 2.0), ("r_root", 0.3))
+        for key, radius in (
+            ("r_tip", 0.3),
+            ("straight_l", 0.2),
+            ("r_dedendum", 2.0),
+            ("r_root", 0.3),
+        )
     ),
 )
 # section 6.5.4, and involutes of both cutters; their tip edges are sharp
 DOUBLE_ARC = tuple(
     item
     for gear in GEARS
-    for item in (f"{gear}.profile={{type='double_arc', r_addendum=1.0, r_dedendum=0.6}}", f"{gear}.c_l=0.0")
+    for item in (
+        f"{gear}.profile={{type='double_arc', r_addendum=1.0, r_dedendum=0.6}}",
+        f"{gear}.c_l=0.0",
+    )
 )
 INVOLUTE = (
     "flexible_spline.profile={type='involute', cutter_radius=0.2}",
     "ring_gear.profile={type='involute', cutter_radius=0.2, cutter_teeth=80}",
     "ring_gear.c_P=1.0",
 )
-SHIFTED = ("flexible_spline.profile.shift=0.3", "ring_gear.profile.shift=0.35", "ring_gear.profile.pressure_angle=20.4")
+SHIFTED = (
+    "flexible_spline.profile.shift=0.3",
+    "ring_gear.profile.shift=0.35",
+    "ring_gear.profile.pressure_angle=20.4",
+)
 
 
 @lru_cache
@@ -110,7 +123,11 @@ def section_area(case: DriveDesign, gear: str) -> float:
     along_flank = -0.5 * np.sum(x[:-1] * y[1:] - x[1:] * y[:-1])
     land, root = profile.polar_angle(0.0)[0], half - profile.polar_angle(profile.length)[0]
     teeth = 2.0 * along_flank + profile.r_tip_circle**2 * land + profile.r_root_circle**2 * root
-    free = case.inner_radius if gear == "flexible_spline" else profile.r_root_circle + case.ring_gear.rim
+    free = (
+        case.inner_radius
+        if gear == "flexible_spline"
+        else profile.r_root_circle + case.ring_gear.rim
+    )
     return abs(teeth - free**2 * half)
 
 
@@ -119,7 +136,9 @@ def cup_volume(case: DriveDesign) -> float:
     outer, inner = cup.fillet_radius, cup.fillet_radius - t
     r_centre = case.inner_radius + t - outer
     cylinder = np.pi * ((case.inner_radius + t) ** 2 - case.inner_radius**2) * (cup.length - outer)
-    fillet = 2.0 * np.pi * (r_centre * np.pi / 4.0 * (outer**2 - inner**2) + (outer**3 - inner**3) / 3.0)
+    fillet = (
+        2.0 * np.pi * (r_centre * np.pi / 4.0 * (outer**2 - inner**2) + (outer**3 - inner**3) / 3.0)
+    )
     return cylinder + fillet + np.pi * (r_centre**2 - cup.inner_radius**2) * t
 
 
@@ -133,7 +152,12 @@ def test_fillet_at_the_back_of_the_teeth(recipe: str, radius: float) -> None:
     assert mesh.quality["min_scaled_jacobian"] > 0.3
     back, wall = 0.5 * case.drive.face_width, case.inner_radius + case.cup_thickness
     r, z = np.hypot(*mesh.coords[:, :2].T), mesh.coords[:, 2]
-    on = (r > wall - 1e-9) & (r < wall + radius + 1e-9) & (z > back - 1e-9) & (z < back + radius + 1e-9)
+    on = (
+        (r > wall - 1e-9)
+        & (r < wall + radius + 1e-9)
+        & (z > back - 1e-9)
+        & (z < back + radius + 1e-9)
+    )
     assert np.count_nonzero(on) >= (20 if recipe == "full" else 3)
     assert np.hypot(r[on] - wall - radius, z[on] - back - radius) == pytest.approx(radius, rel=1e-9)
     if recipe == "full":  # others have no layer of nodes between the corner and the root
@@ -145,7 +169,9 @@ def test_fillet_at_the_back_of_the_teeth(recipe: str, radius: float) -> None:
 
 
 @pytest.mark.parametrize(("recipe", "overrides"), CASES)
-def test_jacobians_are_positive_and_elements_are_good(recipe: Path, overrides: tuple[str, ...]) -> None:
+def test_jacobians_are_positive_and_elements_are_good(
+    recipe: Path, overrides: tuple[str, ...]
+) -> None:
     for mesh in meshes(recipe, *overrides).values():
         assert mesh.quality == hex_quality(mesh.coords, mesh.hexes)
         assert mesh.quality["min_jacobian"] > 0.0
@@ -155,7 +181,8 @@ def test_jacobians_are_positive_and_elements_are_good(recipe: Path, overrides: t
 
 @pytest.mark.parametrize("recipe", CUP_RECIPES)
 def test_double_arcs_in_finer_recipes(recipe: str) -> None:
-    # elements of the top land narrow towards the tooth's inside: less well shaped than with rounded tip edges
+    # elements of the top land narrow towards the tooth's inside: less well shaped than with rounded
+    # tip edges
     for mesh in meshes(recipe, *DOUBLE_ARC).values():
         assert mesh.quality["min_jacobian"] > 0.0 and mesh.quality["min_scaled_jacobian"] > 0.4
 
@@ -169,7 +196,9 @@ def test_a_sharp_trapezoidal_tooth_can_be_meshed(external: bool) -> None:
     segment = Segment("straight", (t[0], t[1]), direction, 0.0, float(np.hypot(*(r - t))))
     profile = ToothProfile((segment,), external, float(np.hypot(*t)), float(np.hypot(*r)), 60)
     recipe = load_recipe("full").flexible_spline
-    section = cross_section(profile, recipe, float(np.hypot(*r)) - 0.6 * side, float(np.hypot(*r)) - side)
+    section = cross_section(
+        profile, recipe, float(np.hypot(*r)) - 0.6 * side, float(np.hypot(*r)) - side
+    )
     x = section.coords[section.quads]
     after, before = np.roll(x, -1, axis=1) - x, np.roll(x, 1, axis=1) - x
     area = after[..., 0] * before[..., 1] - after[..., 1] * before[..., 0]
@@ -188,7 +217,9 @@ def test_sectors_conform(recipe: Path, overrides: tuple[str, ...]) -> None:
         half = np.pi / mesh.n_sectors
         assert np.all(np.abs(angle) <= half * (1.0 + 1e-12))
         for side, nodes in ((half, mesh.ccw_nodes), (-half, mesh.cw_nodes)):
-            assert np.array_equal(np.sort(nodes), np.flatnonzero(np.abs(angle - side) < 1e-9 * half))
+            assert np.array_equal(
+                np.sort(nodes), np.flatnonzero(np.abs(angle - side) < 1e-9 * half)
+            )
 
 
 @pytest.mark.parametrize(("recipe", "overrides"), CASES)
@@ -224,7 +255,11 @@ def test_named_faces_look_out_of_the_material(recipe: Path, overrides: tuple[str
     case = design(*overrides)
     for gear, mesh in meshes(recipe, *overrides).items():
         name, direction = ("inner", -1.0) if gear == "flexible_spline" else ("outer", 1.0)
-        radius = case.inner_radius if gear == "flexible_spline" else mesh.profile.r_root_circle + case.ring_gear.rim
+        radius = (
+            case.inner_radius
+            if gear == "flexible_spline"
+            else mesh.profile.r_root_circle + case.ring_gear.rim
+        )
         assert set(mesh.faces) == ({name, "end"} if gear == "flexible_spline" else {name})
         x = mesh.coords[mesh.faces[name]]
         assert np.allclose(np.hypot(x[..., 0], x[..., 1]), radius, rtol=1e-13)
@@ -255,10 +290,14 @@ def test_node_sets() -> None:
     bore = both["flexible_spline"].coords[both["flexible_spline"].node_sets["bore"]]
     assert np.allclose(np.hypot(bore[:, 0], bore[:, 1]), case.cup.inner_radius, rtol=1e-13)
     end = 0.5 * case.drive.face_width + case.cup.length
-    assert bore[:, 2].max() == pytest.approx(end) and bore[:, 2].min() == pytest.approx(end - case.cup_thickness)
+    assert bore[:, 2].max() == pytest.approx(end) and bore[:, 2].min() == pytest.approx(
+        end - case.cup_thickness
+    )
     ring = both["ring_gear"]
     radius = np.hypot(ring.coords[:, 0], ring.coords[:, 1])
-    assert np.array_equal(ring.node_sets["outer"], np.flatnonzero(radius > radius.max() * (1.0 - 1e-9)))
+    assert np.array_equal(
+        ring.node_sets["outer"], np.flatnonzero(radius > radius.max() * (1.0 - 1e-9))
+    )
     assert (both["flexible_spline"].phase, ring.phase) == (0.0, np.pi / 122)
 
 
@@ -278,7 +317,8 @@ def test_section_area_converges_quadratically(gear: str) -> None:
         corners = section.coords[section.quads]
         errors.append(abs(sum(polygon_area(quad) for quad in corners) - exact) / exact)
     assert errors[0] < 0.02
-    # chords outside hollows and inside bulges cancel in part, so look at the whole way: quadratic is 64 times
+    # chords outside hollows and inside bulges cancel in part, so look at the whole way: quadratic
+    # is 64 times
     assert errors[-1] < errors[0] / 50.0, errors
 
 
@@ -302,14 +342,19 @@ def test_volumes_match_closed_forms(thickness_coef: float) -> None:
 def test_joined_columns_leave_the_teeth_and_the_surfaces_of_the_wall() -> None:
     recipe = load_recipe("medium")
     cup = recipe.cup.model_copy(update={"joined_columns": False})
-    plain = build_sector_meshes(design().geometry, recipe.model_copy(update={"cup": cup}))["flexible_spline"]
+    plain = build_sector_meshes(design().geometry, recipe.model_copy(update={"cup": cup}))[
+        "flexible_spline"
+    ]
     joined = meshes("medium")["flexible_spline"]
     assert 0.7 < len(joined.coords) / len(plain.coords) < 0.8
     behind = 0.5 * design().drive.face_width + np.pi * design().drive.module
     near = [mesh.coords[mesh.coords[:, 2] < behind] for mesh in (plain, joined)]
     assert np.array_equal(*near)
     far = [
-        np.unique(np.round(np.column_stack([np.hypot(*mesh.coords[:, :2].T), mesh.coords[:, 2]]), 6), axis=0)
+        np.unique(
+            np.round(np.column_stack([np.hypot(*mesh.coords[:, :2].T), mesh.coords[:, 2]]), 6),
+            axis=0,
+        )
         for mesh in (plain, joined)
     ]
     # but for the nodes inside of the transition
@@ -325,7 +370,8 @@ def test_crowning_leaves_everything_but_the_teeth() -> None:
     assert moved[radius < 59.0 + 1e-9].max() < 1e-12
     assert moved[radius > plain.profile.r_tip_circle * (1.0 - 1e-12)].max() < 1e-12
     assert moved[np.abs(plain.coords[:, 2]) < 1e-12].max() < 1e-12
-    # the inside of the tooth follows: its outermost free nodes move by more than half of the flank's way
+    # the inside of the tooth follows: its outermost free nodes move by more than half of the
+    # flank's way
     tooth = (np.abs(plain.coords[:, 2]) == 5.0) & (np.abs(radius - 60.0) < 0.1)
     assert np.count_nonzero(moved[tooth] > 0.02) > 4
 
@@ -344,7 +390,9 @@ def test_full_recipe_is_graded_as_in_table_4_2() -> None:
     case = design()
     for gear, mesh in meshes("full").items():
         counts = getattr(recipe, gear)
-        section = cross_section(case.profile(gear), counts, *((59.0, 58.2) if mesh.phase == 0 else (62.8, 63.8)))
+        section = cross_section(
+            case.profile(gear), counts, *((59.0, 58.2) if mesh.phase == 0 else (62.8, 63.8))
+        )
         root_land = 1  # from R to the middle of the root
         assert len(mesh.flanks[0].s) - 1 + root_land == 21
         assert len(section.free) - 1 >= 10
@@ -366,7 +414,10 @@ def test_nodes_lie_at_the_ends_of_a_narrow_wave_generator() -> None:
                 assert (z[0], z[-1]) == (-5.0, 5.0)
                 assert np.allclose(z, -z[::-1], atol=1e-15)
                 if n > 2 and inner < 10.0:
-                    assert np.abs(z - 0.5 * inner).min() < 1e-14 and np.abs(z + 0.5 * inner).min() < 1e-14
+                    assert (
+                        np.abs(z - 0.5 * inner).min() < 1e-14
+                        and np.abs(z + 0.5 * inner).min() < 1e-14
+                    )
     grid = meshes("full", "wave_generator.face_width=6.0")["flexible_spline"].flanks[0]
     assert np.abs(grid.z - 3.0).min() < 1e-14
 
@@ -393,7 +444,9 @@ def test_meshes_scale_with_the_unit_system() -> None:
     for gear, metres in meshes("coarse", *overrides).items():
         millimetres = meshes("coarse")[gear]
         assert np.array_equal(metres.hexes, millimetres.hexes)
-        assert np.allclose(metres.coords, scale * millimetres.coords, rtol=0.0, atol=1e-12 * scale * 60.0)
+        assert np.allclose(
+            metres.coords, scale * millimetres.coords, rtol=0.0, atol=1e-12 * scale * 60.0
+        )
 
 
 # the wall of forces and medium has joined columns; a thick cup continues more layers
@@ -411,9 +464,13 @@ def test_whole_drive_is_watertight(recipe: Path, overrides: tuple[str, ...]) -> 
         coords, hexes = whole_body(mesh)
         assert len(coords) == mesh.n_sectors * (len(mesh.coords) - len(mesh.ccw_nodes))
         assert hex_volumes(coords, hexes).min() > 0.0
-        sides = np.array([(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)])
+        sides = np.array(
+            [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
+        )
         faces = hexes[:, sides].reshape(-1, 4)
-        _, index, times = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
+        _, index, times = np.unique(
+            np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True
+        )
         assert times.max() == 2
         skin = faces[index[times == 1]]
         edges = np.stack((skin, np.roll(skin, -1, axis=1)), axis=-1).reshape(-1, 2)
@@ -434,14 +491,20 @@ def test_whole_drive_is_watertight(recipe: Path, overrides: tuple[str, ...]) -> 
         ("elements = 2", "elements = 1", ("face_width.elements = 1", "2 to 400")),
         ("tip = 2", "tip = 1", ("flexible_spline.tip = 1", "2 to 40")),
         ("flank = 2", "flank = true", ("flexible_spline.flank = true", "whole number")),
-        ("layers = 1", "layers = 1\nlayer_ratio = 0.5", ("flexible_spline.layer_ratio = 0.5", "1 to 3")),
+        (
+            "layers = 1",
+            "layers = 1\nlayer_ratio = 0.5",
+            ("flexible_spline.layer_ratio = 0.5", "1 to 3"),
+        ),
         ("rim = 1\n", "", ("flexible_spline.rim is missing",)),
         ("[face_width]\nelements = 2\n", "[face_width]\n", ("face_width.elements is missing",)),
         ("[face_width]\nelements = 2\n", "face_width = 3\n", ("ring_gear.face_width = 3",)),
         ("[cup]", "[cup", ("not valid TOML",)),
     ],
 )
-def test_bad_recipes_are_refused_in_one_sentence(tmp_path: Path, old: str, new: str, words: tuple[str, ...]) -> None:
+def test_bad_recipes_are_refused_in_one_sentence(
+    tmp_path: Path, old: str, new: str, words: tuple[str, ...]
+) -> None:
     path = tmp_path / "recipe.toml"
     good = RECIPE.read_text()
     assert old in good
@@ -453,7 +516,8 @@ def test_bad_recipes_are_refused_in_one_sentence(tmp_path: Path, old: str, new: 
 
 
 @pytest.mark.parametrize(
-    ("section", "text"), [("face_width", "[face_width]\nelements = 2\n"), ("cup", "[cup]\ncylinder = 2\n")]
+    ("section", "text"),
+    [("face_width", "[face_width]\nelements = 2\n"), ("cup", "[cup]\ncylinder = 2\n")],
 )
 def test_a_cup_needs_all_sections_of_a_recipe(tmp_path: Path, section: str, text: str) -> None:
     path = tmp_path / "recipe.toml"
@@ -492,7 +556,9 @@ def test_exports_read_back(tmp_path: Path) -> None:
         assert np.array_equal(back.cells_dict["hexahedron"], drive.cells_dict["hexahedron"])
     marks = meshio.read(files[0]).point_data
     assert set(marks) == set(drive.point_sets)
-    assert np.array_equal(np.flatnonzero(marks["flexible_spline_bore"]), drive.point_sets["flexible_spline_bore"])
+    assert np.array_equal(
+        np.flatnonzero(marks["flexible_spline_bore"]), drive.point_sets["flexible_spline_bore"]
+    )
     physical = meshio.read(files[1]).cell_data_dict["gmsh:physical"]["hexahedron"]
     assert np.bincount(physical)[1:].tolist() == [len(m.hexes) * m.n_sectors for m in both.values()]
     assert "TYPE=C3D8I" in files[2].read_text()
@@ -513,7 +579,9 @@ def test_report_counts_the_full_drive() -> None:
     report = mesh_report(both)
     drive = whole_drive(both)
     assert sum(entry["nodes"] for entry in report.values()) == len(drive.points)
-    assert sum(entry["elements"] for entry in report.values()) == sum(len(block.data) for block in drive.cells)
+    assert sum(entry["elements"] for entry in report.values()) == sum(
+        len(block.data) for block in drive.cells
+    )
     assert all(entry["min_jacobian"] > 0.0 and entry["volume"] > 0.0 for entry in report.values())
 
 
@@ -528,7 +596,8 @@ PLANE_CASES += [pytest.param(name, (), id=name) for name in ("plane", "plane_coa
 
 @pytest.mark.parametrize(("recipe", "overrides"), PLANE_CASES)
 def test_plane_sectors(recipe: Path, overrides: tuple[str, ...]) -> None:
-    """Two layers of the same nodes, of which one moves with the other; the quadrilaterals fill the exact section."""
+    """Two layers of the same nodes, of which one moves with the other; the quadrilaterals fill the
+    exact section."""
     case = plane_design(*overrides)
     for gear, mesh in plane_meshes(recipe, *overrides).items():
         lower = np.unique(mesh.lower_nodes)
@@ -547,8 +616,12 @@ def test_plane_sectors(recipe: Path, overrides: tuple[str, ...]) -> None:
         # of the section: the thickness does not enter
         assert 1.0 <= quality["max_aspect_ratio"] < 15.0
         solid = hex_quality(mesh.coords, mesh.hexes)
-        assert 0.5 * case.drive.face_width * quality["min_jacobian"] == pytest.approx(solid["min_jacobian"], rel=1e-9)
-        assert quality["min_scaled_jacobian"] == pytest.approx(solid["min_scaled_jacobian"], rel=1e-9)
+        assert 0.5 * case.drive.face_width * quality["min_jacobian"] == pytest.approx(
+            solid["min_jacobian"], rel=1e-9
+        )
+        assert quality["min_scaled_jacobian"] == pytest.approx(
+            solid["min_scaled_jacobian"], rel=1e-9
+        )
 
 
 def test_quality_of_a_trapezium() -> None:
@@ -565,7 +638,9 @@ def test_quality_of_a_trapezium() -> None:
 @pytest.mark.parametrize("rim", [0.2, 1.0, 5.0, 20.0, 100.0])
 def test_rims_of_any_thickness_are_meshed(rim: float) -> None:
     """In modules, of the ring gear; the module is 1 mm."""
-    mesh = build_sector_meshes(plane_design(f"ring_gear.rim={rim}").geometry, load_recipe("plane_coarse"))["ring_gear"]
+    mesh = build_sector_meshes(
+        plane_design(f"ring_gear.rim={rim}").geometry, load_recipe("plane_coarse")
+    )["ring_gear"]
     assert mesh.quality["min_scaled_jacobian"] > 0.5
 
 
@@ -577,29 +652,38 @@ def coarsest(**counts: float) -> MeshRecipe:
 
 def test_an_inverted_quadrilateral_is_refused() -> None:
     """Forty layers below the flank reach into a row of elements of a hundredth of the rim."""
-    with pytest.raises(InputError, match=r"^flexible_spline has an element .* \(Jacobian -.* mm2\), with tip = 2"):
+    with pytest.raises(
+        InputError, match=r"^flexible_spline has an element .* \(Jacobian -.* mm2\), with tip = 2"
+    ):
         build_sector_meshes(plane_design().geometry, coarsest(layers=40, rim=100))
 
 
 def test_what_gmsh_cannot_mesh_is_refused() -> None:
     """The thinnest of the layers is 3^-40 of the thickest one."""
-    with pytest.raises(InputError, match=r"^flexible_spline cannot be meshed, with .* layer_ratio = 3, .*: allowed"):
+    with pytest.raises(
+        InputError, match=r"^flexible_spline cannot be meshed, with .* layer_ratio = 3, .*: allowed"
+    ):
         build_sector_meshes(plane_design().geometry, coarsest(layers=40, layer_ratio=3.0))
     build_sector_meshes(plane_design().geometry, coarsest())
 
 
-@pytest.mark.parametrize(("name", "low", "high"), [("plane", 45_000, 49_000), ("plane_coarse", 22_000, 24_000)])
+@pytest.mark.parametrize(
+    ("name", "low", "high"), [("plane", 45_000, 49_000), ("plane_coarse", 22_000, 24_000)]
+)
 def test_plane_recipes_have_the_announced_size(name: str, low: int, high: int) -> None:
     both = plane_meshes(name)
     assert low <= sum(len(mesh.hexes) * mesh.n_sectors for mesh in both.values()) <= high
 
 
 def test_whole_plane_drive_is_closed() -> None:
-    """Every edge inside belongs to two quadrilaterals, counter-clockwise ones; two circles of edges are left."""
+    """Every edge inside belongs to two quadrilaterals, counter-clockwise ones; two circles of edges
+    are left."""
     for mesh in plane_meshes(RECIPE, *SMALL).values():
         coords, quads = whole_body(mesh)
         assert len(coords) == mesh.n_sectors * (len(mesh.coords) - len(mesh.ccw_nodes)) // 2
-        assert np.array_equal(np.unique(quads), np.arange(len(coords))) and np.all(coords[:, 2] == 0.0)
+        assert np.array_equal(np.unique(quads), np.arange(len(coords))) and np.all(
+            coords[:, 2] == 0.0
+        )
         assert min(polygon_area(quad) for quad in coords[quads][..., :2]) > 0.0
         edges = np.stack((quads, np.roll(quads, -1, axis=1)), axis=-1).reshape(-1, 2)
         forward = {tuple(edge) for edge in edges.tolist()}
@@ -621,14 +705,19 @@ def test_plane_exports_read_back(tmp_path: Path) -> None:
     physical = meshio.read(files[1])
     tags = physical.cell_data_dict["gmsh:physical"]["quad"]
     assert np.bincount(tags)[1:].tolist() == [len(m.hexes) * m.n_sectors for m in both.values()]
-    assert {name: tuple(tag) for name, tag in physical.field_data.items()} == {GEARS[0]: (1, 2), GEARS[1]: (2, 2)}
+    assert {name: tuple(tag) for name, tag in physical.field_data.items()} == {
+        GEARS[0]: (1, 2),
+        GEARS[1]: (2, 2),
+    }
     lines = files[2].read_text().splitlines()
     for gear, mesh in both.items():
         start = lines.index(f"*ELEMENT, TYPE=CPS4, ELSET={gear.upper()}") + 1
         end = next(k for k in range(start, len(lines)) if lines[k].startswith("*"))
         assert end - start == len(mesh.hexes) * mesh.n_sectors
         assert all(line.count(",") == 4 for line in lines[start:end])
-        section = lines.index(f"*SOLID SECTION, ELSET={gear.upper()}, MATERIAL={gear.upper()}_MATERIAL")
+        section = lines.index(
+            f"*SOLID SECTION, ELSET={gear.upper()}, MATERIAL={gear.upper()}_MATERIAL"
+        )
         assert lines[section + 1] == "10"
     report = mesh_report(both)
     assert sum(entry["nodes"] for entry in report.values()) == len(drive.points)

@@ -1,4 +1,5 @@
-"""Optimisation on a gear train of milliseconds: search, restart, failed designs, refusals, files."""
+"""Optimisation on a gear train of milliseconds: search, restart, failed designs, refusals,
+files."""
 
 from __future__ import annotations
 
@@ -20,7 +21,9 @@ def written(folder: Path, **changes: str) -> Path:
     text = OPTIMISATION
     for old, new in changes.items():
         assert f"\n{old} = " in text
-        text = "\n".join(f"{old} = {new}" if line.startswith(f"{old} = ") else line for line in text.splitlines())
+        text = "\n".join(
+            f"{old} = {new}" if line.startswith(f"{old} = ") else line for line in text.splitlines()
+        )
     path = folder / "search.toml"
     path.write_text(text, encoding="utf-8")
     return path
@@ -40,7 +43,11 @@ def test_a_search_goes_on_after_a_restart_and_leaves_its_files(tmp_path: Path) -
         assert (each.status == "failed") == (each.values["gear_1.mass"] <= 0.0)
         if each.status == "infeasible":
             assert each.quantities["damping ratio 1"] > 0.5
-    feasible = {n: each.quantities[FREQUENCY] for n, each in found.evaluations.items() if each.status == "feasible"}
+    feasible = {
+        n: each.quantities[FREQUENCY]
+        for n, each in found.evaluations.items()
+        if each.status == "feasible"
+    }
     (best,) = found.best
     assert feasible[best] == max(feasible.values())
     # the design file of the winner gives what was found
@@ -56,16 +63,23 @@ def test_a_search_goes_on_after_a_restart_and_leaves_its_files(tmp_path: Path) -
 def test_two_objectives_give_a_front_in_a_database(tmp_path: Path) -> None:
     path = written(tmp_path)
     url = f"sqlite:///{tmp_path / 'search.db'}"
-    text = path.read_text(encoding="utf-8").replace("evaluations = 12", f'evaluations = 16\nstorage = "{url}"')
-    path.write_text(f'{text}\n[[optimise.objective]]\nquantity = "damping ratio 2"\n', encoding="utf-8")
+    text = path.read_text(encoding="utf-8").replace(
+        "evaluations = 12", f'evaluations = 16\nstorage = "{url}"'
+    )
+    path.write_text(
+        f'{text}\n[[optimise.objective]]\nquantity = "damping ratio 2"\n', encoding="utf-8"
+    )
     found = swgpar.optimise(path, tmp_path / "out")
     values = {n: found.evaluations[n].quantities for n in found.best}
     for first in values.values():
         assert not any(
-            second[FREQUENCY] > first[FREQUENCY] and second["damping ratio 2"] < first["damping ratio 2"]
+            second[FREQUENCY] > first[FREQUENCY]
+            and second["damping ratio 2"] < first["damping ratio 2"]
             for second in values.values()
         )
-    assert (tmp_path / "search.db").exists() and not (tmp_path / "out" / "optimise.journal").exists()
+    assert (tmp_path / "search.db").exists() and not (
+        tmp_path / "out" / "optimise.journal"
+    ).exists()
 
 
 @pytest.mark.parametrize(
@@ -78,7 +92,9 @@ def test_two_objectives_give_a_front_in_a_database(tmp_path: Path) -> None:
         ({"goal": '"maximize"'}, "maximize"),
     ],
 )
-def test_a_bad_file_is_refused_in_one_sentence(tmp_path: Path, changes: dict[str, str], words: str) -> None:
+def test_a_bad_file_is_refused_in_one_sentence(
+    tmp_path: Path, changes: dict[str, str], words: str
+) -> None:
     with pytest.raises(InputError, match=words) as refusal:
         swgpar.optimise(written(tmp_path, **changes), tmp_path / "out")
     assert "\n" not in str(refusal.value)
@@ -88,7 +104,12 @@ def test_toml_that_is_written_reads_the_same() -> None:
     table: dict[str, Any] = {
         "a": {"x": 1.5e-7, "y": [1, 2], "text": 'quoted "ä"', "on": True, "inner": {"z": -3}},
         "load": {"program": [{"name": "up", "torque": 2.0}, {"name": "down", "torque": 0.0}]},
-        "lists": {"texts": ["a  b", "c, d,", "e\nf"], "more": ["[", "x],"], "nested": [[1, 2], [3.0]], "none": []},
+        "lists": {
+            "texts": ["a  b", "c, d,", "e\nf"],
+            "more": ["[", "x],"],
+            "nested": [[1, 2], [3.0]],
+            "none": [],
+        },
     }
     assert tomllib.loads(to_toml(table)) == table
     assert tomllib.loads(to_toml({**table, "left_out": None})) == table

@@ -1,4 +1,5 @@
-"""The how-to pages about own parts: their steps are taken in a copy of the package, and the part works there."""
+"""The how-to pages about own parts: their steps are taken in a copy of the package, and the part
+works there."""
 
 from __future__ import annotations
 
@@ -25,7 +26,8 @@ plane, folder = sys.argv[1:]
 
 
 def run(overrides={}):
-    design = swgpar.load_design(plane, {"steps.rotation": 0.0, "output.figures": False, **overrides})
+    values = {"steps.rotation": 0.0, "output.figures": False, **overrides}
+    design = swgpar.load_design(plane, values)
     return swgpar.run(design, mesh=recipe, out=folder, progress=False)
 """
 """What the scripts below begin with: a plane drive on a few elements."""
@@ -56,20 +58,33 @@ def patch(path: Path, difference: str) -> None:
 def small_run(folder: Path) -> None:
     """Results of the package as it is."""
     gear = {"tip": 2, "layers": 1, "flank": 2, "root": 2, "under": 1, "rim": 1}
-    design = swgpar.load_design(DRIVERS / "plane_half_turn.toml", {"steps.rotation": 0.0, "output.figures": False})
-    swgpar.run(design, mesh={"flexible_spline": gear, "ring_gear": gear}, out=folder, progress=False)
+    design = swgpar.load_design(
+        DRIVERS / "plane_half_turn.toml", {"steps.rotation": 0.0, "output.figures": False}
+    )
+    swgpar.run(
+        design, mesh={"flexible_spline": gear, "ring_gear": gear}, out=folder, progress=False
+    )
 
 
 def execute(folder: Path, script: str) -> None:
     """Run a script with the package of a folder."""
-    command = [sys.executable, "-c", SMALL + script, str(DRIVERS / "plane_half_turn.toml"), str(folder / "out")]
+    command = [
+        sys.executable,
+        "-c",
+        SMALL + script,
+        str(DRIVERS / "plane_half_turn.toml"),
+        str(folder / "out"),
+    ]
     environment = os.environ | {"PYTHONPATH": str(folder)}
-    done = subprocess.run(command, env=environment, cwd=folder, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        command, env=environment, cwd=folder, capture_output=True, text=True, check=False
+    )
     assert done.returncode == 0, done.stderr[-2000:]
 
 
 def test_own_cam(tmp_path: Path) -> None:
-    """Distances and normals are those to the nearest of many points, and a drive runs on the cam."""
+    """Distances and normals are those to the nearest of many points, and a drive runs on the
+    cam."""
     curve, keys, branch = examples(HOWTO / "own_cam_or_profile.md", "python")
     cams = copied_package(tmp_path) / "geometry" / "cams"
     (cams / "superelliptical.py").write_text(curve, encoding="utf-8")
@@ -120,8 +135,11 @@ assert "residual" not in swgpar.open_result(folder.replace("out", "old")).histor
 
 
 def test_own_answer(tmp_path: Path) -> None:
-    """Both answers are in the summary, in its file, among the quantities and in the report; earlier results open."""
-    field, kind, value, type_import, group, attribute, function_import, call = examples(HOWTO / "own_answer.md", "diff")
+    """Both answers are in the summary, in its file, among the quantities and in the report; earlier
+    results open."""
+    field, kind, value, type_import, group, attribute, function_import, call = examples(
+        HOWTO / "own_answer.md", "diff"
+    )
     (evaluation,) = examples(HOWTO / "own_answer.md", "python")
     package = copied_package(tmp_path)
     for difference in (field, kind, value):

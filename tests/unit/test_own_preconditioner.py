@@ -33,7 +33,9 @@ def test_a_preconditioner_in_python_needs_no_change(tmp_path: Path) -> None:
         "-stiffness_ksp_max_it",
         "50",
     ]
-    command = run_command(tmp_path / "run", *options, overrides=(*PLANE, *SHORT, "solver.max_cutbacks=0"))
+    command = run_command(
+        tmp_path / "run", *options, overrides=(*PLANE, *SHORT, "solver.max_cutbacks=0")
+    )
     done = execute(command, timeout=300.0, PYTHONPATH=f"{ROOT}:{tmp_path}")
     assert done.returncode == 3 and "linear solver (gmres with python)" in done.stderr, done.stderr
 
@@ -49,6 +51,8 @@ def test_a_solver_is_added_as_the_page_says(tmp_path: Path) -> None:
     replace(solvers, line, f"from swgpar.solve.block_jacobi import BlockJacobi\n{line}")
     replace(solvers, r"LINEAR_SOLVERS: [^}]*\}\n", registry)
     replace(sections, r"Literal\[\"direct\", \"iterative\"\]", re.search(r"Literal\[.*?\]", key)[0])
-    command = run_command(tmp_path / "run", overrides=(*PLANE, *SHORT, "solver.linear=block_jacobi"))
+    command = run_command(
+        tmp_path / "run", overrides=(*PLANE, *SHORT, "solver.linear=block_jacobi")
+    )
     done = execute(command, timeout=300.0, cwd=tmp_path, PYTHONPATH=str(tmp_path))
     assert done.returncode == 0, done.stderr

@@ -1,4 +1,5 @@
-"""Contact of half spaces over a patch: Hertz's ellipse wherever the force acts, ends of the bodies."""
+"""Contact of half spaces over a patch: Hertz's ellipse wherever the force acts, ends of the
+bodies."""
 
 from __future__ import annotations
 
@@ -20,7 +21,8 @@ def parabola(short: float, long: float, place: float) -> Gap:
 
 
 def hertz(force: float, short: float, long: float) -> tuple[float, float, float]:
-    """Half length and half width (mm) and largest pressure (MPa) of Hertz's ellipse (Johnson, section 4.2)."""
+    """Half length and half width (mm) and largest pressure (MPa) of Hertz's ellipse (Johnson,
+    section 4.2)."""
 
     def ratio(k: float) -> float:
         m = 1.0 - k**2
@@ -37,7 +39,9 @@ def hertz(force: float, short: float, long: float) -> tuple[float, float, float]
 @pytest.mark.parametrize("width", [0.05, 1.0])
 def test_hertz(short: float, long: float, force: float, place: float, width: float) -> None:
     """The width that is looked at first does not matter."""
-    found = patch_contact(parabola(short, long, place), np.ones_like, ENDS, width, force=force, place=place, modulus=E)
+    found = patch_contact(
+        parabola(short, long, place), np.ones_like, ENDS, width, force=force, place=place, modulus=E
+    )
     half_length, half_width, peak = hertz(force, short, long)
     cell = found.z[1] - found.z[0]
     assert found.pressure.max() == pytest.approx(peak, rel=0.015)
@@ -49,7 +53,9 @@ def test_hertz(short: float, long: float, force: float, place: float, width: flo
 
 
 @pytest.mark.parametrize(("offset", "slope"), [(0.03, 0.0), (0.0, 0.02), (-0.1, 0.05)])
-def test_a_line_of_the_least_gap_beside_the_contact_does_not_matter(offset: float, slope: float) -> None:
+def test_a_line_of_the_least_gap_beside_the_contact_does_not_matter(
+    offset: float, slope: float
+) -> None:
     """The line that is handed over is only where the contact is looked for."""
     found = patch_contact(
         parabola(1.0, 278.0, 0.0),
@@ -63,7 +69,9 @@ def test_a_line_of_the_least_gap_beside_the_contact_does_not_matter(offset: floa
     half_length, half_width, peak = hertz(20.0, 1.0, 278.0)
     assert found.pressure.max() == pytest.approx(peak, rel=0.015)
     assert found.half_width.max() == pytest.approx(half_width, rel=0.05)
-    assert 0.5 * len(found.z) * (found.z[1] - found.z[0]) == pytest.approx(half_length, abs=found.z[1] - found.z[0])
+    assert 0.5 * len(found.z) * (found.z[1] - found.z[0]) == pytest.approx(
+        half_length, abs=found.z[1] - found.z[0]
+    )
     assert found.middle == pytest.approx(1.0, abs=0.1 * half_width)
 
 
@@ -85,7 +93,9 @@ def test_a_tilt_of_the_bodies_does_not_matter() -> None:
 
 
 def test_a_short_body_has_its_largest_pressure_at_its_end() -> None:
-    found = patch_contact(parabola(1.0, 1e5, 0.0), np.ones_like, ENDS, 0.05, force=500.0, place=0.0, modulus=E)
+    found = patch_contact(
+        parabola(1.0, 1e5, 0.0), np.ones_like, ENDS, 0.05, force=500.0, place=0.0, modulus=E
+    )
     assert found.reaches
     assert found.pressure[0] > found.pressure[len(found.z) // 2]
 
@@ -101,5 +111,11 @@ def test_a_body_that_ends_across() -> None:
 def test_no_contact_is_said() -> None:
     with pytest.raises(ArithmeticError, match="no contact was found for a force of 1 N"):
         patch_contact(
-            lambda s, z: np.full_like(s * z, np.inf), np.ones_like, ENDS, 0.05, force=1.0, place=0.0, modulus=E
+            lambda s, z: np.full_like(s * z, np.inf),
+            np.ones_like,
+            ENDS,
+            0.05,
+            force=1.0,
+            place=0.0,
+            modulus=E,
         )

@@ -28,7 +28,9 @@ def cup() -> tuple[DriveDesign, SectorMesh]:
     return design, build_sector(design.geometry, load_recipe("coarse"), "flexible_spline")
 
 
-def regions(cup: tuple[DriveDesign, SectorMesh], nodes: np.ndarray, touched: bool = False) -> set[str]:
+def regions(
+    cup: tuple[DriveDesign, SectorMesh], nodes: np.ndarray, touched: bool = False
+) -> set[str]:
     return {region_of(*cup, int(node), touched) for node in nodes}
 
 
@@ -42,7 +44,9 @@ def test_regions_of_the_cup(cup: tuple[DriveDesign, SectorMesh]) -> None:
     assert regions(cup, wall) == {"cup wall"}
     end = half + design.cup.length
     assert regions(cup, np.flatnonzero(z > half)) == {"cup wall", "fillet", "closed end", "bore"}
-    assert regions(cup, np.flatnonzero((z == z.max()) & (radius > 40.0) & (radius < 50.0))) == {"closed end"}
+    assert regions(cup, np.flatnonzero((z == z.max()) & (radius > 40.0) & (radius < 50.0))) == {
+        "closed end"
+    }
     assert z.max() == pytest.approx(end)
 
 
@@ -65,7 +69,9 @@ def test_a_fillet_takes_the_place_of_the_notch() -> None:
     mesh = build_sector(design.geometry, load_recipe("full"), "flexible_spline")
     r, z = np.hypot(*mesh.coords[:, :2].T), mesh.coords[:, 2]
     wall = design.inner_radius + design.cup_thickness
-    on = np.flatnonzero((np.abs(np.hypot(r - wall - 0.2, z - 5.2) - 0.2) < 1e-9) & (r <= wall + 0.2) & (z <= 5.2))
+    on = np.flatnonzero(
+        (np.abs(np.hypot(r - wall - 0.2, z - 5.2) - 0.2) < 1e-9) & (r <= wall + 0.2) & (z <= 5.2)
+    )
     assert len(on) > 10
     assert regions((design, mesh), on) == {BACK}
     assert set(on) <= set(tooth_nodes(mesh, design, ends=True))
@@ -110,13 +116,37 @@ def test_the_error_of_a_stress_follows_from_two_meshes() -> None:
 
 def resolved(s1: float, on_mesh: float, region: str = "tooth root") -> RootStress:
     return RootStress(
-        s1, 3.0, 0.0, region, "", 0, 59.0, 0.0, 0.0, BETWEEN, {BETWEEN: (s1,)}, 1, in_root=on_mesh, drive_error=4.0
+        s1,
+        3.0,
+        0.0,
+        region,
+        "",
+        0,
+        59.0,
+        0.0,
+        0.0,
+        BETWEEN,
+        {BETWEEN: (s1,)},
+        1,
+        in_root=on_mesh,
+        drive_error=4.0,
     )
 
 
 def test_errors_in_roots_are_those_of_the_tension_there() -> None:
     """What nodal averages lose in the roots by the windows is lost by all stresses there."""
-    root = Place(100.0, "flexible_spline", "tooth root", 0, 59.0, 0.0, 0.0, "", in_root=100.0, root_spacing=0.1)
+    root = Place(
+        100.0,
+        "flexible_spline",
+        "tooth root",
+        0,
+        59.0,
+        0.0,
+        0.0,
+        "",
+        in_root=100.0,
+        root_spacing=0.1,
+    )
     inside = replace(root, value=110.0, region="rim inside")
     ring = replace(root, body="ring_gear", root_spacing=0.2)
     flank = replace(ring, region="flank", in_root=10.0)
@@ -129,13 +159,21 @@ def test_errors_in_roots_are_those_of_the_tension_there() -> None:
     }
     shares = dict.fromkeys(places, 0.02)
     lost = (250.0 - 200.0 + 5.0) / 200.0
-    found = {name: place.error for name, place in with_errors(places, shares, resolved(250.0, 200.0)).items()}
+    found = {
+        name: place.error
+        for name, place in with_errors(places, shares, resolved(250.0, 200.0)).items()
+    }
     assert found["fs_s1"] == pytest.approx(100.0 * lost)
-    assert found["fs_s3_apart"] == pytest.approx(100.0 * (1.0 + lost) - 110.0)  # the root may have the largest one
+    assert found["fs_s3_apart"] == pytest.approx(
+        100.0 * (1.0 + lost) - 110.0
+    )  # the root may have the largest one
     assert found["rg_s1"] == pytest.approx(100.0 * 2.0 * lost)  # twice as long elements
     assert found["rg_vm"] == pytest.approx(2.0)
     assert found["fs_vm"] is None
-    close = {name: place.error for name, place in with_errors(places, shares, resolved(201.0, 200.0)).items()}
+    close = {
+        name: place.error
+        for name, place in with_errors(places, shares, resolved(201.0, 200.0)).items()
+    }
     assert close["fs_s3_apart"] == pytest.approx(2.2)
     unknown = replace(resolved(250.0, 200.0), error=np.inf)  # a single window
     for root_stress in (None, resolved(250.0, 200.0, "rim inside"), unknown):
@@ -144,14 +182,19 @@ def test_errors_in_roots_are_those_of_the_tension_there() -> None:
 
 
 @pytest.mark.parametrize("body", ["flexible_spline", "ring_gear"])
-def test_nodes_inside_of_teeth_are_on_no_surface(cup: tuple[DriveDesign, SectorMesh], body: str) -> None:
+def test_nodes_inside_of_teeth_are_on_no_surface(
+    cup: tuple[DriveDesign, SectorMesh], body: str
+) -> None:
     design = cup[0]
     mesh = build_sector(design.geometry, load_recipe("coarse"), body)
     inside = np.flatnonzero(inside_teeth(design, mesh))
     assert len(inside) > 50
     faces = {node for name in mesh.faces for node in np.unique(mesh.faces[name])}
     assert not faces & set(inside.tolist())
-    assert {region_of(design, mesh, int(node), False) for node in inside} <= {"inside the tooth", "tooth end"}
+    assert {region_of(design, mesh, int(node), False) for node in inside} <= {
+        "inside the tooth",
+        "tooth end",
+    }
 
 
 def test_roots_are_where_the_region_says_it(cup: tuple[DriveDesign, SectorMesh]) -> None:
@@ -159,8 +202,16 @@ def test_roots_are_where_the_region_says_it(cup: tuple[DriveDesign, SectorMesh])
 
 
 def test_a_start_on_a_coarser_mesh_gives_errors() -> None:
-    values = [*PLANE, "steps.rotation=4", "steps.increment=2", "steps.start_levels=1", "steps.bent_start=true"]
-    summary = swgpar.run(load_design(DESIGN, values), swgpar.load_mesh("plane_coarse"), plain=True).summary
+    values = [
+        *PLANE,
+        "steps.rotation=4",
+        "steps.increment=2",
+        "steps.start_levels=1",
+        "steps.bent_start=true",
+    ]
+    summary = swgpar.run(
+        load_design(DESIGN, values), swgpar.load_mesh("plane_coarse"), plain=True
+    ).summary
     errors = {name: place.error for name, place in summary.stresses.places.items()}
     for name, place in summary.stresses.places.items():
         assert (errors[name] is None) == bool(place.warning), name

@@ -1,4 +1,5 @@
-"""Tooth profiles: smooth, closed, on the circles they must reach, and the envelopes of their cutters."""
+"""Tooth profiles: smooth, closed, on the circles they must reach, and the envelopes of their
+cutters."""
 
 from __future__ import annotations
 
@@ -47,8 +48,12 @@ def differences_agree(p: ToothProfile) -> None:
     s = np.linspace(0.0, p.length, 4001)
     inner = s[(s > 2 * h) & (s < p.length - 2 * h)]
     inner = inner[np.min(np.abs(inner[:, None] - p.breaks), axis=1) > 2 * h]
-    assert np.allclose((p.point(inner + h) - p.point(inner - h)) / (2 * h), p.tangent(inner), atol=1e-8)
-    bend = np.einsum("ij,ij->i", (p.tangent(inner + h) - p.tangent(inner - h)) / (2 * h), p.normal(inner))
+    assert np.allclose(
+        (p.point(inner + h) - p.point(inner - h)) / (2 * h), p.tangent(inner), atol=1e-8
+    )
+    bend = np.einsum(
+        "ij,ij->i", (p.tangent(inner + h) - p.tangent(inner - h)) / (2 * h), p.normal(inner)
+    )
     assert np.allclose(bend, p.curvature(inner), atol=1e-6)
 
 
@@ -69,8 +74,8 @@ def test_quadruple_arc(teeth: int, external: bool, radii: dict[str, float]) -> N
     differences_agree(p)
 
 
-# Tables 6.9 and 6.10: r_d, c_l, l of the flexible spline and of the ring gear. The printed 0.6391 of the ring gear at
-# r_d = 0.4 is a misprint: it is the value at r_d = 0.3.
+# Tables 6.9 and 6.10: r_d, c_l, l of the flexible spline and of the ring gear. The printed 0.6391
+# of the ring gear at r_d = 0.4 is a misprint: it is the value at r_d = 0.3.
 TABLES = [
     (0.1, 0.0, 0.7825, 0.7802),
     (0.2, 0.0, 0.7130, 0.7097),
@@ -85,7 +90,9 @@ TABLES = [
 
 
 @pytest.mark.parametrize(("r_d", "c_l", "l_fs", "l_rg"), TABLES)
-def test_straight_lengths_of_tables_6_9_and_6_10(r_d: float, c_l: float, l_fs: float | None, l_rg: float) -> None:
+def test_straight_lengths_of_tables_6_9_and_6_10(
+    r_d: float, c_l: float, l_fs: float | None, l_rg: float
+) -> None:
     for (teeth, external), printed in zip(GEARS, (l_fs, l_rg), strict=True):
         if printed is not None:
             length = straight_length(frame(teeth, external), c_l, r_d)
@@ -95,7 +102,9 @@ def test_straight_lengths_of_tables_6_9_and_6_10(r_d: float, c_l: float, l_fs: f
 
 
 @pytest.mark.parametrize(("teeth", "external"), GEARS)
-@pytest.mark.parametrize(("r_d", "c_l", "c_P"), [(0.5, 0.0, 1.0), (0.6, 0.0, 0.95), (0.6, 0.3, 1.0)])
+@pytest.mark.parametrize(
+    ("r_d", "c_l", "c_P"), [(0.5, 0.0, 1.0), (0.6, 0.0, 0.95), (0.6, 0.3, 1.0)]
+)
 def test_double_arc(teeth: int, external: bool, r_d: float, c_l: float, c_P: float) -> None:
     p = double_arc(frame(teeth, external, c_P), c_l, 1.0, r_d)
     check_flank(p)
@@ -105,10 +114,15 @@ def test_double_arc(teeth: int, external: bool, r_d: float, c_l: float, c_P: flo
     assert np.hypot(*p.point(p.length)[0]) == pytest.approx(0.5 * teeth - 0.8 * sign, abs=1e-12)
     tangent_at_the_root(p)
     assert p.thickness(0.5 * teeth) == pytest.approx(0.5 * np.pi * c_P, rel=1e-12)  # eq. 6.2
-    # eqs 3.25 and 3.28: the pitch point divides the straight segment, whose inclination is alpha - or + alpha_P
-    assert np.hypot(*p.point(p.breaks[1] + c_l * (p.breaks[2] - p.breaks[1]))[0]) == pytest.approx(0.5 * teeth)
+    # eqs 3.25 and 3.28: the pitch point divides the straight segment, whose inclination is alpha -
+    # or + alpha_P
+    assert np.hypot(*p.point(p.breaks[1] + c_l * (p.breaks[2] - p.breaks[1]))[0]) == pytest.approx(
+        0.5 * teeth
+    )
     star = ALPHA - sign * 0.5 * c_P * np.pi / teeth
-    assert p.normal(p.breaks[2] - 1e-9)[0] == pytest.approx([np.cos(star), sign * np.sin(star)], abs=1e-8)
+    assert p.normal(p.breaks[2] - 1e-9)[0] == pytest.approx(
+        [np.cos(star), sign * np.sin(star)], abs=1e-8
+    )
     middle = 0.5 * (p.breaks[:-1] + p.breaks[1:])
     assert p.curvature(middle) == pytest.approx([-1.0, 0.0, 1.0 / r_d])
     differences_agree(p)
@@ -120,12 +134,14 @@ def clockwise(points: np.ndarray, angle: np.ndarray) -> np.ndarray:
 
 
 def rounded(flank, tip, beyond, corner, rho: float) -> np.ndarray:
-    """Distance to a tooth from those to its flank and tip set back by rho; `corner` where both end, `beyond` it."""
+    """Distance to a tooth from those to its flank and tip set back by rho; `corner` where both end,
+    `beyond` it."""
     return np.where(beyond, corner, np.maximum(flank, tip)) - rho
 
 
 def from_rack(cut: Cutter, points: np.ndarray, psi: np.ndarray) -> np.ndarray:
-    """Distance (mm) of points (2, n) of the gear to the left half of the rack's tooth at generating angles psi."""
+    """Distance (mm) of points (2, n) of the gear to the left half of the rack's tooth at generating
+    angles psi."""
     x, y = clockwise(points, psi) - np.array([0.0, cut.r_pitch]).reshape(2, *[1] * psi.ndim)
     x = x - cut.r_pitch * psi
     alpha, rho, m = cut.pressure_angle, cut.tip_radius, cut.module
@@ -172,7 +188,8 @@ def from_shaper(cut: Cutter, points: np.ndarray, psi: np.ndarray) -> np.ndarray:
 
 
 def nearest_passage(cut: Cutter, points: np.ndarray) -> np.ndarray:
-    """Smallest distance (n,) of the gear's points (n, 2) to the cutter over all generating angles: a dense search."""
+    """Smallest distance (n,) of the gear's points (n, 2) to the cutter over all generating angles:
+    a dense search."""
     distance = from_rack if cut.external else from_shaper
     best, width = np.zeros((len(points), 1)), 0.2 * 120.0 / cut.n_teeth
     for _ in range(7):
@@ -185,7 +202,8 @@ def nearest_passage(cut: Cutter, points: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("name", CUTTERS)
 def test_involute_flanks_are_the_envelopes_of_their_cutters(name: str) -> None:
-    """The cutter touches each point of the flank once and never enters the tooth (eqs 3.14 and 3.15)."""
+    """The cutter touches each point of the flank once and never enters the tooth (eqs 3.14 and
+    3.15)."""
     cut = CUTTERS[name]
     p = involute(cut)
     check_flank(p)
@@ -203,7 +221,9 @@ def test_involute_profile(name: str) -> None:
     side = 1.0 if cut.external else -1.0
     r, shift = 0.5 * cut.n_teeth * cut.module, cut.shift * cut.module
     assert np.hypot(*p.point(0.0)[0]) == pytest.approx(r + side * cut.addendum + shift, rel=1e-14)
-    assert np.hypot(*p.point(p.length)[0]) == pytest.approx(r - side * cut.dedendum + shift, rel=1e-14)
+    assert np.hypot(*p.point(p.length)[0]) == pytest.approx(
+        r - side * cut.dedendum + shift, rel=1e-14
+    )
     tangent_at_the_root(p)
     differences_agree(p)
     # thickness at any radius of the involute, from that at the pitch circle
@@ -212,7 +232,9 @@ def test_involute_profile(name: str) -> None:
     for radius in np.linspace(p.r_tip_circle, r_form, 7)[1:-1]:
         roll = np.arccos(r * np.cos(alpha) / radius)
         spread = np.tan(alpha) - alpha - np.tan(roll) + roll
-        assert p.thickness(radius) == pytest.approx(2.0 * radius * (0.5 * pitch / r + side * spread), rel=1e-12)
+        assert p.thickness(radius) == pytest.approx(
+            2.0 * radius * (0.5 * pitch / r + side * spread), rel=1e-12
+        )
     # the normals of the involute are tangents of the base circle (eq. 3.12)
     s = np.linspace(0.0, p.breaks[1], 30)[:-1]
     (x, y), (nx, ny) = p.point(s).T, p.normal(s).T
@@ -224,7 +246,13 @@ def test_involute_profile(name: str) -> None:
 def test_curved_segments_run_by_arc_length(name: str) -> None:
     for segment in involute(CUTTERS[name]).segments:
         for t in (0.013, 0.37, 0.991):
-            exact = quad(lambda x, f=segment.evaluate: f(np.array([x])).speed[0], 0.0, t, epsabs=1e-13, epsrel=1e-13)[0]
+            exact = quad(
+                lambda x, f=segment.evaluate: f(np.array([x])).speed[0],
+                0.0,
+                t,
+                epsabs=1e-13,
+                epsrel=1e-13,
+            )[0]
             assert segment.arc_length(np.array([t]))[0] == pytest.approx(exact, rel=1e-11)
             assert segment.parameter(np.array([exact]))[0] == pytest.approx(t, rel=1e-11)
 
@@ -249,7 +277,9 @@ def test_distance_to_the_flank_against_a_dense_search(name: str) -> None:
     distance = np.abs(p.distance(away)[0])
     fine = p.point(np.linspace(0.0, p.length, 200001))
     for x, d in zip(away, distance, strict=True):
-        sampled = np.hypot(*(fine - x).T).min()  # never too small, too large by the samples' distance
+        sampled = np.hypot(
+            *(fine - x).T
+        ).min()  # never too small, too large by the samples' distance
         assert sampled - 1e-8 < d < sampled + 1e-13
 
 
@@ -263,16 +293,31 @@ def shaper(**more) -> dict:
 
 def test_backlash_and_turn_of_both_kinds_of_profiles(design_file: Callable) -> None:
     """Table 6.1 and eq. 6.4 for directly defined profiles; the profile shift for involutes."""
-    for c_P, printed in ((1.0, 0.0), (0.95, 0.07854), (0.90, 0.15708), (0.85, 0.23562), (0.80, 0.31416)):
+    for c_P, printed in (
+        (1.0, 0.0),
+        (0.95, 0.07854),
+        (0.90, 0.15708),
+        (0.85, 0.23562),
+        (0.80, 0.31416),
+    ):
         design = load_design(design_file({"ring_gear.profile": INITIAL}), [f"ring_gear.c_P={c_P}"])
         assert design.backlash == pytest.approx(printed, abs=5e-6)
-        assert design.backlash_angle == pytest.approx(np.pi * (1.0 - c_P) / (2.0 * 120.0), abs=1e-13)
-    sections = {"flexible_spline.profile": rack(shift=0.1, pressure_angle=20.4), "ring_gear.profile": shaper(shift=0.2)}
+        assert design.backlash_angle == pytest.approx(
+            np.pi * (1.0 - c_P) / (2.0 * 120.0), abs=1e-13
+        )
+    sections = {
+        "flexible_spline.profile": rack(shift=0.1, pressure_angle=20.4),
+        "ring_gear.profile": shaper(shift=0.2),
+    }
     design = load_design(design_file(sections), ["ring_gear.c_P=1.0"])
     expected = 2.0 * (0.2 * np.tan(ALPHA) - 0.1 * np.tan(np.radians(20.4)))
     assert design.backlash == pytest.approx(expected, rel=1e-11)
-    assert design.inner_radius == pytest.approx(60.0 - 0.8 + 0.1 - 1.0)  # the rim lies below the shifted root circle
-    assert design.profile("flexible_spline").r_root_circle - design.inner_radius == pytest.approx(1.0)
+    assert design.inner_radius == pytest.approx(
+        60.0 - 0.8 + 0.1 - 1.0
+    )  # the rim lies below the shifted root circle
+    assert design.profile("flexible_spline").r_root_circle - design.inner_radius == pytest.approx(
+        1.0
+    )
 
 
 def test_pressure_angles_of_both_gears(design_file: Callable) -> None:
@@ -294,13 +339,33 @@ REFUSED = [
     ("flexible_spline", rack(r_tip=0.3), [], "flexible_spline.profile.r_tip = 0.3"),
     ("flexible_spline", rack(cutter_radius=0.9), [], "flexible_spline.profile.cutter_radius = 0.9"),
     ("flexible_spline", rack(cutter_radius=0.0), [], "flexible_spline.profile.cutter_radius = 0"),
-    ("flexible_spline", rack(pressure_angle=50.0), [], "flexible_spline.profile.pressure_angle = 50"),
-    ("flexible_spline", rack(pressure_angle="20"), [], 'flexible_spline.profile.pressure_angle = "20"'),
+    (
+        "flexible_spline",
+        rack(pressure_angle=50.0),
+        [],
+        "flexible_spline.profile.pressure_angle = 50",
+    ),
+    (
+        "flexible_spline",
+        rack(pressure_angle="20"),
+        [],
+        'flexible_spline.profile.pressure_angle = "20"',
+    ),
     ("flexible_spline", rack(shift=2.0), [], "flexible_spline.profile.shift = 2"),
     ("flexible_spline", rack(shift=0.9), [], "flexible_spline.profile.shift = 0.9"),
     ("ring_gear", shaper(shift=0.7), [], "ring_gear.profile.shift = 0.7"),
-    ("flexible_spline", rack(pressure_angle=42.0), ["drive.dedendum_coef=1.9"], "profile.pressure_angle = 42"),
-    ("flexible_spline", rack(), ["drive.teeth_fs=12", "drive.teeth_rg=14", "drive.module=10.0"], "undercuts"),
+    (
+        "flexible_spline",
+        rack(pressure_angle=42.0),
+        ["drive.dedendum_coef=1.9"],
+        "profile.pressure_angle = 42",
+    ),
+    (
+        "flexible_spline",
+        rack(),
+        ["drive.teeth_fs=12", "drive.teeth_rg=14", "drive.module=10.0"],
+        "undercuts",
+    ),
     ("ring_gear", shaper(cutter_radius=0.9), [], "ring_gear.profile.cutter_radius = 0.9"),
     ("ring_gear", {**shaper(), "cutter_teeth": 8}, [], "ring_gear.profile.cutter_teeth = 8"),
     ("ring_gear", {**shaper(), "cutter_teeth": 119}, [], "ring_gear.profile.cutter_teeth = 119"),
@@ -321,7 +386,9 @@ REFUSED = [
 ]
 
 
-@pytest.mark.parametrize(("gear", "section", "overrides", "key"), REFUSED, ids=[case[-1] for case in REFUSED])
+@pytest.mark.parametrize(
+    ("gear", "section", "overrides", "key"), REFUSED, ids=[case[-1] for case in REFUSED]
+)
 def test_profiles_that_cannot_be_built_are_refused(
     gear: str, section: dict, overrides: list[str], key: str, design_file: Callable
 ) -> None:
@@ -340,6 +407,8 @@ def test_a_point_over_a_sharp_tip_is_outside(name: str) -> None:
     away = 1.0 if profile.external else -1.0
     angle = np.linspace(-0.9, 0.9, 19) * profile.polar_angle(0.0)[0]
     over = (profile.r_tip_circle + away * 0.15) * np.stack([np.sin(angle), np.cos(angle)], axis=-1)
-    inside = (profile.r_tip_circle - away * 0.15) * np.stack([np.sin(angle), np.cos(angle)], axis=-1)
+    inside = (profile.r_tip_circle - away * 0.15) * np.stack(
+        [np.sin(angle), np.cos(angle)], axis=-1
+    )
     assert (profile.distance(over)[0] > 0.0).all()
     assert (profile.distance(inside)[0] < 0.0).all()

@@ -1,4 +1,5 @@
-"""Magnitudes of numbers: extremes of any key are refused with the range, in drives and gear trains."""
+"""Magnitudes of numbers: extremes of any key are refused with the range, in drives and gear
+trains."""
 
 from __future__ import annotations
 
@@ -21,7 +22,14 @@ from swgpar.systems import system_of
 DRIVERS = ROOT / "drivers"
 FILES = [
     DRIVERS / f"{name}.toml"
-    for name in ("cup_45deg", "plane_half_turn", "cascade", "gear_pair", "planetary", "ring_moving_load")
+    for name in (
+        "cup_45deg",
+        "plane_half_turn",
+        "cascade",
+        "gear_pair",
+        "planetary",
+        "ring_moving_load",
+    )
 ]
 EXTREMES = (1e300, -1e300, 1e-300, 1e16, 1e-16)
 
@@ -31,7 +39,9 @@ def numbers(table: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, An
     for name, value in table.items():
         if isinstance(value, dict):
             yield from numbers(value, f"{above}{name}.")
-        elif (isinstance(value, float) or (isinstance(value, list) and value)) and not above.startswith("published"):
+        elif (
+            isinstance(value, float) or (isinstance(value, list) and value)
+        ) and not above.startswith("published"):
             yield f"{above}{name}", value
 
 
@@ -46,7 +56,11 @@ def test_extremes_are_refused_with_the_range(file: Path) -> None:
             with pytest.raises(InputError) as caught:
                 design.with_values({key: wrong})
             message = str(caught.value)
-            assert message.startswith(key) and "allowed" in message and message.isprintable(), (key, extreme, message)
+            assert message.startswith(key) and "allowed" in message and message.isprintable(), (
+                key,
+                extreme,
+                message,
+            )
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
@@ -71,15 +85,25 @@ def test_what_is_accepted_can_be_checked(file: Path) -> None:
         (
             "flexible_spline.rim",
             1e-7,
-            "flexible_spline.rim = 1e-07 is out of range: allowed 0.01 to 100 mm (0.01 to 100 modules)",
+            "flexible_spline.rim = 1e-07 is out of range: allowed 0.01 to 100 mm (0.01 to 100 "
+            "modules)",
         ),
-        ("load.torque", 1e-300, "load.torque = 1e-300 is out of range: allowed 0 and 1e-15 to 1000000000 N·m"),
-        ("load.torque", 1e300, "load.torque = 1e+300 is out of range: allowed 0 and 1e-15 to 1000000000 N·m"),
+        (
+            "load.torque",
+            1e-300,
+            "load.torque = 1e-300 is out of range: allowed 0 and 1e-15 to 1000000000 N·m",
+        ),
+        (
+            "load.torque",
+            1e300,
+            "load.torque = 1e+300 is out of range: allowed 0 and 1e-15 to 1000000000 N·m",
+        ),
         ("material.E", 1e-9, "material.E = 1e-09 is out of range: allowed 1e-06 to 1e+14 MPa"),
         (
             "micro_geometry.wg_slope",
             1e7,
-            "micro_geometry.wg_slope = 10000000 is out of range: allowed -1000000 to -1e-09, 0 and 1e-09 to 1000000 mm",
+            "micro_geometry.wg_slope = 10000000 is out of range: allowed -1000000 to -1e-09, 0 and "
+            "1e-09 to 1000000 mm",
         ),
     ],
 )
@@ -105,7 +129,9 @@ def test_every_unit_has_its_magnitudes() -> None:
 
 
 def test_too_many_time_steps_are_refused() -> None:
-    with pytest.raises(InputError, match="time.step = .* is out of range: allowed .*at most 10000000 steps"):
+    with pytest.raises(
+        InputError, match="time.step = .* is out of range: allowed .*at most 10000000 steps"
+    ):
         swgpar.load_design(DRIVERS / "gear_pair.toml", {"time.end": 1e6})
 
 
@@ -115,7 +141,12 @@ def test_values_too_far_apart_for_the_arithmetic() -> None:
 
 
 def test_the_number_of_runs_is_limited() -> None:
-    vary = {"load.torque": [float(k) for k in range(1000)], "material.E": [1e5 + k for k in range(1000)]}
+    vary = {
+        "load.torque": [float(k) for k in range(1000)],
+        "material.E": [1e5 + k for k in range(1000)],
+    }
     study = {"design": str(FILES[1]), "meshes": ["plane_coarse"], "vary": vary}
-    with pytest.raises(InputError, match="has 1000000 runs: allowed up to study.max_cases = 100000"):
+    with pytest.raises(
+        InputError, match="has 1000000 runs: allowed up to study.max_cases = 100000"
+    ):
         swgpar.study({"study": study})

@@ -25,7 +25,11 @@ from swgpar.meshing.recipe_counts import coarser, with_counts
 def test_coarser_recipes_halve_down_to_the_smallest() -> None:
     recipe = load_recipe("full")
     once = coarser(recipe)
-    assert (once.flexible_spline.flank, once.flexible_spline.root, once.face_width.elements) == (9, 2, 6)
+    assert (once.flexible_spline.flank, once.flexible_spline.root, once.face_width.elements) == (
+        9,
+        2,
+        6,
+    )
     assert once.cup.end_ratio == recipe.cup.end_ratio
     assert coarser(once).face_width.elements == 4
     odd = with_counts(recipe, lambda *count: 9)
@@ -41,7 +45,8 @@ def test_coarser_recipes_halve_down_to_the_smallest() -> None:
 @pytest.mark.parametrize("overrides", [(), PLANE])
 @pytest.mark.parametrize("gear", ["flexible_spline", "ring_gear"])
 def test_linear_fields_survive_the_interpolation(gear: str, overrides: tuple[str, ...]) -> None:
-    """A field linear in angle, radius and z is exact, inside the coarse mesh as outside, where it is extrapolated."""
+    """A field linear in angle, radius and z is exact, inside the coarse mesh as outside, where it
+    is extrapolated."""
     design = load_design(DESIGN, overrides)
     fine = build_sector_meshes(design.geometry, load_recipe(RECIPE))[gear]
     coarse = build_sector_meshes(design.geometry, coarser(load_recipe(RECIPE)))[gear]
@@ -49,7 +54,9 @@ def test_linear_fields_survive_the_interpolation(gear: str, overrides: tuple[str
 
     def fields(points: np.ndarray) -> np.ndarray:
         x, y, z = points.T
-        return np.column_stack([np.ones_like(x), np.arctan2(x, y), np.hypot(x, y), 0.0 * z if overrides else z])
+        return np.column_stack(
+            [np.ones_like(x), np.arctan2(x, y), np.hypot(x, y), 0.0 * z if overrides else z]
+        )
 
     assert np.abs(matrix @ fields(coarse.coords) - fields(fine.coords)).max() < 1e-9
     assert 0.0 > matrix.min() > -0.5 and matrix.max() < 1.5  # how far this extrapolates
@@ -69,7 +76,9 @@ def test_levels() -> None:
     assert levels(design, recipe) == [coarser(coarser(recipe)), coarser(recipe)]
     assert levels(load_design(DESIGN), recipe) == []
     # with friction the loaded state depends on the way
-    assert levels(load_design(DESIGN, ["steps.start_levels=2", "contact.friction=0.1"]), recipe) == []
+    assert (
+        levels(load_design(DESIGN, ["steps.start_levels=2", "contact.friction=0.1"]), recipe) == []
+    )
 
 
 def test_one_period_is_continued_over_the_rotation() -> None:
@@ -86,7 +95,9 @@ def test_one_period_is_continued_over_the_rotation() -> None:
             "newton_iterations": 4,
             "wall_s": 1.0,
         }
-        for k, a in enumerate([0.0, *rotation_angles(design)])  # the loaded state is the first of the period
+        for k, a in enumerate(
+            [0.0, *rotation_angles(design)]
+        )  # the loaded state is the first of the period
     ]
     history = continued(design, rows)
     assert history[:4] == rows
@@ -102,7 +113,9 @@ def test_one_period_is_continued_over_the_rotation() -> None:
 def test_with_friction_a_period_settles_first() -> None:
     design = load_design(DESIGN, ["steps.samples=4", "steps.rotation=30", "contact.friction=0.1"])
     assert len(rotation_angles(design)) == 8
-    with pytest.raises(InputError, match="steps.rotation = 10 is out of range: allowed 17.1429 deg"):
+    with pytest.raises(
+        InputError, match="steps.rotation = 10 is out of range: allowed 17.1429 deg"
+    ):
         load_design(DESIGN, ["steps.samples=4", "steps.rotation=10", "contact.friction=0.1"])
 
 
@@ -135,5 +148,7 @@ def test_far_teeth_follow_the_near_ones_with_hysteresis() -> None:
     assert not near(0, 1, 2)  # still with the least margin inside
     assert near(2 + margin - least)
     assert elements.active.sum() == pytest.approx(far.active.sum(), abs=2)
-    assert near() and not far.active.any()  # before the teeth meet the ring gear is not there at all
+    assert (
+        near() and not far.active.any()
+    )  # before the teeth meet the ring gear is not there at all
     assert elements.count == 3

@@ -1,4 +1,5 @@
-"""Reference pages say what the program reads and writes; examples of the how-to pages are accepted."""
+"""Reference pages say what the program reads and writes; examples of the how-to pages are
+accepted."""
 
 from __future__ import annotations
 
@@ -26,7 +27,12 @@ COLUMN_TABLES = load_script(DOCS / "generators" / "column_tables.py")
 def first_cells(page: Path) -> list[str]:
     """Names in code font in the first column of the tables of a page."""
     lines = page.read_text(encoding="utf-8").splitlines()
-    return [name for line in lines if line.startswith("| `") for name in re.findall(r"`(\w+)`", line.split("|")[1])]
+    return [
+        name
+        for line in lines
+        if line.startswith("| `")
+        for name in re.findall(r"`(\w+)`", line.split("|")[1])
+    ]
 
 
 def keys(section: type[Section]) -> set[str]:
@@ -41,8 +47,12 @@ def keys(section: type[Section]) -> set[str]:
 @pytest.mark.parametrize("name", KEY_TABLES.FILES)
 def test_the_tables_list_every_key_with_its_meaning(name: str) -> None:
     design, alike = KEY_TABLES.FILES[name]
-    rows = re.findall(r"^\| `([\w.]+)` \| (.*?) \|", KEY_TABLES.file_tables(design, alike), flags=re.MULTILINE)
-    sections = {name for name, field in design.model_fields.items() if not KEY_TABLES.choices(field)}
+    rows = re.findall(
+        r"^\| `([\w.]+)` \| (.*?) \|", KEY_TABLES.file_tables(design, alike), flags=re.MULTILINE
+    )
+    sections = {
+        name for name, field in design.model_fields.items() if not KEY_TABLES.choices(field)
+    }
     assert {key.rpartition(".")[2] for key, _ in rows} == keys(design) - sections
     assert all(meaning and "None" not in meaning for _, meaning in rows)
 
@@ -52,7 +62,12 @@ def test_history_columns() -> None:
     page = (DOCS / "reference" / "history.md").read_text(encoding="utf-8")
     drives = dict.fromkeys(column.drives for column in history.DECLARED)
     assert all(f"_generated/columns_{name.replace(' ', '_')}.md" in page for name in drives)
-    rows = [line for name in drives for line in COLUMN_TABLES.table(name).splitlines() if line.startswith("| `")]
+    rows = [
+        line
+        for name in drives
+        for line in COLUMN_TABLES.table(name).splitlines()
+        if line.startswith("| `")
+    ]
     assert len(rows) == len(history.COLUMNS) and not any(line.endswith("|  |") for line in rows)
 
 
@@ -62,20 +77,32 @@ def test_summary_entries() -> None:
 
 
 def test_every_answer_is_in_the_tables_with_its_unit_and_meaning() -> None:
-    """The tables come from the kinds; a run has no other answers, and has those that its design promises."""
-    rows = re.findall(r"^\| `([^`]+)` \| (.*?) \| (.*) \|$", "\n".join(ANSWER_TABLES.tables()), flags=re.MULTILINE)
+    """The tables come from the kinds; a run has no other answers, and has those that its design
+    promises."""
+    rows = re.findall(
+        r"^\| `([^`]+)` \| (.*?) \| (.*) \|$", "\n".join(ANSWER_TABLES.tables()), flags=re.MULTILINE
+    )
     kinds = [kind for name in ANSWER_GROUPS for kind in ANSWER_TABLES.kinds_of(name)]
     assert rows == [(kind.name, kind.unit, kind.text.replace("|", "\\|")) for kind in kinds]
     gear = {"tip": 2, "layers": 1, "flank": 2, "root": 2, "under": 1, "rim": 1}
-    design = swgpar.load_design(DRIVERS / "plane_half_turn.toml", {"steps.rotation": 3.0, "steps.samples": 2})
-    summary = swgpar.run(design, mesh={"flexible_spline": gear, "ring_gear": gear}, progress=False).summary
+    design = swgpar.load_design(
+        DRIVERS / "plane_half_turn.toml", {"steps.rotation": 3.0, "steps.samples": 2}
+    )
+    summary = swgpar.run(
+        design, mesh={"flexible_spline": gear, "ring_gear": gear}, progress=False
+    ).summary
     names = {name for name, *_ in rows}
     found = {name for name in summary if not name.startswith("step") and " in " not in name}
     assert found <= names
     for name, kind in known_answers(design).items():
         if name in summary:
             assert (summary[name].unit, summary[name].text) == (kind.unit, kind.text)
-    assert {"mean.fs_s1", "sharing.pairs", "transmission_error.peak_to_peak", "largest.fs_s1"} <= found
+    assert {
+        "mean.fs_s1",
+        "sharing.pairs",
+        "transmission_error.peak_to_peak",
+        "largest.fs_s1",
+    } <= found
 
 
 def test_the_own_drive_and_the_own_recipe_are_accepted() -> None:

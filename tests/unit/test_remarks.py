@@ -1,4 +1,5 @@
-"""Designs that are allowed and deserve a word: teeth that overlap and jam, torques that count as none."""
+"""Designs that are allowed and deserve a word: teeth that overlap and jam, torques that count as
+none."""
 
 from __future__ import annotations
 
@@ -25,7 +26,10 @@ def design(*overrides: str) -> DriveDesign:
 def test_check_names_interference() -> None:
     overlapping = execute(command("check", DESIGN, "--set", "ring_gear.c_P=1.04"), timeout=120.0)
     (warning,) = [line for line in overlapping.stdout.splitlines() if line.startswith("warning: ")]
-    assert overlapping.returncode == 0 and "interference: smallest flank clearance, kinematic (mm) = -0.0" in warning
+    assert (
+        overlapping.returncode == 0
+        and "interference: smallest flank clearance, kinematic (mm) = -0.0" in warning
+    )
     assert "warning" not in execute(command("check", DESIGN), timeout=120.0).stdout
 
 
@@ -39,18 +43,31 @@ def test_a_jammed_drive_is_named() -> None:
 
 def test_a_running_drive_is_not() -> None:
     good = design(*PERIOD)
-    rows = [{"wg_angle_deg": angle, "wg_torque_Nmm": torque} for angle, torque in ((3.0, 9.0), (6.0, 8.0), (9.0, 13.0))]
+    rows = [
+        {"wg_angle_deg": angle, "wg_torque_Nmm": torque}
+        for angle, torque in ((3.0, 9.0), (6.0, 8.0), (9.0, 13.0))
+    ]
     expected = 1000.0 * good.load.torque / abs(good.ratio)
     assert expected == pytest.approx(10.0)
-    for mean, jams in ((10.0, False), (5.1, False), (19.9, False), (4.9, True), (20.1, True), (-10.0, True)):
+    for mean, jams in (
+        (10.0, False),
+        (5.1, False),
+        (19.9, False),
+        (4.9, True),
+        (20.1, True),
+        (-10.0, True),
+    ):
         assert bool(jamming_remark(good, rows, {"wg_torque_Nmm": mean})) == jams
         assert jamming_remark(good, rows[:1], {"wg_torque_Nmm": mean}) is None  # less than a period
-        assert jamming_remark(design("load.torque=0", *PERIOD), rows, {"wg_torque_Nmm": mean}) is None
+        assert (
+            jamming_remark(design("load.torque=0", *PERIOD), rows, {"wg_torque_Nmm": mean}) is None
+        )
     assert jamming_remark(good, [], {}) is None
 
 
 def test_the_ring_between_two_forces() -> None:
-    """Castigliano: the change of the diameter from the bending moment F r (1 / pi - sin(phi) / 2)."""
+    """Castigliano: the change of the diameter from the bending moment F r (1 / pi - sin(phi) /
+    2)."""
     phi = (np.arange(4000) + 0.5) * 0.5 * np.pi / 4000
     moment = 1.0 / np.pi - 0.5 * np.sin(phi)
     assert RING_FLEXIBILITY == pytest.approx(4.0 * np.mean(moment**2) * 0.5 * np.pi, rel=1e-6)
@@ -64,9 +81,13 @@ def test_small_torques_converge_or_count_as_none(share: float) -> None:
     assert 1e-5 * least < 1e-9
     with Messages() as messages:
         result = swgpar.run(
-            design(f"load.torque={torque!r}", "steps.rotation=2", "steps.increment=2"), RECIPE, plain=True
+            design(f"load.torque={torque!r}", "steps.rotation=2", "steps.increment=2"),
+            RECIPE,
+            plain=True,
         )
     counts_as_none = [text for text in messages.texts if "counts as none" in text]
     assert len(counts_as_none) == (1 if share < 1.0 else 0)
-    held = result.history["output_angle_deg"][-1]  # without a torque the output is held at its kinematic angle
+    held = result.history["output_angle_deg"][
+        -1
+    ]  # without a torque the output is held at its kinematic angle
     assert (abs(held - 2.0 / result.summary.ratio) < 1e-9) == (share < 1.0)

@@ -1,4 +1,5 @@
-"""report.html: one file with what a run gives, its checks and its drawings; and the surface that its view shows."""
+"""report.html: one file with what a run gives, its checks and its drawings; and the surface that
+its view shows."""
 
 from __future__ import annotations
 
@@ -31,7 +32,9 @@ from swgpar.presentation.view import view_plotter
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("report") / "run"
-    design = swgpar.load_design(DESIGN, [*PLANE, *SHORT, "output.figures=false", "output.fields=true"])
+    design = swgpar.load_design(
+        DESIGN, [*PLANE, *SHORT, "output.figures=false", "output.fields=true"]
+    )
     swgpar.run(design, RECIPE, out)
     return out
 
@@ -50,22 +53,37 @@ def test_a_run_leaves_one_page_that_needs_nothing_else(folder: Path) -> None:
 def test_the_transmission_error_with_deviations_is_an_answer(folder: Path) -> None:
     summary = swgpar.open_result(folder).summary
     torque = TorqueOverTurns(1.0, 0.0, 0.0, ())
-    summary = replace(summary, transmission_error=TransmissionError(1.0, 8, 44.55, 22.3, 0.0, (), torque))
+    summary = replace(
+        summary, transmission_error=TransmissionError(1.0, 8, 44.55, 22.3, 0.0, (), torque)
+    )
     assert summary["transmission_error.peak_to_peak"].value == 44.55
-    assert summary["rotation.transmission_error"].value == summary.rotation.transmission_error_arcsec
+    assert (
+        summary["rotation.transmission_error"].value == summary.rotation.transmission_error_arcsec
+    )
     assert "1 turns with deviations" in list(summary.transmission_error.remarks())
 
 
 def test_the_largest_of_the_regions_is_the_largest_of_the_body(folder: Path) -> None:
     summary = swgpar.open_result(folder).summary
     for stress in ("fs_s1", "fs_vm", "rg_vm"):
-        regions = {name: place for name, place in summary.stresses.regions.items() if name.startswith(f"{stress} in ")}
+        regions = {
+            name: place
+            for name, place in summary.stresses.regions.items()
+            if name.startswith(f"{stress} in ")
+        }
         name, place = max(regions.items(), key=lambda item: item[1].value)
         largest = summary.stresses.places[stress]
-        assert place == replace(largest, in_root=place.in_root) and name.endswith(f" in {largest.region}")
-        assert len(regions) > 3 and all(place.region == name.split(" in ", 1)[1] for name, place in regions.items())
+        assert place == replace(largest, in_root=place.in_root) and name.endswith(
+            f" in {largest.region}"
+        )
+        assert len(regions) > 3 and all(
+            place.region == name.split(" in ", 1)[1] for name, place in regions.items()
+        )
     text = (folder / "report.html").read_text(encoding="utf-8")
-    assert "ring gear, von Mises stress in outer surface" in text and "Not asked for: torsional stiffness" in text
+    assert (
+        "ring gear, von Mises stress in outer surface" in text
+        and "Not asked for: torsional stiffness" in text
+    )
 
 
 def test_verdicts_follow_the_numbers(folder: Path) -> None:
@@ -79,10 +97,14 @@ def test_verdicts_follow_the_numbers(folder: Path) -> None:
     largest = float(np.abs(result.history["tooth_torque_Nmm"]).max())
     numerics = replace(summary.numerics, balance_error_Nmm=0.01 * largest)
     assert verdicts(numerics=numerics)["balance of torques"] is False
-    assert verdicts(rotation=replace(summary.rotation, jammed="the teeth may jam"))["energy"] is False
+    assert (
+        verdicts(rotation=replace(summary.rotation, jammed="the teeth may jam"))["energy"] is False
+    )
     assert verdicts(contact=replace(summary.contact, edge=1))["edge contact"] is False
     assert verdicts(contact=None)["edge contact"] is None
-    root = RootStress(100.0, 20.0, 90.0, "tooth root", "", 1, 20.0, 0.0, 0.0, BETWEEN, {BETWEEN: [100.0]}, 1000)
+    root = RootStress(
+        100.0, 20.0, 90.0, "tooth root", "", 1, 20.0, 0.0, 0.0, BETWEEN, {BETWEEN: [100.0]}, 1000
+    )
     assert verdicts(root_stress=root)["resolution"] is False
     assert verdicts(root_stress=replace(root, error=2.0))["resolution"] is True
     module = np.full(len(result.history["step"]), summary.design.drive.module)
@@ -96,7 +118,11 @@ def test_drawings_have_the_dimensions(name: str) -> None:
     drawings = draw_drive(design)
     outer = design.profile("ring_gear").r_root_circle + design.ring_gear.rim
     texts = [text.text for sheet in drawings for text in sheet.texts]
-    for value in (f"⌀ {2 * outer:.4g}", f"{2 * design.major_semi_axis:.5g}", f"{design.flexible_spline.rim:.4g} rim"):
+    for value in (
+        f"⌀ {2 * outer:.4g}",
+        f"{2 * design.major_semi_axis:.5g}",
+        f"{design.flexible_spline.rim:.4g} rim",
+    ):
         assert value in texts
     for outline in (outline for sheet in drawings for outline in sheet.outlines):
         numbers = [float(number) for number in re.findall(r"-?\d+\.\d\d", outline.path)]
@@ -113,7 +139,9 @@ def test_the_surface_of_all_sectors_is_that_of_the_body(gear: str) -> None:
     kinds = np.full(len(whole.cells), pyvista.CellType.HEXAHEDRON)
     cells = np.hstack([np.full((len(whole.cells), 1), 8), whole.cells]).ravel()
     grid = pyvista.UnstructuredGrid(cells, kinds, whole.points)
-    assert area == pytest.approx(grid.extract_surface(algorithm="dataset_surface").triangulate().area, rel=1e-3)
+    assert area == pytest.approx(
+        grid.extract_surface(algorithm="dataset_surface").triangulate().area, rel=1e-3
+    )
 
 
 def test_the_view_of_a_folder(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -128,7 +156,9 @@ def test_the_view_of_a_folder(folder: Path, monkeypatch: pytest.MonkeyPatch) -> 
     assert picture.std() > 10.0  # something is drawn
 
 
-def test_pictures_say_nothing_of_displays(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_pictures_say_nothing_of_displays(
+    capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(name, raising=False)
     plotter = off_screen_plotter(40, 30)
@@ -143,7 +173,9 @@ def test_the_stress_around_the_spline_is_that_of_the_history(folder: Path) -> No
     upper, lower = result.plot.stress_around().axes
     for axes, name in ((upper, "fs_s1"), (lower, "fs_vm")):
         largest = max(np.max(line.get_ydata()) for line in axes.lines)
-        assert largest == pytest.approx(result.history[name][result.field_increments[-1] - 1], rel=1e-5)
+        assert largest == pytest.approx(
+            result.history[name][result.field_increments[-1] - 1], rel=1e-5
+        )
 
 
 def test_the_close_up_shows_a_spline_that_lies_on_the_cam(folder: Path) -> None:

@@ -1,4 +1,5 @@
-"""Tables of the reports of studies and optimisations: they scroll, headings have units, the best comes first."""
+"""Tables of the reports of studies and optimisations: they scroll, headings have units, the best
+comes first."""
 
 from __future__ import annotations
 
@@ -40,7 +41,10 @@ tolerance = {{ mean.fs_s1 = 5.0 }}
 def rows_of(text: str, number: int) -> list[list[str]]:
     """Cells of the rows of a table of a page."""
     body = re.findall(r"<table.*?</table>", text, flags=re.DOTALL)[number]
-    return [re.findall(r"<td[^>]*>(.*?)</td>", row) for row in re.findall(r"<tr.*?</tr>", body, flags=re.DOTALL)[1:]]
+    return [
+        re.findall(r"<td[^>]*>(.*?)</td>", row)
+        for row in re.findall(r"<tr.*?</tr>", body, flags=re.DOTALL)[1:]
+    ]
 
 
 def test_tables_of_a_study(tmp_path: Path) -> None:
@@ -48,7 +52,15 @@ def test_tables_of_a_study(tmp_path: Path) -> None:
     path.write_text(STUDY, encoding="utf-8")
     jobs = jobs_of(path)
     results = [
-        (job, Outcome("finished", values=dict.fromkeys(job.case.shown, 100.0 + k), elements=100 * 8**n, wall_s=1.0))
+        (
+            job,
+            Outcome(
+                "finished",
+                values=dict.fromkeys(job.case.shown, 100.0 + k),
+                elements=100 * 8**n,
+                wall_s=1.0,
+            ),
+        )
         for k, job in enumerate(jobs)
         for n in [0 if job.finer else 1]
     ]
@@ -58,10 +70,14 @@ def test_tables_of_a_study(tmp_path: Path) -> None:
     assert "load.torque (N·m)" in cases and "wave_generator.C" in cases and "time (s)" in cases
     for name, quantity in shown_quantities(results).items():
         assert (f"{name} ({quantity.unit})" if quantity.unit else name) in cases
-    assert not any("_percent" in head or head.endswith("_s") for heads in headings for head in heads)
+    assert not any(
+        "_percent" in head or head.endswith("_s") for heads in headings for head in heads
+    )
     # which case is the smallest and which the largest, of the finer mesh
     found = rows_of(text, next(k for k, heads in enumerate(headings) if heads[1:2] == ["smallest"]))
-    finest = [(outcome.values["mean.fs_s1"], job.case.name) for job, outcome in results if not job.finer]
+    finest = [
+        (outcome.values["mean.fs_s1"], job.case.name) for job, outcome in results if not job.finer
+    ]
     row = next(cells for cells in found if cells[0] == "mean.fs_s1 (MPa)")
     assert (float(row[1]), row[2]) == min(finest) and (float(row[3]), row[4]) == max(finest)
 
@@ -89,7 +105,13 @@ def report(heading: str, text: str) -> str:
     """A page with one table of answers, and a script."""
     empty = Table(["", "version or amount"], [])
     answers = Table([heading], [Row([text]), Row([0.1 + 0.2])])
-    values = {"figures": [], "inputs": text, "versions": empty, "answers": answers, "compared": None}
+    values = {
+        "figures": [],
+        "inputs": text,
+        "versions": empty,
+        "answers": answers,
+        "compared": None,
+    }
     return page("gear_trains/train_report.html.j2", text, scripts=(RANK,), **values).decode()
 
 
@@ -108,4 +130,8 @@ def test_texts_are_escaped_and_only_scripts_of_the_package_run() -> None:
     assert source is not None
     digest = base64.b64encode(hashlib.sha256(source[1].encode()).digest()).decode()
     policy = re.search(r'Content-Security-Policy" content="([^"]*)"', text)
-    assert policy is not None and policy[1].endswith(f"script-src 'sha256-{digest}'") and "'none'" in policy[1]
+    assert (
+        policy is not None
+        and policy[1].endswith(f"script-src 'sha256-{digest}'")
+        and "'none'" in policy[1]
+    )

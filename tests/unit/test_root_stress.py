@@ -29,7 +29,8 @@ def teeth(**values: float) -> np.ndarray:
     ("ends", "between", "expected"),
     [
         ({}, {"t0": 100.0}, [0]),
-        # the window of tooth 0 resolves its neighbours as well, on the other side of the closed chain too
+        # the window of tooth 0 resolves its neighbours as well, on the other side of the closed
+        # chain too
         ({}, {"t0": 100.0, "t1": 99.0, "t19": 98.0}, [0]),
         ({}, {"t0": 100.0, "t5": 90.0, "t8": 80.0}, [0, 5]),
         ({"t7": 110.0}, {"t0": 100.0, "t5": 90.0}, [0, 5, 7]),
@@ -54,18 +55,29 @@ def test_candidates(ends: dict[str, float], between: dict[str, float], expected:
         ("tooth end", 100.1, 1, True),
     ],
 )
-def test_stresses_of_one_region_converge_alike(region: str, value: float, level: int, expected: bool) -> None:
+def test_stresses_of_one_region_converge_alike(
+    region: str, value: float, level: int, expected: bool
+) -> None:
     best = WindowStress(100.0, 0, np.zeros(3), "tooth root", "", 1)
-    assert may_be_largest(WindowStress(value, 5, np.zeros(3), region, "", 1), best, level) == expected
+    assert (
+        may_be_largest(WindowStress(value, 5, np.zeros(3), region, "", 1), best, level) == expected
+    )
     assert may_be_largest(best, best, level)
 
 
-@pytest.mark.parametrize(("value", "level", "expected"), [(89.0, 0, True), (89.0, 2, True), (87.0, 1, False)])
-def test_a_root_is_followed_while_the_end_of_a_tooth_gives_more(value: float, level: int, expected: bool) -> None:
+@pytest.mark.parametrize(
+    ("value", "level", "expected"), [(89.0, 0, True), (89.0, 2, True), (87.0, 1, False)]
+)
+def test_a_root_is_followed_while_the_end_of_a_tooth_gives_more(
+    value: float, level: int, expected: bool
+) -> None:
     """Stresses at the ends fall from the second window on."""
     for region in ("tooth end", "notch", "fillet at the back"):
         end = WindowStress(100.0, 0, np.zeros(3), region, "", 1)
-        assert may_be_largest(WindowStress(value, 0, np.zeros(3), "tooth root", "", 1), end, level) == expected
+        assert (
+            may_be_largest(WindowStress(value, 0, np.zeros(3), "tooth root", "", 1), end, level)
+            == expected
+        )
 
 
 def test_the_first_of_each_part_is_followed_and_others_only_where_they_may_overtake_it() -> None:
@@ -84,6 +96,8 @@ def test_a_stress_at_the_ends_that_falls_is_bounded_by_the_one_between_them() ->
     between = [270.0, 278.0, 282.0]
     alone = error_of(falling, 1.5)
     assert error_at_ends({BETWEEN: between[:1], ENDS: falling}, 1.5) == alone
-    assert error_at_ends({BETWEEN: between, ENDS: falling}, 1.5) == pytest.approx(2.0 + error_of(between, 1.5))
+    assert error_at_ends({BETWEEN: between, ENDS: falling}, 1.5) == pytest.approx(
+        2.0 + error_of(between, 1.5)
+    )
     assert 2.0 + error_of(between, 1.5) < alone
     assert error_at_ends({BETWEEN: between, ENDS: rising}, 1.5) == error_of(rising, 1.5)

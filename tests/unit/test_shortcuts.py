@@ -22,12 +22,17 @@ def test_a_design_without_the_keys_takes_all() -> None:
     found = with_shortcuts(load_design(REFERENCE), load_recipe("full"))
     steps = found.design.steps
     assert (steps.samples, steps.bent_start, steps.start_levels) == (SAMPLES["cup"], True, 2)
-    assert steps.rotation == 45.0 and found.design.solver.rtol == RTOL["cup"] and len(found.left_out) == 4
+    assert (
+        steps.rotation == 45.0
+        and found.design.solver.rtol == RTOL["cup"]
+        and len(found.left_out) == 4
+    )
     assert "42.05 of 45 degrees" in found.left_out[0]
 
 
 @pytest.mark.parametrize(
-    ("recipe", "levels"), [("coarse", 0), ("medium", 0), ("full", 2), ("plane_coarse", 0), ("plane", 2)]
+    ("recipe", "levels"),
+    [("coarse", 0), ("medium", 0), ("full", 2), ("plane_coarse", 0), ("plane", 2)],
 )
 def test_a_start_uses_meshes_that_find_the_contacts(recipe: str, levels: int) -> None:
     name = "plane_half_turn.toml" if recipe.startswith("plane") else "cup_45deg.toml"
@@ -36,8 +41,15 @@ def test_a_start_uses_meshes_that_find_the_contacts(recipe: str, levels: int) ->
 
 
 def test_very_fine_recipes_start_on_four_meshes_at_most() -> None:
-    fine = with_counts(load_recipe("plane"), lambda section, name, value: 200 if name == "flank" else value)
-    assert with_shortcuts(load_design(DRIVERS / "plane_half_turn.toml"), fine).design.steps.start_levels == 4
+    fine = with_counts(
+        load_recipe("plane"), lambda section, name, value: 200 if name == "flank" else value
+    )
+    assert (
+        with_shortcuts(
+            load_design(DRIVERS / "plane_half_turn.toml"), fine
+        ).design.steps.start_levels
+        == 4
+    )
     without = with_shortcuts(load_design(DRIVERS / "plane_half_turn.toml"), fine, levels=False)
     assert without.design.steps.start_levels == 0
 
@@ -45,7 +57,9 @@ def test_very_fine_recipes_start_on_four_meshes_at_most() -> None:
 def test_few_increments_are_computed_as_they_are() -> None:
     few = with_shortcuts(load_design(REFERENCE, ["steps.rotation=10"]), load_recipe("coarse"))
     assert few.design.steps.samples == 0
-    partial = with_shortcuts(load_design(REFERENCE, ["steps.load_increments=5"]), load_recipe("coarse"))
+    partial = with_shortcuts(
+        load_design(REFERENCE, ["steps.load_increments=5"]), load_recipe("coarse")
+    )
     assert not partial.design.steps.bent_start
 
 
@@ -58,15 +72,27 @@ def test_keys_of_the_design_are_kept() -> None:
 
 
 def test_friction_and_short_rotations() -> None:
-    assert with_shortcuts(load_design(REFERENCE, ["contact.friction=0.1"]), load_recipe("full")).left_out == ()
+    assert (
+        with_shortcuts(
+            load_design(REFERENCE, ["contact.friction=0.1"]), load_recipe("full")
+        ).left_out
+        == ()
+    )
     short = with_shortcuts(load_design(REFERENCE, ["steps.rotation=2.9"]), load_recipe("coarse"))
-    assert short.design.steps.samples == 0 and short.left_out[0] == "deflection and engagement step by step"
+    assert (
+        short.design.steps.samples == 0
+        and short.left_out[0] == "deflection and engagement step by step"
+    )
 
 
 def test_a_run_with_shortcuts_ends_in_the_same_states() -> None:
     """The angles of one period are among those of the plain run; the line says what is left out."""
     samples = SAMPLES["plane"]
-    steps = [f"steps.rotation={1.5 * PERIOD}", f"steps.increment={PERIOD / samples}", "solver.rtol=1e-9"]
+    steps = [
+        f"steps.rotation={1.5 * PERIOD}",
+        f"steps.increment={PERIOD / samples}",
+        "solver.rtol=1e-9",
+    ]
     design = load_design(DESIGN, [*PLANE, *steps])
     plain = swgpar.run(design, RECIPE, plain=True).history
     with Messages() as messages:
@@ -85,7 +111,11 @@ def test_a_run_with_shortcuts_ends_in_the_same_states() -> None:
 
 @pytest.mark.parametrize("model", [PLANE, ()], ids=["plane", "cup"])
 def test_the_tolerance_keeps_the_digits_that_are_printed(model: tuple[str, ...]) -> None:
-    steps = [*model, f"steps.rotation={1.5 * PERIOD}", f"steps.increment={PERIOD / SAMPLES['plane']}"]
+    steps = [
+        *model,
+        f"steps.rotation={1.5 * PERIOD}",
+        f"steps.increment={PERIOD / SAMPLES['plane']}",
+    ]
     tight = swgpar.run(load_design(DESIGN, [*steps, "solver.rtol=1e-11"]), RECIPE).history
     fast = swgpar.run(load_design(DESIGN, steps), RECIPE).history
     for name in ("fs_s1", "fs_vm", "wg_torque_Nmm"):

@@ -21,7 +21,8 @@ TAKEN_OVER = "is taken over"
 
 
 def test_a_loaded_state_is_taken_over(tmp_path: Path) -> None:
-    # with a factor for every tangent the residual ends far below the tolerance: a further search changes nothing
+    # with a factor for every tangent the residual ends far below the tolerance: a further search
+    # changes nothing
     values = [*PLANE, "steps.rotation=0", "steps.bent_start=true", "solver.keep_factor=false"]
     design = load_design(DESIGN, values)
     recipe, sequence, comm = load_recipe("plane_coarse"), load_sequence(design), MPI.COMM_SELF

@@ -12,7 +12,15 @@ import pytest
 import swgpar
 from swgpar.checks.derived_geometry import derived_geometry
 from swgpar.checks.remarks import remarks
-from swgpar.checks.starter import LARGEST_RATIO, LEAST_RATIO, CamType, Profile, Request, as_toml, starter_design
+from swgpar.checks.starter import (
+    LARGEST_RATIO,
+    LEAST_RATIO,
+    CamType,
+    Profile,
+    Request,
+    as_toml,
+    starter_design,
+)
 from swgpar.cli import main, parser
 from swgpar.errors import InputError, OutputError
 from swgpar.geometry.cams import taut_length
@@ -35,7 +43,8 @@ def test_a_starter_design_needs_no_remarks() -> None:
 
 
 NO_ROOM = {(15.0, "four_roller"), (320.0, "parabolic")}
-"""Ratios and cams at the ends of the range, with which the flanks of the quadruple arc interfere at any backlash."""
+"""Ratios and cams at the ends of the range, with which the flanks of the quadruple arc interfere at
+any backlash."""
 
 
 @pytest.mark.parametrize("cam", get_args(CamType))
@@ -49,7 +58,9 @@ def test_a_cam_fits_a_ratio_or_is_refused(ratio: float, cam: CamType) -> None:
     assert design.wave_generator.type == cam
     stretch = taut_length(design.cam()) / (2.0 * np.pi * design.inner_radius) - 1.0
     if cam != "four_roller":  # its rollers leave the spline free in between
-        assert abs(stretch) < 2.0 * (design.deflection / design.inner_radius) ** 2  # an ellipse: 0.047 of it
+        assert (
+            abs(stretch) < 2.0 * (design.deflection / design.inner_radius) ** 2
+        )  # an ellipse: 0.047 of it
     if cam in ("parabolic", "simplified", "harmonic"):
         assert abs(stretch) < 2e-4  # chosen for it, and rounded
 
@@ -57,9 +68,22 @@ def test_a_cam_fits_a_ratio_or_is_refused(ratio: float, cam: CamType) -> None:
 @pytest.mark.parametrize("layout, ratio", [("ring_fixed", -40.0), ("spline_fixed", 40.0)])
 @pytest.mark.parametrize("profile", get_args(Profile))
 def test_three_lobes_give_whole_ratios(profile: Profile, layout: str, ratio: float) -> None:
-    request = Request(40.0, 10.0, diameter=60.0, profile=profile, cam="harmonic", layout=layout, model="plane", lobes=3)
+    request = Request(
+        40.0,
+        10.0,
+        diameter=60.0,
+        profile=profile,
+        cam="harmonic",
+        layout=layout,
+        model="plane",
+        lobes=3,
+    )
     design, _ = starter_design(request)
-    assert (design.ratio, design.lobes, design.drive.teeth_rg - design.drive.teeth_fs) == (ratio, 3, 3)
+    assert (design.ratio, design.lobes, design.drive.teeth_rg - design.drive.teeth_fs) == (
+        ratio,
+        3,
+        3,
+    )
     assert design.drive.teeth_fs % 3 == 0 and design.rigid_teeth().clearance(121) > 0.0
     assert abs(taut_length(design.cam()) / (2.0 * np.pi * design.inner_radius) - 1.0) < 1e-5
 
@@ -69,7 +93,10 @@ def test_three_lobes_give_whole_ratios(profile: Profile, layout: str, ratio: flo
 def test_a_pancake_clears_in_both_ring_gears(ratio: float, profile: Profile) -> None:
     request = Request(ratio, 10.0, diameter=100.0, profile=profile, model="pancake")
     design, table = starter_design(request)
-    assert design.rigid_teeth().clearance(121) > 0.0 and design.rigid_teeth("dynamic_spline").clearance(121) > 0.0
+    assert (
+        design.rigid_teeth().clearance(121) > 0.0
+        and design.rigid_teeth("dynamic_spline").clearance(121) > 0.0
+    )
     assert design.dynamic_spline.c_P > 0.6  # thinner teeth are lost motion
     assert "[dynamic_spline.profile]" in as_toml(request, design, table, "drive.toml")
 
@@ -78,12 +105,16 @@ def test_a_pancake_clears_in_both_ring_gears(ratio: float, profile: Profile) -> 
 def test_what_is_given_is_kept(layout: str, ratio: float) -> None:
     design, _ = starter_design(Request(75.0, 33.0, bore=61.7, layout=layout))
     assert design.ratio == ratio and design.load.torque == 33.0
-    assert 2.0 * design.inner_radius == pytest.approx(61.7, rel=1e-5)  # the module is rounded to six digits
+    assert 2.0 * design.inner_radius == pytest.approx(
+        61.7, rel=1e-5
+    )  # the module is rounded to six digits
     pitch = starter_design(Request(75.0, 33.0, diameter=61.7))[0].drive
     assert pitch.module * pitch.teeth_fs == pytest.approx(61.7, rel=1e-5)
 
 
-@pytest.mark.parametrize("profile, cam", [*zip(get_args(Profile), get_args(CamType)), ("involute", "four_roller")])
+@pytest.mark.parametrize(
+    "profile, cam", [*zip(get_args(Profile), get_args(CamType)), ("involute", "four_roller")]
+)
 def test_every_key_of_the_file_has_its_meaning(profile: Profile, cam: CamType) -> None:
     request = Request(100.0, 52.0, diameter=50.8, profile=profile, cam=cam)
     design, table = starter_design(request)
@@ -100,7 +131,10 @@ def test_every_key_of_the_file_has_its_meaning(profile: Profile, cam: CamType) -
         ({"ratio": 50.2, "diameter": 50.0}, "steps of 0.5"),
         ({"ratio": 50.0}, "either diameter"),
         ({"ratio": 40.5, "diameter": 50.0, "lobes": 3}, "steps of 1"),
-        ({"ratio": 40.0, "diameter": 50.0, "lobes": 3, "cam": "elliptical"}, 'allowed with "harmonic"'),
+        (
+            {"ratio": 40.0, "diameter": 50.0, "lobes": 3, "cam": "elliptical"},
+            'allowed with "harmonic"',
+        ),
         ({"ratio": 40.0, "diameter": 50.0, "lobes": 4}, "lobes = 4 is out of range"),
         ({"ratio": 50.0, "diameter": 50.0, "bore": 48.0}, "either diameter"),
         ({"ratio": 50.0, "diameter": -1.0}, "diameter = -1"),
@@ -112,12 +146,27 @@ def test_requests_that_make_no_drive(values: dict[str, float], words: str) -> No
         swgpar.new(torque=10.0, **values)
 
 
-def test_the_command_writes_the_file_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_writes_the_file_once(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = tmp_path / "drive.toml"
-    words = ["new", str(path), "--ratio", "50", "--diameter", "42", "--torque", "5", "--model", "plane"]
+    words = [
+        "new",
+        str(path),
+        "--ratio",
+        "50",
+        "--diameter",
+        "42",
+        "--torque",
+        "5",
+        "--model",
+        "plane",
+    ]
     assert main(words) == 0
     assert "100 and 102 teeth, module 0.42 mm" in capsys.readouterr().out
-    assert swgpar.load_design(path) == swgpar.new(ratio=50.0, diameter=42.0, torque=5.0, model="plane")
+    assert swgpar.load_design(path) == swgpar.new(
+        ratio=50.0, diameter=42.0, torque=5.0, model="plane"
+    )
     assert main(words) == OutputError.exit_code and "exists" in capsys.readouterr().err
     assert main([*words, "--overwrite"]) == 0
 

@@ -1,4 +1,5 @@
-"""Every study of the repository expands into designs, and drives into meshes that can be built; nothing is run."""
+"""Every study of the repository expands into designs, and drives into meshes that can be built;
+nothing is run."""
 
 from __future__ import annotations
 
@@ -30,7 +31,9 @@ def jobs_of(path: Path) -> list[Job]:
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_geometry(path: Path) -> None:
     jobs = jobs_of(path)
-    refused = {(path.stem, job.case.name): job.case.refusal for job in jobs if job.case.design is None}
+    refused = {
+        (path.stem, job.case.name): job.case.refusal for job in jobs if job.case.design is None
+    }
     meant = {case: words for case, words in REFUSED.items() if case[0] == path.stem}
     assert refused.keys() == meant.keys()
     assert all(words in refused[case] for case, words in meant.items())
@@ -41,12 +44,19 @@ def test_geometry(path: Path) -> None:
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_one_period(path: Path) -> None:
-    """Means of the plane model are over one period in 8 angles; cases at 45 degrees end there in their period."""
+    """Means of the plane model are over one period in 8 angles; cases at 45 degrees end there in
+    their period."""
     for case in {job.case.name: job.case for job in jobs_of(path)}.values():
-        if case.system is not system_of_section("drive") or case.design is None or case.design.drive.model != "plane":
+        if (
+            case.system is not system_of_section("drive")
+            or case.design is None
+            or case.design.drive.model != "plane"
+        ):
             continue
         drive, steps = case.design.drive, case.design.steps
-        if case.design.deviations is not None or case.design.has_program:  # whole turns, or no rotation
+        if (
+            case.design.deviations is not None or case.design.has_program
+        ):  # whole turns, or no rotation
             continue
         period = 360.0 / (drive.teeth_rg if drive.layout == "ring_fixed" else drive.teeth_fs)
         share, count = (45.0 / period % 1.0, 1) if "45deg" in case.name else (1.0, 8)

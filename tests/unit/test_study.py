@@ -1,4 +1,5 @@
-"""Study files: expansion into cases, refusals in one sentence, error estimates, comparison with published values."""
+"""Study files: expansion into cases, refusals in one sentence, error estimates, comparison with
+published values."""
 
 from __future__ import annotations
 
@@ -35,7 +36,8 @@ Write = Callable[..., Path]
 
 @pytest.fixture
 def study_file(tmp_path: Path) -> Write:
-    """Function that writes a study of the small drive: further lines of [study], then the rest of the file."""
+    """Function that writes a study of the small drive: further lines of [study], then the rest of
+    the file."""
 
     def write(rest: str = "", *, meshes: str = MESHES, more: str = "") -> Path:
         path = tmp_path / "study.toml"
@@ -63,7 +65,10 @@ def test_one_design_on_two_meshes(study_file: Write, tmp_path: Path) -> None:
     finer = tmp_path / "finer.toml"
     finer.write_text((RECIPE).read_text(encoding="utf-8"), encoding="utf-8")
     jobs = jobs_of(study_file(meshes=f'meshes = ["{RECIPE}", "finer.toml"]'))
-    assert [(j.case.name, j.mesh.stem, j.finer) for j in jobs] == [("small", "tiny", 1), ("small", "finer", 0)]
+    assert [(j.case.name, j.mesh.stem, j.finer) for j in jobs] == [
+        ("small", "tiny", 1),
+        ("small", "finer", 0),
+    ]
     assert queue(jobs, [None, None]) == [1, 0]
     assert queue(jobs, [None, "failed"]) == [0, 1]
     assert jobs[0].folder(Path("out")) == Path("out/cases/small/tiny")
@@ -90,12 +95,17 @@ def test_cases_with_sections_and_own_overrides(study_file: Write) -> None:
 def test_whole_sections_are_varied(study_file: Write) -> None:
     jobs = jobs_of(
         study_file(
-            "[study.vary]\nwave_generator = [{ face_width = 4.0 }, { type = 'simplified', face_width = 4.0 },"
+            "[study.vary]\nwave_generator = [{ face_width = 4.0 }, { type = 'simplified', "
+            "face_width = 4.0 },"
             " { type = 'simplified', C = 0.9, face_width = 4.0 }]\n"
         )
     )
     names = [job.case.name for job in jobs]
-    assert names == ["wave_generator=1", "wave_generator=simplified-2", "wave_generator=simplified-3"]
+    assert names == [
+        "wave_generator=1",
+        "wave_generator=simplified-2",
+        "wave_generator=simplified-3",
+    ]
     row = study_rows([(jobs[2], Outcome("failed", "no"))])[0]
     assert row["wave_generator"] == '{ type = "simplified", C = 0.9, face_width = 4.0 }'
 
@@ -104,7 +114,9 @@ def test_a_refused_design_is_a_case(study_file: Write) -> None:
     jobs = jobs_of(study_file("[study.vary]\nload.torque = [-1.0, 2.0]\n"))
     assert [job.case.design is None for job in jobs] == [True, False]
     assert jobs[0].case.refusal == "load.torque = -1 is out of range: allowed 0 to 1000000000 N·m"
-    with pytest.raises(InputError, match="every case is refused: load.torqe.*did you mean load.torque"):
+    with pytest.raises(
+        InputError, match="every case is refused: load.torqe.*did you mean load.torque"
+    ):
         jobs_of(study_file("[study.vary]\nload.torqe = [1.0, 2.0]\n"))
 
 
@@ -119,13 +131,25 @@ def test_a_refused_design_is_a_case(study_file: Write) -> None:
         ("", "mode = 'random'", 'allowed "grid" or "sweep"'),
         ("", "parallel = 'all'", 'allowed "cases" or "ranks"'),
         ("[stdy]\n", "", "stdy = an empty table is not a section of a study file: allowed [study]"),
-        ("[study.vary]\nload.torque = 3.0\n", "", 'study.vary."load.torque" = 3 is not a list of values'),
+        (
+            "[study.vary]\nload.torque = 3.0\n",
+            "",
+            'study.vary."load.torque" = 3 is not a list of values',
+        ),
         ("[study.vary]\nload.torque = []\n", "", "allowed one value or more"),
         ("[study.vary]\ntorque = [1.0]\n", "", 'allowed "section.key"'),
         ("[study.vary]\nload.torque = [1.0]\nload = [1.0, 2.0]\n", "", "TOML"),
         ("[study.vary]\nload.torque = [1.0]\n'load' = [{}]\n", "", "TOML"),
-        ("[study.vary]\n'load.torque' = [1.0]\n'load' = [{ torque = 1.0 }]\n", "", "allowed is one of both"),
-        ("[study.vary]\nload.torque = [1.0]\nmaterial.nu = [0.3, 0.2]\n", "mode = 'sweep'", "material.nu has 2"),
+        (
+            "[study.vary]\n'load.torque' = [1.0]\n'load' = [{ torque = 1.0 }]\n",
+            "",
+            "allowed is one of both",
+        ),
+        (
+            "[study.vary]\nload.torque = [1.0]\nmaterial.nu = [0.3, 0.2]\n",
+            "mode = 'sweep'",
+            "material.nu has 2",
+        ),
         ("[study.vary]\nload.torque = [1.0, 1.0]\n", "", '"torque=1" is the name of two cases'),
         ("[study]\n", "", "TOML"),
         ("[study.case]\nname = 'a'\n", "", "write [[study.case]]"),
@@ -135,23 +159,38 @@ def test_a_refused_design_is_a_case(study_file: Write) -> None:
         ("[[study.case]]\nname = 'a'\nset = ['x']\n", "", "write section.key=value"),
         ("[[study.case]]\nname = 'a'\nsection.load = 3\n", "", "section.load = 3 is not a section"),
         ("[[study.case]]\nname = 'a'\npublished.mean.fs_s9 = 3\n", "", "did you mean mean.fs_s"),
-        ("[[study.case]]\nname = 'a'\npublished = 3\n", "", "case.published = 3 is not a table of numbers"),
-        ("[[study.case]]\nname = 'a'\npublished.mean.fs_s1 = 'x'\n", "", "is not a table of numbers"),
+        (
+            "[[study.case]]\nname = 'a'\npublished = 3\n",
+            "",
+            "case.published = 3 is not a table of numbers",
+        ),
+        (
+            "[[study.case]]\nname = 'a'\npublished.mean.fs_s1 = 'x'\n",
+            "",
+            "is not a table of numbers",
+        ),
         ("[[study.case]]\nname = 'a'\ntolerance.mean.fs_s1 = 3\n", "", "has no published value"),
         (
             "[[study.case]]\nname = 'a'\npublished.mean.fs_s1 = 1\ntolerance.mean.fs_s1 = 0\n",
             "",
             "out of range: allowed above 0",
         ),
-        ("[[study.case]]\nname = 'a'\n[[study.case]]\nname = 'a'\n", "", '"a" is the name of two cases'),
         (
-            "[[study.case]]\nname = 'a'\nset = ['load.torque=1.0']\n[study.vary]\nload.torque = [1.0]\n",
+            "[[study.case]]\nname = 'a'\n[[study.case]]\nname = 'a'\n",
+            "",
+            '"a" is the name of two cases',
+        ),
+        (
+            "[[study.case]]\nname = 'a'\nset = ['load.torque=1.0']\n[study.vary]\nload.torque = "
+            "[1.0]\n",
             "",
             "allowed in one of both",
         ),
     ],
 )
-def test_a_wrong_study_file_is_refused_in_one_sentence(study_file: Write, rest: str, more: str, words: str) -> None:
+def test_a_wrong_study_file_is_refused_in_one_sentence(
+    study_file: Write, rest: str, more: str, words: str
+) -> None:
     assert_refused(study_file(rest, more=more), words)
 
 
@@ -175,10 +214,15 @@ def test_the_example_of_the_documentation(tmp_path: Path) -> None:
     text = (ROOT / "docs" / "howto" / "studies.md").read_text(encoding="utf-8")
     example = text.partition("```toml\n")[2].partition("```")[0]
     path = tmp_path / "study.toml"
-    path.write_text(example.replace("../..", str(ROOT)).replace("../", f"{ROOT / 'drivers'}/"), encoding="utf-8")
+    path.write_text(
+        example.replace("../..", str(ROOT)).replace("../", f"{ROOT / 'drivers'}/"), encoding="utf-8"
+    )
     jobs = jobs_of(path)
     assert len(jobs) == 8 and all(job.case.design is not None for job in jobs)
-    assert (jobs[0].case.name, jobs[-1].case.name) == ("elliptical_torque=10", "simplified_torque=20")
+    assert (jobs[0].case.name, jobs[-1].case.name) == (
+        "elliptical_torque=10",
+        "simplified_torque=20",
+    )
 
 
 class Broken(Drives):
@@ -209,16 +253,35 @@ def test_error_estimate_of_a_linear_sequence(dimensions: int) -> None:
 
 
 def outcome(fs_s1: float, elements: int) -> Outcome:
-    stresses = {"fs_s1": np.array([2.0, 3.0, 2.0, 2.0]) * fs_s1, "fs_s3": np.ones(4), "fs_vm": np.ones(4)}
-    columns = {"step": np.array([1, 1, 3, 4]), "wg_angle_deg": np.array([0.0, 0.0, 0.0, 2.0]), **stresses}
-    means = dict.fromkeys(("fs_s1", "fs_s3", "fs_vm", "rg_s1", "rg_s3", "rg_vm", "wg_torque_Nmm"), fs_s1)
-    rows = [dict(zip(columns, row)) for row in zip(*(values.tolist() for values in columns.values()))]
-    found = {f"mean.{name}": value for name, value in means.items()} | dict(step_values(rows).values)
-    return Outcome("finished", values=found, elements=elements, newton_mean=5.0, wall_s=1.0, history=columns)
+    stresses = {
+        "fs_s1": np.array([2.0, 3.0, 2.0, 2.0]) * fs_s1,
+        "fs_s3": np.ones(4),
+        "fs_vm": np.ones(4),
+    }
+    columns = {
+        "step": np.array([1, 1, 3, 4]),
+        "wg_angle_deg": np.array([0.0, 0.0, 0.0, 2.0]),
+        **stresses,
+    }
+    means = dict.fromkeys(
+        ("fs_s1", "fs_s3", "fs_vm", "rg_s1", "rg_s3", "rg_vm", "wg_torque_Nmm"), fs_s1
+    )
+    rows = [
+        dict(zip(columns, row)) for row in zip(*(values.tolist() for values in columns.values()))
+    ]
+    found = {f"mean.{name}": value for name, value in means.items()} | dict(
+        step_values(rows).values
+    )
+    return Outcome(
+        "finished", values=found, elements=elements, newton_mean=5.0, wall_s=1.0, history=columns
+    )
 
 
 def test_published_values(study_file: Write) -> None:
-    published = "published = { mean.fs_s1 = 200.0, step1.fs_s1 = 500.0, step2.fs_s1 = 1.0, mean.fs_vm = 210.0 }"
+    published = (
+        "published = { mean.fs_s1 = 200.0, step1.fs_s1 = 500.0, step2.fs_s1 = 1.0, mean.fs_vm = "
+        "210.0 }"
+    )
     (job,) = jobs_of(
         study_file(
             f"[[study.case]]\nname = 'a'\n{published}\n"
@@ -229,11 +292,23 @@ def test_published_values(study_file: Write) -> None:
     assert (failed.computed, failed.estimate, failed.verdict) == (None, None, "MISS")
     job = replace(job, case=replace(job.case, meshes=(job.mesh, Path("fine.toml")), compared=1))
     coarse = replace(job, finer=1)
-    rows = {c.quantity: c for c in compare([(coarse, outcome(180.0, 1000)), (job, outcome(210.0, 8000))])}
-    inside, without, miss, never = (rows[n] for n in ("mean.fs_s1", "mean.fs_vm", "step1.fs_s1", "step2.fs_s1"))
-    assert (inside.quantity, inside.unit, inside.computed, inside.difference) == ("mean.fs_s1", "MPa", 210.0, 5.0)
+    rows = {
+        c.quantity: c
+        for c in compare([(coarse, outcome(180.0, 1000)), (job, outcome(210.0, 8000))])
+    }
+    inside, without, miss, never = (
+        rows[n] for n in ("mean.fs_s1", "mean.fs_vm", "step1.fs_s1", "step2.fs_s1")
+    )
+    assert (inside.quantity, inside.unit, inside.computed, inside.difference) == (
+        "mean.fs_s1",
+        "MPa",
+        210.0,
+        5.0,
+    )
     assert inside.verdict == "inside"
-    assert inside.estimate.converged == pytest.approx(240.0) and inside.estimate.error == pytest.approx(30.0)
+    assert inside.estimate.converged == pytest.approx(
+        240.0
+    ) and inside.estimate.error == pytest.approx(30.0)
     assert (miss.computed, miss.difference, miss.verdict) == (630.0, 26.0, "MISS")
     assert (never.computed, never.difference, never.verdict) == (None, None, "MISS")
     assert (without.difference, without.verdict) == (0.0, "")
@@ -259,7 +334,9 @@ def test_tables_and_report(study_file: Write, tmp_path: Path) -> None:
 
 
 def test_many_lines_take_several_figures(study_file: Write) -> None:
-    jobs = jobs_of(study_file("[study.vary]\nload.torque = [1.0, 2.0]\nmaterial.nu = [" + list_of(15) + "]\n"))
+    jobs = jobs_of(
+        study_file("[study.vary]\nload.torque = [1.0, 2.0]\nmaterial.nu = [" + list_of(15) + "]\n")
+    )
     results = [(job, outcome(100.0, 10)) for job in jobs]
     assert len(list(over_angle(results))) == 3
     assert len(list(over_key(results, "load.torque", in_step=False))) == 2

@@ -1,4 +1,5 @@
-"""Signals and signs of life while the interpreter answers nothing: it is in a call that keeps its lock."""
+"""Signals and signs of life while the interpreter answers nothing: it is in a call that keeps its
+lock."""
 
 from __future__ import annotations
 
@@ -22,14 +23,24 @@ with watch.armed():
     {begin}
     ctypes.PyDLL(None).sleep({seconds})
 """
-BEGIN = "watch.begin('increments', 'results', restarts=True, terminal={terminal}); watch.saved('increments', 3, 7)"
+BEGIN = (
+    "watch.begin('increments', 'results', restarts=True, terminal={terminal}); "
+    "watch.saved('increments', 3, 7)"
+)
 
 
-def busy(begin: str = "", seconds: int = 60, rank: int = 0, **more: object) -> subprocess.Popen[str]:
+def busy(
+    begin: str = "", seconds: int = 60, rank: int = 0, **more: object
+) -> subprocess.Popen[str]:
     command = [sys.executable, "-P", "-c", BUSY.format(begin=begin, seconds=seconds)]
     pipe = subprocess.PIPE
     process = subprocess.Popen(
-        command, stdout=pipe, stderr=pipe, text=True, env={**environment(), "PMI_RANK": str(rank)}, **more
+        command,
+        stdout=pipe,
+        stderr=pipe,
+        text=True,
+        env={**environment(), "PMI_RANK": str(rank)},
+        **more,
     )
     assert process.stdout is not None and process.stdout.readline() == "begun\n"
     time.sleep(0.5)
@@ -54,9 +65,20 @@ def test_a_signal_ends_a_process_at_once(number: signal.Signals) -> None:
             "watch.begin('increments', 'a\\x1bb', restarts=True, terminal=False)",
             r"nothing is saved in a\x1bb; the same",
         ),
-        ("watch.begin('increments', 'x', restarts=False, terminal=False); watch.saved('increments', 1, 1)", "again"),
-        ("watch.begin('cases', 'x', restarts=True, terminal=False); watch.saved('increments', 1, 1)", "nothing is"),
-        ("watch.begin('cases', 'x', restarts=True, terminal=False); watch.saved('cases', 1, 9)", "1 of 9 cases are"),
+        (
+            "watch.begin('increments', 'x', restarts=False, terminal=False); "
+            "watch.saved('increments', 1, 1)",
+            "again",
+        ),
+        (
+            "watch.begin('cases', 'x', restarts=True, terminal=False); watch.saved('increments', "
+            "1, 1)",
+            "nothing is",
+        ),
+        (
+            "watch.begin('cases', 'x', restarts=True, terminal=False); watch.saved('cases', 1, 9)",
+            "1 of 9 cases are",
+        ),
     ],
 )
 def test_the_sentence_says_what_is_saved(begin: str, words: str) -> None:
@@ -83,9 +105,12 @@ def test_ignored_signals_stay_ignored() -> None:
 def test_handlers_are_restored() -> None:
     code = (
         "import signal\nfrom swgpar import watch\nwith watch.armed():\n    pass\nwatch.rearm()\n"
-        "try:\n    signal.raise_signal(signal.SIGINT)\nexcept KeyboardInterrupt:\n    print('interrupted')"
+        "try:\n    signal.raise_signal(signal.SIGINT)\nexcept KeyboardInterrupt:\n    "
+        "print('interrupted')"
     )
-    done = subprocess.run([sys.executable, "-P", "-c", code], capture_output=True, text=True, timeout=60)
+    done = subprocess.run(
+        [sys.executable, "-P", "-c", code], capture_output=True, text=True, timeout=60
+    )
     assert done.stdout == "interrupted\n" and not done.stderr
 
 

@@ -22,25 +22,37 @@ Sector = tuple[SectorMesh, ReferenceElements, CondensedPart]
 def sector(request) -> Sector:
     design = load_design(DESIGN, PLANE)
     mesh = build_sector_meshes(design.geometry, load_recipe(RECIPE))[request.param]
-    elements = element_matrices(mesh.coords[mesh.elements], design.material, design.drive.face_width)
+    elements = element_matrices(
+        mesh.coords[mesh.elements], design.material, design.drive.face_width
+    )
     return mesh, elements, condense_sector(mesh, elements)
 
 
 def forces(
     reference: ReferenceElements, conn: np.ndarray, u: np.ndarray, values: np.ndarray | None = None
 ) -> tuple[float, np.ndarray]:
-    """Energy and forces (n, 3) of elements in a sector turned by ANGLE; adds the tangent to blocks (n * n, 3, 3)."""
+    """Energy and forces (n, 3) of elements in a sector turned by ANGLE; adds the tangent to blocks
+    (n * n, 3, 3)."""
     residual, turn = np.zeros_like(u), np.tile([np.cos(ANGLE[0]), np.sin(ANGLE[0])], (len(conn), 1))
     ref = np.arange(len(conn), dtype=np.int32)
     conn = np.ascontiguousarray(conn, dtype=np.int32)
-    slot = None if values is None else (conn[:, :, None] * len(u) + conn[:, None, :]).reshape(len(conn), -1)
+    slot = (
+        None
+        if values is None
+        else (conn[:, :, None] * len(u) + conn[:, None, :]).reshape(len(conn), -1)
+    )
     slot = None if slot is None else slot.astype(np.int64)
-    energy = assemble_elements(reference, ref, turn, conn, np.zeros(conn.shape, np.uint8), u, residual, slot, values)
+    energy = assemble_elements(
+        reference, ref, turn, conn, np.zeros(conn.shape, np.uint8), u, residual, slot, values
+    )
     return energy, residual
 
 
-def moved(sector: Sector, turn: float, strain: float, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
-    """Outer nodes' displacement (m, 3) mm under a turn and a random deformation, and their rows in `coords`."""
+def moved(
+    sector: Sector, turn: float, strain: float, seed: int = 0
+) -> tuple[np.ndarray, np.ndarray]:
+    """Outer nodes' displacement (m, 3) mm under a turn and a random deformation, and their rows in
+    `coords`."""
     mesh, _, condensed = sector
     place = turned(mesh.coords[condensed.outer], ANGLE[0])
     scatter = strain * np.random.default_rng(seed).uniform(-1.0, 1.0, place.shape)
@@ -53,7 +65,9 @@ def turned(points: np.ndarray, angle: float) -> np.ndarray:
     return points @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
-def test_the_inside_is_in_equilibrium_and_the_outer_forces_are_those_of_the_elements(sector: Sector) -> None:
+def test_the_inside_is_in_equilibrium_and_the_outer_forces_are_those_of_the_elements(
+    sector: Sector,
+) -> None:
     mesh, elements, condensed = sector
     outer, rows = moved(sector, 0.4, 1e-7)
     u = np.zeros_like(mesh.coords)
@@ -71,10 +85,16 @@ def test_rigid_motion_gives_no_force(sector: Sector) -> None:
     mesh, _, condensed = sector
     outer, rows = moved(sector, 2.5, 0.0)
     _, kept = forces(condensed.reference, np.arange(len(rows))[None], outer)
-    assert np.abs(kept).max() < 1e-12 * np.abs(condensed.reference.stiffness).max() * np.abs(mesh.coords).max()
+    assert (
+        np.abs(kept).max()
+        < 1e-12 * np.abs(condensed.reference.stiffness).max() * np.abs(mesh.coords).max()
+    )
     place = turned(mesh.coords[condensed.inner], ANGLE[0])
     exact = turned(place, 2.5) + [3.0, -2.0, 0.0] - place
-    assert np.abs(condensed.inner_displacement(ANGLE, outer[None])[0] - exact).max() < 1e-12 * np.abs(mesh.coords).max()
+    assert (
+        np.abs(condensed.inner_displacement(ANGLE, outer[None])[0] - exact).max()
+        < 1e-12 * np.abs(mesh.coords).max()
+    )
 
 
 def test_the_tangent_is_the_derivative_of_the_forces(sector: Sector) -> None:
@@ -89,7 +109,8 @@ def test_the_tangent_is_the_derivative_of_the_forces(sector: Sector) -> None:
         change = np.zeros(3 * m)
         change[k] = step
         ahead, back = (
-            forces(sector[2].reference, conn, outer + sign * change.reshape(m, 3))[1].ravel() for sign in (1.0, -1.0)
+            forces(sector[2].reference, conn, outer + sign * change.reshape(m, 3))[1].ravel()
+            for sign in (1.0, -1.0)
         )
         derivative = (ahead - back) / (2.0 * step)
         assert np.abs(derivative - tangent[:, k])[free].max() < 1e-6 * np.abs(tangent).max()

@@ -1,4 +1,5 @@
-"""Flank contact: exact variations, balanced forces, the contact patch test on meshes that do not match, Hertz."""
+"""Flank contact: exact variations, balanced forces, the contact patch test on meshes that do not
+match, Hertz."""
 
 from __future__ import annotations
 
@@ -26,7 +27,8 @@ def shape_functions(order: int) -> tuple[np.ndarray, np.ndarray]:
 def pressed() -> tuple[MasterFlanks, Faces, np.ndarray, np.ndarray]:
     """MasterFlanks, faces, places and displacements (n, 3) of all nodes, the face's four first.
 
-    Master: an arc of radius 2 with random nodal displacement; slave: one tilted face pressed into it.
+    Master: an arc of radius 2 with random nodal displacement; slave: one tilted face pressed into
+    it.
     """
     rng = np.random.default_rng(4)
     angle = np.linspace(-0.4, 0.4, 5)
@@ -34,7 +36,9 @@ def pressed() -> tuple[MasterFlanks, Faces, np.ndarray, np.ndarray]:
     tangents = np.column_stack([np.cos(angle), -np.sin(angle)])
     s, z = 2.0 * (angle + 0.4), np.linspace(-0.5, 0.5, 4)
     flanks = master(points, tangents, s, z, 4)
-    corners = np.array([[-0.15, 2.0, -0.2], [0.15, 1.98, -0.2], [0.15, 1.99, 0.2], [-0.15, 1.98, 0.2]])
+    corners = np.array(
+        [[-0.15, 2.0, -0.2], [0.15, 1.98, -0.2], [0.15, 1.99, 0.2], [-0.15, 1.98, 0.2]]
+    )
     shape, weight = shape_functions(3)
     faces = Faces(
         np.arange(4, dtype=np.int32)[None],
@@ -62,7 +66,9 @@ def test_tangent_and_balance_on_a_curved_deformed_master() -> None:
 
     rows, r, turning = Rows(len(u)), np.zeros_like(u), np.zeros(1)
     settings = np.zeros((1, 9)), PENALTY, 0.0, 1.0, np.inf
-    gap, pressure, _, missing = contact_flanks(flanks, faces, u, *settings, r, rows, None, 0.0, turning)
+    gap, pressure, _, missing = contact_flanks(
+        flanks, faces, u, *settings, r, rows, None, 0.0, turning
+    )
     assert missing == 0 and (pressure > 0).all() and gap.max() < 0
     tangent, h = rows.matrix(), 1e-6
     difference = np.zeros_like(tangent)
@@ -72,12 +78,15 @@ def test_tangent_and_balance_on_a_curved_deformed_master() -> None:
         step = step.reshape(u.shape)
         difference[:, k] = (force(u + step) - force(u - step)).ravel() / (2 * h)
     assert np.abs(difference - tangent).max() < 1e-6 * np.abs(tangent).max()
-    # action equals reaction; the moment too, since the force acts along the line between point and foot
+    # action equals reaction; the moment too, since the force acts along the line between point and
+    # foot
     assert np.abs(r.sum(axis=0)).max() < 1e-9 * np.abs(r).max()
     moment = np.cross(place + u, r).sum(axis=0)
-    # the foot lies on the curved arc, the forces act at its nodes' chords: balanced up to the sagitta times the force
+    # the foot lies on the curved arc, the forces act at its nodes' chords: balanced up to the
+    # sagitta times the force
     assert np.abs(moment).max() < 0.01 * np.abs(r).sum()
-    # about z, the rest is what the arc's height over the chords, which turns with the body, takes: exactly
+    # about z, the rest is what the arc's height over the chords, which turns with the body, takes:
+    # exactly
     assert abs(moment[2]) > 1e-5 * np.abs(r).sum() > 1e4 * abs(moment[2] + turning[0])
 
 
@@ -99,9 +108,15 @@ def over_the_end(along: float, across: float) -> float:
         np.zeros((1, len(SAMPLES), len(SAMPLES))),
         np.zeros(1, np.int32),
     )
-    u, pick, settings = np.zeros((4 + flanks.conn.size, 3)), np.zeros(1, dtype=np.int64), (PENALTY, 0.0, 0.1, np.inf)
+    u, pick, settings = (
+        np.zeros((4 + flanks.conn.size, 3)),
+        np.zeros(1, dtype=np.int64),
+        (PENALTY, 0.0, 0.1, np.inf),
+    )
     corners, zero = faces.corners(pick), np.zeros((1, 4))
-    foot_point = contact_flanks(flanks, corners, u, zero, *settings, None, None, beyond=CONTINUATION)[2]
+    foot_point = contact_flanks(
+        flanks, corners, u, zero, *settings, None, None, beyond=CONTINUATION
+    )[2]
     cut, r = faces.cut(pick, cut_faces(foot_point, faces.size, s, z, 2)), np.zeros_like(u)
     contact_flanks(flanks, cut, u, np.zeros(cut.weight.shape), *settings, r, None)
     return -r[:4, 1].sum() / (PENALTY * depth)
@@ -110,7 +125,8 @@ def over_the_end(along: float, across: float) -> float:
 @pytest.mark.parametrize("along", [-0.3, -0.15, 0.0, 0.6, 0.85, 0.95, 1.15])
 @pytest.mark.parametrize("across", [0.0, 0.3, -0.8])
 def test_face_that_slides_over_the_end_of_the_flank(along: float, across: float) -> None:
-    """It is cut where the flank ends, along the profile and the width: the force is that of the overlap."""
+    """It is cut where the flank ends, along the profile and the width: the force is that of the
+    overlap."""
     overlap = max(0.0, min(1.0, along + 0.35) - max(0.0, along)) * (1.0 - abs(across))
     assert over_the_end(along, across) == pytest.approx(overlap, abs=1e-12)
 
@@ -126,7 +142,9 @@ def test_contact_turns_with_both_bodies(angle: float) -> None:
     for v, phi, r in ((u, 0.0, before), (turned, angle, after)):
         moment = np.zeros(1)
         settings = np.zeros((1, 9)), PENALTY, 0.0, 1.0, np.inf
-        gap, pressure, _, _ = contact_flanks(flanks, faces, v, *settings, r, None, None, phi, moment)
+        gap, pressure, _, _ = contact_flanks(
+            flanks, faces, v, *settings, r, None, None, phi, moment
+        )
         results.append(np.concatenate([gap.ravel() * PENALTY, pressure.ravel(), moment * PENALTY]))
     assert results[0][9:18].min() > 0.0
     assert np.abs(results[1] - results[0]).max() < 1e-10 * np.abs(results[0]).max()
@@ -134,13 +152,16 @@ def test_contact_turns_with_both_bodies(angle: float) -> None:
 
 
 def non_uniformity(slave: int) -> float:
-    """Largest deviation of the pressure from its mean: slave x slave faces pressed on 4 x 4 by a uniform load."""
+    """Largest deviation of the pressure from its mean: slave x slave faces pressed on 4 x 4 by a
+    uniform load."""
     load, line, fine = 100.0, np.linspace(0, 1, 5), np.linspace(0, 1, slave + 1)
     lower, lower_hexes, lower_grid = block(line, np.linspace(0.0, 0.5, 3), line)
     upper, upper_hexes, upper_grid = block(fine, np.linspace(0.5, 1.0, 3), fine)
     first = len(lower)
     points = np.vstack([lower, upper])
-    flanks = master(np.column_stack([line, np.full(5, 0.5)]), np.tile([1.0, 0.0], (5, 1)), line, line, 0)
+    flanks = master(
+        np.column_stack([line, np.full(5, 0.5)]), np.tile([1.0, 0.0], (5, 1)), line, line, 0
+    )
     flanks.conn[0] = lower_grid[:, -1]
     conn = face_corners(first + upper_grid[:, 0]).astype(np.int32)
     placed = PlacedFaces(
@@ -158,7 +179,9 @@ def non_uniformity(slave: int) -> float:
     u = np.zeros_like(points)
     u[first:, 1] = -1e-5  # touching
     hexes = np.vstack([lower_hexes, upper_hexes + first])
-    blocks = Blocks(points, hexes, len(points), flanks, placed, fixed, Isotropic(E=210e3, nu=0.0), PENALTY, 2)
+    blocks = Blocks(
+        points, hexes, len(points), flanks, placed, fixed, Isotropic(E=210e3, nu=0.0), PENALTY, 2
+    )
     _, pressure, _ = blocks.press(u, force)
     return float(np.abs(pressure - load).max() / load)
 
@@ -170,11 +193,16 @@ def test_patch_on_meshes_that_do_not_match(slave: int) -> None:
 
 
 def test_hertz_line_contact() -> None:
-    """Half width and pressures on meshes that do not match; what is beyond the contact carries nothing."""
+    """Half width and pressures on meshes that do not match; what is beyond the contact carries
+    nothing."""
     coarse, fine = hertz(4), hertz(8)
     for found in (coarse, fine):
         print(f"Hertz: load {found.load:.2f} N/mm, half width {found.half_width:.4f} mm", end=": ")
-        print(f"found {found.found_half_width:.4f}; peak {found.p.max():.2f}, exact {found.peak:.2f} MPa", end="; ")
+        print(
+            f"found {found.found_half_width:.4f}; peak {found.p.max():.2f}, exact {found.peak:.2f} "
+            f"MPa",
+            end="; ",
+        )
         print(f"largest deviation {found.deviation:.4f} of it")
     assert fine.p.max() == pytest.approx(fine.peak, rel=0.005)
     assert fine.found_half_width == pytest.approx(fine.half_width, rel=0.005)

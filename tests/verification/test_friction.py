@@ -18,7 +18,8 @@ SETTINGS = (NO_MULTIPLIER, PENALTY, 0.0, 1.0, np.inf)
 
 
 class Arc:
-    """One tilted face pressed into an arc of radius 2 with random nodal displacements, and a random history."""
+    """One tilted face pressed into an arc of radius 2 with random nodal displacements, and a random
+    history."""
 
     def __init__(self, coefficient: float, gap_before: float) -> None:
         rng = np.random.default_rng(4)
@@ -27,7 +28,9 @@ class Arc:
         tangents = np.column_stack([np.cos(angle), -np.sin(angle)])
         s, z = 2.0 * (angle + 0.4), np.linspace(-0.5, 0.5, 4)
         self.flanks = master(points, tangents, s, z, 4)
-        corners = np.array([[-0.15, 2.0, -0.2], [0.15, 1.98, -0.2], [0.15, 1.99, 0.2], [-0.15, 1.98, 0.2]])
+        corners = np.array(
+            [[-0.15, 2.0, -0.2], [0.15, 1.98, -0.2], [0.15, 1.99, 0.2], [-0.15, 1.98, 0.2]]
+        )
         t, w = np.polynomial.legendre.leggauss(3)
         a, b = (v.ravel() for v in np.meshgrid(0.5 * (t + 1.0), 0.5 * (t + 1.0), indexing="ij"))
         self.faces = Faces(
@@ -74,13 +77,15 @@ def checked_tangent(arc: Arc) -> tuple[np.ndarray, np.ndarray]:
 @pytest.mark.parametrize("gap_before", [-0.01, 0.02])
 def test_tangent_in_slip_and_stick(coefficient: float, gap_before: float) -> None:
     r, tangent = checked_tangent(Arc(coefficient, gap_before))
-    # unlike the tangent without friction this one is not symmetric: the test above sees the friction
+    # unlike the tangent without friction this one is not symmetric: the test above sees the
+    # friction
     assert np.abs(tangent - tangent.T).max() > 0.02 * np.abs(tangent).max()
     assert np.abs(r.sum(axis=0)).max() < 1e-9 * np.abs(r).max()
 
 
 def test_points_that_had_no_foot_carry_no_friction() -> None:
-    """Neither in the forces nor in the tangent, which kept an increment from converging when it did."""
+    """Neither in the forces nor in the tangent, which kept an increment from converging when it
+    did."""
     arc = Arc(0.3, 0.02)
     arc.law.foot_point[0, 4:] = np.nan
     arc.law.gap[0, 4:] = np.inf
@@ -115,7 +120,8 @@ def test_given_pressures_in_the_law(coefficient: float) -> None:
 
 @pytest.mark.parametrize("coefficient", [0.3, 1e3])
 def test_rotation_changes_no_traction(coefficient: float) -> None:
-    """Everything turned by 0.7 rad since the last converged state: the same tractions, forces turned alike."""
+    """Everything turned by 0.7 rad since the last converged state: the same tractions, forces
+    turned alike."""
     arc = Arc(coefficient, -0.01)
     before = arc.force(arc.u)
     traction = arc.law.current.copy()
@@ -132,7 +138,8 @@ def test_rotation_changes_no_traction(coefficient: float) -> None:
 
 
 def test_history_moves_between_cuts() -> None:
-    """A linear field of tractions on one cut arrives unchanged on another one, up to the samples at the rim."""
+    """A linear field of tractions on one cut arrives unchanged on another one, up to the samples at
+    the rim."""
 
     def cut(ends: list[float]) -> Segments:
         t = np.array([0.2113248654, 0.7886751346])
@@ -155,9 +162,11 @@ def test_history_moves_between_cuts() -> None:
 
 
 class Stack:
-    """A block of 3 x 3 elements on one of 4 x 4, 1 mm each, half as high; uniform pressure and shear in both.
+    """A block of 3 x 3 elements on one of 4 x 4, 1 mm each, half as high; uniform pressure and
+    shear in both.
 
-    The shear's complementary tractions act on the sides, so that stresses are uniform and surfaces stay flat.
+    The shear's complementary tractions act on the sides, so that stresses are uniform and surfaces
+    stay flat.
     """
 
     YOUNG, COEFFICIENT, PRESSURE = 210e3, 0.2, 1.0
@@ -169,7 +178,9 @@ class Stack:
         self.first = len(self.lower)
         self.points = np.vstack([self.lower, self.upper])
         self.hexes = np.vstack([lower_hexes, upper_hexes + self.first])
-        flanks = master(np.column_stack([line, np.full(5, 0.5)]), np.tile([1.0, 0.0], (5, 1)), line, line, 0)
+        flanks = master(
+            np.column_stack([line, np.full(5, 0.5)]), np.tile([1.0, 0.0], (5, 1)), line, line, 0
+        )
         flanks.conn[0] = lower_grid[:, -1]
         conn = face_corners(self.first + self.grid[:, 0]).astype(np.int32)
         placed = PlacedFaces(
@@ -202,7 +213,8 @@ class Stack:
         )
 
     def load(self, shear: float) -> np.ndarray:
-        """Forces of the pressure on top, of the shear on top and sides, consistent with the elements' faces."""
+        """Forces of the pressure on top, of the shear on top and sides, consistent with the
+        elements' faces."""
         force = np.zeros_like(self.points)
         for axis, end, traction in (
             (1, 1.0, (shear, -self.PRESSURE, 0.0)),
@@ -223,7 +235,8 @@ class Stack:
 
 
 def test_blocks_stick_below_the_limit() -> None:
-    """Shear up to 0.9 mu p in two increments: the displacement of one piece, but for the jump of the penalty."""
+    """Shear up to 0.9 mu p in two increments: the displacement of one piece, but for the jump of
+    the penalty."""
     stack = Stack()
     limit = stack.COEFFICIENT * stack.PRESSURE
     for share in (0.0, 0.5, 0.9):
@@ -232,14 +245,17 @@ def test_blocks_stick_below_the_limit() -> None:
         assert force == pytest.approx([-shear, stack.PRESSURE, 0.0], abs=1e-7 * stack.PRESSURE)
         jump = np.where(np.arange(len(stack.points)) < stack.first, 0.0, 1.0 / PENALTY)
         y = stack.points[:, 1]
-        tied = np.column_stack([shear * y / (0.5 * stack.YOUNG), -stack.PRESSURE * y / stack.YOUNG, 0.0 * y])
+        tied = np.column_stack(
+            [shear * y / (0.5 * stack.YOUNG), -stack.PRESSURE * y / stack.YOUNG, 0.0 * y]
+        )
         # the stuck jump of every increment adds up to the traction over the tangential stiffness
         tied += jump[:, None] * np.array([shear / friction.STIFFNESS, -stack.PRESSURE, 0.0])
         assert np.abs(stack.u - tied).max() < 1e-5 * np.abs(tied).max()
 
 
 def test_blocks_slip_above_the_limit() -> None:
-    """The top is displaced far enough to slip, then back: the tangential force is mu times the normal one."""
+    """The top is displaced far enough to slip, then back: the tangential force is mu times the
+    normal one."""
     stack = Stack()
     limit = stack.COEFFICIENT * stack.PRESSURE
     stack.shear(0.0)

@@ -1,4 +1,5 @@
-"""The gear pair: expectations, linearisation and simulation against quadrature, closed forms and each other."""
+"""The gear pair: expectations, linearisation and simulation against quadrature, closed forms and
+each other."""
 
 from __future__ import annotations
 
@@ -29,7 +30,9 @@ from swgpar.vibration.sampling import random_stream
 DRIVER = DRIVERS / "gear_pair.toml"
 STEP, STEPS, EVERY = 1e-5, 300, 30
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(200)
-STATES = [(m, s, b) for m in (-3.0, -0.4, 0.0, 1.0, 2.5) for s in (0.05, 0.7, 3.0) for b in (0.0, 1.0)]
+STATES = [
+    (m, s, b) for m in (-3.0, -0.4, 0.0, 1.0, 2.5) for s in (0.05, 0.7, 3.0) for b in (0.0, 1.0)
+]
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +44,12 @@ def design() -> GearPairDesign:
 def moments(design: GearPairDesign) -> dict[tuple[int, str], CoordinateMoments]:
     return {
         (case, method): linearise(
-            gear_pair_system(design, case), static_equilibrium(design, case), STEP, STEPS, EVERY, method
+            gear_pair_system(design, case),
+            static_equilibrium(design, case),
+            STEP,
+            STEPS,
+            EVERY,
+            method,
         )
         for case in range(3)
         for method in ("energy", "force")
@@ -53,11 +61,17 @@ def sums(design: GearPairDesign) -> list[SampleMoments]:
     return [run(design, case, 8000) for case in range(3)]
 
 
-def run(design: GearPairDesign, case: int, samples: int, h: float = STEP, *, seed: int = 3) -> SampleMoments:
+def run(
+    design: GearPairDesign, case: int, samples: int, h: float = STEP, *, seed: int = 3
+) -> SampleMoments:
     ratio = round(STEP / h)
     grid = h, STEPS * ratio, EVERY * ratio
     return simulate(
-        gear_pair_system(design, case), static_equilibrium(design, case), *grid, samples, random_stream(seed, case)
+        gear_pair_system(design, case),
+        static_equilibrium(design, case),
+        *grid,
+        samples,
+        random_stream(seed, case),
     )
 
 
@@ -65,7 +79,8 @@ def run(design: GearPairDesign, case: int, samples: int, h: float = STEP, *, see
 
 
 def normal(mean: float, deviation: float, half_backlash: float) -> tuple[np.ndarray, np.ndarray]:
-    """Points and weights of an integral over a normal density, ten deviations to both sides, cut where f has kinks."""
+    """Points and weights of an integral over a normal density, ten deviations to both sides, cut
+    where f has kinks."""
     ends = [mean - 10.0 * deviation, mean + 10.0 * deviation]
     cuts = sorted([*ends, *(b for b in {half_backlash, -half_backlash} if ends[0] < b < ends[1])])
     x = np.concatenate([0.5 * (a + b + (b - a) * NODES) for a, b in itertools.pairwise(cuts)])
@@ -77,17 +92,27 @@ def normal(mean: float, deviation: float, half_backlash: float) -> tuple[np.ndar
 def test_expectations(mean: float, deviation: float, half_backlash: float) -> None:
     d, w = normal(mean, deviation, half_backlash)
     force, energy = backlash.force(2.0, d, half_backlash), backlash.energy(2.0, d, half_backlash)
-    assert backlash.mean_force(2.0, mean, deviation, half_backlash) == pytest.approx(w @ force, abs=1e-9)
-    assert backlash.mean_energy(2.0, mean, deviation, half_backlash) == pytest.approx(w @ energy, abs=1e-9)
+    assert backlash.mean_force(2.0, mean, deviation, half_backlash) == pytest.approx(
+        w @ force, abs=1e-9
+    )
+    assert backlash.mean_energy(2.0, mean, deviation, half_backlash) == pytest.approx(
+        w @ energy, abs=1e-9
+    )
     slope = w @ (force * (d - mean)) / deviation**2
-    assert backlash.mean_stiffness(2.0, mean, deviation, half_backlash) == pytest.approx(slope, abs=1e-9)
+    assert backlash.mean_stiffness(2.0, mean, deviation, half_backlash) == pytest.approx(
+        slope, abs=1e-9
+    )
     # least squares of the energy counted from that of the mean deflection
     rise = energy - backlash.energy(2.0, mean, half_backlash)
     terms = np.stack([d - mean, 0.5 * (d - mean) ** 2], axis=1)
     root = np.sqrt(w)[:, None]
     best = np.linalg.lstsq(root * terms, root[:, 0] * rise, rcond=None)[0]
-    assert backlash.mean_force(2.0, mean, deviation, half_backlash) == pytest.approx(best[0], abs=1e-8)
-    assert backlash.energy_stiffness(2.0, mean, deviation, half_backlash) == pytest.approx(best[1], abs=1e-8)
+    assert backlash.mean_force(2.0, mean, deviation, half_backlash) == pytest.approx(
+        best[0], abs=1e-8
+    )
+    assert backlash.energy_stiffness(2.0, mean, deviation, half_backlash) == pytest.approx(
+        best[1], abs=1e-8
+    )
 
 
 def test_a_mesh_in_contact_keeps_its_stiffness() -> None:
@@ -110,22 +135,29 @@ def test_energy_and_force_belong_together() -> None:
 
 
 def test_one_rotation_for_two(design: GearPairDesign) -> None:
-    """Natural frequencies of y1, y2 and both rotations: those of the pair, and the rigid turning at zero."""
+    """Natural frequencies of y1, y2 and both rotations: those of the pair, and the rigid turning at
+    zero."""
     g1, g2, k = design.gear_1, design.gear_2, design.mesh.stiffness
     way = np.array([1.0, -1.0, 1e-3 * g1.radius, -1e-3 * g2.radius])
     stiffness = np.diag([g1.bearing, g2.bearing, 0.0, 0.0]) + k * np.outer(way, way)
-    squares = eigh(stiffness, np.diag([g1.mass, g2.mass, g1.inertia, g2.inertia]), eigvals_only=True)
+    squares = eigh(
+        stiffness, np.diag([g1.mass, g2.mass, g1.inertia, g2.inertia]), eigvals_only=True
+    )
     assert abs(squares[0]) < 1e-9 * squares[1]
     np.testing.assert_allclose(np.sqrt(squares[1:]), natural_modes(design)[0], rtol=1e-10)
     pair = gear_pair_system(design, 0)
     rest = static_equilibrium(design, 0)
     pull = backlash.force(pair.mesh_stiffness(0.0), DEFLECTION_ROW @ rest, pair.half_backlash)
-    np.testing.assert_allclose(pair.stiffness @ rest + DEFLECTION_ROW.T @ pull, pair.force, atol=1e-8 * pair.force[2])
+    np.testing.assert_allclose(
+        pair.stiffness @ rest + DEFLECTION_ROW.T @ pull, pair.force, atol=1e-8 * pair.force[2]
+    )
     assert pair.mass[2, 2] == combined_mass(design) == pytest.approx(15.4736, rel=1e-5)
 
 
 def test_mesh_stiffness_is_a_rectangular_wave() -> None:
-    wave = MeshStiffness(np.array([10.0]), np.array([1.0]), np.array([1.6]), 2.0 * np.pi, 4000, np.array([0.5]))
+    wave = MeshStiffness(
+        np.array([10.0]), np.array([1.0]), np.array([1.6]), 2.0 * np.pi, 4000, np.array([0.5])
+    )
     phase = 0.5 / (2.0 * np.pi)
     for t, value in ((0.0, 11.2 - 0.4), (0.29, 10.8), (0.31, 8.8), (0.69, 8.8), (0.71, 10.8)):
         assert wave.at(t + phase)[0] == pytest.approx(value, abs=5e-3)
@@ -135,7 +167,8 @@ def test_mesh_stiffness_is_a_rectangular_wave() -> None:
 
 
 def exact_covariance(design: GearPairDesign, t: float) -> np.ndarray:
-    """Of the pair in contact at constant stiffness, after t from rest: the stationary one less what is left of it."""
+    """Of the pair in contact at constant stiffness, after t from rest: the stationary one less what
+    is left of it."""
     pair = gear_pair_system(design, 0)
     n, inverse = pair.size, np.linalg.inv(pair.mass)
     stiffness = pair.linear_stiffness(0.0, np.array([design.mesh.stiffness]))
@@ -151,12 +184,20 @@ def steady(design: GearPairDesign) -> GearPairDesign:
 
 @pytest.mark.parametrize("method", ["energy", "force"])
 def test_covariance_in_contact(design: GearPairDesign, method: str) -> None:
-    """Second order in the step, to the exact covariance; both criteria leave the linear system as it is."""
+    """Second order in the step, to the exact covariance; both criteria leave the linear system as
+    it is."""
     pair, end = steady(design), 1e-3
     expected = exact_covariance(pair, end)
     off = []
     for count in (100, 200, 400):
-        found = linearise(gear_pair_system(pair, 0), static_equilibrium(pair, 0), end / count, count, count, method)
+        found = linearise(
+            gear_pair_system(pair, 0),
+            static_equilibrium(pair, 0),
+            end / count,
+            count,
+            count,
+            method,
+        )
         off.append(np.abs(found.covariance[-1, :3, :3] - expected).max() / np.abs(expected).max())
         np.testing.assert_allclose(found.mean[-1], static_equilibrium(pair, 0), rtol=1e-9)
     assert off[-1] < 1e-4
@@ -165,7 +206,8 @@ def test_covariance_in_contact(design: GearPairDesign, method: str) -> None:
 
 
 def test_covariance_stays_positive(moments: dict[tuple[int, str], CoordinateMoments]) -> None:
-    """Of coordinates and velocities at all rows, each over its deviation, as computed: symmetric, no negative one."""
+    """Of coordinates and velocities at all rows, each over its deviation, as computed: symmetric,
+    no negative one."""
     for found in moments.values():
         size = np.sqrt(np.einsum("tii->ti", found.covariance[1:]))
         scaled = found.covariance[1:] / size[:, :, None] / size[:, None, :]
@@ -179,7 +221,14 @@ def test_linearisation_does_not_depend_on_the_step(design: GearPairDesign, metho
     """With impacts and tooth cycles: second order, by three steps."""
     end, ends = 5e-4, []
     for count in (50, 100, 200):
-        found = linearise(gear_pair_system(design, 1), static_equilibrium(design, 1), end / count, count, count, method)
+        found = linearise(
+            gear_pair_system(design, 1),
+            static_equilibrium(design, 1),
+            end / count,
+            count,
+            count,
+            method,
+        )
         ends.append(np.concatenate([found.mean[-1], np.sqrt(np.diag(found.covariance[-1]))[:3]]))
     steps = [np.abs(fine / coarse - 1.0).max() for coarse, fine in itertools.pairwise(ends)]
     assert steps[-1] < 4e-3
@@ -190,10 +239,17 @@ def test_linearisation_does_not_depend_on_the_step(design: GearPairDesign, metho
 
 
 def test_simulation_without_noise(design: GearPairDesign) -> None:
-    """Against SciPy with impacts on both sides: the error falls by more than three from step to step."""
+    """Against SciPy with impacts on both sides: the error falls by more than three from step to
+    step."""
     soft = design.damping.model_copy(update={"stiffness": 2e-6})
-    quiet = steady(design).model_copy(update={"damping": soft, "load": design.load.model_copy(update={"noise": 0.0})})
-    pair, start, end = gear_pair_system(quiet, 2), static_equilibrium(quiet, 2) + np.array([0.0, 0.0, 6e-4]), 1.5e-3
+    quiet = steady(design).model_copy(
+        update={"damping": soft, "load": design.load.model_copy(update={"noise": 0.0})}
+    )
+    pair, start, end = (
+        gear_pair_system(quiet, 2),
+        static_equilibrium(quiet, 2) + np.array([0.0, 0.0, 6e-4]),
+        1.5e-3,
+    )
 
     def rates(_: float, y: np.ndarray) -> np.ndarray:
         q, v = y[:3], y[3:]
@@ -229,7 +285,8 @@ def test_simulation_without_noise(design: GearPairDesign) -> None:
 
 
 def statistics(found: CoordinateMoments) -> tuple[np.ndarray, np.ndarray]:
-    """Means and deviations of the coordinates and the mesh's way over the second half of the time."""
+    """Means and deviations of the coordinates and the mesh's way over the second half of the
+    time."""
     ways = np.vstack([np.eye(3), DEFLECTION_ROW])
     later = len(found.time) // 2
     variance = np.einsum("ki,tij,kj->tk", ways, found.covariance[later:, :3, :3], ways)
@@ -251,7 +308,8 @@ def test_linearisation_without_impact(
 def test_errors_grow_towards_impacts(
     moments: dict[tuple[int, str], CoordinateMoments], sums: list[SampleMoments]
 ) -> None:
-    """Single-sided, then double-sided impact: the deviation of the mesh's way is missed by more and more."""
+    """Single-sided, then double-sided impact: the deviation of the mesh's way is missed by more and
+    more."""
     assert 0.1 < (sums[1].final < 20e-6).mean() < 0.5 and (sums[1].final > -20e-6).all()
     assert (sums[2].final < 20e-6).mean() > 0.6 and (sums[2].final < -20e-6).any()
     for method in ("energy", "force"):
@@ -266,8 +324,11 @@ def test_errors_grow_towards_impacts(
         assert max(o[:2].max() for o in off) < 0.05
 
 
-def test_simulation_does_not_depend_on_the_step(design: GearPairDesign, sums: list[SampleMoments]) -> None:
-    """Half the step and other samples, with impacts: means and deviations agree within four sampling errors."""
+def test_simulation_does_not_depend_on_the_step(
+    design: GearPairDesign, sums: list[SampleMoments]
+) -> None:
+    """Half the step and other samples, with impacts: means and deviations agree within four
+    sampling errors."""
     for case in (1, 2):
         fine, coarse = run(design, case, 4000, STEP / 2.0, seed=8), sums[case]
         noise = np.sqrt(1.0 / fine.count + 1.0 / coarse.count)
@@ -281,7 +342,9 @@ def test_blocks_add_up() -> None:
     values = 5.0 + random.standard_normal((7, 4, 3))
 
     def of(part: np.ndarray) -> SampleMoments:
-        return SampleMoments(len(part), part.mean(axis=0), part.var(axis=0) * len(part), part[:, 0, 0])
+        return SampleMoments(
+            len(part), part.mean(axis=0), part.var(axis=0) * len(part), part[:, 0, 0]
+        )
 
     both = of(values[:3]).merged_with(of(values[3:]))
     np.testing.assert_allclose(both.mean, values.mean(axis=0))

@@ -13,15 +13,24 @@ from support.element_mesh import ElementMesh, pinch
 from swgpar.fem.element_matrices import element_matrices
 from swgpar.materials import Isotropic
 
-CORNERS = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])
+CORNERS = np.array(
+    [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]
+)
 
 
-def box(counts: tuple[int, int, int], size: tuple[float, float, float]) -> tuple[np.ndarray, np.ndarray]:
+def box(
+    counts: tuple[int, int, int], size: tuple[float, float, float]
+) -> tuple[np.ndarray, np.ndarray]:
     """Points and hexes of a regular box."""
     n = np.array(counts) + 1
-    grid = np.stack(np.meshgrid(*(np.linspace(0, s, k) for s, k in zip(size, n)), indexing="ij"), -1).reshape(-1, 3)
+    grid = np.stack(
+        np.meshgrid(*(np.linspace(0, s, k) for s, k in zip(size, n)), indexing="ij"), -1
+    ).reshape(-1, 3)
     number = np.arange(n.prod()).reshape(n)
-    hexes = [[number[tuple(np.add(c, o))] for o in CORNERS] for c in itertools.product(*map(range, counts))]
+    hexes = [
+        [number[tuple(np.add(c, o))] for o in CORNERS]
+        for c in itertools.product(*map(range, counts))
+    ]
     return grid, np.array(hexes)
 
 
@@ -31,7 +40,8 @@ def linear(mesh: ElementMesh, fixed: np.ndarray, load: np.ndarray) -> np.ndarray
 
 @pytest.mark.parametrize("seed", range(4))
 def test_patch(seed: int) -> None:
-    """Constant strain is exact on a distorted mesh; displacement prescribed on the boundary only."""
+    """Constant strain is exact on a distorted mesh; displacement prescribed on the boundary
+    only."""
     rng = np.random.default_rng(seed)
     points, hexes = box((3, 3, 3), (1.0, 1.0, 1.0))
     inner = np.all((points > 1e-9) & (points < 1 - 1e-9), axis=1)
@@ -83,7 +93,9 @@ def test_tangent_is_the_derivative_and_symmetric() -> None:
 def test_six_zero_modes() -> None:
     rng = np.random.default_rng(6)
     points = CORNERS + rng.uniform(-0.15, 0.15, (8, 3))
-    values = np.linalg.eigvalsh(element_matrices(points[None], Isotropic(E=1.0, nu=0.3)).stiffness[0])
+    values = np.linalg.eigvalsh(
+        element_matrices(points[None], Isotropic(E=1.0, nu=0.3)).stiffness[0]
+    )
     assert np.abs(values[:6]).max() < 1e-12 * values[-1]
     assert values[6] > 1e-3 * values[-1]
 
@@ -95,7 +107,8 @@ def test_inverted_element_is_refused() -> None:
 
 
 def cantilever(shape: str, direction: int) -> float:
-    """Tip displacement over theory of MacNeal and Harder's straight beam, 6 x 0.2 (y) x 0.1 (z), six elements."""
+    """Tip displacement over theory of MacNeal and Harder's straight beam, 6 x 0.2 (y) x 0.1 (z),
+    six elements."""
     points, hexes = box((6, 1, 1), (6.0, 0.2, 0.1))
     inner = (points[:, 0] > 0.5) & (points[:, 0] < 5.5)
     slant = np.where(points[:, 1] > 0.1, 0.1, -0.1)  # 45 degrees over the depth of 0.2
@@ -120,8 +133,9 @@ def cantilever(shape: str, direction: int) -> float:
         ("regular", 0, 0.98, 1.01),
         ("regular", 1, 0.97, 1.0),
         ("regular", 2, 0.97, 1.0),
-        # this element type is known to stiffen when slanted and to lock as a trapezoid: MacNeal and Harder's
-        # own hexahedron with incompatible modes reaches about 0.62 and 0.53 as parallelogram, a few per cent otherwise
+        # this element type is known to stiffen when slanted and to lock as a trapezoid: MacNeal and
+        # Harder's own hexahedron with incompatible modes reaches about 0.62 and 0.53 as
+        # parallelogram, a few per cent otherwise
         ("parallelogram", 0, 0.97, 1.02),
         ("parallelogram", 1, 0.60, 0.65),
         ("parallelogram", 2, 0.50, 0.56),
@@ -137,7 +151,8 @@ def test_macneal_harder_beam(shape: str, direction: int, low: float, high: float
 
 
 def ring(n: int) -> tuple[ElementMesh, np.ndarray, np.ndarray]:
-    """A quarter of a thin ring, R = 58, t = 1, one element through the thickness, n along the quarter."""
+    """A quarter of a thin ring, R = 58, t = 1, one element through the thickness, n along the
+    quarter."""
     points, hexes = box((n, 1, 1), (0.5 * np.pi, 1.0, 1.0))
     angle, radius = points[:, 0].copy(), 57.5 + points[:, 1]
     points = np.column_stack([radius * np.sin(angle), radius * np.cos(angle), points[:, 2]])
@@ -145,7 +160,8 @@ def ring(n: int) -> tuple[ElementMesh, np.ndarray, np.ndarray]:
 
 
 def test_pinched_thin_ring() -> None:
-    """The diameters change by 0.1488 and 0.1366 P R^3 / (E I) along and across the load (Timoshenko); error as h^2."""
+    """The diameters change by 0.1488 and 0.1366 P R^3 / (E I) along and across the load
+    (Timoshenko); error as h^2."""
     errors = []
     for n in (10, 20, 40):
         mesh, angle, _ = ring(n)
@@ -153,7 +169,8 @@ def test_pinched_thin_ring() -> None:
         print(f"{n} elements: {under:.5f} (0.14878), {across:.5f} (0.13662)")
         errors.append(abs(under / 0.14878 - 1.0))
     assert errors[-1] < 0.01 and abs(across / 0.13662 - 1.0) < 0.01
-    # towards the thick-ring value, which differs from the thin one by (t / R)^2: the rate is asserted before that floor
+    # towards the thick-ring value, which differs from the thin one by (t / R)^2: the rate is
+    # asserted before that floor
     assert np.log2(errors[0] / errors[1]) > 1.7
 
 
@@ -173,7 +190,12 @@ def test_cantilever_rolled_to_a_half_circle() -> None:
             across = (points + u)[upper].mean(axis=0) - (points + u)[lower].mean(axis=0)
             along = np.array([across[1], -across[0], 0.0]) / np.hypot(*across[:2])
             load = np.zeros_like(points)
-            load[upper], load[lower] = -0.5 * couple * k / steps * along, 0.5 * couple * k / steps * along
-            u.ravel()[free] += spsolve(mesh.tangent(u)[free][:, free].tocsc(), (load - mesh.residual(u)).ravel()[free])
+            load[upper], load[lower] = (
+                -0.5 * couple * k / steps * along,
+                0.5 * couple * k / steps * along,
+            )
+            u.ravel()[free] += spsolve(
+                mesh.tangent(u)[free][:, free].tocsc(), (load - mesh.residual(u)).ravel()[free]
+            )
     end = (points + u)[tip].mean(axis=0) - [0.0, 0.05, 0.0]
     assert abs(end[0]) < 0.01 * length and end[1] == pytest.approx(2.0 * length / np.pi, rel=0.01)

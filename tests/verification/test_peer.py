@@ -1,4 +1,5 @@
-"""CalculiX solves the same ring to the same displacements: the benchmark's command on its coarsest mesh."""
+"""CalculiX solves the same ring to the same displacements: the benchmark's command on its coarsest
+mesh."""
 
 from __future__ import annotations
 
@@ -16,7 +17,15 @@ from support.paths import ROOT
 
 @pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX (ccx) is not installed")
 def test_pinched_rings_agree_with_calculix(tmp_path: Path) -> None:
-    command = [sys.executable, str(ROOT / "scripts/bench/peer.py"), "--only", "linear", "finite", "--levels", "0"]
+    command = [
+        sys.executable,
+        str(ROOT / "scripts/bench/peer.py"),
+        "--only",
+        "linear",
+        "finite",
+        "--levels",
+        "0",
+    ]
     command += ["--out", str(tmp_path / "jobs"), "--tables", str(tmp_path)]
     subprocess.run(command, check=True, cwd=ROOT, env=environment(), stdout=subprocess.DEVNULL)
     rows = json.loads((tmp_path / "peer.json").read_text(encoding="utf-8"))

@@ -1,4 +1,5 @@
-"""The planetary gear train: statics, steps and statistics against independent formulations and each other."""
+"""The planetary gear train: statics, steps and statistics against independent formulations and each
+other."""
 
 from __future__ import annotations
 
@@ -15,7 +16,13 @@ from swgpar.errors import ConvergenceError
 from swgpar.gear_trains.kernel import PlanetaryStepKernel
 from swgpar.gear_trains.planetary.design import PlanetaryDesign
 from swgpar.gear_trains.planetary.linearisation import TrainMoments, linearise
-from swgpar.gear_trains.planetary.model import PlanetaryModel, carrier_index, planet_index, radii, ring_index
+from swgpar.gear_trains.planetary.model import (
+    PlanetaryModel,
+    carrier_index,
+    planet_index,
+    radii,
+    ring_index,
+)
 from swgpar.gear_trains.planetary.monitored import MONITORED_NAMES, monitored_rows
 from swgpar.gear_trains.planetary.monte_carlo import simulate
 from swgpar.gear_trains.planetary.time_stepping import ModalStates, TimeStepper
@@ -46,14 +53,17 @@ def physical(train: PlanetaryModel, t: float) -> tuple[np.ndarray, np.ndarray]:
     """Damping (n, n) and ways (m, n) at a time, in the coordinates of the parts."""
     deflection_rows, section = train.deflection_rows(t), train.design.damping
     damping = section.mass * train.mass + section.stiffness * train.constant
-    return damping + deflection_rows.T @ (train.mesh_damping[:, None] * deflection_rows), deflection_rows
+    return damping + deflection_rows.T @ (
+        train.mesh_damping[:, None] * deflection_rows
+    ), deflection_rows
 
 
 # --- equations
 
 
 def test_kinematics(design: PlanetaryDesign) -> None:
-    """A turn of the carrier and the sun's by 1 + 99/21 of it, in a ring at rest, is no way of any mesh or bearing."""
+    """A turn of the carrier and the sun's by 1 + 99/21 of it, in a ring at rest, is no way of any
+    mesh or bearing."""
     train = PlanetaryModel(design)
     sun, planets, centres = radii(design)
     x = np.zeros(train.size)
@@ -69,11 +79,14 @@ def test_kinematics(design: PlanetaryDesign) -> None:
     shaft = x[2] * train.constant[2, 2] * x[2]
     assert x @ train.constant @ x == pytest.approx(shaft, rel=1e-9)
     assert np.abs(train.constant - train.constant.T).max() < 1e-12 * np.abs(train.constant).max()
-    assert ratio == pytest.approx(2.0 * centres / (1e-3 * 0.5 * design.sun.pitch_diameter), rel=1e-3)
+    assert ratio == pytest.approx(
+        2.0 * centres / (1e-3 * 0.5 * design.sun.pitch_diameter), rel=1e-3
+    )
 
 
 def test_statics(design: PlanetaryDesign) -> None:
-    """The carrier's torque is that of all mesh forces; the sun's shaft takes its part, the ring's supports the rest."""
+    """The carrier's torque is that of all mesh forces; the sun's shaft takes its part, the ring's
+    supports the rest."""
     train = PlanetaryModel(design)
     steps, torque = TimeStepper(train, 1e-3, 1), 1e5
     start, flanks = steps.static_equilibrium(torque)
@@ -82,8 +95,11 @@ def test_statics(design: PlanetaryDesign) -> None:
     sun, _, centres = radii(design)
     cosine = np.cos(np.radians(design.mesh.pressure_angle))
     assert (flanks == -1.0).all()
-    np.testing.assert_allclose(f, -torque / (2.0 * design.planet.count * centres * cosine), rtol=1e-9)
-    # three planets in phase between six supports: the sun stays in the middle, on a bearing of 100 N/m
+    np.testing.assert_allclose(
+        f, -torque / (2.0 * design.planet.count * centres * cosine), rtol=1e-9
+    )
+    # three planets in phase between six supports: the sun stays in the middle, on a bearing of 100
+    # N/m
     assert np.abs(q[:2]).max() < 1e-9 * abs(q[2])
     turn = q[2] / sun
     assert design.sun.torsional * turn == pytest.approx(-3.0 * f[0] * sun, rel=1e-9)
@@ -92,20 +108,23 @@ def test_statics(design: PlanetaryDesign) -> None:
     rigid = np.tile([0.0, 1.0, 1.0 / radius], design.ring.elements)
     held = rigid @ train.ring.stiffness @ q[first:]
     assert held == pytest.approx(-design.planet.count * f[3] * cosine, rel=1e-6)
-    # flanks load apart: forces on the sun away from planet 1, on planet 1 outward by the sun, on the ring outward
+    # flanks load apart: forces on the sun away from planet 1, on planet 1 outward by the sun, on
+    # the ring outward
     deflection_rows, outward = train.deflection_rows(0.0), first
     assert -f[0] * deflection_rows[0, 0] < 0.0 < -f[0] * deflection_rows[0, planet_index(0)]
     assert -f[3] * deflection_rows[3, planet_index(0)] < 0.0 < -f[3] * deflection_rows[3, outward]
 
 
 def test_planets_out_of_phase(design: PlanetaryDesign) -> None:
-    """Four planets, 21 and 99 teeth: at the ring a planet is where the one before it was a quarter turn ago."""
+    """Four planets, 21 and 99 teeth: at the ring a planet is where the one before it was a quarter
+    turn ago."""
     train = PlanetaryModel(changed(design, "planet", count=4))
     quarter = 0.5 * np.pi / design.carrier.speed
     for t in (0.0, 0.1, 0.37):
         now, later = train.mesh.at(t), train.mesh.at(t + quarter)
         np.testing.assert_allclose(now[5:8], later[4:7], rtol=1e-12)
-        # the sun has turned by 99/21 quarter turns more than the carrier: 21 teeth apart, 99 teeth on, a whole number
+        # the sun has turned by 99/21 quarter turns more than the carrier: 21 teeth apart, 99 teeth
+        # on, a whole number
         np.testing.assert_allclose(now[1:4], later[:3], rtol=1e-12)
         assert np.ptp(now[4:]) > 0.01 * now[4]
     together = PlanetaryModel(design).mesh.at(0.1)
@@ -118,7 +137,9 @@ def test_modes_hold_the_matrices(small: PlanetaryDesign) -> None:
     s = train.shapes
     np.testing.assert_allclose(s.T @ train.mass @ s, np.eye(train.size), atol=1e-8)
     np.testing.assert_allclose(
-        s.T @ train.constant @ s, np.diag(train.stiffness), atol=1e-9 * np.abs(train.stiffness).max()
+        s.T @ train.constant @ s,
+        np.diag(train.stiffness),
+        atol=1e-9 * np.abs(train.stiffness).max(),
     )
 
 
@@ -126,7 +147,12 @@ def test_modes_hold_the_matrices(small: PlanetaryDesign) -> None:
 
 
 def states_of(
-    train: PlanetaryModel, h: float, q: np.ndarray, v: np.ndarray, steps: TimeStepper, forces: np.ndarray
+    train: PlanetaryModel,
+    h: float,
+    q: np.ndarray,
+    v: np.ndarray,
+    steps: TimeStepper,
+    forces: np.ndarray,
 ) -> ModalStates:
     modal = np.linalg.solve(train.shapes, np.column_stack([q, v]))
     y = 2.0 / h * modal[:, :1] + modal[:, 1:]
@@ -134,13 +160,21 @@ def states_of(
 
 
 def test_a_step_is_the_trapezoidal_rule(small: PlanetaryDesign) -> None:
-    """Against the whole matrices of all parts, meshes without backlash, from a random state; linear and simulated."""
+    """Against the whole matrices of all parts, meshes without backlash, from a random state; linear
+    and simulated."""
     design = changed(small, "mesh", half_backlash=0.0)
     train, h = PlanetaryModel(design), 2e-3
     steps, random = TimeStepper(train, h, 1), np.random.default_rng(0)
-    q, v, torque = 1e-5 * random.standard_normal(train.size), 1e-4 * random.standard_normal(train.size), 3e4
+    q, v, torque = (
+        1e-5 * random.standard_normal(train.size),
+        1e-4 * random.standard_normal(train.size),
+        3e4,
+    )
     (c0, w0), (c1, w1) = (physical(train, t) for t in (0.0, h))
-    k0, k1 = (train.constant + w.T @ (k[:, None] * w) for w, k in zip((w0, w1), steps.stiffness, strict=True))
+    k0, k1 = (
+        train.constant + w.T @ (k[:, None] * w)
+        for w, k in zip((w0, w1), steps.stiffness, strict=True)
+    )
     load = np.linalg.solve(train.shapes.T, train.torque_vector) * torque
     # M (v1 - v0) + h/2 (C0 v0 + C1 v1 + K0 q0 + K1 q1) = h F with q1 = q0 + h/2 (v0 + v1)
     left = train.mass + 0.5 * h * c1 + 0.25 * h * h * k1
@@ -151,8 +185,11 @@ def test_a_step_is_the_trapezoidal_rule(small: PlanetaryDesign) -> None:
         states = states_of(train, h, q, v, steps, steps.stiffness[0] * (w0 @ q))
         torques = np.array([2.0 * torque])
         if backlash:
-            # one state of many, that do not fill the kernel's lanes; all on the wrong flank at first
-            states = ModalStates(*(np.repeat(part, 19, axis=1) for part in (states.q, states.y, states.mesh_term)))
+            # one state of many, that do not fill the kernel's lanes; all on the wrong flank at
+            # first
+            states = ModalStates(
+                *(np.repeat(part, 19, axis=1) for part in (states.q, states.y, states.mesh_term))
+            )
             flanks = -np.sign(w1 @ q1)
             assert steps.simulate(0, states, np.repeat(torques[None], 19, axis=1), flanks) == 19
             assert (states.q == states.q[:, :1]).all()
@@ -163,22 +200,34 @@ def test_a_step_is_the_trapezoidal_rule(small: PlanetaryDesign) -> None:
         np.testing.assert_allclose(moved, q1, atol=1e-8 * np.abs(q1).max())
         np.testing.assert_allclose(velocities, v1, atol=1e-6 * np.abs(v1).max())
     # forces that are given, as those of the linearised mean are
-    states, forces = states_of(train, h, q, v, steps, steps.stiffness[0] * (w0 @ q)), steps.stiffness[1] * (w1 @ q1)
+    states, forces = (
+        states_of(train, h, q, v, steps, steps.stiffness[0] * (w0 @ q)),
+        steps.stiffness[1] * (w1 @ q1),
+    )
     free = steps.free_deflections(1, states, torques)[:, 0]
     np.testing.assert_allclose(
-        steps.damped[1] @ (w1 @ q1) + steps.compliance[1] @ forces, free, atol=1e-8 * np.abs(free).max()
+        steps.damped[1] @ (w1 @ q1) + steps.compliance[1] @ forces,
+        free,
+        atol=1e-8 * np.abs(free).max(),
     )
     steps.linear(1, states, torques, steps.law(1, np.zeros_like(forces), forces))
     np.testing.assert_allclose(train.shapes @ states.q[:, 0], q1, atol=1e-8 * np.abs(q1).max())
 
 
 def test_a_step_that_does_not_converge() -> None:
-    """One mode and one mesh that pulls where it should push: d = 1.5 in contact asks for 0.5, in the gap, and back."""
+    """One mode and one mesh that pulls where it should push: d = 1.5 in contact asks for 0.5, in
+    the gap, and back."""
     one, zero = np.ones(1), np.zeros(1)
-    kernel = PlanetaryStepKernel(1e-3, 1.0, one, zero, zero, zero, np.ones((2, 1, 1)), np.full((2, 1, 1), -2.0), zero)
+    kernel = PlanetaryStepKernel(
+        1e-3, 1.0, one, zero, zero, zero, np.ones((2, 1, 1)), np.full((2, 1, 1), -2.0), zero
+    )
     train = SimpleNamespace(half_backlash=1.0)
     steps = SimpleNamespace(
-        h=1e-3, kernel=kernel, train=train, stiffness=np.ones((2, 1)), contact_inverse=np.ones((2, 1, 1))
+        h=1e-3,
+        kernel=kernel,
+        train=train,
+        stiffness=np.ones((2, 1)),
+        contact_inverse=np.ones((2, 1, 1)),
     )
     states = ModalStates(np.full((1, 1), 1.5), np.zeros((1, 1)), np.zeros((1, 1)))
     with pytest.raises(ConvergenceError, match=r"did not converge at 0\.001 s"):
@@ -186,7 +235,8 @@ def test_a_step_that_does_not_converge() -> None:
 
 
 def test_load_reversal(small: PlanetaryDesign) -> None:
-    """The torque reverses: all meshes cross their backlash. Against SciPy's Radau, second order in the step."""
+    """The torque reverses: all meshes cross their backlash. Against SciPy's Radau, second order in
+    the step."""
     train, end, torque = PlanetaryModel(small), 0.6, 1e5
     torque_row = np.linalg.solve(train.shapes.T, train.torque_vector)
     inverse = np.linalg.inv(train.mass)
@@ -207,13 +257,23 @@ def test_load_reversal(small: PlanetaryDesign) -> None:
     def jacobian(t: float, y: np.ndarray) -> np.ndarray:
         damping, deflection_rows = physical(train, t)
         in_contact = np.abs(deflection_rows @ y[: train.size]) > train.half_backlash
-        k = train.constant + deflection_rows.T @ ((train.mesh.at(t) * in_contact)[:, None] * deflection_rows)
-        return np.block([[np.zeros_like(k), np.eye(train.size)], [-inverse @ k, -inverse @ damping]])
+        k = train.constant + deflection_rows.T @ (
+            (train.mesh.at(t) * in_contact)[:, None] * deflection_rows
+        )
+        return np.block(
+            [[np.zeros_like(k), np.eye(train.size)], [-inverse @ k, -inverse @ damping]]
+        )
 
     start, _ = TimeStepper(train, 1e-3, 1).static_equilibrium(torque)
     q = train.shapes @ start.q[:, 0]
     exact = solve_ivp(
-        rates, (0.0, end), np.concatenate([q, 0.0 * q]), method="Radau", rtol=1e-7, atol=1e-12, jac=jacobian
+        rates,
+        (0.0, end),
+        np.concatenate([q, 0.0 * q]),
+        method="Radau",
+        rtol=1e-7,
+        atol=1e-12,
+        jac=jacobian,
     )
     expected = np.linalg.solve(train.shapes, exact.y[: train.size, -1])
     off = []
@@ -246,26 +306,40 @@ def test_wind(design: PlanetaryDesign) -> None:
     assert deviation == pytest.approx(2.0 * section.turbulence * wind.steady, rel=1e-6)
     half_step = WindLoad.of(design, 0.5 * h)
     twice = (
-        half_step.transition @ half_step.noise_root @ half_step.noise_root.T @ half_step.transition.T
+        half_step.transition
+        @ half_step.noise_root
+        @ half_step.noise_root.T
+        @ half_step.transition.T
         + half_step.noise_root @ half_step.noise_root.T
     )
     np.testing.assert_allclose(twice, wind.noise_root @ wind.noise_root.T, rtol=1e-9)
     v0, area = section.speed / 3.6, np.pi * section.rotor_radius**2
     ratio = design.carrier.speed * section.rotor_radius / v0
-    torque = 0.5 * section.air_density * area * section.rotor_radius * section.power_coefficient / ratio * v0**2
+    torque = (
+        0.5
+        * section.air_density
+        * area
+        * section.rotor_radius
+        * section.power_coefficient
+        / ratio
+        * v0**2
+    )
     assert wind.steady == pytest.approx(torque)
 
 
 # --- statistics
 
 
-def moments(design: PlanetaryDesign, h: float, count: int, every: int) -> tuple[TimeStepper, WindLoad, TrainMoments]:
+def moments(
+    design: PlanetaryDesign, h: float, count: int, every: int
+) -> tuple[TimeStepper, WindLoad, TrainMoments]:
     steps, wind = TimeStepper(PlanetaryModel(design), h, count), WindLoad.of(design, h)
     return steps, wind, linearise(steps, wind, every)
 
 
 def test_covariance_by_whole_matrices(small: PlanetaryDesign) -> None:
-    """Without backlash the linearisation is the linear train: S = T S T^T + B B^T with whole matrices."""
+    """Without backlash the linearisation is the linear train: S = T S T^T + B B^T with whole
+    matrices."""
     design = changed(small, "mesh", half_backlash=0.0)
     h, count = 2e-3, 8
     steps, wind, found = moments(design, h, count, count)
@@ -275,7 +349,10 @@ def test_covariance_by_whole_matrices(small: PlanetaryDesign) -> None:
     spread = np.zeros((2 * n + 2, 2 * n + 2))
     for step in range(1, count + 1):
         (c0, w0), (c1, w1) = (physical(train, t) for t in ((step - 1) * h, step * h))
-        k0, k1 = (train.constant + w.T @ (steps.stiffness[s][:, None] * w) for w, s in ((w0, step - 1), (w1, step)))
+        k0, k1 = (
+            train.constant + w.T @ (steps.stiffness[s][:, None] * w)
+            for w, s in ((w0, step - 1), (w1, step))
+        )
         turbulent = load @ wind.turbulent[None]
         eye = np.eye(n)
         left = np.block([[0.5 * h * k1, train.mass + 0.5 * h * c1], [eye, -0.5 * h * eye]])
@@ -292,12 +369,14 @@ def test_covariance_by_whole_matrices(small: PlanetaryDesign) -> None:
 
 
 def test_linearisation_does_not_depend_on_the_step(small: PlanetaryDesign) -> None:
-    """With backlash and tooth cycles: second order; the covariance is positive semi-definite to round-off."""
+    """With backlash and tooth cycles: second order; the covariance is positive semi-definite to
+    round-off."""
     end, results = 0.4, []
     for count in (50, 100, 200):
         _, _, found = moments(small, end / count, count, count // 10)
         results.append(np.concatenate([found.mean[-1], found.deviation[-1]]))
-        # of all rows: displacements, velocities and wind together, before the covariance is made symmetric
+        # of all rows: displacements, velocities and wind together, before the covariance is made
+        # symmetric
         assert found.smallest_eigenvalue > -1e-12 and found.asymmetry < 1e-10
     steps = [np.abs(fine / coarse - 1.0).max() for coarse, fine in itertools.pairwise(results)]
     assert steps[1] < 2e-3
@@ -314,40 +393,57 @@ def test_linearised_against_simulated(small: PlanetaryDesign) -> None:
 
 
 def test_linearised_against_simulated_on_the_driver(design: PlanetaryDesign) -> None:
-    """The driver's own train over a revolution, by 1000 steps: within 2 %; 16,000 samples know a deviation to 0.6 %."""
+    """The driver's own train over a revolution, by 1000 steps: within 2 %; 16,000 samples know a
+    deviation to 0.6 %."""
     count = 1000
     steps, wind, found = moments(design, design.end / count, count, 20)
     sums, lost = simulate(steps, wind, 20, 16_000, random_stream(7))
     assert lost == 0
     later = slice(25, None)
-    np.testing.assert_allclose(found.mean[later].mean(axis=0), sums.mean[later].mean(axis=0), rtol=0.02)
-    np.testing.assert_allclose(found.deviation[later].mean(axis=0), sums.deviation[later].mean(axis=0), rtol=0.02)
+    np.testing.assert_allclose(
+        found.mean[later].mean(axis=0), sums.mean[later].mean(axis=0), rtol=0.02
+    )
+    np.testing.assert_allclose(
+        found.deviation[later].mean(axis=0), sums.deviation[later].mean(axis=0), rtol=0.02
+    )
     # round-off adds up over the steps in stiff modes, which the trapezoidal rule hardly damps
     assert found.smallest_eigenvalue > -1e-9 and found.asymmetry < 1e-10
 
 
 def test_impacts_spoil_the_mesh(small: PlanetaryDesign) -> None:
-    """With strong turbulence meshes lose contact: the ways' deviations go wrong, the turns' hardly."""
+    """With strong turbulence meshes lose contact: the ways' deviations go wrong, the turns'
+    hardly."""
     steps, wind, found = moments(changed(small, "wind", turbulence=0.6), 5e-3, 200, 50)
     sums, lost = simulate(steps, wind, 50, 2000, random_stream(6))
     assert lost > 0.02 * 200 * 2000
     off = np.abs(found.deviation[-1] / sums.deviation[-1] - 1.0)
-    mesh, turn = MONITORED_NAMES.index("sun_mesh_deflection"), MONITORED_NAMES.index("carrier_rotation")
+    mesh, turn = (
+        MONITORED_NAMES.index("sun_mesh_deflection"),
+        MONITORED_NAMES.index("carrier_rotation"),
+    )
     assert off[mesh] > 0.1 > off[turn]
 
 
 def test_patterns_and_rims(design: PlanetaryDesign) -> None:
-    """Six cycles under a planet (six supports), three at a node (three planets); rims move all but the sun."""
+    """Six cycles under a planet (six supports), three at a node (three planets); rims move all but
+    the sun."""
     count, largest = 400, {}
     for rim in (87.0, 168.0):
         steps, wind, found = moments(changed(design, "ring", rim=rim), design.end / count, count, 2)
         largest[rim] = np.concatenate([np.abs(found.mean).max(axis=0), found.deviation.max(axis=0)])
-        assert dominant_cycles(found.mean[:, MONITORED_NAMES.index("ring_contact_radial")], 1.0) == 6.0
-        assert dominant_cycles(found.mean[:, MONITORED_NAMES.index("ring_node_tangential")], 1.0) == 3.0
+        assert (
+            dominant_cycles(found.mean[:, MONITORED_NAMES.index("ring_contact_radial")], 1.0) == 6.0
+        )
+        assert (
+            dominant_cycles(found.mean[:, MONITORED_NAMES.index("ring_node_tangential")], 1.0)
+            == 3.0
+        )
         assert steps.train.size == 69 and wind.steady > 0.0
     change = dict(
         zip(
-            MONITORED_NAMES, largest[168.0][: len(MONITORED_NAMES)] / largest[87.0][: len(MONITORED_NAMES)], strict=True
+            MONITORED_NAMES,
+            largest[168.0][: len(MONITORED_NAMES)] / largest[87.0][: len(MONITORED_NAMES)],
+            strict=True,
         )
     )
     assert change["ring_contact_radial"] < 0.5 and change["ring_node_tangential"] < 0.8

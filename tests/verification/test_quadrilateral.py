@@ -19,9 +19,13 @@ IN_PLANE = np.array([0, 1, 3, 4, 6, 7, 9, 10])
 def sheet(counts: tuple[int, int], size: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
     """Points (n, 3) at z = 0 and quadrilaterals of a regular rectangle."""
     nx, ny = counts
-    x, y = np.meshgrid(np.linspace(0, size[0], nx + 1), np.linspace(0, size[1], ny + 1), indexing="ij")
+    x, y = np.meshgrid(
+        np.linspace(0, size[0], nx + 1), np.linspace(0, size[1], ny + 1), indexing="ij"
+    )
     number = np.arange(x.size).reshape(x.shape)
-    quads = np.stack([number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]], axis=-1).reshape(-1, 4)
+    quads = np.stack(
+        [number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]], axis=-1
+    ).reshape(-1, 4)
     return np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)]), quads
 
 
@@ -32,7 +36,8 @@ def turned(points: np.ndarray, degrees: float) -> np.ndarray:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_patch(seed: int) -> None:
-    """Constant strain is exact on a distorted mesh, in plane stress; displacement prescribed on the boundary only."""
+    """Constant strain is exact on a distorted mesh, in plane stress; displacement prescribed on the
+    boundary only."""
     rng = np.random.default_rng(seed)
     points, quads = sheet((3, 3), (1.0, 1.0))
     inner = np.all((points[:, :2] > 1e-9) & (points[:, :2] < 1 - 1e-9), axis=1)
@@ -46,7 +51,11 @@ def test_patch(seed: int) -> None:
         fixed = np.repeat(~inner[:, None], 3, axis=1)
         u = mesh.solve(fixed, exact, np.zeros_like(points))
         assert np.abs(u - exact).max() < 1e-6 * np.abs(exact).max()
-        hooke = young / (1 - poisson**2) * ((1 - poisson) * e + poisson * np.trace(e) * np.diag([1.0, 1.0, 0.0]))
+        hooke = (
+            young
+            / (1 - poisson**2)
+            * ((1 - poisson) * e + poisson * np.trace(e) * np.diag([1.0, 1.0, 0.0]))
+        )
         expected = np.array([hooke[0, 0], hooke[1, 1], 0.0, hooke[0, 1], 0.0, 0.0])
         assert np.abs(mesh.stress(u) - expected).max() < 1e-6 * np.abs(expected).max()
 
@@ -77,7 +86,9 @@ def deformed(seed: int) -> tuple[ElementMesh, np.ndarray]:
     points[:, :2] += rng.uniform(-0.15, 0.15, (4, 2))
     u = points.copy()
     u[:, :2] += rng.uniform(-0.01, 0.01, (4, 2))
-    return ElementMesh(points, np.arange(4)[None], Isotropic(E=210e3, nu=0.29)), turned(u, 80.0) - points
+    return ElementMesh(points, np.arange(4)[None], Isotropic(E=210e3, nu=0.29)), turned(
+        u, 80.0
+    ) - points
 
 
 @pytest.mark.parametrize("seed", [5, 6])
@@ -157,7 +168,8 @@ def test_thickness_must_be_given() -> None:
 
 
 def cantilever(shape: str, direction: int) -> float:
-    """Tip displacement over theory of MacNeal and Harder's straight beam, 6 x 0.2, 0.1 thick, six elements."""
+    """Tip displacement over theory of MacNeal and Harder's straight beam, 6 x 0.2, 0.1 thick, six
+    elements."""
     points, quads = sheet((6, 1), (6.0, 0.2))
     inner = (points[:, 0] > 0.5) & (points[:, 0] < 5.5)
     slant = np.where(points[:, 1] > 0.1, 0.1, -0.1)  # 45 degrees over the depth of 0.2
@@ -181,8 +193,8 @@ def cantilever(shape: str, direction: int) -> float:
     [
         ("regular", 0, 0.996),
         ("regular", 1, 0.993),
-        # the element is known to stiffen when slanted and to lock as a trapezoid: MacNeal and Harder's own
-        # quadrilateral with incompatible modes reaches 0.62 and 0.05
+        # the element is known to stiffen when slanted and to lock as a trapezoid: MacNeal and
+        # Harder's own quadrilateral with incompatible modes reaches 0.62 and 0.05
         ("parallelogram", 0, 0.999),
         ("parallelogram", 1, 0.632),
         ("trapezoid", 0, 0.999),
@@ -198,7 +210,8 @@ def test_macneal_harder_beam(shape: str, direction: int, measured: float) -> Non
 def quarter(
     n: int, layers: int, inner: float, outer: float, poisson: float
 ) -> tuple[ElementMesh, np.ndarray, np.ndarray]:
-    """A quarter of a ring, n along it, with the angles from the y axis and the radii of its points."""
+    """A quarter of a ring, n along it, with the angles from the y axis and the radii of its
+    points."""
     points, quads = sheet((n, layers), (0.5 * np.pi, outer - inner))
     angle, radius = points[:, 0].copy(), inner + points[:, 1]
     points = np.column_stack([radius * np.sin(angle), radius * np.cos(angle), 0.0 * angle])
@@ -206,7 +219,8 @@ def quarter(
 
 
 def test_pinched_thin_ring() -> None:
-    """The diameters change by 0.1488 and 0.1366 P R^3 / (E I) along and across the load (Timoshenko); error as h^2."""
+    """The diameters change by 0.1488 and 0.1366 P R^3 / (E I) along and across the load
+    (Timoshenko); error as h^2."""
     errors = []
     for n in (10, 20, 40):
         mesh, angle, _ = quarter(n, 1, 57.5, 58.5, 0.0)
@@ -214,12 +228,14 @@ def test_pinched_thin_ring() -> None:
         print(f"{n} elements: {under:.5f} (0.14878), {across:.5f} (0.13662)")
         errors.append(abs(under / 0.14878 - 1.0))
     assert errors[-1] < 0.01 and abs(across / 0.13662 - 1.0) < 0.01
-    # towards the thick-ring value, which differs from the thin one by (t / R)^2: the rate is asserted before that floor
+    # towards the thick-ring value, which differs from the thin one by (t / R)^2: the rate is
+    # asserted before that floor
     assert np.log2(errors[0] / errors[1]) > 1.7
 
 
 def test_thick_cylinder_in_plane_stress() -> None:
-    """Lame's solution for a pressure inside, a = 1, b = 2; displacement and hoop stress converge as h^2."""
+    """Lame's solution for a pressure inside, a = 1, b = 2; displacement and hoop stress converge as
+    h^2."""
     a = 1.0
     b = 2.0
     p = 1e-3
@@ -236,7 +252,9 @@ def test_thick_cylinder_in_plane_stress() -> None:
         inside = np.flatnonzero(np.abs(radius - a) < 1e-9)
         load = np.zeros_like(mesh.points)
         for left, right in zip(inside[:-1], inside[1:]):
-            edge = mesh.points[right] - mesh.points[left]  # along +angle: clockwise from +y, material outside
+            edge = (
+                mesh.points[right] - mesh.points[left]
+            )  # along +angle: clockwise from +y, material outside
             load[[left, right]] += 0.5 * p * np.array([-edge[1], edge[0], 0.0])
         u = mesh.solve(fixed, np.zeros_like(load), load)
         top = inside[0]
@@ -265,6 +283,8 @@ def test_cantilever_rolled_to_a_half_circle() -> None:
             along = np.array([across[1], -across[0], 0.0]) / np.hypot(*across[:2])
             load = np.zeros_like(points)
             load[upper], load[lower] = -couple * k / steps * along, couple * k / steps * along
-            u.ravel()[free] += spsolve(mesh.tangent(u)[free][:, free].tocsc(), (load - mesh.residual(u)).ravel()[free])
+            u.ravel()[free] += spsolve(
+                mesh.tangent(u)[free][:, free].tocsc(), (load - mesh.residual(u)).ravel()[free]
+            )
     end = (points + u)[tip].mean(axis=0) - [0.0, 0.05, 0.0]
     assert abs(end[0]) < 0.01 * length and end[1] == pytest.approx(2.0 * length / np.pi, rel=0.01)

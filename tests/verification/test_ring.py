@@ -1,4 +1,5 @@
-"""The elastic ring: curved beams against closed forms, a solid toothed ring, and moving loads against other schemes."""
+"""The elastic ring: curved beams against closed forms, a solid toothed ring, and moving loads
+against other schemes."""
 
 from __future__ import annotations
 
@@ -45,7 +46,8 @@ def free(design: RingDesign, elements: int) -> RingDesign:
 
 
 def test_free_ring(bolted: RingDesign) -> None:
-    """Bending modes to 0.1 % of the closed form with 36 elements, at fourth order; three rigid motions."""
+    """Bending modes to 0.1 % of the closed form with 36 elements, at fourth order; three rigid
+    motions."""
     section, errors = bolted.beam_section(), []
     exact = np.array([free_frequencies(section, n)[0] for n in range(2, 6)]) / (2.0 * np.pi)
     for elements in (18, 36, 72):
@@ -60,7 +62,8 @@ def test_free_ring(bolted: RingDesign) -> None:
 
 
 def test_free_ring_is_the_thin_ring() -> None:
-    """Without stretching and rotary inertia: n (n² - 1) / sqrt(n² + 1) times sqrt(E I / (density A R⁴)) (Hoppe)."""
+    """Without stretching and rotary inertia: n (n² - 1) / sqrt(n² + 1) times sqrt(E I / (density A
+    R⁴)) (Hoppe)."""
     thin = BeamSection(1.0, 1.0, 1.0, 1.0, 1e-10)
     for n in (2, 3, 4):
         hoppe = np.sqrt(thin.inertia) * n * (n * n - 1.0) / np.sqrt(n * n + 1.0)
@@ -69,14 +72,21 @@ def test_free_ring_is_the_thin_ring() -> None:
 
 
 def test_shape_functions_are_exact_at_rest(bolted: RingDesign) -> None:
-    """Two opposite forces on a free ring: the same with 4 elements as with 64, and 0.14878 F R³ / (E I) when thin."""
+    """Two opposite forces on a free ring: the same with 4 elements as with 64, and 0.14878 F R³ /
+    (E I) when thin."""
     found = []
     for elements in (4, 16, 64):
         ring = changed(free(bolted, elements), "ring", inner_radius=519.0).elastic_ring()
         load = ring.interpolation(0.0)[0] + ring.interpolation(np.pi)[0]
         u = np.linalg.lstsq(ring.stiffness, load, rcond=1e-12)[0]
         s = ring.section
-        found.append((ring.interpolation(0.0)[0] + ring.interpolation(np.pi)[0]) @ u * s.E * s.inertia / s.radius**3)
+        found.append(
+            (ring.interpolation(0.0)[0] + ring.interpolation(np.pi)[0])
+            @ u
+            * s.E
+            * s.inertia
+            / s.radius**3
+        )
     assert found == pytest.approx([found[0]] * 3, rel=1e-5)
     assert found[0] == pytest.approx(np.pi / 4.0 - 2.0 / np.pi, rel=1e-4)
 
@@ -96,22 +106,29 @@ def test_rigid_motions_cost_nothing(bolted: RingDesign) -> None:
 
 
 def test_supported_ring() -> None:
-    """Table 5.2 within 1 %, on supports deduced from it; the mode of three waves is single, the others are pairs."""
+    """Table 5.2 within 1 %, on supports deduced from it; the mode of three waves is single, the
+    others are pairs."""
     design = load_design(SUPPORTED)
     section, ring = design.beam_section(), design.elastic_ring()
-    unit = np.sqrt(section.density * section.area * section.radius**4 / (section.E * section.inertia))
+    unit = np.sqrt(
+        section.density * section.area * section.radius**4 / (section.E * section.inertia)
+    )
     found, _ = distinct_frequencies(design, 3)
-    assert 2.0 * np.pi * found * unit == pytest.approx(design.published["dimensionless_frequencies"], rel=0.01)
+    assert 2.0 * np.pi * found * unit == pytest.approx(
+        design.published["dimensionless_frequencies"], rel=0.01
+    )
     rate, _ = ring.modes()
     assert [(np.abs(rate / (2.0 * np.pi * f) - 1.0) < 1e-6).sum() for f in found] == [2, 1, 2]
-    # the whole ring turns freely, but for round-off of the stiff springs; softer ones change nothing
+    # the whole ring turns freely, but for round-off of the stiff springs; softer ones change
+    # nothing
     assert rate[0] < 0.01 * rate[1]
     softer, _ = distinct_frequencies(changed(design, "supports", radial=1e9), 3)
     assert softer == pytest.approx(found, rel=1e-5)
 
 
 def test_supported_ring_of_the_source() -> None:
-    """The source's own column of Table 5.2 within 0.15 %: I / (A R²) = 0.002 and springs of 1e4 E I / R³, deduced."""
+    """The source's own column of Table 5.2 within 0.15 %: I / (A R²) = 0.002 and springs of 1e4 E I
+    / R³, deduced."""
     section = BeamSection(1.0, 1.0, 1.0, 1.0, 2e-3)
     ring = Ring(section, 60, (3, (1e4 * section.inertia, 0.0, 0.0)))
     rate = ring.modes()[0][[1, 3, 4]] / np.sqrt(section.inertia)
@@ -119,7 +136,8 @@ def test_supported_ring_of_the_source() -> None:
 
 
 def toothed_ring(design: RingDesign, recipe: str) -> np.ndarray:
-    """Bending frequencies in Hz of the toothed ring in plane stress, by this program's own mesh and elements.
+    """Bending frequencies in Hz of the toothed ring in plane stress, by this program's own mesh and
+    elements.
 
     Pitch radius 176 mm: module 5.5 mm, the addendum one module, involute teeth of 20 degrees.
     """
@@ -127,38 +145,52 @@ def toothed_ring(design: RingDesign, recipe: str) -> np.ndarray:
     drive = load_design(
         DRIVERS / "plane_half_turn.toml",
         [
-            "drive.module=5.5", "drive.teeth_rg=64", "drive.teeth_fs=60", "drive.addendum_coef=1.0",
-            f"drive.dedendum_coef={(body.inner_radius - 176.0) / 5.5}", f"drive.face_width={body.face_width}",
-            f"wave_generator.face_width={body.face_width}", "flexible_spline.rim=10.0",
+            "drive.module=5.5",
+            "drive.teeth_rg=64",
+            "drive.teeth_fs=60",
+            "drive.addendum_coef=1.0",
+            f"drive.dedendum_coef={(body.inner_radius - 176.0) / 5.5}",
+            f"drive.face_width={body.face_width}",
+            f"wave_generator.face_width={body.face_width}",
+            "flexible_spline.rim=10.0",
             f"ring_gear.rim={body.outer_radius - body.inner_radius}",
             'flexible_spline.profile={ type = "involute", cutter_radius = 1.0 }',
             'ring_gear.profile={ type = "involute", cutter_radius = 1.0, cutter_teeth = 40 }',
-            f"material.E={1e3 * body.E}", "material.nu=0.3", "load.torque=0",
+            f"material.E={1e3 * body.E}",
+            "material.nu=0.3",
+            "load.torque=0",
         ],
-    )  # fmt: skip
+    )
     sector = build_sector_meshes(drive.geometry, load_recipe(recipe))["ring_gear"]
     flat = np.flatnonzero(sector.lower_nodes == np.arange(len(sector.coords)))
     count, number = sector.n_sectors, np.full(len(sector.coords), -1)
-    # nodes on the clockwise side belong to the sector before: that one's counter-clockwise side is the same line
+    # nodes on the clockwise side belong to the sector before: that one's counter-clockwise side is
+    # the same line
     shared = dict(zip(sector.cw_nodes.tolist(), sector.ccw_nodes.tolist(), strict=True))
     own = [n for n in flat.tolist() if n not in shared]
     number[own] = np.arange(len(own))
     points, quads = [], []
     for k in range(count):
         a = 2.0 * np.pi * k / count
-        turn = np.array([[np.cos(a), -np.sin(a), 0.0], [np.sin(a), np.cos(a), 0.0], [0.0, 0.0, 1.0]])
+        turn = np.array(
+            [[np.cos(a), -np.sin(a), 0.0], [np.sin(a), np.cos(a), 0.0], [0.0, 0.0, 1.0]]
+        )
         points.append(sector.coords[own] @ turn.T)
         before = (k - 1) % count
         place = number + k * len(own)
         for low, high in shared.items():
             place[low] = number[high] + before * len(own)
         quads.append(place[sector.elements])
-    mesh = ElementMesh(np.concatenate(points), np.concatenate(quads), drive.material, body.face_width)
+    mesh = ElementMesh(
+        np.concatenate(points), np.concatenate(quads), drive.material, body.face_width
+    )
     stiffness = mesh.tangent(np.zeros_like(mesh.points))
     corner = mesh.points[mesh.elements][:, :, :2]
     mass = np.zeros((len(corner), 4, 4))
     for x, y in itertools.product((-(3.0**-0.5), 3.0**-0.5), repeat=2):
-        shape = 0.25 * np.array([(1 - x) * (1 - y), (1 + x) * (1 - y), (1 + x) * (1 + y), (1 - x) * (1 + y)])
+        shape = 0.25 * np.array(
+            [(1 - x) * (1 - y), (1 + x) * (1 - y), (1 + x) * (1 + y), (1 - x) * (1 + y)]
+        )
         slope = 0.25 * np.array([[y - 1, 1 - y, 1 + y, -1 - y], [x - 1, -1 - x, 1 + x, 1 - x]])
         area = np.abs(np.linalg.det(slope @ corner))
         mass += area[:, None, None] * np.outer(shape, shape)
@@ -173,17 +205,27 @@ def toothed_ring(design: RingDesign, recipe: str) -> np.ndarray:
 
 
 def test_tooth_masses_against_a_solid_ring() -> None:
-    """Tooth masses without the teeth's stiffness: 3 to 9 % too low; the smooth ring to the pitch circle: half as high.
+    """Tooth masses without the teeth's stiffness: 3 to 9 % too low; the smooth ring to the pitch
+    circle: half as high.
 
-    The printed frequencies of the solid ring are those of the printed radii times 1.98 to 1.99. Two meshes,
-    the coarse one within 0.6 % of the fine one. `pytest -s` prints the table of docs/verification/gear_trains.md.
+    The printed frequencies of the solid ring are those of the printed radii times 1.98 to 1.99. Two
+    meshes, the coarse one within 0.6 % of the fine one. `pytest -s` prints the table of
+    docs/verification/gear_trains.md.
     """
     design = load_design(MODES)
     coarse, solid = (toothed_ring(design, f"plane{level}")[:5] for level in ("_coarse", ""))
     with_masses, _ = distinct_frequencies(design, 5)
-    smooth, _ = distinct_frequencies(changed(design, "ring", inner_radius=176.0).model_copy(update={"teeth": None}), 5)
+    smooth, _ = distinct_frequencies(
+        changed(design, "ring", inner_radius=176.0).model_copy(update={"teeth": None}), 5
+    )
     printed = np.array([590.0, 1650.0, 3129.0, 4977.0, 7166.0])
-    rows = {"smooth": smooth, "masses": with_masses, "coarse": coarse, "solid": solid, "printed/solid": printed / solid}
+    rows = {
+        "smooth": smooth,
+        "masses": with_masses,
+        "coarse": coarse,
+        "solid": solid,
+        "printed/solid": printed / solid,
+    }
     for name, row in rows.items():
         print(f"{name:14s}", *(f"{value:9.3f}" for value in row))
     assert (coarse > solid).all() and (coarse / solid < 1.006).all()
@@ -197,11 +239,14 @@ def test_tooth_masses_against_a_solid_ring() -> None:
 
 def small(bolted: RingDesign, **load: object) -> RingDesign:
     """A ring of 12 elements."""
-    return changed(changed(bolted, "ring", elements=12), "moving_load", **{"revolutions": 1, **load})
+    return changed(
+        changed(bolted, "ring", elements=12), "moving_load", **{"revolutions": 1, **load}
+    )
 
 
 def test_moving_load_against_newmark(bolted: RingDesign) -> None:
-    """Mean and covariance by the exact steps against the stochastic Newmark scheme with small ones, second order."""
+    """Mean and covariance by the exact steps against the stochastic Newmark scheme with small ones,
+    second order."""
     design = small(bolted, steps=36, damping_stiffness=1e-4)
     speed = 2000.0  # rad/s: the loads pass a support within a period of the ring
     loads, ring, load = MovingLoads(design), design.elastic_ring(), design.moving_load
@@ -222,7 +267,10 @@ def test_moving_load_against_newmark(bolted: RingDesign) -> None:
 
     def places(t: float) -> np.ndarray:
         return np.array(
-            [direction @ ring.interpolation(speed * t + 2.0 * np.pi * k / load.loads) for k in range(load.loads)]
+            [
+                direction @ ring.interpolation(speed * t + 2.0 * np.pi * k / load.loads)
+                for k in range(load.loads)
+            ]
         )
 
     def force(t: float) -> np.ndarray:
@@ -232,7 +280,10 @@ def test_moving_load_against_newmark(bolted: RingDesign) -> None:
     for count in (200, 400, 800):
         h = end / count
         left, right = system.newmark(ring.stiffness, h)
-        y, spread = np.concatenate([np.linalg.solve(ring.stiffness, force(0.0)), np.zeros(n)]), np.zeros((2 * n, 2 * n))
+        y, spread = (
+            np.concatenate([np.linalg.solve(ring.stiffness, force(0.0)), np.zeros(n)]),
+            np.zeros((2 * n, 2 * n)),
+        )
         for step in range(1, count + 1):
             t = step * h
             noise = load.noise * places(t - 0.5 * h).T
@@ -242,12 +293,22 @@ def test_moving_load_against_newmark(bolted: RingDesign) -> None:
             push = np.concatenate([0.5 * h * (force(t - h) + force(t)), np.zeros(n)])
             moved = np.linalg.solve(left, np.hstack([right, shaken, (right @ y + push)[:, None]]))
             y = moved[:, -1]
-            spread = moved[:, : 2 * n] @ spread @ moved[:, : 2 * n].T + moved[:, 2 * n : -1] @ moved[:, 2 * n : -1].T
-        watched = np.array([ring.interpolation(speed * end)[0], np.eye(ring.size)[3 * middle_node(design)]])
+            spread = (
+                moved[:, : 2 * n] @ spread @ moved[:, : 2 * n].T
+                + moved[:, 2 * n : -1] @ moved[:, 2 * n : -1].T
+            )
+        watched = np.array(
+            [ring.interpolation(speed * end)[0], np.eye(ring.size)[3 * middle_node(design)]]
+        )
         mean = watched @ y[:n]
         deviation = np.sqrt(np.einsum("pi,ij,pj->p", watched, spread[:n, :n], watched))
         row = 3600 // 4 - 1
-        off.append([np.abs(mean / fine.mean[row] - 1.0).max(), np.abs(deviation / fine.deviation[row] - 1.0).max()])
+        off.append(
+            [
+                np.abs(mean / fine.mean[row] - 1.0).max(),
+                np.abs(deviation / fine.deviation[row] - 1.0).max(),
+            ]
+        )
     assert max(off[-1]) < 2e-3
     for k in (0, 1):
         assert np.log2(off[0][k] / off[1][k]) == pytest.approx(2.0, abs=0.35)
@@ -255,10 +316,13 @@ def test_moving_load_against_newmark(bolted: RingDesign) -> None:
 
 
 def test_covariance_stays_positive(bolted: RingDesign) -> None:
-    """Of displacements and velocities of all modes, each kind over its largest deviation, in every step of a turn."""
+    """Of displacements and velocities of all modes, each kind over its largest deviation, in every
+    step of a turn."""
     loads, load = MovingLoads(small(bolted, steps=36)), bolted.moving_load
     squares, n = loads.frequencies**2, len(loads.frequencies)
-    modes = ModalStepper(squares, load.damping_mass + load.damping_stiffness * squares, 2.0 * np.pi / 200.0 / 36)
+    modes = ModalStepper(
+        squares, load.damping_mass + load.damping_stiffness * squares, 2.0 * np.pi / 200.0 / 36
+    )
     spread = np.zeros((2, 2, n, n))
     for step in range(36):
         spread = modes.spread(spread, loads.noises(step))
@@ -273,7 +337,9 @@ def test_steps_of_the_loads(bolted: RingDesign) -> None:
     """At least second order in the travel of the loads."""
     found = [MovingLoads(small(bolted, steps=steps)).respond(200.0) for steps in (180, 360, 720)]
     for kind in ("mean", "deviation"):
-        coarse, middle, fine = (getattr(f, kind)[k - 1 :: k] for f, k in zip(found, (1, 2, 4), strict=True))
+        coarse, middle, fine = (
+            getattr(f, kind)[k - 1 :: k] for f, k in zip(found, (1, 2, 4), strict=True)
+        )
         last = np.abs(fine - middle).max()
         assert last < 5e-3 * np.abs(fine).max()
         assert np.log2(np.abs(middle - coarse).max() / last) > 1.7
@@ -289,7 +355,8 @@ def test_simulations_of_the_ring(bolted: RingDesign) -> None:
 
 
 def test_patterns_in_a_revolution(bolted: RingDesign) -> None:
-    """Six cycles under the moving load (six supports), three at a node (three loads); slow: as at rest."""
+    """Six cycles under the moving load (six supports), three at a node (three loads); slow: as at
+    rest."""
     loads = MovingLoads(bolted)
     found = loads.respond(2.8)
     assert [dominant_cycles(column) for column in found.mean.T] == [6.0, 3.0]
@@ -298,7 +365,10 @@ def test_patterns_in_a_revolution(bolted: RingDesign) -> None:
     for step in (100, 333, 600):
         force = loads.forces(step, (step + load.steps) * h, 2.8)
         at_rest = loads.shapes @ (force / loads.frequencies**2)
-        expected = [ring.interpolation(2.0 * np.pi * step / load.steps)[0] @ at_rest, at_rest[3 * middle_node(bolted)]]
+        expected = [
+            ring.interpolation(2.0 * np.pi * step / load.steps)[0] @ at_rest,
+            at_rest[3 * middle_node(bolted)],
+        ]
         assert still[step - 1] == pytest.approx(expected, abs=1e-9 * np.abs(still).max())
     assert np.abs(found.mean - still).max() < 0.03 * np.abs(still).max()
 
@@ -312,7 +382,8 @@ def test_published_speeds_are_slow(bolted: RingDesign) -> None:
 
 
 def test_critical_speeds(bolted: RingDesign) -> None:
-    """Three loads excite with multiples of three times their speed: peaks where one of them is the lowest mode."""
+    """Three loads excite with multiples of three times their speed: peaks where one of them is the
+    lowest mode."""
     loads = MovingLoads(changed(bolted, "moving_load", steps=180))
     first = loads.frequencies[0]
     for multiple in (2, 3):

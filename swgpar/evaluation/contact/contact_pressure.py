@@ -13,7 +13,8 @@ from swgpar.solve.discrete_problem import DiscreteProblem
 
 
 def nodal_pressure(problem: DiscreteProblem, state: LoadState, body: BodyElements) -> np.ndarray:
-    """Mean pressure of all contacts around each node of the owned sectors; (n_sectors, n_local) MPa.
+    """Mean pressure of all contacts around each node of the owned sectors; (n_sectors, n_local)
+    MPa.
 
     Area-weighted by the shape functions over the faces of the last evaluation; collective.
     """

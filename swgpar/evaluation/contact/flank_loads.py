@@ -1,4 +1,5 @@
-"""Forces of the ring gear on the flanks of the flexible spline: as line loads, and on the flanks of another mesh."""
+"""Forces of the ring gear on the flanks of the flexible spline: as line loads, and on the flanks of
+another mesh."""
 
 from __future__ import annotations
 
@@ -22,8 +23,8 @@ POINTS = 4
 class LineLoad:
     """Line load of a flank along the face width.
 
-    z : (n,) mm, ascending;  load : (n, 3) N/mm on the flexible spline, linear between;  s : (n,) mm, arc length of its
-    middle on the tooth profile
+    z : (n,) mm, ascending;  load : (n, 3) N/mm on the flexible spline, linear between;  s : (n,)
+    mm, arc length of its middle on the tooth profile
     """
 
     z: np.ndarray
@@ -38,7 +39,8 @@ class LineLoad:
 
 
 def nodal_flank_forces(model: DriveModel, state: LoadState, flanks: FlankContact) -> PETSc.Vec:
-    """Nodal contact forces (N) of the flanks by their last evaluation; collective. Each pair counts on one rank."""
+    """Nodal contact forces (N) of the flanks by their last evaluation; collective. Each pair counts
+    on one rank."""
     problem = model.problem
     local = np.zeros((len(problem.local_nodes), 3))
     flanks.add_owned_forces(problem.displacement(), state, local)
@@ -48,8 +50,11 @@ def nodal_flank_forces(model: DriveModel, state: LoadState, flanks: FlankContact
     return total
 
 
-def flank_forces(model: DriveModel, state: LoadState, teeth: np.ndarray, flanks: FlankContact) -> np.ndarray:
-    """Contact forces (n, n_node, 3) N of `flanks` on the nodes of the flexible spline's `teeth` (n,); collective."""
+def flank_forces(
+    model: DriveModel, state: LoadState, teeth: np.ndarray, flanks: FlankContact
+) -> np.ndarray:
+    """Contact forces (n, n_node, 3) N of `flanks` on the nodes of the flexible spline's `teeth`
+    (n,); collective."""
     layout = model.partition.layouts[FLEXIBLE_SPLINE]
     vector = nodal_flank_forces(model, state, flanks)
     forces = read_field(model.partition, FLEXIBLE_SPLINE, teeth - layout.first_tooth, vector)
@@ -59,7 +64,8 @@ def flank_forces(model: DriveModel, state: LoadState, teeth: np.ndarray, flanks:
 
 
 def line_loads(mesh: SectorMesh, forces: np.ndarray) -> dict[tuple[int, int], LineLoad]:
-    """Line loads of the flanks of teeth by (index of the tooth, side) from nodal forces (n, n_node, 3) N.
+    """Line loads of the flanks of teeth by (index of the tooth, side) from nodal forces (n, n_node,
+    3) N.
 
     Flanks without load have none.
     """
@@ -73,7 +79,8 @@ def line_loads(mesh: SectorMesh, forces: np.ndarray) -> dict[tuple[int, int], Li
 
 
 def line_load(grid: FlankGrid, forces: np.ndarray) -> LineLoad | None:
-    """The line load with the resultant and the place of nodal forces (n_node, 3) N on a flank; None without forces."""
+    """The line load with the resultant and the place of nodal forces (n_node, 3) N on a flank; None
+    without forces."""
     rows = forces[grid.nodes]
     total = rows.sum(axis=0)
     size = np.linalg.norm(total, axis=1)
@@ -115,12 +122,15 @@ def nodal_forces(load: LineLoad, grid: FlankGrid, half_width: float) -> np.ndarr
 
 
 def parabola(s: np.ndarray, middle: float, half_width: float) -> np.ndarray:
-    """Shares (n,) of the nodes at `s` (n,) mm in a load of 1 whose density is 1 - ((s - middle) / half_width)^2."""
+    """Shares (n,) of the nodes at `s` (n,) mm in a load of 1 whose density is 1 - ((s - middle) /
+    half_width)^2."""
     middle = float(np.clip(middle, s[0], s[-1]))
     x = np.linspace(-1.0, 1.0, 41)
     density = 1.0 - x**2
     place = np.clip(middle + half_width * x, s[0], s[-1])
     k = np.clip(np.searchsorted(s, place) - 1, 0, len(s) - 2)
     t = (place - s[k]) / (s[k + 1] - s[k])
-    share = np.bincount(k, density * (1.0 - t), minlength=len(s)) + np.bincount(k + 1, density * t, minlength=len(s))
+    share = np.bincount(k, density * (1.0 - t), minlength=len(s)) + np.bincount(
+        k + 1, density * t, minlength=len(s)
+    )
     return share / share.sum()

@@ -11,7 +11,10 @@ from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind
 from swgpar.results.history import Row
 
-EDGE = "lies on an edge: no property of the drive, and the stress at the teeth may be off by more than its error"
+EDGE = (
+    "lies on an edge: no property of the drive, and the stress at the teeth may be off by more "
+    "than its error"
+)
 
 
 @dataclass(frozen=True)
@@ -21,7 +24,8 @@ class LargestContact(AnswerGroup):
     increment, step, wg_angle_deg : when;  tooth, flank, ring_tooth : which
     angle_deg, radius_mm, z_mm : where
     force_N, line_load_Nmm : of the pair, N and N/mm
-    pressure_MPa, half_width_mm, shear_MPa : of the line contact; shear is the largest below the surface
+    pressure_MPa, half_width_mm, shear_MPa : of the line contact; shear is the largest below the
+    surface
     edge : 1 where it lies on an edge;  on_edge : whether any contact under load lies on one
     ring : the ring gear, in a pancake drive
     """
@@ -47,13 +51,23 @@ class LargestContact(AnswerGroup):
     TITLE = "contact of the flanks under load"
     KINDS = (
         AnswerKind(
-            "contact.pressure", "largest pressure of the flanks under load, off edges", "MPa", "pressure_off_edges"
+            "contact.pressure",
+            "largest pressure of the flanks under load, off edges",
+            "MPa",
+            "pressure_off_edges",
         ),
         AnswerKind("contact.on_edge", "whether a contact under load lies on an edge: 1 or 0"),
-        AnswerKind("contact.pressure_on_edge", "largest pressure of the flanks under load", "MPa", "pressure_on_edges"),
+        AnswerKind(
+            "contact.pressure_on_edge",
+            "largest pressure of the flanks under load",
+            "MPa",
+            "pressure_on_edges",
+        ),
         AnswerKind("contact.line_load", "line load there", "N/mm", "line_load_Nmm"),
         AnswerKind("contact.half_width", "half width of the contact there", "mm", "half_width_mm"),
-        AnswerKind("contact.shear", "largest shear stress below the surface there", "MPa", "shear_MPa"),
+        AnswerKind(
+            "contact.shear", "largest shear stress below the surface there", "MPa", "shear_MPa"
+        ),
     )
 
     @classmethod
@@ -72,7 +86,10 @@ class LargestContact(AnswerGroup):
 
     def answers(self) -> Iterator[Answer]:
         on = f" on the {self.ring.replace('_', ' ')}" if self.ring else ""
-        place = f"tooth {self.tooth}, {self.flank} flank{on}, radius {self.radius_mm:.2f}, z {self.z_mm:.2f} mm"
+        place = (
+            f"tooth {self.tooth}, {self.flank} flank{on}, radius {self.radius_mm:.2f}, z "
+            f"{self.z_mm:.2f} mm"
+        )
         for answer in super().answers():
             if answer.name.startswith("contact.pressure"):
                 answer = replace(answer, place=place, remark=EDGE if self.edge else "")
@@ -86,4 +103,6 @@ def largest_contact(pairs: Sequence[Row]) -> LargestContact | None:
         return None
     largest = max(known, key=lambda pair: (not pair["edge"], pair["pressure_MPa"]))
     names = set(LargestContact.__dataclass_fields__) & set(largest)
-    return LargestContact(**{name: largest[name] for name in names}, on_edge=any(pair["edge"] for pair in pairs))
+    return LargestContact(
+        **{name: largest[name] for name in names}, on_edge=any(pair["edge"] for pair in pairs)
+    )

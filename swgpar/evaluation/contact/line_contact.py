@@ -1,8 +1,10 @@
-"""Line contact of two elastic bodies with any gap between them: pressure, width of the contact and shear below it.
+"""Line contact of two elastic bodies with any gap between them: pressure, width of the contact and
+shear below it.
 
-Near the contact both bodies are half planes; Hertz's formulas are the special case of a parabolic gap. Flanks made of
-arcs have gaps whose curvature jumps, so the integral equation is solved instead: the displacement of the surfaces by
-the pressure p is -2 / (pi E*) ∫ p(x') ln|x - x'| dx', and it closes the gap where p > 0.
+Near the contact both bodies are half planes; Hertz's formulas are the special case of a parabolic
+gap. Flanks made of arcs have gaps whose curvature jumps, so the integral equation is solved
+instead: the displacement of the surfaces by the pressure p is -2 / (pi E*) ∫ p(x') ln|x - x'| dx',
+and it closes the gap where p > 0.
 """
 
 from __future__ import annotations
@@ -42,7 +44,8 @@ class LineContact:
         return float(self.pressure.max())
 
     def largest_shear(self) -> float:
-        """Largest shear stress below the surface, half the difference of the principal stresses, MPa."""
+        """Largest shear stress below the surface, half the difference of the principal stresses,
+        MPa."""
         z = DEPTHS * self.half_width
         acts = self.pressure > 0.0
         edge = 0.5 * (self.x[1] - self.x[0])
@@ -50,7 +53,8 @@ class LineContact:
         loaded, p = self.x[acts], self.pressure[acts]
         left, right = at - (loaded - edge), at - (loaded + edge)
         depth = z[:, None]
-        # a strip under uniform pressure: stresses of a half plane in closed form (Johnson, Contact Mechanics, 2.5)
+        # a strip under uniform pressure: stresses of a half plane in closed form (Johnson, Contact
+        # Mechanics, 2.5)
         t1, t2 = np.arctan2(left, depth), np.arctan2(right, depth)
         sine, cosine = np.sin(2.0 * t1) - np.sin(2.0 * t2), np.cos(2.0 * t1) - np.cos(2.0 * t2)
         angle = t1 - t2
@@ -68,7 +72,8 @@ def line_contact(
     Parameters
     ----------
     gap : gives the gap (n,) mm up to a constant at x (n,) mm; infinite beyond the end of a body
-    start, width : mm, where the contact is looked for, and the order of its width; neither needs to be near
+    start, width : mm, where the contact is looked for, and the order of its width; neither needs to
+    be near
     load : N/mm, above 0;  modulus : E*, MPa
 
     Raises ArithmeticError if no contact is found.
@@ -84,21 +89,32 @@ def line_contact(
         first, last = acts[0], acts[-1]
         free = ~np.isfinite(gap(np.array([low - size, high + size])))
         if (first == 0 and not free[0]) or (last == STRIPS - 1 and not free[1]):
-            low, high = low - (high - low) * (first == 0), high + (high - low) * (last == STRIPS - 1)
+            low, high = (
+                low - (high - low) * (first == 0),
+                high + (high - low) * (last == STRIPS - 1),
+            )
         elif last - first + 1 < ACROSS:
-            middle, half = 0.5 * (edges[first] + edges[last + 1]), max(1.2 * 0.5 * (last - first + 1), 1.5) * size
+            middle, half = (
+                0.5 * (edges[first] + edges[last + 1]),
+                max(1.2 * 0.5 * (last - first + 1), 1.5) * size,
+            )
             low, high = max(low, middle - half), min(high, middle + half)
         else:
             left, right = contact_end(x, pressure, first, 1), contact_end(x, pressure, last, -1)
             beside = gap(np.array([x[first] - size, x[last] + size]))
             return LineContact(
-                x, pressure, 0.5 * (left + right), 0.5 * (right - left), bool(not np.isfinite(beside).all())
+                x,
+                pressure,
+                0.5 * (left + right),
+                0.5 * (right - left),
+                bool(not np.isfinite(beside).all()),
             )
     raise ArithmeticError(f"no contact was found for a line load of {load:g} N/mm")
 
 
 def contact_end(x: np.ndarray, pressure: np.ndarray, k: int, inward: int) -> float:
-    """End (mm) of the contact beside its outermost strip k, or the end of that strip: p² falls linearly to it."""
+    """End (mm) of the contact beside its outermost strip k, or the end of that strip: p² falls
+    linearly to it."""
     half = 0.5 * (x[1] - x[0])
     outer, inner = pressure[k] ** 2, pressure[k + inward] ** 2
     beyond = 2.0 * half * outer / (inner - outer) if inner > outer else half
@@ -106,7 +122,8 @@ def contact_end(x: np.ndarray, pressure: np.ndarray, k: int, inward: int) -> flo
 
 
 def _pressure(gap: np.ndarray, size: float, load: float, modulus: float) -> np.ndarray:
-    """Pressures (n,) MPa of strips of this size (mm) under a line load (N/mm), 0 where they are open."""
+    """Pressures (n,) MPa of strips of this size (mm) under a line load (N/mm), 0 where they are
+    open."""
     present = np.isfinite(gap)
     index = np.arange(len(gap)) + 0.5
     edge = np.abs(np.arange(-len(gap), len(gap) + 1) + 0.5)

@@ -1,4 +1,5 @@
-"""Exact flanks, crowning included, moved with their teeth: each section of a tooth follows the mesh as a rigid body."""
+"""Exact flanks, crowning included, moved with their teeth: each section of a tooth follows the mesh
+as a rigid body."""
 
 from __future__ import annotations
 
@@ -18,7 +19,8 @@ class MovedTooth:
 
     Parameters
     ----------
-    layout, tooth, side : body, number and flank;  u : (n_node, 3) mm, displacement of its sector in the drive's frame
+    layout, tooth, side : body, number and flank;  u : (n_node, 3) mm, displacement of its sector in
+    the drive's frame
     crowned : crowning of the flank, None without
 
     Attributes
@@ -27,7 +29,12 @@ class MovedTooth:
     """
 
     def __init__(
-        self, layout: BodyLayout, tooth: int, side: int, u: np.ndarray, crowned: FlankCrowning | None = None
+        self,
+        layout: BodyLayout,
+        tooth: int,
+        side: int,
+        u: np.ndarray,
+        crowned: FlankCrowning | None = None,
     ) -> None:
         self.profile: ToothProfile = layout.mesh.profile
         self.mirror = MIRROR if side < 0 else np.ones(2)
@@ -37,11 +44,18 @@ class MovedTooth:
         self.ends = float(z[0]), float(z[-1])
         motion = np.array([self._motion(layout, u, station) for station in range(len(z))])
         # the sections of the plane model move alike
-        self._at = CubicSpline(z, motion) if len(z) > 2 else CubicSpline(z, motion[:1].repeat(len(z), axis=0))
+        self._at = (
+            CubicSpline(z, motion)
+            if len(z) > 2
+            else CubicSpline(z, motion[:1].repeat(len(z), axis=0))
+        )
 
     def _motion(self, layout: BodyLayout, u: np.ndarray, station: int) -> np.ndarray:
-        """Middle before and after (2 + 2) mm and rotation (rad) of the section that fits its nodes best."""
-        nodes = np.concatenate([_active(grid, self.profile, station) for grid in layout.mesh.flanks])
+        """Middle before and after (2 + 2) mm and rotation (rad) of the section that fits its nodes
+        best."""
+        nodes = np.concatenate(
+            [_active(grid, self.profile, station) for grid in layout.mesh.flanks]
+        )
         before = layout.mesh.coords[nodes, :2]
         after = before + rotated(u[nodes, :2], -self.angle)
         # the rotation that fits best is that of the polar decomposition
@@ -65,15 +79,19 @@ class Sections:
         self._middle, self._moved, self._turn = motion[:, :2], motion[:, 2:4], motion[:, 4]
 
     def from_profile(self, s: np.ndarray) -> np.ndarray:
-        """Points (m, n, 2) of the drive's frame, of the flank at arc lengths s (m, n) mm on the n sections."""
+        """Points (m, n, 2) of the drive's frame, of the flank at arc lengths s (m, n) mm on the n
+        sections."""
         profile, flat = self.tooth.profile, s.ravel()
         removed = profile.crowning_weight(flat).reshape(s.shape) * self._cut
         point = profile.point(flat).reshape(*s.shape, 2)
-        point = (point - removed[..., None] * profile.normal(flat).reshape(point.shape)) * self.tooth.mirror
+        point = (
+            point - removed[..., None] * profile.normal(flat).reshape(point.shape)
+        ) * self.tooth.mirror
         return rotated(self._moved + rotated(point - self._middle, self._turn), self.tooth.angle)
 
     def distance(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Distance (m, n) mm of points (m, n, 2) of the drive's frame, and arc length (m, n) mm of their feet."""
+        """Distance (m, n) mm of points (m, n, 2) of the drive's frame, and arc length (m, n) mm of
+        their feet."""
         local = rotated(points, -self.tooth.angle)
         local = (self._middle + rotated(local - self._moved, -self._turn)) * self.tooth.mirror
         distance, foot = self.tooth.profile.distance(local.reshape(-1, 2))

@@ -1,8 +1,10 @@
-"""Contact of every touching pair of flanks: force, line load, and the local pressure that no mesh of a drive resolves.
+"""Contact of every touching pair of flanks: force, line load, and the local pressure that no mesh
+of a drive resolves.
 
-The mesh gives the force of a pair, its place along the face width, and the motion of both teeth. The exact flanks are
-moved with their teeth. In the plane model the gap between them goes into the line contact of two half planes
-(`contact.line_contact`), in the cup model into the contact of two half spaces over a patch (`contact.patch_contact`).
+The mesh gives the force of a pair, its place along the face width, and the motion of both teeth.
+The exact flanks are moved with their teeth. In the plane model the gap between them goes into the
+line contact of two half planes (`contact.line_contact`), in the cup model into the contact of two
+half spaces over a patch (`contact.patch_contact`).
 """
 
 from __future__ import annotations
@@ -35,7 +37,8 @@ WIDTH = 0.05
 """Width over the module within which the contact is looked for at first."""
 
 COARSE, FINE = 401, 21
-"""Points along a profile, and between three of them, among which that of the least gap is looked for."""
+"""Points along a profile, and between three of them, among which that of the least gap is looked
+for."""
 
 END = 1e-6
 """Distance over the module from the end of a profile within which a contact lies on an edge."""
@@ -50,7 +53,8 @@ class ContactStation:
     """Contact of two flanks at a station along the face width.
 
     z_mm : the station;  line_load_Nmm : N/mm
-    s_mm : middle of the contact, arc length from the tip of the flexible spline's tooth;  half_width_mm : of it
+    s_mm : middle of the contact, arc length from the tip of the flexible spline's tooth;
+    half_width_mm : of it
     pressure_MPa : largest pressure
     """
 
@@ -65,16 +69,22 @@ class ContactStation:
 class PairContact:
     """Contact of two flanks.
 
-    tooth, ring_tooth : numbers of the teeth, counter-clockwise from +y;  flank : of the flexible spline's tooth
-    angle_deg : of the force on the deformed flank, from the major axis, counter-clockwise, -180 to 180
-    force_N : force between the flanks;  force_share : over the sum of the forces of all pairs of that ring gear
+    tooth, ring_tooth : numbers of the teeth, counter-clockwise from +y;  flank : of the flexible
+    spline's tooth
+    angle_deg : of the force on the deformed flank, from the major axis, counter-clockwise, -180 to
+    180
+    force_N : force between the flanks;  force_share : over the sum of the forces of all pairs of
+    that ring gear
     torque_Nmm : about the axis, on the flexible spline
     width_mm : length along the face width that carries the force
-    line_load_Nmm : largest line load, N/mm, at `z_mm`;  radius_mm : of the contact, on the undeformed flexible spline
-    pressure_MPa, half_width_mm, shear_MPa : largest pressure, half width of the contact and largest shear below it
-    sliding_mm_s : sliding of the flexible spline's flank on the other in the section, at the speed of the input
-    edge : 1 where the contact ends at the tip of a profile, or the load at an end of the face width; the pressure is
-    then no property of the drive
+    line_load_Nmm : largest line load, N/mm, at `z_mm`;  radius_mm : of the contact, on the
+    undeformed flexible spline
+    pressure_MPa, half_width_mm, shear_MPa : largest pressure, half width of the contact and largest
+    shear below it
+    sliding_mm_s : sliding of the flexible spline's flank on the other in the section, at the speed
+    of the input
+    edge : 1 where the contact ends at the tip of a profile, or the load at an end of the face
+    width; the pressure is then no property of the drive
     ring : body whose tooth is meant, in a drive with two ring gears; else empty
     stations : along the face width, those that carry a load
 
@@ -114,7 +124,9 @@ class PairContact:
 
 def pair_contacts(model: DriveModel, state: LoadState) -> list[PairContact]:
     """Contacts of all touching pairs, by ring gear and tooth, the same on all ranks; collective."""
-    return [contact for flanks in model.problem.flanks for contact in _contacts(model, state, flanks)]
+    return [
+        contact for flanks in model.problem.flanks for contact in _contacts(model, state, flanks)
+    ]
 
 
 def _contacts(model: DriveModel, state: LoadState, flanks: FlankContact) -> list[PairContact]:
@@ -126,7 +138,11 @@ def _contacts(model: DriveModel, state: LoadState, flanks: FlankContact) -> list
     pairs = [pair for pair in flanks.pairs if (pair.sector - first, pair.side) in loads]
     carried = _carried(model, state, flanks, pairs, forces, loads)
     top = max(model.comm.allgather(max((_peak(load) for load in loads.values()), default=0.0)))
-    resolved = [k for k, pair in enumerate(pairs) if _peak(loads[pair.sector - first, pair.side]) > SMALLEST * top]
+    resolved = [
+        k
+        for k, pair in enumerate(pairs)
+        if _peak(loads[pair.sector - first, pair.side]) > SMALLEST * top
+    ]
     moved, facing = moved_teeth(model, [pairs[k] for k in resolved], flanks)
     materials = (model.design.material_of(layout.name) for layout in (spline, flanks.ring.layout))
     modulus = contact_modulus(*materials, plane_stress=model.design.drive.model == "plane")
@@ -157,7 +173,8 @@ def _carried(
     forces: np.ndarray,
     loads: Mapping[tuple[int, int], LineLoad],
 ) -> list[PairContact]:
-    """Force, torque and place of owned pairs, without pressure and share. forces : (n_owned, n_node, 3) N"""
+    """Force, torque and place of owned pairs, without pressure and share. forces : (n_owned,
+    n_node, 3) N"""
     body, ring = model.elements.bodies[FLEXIBLE_SPLINE], flanks.ring.layout
     name = ring.name if len(model.problem.flanks) > 1 else ""
     spline, (first, _) = body.layout, model.partition.owned_sectors(FLEXIBLE_SPLINE)
@@ -191,7 +208,8 @@ def _peak(load: LineLoad) -> float:
 def moved_teeth(
     model: DriveModel, pairs: list[FlankPair], flanks: FlankContact
 ) -> tuple[list[Neighbours], list[Neighbours]]:
-    """The teeth of every pair, of the flexible spline and of the ring gear, between their neighbours; collective."""
+    """The teeth of every pair, of the flexible spline and of the ring gear, between their
+    neighbours; collective."""
     spline, ring = model.partition.layouts[FLEXIBLE_SPLINE], flanks.ring.layout
     around, x = np.arange(-1, 2), model.problem.x
 
@@ -201,15 +219,22 @@ def moved_teeth(
             len(sectors), 3, len(model.partition.layouts[body].mesh.coords), 3
         )
 
-    u, ring_u = fields(FLEXIBLE_SPLINE, [p.sector for p in pairs]), fields(ring.name, [p.ring for p in pairs])
+    u, ring_u = (
+        fields(FLEXIBLE_SPLINE, [p.sector for p in pairs]),
+        fields(ring.name, [p.ring for p in pairs]),
+    )
     crowned = model.design.crowning
     moved, facing = [], []
     for k, pair in enumerate(pairs):
         tooth = spline.first_tooth + pair.sector + around
-        moved.append(tuple(MovedTooth(spline, n, pair.side, u[k, i], crowned) for i, n in enumerate(tooth)))
+        moved.append(
+            tuple(MovedTooth(spline, n, pair.side, u[k, i], crowned) for i, n in enumerate(tooth))
+        )
         turned = ring_u[k] @ SIXTHS[pair.ring_sixths].T
         tooth = pair.ring_tooth + around
-        facing.append(tuple(MovedTooth(ring, n, -pair.side, turned[i]) for i, n in enumerate(tooth)))
+        facing.append(
+            tuple(MovedTooth(ring, n, -pair.side, turned[i]) for i, n in enumerate(tooth))
+        )
     return moved, facing
 
 
@@ -234,7 +259,9 @@ def _with_pressure(
         patch = _patch(model, gap, load, along, contact.force_N, modulus)
         shape, on_edge = patch.strongest, patch.at_end or patch.reaches
         columns = (patch.z, patch.line_load, patch.middle, patch.half_width, patch.pressure)
-        stations = tuple(ContactStation(*map(float, values)) for values in zip(*columns, strict=True))
+        stations = tuple(
+            ContactStation(*map(float, values)) for values in zip(*columns, strict=True)
+        )
         width = len(patch.z) * float(patch.z[1] - patch.z[0])
     top = max(stations, key=lambda station: station.pressure_MPa)
     ends = top.s_mm + top.half_width_mm * np.array([[-1.0], [1.0]])
@@ -249,24 +276,31 @@ def _with_pressure(
         pressure_MPa=top.pressure_MPa,
         half_width_mm=top.half_width_mm,
         shear_MPa=shape.largest_shear(),
-        sliding_mm_s=_sliding(model, gap, teeth, ring_teeth, top) * model.design.load.input_speed * np.pi / 30.0,
+        sliding_mm_s=_sliding(model, gap, teeth, ring_teeth, top)
+        * model.design.load.input_speed
+        * np.pi
+        / 30.0,
         edge=int(on_edge or on_tip),
         stations=stations,
     )
 
 
-def _sliding(model: DriveModel, gap: _Gap, teeth: Neighbours, ring_teeth: Neighbours, at: ContactStation) -> float:
-    """Sliding (mm per rad of the wave generator) of both flanks at a station, towards the root of the spline's tooth.
+def _sliding(
+    model: DriveModel, gap: _Gap, teeth: Neighbours, ring_teeth: Neighbours, at: ContactStation
+) -> float:
+    """Sliding (mm per rad of the wave generator) of both flanks at a station, towards the root of
+    the spline's tooth.
 
-    After one pitch of the fixed gear a tooth is where its neighbour was, turned by that pitch. So the neighbours give
-    the velocity of a tooth.
+    After one pitch of the fixed gear a tooth is where its neighbour was, turned by that pitch. So
+    the neighbours give the velocity of a tooth.
     """
     pitch = model.design.period_angle
     z, s = np.array([at.z_mm]), np.array([[at.s_mm]])
 
     def velocity(trio: Neighbours, arc_length: np.ndarray) -> np.ndarray:
         before, after = (
-            rotated(trio[k].sections(z).from_profile(arc_length)[0, 0], turn) for k, turn in ((2, -pitch), (0, pitch))
+            rotated(trio[k].sections(z).from_profile(arc_length)[0, 0], turn)
+            for k, turn in ((2, -pitch), (0, pitch))
         )
         return (after - before) / (2.0 * pitch)
 
@@ -306,7 +340,13 @@ class _Gap:
 def _line(model: DriveModel, gap: _Gap, load: LineLoad, modulus: float) -> LineContact:
     middle = np.zeros(1)
     width, size = WIDTH * model.design.drive.module, float(np.linalg.norm(load.load[0]))
-    return line_contact(lambda s: gap(s[:, None], middle)[:, 0], float(gap.least_at(middle)[0]), width, size, modulus)
+    return line_contact(
+        lambda s: gap(s[:, None], middle)[:, 0],
+        float(gap.least_at(middle)[0]),
+        width,
+        size,
+        modulus,
+    )
 
 
 def _patch(

@@ -1,8 +1,10 @@
-"""Contact of two elastic bodies over a small patch, with any gap between them: pressure, length and width.
+"""Contact of two elastic bodies over a small patch, with any gap between them: pressure, length and
+width.
 
-Near the contact both bodies are half spaces. A pressure p moves their surfaces by 1 / (pi E*) ∫ p / r dA (Johnson,
-Contact Mechanics, 3.2); that closes the gap where p > 0. Force and place of its resultant are given, the approach and
-the tilt of the bodies follow. Hertz's ellipse is the special case of a parabolic gap.
+Near the contact both bodies are half spaces. A pressure p moves their surfaces by 1 / (pi E*) ∫ p /
+r dA (Johnson, Contact Mechanics, 3.2); that closes the gap where p > 0. Force and place of its
+resultant are given, the approach and the tilt of the bodies follow. Hertz's ellipse is the special
+case of a parabolic gap.
 """
 
 from __future__ import annotations
@@ -24,13 +26,15 @@ MAX_GRIDS, MAX_CHANGES = 24, 80
 """Changes of the grid, and of the cells in contact on one of them."""
 
 FIRST_GUESS = 0.5
-"""Share of the grid, as that of an ellipse around the force, whose cells are in contact at first."""
+"""Share of the grid, as that of an ellipse around the force, whose cells are in contact at
+first."""
 
 MARGIN = 1.25
 """Size of a smaller grid over that of the contact."""
 
 SMALLER = 0.9
-"""Width or length of a smaller grid over the present one, above which it would not resolve the contact better."""
+"""Width or length of a smaller grid over the present one, above which it would not resolve the
+contact better."""
 
 
 @dataclass(frozen=True)
@@ -38,8 +42,10 @@ class PatchContact:
     """Contact over a patch.
 
     z : (n,) mm, stations along the length that carry a load;  line_load : (n,) N/mm
-    middle, half_width : (n,) mm, of the contact at a station;  pressure : (n,) MPa, the largest there
-    at_end : whether it reaches the end of a body across;  reaches : whether it reaches one of the ends of its length
+    middle, half_width : (n,) mm, of the contact at a station;  pressure : (n,) MPa, the largest
+    there
+    at_end : whether it reaches the end of a body across;  reaches : whether it reaches one of the
+    ends of its length
     strongest : line contact at the station with the largest pressure
     """
 
@@ -54,7 +60,8 @@ class PatchContact:
 
 
 Gap = Callable[[np.ndarray, np.ndarray], np.ndarray]
-"""Gives the gap (n_s, n_z) mm, up to a constant and a tilt, at s (n_s, n_z) and z (n_z,); infinite beyond the body."""
+"""Gives the gap (n_s, n_z) mm, up to a constant and a tilt, at s (n_s, n_z) and z (n_z,); infinite
+beyond the body."""
 
 
 def patch_contact(
@@ -72,17 +79,25 @@ def patch_contact(
     Parameters
     ----------
     gap : see `Gap`;  centre : gives s (n,) mm of the least gap at z (n,) mm
-    ends : z (mm) of the ends of the bodies;  width : mm, order of the contact's width; it need not be near
+    ends : z (mm) of the ends of the bodies;  width : mm, order of the contact's width; it need not
+    be near
     force : N, above 0;  place : z (mm) of its resultant;  modulus : E*, MPa
 
     Raises ArithmeticError if no contact is found.
     """
     low, high, half = *ends, width
     stations = np.linspace(low, high, CELLS_ALONG + 1)
-    least, middle_line = centre(stations), np.zeros(2)  # the least gap is looked for once: only a place to begin at
+    least, middle_line = (
+        centre(stations),
+        np.zeros(2),
+    )  # the least gap is looked for once: only a place to begin at
     for _ in range(MAX_GRIDS):
         grid = _Grid(
-            gap, lambda z, line=middle_line: np.interp(z, stations, least) + np.polyval(line, z), low, high, half
+            gap,
+            lambda z, line=middle_line: np.interp(z, stations, least) + np.polyval(line, z),
+            low,
+            high,
+            half,
         )
         pressure = grid.solve(force, place, modulus)
         if pressure is None:  # cells that are too long do not carry the force at its place
@@ -100,7 +115,10 @@ def patch_contact(
         short = np.array([columns[0] == 0, columns[-1] == CELLS_ALONG - 1]) & open_ends
         if short.any():
             longer = 0.5 * (high - low)
-            low, high = max(ends[0], low - longer * short[0]), min(ends[1], high + longer * short[1])
+            low, high = (
+                max(ends[0], low - longer * short[0]),
+                min(ends[1], high + longer * short[1]),
+            )
             continue
         narrower, line = half, middle_line
         if across < FEWEST:
@@ -121,7 +139,12 @@ class _Grid:
     """Cells that follow the line of the least gap: n_t over the width, n_z along the length."""
 
     def __init__(
-        self, gap: Gap, centre: Callable[[np.ndarray], np.ndarray], low: float, high: float, half: float
+        self,
+        gap: Gap,
+        centre: Callable[[np.ndarray], np.ndarray],
+        low: float,
+        high: float,
+        half: float,
     ) -> None:
         t, z = np.linspace(-half, half, CELLS_ACROSS + 1), np.linspace(low, high, CELLS_ALONG + 1)
         self.t, self.dt = 0.5 * (t[:-1] + t[1:]), t[1] - t[0]
@@ -132,18 +155,29 @@ class _Grid:
 
     def beyond(self) -> np.ndarray:
         """Gap (2, n_z) mm in the cells beside the grid."""
-        return self._gap_at(np.array([[self.t[0] - self.dt], [self.t[-1] + self.dt]]) + self.s0, self.z)
+        return self._gap_at(
+            np.array([[self.t[0] - self.dt], [self.t[-1] + self.dt]]) + self.s0, self.z
+        )
 
     def middle_line(self, acts: np.ndarray) -> tuple[np.ndarray, float]:
-        """Straight line along the middle of the contact, and its largest distance (mm) from the contact's edge.
+        """Straight line along the middle of the contact, and its largest distance (mm) from the
+        contact's edge.
 
-        acts : (n_t, n_z) bool, cells in contact;  the line has the coefficients (2,) of `numpy.polyval` over z
+        acts : (n_t, n_z) bool, cells in contact;  the line has the coefficients (2,) of
+        `numpy.polyval` over z
         """
         columns = np.flatnonzero(acts.any(axis=0))
         first = acts[:, columns].argmax(axis=0)
         last = CELLS_ACROSS - 1 - acts[::-1, columns].argmax(axis=0)
-        edges, z = np.array([self.t[first] - 0.5 * self.dt, self.t[last] + 0.5 * self.dt]), self.z[columns]
-        line = np.polyfit(z, edges.mean(axis=0), 1) if len(columns) > 2 else np.array([0.0, edges.mean()])
+        edges, z = (
+            np.array([self.t[first] - 0.5 * self.dt, self.t[last] + 0.5 * self.dt]),
+            self.z[columns],
+        )
+        line = (
+            np.polyfit(z, edges.mean(axis=0), 1)
+            if len(columns) > 2
+            else np.array([0.0, edges.mean()])
+        )
         return line, float(np.abs(edges - np.polyval(line, z)).max())
 
     def _influence(self, modulus: float) -> np.ndarray:
@@ -209,7 +243,11 @@ class _Grid:
         middle = self.s0[columns] + 0.5 * (left + right)
         half = 0.5 * (right - left)
         strongest = LineContact(
-            self.s0[column] + self.t, pressure[:, column], float(middle[top]), float(half[top]), at_end
+            self.s0[column] + self.t,
+            pressure[:, column],
+            float(middle[top]),
+            float(half[top]),
+            at_end,
         )
         return PatchContact(
             z=self.z[columns],
@@ -227,7 +265,9 @@ class _Grid:
         acts = np.flatnonzero(pressure)
         if len(acts) == 1:
             return self.t[acts[0]] - 0.5 * self.dt, self.t[acts[0]] + 0.5 * self.dt
-        return contact_end(self.t, pressure, acts[0], 1), contact_end(self.t, pressure, acts[-1], -1)
+        return contact_end(self.t, pressure, acts[0], 1), contact_end(
+            self.t, pressure, acts[-1], -1
+        )
 
     def _body_ends_beside(self, pressure: np.ndarray) -> bool:
         """Whether the body ends beside the contact by the pressure (n_t, n_z) MPa in any column."""

@@ -13,7 +13,8 @@ from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind
 class Accuracy(AnswerGroup):
     """Relative accuracy of the largest tensile stress at the teeth under load.
 
-    asked : what was asked for;  estimated : by refinement;  reached : whether the estimate is small enough
+    asked : what was asked for;  estimated : by refinement;  reached : whether the estimate is small
+    enough
     """
 
     asked: float
@@ -22,7 +23,11 @@ class Accuracy(AnswerGroup):
 
     TITLE = "accuracy of the tension at the teeth"
     ASKED_BY = "--accuracy"
-    KINDS = (AnswerKind("accuracy.estimated", "estimated relative error of the largest tension at the teeth"),)
+    KINDS = (
+        AnswerKind(
+            "accuracy.estimated", "estimated relative error of the largest tension at the teeth"
+        ),
+    )
 
     @classmethod
     def kinds(cls, design: DriveDesign) -> tuple[AnswerKind, ...]:

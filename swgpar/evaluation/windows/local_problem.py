@@ -1,8 +1,9 @@
 """A window of the flexible spline on a finer mesh, driven by a state of the drive.
 
-The displacements of a drive converge long before its stresses. A few tooth sectors are cut out, meshed finely, and
-solved once more: the cuts have the displacements of the drive, the flanks carry its contact forces, and
-the exact cam stays in contact with the inner surface. Stresses hold one pitch or more inside of the cuts.
+The displacements of a drive converge long before its stresses. A few tooth sectors are cut out,
+meshed finely, and solved once more: the cuts have the displacements of the drive, the flanks carry
+its contact forces, and the exact cam stays in contact with the inner surface. Stresses hold one
+pitch or more inside of the cuts.
 """
 
 from __future__ import annotations
@@ -42,21 +43,23 @@ SECTORS, MARGIN = 5, 1
 """Tooth sectors of a window, and those next to each cut whose stresses are not read."""
 
 CUP_LENGTH = 2.0
-"""Length of the cup's wall behind the teeth that belongs to a window, over sqrt(radius * thickness): a disturbance of
-the cut at its end decays by e within about 0.8 of that."""
+"""Length of the cup's wall behind the teeth that belongs to a window, over sqrt(radius *
+thickness): a disturbance of the cut at its end decays by e within about 0.8 of that."""
 
 TOOTHED = 0.5 + 1e-9
 """Share of the face width on either side of its middle to which the toothed part reaches."""
 
 STIFFNESS = 1e3
-"""Stiffness of the springs that hold the nodes of the cuts, over E times the module: forces of some N stretch them by
-nanometres."""
+"""Stiffness of the springs that hold the nodes of the cuts, over E times the module: forces of some
+N stretch them by nanometres."""
 
 RTOL = {"plane": 1e-4, "cup": 1e-3}
-"""Newton's tolerance: it changes the stress by up to 1e-5 and 5e-4, far less than a finer window."""
+"""Newton's tolerance: it changes the stress by up to 1e-5 and 5e-4, far less than a finer
+window."""
 
 HALF_WIDTH = 0.05
-"""Half width of the flanks' contact over the module, of the order of Hertz's; the root is far from it."""
+"""Half width of the flanks' contact over the module, of the order of Hertz's; the root is far from
+it."""
 
 
 @dataclass(frozen=True)
@@ -76,23 +79,32 @@ class WindowStress:
 
 
 def window_mesh(design: DriveDesign, recipe: MeshRecipe) -> SectorMesh:
-    """The sector of a window: the toothed part and the beginning of the cup's wall, which ends in the set ``cut``."""
+    """The sector of a window: the toothed part and the beginning of the cup's wall, which ends in
+    the set ``cut``."""
     mesh = build_sector(design.geometry, recipe, "flexible_spline")
     if mesh.plane:
         return mesh
-    end = 0.5 * design.drive.face_width + CUP_LENGTH * np.sqrt(design.inner_radius * design.cup_thickness)
+    end = 0.5 * design.drive.face_width + CUP_LENGTH * np.sqrt(
+        design.inner_radius * design.cup_thickness
+    )
     return trimmed(mesh, mesh.coords[mesh.hexes, 2].min(axis=1) < end)
 
 
 def tooth_nodes(mesh: SectorMesh, design: DriveDesign, ends: bool) -> np.ndarray:
-    """Nodes (n,) of the toothed part at the ends of its face width, or between them. The plane has no ends.
+    """Nodes (n,) of the toothed part at the ends of its face width, or between them. The plane has
+    no ends.
 
     The fillet at the back of the teeth belongs to their end.
     """
-    z, face_width = np.zeros(len(mesh.coords)) if mesh.plane else np.abs(mesh.coords[:, 2]), design.drive.face_width
+    z, face_width = (
+        np.zeros(len(mesh.coords)) if mesh.plane else np.abs(mesh.coords[:, 2]),
+        design.drive.face_width,
+    )
     if not ends:
         return np.flatnonzero(z <= END * face_width)
-    return np.flatnonzero((z > END * face_width) & (z <= TOOTHED * face_width + design.cup.back_fillet))
+    return np.flatnonzero(
+        (z > END * face_width) & (z <= TOOTHED * face_width + design.cup.back_fillet)
+    )
 
 
 class LocalProblem:
@@ -122,7 +134,9 @@ class LocalProblem:
         self.body = self.elements.bodies[FLEXIBLE_SPLINE]
         teeth = first + np.arange(SECTORS)
         drive_mesh = model.partition.layouts[FLEXIBLE_SPLINE].mesh
-        self.loads = line_loads(drive_mesh, flank_forces(model, state, teeth, model.problem.flanks[0]))
+        self.loads = line_loads(
+            drive_mesh, flank_forces(model, state, teeth, model.problem.flanks[0])
+        )
         displacement = self._of_the_drive(teeth)
         scale = design.modulus_of(mesh.body) * design.drive.module
         problem = DiscreteProblem(
@@ -135,7 +149,13 @@ class LocalProblem:
             phases=PhaseTimes(),
         )
         self.solver = NewtonSolver(
-            problem, replace(newton_settings(design), rtol=RTOL[design.drive.model], linear="direct", reuse_factor=True)
+            problem,
+            replace(
+                newton_settings(design),
+                rtol=RTOL[design.drive.model],
+                linear="direct",
+                reuse_factor=True,
+            ),
         )
         self.problem = problem
         own_first, own_end = self.partition.owned_sectors(FLEXIBLE_SPLINE)
@@ -143,10 +163,13 @@ class LocalProblem:
         write_field(self.partition, FLEXIBLE_SPLINE, np.arange(own_first, own_end), own, problem.x)
 
     def _of_the_drive(self, teeth: np.ndarray) -> np.ndarray:
-        """Displacement (n_teeth, n_node, 3) mm of the drive at the nodes of the window; collective."""
+        """Displacement (n_teeth, n_node, 3) mm of the drive at the nodes of the window;
+        collective."""
         model = self.model
         coarse = model.partition.layouts[FLEXIBLE_SPLINE]
-        field = read_field(model.partition, FLEXIBLE_SPLINE, teeth - coarse.first_tooth, model.problem.x)
+        field = read_field(
+            model.partition, FLEXIBLE_SPLINE, teeth - coarse.first_tooth, model.problem.x
+        )
         angle = self.layout.sector_angle(teeth)
         local = rotated(field, -angle[:, None])
         matrix = interpolation(coarse.mesh, self.layout.mesh)
@@ -167,7 +190,10 @@ class LocalProblem:
         nodes = np.unique(mesh.faces["end"])
         for sector in range(SECTORS):
             angle = self.layout.sector_angle(np.array(self.layout.first_tooth + sector))
-            yield np.array([sector]), nodes[design.cup.is_attached(rotated(mesh.coords[nodes], float(angle))[:, :2])]
+            yield (
+                np.array([sector]),
+                nodes[design.cup.is_attached(rotated(mesh.coords[nodes], float(angle))[:, :2])],
+            )
 
     def _cuts(self, displacement: np.ndarray) -> PrescribedDisplacement:
         """The nodes of all cuts and of the attachment, held at the displacements of the drive."""
@@ -175,7 +201,11 @@ class LocalProblem:
         held: dict[int, np.ndarray] = {}
         parts = [(every[:1], mesh.cw_nodes), (every[-1:], mesh.ccw_nodes)]
         if not mesh.plane:
-            parts += [(every, mesh.node_sets["cut"]), (every, mesh.node_sets["bore"]), *self._attached()]
+            parts += [
+                (every, mesh.node_sets["cut"]),
+                (every, mesh.node_sets["bore"]),
+                *self._attached(),
+            ]
         for sectors, nodes in parts:
             nodes = nodes.astype(np.int64)
             index, own = self._numbers(sectors, nodes)
@@ -184,7 +214,11 @@ class LocalProblem:
                     held[int(i)] = displacement[sector, node]
         nodes = np.array(sorted(held), dtype=np.int64)
         values = np.array([held[int(i)] for i in nodes]).reshape(-1, 3)
-        stiffness = STIFFNESS * self.model.design.modulus_of("flexible_spline") * self.model.design.drive.module
+        stiffness = (
+            STIFFNESS
+            * self.model.design.modulus_of("flexible_spline")
+            * self.model.design.drive.module
+        )
         return PrescribedDisplacement(self.partition, nodes, values, stiffness)
 
     def _dead_load(self) -> DeadLoad:
@@ -203,7 +237,8 @@ class LocalProblem:
         return DeadLoad(nodes, forces[nodes])
 
     def _add_torque(self, forces: np.ndarray) -> None:
-        """Add the torque that acts on the inner surface in the plane, to forces (n_own, 3) N; collective."""
+        """Add the torque that acts on the inner surface in the plane, to forces (n_own, 3) N;
+        collective."""
         model, mesh = self.model, self.layout.mesh
         found = torques(model.problem, self.state)
         moment = -(found.wave_generator + sum(found.teeth)) / mesh.n_sectors
@@ -223,17 +258,21 @@ class LocalProblem:
         state = replace(self.state, stage=Stage.ROTATE, control="rotation", flank_clearance=None)
         result = self.solver.solve(state)
         if not result.converged:
-            raise ConvergenceError(f"a window around tooth {self.layout.first_tooth + SECTORS // 2}: {result.reason}")
+            raise ConvergenceError(
+                f"a window around tooth {self.layout.first_tooth + SECTORS // 2}: {result.reason}"
+            )
 
     def stress(self) -> tuple[np.ndarray, np.ndarray]:
-        """Stress (n, n_node, 6) MPa at the nodes of owned sectors inside of the margin, and their indices (n,)."""
+        """Stress (n, n_node, 6) MPa at the nodes of owned sectors inside of the margin, and their
+        indices (n,)."""
         first, end = self.partition.owned_sectors(FLEXIBLE_SPLINE)
         sectors = np.arange(first, end)
         inside = (sectors >= MARGIN) & (sectors < SECTORS - MARGIN)
         return self.body.nodal_stress(self.problem.displacement())[inside], sectors[inside]
 
     def largest(self, ends: bool = False) -> WindowStress:
-        """Largest s1 of the teeth at their ends or between them, one pitch or more inside of the cuts; collective."""
+        """Largest s1 of the teeth at their ends or between them, one pitch or more inside of the
+        cuts; collective."""
         mesh = self.layout.mesh
         stress, sectors = self.stress()
         toothed = tooth_nodes(mesh, self.model.design, ends)
@@ -246,7 +285,9 @@ class LocalProblem:
         design = self.model.design
         region = region_of(design, mesh, node, False)
         warning = warning_of(design, region, mesh.coords[node])
-        return WindowStress(value, tooth, mesh.coords[node], region, warning, SECTORS * len(mesh.hexes))
+        return WindowStress(
+            value, tooth, mesh.coords[node], region, warning, SECTORS * len(mesh.hexes)
+        )
 
     def destroy(self) -> None:
         """Release the solver; collective."""

@@ -1,8 +1,10 @@
-"""The largest tensile stress at the teeth of the loaded flexible spline, resolved by windows, with its error.
+"""The largest tensile stress at the teeth of the loaded flexible spline, resolved by windows, with
+its error.
 
-The mesh of a drive is too coarse for the gradient in the tooth root. Windows (`local_problem`), each on a finer mesh
-than the one before, give the stress, the order at which it converges, and from both the error that the last mesh
-leaves. The error of the drive's displacements and forces is another part (docs/theory/windows.md).
+The mesh of a drive is too coarse for the gradient in the tooth root. Windows (`local_problem`),
+each on a finer mesh than the one before, give the stress, the order at which it converges, and from
+both the error that the last mesh leaves. The error of the drive's displacements and forces is
+another part (docs/theory/windows.md).
 """
 
 from __future__ import annotations
@@ -55,7 +57,8 @@ COUNTS: dict[str, dict[str, dict[str, tuple[int, ...]]]] = {
         "cup": {"cylinder": (6, 9, 13, 20), "fillet": (1, 1, 1, 1), "closed_end": (1, 1, 1, 1)},
     },
 }
-"""Counts of the windows, coarse to fine. That of the cylinder is along all of it; fillet and closed end are outside."""
+"""Counts of the windows, coarse to fine. That of the cylinder is along all of it; fillet and closed
+end are outside."""
 
 MOST_LEVELS = {"plane": 5, "cup": 4}
 """Windows that there are; the last one has some 200,000 and 60,000 elements."""
@@ -73,17 +76,18 @@ PERIOD_LEVEL = {"plane": 1, "cup": 1}
 """Index of the window with which the further angles of a period are computed."""
 
 LOWEST_ORDER, ASSUMED_ORDER, HIGHEST_ORDER = 1.0, 1.5, 2.5
-"""Bounds of the observed order, and the order that two windows are judged by. In roots 2 to 3.4 is seen, but it rests
-on two differences only, at the ends of teeth about 1. With the highest one the error of most windows is 0.5 to 3 times
-the true one (docs/verification/effectivity.md)."""
+"""Bounds of the observed order, and the order that two windows are judged by. In roots 2 to 3.4 is
+seen, but it rests on two differences only, at the ends of teeth about 1. With the highest one the
+error of most windows is 0.5 to 3 times the true one (docs/verification/effectivity.md)."""
 
 CLOSE = 0.85
-"""Share of the largest stress on the drive's own mesh from which a tooth outside of the first window is looked at."""
+"""Share of the largest stress on the drive's own mesh from which a tooth outside of the first
+window is looked at."""
 
 SAME_REGION, AT_ENDS, BETWEEN_ENDS = 0.995, (0.9, 1.0), 0.88
-"""Shares of the largest stress from which another is followed on finer windows: in the same region; at the ends of
-teeth after the first window, and after later ones; between them while an end has the largest. At the ends the second
-window gives the most, up to 12 % too much."""
+"""Shares of the largest stress from which another is followed on finer windows: in the same region;
+at the ends of teeth after the first window, and after later ones; between them while an end has the
+largest. At the ends the second window gives the most, up to 12 % too much."""
 
 PARTS = BETWEEN, ENDS = "between the ends", "ends"
 """Of teeth, in which stresses converge differently; a flag `ends` is the index."""
@@ -109,12 +113,15 @@ class RootStress(AnswerGroup):
 
     s1 : MPa;  error : MPa, estimated, of the window's mesh
     on_mesh : MPa, of the nodal averages on the drive's mesh
-    region : as of a `Place`;  warning : why there is no limit to converge to; empty where there is one
+    region : as of a `Place`;  warning : why there is no limit to converge to; empty where there is
+    one
     tooth : number, counter-clockwise from +y in the undeformed drive
     radius, z : mm;  angle_deg : from +y, counter-clockwise
-    part : of the tooth;  by_part : largest s1 (MPa) of every part on the windows, coarse to fine, while it was followed
+    part : of the tooth;  by_part : largest s1 (MPa) of every part on the windows, coarse to fine,
+    while it was followed
     elements : of the finest window
-    in_root : MPa, largest nodal average in the roots on the drive's mesh, between the ends of the teeth
+    in_root : MPa, largest nodal average in the roots on the drive's mesh, between the ends of the
+    teeth
     drive_error : MPa, estimated, of the drive's mesh; None where it is not known
     period : angles of the wave generator (degrees) and s1 (MPa) there, of one sampled period
     """
@@ -139,10 +146,19 @@ class RootStress(AnswerGroup):
     ASKED_BY = "output.root_stress"
     KINDS = (
         AnswerKind("root.s1", "largest tension at the teeth under load, by windows", "MPa"),
-        AnswerKind("root.s1_error", "its error by the windows and by the mesh of the drive", "MPa", "total_error"),
-        AnswerKind("root.s1_on_mesh", "the same by nodal averages of the drive's mesh", "MPa", "on_mesh"),
+        AnswerKind(
+            "root.s1_error",
+            "its error by the windows and by the mesh of the drive",
+            "MPa",
+            "total_error",
+        ),
+        AnswerKind(
+            "root.s1_on_mesh", "the same by nodal averages of the drive's mesh", "MPa", "on_mesh"
+        ),
         AnswerKind("root.mean_s1", "the same over one period, mean", "MPa", "over_period.mean"),
-        AnswerKind("root.maximum_s1", "the same over one period, largest", "MPa", "over_period.maximum"),
+        AnswerKind(
+            "root.maximum_s1", "the same over one period, largest", "MPa", "over_period.maximum"
+        ),
     )
 
     @classmethod
@@ -172,13 +188,19 @@ class RootStress(AnswerGroup):
 
     @property
     def total_error(self) -> float:
-        """Error (MPa) of the window's and, where it is known, of the drive's mesh; they are independent."""
+        """Error (MPa) of the window's and, where it is known, of the drive's mesh; they are
+        independent."""
         return math.hypot(self.error, self.drive_error or 0.0)
 
     @property
     def lost_in_root(self) -> float | None:
-        """Share of the root's tension that nodal averages on the drive's mesh lose, with its error; None if unknown."""
-        if self.in_root <= 0.0 or self.region not in (TOOTH_ROOT, TOOTH_END) or not math.isfinite(self.total_error):
+        """Share of the root's tension that nodal averages on the drive's mesh lose, with its error;
+        None if unknown."""
+        if (
+            self.in_root <= 0.0
+            or self.region not in (TOOTH_ROOT, TOOTH_END)
+            or not math.isfinite(self.total_error)
+        ):
             return None
         s1 = self.s1 if self.region == TOOTH_ROOT else self.by_part[BETWEEN][-1]
         return (abs(s1 - self.in_root) + self.total_error) / self.in_root
@@ -197,7 +219,8 @@ class RootStress(AnswerGroup):
 def window_recipe(model: str, level: int) -> MeshRecipe:
     """Recipe of the window `level`, from 0 on, of the "plane" or "cup" model."""
     content: dict[str, Any] = {
-        section: {name: values[level] for name, values in counts.items()} for section, counts in COUNTS[model].items()
+        section: {name: values[level] for name, values in counts.items()}
+        for section, counts in COUNTS[model].items()
     }
     if "face_width" in content:
         content["face_width"]["end_ratio"] = END_RATIO
@@ -205,8 +228,11 @@ def window_recipe(model: str, level: int) -> MeshRecipe:
     return make_recipe(content)
 
 
-def resolve_root_stress(model: DriveModel, state: LoadState, levels: int | None = None, skipped: int = 0) -> RootStress:
-    """Resolve the largest tensile stress at the teeth in the model's equilibrium under `state`; collective.
+def resolve_root_stress(
+    model: DriveModel, state: LoadState, levels: int | None = None, skipped: int = 0
+) -> RootStress:
+    """Resolve the largest tensile stress at the teeth in the model's equilibrium under `state`;
+    collective.
 
     levels : windows, each finer than the one before; None for those of `LEVELS`
     skipped : coarsest of these windows that are left out; their stresses are not numbers
@@ -214,7 +240,9 @@ def resolve_root_stress(model: DriveModel, state: LoadState, levels: int | None 
     Raises ConvergenceError or InputError where a window cannot be computed.
     """
     kind = model.design.drive.model
-    parts = (False,) if kind == "plane" else (False, True)  # between the ends of the teeth, and at them
+    parts = (
+        (False,) if kind == "plane" else (False, True)
+    )  # between the ends of the teeth, and at them
     on_mesh = [_largest_by_tooth(model, ends) for ends in parts]
     places = [(tooth, ends) for tooth in candidates(*on_mesh) for ends in parts]
     values: dict[tuple[int, bool], list[float]] = {place: [math.nan] * skipped for place in places}
@@ -225,12 +253,24 @@ def resolve_root_stress(model: DriveModel, state: LoadState, levels: int | None 
         best = max(places, key=lambda place: found[place].value)
         places = followed(found, level)
     stresses = ", ".join(f"{value:.1f}" for value in values[best][skipped:])
-    logger.info("windows around tooth %d, drive of %d elements: s1 %s MPa", best[0], model.n_elements(), stresses)
-    by_part = {PARTS[ends]: max((v for at, v in values.items() if at[1] == ends), key=_reached) for ends in parts}
+    logger.info(
+        "windows around tooth %d, drive of %d elements: s1 %s MPa",
+        best[0],
+        model.n_elements(),
+        stresses,
+    )
+    by_part = {
+        PARTS[ends]: max((v for at, v in values.items() if at[1] == ends), key=_reached)
+        for ends in parts
+    }
     error = error_of(values[best], RATIO[kind])
     if best[1]:
-        error = error_at_ends(by_part, RATIO[kind]) if len(values[best]) >= LEVELS[kind] else math.inf
-    in_root = _largest_nodal(model, root_nodes(model.design, model.partition.layouts[FLEXIBLE_SPLINE].mesh))
+        error = (
+            error_at_ends(by_part, RATIO[kind]) if len(values[best]) >= LEVELS[kind] else math.inf
+        )
+    in_root = _largest_nodal(
+        model, root_nodes(model.design, model.partition.layouts[FLEXIBLE_SPLINE].mesh)
+    )
     known = _place(model, found[best], PARTS[best[1]], by_part, error, float(np.max(on_mesh)))
     return replace(known, in_root=float(in_root.max()))
 
@@ -241,9 +281,11 @@ def _reached(levels: list[float]) -> tuple[int, float]:
 
 
 def candidates(between: np.ndarray, at_ends: np.ndarray | None = None) -> list[int]:
-    """Teeth whose stresses are looked at: the one with the largest between its ends, and others that are close to it.
+    """Teeth whose stresses are looked at: the one with the largest between its ends, and others
+    that are close to it.
 
-    between, at_ends : (n_modelled,) largest nodal s1, MPa, of the teeth between their ends and, in the cup, at them
+    between, at_ends : (n_modelled,) largest nodal s1, MPa, of the teeth between their ends and, in
+    the cup, at them
     """
     first = int(between.argmax())
     teeth = [first]
@@ -257,7 +299,8 @@ def candidates(between: np.ndarray, at_ends: np.ndarray | None = None) -> list[i
 
 
 def may_be_largest(one: WindowStress, best: WindowStress, level: int) -> bool:
-    """Whether a stress may overtake the largest one on windows finer than `level`; one region converges alike."""
+    """Whether a stress may overtake the largest one on windows finer than `level`; one region
+    converges alike."""
     share = SAME_REGION
     if one.region != best.region:
         share = BETWEEN_ENDS if best.region in END_REGIONS else AT_ENDS[min(level, 1)]
@@ -265,21 +308,27 @@ def may_be_largest(one: WindowStress, best: WindowStress, level: int) -> bool:
 
 
 def followed(found: Mapping[tuple[int, bool], WindowStress], level: int) -> list[tuple[int, bool]]:
-    """Places that may have the largest stress on windows finer than `level`: each may overtake the first of both parts.
+    """Places that may have the largest stress on windows finer than `level`: each may overtake the
+    first of both parts.
 
     found : by tooth and whether at its ends
     """
     firsts: dict[bool, WindowStress] = {}
     for (_, ends), stress in found.items():
         firsts[ends] = max(firsts.get(ends, stress), stress, key=lambda s: s.value)
-    return [place for place, stress in found.items() if all(may_be_largest(stress, f, level) for f in firsts.values())]
+    return [
+        place
+        for place, stress in found.items()
+        if all(may_be_largest(stress, f, level) for f in firsts.values())
+    ]
 
 
 def with_angle(known: RootStress, model: DriveModel, state: LoadState) -> RootStress:
     """`known`, of the loaded state, with s1 at a further angle of the period; collective.
 
-    One window, not the finest, is computed there. Its error is taken to be that of the same window in the loaded
-    state, so that the ends of the teeth count only if they do there. Raises like `resolve_root_stress`.
+    One window, not the finest, is computed there. Its error is taken to be that of the same window
+    in the loaded state, so that the ends of the teeth count only if they do there. Raises like
+    `resolve_root_stress`.
     """
     kind = model.design.drive.model
     level = PERIOD_LEVEL[kind]
@@ -292,7 +341,8 @@ def with_angle(known: RootStress, model: DriveModel, state: LoadState) -> RootSt
 
 
 def error_of(levels: Sequence[float], ratio: float) -> float:
-    """Error of the last value on meshes whose element sizes have this ratio, by the order observed on the last three.
+    """Error of the last value on meshes whose element sizes have this ratio, by the order observed
+    on the last three.
 
     Two values are judged by `ASSUMED_ORDER`; a single one, the others being left out, has no bound.
     """
@@ -313,7 +363,8 @@ def error_of(levels: Sequence[float], ratio: float) -> float:
 def error_at_ends(by_part: Mapping[str, Sequence[float]], ratio: float) -> float:
     """Error of the last value of `by_part` at the ends of the teeth, which is the largest one.
 
-    Where it falls from window to window, the largest stress is not above it, and not below the one between the ends.
+    Where it falls from window to window, the largest stress is not above it, and not below the one
+    between the ends.
     """
     ends, between = by_part[ENDS], by_part[BETWEEN]
     error = error_of(ends, ratio)
@@ -329,12 +380,16 @@ def _near(tooth: int, count: int) -> np.ndarray:
 
 
 def _largest_by_tooth(model: DriveModel, ends: bool) -> np.ndarray:
-    """Largest s1 (n_modelled,) MPa of the teeth of all modelled sectors, at their ends or between them; collective."""
-    return _largest_nodal(model, tooth_nodes(model.partition.layouts[FLEXIBLE_SPLINE].mesh, model.design, ends))
+    """Largest s1 (n_modelled,) MPa of the teeth of all modelled sectors, at their ends or between
+    them; collective."""
+    return _largest_nodal(
+        model, tooth_nodes(model.partition.layouts[FLEXIBLE_SPLINE].mesh, model.design, ends)
+    )
 
 
 def _largest_nodal(model: DriveModel, nodes: np.ndarray) -> np.ndarray:
-    """Largest s1 (n_modelled,) MPa at these nodes (n,) of all modelled sectors of the flexible spline; collective."""
+    """Largest s1 (n_modelled,) MPa at these nodes (n,) of all modelled sectors of the flexible
+    spline; collective."""
     body = model.elements.bodies[FLEXIBLE_SPLINE]
     stress = body.nodal_stress(model.problem.displacement())
     mine = principal(stress[:, nodes])[0].max(axis=1) if len(stress) else np.zeros(0)
@@ -344,7 +399,8 @@ def _largest_nodal(model: DriveModel, nodes: np.ndarray) -> np.ndarray:
 def _solve(
     model: DriveModel, state: LoadState, places: list[tuple[int, bool]], recipe: MeshRecipe
 ) -> dict[tuple[int, bool], WindowStress]:
-    """Largest stresses at the ends of teeth or between them, by tooth and whether at the ends: a window per tooth."""
+    """Largest stresses at the ends of teeth or between them, by tooth and whether at the ends: a
+    window per tooth."""
     first, found = model.partition.layouts[FLEXIBLE_SPLINE].first_tooth, {}
     for tooth in dict.fromkeys(tooth for tooth, _ in places):
         window = LocalProblem(model, state, first + tooth, recipe)

@@ -1,7 +1,9 @@
-"""The cascade gearbox: a rack drives eight pinions, each through a flexible unit, and they drive one flywheel.
+"""The cascade gearbox: a rack drives eight pinions, each through a flexible unit, and they drive
+one flywheel.
 
-Source: a master's thesis on the cascade gearbox, KTH Royal Institute of Technology, Stockholm, with CorPower Ocean
-(author, title and year are not in the text at hand), cited by its equation and table numbers.
+Source: a master's thesis on the cascade gearbox, KTH Royal Institute of Technology, Stockholm, with
+CorPower Ocean (author, title and year are not in the text at hand), cited by its equation and table
+numbers.
 """
 
 from swgpar.gear_trains.cascade.design import CascadeDesign, check_fit

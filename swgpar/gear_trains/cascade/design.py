@@ -1,4 +1,5 @@
-"""Design file of a cascade gearbox. The source gives few of its data: the others are inputs with plausible values."""
+"""Design file of a cascade gearbox. The source gives few of its data: the others are inputs with
+plausible values."""
 
 from __future__ import annotations
 
@@ -7,7 +8,13 @@ from typing import Annotated, Any, Literal
 from annotated_types import Len
 
 from swgpar.errors import InputError
-from swgpar.gear_trains.common_sections import GearTrain, Output, Positive, TrainDesign, require_steps
+from swgpar.gear_trains.common_sections import (
+    GearTrain,
+    Output,
+    Positive,
+    TrainDesign,
+    require_steps,
+)
 from swgpar.input.quantities import Section, quantity
 
 PINIONS = 8
@@ -22,7 +29,9 @@ class Train(GearTrain):
 
 class Rack(Section):
     mass: float = quantity(unit="kg", text="mass of the rack", gt=0.0)
-    length: float = quantity(unit="m", text="toothed length; the circumference in the tolerance formulas", gt=0.0)
+    length: float = quantity(
+        unit="m", text="toothed length; the circumference in the tolerance formulas", gt=0.0
+    )
     pitch_grade: float = quantity(text="ISO 1328 grade of the pitch deviation", **GRADES)
     runout_grade: float = quantity(text="ISO 1328 grade of the runout", **GRADES)
 
@@ -33,19 +42,31 @@ class Gear(Section):
     face_width: float = quantity(unit="mm", text="face width", gt=0.0)
     pitch_grade: float = quantity(text="ISO 1328 grade of the pitch deviation", **GRADES)
     runout_grade: float = quantity(text="ISO 1328 grade of the runout", **GRADES)
-    position: float = quantity(unit="mm", text="tolerance of the shaft position, plus or minus", ge=0.0)
-    axle_angle: float = quantity(unit="mrad", text="tolerance of the shaft direction, plus or minus", ge=0.0)
+    position: float = quantity(
+        unit="mm", text="tolerance of the shaft position, plus or minus", ge=0.0
+    )
+    axle_angle: float = quantity(
+        unit="mrad", text="tolerance of the shaft direction, plus or minus", ge=0.0
+    )
 
 
 class Mesh(Section):
     module: float = quantity(unit="mm", text="module", gt=0.0)
     stiffness: float = quantity(unit="N/m", text="mean mesh stiffness", gt=0.0)
-    variation: float = quantity(0.0, text="amplitude of the mesh stiffness over its mean", ge=0.0, lt=1.0)
+    variation: float = quantity(
+        0.0, text="amplitude of the mesh stiffness over its mean", ge=0.0, lt=1.0
+    )
     gap_A: float = quantity(
-        0.0, unit="mm", text="backlash at the pitch line up to the flanks that carry load in direction A", ge=0.0
+        0.0,
+        unit="mm",
+        text="backlash at the pitch line up to the flanks that carry load in direction A",
+        ge=0.0,
     )
     gap_B: float = quantity(
-        0.0, unit="mm", text="backlash at the pitch line up to the flanks that carry load in direction B", ge=0.0
+        0.0,
+        unit="mm",
+        text="backlash at the pitch line up to the flanks that carry load in direction B",
+        ge=0.0,
     )
 
 
@@ -54,62 +75,94 @@ class FlexUnit(Section):
         text="stiffness ratios of the units of pinions 1 to 8 to their mean (Table 3), each above 0"
     )
     stiffness: float = quantity(unit="N·m/deg", text="mean stiffness beyond `linear_above`", gt=0.0)
-    linear_above: float = quantity(unit="mm", text="deformation beyond which the stiffness is constant", gt=0.0)
-    initial_stiffness: float = quantity(unit="N·m/deg", text="mean stiffness at zero deformation", gt=0.0)
+    linear_above: float = quantity(
+        unit="mm", text="deformation beyond which the stiffness is constant", gt=0.0
+    )
+    initial_stiffness: float = quantity(
+        unit="N·m/deg", text="mean stiffness at zero deformation", gt=0.0
+    )
     radius: float = quantity(unit="mm", text="radius at which the deformation is measured", gt=0.0)
 
 
 class Shafts(Section):
     g2_g3: float = quantity(unit="N·m/rad", text="stiffness of a shaft between G2 and G3", gt=0.0)
-    g4_flywheel: float = quantity(unit="N·m/rad", text="stiffness of the shaft between G4 and flywheel", gt=0.0)
+    g4_flywheel: float = quantity(
+        unit="N·m/rad", text="stiffness of the shaft between G4 and flywheel", gt=0.0
+    )
 
 
 class Flywheel(Section):
     inertia: float = quantity(unit="kg·m²", text="moment of inertia with the generator", gt=0.0)
-    generator: float = quantity(unit="N·m·s/rad", text="damping constant of the generator: torque over speed", gt=0.0)
+    generator: float = quantity(
+        unit="N·m·s/rad", text="damping constant of the generator: torque over speed", gt=0.0
+    )
 
 
 class Damping(Section):
-    metal: float = quantity(unit="s", text="damping over stiffness of meshes in contact and of shafts", ge=0.0)
+    metal: float = quantity(
+        unit="s", text="damping over stiffness of meshes in contact and of shafts", ge=0.0
+    )
     flex: float = quantity(unit="s", text="damping over stiffness of the flexible units", ge=0.0)
     contact_ramp: float = quantity(
         unit="µm",
-        text="penetration of the flanks over which the contact damping rises to its full value (smooth step, eq. 10)",
+        text="penetration of the flanks over which the contact damping rises to its full value "
+        "(smooth step, eq. 10)",
         gt=0.0,
     )
 
 
 class Load(Section):
-    forces: Forces = quantity(text="rack forces for which load shares are reported (kN), each above 0")
-    peak: float = quantity(unit="kN", text="largest rack force, of the period and the population_tasks", gt=0.0)
+    forces: Forces = quantity(
+        text="rack forces for which load shares are reported (kN), each above 0"
+    )
+    peak: float = quantity(
+        unit="kN", text="largest rack force, of the period and the population_tasks", gt=0.0
+    )
     period: float = quantity(
         unit="s", text="period of the sinusoidal rack force; its first half is direction B", gt=0.0
     )
-    braked: float = quantity(unit="kN", text="rack force with the flywheel fixed by its brake", gt=0.0)
-    braked_ramp: float = quantity(0.2, unit="s", text="rise time of the rack force against the brake", gt=0.0)
+    braked: float = quantity(
+        unit="kN", text="rack force with the flywheel fixed by its brake", gt=0.0
+    )
+    braked_ramp: float = quantity(
+        0.2, unit="s", text="rise time of the rack force against the brake", gt=0.0
+    )
     braked_hold: float = quantity(
-        0.2, unit="s", text="hold time of that force; load shares are means over its second half", gt=0.0
+        0.2,
+        unit="s",
+        text="hold time of that force; load shares are means over its second half",
+        gt=0.0,
     )
     overload: float = quantity(text="allowed excess of a load share over 1/8", ge=0.0, lt=0.875)
 
 
 class Tolerances(Section):
     samples: int = quantity(text="samples of the tolerance stack-up", ge=10, le=10_000_000)
-    pressure_angle: float = quantity(20.0, unit="deg", text="pressure angle of all meshes", gt=0.0, lt=45.0)
+    pressure_angle: float = quantity(
+        20.0, unit="deg", text="pressure angle of all meshes", gt=0.0, lt=45.0
+    )
     limit: float = quantity(
-        3.0, unit="standard deviations", text="distance of the tolerance limits from the mean", gt=0.0
+        3.0,
+        unit="standard deviations",
+        text="distance of the tolerance limits from the mean",
+        gt=0.0,
     )
 
 
 class Population(Section):
     gearboxes: int = quantity(text="gearboxes with random pitch errors", ge=1, le=1_000_000)
-    ramp: float = quantity(unit="s", text="rise time of the rack force of the population in motion", gt=0.0)
-    hold: float = quantity(unit="s", text="hold time of that force; load shares are means over it", gt=0.0)
+    ramp: float = quantity(
+        unit="s", text="rise time of the rack force of the population in motion", gt=0.0
+    )
+    hold: float = quantity(
+        unit="s", text="hold time of that force; load shares are means over it", gt=0.0
+    )
     step: float = quantity(unit="s", text="time step of the population in motion", gt=0.0)
 
 
 class CascadeDesign(TrainDesign):
-    """A cascade gearbox, its load and its tolerances. Attributes are the sections of the design file."""
+    """A cascade gearbox, its load and its tolerances. Attributes are the sections of the design
+    file."""
 
     gear_train: Train
     rack: Rack
@@ -149,17 +202,20 @@ def check_fit(design: CascadeDesign) -> None:
     """Refuse values that do not fit each other."""
     if design.g1_g1.module != design.g1_g2.module:
         raise InputError(
-            f"g1_g1.module = {design.g1_g1.module:g} is out of range: allowed {design.g1_g2.module:g} mm (g1_g2.module)"
+            f"g1_g1.module = {design.g1_g1.module:g} is out of range: allowed "
+            f"{design.g1_g2.module:g} mm (g1_g2.module)"
         )
     for force in design.load.forces:
         if force > design.load.peak:
             raise InputError(
-                f"load.forces = {force:g} is out of range: allowed above 0 to {design.load.peak:g} kN (load.peak)"
+                f"load.forces = {force:g} is out of range: allowed above 0 to {design.load.peak:g} "
+                f"kN (load.peak)"
             )
     section = design.population
     if section.step > section.hold:
         raise InputError(
-            f"population.step = {section.step:g} is out of range: allowed above 0 to {section.hold:g} s "
+            f"population.step = {section.step:g} is out of range: allowed above 0 to "
+            f"{section.hold:g} s "
             "(population.hold)"
         )
     require_steps("population.step", section.step, section.ramp + section.hold)

@@ -1,20 +1,23 @@
-"""Motion of the cascade gearbox: meshes with backlash and errors, flexible units, shafts, generator.
+"""Motion of the cascade gearbox: meshes with backlash and errors, flexible units, shafts,
+generator.
 
-The equations follow from the energy of meshes and shafts: their matrices are symmetric. In print (eqs 9 to 23) backlash
-and errors are moved into an alternating force, and the contact function multiplies stiffness and force once each; here
-a mesh has the force
+The equations follow from the energy of meshes and shafts: their matrices are symmetric. In print
+(eqs 9 to 23) backlash and errors are moved into an alternating force, and the contact function
+multiplies stiffness and force once each; here a mesh has the force
 
     f = k g(p) + h(g) c dp/dt,    p = x_driver - x_driven - e,
 
-p the mesh deflection, g the penetration of the flanks beyond the backlash, h the smooth step of eq. (10). While flanks
-separate fast, the damper may make f pull, as in print. Load shares with f limited to pushing are the same to 1e-5 from
-120 kN on (docs/verification/gear_trains.md).
+p the mesh deflection, g the penetration of the flanks beyond the backlash, h the smooth step of eq.
+(10). While flanks separate fast, the damper may make f pull, as in print. Load shares with f
+limited to pushing are the same to 1e-5 from 120 kN on (docs/verification/gear_trains.md).
 Further deviations from print:
 
-- gaps of the two directions are given separately: the source's geometric difference lies in one of them;
-- the phase of stiffness and error follows the displacement of the driven gear, not a constant frequency times the time:
-  the rack stops and reverses. Tooth cycle and pitch error are parameters of the motion, as in print: the force has no
-  terms of their derivatives with respect to the displacement;
+- gaps of the two directions are given separately: the source's geometric difference lies in one of
+them;
+- the phase of stiffness and error follows the displacement of the driven gear, not a constant
+frequency times the time:
+  the rack stops and reverses. Tooth cycle and pitch error are parameters of the motion, as in
+  print: the force has no terms of their derivatives with respect to the displacement;
 - G4 and flywheel are always coupled.
 """
 
@@ -57,9 +60,16 @@ class Gearbox:
         )
 
     def integrate(
-        self, force: Force, v: np.ndarray, times: np.ndarray, *, errors: np.ndarray | None = None, rtol: float = 1e-5
+        self,
+        force: Force,
+        v: np.ndarray,
+        times: np.ndarray,
+        *,
+        errors: np.ndarray | None = None,
+        rtol: float = 1e-5,
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Ways (m) and velocities (m/s), (n, 23), at `times` (n,) s by SciPy's LSODA, with the exact matrices.
+        """Ways (m) and velocities (m/s), (n, 23), at `times` (n,) s by SciPy's LSODA, with the
+        exact matrices.
 
         v : (23,) velocities at the first of the times, where all displacements are zero
         errors : (18,) of the kernel's MESH_ERROR, none by default
@@ -75,34 +85,56 @@ class Gearbox:
 
         def jacobian(_: float, y: np.ndarray) -> np.ndarray:
             matrices = self.kernel.matrices(errors, y[:DOFS], y[DOFS:])
-            return np.vstack([np.eye(DOFS, 2 * DOFS, DOFS), -inverse[:, None] * np.hstack(matrices)])
+            return np.vstack(
+                [np.eye(DOFS, 2 * DOFS, DOFS), -inverse[:, None] * np.hstack(matrices)]
+            )
 
         atol = np.repeat([1e-9, 1e-5], DOFS)
         start = np.concatenate([np.zeros(DOFS), v])
         done = solve_ivp(
-            rates, (times[0], times[-1]), start, method="LSODA", t_eval=times, rtol=rtol, atol=atol, jac=jacobian
+            rates,
+            (times[0], times[-1]),
+            start,
+            method="LSODA",
+            t_eval=times,
+            rtol=rtol,
+            atol=atol,
+            jac=jacobian,
         )
         if not done.success:
-            raise ConvergenceError(f"the motion of the gearbox could not be integrated: {done.message}")
+            raise ConvergenceError(
+                f"the motion of the gearbox could not be integrated: {done.message}"
+            )
         return done.y[:DOFS].T, done.y[DOFS:].T
 
     def simulate(
-        self, force: Force, v: np.ndarray, step: float, count: int, *, errors: np.ndarray | None = None
+        self,
+        force: Force,
+        v: np.ndarray,
+        step: float,
+        count: int,
+        *,
+        errors: np.ndarray | None = None,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Simulate `count` implicit steps of `step` s from zero displacements and velocities v (23,).
+        """Simulate `count` implicit steps of `step` s from zero displacements and velocities v
+        (23,).
 
-        Returns the pinion forces after each step, (count, 8) N, and displacements and velocities at the end, (23,).
+        Returns the pinion forces after each step, (count, 8) N, and displacements and velocities at
+        the end, (23,).
         """
         x, v = np.zeros(DOFS), np.array(v, dtype=float)
         errors = no_errors() if errors is None else errors
         rack = np.ascontiguousarray(force(step * np.arange(count + 1)), dtype=float)
         torque = self.kernel.simulate(errors, rack, step, x, v)
         if len(torque) < count:
-            raise ConvergenceError(f"the motion of a gearbox did not converge at {step * len(torque):g} s")
+            raise ConvergenceError(
+                f"the motion of a gearbox did not converge at {step * len(torque):g} s"
+            )
         return torque[:, :PINIONS] / self.pinion_radius, x, v
 
     def pinion_forces(self, x: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Forces (n, 8) in N at the pitch lines of the pinions that their flexible units pass on (eq. 23).
+        """Forces (n, 8) in N at the pitch lines of the pinions that their flexible units pass on
+        (eq. 23).
 
         x, v : (n, 23) displacements and velocities
         """
@@ -116,7 +148,8 @@ def no_errors() -> np.ndarray:
 
 
 def natural_frequencies(design: CascadeDesign) -> np.ndarray:
-    """Frequencies in Hz (23,) of small vibrations with all meshes in contact, at their mean stiffness (eq. 25).
+    """Frequencies in Hz (23,) of small vibrations with all meshes in contact, at their mean
+    stiffness (eq. 25).
 
     The flywheel is free, so that the first is zero.
     """

@@ -35,9 +35,17 @@ def drawings(result: TrainResult) -> Drawings:
 
 def _static(result: TrainResult, direction: str, limit: float) -> Figure:
     table = result.tables["static"]
-    figure, (axis,) = axes(f"load sharing at rest, direction {direction}", "rack force (kN)", "load share")
+    figure, (axis,) = axes(
+        f"load sharing at rest, direction {direction}", "rack force (kN)", "load share"
+    )
     for k in EACH:
-        axis.plot(table["rack_force_kN"], table[f"{direction}_{k}"], STYLES[k], lw=1.2, label=f"pinion {k}")
+        axis.plot(
+            table["rack_force_kN"],
+            table[f"{direction}_{k}"],
+            STYLES[k],
+            lw=1.2,
+            label=f"pinion {k}",
+        )
     axis.axhline(limit, color="k", ls=":", label="largest allowed")
     axis.set_ylim(0.0, 0.3)
     axis.legend(fontsize=8, ncols=3)
@@ -46,7 +54,9 @@ def _static(result: TrainResult, direction: str, limit: float) -> Figure:
 
 def _equal(result: TrainResult, limit: float) -> Figure:
     table = result.tables["static"]
-    figure, (axis,) = axes("load sharing at rest, direction B, equal units", "rack force (kN)", "load share")
+    figure, (axis,) = axes(
+        "load sharing at rest, direction B, equal units", "rack force (kN)", "load share"
+    )
     axis.plot(table["rack_force_kN"], table["B_equal_odd"], label="odd pinions")
     axis.plot(table["rack_force_kN"], table["B_equal_even"], "--", label="even pinions")
     axis.axhline(limit, color="k", ls=":", label="largest allowed")
@@ -57,7 +67,9 @@ def _equal(result: TrainResult, limit: float) -> Figure:
 
 def _in_time(result: TrainResult) -> Figure:
     table = result.history
-    figure, (upper, lower) = axes("load sharing over one period", "time (s)", "load share", "rack force (kN)")
+    figure, (upper, lower) = axes(
+        "load sharing over one period", "time (s)", "load share", "rack force (kN)"
+    )
     for k in EACH:
         upper.plot(table["time_s"], table[f"share_{k}"], STYLES[k], lw=0.8, label=f"pinion {k}")
     upper.set_ylim(0.0, 0.3)
@@ -69,9 +81,17 @@ def _in_time(result: TrainResult) -> Figure:
 def _against_force(result: TrainResult, limit: float) -> Figure:
     table = result.history
     first = slice(0, np.argmax(table["rack_force_kN"]) + 1)
-    figure, (axis,) = axes("load sharing in motion, direction B, rising force", "rack force (kN)", "load share")
+    figure, (axis,) = axes(
+        "load sharing in motion, direction B, rising force", "rack force (kN)", "load share"
+    )
     for k in EACH:
-        axis.plot(table["rack_force_kN"][first], table[f"share_{k}"][first], STYLES[k], lw=0.8, label=f"pinion {k}")
+        axis.plot(
+            table["rack_force_kN"][first],
+            table[f"share_{k}"][first],
+            STYLES[k],
+            lw=0.8,
+            label=f"pinion {k}",
+        )
     axis.axhline(limit, color="k", ls=":", label="largest allowed")
     axis.set_ylim(0.0, 0.3)
     axis.legend(fontsize=8, ncols=3)
@@ -94,14 +114,22 @@ def _stack_up(result: TrainResult) -> Figure:
     table = result.tables["stack_up"]
     figure, (axis,) = axes("pitch errors by kind of mesh", "error (µm)", "density (1/µm)")
     for name, samples in table.items():
-        axis.hist(samples, bins=60, density=True, histtype="step", label=name.removesuffix("_um").replace("_", ", "))
+        axis.hist(
+            samples,
+            bins=60,
+            density=True,
+            histtype="step",
+            label=name.removesuffix("_um").replace("_", ", "),
+        )
     axis.legend(fontsize=8)
     return figure
 
 
 def _flex_unit(result: TrainResult) -> Figure:
     table = result.tables["flex_unit"]
-    figure, (upper, lower) = axes("flexible units, mean", "deformation (mm)", "torque (N·m)", "stiffness (N·m/deg)")
+    figure, (upper, lower) = axes(
+        "flexible units, mean", "deformation (mm)", "torque (N·m)", "stiffness (N·m/deg)"
+    )
     upper.plot(table["deformation_mm"], table["torque_Nm"])
     lower.plot(table["deformation_mm"], table["stiffness_Nm_per_deg"])
     return figure

@@ -1,4 +1,5 @@
-"""The flexible units: torque against twist, and what it does to the rack force that a pinion carries."""
+"""The flexible units: torque against twist, and what it does to the rack force that a pinion
+carries."""
 
 from __future__ import annotations
 
@@ -13,9 +14,10 @@ from swgpar.gear_trains.cascade.design import CascadeDesign
 class FlexUnits:
     """The mean curve of the units; that of a pinion is its ratio times this one (section 4.2).
 
-    Equation (26) of the source is lost. Its text says that the stiffness is higher at small deformations and constant
-    beyond 0.42 mm: here the stiffness falls from its initial value along a parabola that ends level there. Torque and
-    stiffness are the derivatives of an energy, and even in the twist.
+    Equation (26) of the source is lost. Its text says that the stiffness is higher at small
+    deformations and constant beyond 0.42 mm: here the stiffness falls from its initial value along
+    a parabola that ends level there. Torque and stiffness are the derivatives of an energy, and
+    even in the twist.
 
     Attributes
     ----------

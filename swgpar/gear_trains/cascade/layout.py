@@ -1,9 +1,11 @@
-"""Which gear meshes with which, and which sit on one shaft: the 23 degrees of freedom of the cascade gearbox.
+"""Which gear meshes with which, and which sit on one shaft: the 23 degrees of freedom of the
+cascade gearbox.
 
-The coordinate of every gear is its displacement along its pitch line (m), positive in direction B. Order of the 23:
-rack, pinions 1 to 8, G1 1 to 8, G2 1 and 2, G3 1 and 2, G4, flywheel (at the pitch radius of G4, as it has no teeth).
-18 meshes: rack with every pinion, even with odd G1 of a pair, odd G1 with the G2 of its side, G3 with G4. 11 shafts: a
-flexible unit between every pinion and its G1, G2 with G3, G4 with the flywheel.
+The coordinate of every gear is its displacement along its pitch line (m), positive in direction B.
+Order of the 23: rack, pinions 1 to 8, G1 1 to 8, G2 1 and 2, G3 1 and 2, G4, flywheel (at the pitch
+radius of G4, as it has no teeth). 18 meshes: rack with every pinion, even with odd G1 of a pair,
+odd G1 with the G2 of its side, G3 with G4. 11 shafts: a flexible unit between every pinion and its
+G1, G2 with G3, G4 with the flywheel.
 """
 
 from __future__ import annotations
@@ -33,7 +35,13 @@ def radii(design: CascadeDesign) -> np.ndarray:
 
 def masses(design: CascadeDesign) -> np.ndarray:
     """Masses at the pitch lines, (23,) kg: inertia over the radius squared (eq. 15)."""
-    gears = ["pinion"] * PINIONS + ["g1"] * PINIONS + ["g2"] * SIDES + ["g3"] * SIDES + ["g4", "flywheel"]
+    gears = (
+        ["pinion"] * PINIONS
+        + ["g1"] * PINIONS
+        + ["g2"] * SIDES
+        + ["g3"] * SIDES
+        + ["g4", "flywheel"]
+    )
     inertia = np.array([getattr(design, name).inertia for name in gears])
     return np.concatenate([[design.rack.mass], inertia / radii(design)[1:] ** 2])
 
@@ -51,10 +59,18 @@ def meshes(design: CascadeDesign) -> np.ndarray:
     odd, side = G1 + 2 * np.arange(PAIRS), np.arange(SIDES)
     out = np.zeros(MESHES, dtype=MESH)
     out["driver"] = np.concatenate([np.full(PINIONS, RACK), odd + 1, odd, G3 + side])
-    out["driven"] = np.concatenate([PINION + np.arange(PINIONS), odd, G2 + np.arange(PAIRS) // 2, np.full(SIDES, G4)])
+    out["driven"] = np.concatenate(
+        [PINION + np.arange(PINIONS), odd, G2 + np.arange(PAIRS) // 2, np.full(SIDES, G4)]
+    )
     out["driven_radius"] = radii(design)[out["driven"]]
     sections = [getattr(design, kind) for kind, count in MESH_COUNTS.items() for _ in range(count)]
-    for key, scale in (("stiffness", 1.0), ("variation", 1.0), ("gap_A", 1e-3), ("gap_B", 1e-3), ("module", 1e-3)):
+    for key, scale in (
+        ("stiffness", 1.0),
+        ("variation", 1.0),
+        ("gap_A", 1e-3),
+        ("gap_B", 1e-3),
+        ("module", 1e-3),
+    ):
         out[key] = [scale * getattr(section, key) for section in sections]
     out["damping"] = design.damping.metal * out["stiffness"]
     return out
@@ -66,7 +82,10 @@ def shafts(design: CascadeDesign) -> np.ndarray:
     out = np.zeros(SHAFTS, dtype=SHAFT)
     out["first"] = np.concatenate([PINION + np.arange(PINIONS), G2 + side, [G4]])
     out["second"] = np.concatenate([G1 + np.arange(PINIONS), G3 + side, [FLYWHEEL]])
-    out["first_radius"], out["second_radius"] = radii(design)[out["first"]], radii(design)[out["second"]]
+    out["first_radius"], out["second_radius"] = (
+        radii(design)[out["first"]],
+        radii(design)[out["second"]],
+    )
     out["stiffness"][PINIONS:] = [design.shafts.g2_g3] * SIDES + [design.shafts.g4_flywheel]
     out["stiffness"][:PINIONS] = units.ratios * units.stiffness
     out["initial_stiffness"], out["linear_above"] = out["stiffness"], units.end

@@ -1,4 +1,5 @@
-"""The gearbox without errors in motion: one period of the rack force, and the flywheel fixed by its brake."""
+"""The gearbox without errors in motion: one period of the rack force, and the flywheel fixed by its
+brake."""
 
 from __future__ import annotations
 
@@ -15,10 +16,12 @@ ROWS = 4000
 """Of the history of one period."""
 
 WINDOW = 0.02
-"""Half width, as a share of the peak force, of the range that load shares at a force are averaged over."""
+"""Half width, as a share of the peak force, of the range that load shares at a force are averaged
+over."""
 
 FITTED = 0.25
-"""Share of the peak above which the crossing of load shares is sought: below it the units are not linear."""
+"""Share of the peak above which the crossing of load shares is sought: below it the units are not
+linear."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +40,8 @@ class LoadCycle:
 
     @property
     def shares(self) -> np.ndarray:
-        """Load shares (n, 8) (eq. 24); NaN where the pinions carry less than 1 % of the largest rack force."""
+        """Load shares (n, 8) (eq. 24); NaN where the pinions carry less than 1 % of the largest
+        rack force."""
         carried = self.pinion_forces.sum(axis=1, keepdims=True)
         loaded = np.abs(carried) > 0.01 * np.abs(self.rack_force).max()
         return self.pinion_forces / np.where(loaded, carried, np.nan)
@@ -49,11 +53,15 @@ class LoadCycle:
         return carried / carried.sum()
 
     def first_crossing(self) -> float:
-        """Lowest rack force in N at which the shares of an odd and an even pinion cross; NaN when none do.
+        """Lowest rack force in N at which the shares of an odd and an even pinion cross; NaN when
+        none do.
 
-        Where the flexible units are linear, shares are a + b / F: fitted, so that the tooth cycles do not matter.
+        Where the flexible units are linear, shares are a + b / F: fitted, so that the tooth cycles
+        do not matter.
         """
-        loaded = (self.rack_force > FITTED * self.rack_force.max()) & np.isfinite(self.shares).all(axis=1)
+        loaded = (self.rack_force > FITTED * self.rack_force.max()) & np.isfinite(self.shares).all(
+            axis=1
+        )
         terms = np.stack([np.ones(loaded.sum()), 1.0 / self.rack_force[loaded]], axis=1)
         a, b = np.linalg.lstsq(terms, self.shares[loaded], rcond=None)[0]
         even = even_pinion_mask()
@@ -77,9 +85,14 @@ def one_load_cycle(design: CascadeDesign) -> LoadCycle:
 
 
 def braked_load_shares(design: CascadeDesign, direction: Direction) -> np.ndarray:
-    """Load shares (8,) at the braked force, with the flywheel fixed: the source's comparison with measurements."""
+    """Load shares (8,) at the braked force, with the flywheel fixed: the source's comparison with
+    measurements."""
     gearbox, sign = Gearbox(design, braked=True), 1.0 if direction == "B" else -1.0
-    rising, hold, size = design.load.braked_ramp, design.load.braked_hold, sign * 1e3 * design.load.braked
+    rising, hold, size = (
+        design.load.braked_ramp,
+        design.load.braked_hold,
+        sign * 1e3 * design.load.braked,
+    )
     time = np.linspace(0.0, rising + hold, 401)
     x, v = gearbox.integrate(ramp(size, rising), np.zeros(DOFS), time)
     carried = gearbox.pinion_forces(x, v)[time > rising + 0.5 * hold].sum(axis=0)

@@ -1,4 +1,5 @@
-"""Gearboxes with random errors, at rest and in motion, under the largest rack force in direction B."""
+"""Gearboxes with random errors, at rest and in motion, under the largest rack force in direction
+B."""
 
 from __future__ import annotations
 
@@ -22,7 +23,8 @@ STREAM = 1
 
 @dataclass(frozen=True)
 class PopulationShares:
-    """Load shares of some gearboxes, (n, 8) each: at rest; in motion, as means and largest values over the hold."""
+    """Load shares of some gearboxes, (n, 8) each: at rest; in motion, as means and largest values
+    over the hold."""
 
     static: np.ndarray
     mean: np.ndarray
@@ -32,11 +34,15 @@ class PopulationShares:
 def random_errors(design: CascadeDesign, block: int, count: int) -> np.ndarray:
     """Errors of the gearboxes of a block, (count, 18) of the kernel's MESH_ERROR.
 
-    The amplitude is a sample of the stack-up of its kind of mesh, phases are uniform. At rest the amplitude is the
-    error itself.
+    The amplitude is a sample of the stack-up of its kind of mesh, phases are uniform. At rest the
+    amplitude is the error itself.
     """
     random = random_stream(design.gear_train.seed, STREAM, block)
-    deviations = [standard_deviation(design, kind) for kind, number in MESH_COUNTS.items() for _ in range(number)]
+    deviations = [
+        standard_deviation(design, kind)
+        for kind, number in MESH_COUNTS.items()
+        for _ in range(number)
+    ]
     errors = np.zeros((count, MESHES), dtype=MESH_ERROR)
     errors["amplitude"] = random.standard_normal((count, MESHES)) * deviations
     errors["phase"], errors["tooth_phase"] = random.uniform(0.0, 2.0 * np.pi, (2, count, MESHES))
@@ -47,7 +53,9 @@ def static_shares(design: CascadeDesign, errors: np.ndarray) -> np.ndarray:
     """Load shares (n, 8) at rest."""
     ends = np.cumsum(list(MESH_COUNTS.values()))[:-1]
     by_kind = dict(zip(MESH_COUNTS, np.split(errors["amplitude"], ends, axis=1), strict=True))
-    return static_sharing(design, "B", errors=by_kind).shares(np.full(len(errors), 1e3 * design.load.peak))
+    return static_sharing(design, "B", errors=by_kind).shares(
+        np.full(len(errors), 1e3 * design.load.peak)
+    )
 
 
 def steady_velocities(design: CascadeDesign) -> np.ndarray:
@@ -60,15 +68,22 @@ def steady_velocities(design: CascadeDesign) -> np.ndarray:
 def block_shares(design: CascadeDesign, block: int, count: int) -> PopulationShares:
     """All load shares of the gearboxes of a block.
 
-    In motion the gears start at their steady speed without contact; the rack force rises and then stays constant.
+    In motion the gears start at their steady speed without contact; the rack force rises and then
+    stays constant.
     """
-    section, errors, gearbox = design.population, random_errors(design, block, count), Gearbox(design)
+    section, errors, gearbox = (
+        design.population,
+        random_errors(design, block, count),
+        Gearbox(design),
+    )
     rising, holding = (int(np.ceil(t / section.step)) for t in (section.ramp, section.hold))
     force = ramp(1e3 * design.load.peak, rising * section.step)
     start = steady_velocities(design)
     means, largest = np.empty((count, PINIONS)), np.empty((count, PINIONS))
     for k in range(count):
-        carried, _, _ = gearbox.simulate(force, start, section.step, rising + holding, errors=errors[k])
+        carried, _, _ = gearbox.simulate(
+            force, start, section.step, rising + holding, errors=errors[k]
+        )
         share = carried[rising:] / carried[rising:].sum(axis=1, keepdims=True)
         means[k], largest[k] = share.mean(axis=0), share.max(axis=0)
     return PopulationShares(static_shares(design, errors), means, largest)
@@ -77,4 +92,7 @@ def block_shares(design: CascadeDesign, block: int, count: int) -> PopulationSha
 def population_tasks(design: CascadeDesign) -> list[Callable[[], PopulationShares]]:
     """Tasks for all blocks of the population."""
     sizes = block_sizes(design.population.gearboxes, BLOCK_SIZE)
-    return [lambda block=block, size=size: block_shares(design, block, size) for block, size in enumerate(sizes)]
+    return [
+        lambda block=block, size=size: block_shares(design, block, size)
+        for block, size in enumerate(sizes)
+    ]

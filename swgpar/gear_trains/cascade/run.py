@@ -36,10 +36,14 @@ CURVE_END = 2.5
 
 def compute(design: CascadeDesign, comm: MPI.Comm) -> TrainResult:
     """All results of a design, the same on all ranks; collective."""
-    first = [partial(one_load_cycle, design), *(partial(braked_load_shares, design, side) for side in DIRECTIONS)]
+    first = [
+        partial(one_load_cycle, design),
+        *(partial(braked_load_shares, design, side) for side in DIRECTIONS),
+    ]
     tolerances, gearboxes = stack_up_tasks(design), population_tasks(design)
     logger.info(
-        "cascade gearbox: %d degrees of freedom, %d tolerance samples, %d gearboxes with errors; %d ranks",
+        "cascade gearbox: %d degrees of freedom, %d tolerance samples, %d gearboxes with errors; "
+        "%d ranks",
         DOFS,
         design.tolerances.samples,
         design.population.gearboxes,
@@ -49,11 +53,14 @@ def compute(design: CascadeDesign, comm: MPI.Comm) -> TrainResult:
     cycle, braked = done[0], dict(zip(DIRECTIONS, done[1 : len(first)], strict=True))
     stacks = dict(zip(MESH_COUNTS, done[len(first) : len(first) + len(tolerances)], strict=True))
     parts: list[PopulationShares] = done[len(first) + len(tolerances) :]
-    shares = PopulationShares(*(np.concatenate([getattr(p, k) for p in parts]) for k in ("static", "mean", "largest")))
+    shares = PopulationShares(
+        *(np.concatenate([getattr(p, k) for p in parts]) for k in ("static", "mean", "largest"))
+    )
     limit = 1.0 / PINIONS + design.load.overload
     values: dict[str, float | list[float]] = {
         "spearman_rack_pinion": [stacks["rack_pinion"][1][name] for name in RANKED_TOLERANCES],
-        "first_crossing_static": 1e-3 * first_crossing(static_sharing(design, "B"), 1e3 * design.load.peak),
+        "first_crossing_static": 1e-3
+        * first_crossing(static_sharing(design, "B"), 1e3 * design.load.peak),
         "first_crossing_dynamic": 1e-3 * cycle.first_crossing(),
         **{f"braked_{side}": shares_of_side.tolist() for side, shares_of_side in braked.items()},
         "overloaded_static": float((shares.static > limit).any(axis=1).sum()),
@@ -62,7 +69,10 @@ def compute(design: CascadeDesign, comm: MPI.Comm) -> TrainResult:
         "largest_dynamic_mean_share": float(shares.mean.max()),
         "largest_dynamic_share": float(shares.largest.max()),
         "natural_frequencies": natural_frequencies(design).tolist(),
-        **{f"largest_error_{k}": 1e6 * float(np.abs(stacks[k][0]).max()) for k in ("rack_pinion", "g1_g1")},
+        **{
+            f"largest_error_{k}": 1e6 * float(np.abs(stacks[k][0]).max())
+            for k in ("rack_pinion", "g1_g1")
+        },
     }
     tables = {
         "static": _static(design),
@@ -71,7 +81,12 @@ def compute(design: CascadeDesign, comm: MPI.Comm) -> TrainResult:
         "stack_up": {f"{kind}_um": 1e6 * samples for kind, (samples, _) in stacks.items()},
         "population": _population(shares),
     }
-    return TrainResult(_history(cycle), tables, values | _shares_at_forces(design, cycle), {"overload_limit": limit})
+    return TrainResult(
+        _history(cycle),
+        tables,
+        values | _shares_at_forces(design, cycle),
+        {"overload_limit": limit},
+    )
 
 
 def _shares_at_forces(design: CascadeDesign, cycle: LoadCycle) -> dict[str, list[float]]:
@@ -80,7 +95,9 @@ def _shares_at_forces(design: CascadeDesign, cycle: LoadCycle) -> dict[str, list
     for force in design.load.forces:
         name = number_label(force)
         for direction in DIRECTIONS:
-            values[f"static_{direction}_{name}"] = static_sharing(design, direction).shares(1e3 * force).tolist()
+            values[f"static_{direction}_{name}"] = (
+                static_sharing(design, direction).shares(1e3 * force).tolist()
+            )
         equal = static_sharing(design, "B", equal_units=True).shares(1e3 * force)
         values[f"static_equal_B_{name}"] = [equal[~even].mean(), equal[even].mean()]
         moving = cycle.shares_at(1e3 * force)
@@ -96,7 +113,10 @@ def _history(cycle: LoadCycle) -> Table:
         "rack_displacement_mm": 1e3 * cycle.displacement,
         "rack_velocity_m_s": cycle.velocity,
     }
-    out |= {f"pinion_force_{k}_kN": 1e-3 * column for k, column in zip(EACH, cycle.pinion_forces.T, strict=True)}
+    out |= {
+        f"pinion_force_{k}_kN": 1e-3 * column
+        for k, column in zip(EACH, cycle.pinion_forces.T, strict=True)
+    }
     return out | {f"share_{k}": column for k, column in zip(EACH, cycle.shares.T, strict=True)}
 
 
@@ -123,17 +143,26 @@ def _flex_unit(design: CascadeDesign) -> Table:
     }
 
 
-def _spearman(design: CascadeDesign, stacks: dict[str, tuple[np.ndarray, dict[str, float]]]) -> Table:
+def _spearman(
+    design: CascadeDesign, stacks: dict[str, tuple[np.ndarray, dict[str, float]]]
+) -> Table:
     rows = [
         (kind, name, 1e6 * limit, stacks[kind][1][name])
         for kind in MESH_COUNTS
         for name, limit in contributions(design, kind).items()
     ]
-    return {k: np.array(c) for k, c in zip(("mesh", "tolerance", "limit_um", "rank"), zip(*rows, strict=True))}
+    return {
+        k: np.array(c)
+        for k, c in zip(("mesh", "tolerance", "limit_um", "rank"), zip(*rows, strict=True))
+    }
 
 
 def _population(shares: PopulationShares) -> Table:
     out: dict[str, np.ndarray] = {"gearbox": np.arange(1, len(shares.static) + 1)}
-    for name, values in (("static", shares.static), ("mean", shares.mean), ("largest", shares.largest)):
+    for name, values in (
+        ("static", shares.static),
+        ("mean", shares.mean),
+        ("largest", shares.largest),
+    ):
         out |= {f"{name}_{k}": column for k, column in zip(EACH, values.T, strict=True)}
     return out

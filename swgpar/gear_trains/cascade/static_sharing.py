@@ -1,11 +1,11 @@
 """Load sharing at rest: rigid gears with gaps, flexible units, the flywheel fixed.
 
-Every mesh can push but not pull. With the flywheel fixed, the energy of the flexible units has its minimum where each
-unit is twisted by the displacement of the rack less all gaps on its own path to the flywheel. The path of an odd pinion
-leads over its G1, G2, G3 and G4, that of an even one over the G1 of its odd neighbour as well. A mesh on several paths
-closes as soon as one of them carries load, and none can open it again. So the over-determined contact needs no search,
-and a pinion carries nothing until its own path is closed.
-(The source moves
+Every mesh can push but not pull. With the flywheel fixed, the energy of the flexible units has its
+minimum where each unit is twisted by the displacement of the rack less all gaps on its own path to
+the flywheel. The path of an odd pinion leads over its G1, G2, G3 and G4, that of an even one over
+the G1 of its odd neighbour as well. A mesh on several paths closes as soon as one of them carries
+load, and none can open it again. So the over-determined contact needs no search, and a pinion
+carries nothing until its own path is closed. (The source moves
 the gears in small steps instead and finds the contacts by rules.)
 """
 
@@ -23,7 +23,8 @@ from swgpar.gear_trains.cascade.flex_unit import FlexUnits
 Direction = Literal["A", "B"]
 PAIRS, SIDES = PINIONS // 2, 2
 MESH_COUNTS = {"rack_pinion": PINIONS, "g1_g1": PAIRS, "g1_g2": PAIRS, "g3_g4": SIDES}
-"""Meshes of the gearbox by kind: rack with pinions 1 to 8; even with odd G1 of a pair; odd G1 with G2; G3 with G4."""
+"""Meshes of the gearbox by kind: rack with pinions 1 to 8; even with odd G1 of a pair; odd G1 with
+G2; G3 with G4."""
 
 
 def even_pinion_mask() -> np.ndarray:
@@ -68,9 +69,11 @@ class StaticSharing:
         return self.units.ratios * self.units.torque(twist) / self.radius
 
     def travel(self, force: np.ndarray | float) -> np.ndarray:
-        """Travel of the rack in m at rack forces in N, by bisection of a growing function to the last digit."""
+        """Travel of the rack in m at rack forces in N, by bisection of a growing function to the
+        last digit."""
         force = np.asarray(force, dtype=float)
-        # the unit that is softest of all, behind the largest gap, would be twisted by no more than that
+        # the unit that is softest of all, behind the largest gap, would be twisted by no more than
+        # that
         softest = min(self.units.stiffness, self.units.initial) * self.units.ratios.sum()
         low = self.radius * self.gaps.min(axis=-1) + np.zeros_like(force)
         high = self.radius * (self.gaps.max(axis=-1) + force * self.radius / softest)
@@ -101,7 +104,8 @@ def static_sharing(
 
 
 def first_crossing(sharing: StaticSharing, highest: float) -> float:
-    """Lowest rack force in N at which the shares of two pinions cross; NaN when none do below `highest`.
+    """Lowest rack force in N at which the shares of two pinions cross; NaN when none do below
+    `highest`.
 
     sharing : of one gearbox, gaps (8,)
     """
@@ -115,7 +119,11 @@ def first_crossing(sharing: StaticSharing, highest: float) -> float:
         if len(crossings):
             found.append(
                 np.interp(
-                    0.0, *_rising(difference[crossings[0] : crossings[0] + 2], force[crossings[0] : crossings[0] + 2])
+                    0.0,
+                    *_rising(
+                        difference[crossings[0] : crossings[0] + 2],
+                        force[crossings[0] : crossings[0] + 2],
+                    ),
                 )
             )
     return float(min(found, default=np.nan))

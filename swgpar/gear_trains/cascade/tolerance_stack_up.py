@@ -1,11 +1,14 @@
-"""Tolerance stack-up of every kind of mesh by Monte Carlo, with Spearman's rank correlation (sections 2.2 to 2.4, 3.1).
+"""Tolerance stack-up of every kind of mesh by Monte Carlo, with Spearman's rank correlation
+(sections 2.2 to 2.4, 3.1).
 
-Each tolerance is a normal variable whose limits lie at a given number of standard deviations (eq. 1), turned into a
-displacement of the flanks along the pitch line:
+Each tolerance is a normal variable whose limits lie at a given number of standard deviations (eq.
+1), turned into a displacement of the flanks along the pitch line:
 
-- pitch deviation E_pu = (0.3 m_n + 1.25 sqrt(d) + 7) 2^(0.5 (Q - 5)) µm (eq. 4; the 7 and both signs are lost in the
+- pitch deviation E_pu = (0.3 m_n + 1.25 sqrt(d) + 7) 2^(0.5 (Q - 5)) µm (eq. 4; the 7 and both
+signs are lost in the
   text and are those of ISO 1328-1, of which the printed factors are), as it is;
-- runout E_r = (0.24 m_n + sqrt(d) + 5.6) 2^(0.5 (Q - 5)) µm (eq. 5, likewise), radial: times the tangent of the
+- runout E_r = (0.24 m_n + sqrt(d) + 5.6) 2^(0.5 (Q - 5)) µm (eq. 5, likewise), radial: times the
+tangent of the
   pressure angle;
 - position of a shaft along the line of action: over its cosine;
 - direction of a shaft: times half of the face width.
@@ -28,7 +31,12 @@ BLOCK_SIZE = 10_000
 STREAM = 0
 """First number of the keys of these samples' streams."""
 
-GEARS = {"rack_pinion": ("rack", "pinion"), "g1_g1": ("g1", "g1"), "g1_g2": ("g1", "g2"), "g3_g4": ("g3", "g4")}
+GEARS = {
+    "rack_pinion": ("rack", "pinion"),
+    "g1_g1": ("g1", "g1"),
+    "g1_g2": ("g1", "g2"),
+    "g3_g4": ("g3", "g4"),
+}
 
 
 def pitch_deviation(module: float, diameter: float, grade: float) -> float:
@@ -42,7 +50,8 @@ def runout(module: float, diameter: float, grade: float) -> float:
 
 
 def contributions(design: CascadeDesign, kind: str) -> dict[str, float]:
-    """Limits of all tolerances of a kind of mesh as displacements of its flanks along the pitch line, m, by name."""
+    """Limits of all tolerances of a kind of mesh as displacements of its flanks along the pitch
+    line, m, by name."""
     module, limits = getattr(design, kind).module, {}
     first, second = GEARS[kind]
     angle = np.radians(design.tolerances.pressure_angle)
@@ -60,7 +69,10 @@ def contributions(design: CascadeDesign, kind: str) -> dict[str, float]:
 
 def standard_deviation(design: CascadeDesign, kind: str) -> float:
     """Of the whole stack-up of a kind of mesh, m."""
-    return float(np.sqrt(sum(limit**2 for limit in contributions(design, kind).values())) / design.tolerances.limit)
+    return float(
+        np.sqrt(sum(limit**2 for limit in contributions(design, kind).values()))
+        / design.tolerances.limit
+    )
 
 
 def sample_stack_up(design: CascadeDesign, kind: str) -> tuple[np.ndarray, dict[str, float]]:
@@ -70,14 +82,20 @@ def sample_stack_up(design: CascadeDesign, kind: str) -> tuple[np.ndarray, dict[
     number = list(MESH_COUNTS).index(kind)
     parts = np.concatenate(
         [
-            random_stream(design.gear_train.seed, STREAM, number, block).standard_normal((size, len(sizes)))
+            random_stream(design.gear_train.seed, STREAM, number, block).standard_normal(
+                (size, len(sizes))
+            )
             for block, size in enumerate(block_sizes(design.tolerances.samples, BLOCK_SIZE))
         ]
     )
     total = parts @ sizes
-    return total, {name: float(spearmanr(parts[:, k], total).statistic) for k, name in enumerate(limits)}
+    return total, {
+        name: float(spearmanr(parts[:, k], total).statistic) for k, name in enumerate(limits)
+    }
 
 
-def stack_up_tasks(design: CascadeDesign) -> list[Callable[[], tuple[np.ndarray, dict[str, float]]]]:
+def stack_up_tasks(
+    design: CascadeDesign,
+) -> list[Callable[[], tuple[np.ndarray, dict[str, float]]]]:
     """Tasks for the stack-ups of all kinds of meshes, in the order of MESH_COUNTS."""
     return [lambda kind=kind: sample_stack_up(design, kind) for kind in MESH_COUNTS]

@@ -1,7 +1,9 @@
-"""A pair of spur gears under torque and white noise: statistical linearisation against Monte Carlo simulation.
+"""A pair of spur gears under torque and white noise: statistical linearisation against Monte Carlo
+simulation.
 
-Source: J. Taheri Kahnamouei, Nonlinear Random Vibration of Planetary Gear Trains with Elastic Ring Gear, PhD thesis,
-Memorial University of Newfoundland, St. John's, 2021, chapter 4, cited by its equation and table numbers.
+Source: J. Taheri Kahnamouei, Nonlinear Random Vibration of Planetary Gear Trains with Elastic Ring
+Gear, PhD thesis, Memorial University of Newfoundland, St. John's, 2021, chapter 4, cited by its
+equation and table numbers.
 """
 
 from swgpar.gear_trains.gear_pair.design import GearPairDesign, check_fit

@@ -29,23 +29,35 @@ class Gear(Section):
     mass: float = quantity(unit="kg", text="mass", gt=0.0)
     inertia: float = quantity(unit="kg·m²", text="moment of inertia", gt=0.0)
     radius: float = quantity(unit="mm", text="pitch radius", gt=0.0)
-    bearing: float = quantity(unit="N/m", text="stiffness of the bearings along the line of action", gt=0.0)
+    bearing: float = quantity(
+        unit="N/m", text="stiffness of the bearings along the line of action", gt=0.0
+    )
 
 
 class Mesh(Section):
     stiffness: float = quantity(unit="N/m", text="mean mesh stiffness", gt=0.0)
     half_backlash: float = quantity(unit="µm", text="half of the backlash", ge=0.0)
-    variation: float = quantity(0.0, text="amplitude of the mesh stiffness over its mean", ge=0.0, le=0.4)
+    variation: float = quantity(
+        0.0, text="amplitude of the mesh stiffness over its mean", ge=0.0, le=0.4
+    )
     contact_ratio: float = quantity(1.5, text="contact ratio", ge=1.0, le=2.0)
     frequency: float = quantity(0.0, unit="rad/s", text="mesh frequency", ge=0.0)
     harmonics: int = quantity(3, text="Fourier terms of the mesh stiffness", ge=1, le=100)
 
 
 class Load(Section):
-    input: Torques = quantity(text="torques on the first gear, one for each case (N·m), each above 0")
-    output: Torques = quantity(text="torques on the second gear, one for each case (N·m), each above 0")
-    noise: float = quantity(unit="N", text="amplitude of the white noise on the relative rotation", ge=0.0)
-    spectral_density: float = quantity(1.0, text="two-sided spectral density of the noise of amplitude 1", gt=0.0)
+    input: Torques = quantity(
+        text="torques on the first gear, one for each case (N·m), each above 0"
+    )
+    output: Torques = quantity(
+        text="torques on the second gear, one for each case (N·m), each above 0"
+    )
+    noise: float = quantity(
+        unit="N", text="amplitude of the white noise on the relative rotation", ge=0.0
+    )
+    spectral_density: float = quantity(
+        1.0, text="two-sided spectral density of the noise of amplitude 1", gt=0.0
+    )
 
 
 class Time(Section):
@@ -88,6 +100,7 @@ def check_fit(design: GearPairDesign) -> None:
     cases = len(design.load.input)
     if len(design.load.output) != cases:
         raise InputError(
-            f"load.output = {show(design.load.output)} is out of range: allowed {cases} torques (load.input)"
+            f"load.output = {show(design.load.output)} is out of range: allowed {cases} torques "
+            f"(load.input)"
         )
     require_steps("time.step", design.time.step, design.time.end)

@@ -15,7 +15,11 @@ from swgpar.vibration.linearisation import EQUIVALENT
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-STYLES = {"monte_carlo": ("k-", "Monte Carlo"), "energy": ("C0--", "energy-based"), "force": ("C1:", "force-based")}
+STYLES = {
+    "monte_carlo": ("k-", "Monte Carlo"),
+    "energy": ("C0--", "energy-based"),
+    "force": ("C1:", "force-based"),
+}
 
 
 def drawings(result: TrainResult) -> Drawings:
@@ -23,7 +27,10 @@ def drawings(result: TrainResult) -> Drawings:
     load, half = result.summary["design"]["load"], result.summary["half_backlash_um"]
     figures: dict[str, Callable[[], Figure]] = {}
     for case, torque in enumerate(load["input"], start=1):
-        figures |= {f"case_{case}_{value}": partial(_moments, result, case, torque, value) for value in VALUES}
+        figures |= {
+            f"case_{case}_{value}": partial(_moments, result, case, torque, value)
+            for value in VALUES
+        }
         figures[f"case_{case}_density"] = partial(_density, result, case, torque, half)
     return figures
 
@@ -35,7 +42,9 @@ def _moments(result: TrainResult, case: int, torque: float, value: str) -> Figur
     figure, panels = axes(title, "time (s)", "mean (µm)", "standard deviation (µm)")
     for axis, kind in zip(panels, ("mean", "deviation"), strict=True):
         for method, (style, name) in STYLES.items():
-            axis.plot(table["time_s"][rows], table[f"{method}_{kind}_{value}_um"][rows], style, label=name)
+            axis.plot(
+                table["time_s"][rows], table[f"{method}_{kind}_{value}_um"][rows], style, label=name
+            )
     panels[0].legend(fontsize=8)
     return figure
 
@@ -48,7 +57,12 @@ def _density(result: TrainResult, case: int, torque: float, half: float) -> Figu
         "density (1/µm)",
     )
     axis.step(
-        table["mesh_deflection_um"], table["monte_carlo"], "k", where="mid", lw=1.0, label=STYLES["monte_carlo"][1]
+        table["mesh_deflection_um"],
+        table["monte_carlo"],
+        "k",
+        where="mid",
+        lw=1.0,
+        label=STYLES["monte_carlo"][1],
     )
     for method in EQUIVALENT:
         style, name = STYLES[method]

@@ -1,13 +1,14 @@
 """Equations of motion of a gear pair with bearings along the line of action (eqs 4.1 to 4.18).
 
-Coordinates q = (y1, y2, z), z = r1 θ1 - r2 θ2; the mesh deflection is d = y1 - y2 + z, so that its force enters with
-w = (1, -1, 1). (Print has +f in all three rows of eq. 4.16 and the right signs in eqs 4.1 to 4.7.) The two rotations
-become one by
+Coordinates q = (y1, y2, z), z = r1 θ1 - r2 θ2; the mesh deflection is d = y1 - y2 + z, so that its
+force enters with w = (1, -1, 1). (Print has +f in all three rows of eq. 4.16 and the right signs in
+eqs 4.1 to 4.7.) The two rotations become one by
 
     m_c z'' + f = m_c (T1 r1 / I1 + T2 r2 / I2),    m_c = 1 / (r1² / I1 + r2² / I2).
 
-Equation (4.7) has T1 / r1 on the right, which is the same only when the torques are in the ratio of the radii: those of
-the source are so to 0.4 %. The mesh's damper acts inside the gap too, as in print.
+Equation (4.7) has T1 / r1 on the right, which is the same only when the torques are in the ratio of
+the radii: those of the source are so to 0.4 %. The mesh's damper acts inside the gap too, as in
+print.
 The noise of amplitude w0 and spectral density S0 has the intensity 2 pi S0 w0².
 """
 
@@ -68,8 +69,12 @@ def gear_pair_system(design: GearPairDesign, case: int) -> GearMeshSystem:
 
 
 def static_equilibrium(design: GearPairDesign, case: int) -> np.ndarray:
-    """Coordinates (3,) in m where the pair rests under the steady torques: simulations start there."""
-    force, stiffness = mesh_force(design, case), gear_pair_system(design, case).mesh_stiffness(0.0)[0]
+    """Coordinates (3,) in m where the pair rests under the steady torques: simulations start
+    there."""
+    force, stiffness = (
+        mesh_force(design, case),
+        gear_pair_system(design, case).mesh_stiffness(0.0)[0],
+    )
     y1, y2 = -force / design.gear_1.bearing, force / design.gear_2.bearing
     return np.array([y1, y2, 1e-6 * design.mesh.half_backlash + force / stiffness - y1 + y2])
 

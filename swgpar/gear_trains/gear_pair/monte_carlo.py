@@ -1,8 +1,9 @@
 """Simulations of the nonlinear gear pair, many at once, by the steps of `GearMeshSystem`.
 
-The implicit step needs the mesh force at its end, f1. Coordinates at the end are linear in the state, the noise and
-f1, so that d1 = d - a f1 with a > 0, and f1 = k / (1 + a k) (d beyond the gap): no iteration. What remains is one
-product of a constant matrix with (state, noise, f0, f1) of all samples per step.
+The implicit step needs the mesh force at its end, f1. Coordinates at the end are linear in the
+state, the noise and f1, so that d1 = d - a f1 with a > 0, and f1 = k / (1 + a k) (d beyond the
+gap): no iteration. What remains is one product of a constant matrix with (state, noise, f0, f1) of
+all samples per step.
 """
 
 from __future__ import annotations
@@ -28,13 +29,16 @@ def simulate(
     samples: int,
     random: np.random.Generator,
 ) -> SampleMoments:
-    """Simulate `samples` pairs from rest at `start` (3,) by `count` steps of h s; moments after every `every` steps."""
+    """Simulate `samples` pairs from rest at `start` (3,) by `count` steps of h s; moments after
+    every `every` steps."""
     n, half_backlash = system.size, float(system.half_backlash[0])
     left, right = system.newmark(system.stiffness, h)
     force_column = np.concatenate([-0.5 * h * DEFLECTION_ROW[0], np.zeros(n)])[:, None]
     steady = np.linalg.solve(left, np.concatenate([h * system.force, np.zeros(n)]))
     # columns of (q, v, N1, N2, f0, f1)
-    step = np.linalg.solve(left, np.hstack([right, system.noise_of_step(h), force_column, force_column]))
+    step = np.linalg.solve(
+        left, np.hstack([right, system.noise_of_step(h), force_column, force_column])
+    )
     deflection_of = DEFLECTION_ROW[0] @ step[:n]
     compliance = -deflection_of[-1]
 

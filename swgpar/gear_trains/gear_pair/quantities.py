@@ -1,4 +1,5 @@
-"""Quantities of a gear pair: results that can be compared with published values, and derived values of the design."""
+"""Quantities of a gear pair: results that can be compared with published values, and derived values
+of the design."""
 
 from __future__ import annotations
 
@@ -23,13 +24,19 @@ def quantities(design: GearPairDesign) -> dict[str, Quantity]:
     """Results that can be compared with published values."""
     known: dict[str, Quantity] = {}
     for case in range(1, len(design.load.input) + 1):
-        known[f"out_of_contact_{case}"] = Quantity(f"share of samples of case {case} out of contact at the end")
+        known[f"out_of_contact_{case}"] = Quantity(
+            f"share of samples of case {case} out of contact at the end"
+        )
         known[f"back_flank_{case}"] = Quantity(
             f"share of samples of case {case} in contact on the back flank at the end"
         )
-        for (kind, statistic), method, (name, meaning) in product(STATISTICS.items(), EQUIVALENT, VALUES.items()):
+        for (kind, statistic), method, (name, meaning) in product(
+            STATISTICS.items(), EQUIVALENT, VALUES.items()
+        ):
             known[f"error_{kind}_{method}_{name}_{case}"] = Quantity(
-                f"error of the {method}-based {statistic} of the {meaning} against Monte Carlo, case {case}", "%"
+                f"error of the {method}-based {statistic} of the {meaning} against Monte Carlo, "
+                f"case {case}",
+                "%",
             )
     return known
 

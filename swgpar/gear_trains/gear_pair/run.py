@@ -12,7 +12,12 @@ from mpi4py import MPI
 from scipy.stats import norm
 
 from swgpar.gear_trains.gear_pair.design import GearPairDesign
-from swgpar.gear_trains.gear_pair.model import COORDINATES, DEFLECTION_ROW, gear_pair_system, static_equilibrium
+from swgpar.gear_trains.gear_pair.model import (
+    COORDINATES,
+    DEFLECTION_ROW,
+    gear_pair_system,
+    static_equilibrium,
+)
 from swgpar.gear_trains.gear_pair.monte_carlo import BLOCK_SIZE, simulate
 from swgpar.gear_trains.gear_pair.quantities import VALUES
 from swgpar.gear_trains.result import Table, TrainResult
@@ -27,7 +32,10 @@ BINS = 120
 
 def compute(design: GearPairDesign, comm: MPI.Comm) -> TrainResult:
     """All results of a design, the same on all ranks; collective."""
-    cases, sizes = range(len(design.load.input)), block_sizes(design.monte_carlo.samples, BLOCK_SIZE)
+    cases, sizes = (
+        range(len(design.load.input)),
+        block_sizes(design.monte_carlo.samples, BLOCK_SIZE),
+    )
     logger.info(
         "gear pair: %d cases, %d steps of %.3g s, %d simulations of each; %d ranks",
         len(cases),
@@ -39,9 +47,13 @@ def compute(design: GearPairDesign, comm: MPI.Comm) -> TrainResult:
     grid = design.step, design.steps, design.every
     pairs = [(gear_pair_system(design, case), static_equilibrium(design, case)) for case in cases]
     keys = list(product(cases, EQUIVALENT))
-    tasks: list[Callable[[], Any]] = [partial(linearise, *pairs[case], *grid, criterion) for case, criterion in keys]
+    tasks: list[Callable[[], Any]] = [
+        partial(linearise, *pairs[case], *grid, criterion) for case, criterion in keys
+    ]
     tasks += [
-        partial(simulate, *pairs[case], *grid, size, random_stream(design.gear_train.seed, case, block))
+        partial(
+            simulate, *pairs[case], *grid, size, random_stream(design.gear_train.seed, case, block)
+        )
         for case in cases
         for block, size in enumerate(sizes)
     ]
@@ -59,14 +71,21 @@ def compute(design: GearPairDesign, comm: MPI.Comm) -> TrainResult:
         values[f"back_flank_{case + 1}"] = float((final < -half_backlash).mean())
         for method, moments in by_method.items():
             for kind, errors in percent_errors(moments, samples[case]).items():
-                values |= {f"error_{kind}_{method}_{v}_{case + 1}": e for v, e in zip(VALUES, errors, strict=True)}
+                values |= {
+                    f"error_{kind}_{method}_{v}_{case + 1}": e
+                    for v, e in zip(VALUES, errors, strict=True)
+                }
         tables[f"density_{case + 1}"] = _density(final, by_method)
     history: dict[str, np.ndarray] = {
         "case": np.repeat([case + 1 for case in cases], design.time.rows),
-        "time_s": np.tile(design.time.end * np.arange(1, design.time.rows + 1) / design.time.rows, len(cases)),
+        "time_s": np.tile(
+            design.time.end * np.arange(1, design.time.rows + 1) / design.time.rows, len(cases)
+        ),
     }
     for method in EQUIVALENT:
-        history |= columns([linearised[case, method] for case in cases], VALUES, "um", 1e6, f"{method}_")
+        history |= columns(
+            [linearised[case, method] for case in cases], VALUES, "um", 1e6, f"{method}_"
+        )
     history |= columns(samples, VALUES, "um", 1e6, "monte_carlo_")
     summary = {
         "sampling_error_percent": 100.0 / np.sqrt(2.0 * design.monte_carlo.samples),

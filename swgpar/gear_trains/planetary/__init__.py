@@ -1,7 +1,9 @@
-"""A planetary gear train of a wind turbine: lumped sun, planets and carrier in an elastic ring, under turbulent wind.
+"""A planetary gear train of a wind turbine: lumped sun, planets and carrier in an elastic ring,
+under turbulent wind.
 
-Source: J. Taheri Kahnamouei, Nonlinear Random Vibration of Planetary Gear Trains with Elastic Ring Gear, PhD thesis,
-Memorial University of Newfoundland, St. John's, 2021, chapter 3, cited by its equation and table numbers.
+Source: J. Taheri Kahnamouei, Nonlinear Random Vibration of Planetary Gear Trains with Elastic Ring
+Gear, PhD thesis, Memorial University of Newfoundland, St. John's, 2021, chapter 3, cited by its
+equation and table numbers.
 """
 
 from swgpar.gear_trains.planetary.design import PlanetaryDesign, check_fit

@@ -8,7 +8,14 @@ from typing import Annotated, Literal
 from annotated_types import Len
 
 from swgpar.errors import InputError
-from swgpar.gear_trains.common_sections import Damping, GearTrain, MonteCarlo, Output, Positive, TrainDesign
+from swgpar.gear_trains.common_sections import (
+    Damping,
+    GearTrain,
+    MonteCarlo,
+    Output,
+    Positive,
+    TrainDesign,
+)
 from swgpar.input.quantities import Section, quantity
 from swgpar.vibration.curved_beam import BeamSection, Ring, supports_restrain_ring
 
@@ -33,7 +40,9 @@ class Planet(Section):
     mass: float = quantity(unit="kg", text="mass of each", gt=0.0)
     inertia: float = quantity(unit="kg·m²", text="moment of inertia of each", gt=0.0)
     pitch_diameter: float = quantity(unit="mm", text="pitch diameter", gt=0.0)
-    bearing: float = quantity(unit="N/m", text="stiffness of the bearing of each on the carrier", gt=0.0)
+    bearing: float = quantity(
+        unit="N/m", text="stiffness of the bearing of each on the carrier", gt=0.0
+    )
 
 
 class Carrier(Section):
@@ -47,9 +56,13 @@ class RingGear(Section):
     teeth: int = quantity(text="number of teeth", ge=10, le=2000)
     E: float = quantity(unit="GPa", text="modulus of elasticity", gt=0.0)
     density: float = quantity(unit="kg/m³", text="density", gt=0.0)
-    root_radius: float = quantity(unit="mm", text="root radius, the inner radius of the rim", gt=0.0)
+    root_radius: float = quantity(
+        unit="mm", text="root radius, the inner radius of the rim", gt=0.0
+    )
     rim: float = quantity(unit="mm", text="rim thickness", gt=0.0)
-    rims: Thicknesses = quantity(text="rim thicknesses that are compared by linearisation (mm), each above 0")
+    rims: Thicknesses = quantity(
+        text="rim thicknesses that are compared by linearisation (mm), each above 0"
+    )
     face_width: float = quantity(unit="mm", text="face width", gt=0.0)
     elements: int = quantity(text="curved-beam elements", ge=3, le=200)
     supports: int = quantity(text="equally spaced supports; the first at angle 0", ge=1)
@@ -63,16 +76,22 @@ class Meshes(Section):
     ring_stiffness: float = quantity(unit="N/m", text="mean stiffness of ring and planet", gt=0.0)
     pressure_angle: float = quantity(20.0, unit="deg", text="pressure angle", gt=0.0, lt=45.0)
     half_backlash: float = quantity(unit="µm", text="half of the backlash of all meshes", ge=0.0)
-    variation: float = quantity(text="amplitude of the mesh stiffness over its mean", ge=0.0, le=0.4)
+    variation: float = quantity(
+        text="amplitude of the mesh stiffness over its mean", ge=0.0, le=0.4
+    )
     sun_contact_ratio: float = quantity(text="contact ratio of sun and planet", ge=1.0, le=2.0)
     ring_contact_ratio: float = quantity(text="contact ratio of ring and planet", ge=1.0, le=2.0)
-    phase: float = quantity(0.0, unit="cycles", text="phase of ring meshes behind sun meshes", ge=-1.0, le=1.0)
+    phase: float = quantity(
+        0.0, unit="cycles", text="phase of ring meshes behind sun meshes", ge=-1.0, le=1.0
+    )
     harmonics: int = quantity(3, text="Fourier terms of the mesh stiffness", ge=1, le=100)
 
 
 class Wind(Section):
     speed: float = quantity(unit="km/h", text="mean speed", gt=0.0)
-    turbulence: float = quantity(text="standard deviation over the mean of the speed", ge=0.0, le=1.0)
+    turbulence: float = quantity(
+        text="standard deviation over the mean of the speed", ge=0.0, le=1.0
+    )
     length: float = quantity(unit="m", text="length of the turbulence", gt=0.0)
     a1: float = quantity(0.4, text="constant of the turbulence filter", ge=0.0)
     a2: float = quantity(0.25, text="constant of the turbulence filter", gt=0.0)
@@ -82,7 +101,9 @@ class Wind(Section):
 
 
 class Time(Section):
-    revolutions: float = quantity(1.0, text="carrier revolutions that are computed", gt=0.0, le=1000.0)
+    revolutions: float = quantity(
+        1.0, text="carrier revolutions that are computed", gt=0.0, le=1000.0
+    )
     steps: int = quantity(text="time steps in all", ge=10, le=10_000_000)
     linearised_steps: int = quantity(text="time steps of the linearisation", ge=10, le=10_000_000)
     rows: int = quantity(200, text="moments of time that are kept", ge=1, le=100_000)
@@ -111,7 +132,11 @@ class PlanetaryDesign(TrainDesign):
     def elastic_ring(self) -> Ring:
         """The ring with its supports."""
         r = self.ring
-        radius, thickness, width = 1e-3 * (r.root_radius + 0.5 * r.rim), 1e-3 * r.rim, 1e-3 * r.face_width
+        radius, thickness, width = (
+            1e-3 * (r.root_radius + 0.5 * r.rim),
+            1e-3 * r.rim,
+            1e-3 * r.face_width,
+        )
         section = BeamSection.rectangle(1e9 * r.E, r.density, radius, thickness, width)
         return Ring(section, r.elements, (r.supports, (r.radial, r.tangential, r.torsional)))
 
@@ -121,31 +146,39 @@ def check_fit(design: PlanetaryDesign) -> None:
     ring, time, sun = design.ring, design.time, design.sun
     if (ring.teeth - sun.teeth) % 2 or ring.teeth <= sun.teeth:
         raise InputError(
-            f"ring.teeth = {ring.teeth} is out of range: allowed {sun.teeth} (sun.teeth) and twice a planet's teeth"
+            f"ring.teeth = {ring.teeth} is out of range: allowed {sun.teeth} (sun.teeth) and twice "
+            f"a planet's teeth"
         )
     if (ring.teeth + sun.teeth) % design.planet.count:
         raise InputError(
-            f"planet.count = {design.planet.count} is out of range: allowed divisors of {ring.teeth + sun.teeth} "
+            f"planet.count = {design.planet.count} is out of range: allowed divisors of "
+            f"{ring.teeth + sun.teeth} "
             "(sun.teeth + ring.teeth), or equally spaced planets do not fit in"
         )
     fitting = sun.pitch_diameter * (ring.teeth - sun.teeth) / (2.0 * sun.teeth)
     if abs(design.planet.pitch_diameter / fitting - 1.0) > 1e-3:
         raise InputError(
-            f"planet.pitch_diameter = {design.planet.pitch_diameter:g} is out of range: allowed {fitting:g} mm within "
+            f"planet.pitch_diameter = {design.planet.pitch_diameter:g} is out of range: allowed "
+            f"{fitting:g} mm within "
             "0.1 % (module of the sun, and teeth between sun and ring)"
         )
     if ring.elements % ring.supports:
         raise InputError(
-            f"ring.supports = {ring.supports} is out of range: allowed divisors of {ring.elements} (ring.elements)"
+            f"ring.supports = {ring.supports} is out of range: allowed divisors of {ring.elements} "
+            f"(ring.elements)"
         )
     radius = 1e-3 * (ring.root_radius + 0.5 * ring.rim)
-    if not supports_restrain_ring(ring.supports, ring.radial, ring.tangential, ring.torsional, radius):
+    if not supports_restrain_ring(
+        ring.supports, ring.radial, ring.tangential, ring.torsional, radius
+    ):
         raise InputError(
-            f"ring.supports = {ring.supports} is out of range: allowed supports whose stiffnesses hold the ring "
+            f"ring.supports = {ring.supports} is out of range: allowed supports whose stiffnesses "
+            f"hold the ring "
             "against rigid translation and rotation"
         )
     for name in ("steps", "linearised_steps"):
         if getattr(time, name) % time.rows:
             raise InputError(
-                f"time.{name} = {getattr(time, name)} is out of range: allowed multiples of {time.rows} (time.rows)"
+                f"time.{name} = {getattr(time, name)} is out of range: allowed multiples of "
+                f"{time.rows} (time.rows)"
             )

@@ -1,8 +1,10 @@
-"""Statistical linearisation of the planetary gear train: mean and covariance over time (sections 3.4 and 3.5).
+"""Statistical linearisation of the planetary gear train: mean and covariance over time (sections
+3.4 and 3.5).
 
-Force-based, as in `swgpar/vibration/linearisation.py`, with the steps of `TimeStepper`. A step of the covariance S is
-the step of the linear train applied to the columns of S, and then to the columns of the transposed result. Mean,
-covariance and equivalent stiffnesses of a step are solved together.
+Force-based, as in `swgpar/vibration/linearisation.py`, with the steps of `TimeStepper`. A step of
+the covariance S is the step of the linear train applied to the columns of S, and then to the
+columns of the transposed result. Mean, covariance and equivalent stiffnesses of a step are solved
+together.
 """
 
 from __future__ import annotations
@@ -19,7 +21,8 @@ from swgpar.vibration.backlash import mean_force_and_stiffness, mean_stiffness
 from swgpar.vibration.moments import Moments
 
 TOLERANCE, MAX_ITERATIONS = 1e-6, 50
-"""Relative change of mean forces and equivalent stiffnesses in the last iteration of a step; limit of iterations."""
+"""Relative change of mean forces and equivalent stiffnesses in the last iteration of a step; limit
+of iterations."""
 
 MEAN_TOLERANCE = 1e-9
 """Relative change in the last Newton iteration of the mean deflections."""
@@ -34,9 +37,11 @@ class TrainMoments(Moments):
 
     Attributes
     ----------
-    force, square : (steps, 2) N and N², mean and mean square of the linearised forces of both meshes of planet 1, after
+    force, square : (steps, 2) N and N², mean and mean square of the linearised forces of both
+    meshes of planet 1, after
         every step: the rows may not resolve the tooth cycle
-    smallest_eigenvalue, asymmetry : worst values of `_covariance_errors` over the checks of the covariance of all
+    smallest_eigenvalue, asymmetry : worst values of `_covariance_errors` over the checks of the
+    covariance of all
         2 n + 2 unknowns, before it is made symmetric
     """
 
@@ -47,26 +52,44 @@ class TrainMoments(Moments):
 
 
 class _LinearTrain:
-    """Steps of the linear train with its wind, applied to columns (q, y, c, c') of shape (2 n + 2, any)."""
+    """Steps of the linear train with its wind, applied to columns (q, y, c, c') of shape (2 n + 2,
+    any)."""
 
     def __init__(self, stepper: TimeStepper, wind: WindLoad) -> None:
         self.stepper, self.wind, self.n = stepper, wind, stepper.train.size
 
-    def advance(self, step: int, columns: np.ndarray, before: np.ndarray, after: MeshLaw) -> np.ndarray:
-        """Columns after a step with mesh stiffnesses `before` (m,) at its start and a mesh law at its end."""
+    def advance(
+        self, step: int, columns: np.ndarray, before: np.ndarray, after: MeshLaw
+    ) -> np.ndarray:
+        """Columns after a step with mesh stiffnesses `before` (m,) at its start and a mesh law at
+        its end."""
         n, stepper, wind = self.n, self.stepper, self.wind
         q, y, turbulence = columns[:n], columns[n : 2 * n], columns[2 * n :]
-        mesh_term = stepper.mesh_term(step - 1, q, y, before[:, None] * (stepper.deflection_rows[step - 1] @ q))
-        states, new_turbulence = ModalStates(q.copy(), y.copy(), mesh_term), wind.transition @ turbulence
-        return self._end(step, states, wind.turbulent @ (turbulence + new_turbulence), new_turbulence, after)
+        mesh_term = stepper.mesh_term(
+            step - 1, q, y, before[:, None] * (stepper.deflection_rows[step - 1] @ q)
+        )
+        states, new_turbulence = (
+            ModalStates(q.copy(), y.copy(), mesh_term),
+            wind.transition @ turbulence,
+        )
+        return self._end(
+            step, states, wind.turbulent @ (turbulence + new_turbulence), new_turbulence, after
+        )
 
     def noise(self, step: int, after: MeshLaw) -> np.ndarray:
         """Contribution of the noise of a step, (2 n + 2, 2), per standard normal number."""
         rest = ModalStates(*np.zeros((3, self.n, 2)))
-        return self._end(step, rest, self.wind.turbulent @ self.wind.noise_root, self.wind.noise_root, after)
+        return self._end(
+            step, rest, self.wind.turbulent @ self.wind.noise_root, self.wind.noise_root, after
+        )
 
     def _end(
-        self, step: int, states: ModalStates, torques: np.ndarray, turbulence: np.ndarray, after: MeshLaw
+        self,
+        step: int,
+        states: ModalStates,
+        torques: np.ndarray,
+        turbulence: np.ndarray,
+        after: MeshLaw,
     ) -> np.ndarray:
         self.stepper.linear(step, states, torques, after)
         return np.vstack([states.q, states.y, turbulence])
@@ -79,7 +102,8 @@ class _Linearisation:
     ----------
     states : modal displacements of the mean, one column;  covariance : (2 n + 2, 2 n + 2)
     unsymmetrised : the covariance of the last step before it is made symmetric
-    mean, deviation : (m,) m, of the mesh deflections;  forces, equivalent : (m,) N and N/m, mean forces and stiffnesses
+    mean, deviation : (m,) m, of the mesh deflections;  forces, equivalent : (m,) N and N/m, mean
+    forces and stiffnesses
     """
 
     def __init__(self, stepper: TimeStepper, wind: WindLoad) -> None:
@@ -92,40 +116,68 @@ class _Linearisation:
         self.mean = stepper.deflection_rows[0] @ self.states.q[:, 0]
         self.deviation = np.zeros(len(stepper.stiffness[0]))
         self.forces = np.zeros_like(self.deviation)
-        self.equivalent = mean_stiffness(stepper.stiffness[0], self.mean, self.deviation, train.half_backlash)
+        self.equivalent = mean_stiffness(
+            stepper.stiffness[0], self.mean, self.deviation, train.half_backlash
+        )
 
     def advance(self, step: int) -> None:
         """Go on to the end of step number `step`."""
         stepper, n = self.stepper, self.stepper.train.size
-        k, rows, half_backlash = stepper.stiffness[step], stepper.deflection_rows[step], stepper.train.half_backlash
-        free, before = stepper.free_deflections(step, self.states, self.torque)[:, 0], self.equivalent
+        k, rows, half_backlash = (
+            stepper.stiffness[step],
+            stepper.deflection_rows[step],
+            stepper.train.half_backlash,
+        )
+        free, before = (
+            stepper.free_deflections(step, self.states, self.torque)[:, 0],
+            self.equivalent,
+        )
         for _ in range(MAX_ITERATIONS):
-            self.mean, used_forces, used_k = _mean_deflections(stepper, step, free, self.mean, self.deviation)
+            self.mean, used_forces, used_k = _mean_deflections(
+                stepper, step, free, self.mean, self.deviation
+            )
             law = stepper.law(step, used_k)
             half_step = self.linear.advance(step, self.covariance, before, law)
             added = self.linear.noise(step, law)
-            new = self.linear.advance(step, np.ascontiguousarray(half_step.T), before, law) + added @ added.T
+            new = (
+                self.linear.advance(step, np.ascontiguousarray(half_step.T), before, law)
+                + added @ added.T
+            )
             self.deviation = np.sqrt(np.maximum(((rows @ new[:n, :n]) * rows).sum(axis=1), 0.0))
-            self.forces, self.equivalent = mean_force_and_stiffness(k, self.mean, self.deviation, half_backlash)
-            change = np.abs(self.forces - used_forces).max() / (k * half_backlash + np.abs(self.forces)).max()
+            self.forces, self.equivalent = mean_force_and_stiffness(
+                k, self.mean, self.deviation, half_backlash
+            )
+            change = (
+                np.abs(self.forces - used_forces).max()
+                / (k * half_backlash + np.abs(self.forces)).max()
+            )
             if max(np.abs((self.equivalent - used_k) / k).max(), change) < TOLERANCE:
                 break
         else:
             raise ConvergenceError(f"the linearisation did not converge at {step * stepper.h:g} s")
-        stepper.linear(step, self.states, self.torque, stepper.law(step, np.zeros_like(self.forces), self.forces))
+        stepper.linear(
+            step,
+            self.states,
+            self.torque,
+            stepper.law(step, np.zeros_like(self.forces), self.forces),
+        )
         self.unsymmetrised, self.covariance = new, 0.5 * (new + new.T)
 
     def monitored(self, step: int) -> tuple[np.ndarray, np.ndarray]:
-        """Mean and standard deviation (monitored,) of the monitored quantities at the end of a step, m."""
+        """Mean and standard deviation (monitored,) of the monitored quantities at the end of a
+        step, m."""
         train = self.stepper.train
         rows, n = monitored_rows(train, self.stepper, step), train.size
         variance = np.einsum("pi,ij,pj->p", rows, self.covariance[:n, :n], rows)
         return rows @ self.states.q[:, 0], np.sqrt(np.maximum(variance, 0.0))
 
     def mesh_forces(self) -> tuple[np.ndarray, np.ndarray]:
-        """Mean (N) and mean square (N²) of the linearised forces of both meshes of planet 1, (2,) each."""
+        """Mean (N) and mean square (N²) of the linearised forces of both meshes of planet 1, (2,)
+        each."""
         meshes = [0, self.stepper.train.design.planet.count]
-        return self.forces[meshes], (self.forces**2 + (self.equivalent * self.deviation) ** 2)[meshes]
+        return self.forces[meshes], (self.forces**2 + (self.equivalent * self.deviation) ** 2)[
+            meshes
+        ]
 
 
 def linearise(stepper: TimeStepper, wind: WindLoad, every: int) -> TrainMoments:
@@ -136,7 +188,10 @@ def linearise(stepper: TimeStepper, wind: WindLoad, every: int) -> TrainMoments:
         state.advance(step)
         if step % (every * max(1, stepper.count // every // CHECKS)) == 0:
             lowest, difference = _covariance_errors(state.unsymmetrised)
-            smallest_eigenvalue, asymmetry = min(smallest_eigenvalue, lowest), max(asymmetry, difference)
+            smallest_eigenvalue, asymmetry = (
+                min(smallest_eigenvalue, lowest),
+                max(asymmetry, difference),
+            )
         if step % every == 0:
             rows.append(state.monitored(step))
         forces.append(state.mesh_forces())
@@ -145,15 +200,19 @@ def linearise(stepper: TimeStepper, wind: WindLoad, every: int) -> TrainMoments:
 
 
 def _covariance_errors(covariance: np.ndarray) -> tuple[float, float]:
-    """Smallest eigenvalue of a covariance over the largest one, and its largest difference from its transpose.
+    """Smallest eigenvalue of a covariance over the largest one, and its largest difference from its
+    transpose.
 
-    Both show round-off. The covariance is that of displacements q, their y, and the wind's c and c', (2 n + 2) in all;
-    each is divided by the largest standard deviation of its kind.
+    Both show round-off. The covariance is that of displacements q, their y, and the wind's c and
+    c', (2 n + 2) in all; each is divided by the largest standard deviation of its kind.
     """
     n, variances = len(covariance) // 2 - 1, np.diag(covariance)
     kinds = [slice(0, n), slice(n, 2 * n), slice(2 * n, 2 * n + 1), slice(2 * n + 1, 2 * n + 2)]
     size = (
-        np.concatenate([np.full(len(part), max(part.max(), 1e-300)) for part in (variances[k] for k in kinds)]) ** 0.5
+        np.concatenate(
+            [np.full(len(part), max(part.max(), 1e-300)) for part in (variances[k] for k in kinds)]
+        )
+        ** 0.5
     )
     scaled = covariance / size / size[:, None]
     eigenvalues = np.linalg.eigvalsh(0.5 * (scaled + scaled.T))
@@ -161,14 +220,21 @@ def _covariance_errors(covariance: np.ndarray) -> tuple[float, float]:
 
 
 def _mean_deflections(
-    stepper: TimeStepper, step: int, right: np.ndarray, deflections: np.ndarray, deviation: np.ndarray
+    stepper: TimeStepper,
+    step: int,
+    right: np.ndarray,
+    deflections: np.ndarray,
+    deviation: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Mean mesh deflections (m,) at the end of a step by Newton's method, with mean forces and stiffnesses there."""
+    """Mean mesh deflections (m,) at the end of a step by Newton's method, with mean forces and
+    stiffnesses there."""
     k, half_backlash = stepper.stiffness[step], stepper.train.half_backlash
     compliance, damped = stepper.compliance[step], stepper.damped[step]
     for _ in range(MAX_ITERATIONS):
         forces, slope = mean_force_and_stiffness(k, deflections, deviation, half_backlash)
-        change = np.linalg.solve(damped + compliance * slope, damped @ deflections + compliance @ forces - right)
+        change = np.linalg.solve(
+            damped + compliance * slope, damped @ deflections + compliance @ forces - right
+        )
         if np.abs(change).max() <= MEAN_TOLERANCE * np.abs(deflections).max():
             return deflections, forces, slope
         deflections = deflections - change

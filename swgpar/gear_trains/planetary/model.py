@@ -1,27 +1,31 @@
 """Equations of motion of the planetary gear train, from its energy.
 
-Coordinates: sun (x, y, u), each planet (ξ, η, u), carrier (x, y, u), then the nodes of the ring (outward, tangential,
-rotation). Sun, carrier and planets move in the frame that rotates with the carrier; gyroscopic terms are left out, as
-in print. u is a rotation times the base radius (sun, planet) or times the radius of the planet centres (carrier). With
-the angle ψ of a planet and the pressure angle a, the deflections of its meshes are
+Coordinates: sun (x, y, u), each planet (ξ, η, u), carrier (x, y, u), then the nodes of the ring
+(outward, tangential, rotation). Sun, carrier and planets move in the frame that rotates with the
+carrier; gyroscopic terms are left out, as in print. u is a rotation times the base radius (sun,
+planet) or times the radius of the planet centres (carrier). With the angle ψ of a planet and the
+pressure angle a, the deflections of its meshes are
 
-    sun   d = -x sin(ψ + a) + y cos(ψ + a) + u_s + ξ sin a - η cos a + u_p                              (eq. 3.2)
-    ring  d = -ξ sin a - η cos a - u_p + v sin a + w cos a,    v outward, w tangential displacement of the ring
+    sun   d = -x sin(ψ + a) + y cos(ψ + a) + u_s + ξ sin a - η cos a + u_p
+    (eq. 3.2) ring  d = -ξ sin a - η cos a - u_p + v sin a + w cos a,    v outward, w tangential
+    displacement of the ring
 
-and those of its bearing ξ - x_c cos ψ - y_c sin ψ and η + x_c sin ψ - y_c cos ψ - u_c. Deviations from print, which is
-no derivative of an energy in these equations: eq. 3.16 exchanges sine and cosine of v and w against eqs 3.21 and 3.82;
-eqs 3.9 to 3.11 and 3.79, 3.80 have an unsymmetric carrier row; eqs 3.25 and 3.26 support the planet by the ground as
-well as by the carrier; eq. 3.28 has the wind's speed squared in its linear part. In print a has the other sign (eqs
-3.25, 3.26): forces that separate the gears would drive the planet forward, and under the wind's torque flanks would
-pull. The back flanks, which only a reversed load meets, have the same line of action, and the mesh dampers act inside
-the backlash too, both as in print.
+and those of its bearing ξ - x_c cos ψ - y_c sin ψ and η + x_c sin ψ - y_c cos ψ - u_c. Deviations
+from print, which is no derivative of an energy in these equations: eq. 3.16 exchanges sine and
+cosine of v and w against eqs 3.21 and 3.82; eqs 3.9 to 3.11 and 3.79, 3.80 have an unsymmetric
+carrier row; eqs 3.25 and 3.26 support the planet by the ground as well as by the carrier; eq. 3.28
+has the wind's speed squared in its linear part. In print a has the other sign (eqs 3.25, 3.26):
+forces that separate the gears would drive the planet forward, and under the wind's torque flanks
+would pull. The back flanks, which only a reversed load meets, have the same line of action, and the
+mesh dampers act inside the backlash too, both as in print.
 
-In the tooth cycle a planet at the angle ψ is z_r ψ ahead at the ring, and z_s ψ behind at the sun, whose teeth pass it
-in the opposite direction. As z_s + z_r is a multiple of the number of planets, both are one phase, z_s ψ. Sun and ring
-meshes of a planet are `mesh.phase` apart.
+In the tooth cycle a planet at the angle ψ is z_r ψ ahead at the ring, and z_s ψ behind at the sun,
+whose teeth pass it in the opposite direction. As z_s + z_r is a multiple of the number of planets,
+both are one phase, z_s ψ. Sun and ring meshes of a planet are `mesh.phase` apart.
 
-The ring meshes move along the ring. All time dependence is in their deflection rows and in the mesh stiffnesses. The
-rest is constant, and its modes separate mass, stiffness and damping. `PlanetaryModel` holds everything in these modes.
+The ring meshes move along the ring. All time dependence is in their deflection rows and in the mesh
+stiffnesses. The rest is constant, and its modes separate mass, stiffness and damping.
+`PlanetaryModel` holds everything in these modes.
 """
 
 from __future__ import annotations
@@ -81,7 +85,8 @@ class PlanetaryModel:
             np.repeat([m.sun_contact_ratio, m.ring_contact_ratio], count),
             design.carrier.speed * design.ring.teeth,
             m.harmonics,
-            2.0 * np.pi * np.repeat([0.0, m.phase], count) + np.tile(design.sun.teeth * self.angles, 2),
+            2.0 * np.pi * np.repeat([0.0, m.phase], count)
+            + np.tile(design.sun.teeth * self.angles, 2),
         )
         self.mesh_damping = design.damping.stiffness * mean
         self.half_backlash = 1e-6 * m.half_backlash
@@ -102,7 +107,9 @@ class PlanetaryModel:
         mass, stiffness = np.zeros((n, n)), np.zeros((n, n))
         sun_radius, planet_radius, centres = radii(design)
         lumped = [(SUN, design.sun, sun_radius), (carrier_index(design), design.carrier, centres)]
-        lumped += [(planet_index(k), design.planet, planet_radius) for k in range(design.planet.count)]
+        lumped += [
+            (planet_index(k), design.planet, planet_radius) for k in range(design.planet.count)
+        ]
         for first_index, section, radius in lumped:
             at = first_index + np.arange(3)
             mass[at, at] = section.mass, section.mass, section.inertia / radius**2
@@ -114,7 +121,12 @@ class PlanetaryModel:
             stretches = np.zeros((2, n))
             c = carrier_index(design)
             stretches[0, [planet_index(k), c, c + 1]] = 1.0, -np.cos(psi), -np.sin(psi)
-            stretches[1, [planet_index(k) + 1, c, c + 1, c + 2]] = 1.0, np.sin(psi), -np.cos(psi), -1.0
+            stretches[1, [planet_index(k) + 1, c, c + 1, c + 2]] = (
+                1.0,
+                np.sin(psi),
+                -np.cos(psi),
+                -1.0,
+            )
             stiffness += design.planet.bearing * stretches.T @ stretches
         mass[first:, first:], stiffness[first:, first:] = self.ring.mass, self.ring.stiffness
         return mass, stiffness
@@ -131,7 +143,11 @@ class PlanetaryModel:
         for k, psi in enumerate(self.angles):
             deflection_rows[k, SUN : SUN + 3] = -np.sin(psi + a), np.cos(psi + a), 1.0
             deflection_rows[k, planet_index(k) : planet_index(k) + 3] = np.sin(a), -np.cos(a), 1.0
-            deflection_rows[count + k, planet_index(k) : planet_index(k) + 3] = -np.sin(a), -np.cos(a), -1.0
+            deflection_rows[count + k, planet_index(k) : planet_index(k) + 3] = (
+                -np.sin(a),
+                -np.cos(a),
+                -1.0,
+            )
         return deflection_rows
 
     def deflection_rows(self, t: float) -> np.ndarray:

@@ -1,10 +1,16 @@
-"""Monitored quantities of a planetary gear train: coordinates of its parts, and the deflections of two meshes."""
+"""Monitored quantities of a planetary gear train: coordinates of its parts, and the deflections of
+two meshes."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from swgpar.gear_trains.planetary.model import PlanetaryModel, carrier_index, planet_index, ring_index
+from swgpar.gear_trains.planetary.model import (
+    PlanetaryModel,
+    carrier_index,
+    planet_index,
+    ring_index,
+)
 from swgpar.gear_trains.planetary.time_stepping import TimeStepper
 
 MONITORED = {
@@ -28,6 +34,10 @@ def monitored_rows(train: PlanetaryModel, steps: TimeStepper, step: int) -> np.n
     """(monitored, n): monitored quantities per unit of each mode, at the end of a step."""
     design, first = train.design, ring_index(train.design)
     fixed = [2, carrier_index(design) + 2, planet_index(0) + 1, first + 3 * RING_NODE + 1]
-    contact = train.ring.interpolation(design.carrier.speed * step * steps.h)[0] @ train.shapes[first:]
+    contact = (
+        train.ring.interpolation(design.carrier.speed * step * steps.h)[0] @ train.shapes[first:]
+    )
     deflection_rows = steps.deflection_rows[step]
-    return np.vstack([train.shapes[fixed], contact, deflection_rows[0], deflection_rows[design.planet.count]])
+    return np.vstack(
+        [train.shapes[fixed], contact, deflection_rows[0], deflection_rows[design.planet.count]]
+    )

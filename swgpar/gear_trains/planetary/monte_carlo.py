@@ -17,12 +17,16 @@ BLOCK_SIZE = 256
 def simulate(
     steps: TimeStepper, wind: WindLoad, every: int, samples: int, random: np.random.Generator
 ) -> tuple[SampleMoments, int]:
-    """Move `samples` trains on from rest under the steady wind, watching them at every so many steps.
+    """Move `samples` trains on from rest under the steady wind, watching them at every so many
+    steps.
 
-    Returns their moments, and in how many steps of how many samples some mesh did not touch on its loaded flank.
+    Returns their moments, and in how many steps of how many samples some mesh did not touch on its
+    loaded flank.
     """
     start, flanks = steps.static_equilibrium(wind.steady)
-    states = ModalStates(*(np.repeat(part, samples, axis=1) for part in (start.q, start.y, start.mesh_term)))
+    states = ModalStates(
+        *(np.repeat(part, samples, axis=1) for part in (start.q, start.y, start.mesh_term))
+    )
     turbulence, torque = np.zeros((2, samples)), np.full(samples, wind.steady)
     separated, torques = 0, np.empty((every, samples))
 
@@ -30,7 +34,10 @@ def simulate(
         nonlocal turbulence, torque, separated
         for row in range(steps.count // every):
             for k in range(every):
-                turbulence = wind.transition @ turbulence + wind.noise_root @ random.standard_normal((2, samples))
+                turbulence = (
+                    wind.transition @ turbulence
+                    + wind.noise_root @ random.standard_normal((2, samples))
+                )
                 before, torque = torque, wind.steady + wind.turbulent @ turbulence
                 np.add(before, torque, out=torques[k])
             separated += steps.simulate(row * every, states, torques, flanks)

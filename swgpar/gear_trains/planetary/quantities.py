@@ -1,4 +1,5 @@
-"""Quantities of a planetary train: results that can be compared with published values, derived values of the design."""
+"""Quantities of a planetary train: results that can be compared with published values, derived
+values of the design."""
 
 from __future__ import annotations
 
@@ -20,19 +21,25 @@ def quantities(design: PlanetaryDesign) -> dict[str, Quantity]:
     """Results that can be compared with published values."""
     known = {
         "dominant_cycles_ring_contact": Quantity(
-            "largest slow harmonic, in cycles per carrier revolution, of the outward ring displacement at planet 1"
+            "largest slow harmonic, in cycles per carrier revolution, of the outward ring "
+            "displacement at planet 1"
         ),
         "dominant_cycles_ring_node": Quantity(
-            "largest slow harmonic, in cycles per carrier revolution, of the tangential displacement of a ring node"
+            "largest slow harmonic, in cycles per carrier revolution, of the tangential "
+            "displacement of a ring node"
         ),
-        "out_of_contact": Quantity("share of steps and samples in which a mesh is not in contact on its loaded flank"),
+        "out_of_contact": Quantity(
+            "share of steps and samples in which a mesh is not in contact on its loaded flank"
+        ),
     }
     for (kind, statistic), (name, meaning) in product(STATISTICS.items(), MONITORED.items()):
         known[f"{kind}_{name}"] = Quantity(f"largest {statistic} of the {meaning}", "m")
         known[f"error_{kind}_{name}"] = Quantity(
             f"error of the linearised {statistic} of the {meaning} against Monte Carlo", "%"
         )
-    for rim, (kind, statistic), (name, meaning) in product(design.ring.rims, STATISTICS.items(), MONITORED.items()):
+    for rim, (kind, statistic), (name, meaning) in product(
+        design.ring.rims, STATISTICS.items(), MONITORED.items()
+    ):
         known[f"{kind}_{name}_{number_label(rim)}"] = Quantity(
             f"largest {statistic} of the {meaning} with a rim of {rim:g} mm", "m"
         )
@@ -61,6 +68,8 @@ def derived(design: PlanetaryDesign) -> dict[str, float]:
         "steady torque of the wind (N·m)": wind.steady,
         "flank that carries the load (1 or -1)": float(flanks[0]),
         "largest mesh force at rest (N)": float(np.abs(forces).max()),
-        "lowest natural frequency above 1 Hz, all meshes in contact (Hz)": float(frequencies[frequencies > 1.0][0]),
+        "lowest natural frequency above 1 Hz, all meshes in contact (Hz)": float(
+            frequencies[frequencies > 1.0][0]
+        ),
         "highest natural frequency (Hz)": float(frequencies[-1]),
     }

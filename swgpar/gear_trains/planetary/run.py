@@ -25,17 +25,23 @@ from swgpar.vibration.sampling import block_sizes, random_stream, run_tasks
 
 
 class _Case:
-    """A gear train with its time steps. They are built when needed: their matrices take about ten megabytes."""
+    """A gear train with its time steps. They are built when needed: their matrices take about ten
+    megabytes."""
 
     def __init__(self, design: PlanetaryDesign, rim: float, count: int) -> None:
-        self.design = design.model_copy(update={"ring": design.ring.model_copy(update={"rim": rim})})
+        self.design = design.model_copy(
+            update={"ring": design.ring.model_copy(update={"rim": rim})}
+        )
         self.count = count
         self._built: tuple[TimeStepper, WindLoad] | None = None
 
     def build(self) -> tuple[TimeStepper, WindLoad]:
         if self._built is None:
             h = self.design.end / self.count
-            self._built = TimeStepper(PlanetaryModel(self.design), h, self.count), WindLoad.of(self.design, h)
+            self._built = (
+                TimeStepper(PlanetaryModel(self.design), h, self.count),
+                WindLoad.of(self.design, h),
+            )
         return self._built
 
 
@@ -52,7 +58,8 @@ def compute(design: PlanetaryDesign, comm: MPI.Comm) -> TrainResult:
     """All results of a design, the same on all ranks; collective."""
     rims = list(dict.fromkeys([design.ring.rim, *design.ring.rims]))
     logger.info(
-        "planetary gear train: %d coordinates, %d steps of %.3g s, %d simulations, %d rims; %d ranks",
+        "planetary gear train: %d coordinates, %d steps of %.3g s, %d simulations, %d rims; %d "
+        "ranks",
         PlanetaryModel(design).size,
         design.time.steps,
         design.end / design.time.steps,
@@ -82,18 +89,29 @@ def compute(design: PlanetaryDesign, comm: MPI.Comm) -> TrainResult:
 
 
 def _values(
-    design: PlanetaryDesign, moments: dict[float, TrainMoments], samples: SampleMoments, separated: int
+    design: PlanetaryDesign,
+    moments: dict[float, TrainMoments],
+    samples: SampleMoments,
+    separated: int,
 ) -> dict[str, float | list[float]]:
-    """The quantities. separated : number of steps of samples in which some mesh was not on its loaded flank"""
+    """The quantities. separated : number of steps of samples in which some mesh was not on its
+    loaded flank"""
     own, revolutions = moments[design.ring.rim], design.time.revolutions
     values: dict[str, float | list[float]] = {
-        f"dominant_cycles_{name}": dominant_cycles(own.mean[:, MONITORED_NAMES.index(column)], revolutions)
-        for name, column in (("ring_contact", "ring_contact_radial"), ("ring_node", "ring_node_tangential"))
+        f"dominant_cycles_{name}": dominant_cycles(
+            own.mean[:, MONITORED_NAMES.index(column)], revolutions
+        )
+        for name, column in (
+            ("ring_contact", "ring_contact_radial"),
+            ("ring_node", "ring_node_tangential"),
+        )
     }
     values["out_of_contact"] = separated / (design.time.steps * design.monte_carlo.samples)
     values |= largest(own, MONITORED)
     for kind, errors in percent_errors(own, samples).items():
-        values |= {f"error_{kind}_{name}": error for name, error in zip(MONITORED, errors, strict=True)}
+        values |= {
+            f"error_{kind}_{name}": error for name, error in zip(MONITORED, errors, strict=True)
+        }
     for rim in design.ring.rims:
         values |= largest(moments[rim], [f"{name}_{number_label(rim)}" for name in MONITORED])
     return values
@@ -106,7 +124,11 @@ def _times(design: PlanetaryDesign) -> np.ndarray:
 def _history(design: PlanetaryDesign, moments: TrainMoments, samples: SampleMoments) -> Table:
     """Means and standard deviations over time, µm."""
     linearised = columns([moments], MONITORED, "um", 1e6, "linearised_")
-    return {"time_s": _times(design), **linearised, **columns([samples], MONITORED, "um", 1e6, "monte_carlo_")}
+    return {
+        "time_s": _times(design),
+        **linearised,
+        **columns([samples], MONITORED, "um", 1e6, "monte_carlo_"),
+    }
 
 
 def _forces(design: PlanetaryDesign, moments: TrainMoments) -> Table:
@@ -114,7 +136,10 @@ def _forces(design: PlanetaryDesign, moments: TrainMoments) -> Table:
     steps = len(moments.force)
     out = {"time_s": design.end * np.arange(1, steps + 1) / steps}
     for k, name in enumerate(("sun", "ring")):
-        out |= {f"mean_{name}_force_N": moments.force[:, k], f"mean_square_{name}_force_N2": moments.square[:, k]}
+        out |= {
+            f"mean_{name}_force_N": moments.force[:, k],
+            f"mean_square_{name}_force_N2": moments.square[:, k],
+        }
     return out
 
 

@@ -1,16 +1,20 @@
-"""Implicit time steps of the planetary gear train in modal coordinates, for one state or many at once.
+"""Implicit time steps of the planetary gear train in modal coordinates, for one state or many at
+once.
 
-The trapezoidal rule, as in `swgpar/vibration/gear_mesh_system.py`. Each mode q has its own scalar equation. The m
-meshes couple the modes by their elastic forces f and damping forces at the end of the step:
+The trapezoidal rule, as in `swgpar/vibration/gear_mesh_system.py`. Each mode q has its own scalar
+equation. The m meshes couple the modes by their elastic forces f and damping forces at the end of
+the step:
 
     q1 = D⁻¹ (r - h/2 Wᵀ g),    g = f(d1) + c d1',    D = 2/h + damping + h/2 stiffness,
 
-W (m, n) are the mesh deflections per mode at that time. Multiplied by W this is a system for the m mesh deflections d1:
+W (m, n) are the mesh deflections per mode at that time. Multiplied by W this is a system for the m
+mesh deflections d1:
 
     (1 + 2/h G c) d1 + G f(d1) = d,    G = h/2 W D⁻¹ Wᵀ.
 
-Its matrices are the same for all states. A step needs a few products with W and sums over the modes: they are compiled
-(kernel/planetary_steps.hpp). Instead of velocities v the states hold y = 2/h q + v: then y1 = 4/h q1 - y0.
+Its matrices are the same for all states. A step needs a few products with W and sums over the
+modes: they are compiled (kernel/planetary_steps.hpp). Instead of velocities v the states hold y =
+2/h q + v: then y1 = 4/h q1 - y0.
 """
 
 from __future__ import annotations
@@ -25,13 +29,14 @@ from swgpar.gear_trains.planetary.model import PlanetaryModel
 from swgpar.vibration.backlash import force
 
 MeshLaw = tuple[np.ndarray, np.ndarray, np.ndarray]
-"""Linear law of the meshes at the end of a step: solution matrix (1, m, m) of the deflections, stiffnesses (1, m) in
-N/m and constant forces (1, m) in N."""
+"""Linear law of the meshes at the end of a step: solution matrix (1, m, m) of the deflections,
+stiffnesses (1, m) in N/m and constant forces (1, m) in N."""
 
 
 @dataclass
 class ModalStates:
-    """q : (n, states) modal displacements;  y : 2/h q + velocities;  mesh_term : h/2 D⁻¹ Wᵀ g at the same time"""
+    """q : (n, states) modal displacements;  y : 2/h q + velocities;  mesh_term : h/2 D⁻¹ Wᵀ g at
+    the same time"""
 
     q: np.ndarray
     y: np.ndarray
@@ -65,9 +70,15 @@ class TimeStepper:
         self.from_y = 2.0 * inverse
         self.from_torque = 0.5 * h * inverse * train.torque_vector
         self.from_force = 0.5 * h * inverse
-        self.compliance = (self.deflection_rows * self.from_force) @ self.deflection_rows.transpose(0, 2, 1)
-        self.damped = np.eye(self.deflection_rows.shape[1]) + 2.0 / h * self.compliance * train.mesh_damping
-        self.contact_inverse = np.linalg.inv(self.damped + self.compliance * self.stiffness[:, None, :])
+        self.compliance = (self.deflection_rows * self.from_force) @ self.deflection_rows.transpose(
+            0, 2, 1
+        )
+        self.damped = (
+            np.eye(self.deflection_rows.shape[1]) + 2.0 / h * self.compliance * train.mesh_damping
+        )
+        self.contact_inverse = np.linalg.inv(
+            self.damped + self.compliance * self.stiffness[:, None, :]
+        )
         self.kernel = PlanetaryStepKernel(
             h,
             train.half_backlash,
@@ -80,20 +91,28 @@ class TimeStepper:
             train.mesh_damping,
         )
 
-    def simulate(self, first: int, states: ModalStates, torques: np.ndarray, flanks: np.ndarray) -> int:
-        """Advance states in place by the steps after step `first`, one for each row of torques; meshes with backlash.
+    def simulate(
+        self, first: int, states: ModalStates, torques: np.ndarray, flanks: np.ndarray
+    ) -> int:
+        """Advance states in place by the steps after step `first`, one for each row of torques;
+        meshes with backlash.
 
         torques : (steps, states) N·m, sum of the torques at the start and the end of each step
-        flanks : (m,) 1 or -1, the flanks that carry the steady load. States with all meshes in contact there need one
-        product, the others Newton's method on the piecewise linear forces. Returns the number of the latter.
+        flanks : (m,) 1 or -1, the flanks that carry the steady load. States with all meshes in
+        contact there need one product, the others Newton's method on the piecewise linear forces.
+        Returns the number of the latter.
         Raises ConvergenceError.
         """
         rows = slice(first + 1, first + 1 + len(torques))
         k = self.stiffness[rows]
         law = self.contact_inverse[rows], k, -self.train.half_backlash * k * flanks
-        separated = self.kernel.advance(first, states.q, states.y, states.mesh_term, torques, *law, flanks)
+        separated = self.kernel.advance(
+            first, states.q, states.y, states.mesh_term, torques, *law, flanks
+        )
         if separated < 0:
-            raise ConvergenceError(f"the motion of the gear train did not converge at {-separated * self.h:g} s")
+            raise ConvergenceError(
+                f"the motion of the gear train did not converge at {-separated * self.h:g} s"
+            )
         return separated
 
     def law(self, step: int, stiffness: np.ndarray, constant: np.ndarray | None = None) -> MeshLaw:
@@ -103,27 +122,36 @@ class TimeStepper:
         return solution[None], stiffness[None], constant[None]
 
     def linear(self, step: int, states: ModalStates, torques: np.ndarray, law: MeshLaw) -> None:
-        """Advance states in place by step number `step` with the mesh forces of a linear `law` at its end.
+        """Advance states in place by step number `step` with the mesh forces of a linear `law` at
+        its end.
 
         torques : (states,) N·m, sum of the torques at the start and the end
         """
         self.kernel.advance(step - 1, states.q, states.y, states.mesh_term, torques[None], *law)
 
     def free_deflections(self, step: int, states: ModalStates, torques: np.ndarray) -> np.ndarray:
-        """d (m, states): right side of the system for the mesh deflections at the end of a step, m."""
+        """d (m, states): right side of the system for the mesh deflections at the end of a step,
+        m."""
         q, y, mesh_term = states.q, states.y, states.mesh_term
-        modes = self.from_q[:, None] * q + self.from_y[:, None] * y - mesh_term + self.from_torque[:, None] * torques
+        modes = (
+            self.from_q[:, None] * q
+            + self.from_y[:, None] * y
+            - mesh_term
+            + self.from_torque[:, None] * torques
+        )
         w, c = self.deflection_rows[step], self.train.mesh_damping[:, None]
         return w @ modes + self.compliance[step] @ (c * (w @ y))
 
     def mesh_term(self, step: int, q: np.ndarray, y: np.ndarray, forces: np.ndarray) -> np.ndarray:
-        """The term h/2 D⁻¹ Wᵀ g (n, states) of meshes with elastic forces (m, states) at the end of a step."""
+        """The term h/2 D⁻¹ Wᵀ g (n, states) of meshes with elastic forces (m, states) at the end of
+        a step."""
         w = self.deflection_rows[step]
         damping = self.train.mesh_damping[:, None] * (w @ y - 2.0 / self.h * (w @ q))
         return self.from_force[:, None] * (w.T @ (forces + damping))
 
     def static_equilibrium(self, torque: float) -> tuple[ModalStates, np.ndarray]:
-        """State (one column) at rest under a steady torque (N·m) at time 0, and the flanks (m,) in contact, 1 or -1.
+        """State (one column) at rest under a steady torque (N·m) at time 0, and the flanks (m,) in
+        contact, 1 or -1.
 
         The flanks are those that carry the load in the train without backlash.
         """
@@ -133,4 +161,6 @@ class TimeStepper:
         flanks = np.sign(w @ np.linalg.solve(stiffness, load))
         q = np.linalg.solve(stiffness, load + w.T @ (k * flanks * train.half_backlash))[:, None]
         y = 2.0 / self.h * q
-        return ModalStates(q, y, self.mesh_term(0, q, y, force(k[:, None], w @ q, train.half_backlash))), flanks
+        return ModalStates(
+            q, y, self.mesh_term(0, q, y, force(k[:, None], w @ q, train.half_backlash))
+        ), flanks

@@ -50,16 +50,25 @@ class MovingLoad(Section):
     noise: float = quantity(0.0, unit="N·√s", text="amplitude of the white noise of each", ge=0.0)
     damping_mass: float = quantity(unit="1/s", text="damping over mass", ge=0.0)
     damping_stiffness: float = quantity(unit="s", text="damping over stiffness", ge=0.0)
-    speeds: Speeds = quantity(text="speeds of the loads (rad/s), each above 0; the first is the reference")
-    sweep: Speeds = quantity(text="first and last speed of the curve of critical speeds (rad/s), each above 0")
+    speeds: Speeds = quantity(
+        text="speeds of the loads (rad/s), each above 0; the first is the reference"
+    )
+    sweep: Speeds = quantity(
+        text="first and last speed of the curve of critical speeds (rad/s), each above 0"
+    )
     sweep_speeds: int = quantity(120, text="speeds of that curve", ge=2, le=10_000)
-    revolutions: int = quantity(2, text="revolutions of the loads; results are those of the last", ge=1, le=1000)
+    revolutions: int = quantity(
+        2, text="revolutions of the loads; results are those of the last", ge=1, le=1000
+    )
     steps: int = quantity(720, text="time steps of a revolution", ge=36, le=10_000_000)
-    samples: int = quantity(200, text="Monte Carlo simulations at the first speed", ge=2, le=1_000_000)
+    samples: int = quantity(
+        200, text="Monte Carlo simulations at the first speed", ge=2, le=1_000_000
+    )
 
 
 class RingDesign(TrainDesign):
-    """A ring, what holds it and what moves in it. Attributes are the sections of the design file."""
+    """A ring, what holds it and what moves in it. Attributes are the sections of the design
+    file."""
 
     gear_train: Train
     ring: Body
@@ -98,33 +107,46 @@ def check_fit(design: RingDesign) -> None:
         section = getattr(design, name)
         if section is not None and body.elements % section.count:
             raise InputError(
-                f"{name}.count = {section.count} is out of range: allowed divisors of {body.elements} (ring.elements)"
+                f"{name}.count = {section.count} is out of range: allowed divisors of "
+                f"{body.elements} (ring.elements)"
             )
     if body.modes > body.elements:
-        raise InputError(f"ring.modes = {body.modes} is out of range: allowed 1 to {body.elements} (ring.elements)")
+        raise InputError(
+            f"ring.modes = {body.modes} is out of range: allowed 1 to {body.elements} "
+            f"(ring.elements)"
+        )
     if load is None:
         return
     if design.supports is None:
-        raise InputError("supports is missing: allowed only without moving_load, which would carry the ring away")
+        raise InputError(
+            "supports is missing: allowed only without moving_load, which would carry the ring away"
+        )
     s, radius = design.supports, 0.5e-3 * (body.inner_radius + body.outer_radius)
     if not supports_restrain_ring(s.count, s.radial, s.tangential, s.torsional, radius):
         raise InputError(
-            f"supports.tangential = {s.tangential:g} is out of range: allowed stiffnesses of the supports that "
+            f"supports.tangential = {s.tangential:g} is out of range: allowed stiffnesses of the "
+            f"supports that "
             "hold the ring under moving_load against rigid translation and rotation"
         )
     if load.damping_mass + load.damping_stiffness <= 0.0:
         raise InputError(
-            f"moving_load.damping_stiffness = {load.damping_stiffness:g} is out of range: allowed above 0 to inf s "
+            f"moving_load.damping_stiffness = {load.damping_stiffness:g} is out of range: allowed "
+            f"above 0 to inf s "
             "without moving_load.damping_mass, or noise would add up for ever"
         )
     if body.elements // design.supports.count < 2:
         raise InputError(
-            f"ring.elements = {body.elements} is out of range: allowed at least {2 * design.supports.count}, "
+            f"ring.elements = {body.elements} is out of range: allowed at least "
+            f"{2 * design.supports.count}, "
             "for a node between two supports"
         )
     if load.steps % load.loads:
         raise InputError(
-            f"moving_load.steps = {load.steps} is out of range: allowed multiples of {load.loads} (moving_load.loads)"
+            f"moving_load.steps = {load.steps} is out of range: allowed multiples of {load.loads} "
+            f"(moving_load.loads)"
         )
     if len(load.sweep) != 2 or load.sweep[0] >= load.sweep[1]:
-        raise InputError(f"moving_load.sweep = {load.sweep} is out of range: allowed two speeds, the lower one first")
+        raise InputError(
+            f"moving_load.sweep = {load.sweep} is out of range: allowed two speeds, the lower one "
+            f"first"
+        )

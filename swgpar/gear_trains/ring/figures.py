@@ -52,12 +52,17 @@ def _shapes(result: TrainResult) -> Figure:
 
 def _speeds(result: TrainResult, point: str) -> Figure:
     table = result.history
-    figure, panels = axes(POINTS[point], "angle of the first load (rad)", "mean (µm)", "standard deviation (µm)")
+    figure, panels = axes(
+        POINTS[point], "angle of the first load (rad)", "mean (µm)", "standard deviation (µm)"
+    )
     for speed in dict.fromkeys(table["speed_rad_s"].tolist()):
         rows = table["speed_rad_s"] == speed
         for axis, kind in zip(panels, ("mean", "deviation"), strict=True):
             axis.plot(
-                table["angle_rad"][rows], 1e6 * table[f"{kind}_{point}_m"][rows], lw=0.9, label=f"{speed:g} rad/s"
+                table["angle_rad"][rows],
+                1e6 * table[f"{kind}_{point}_m"][rows],
+                lw=0.9,
+                label=f"{speed:g} rad/s",
             )
     panels[0].legend(fontsize=8)
     return figure
@@ -68,10 +73,23 @@ def _monte_carlo(result: TrainResult, point: str) -> Figure:
     speed = table["speed_rad_s"][0]
     rows = table["speed_rad_s"] == speed
     title = f"{POINTS[point]}, {speed:g} rad/s"
-    figure, panels = axes(title, "angle of the first load (rad)", "mean (µm)", "standard deviation (µm)")
+    figure, panels = axes(
+        title, "angle of the first load (rad)", "mean (µm)", "standard deviation (µm)"
+    )
     for axis, kind in zip(panels, ("mean", "deviation"), strict=True):
-        axis.plot(simulated["angle_rad"], 1e6 * simulated[f"{kind}_{point}_m"], "k", lw=0.7, label="Monte Carlo")
-        axis.plot(table["angle_rad"][rows], 1e6 * table[f"{kind}_{point}_m"][rows], "C0--", label="mean and covariance")
+        axis.plot(
+            simulated["angle_rad"],
+            1e6 * simulated[f"{kind}_{point}_m"],
+            "k",
+            lw=0.7,
+            label="Monte Carlo",
+        )
+        axis.plot(
+            table["angle_rad"][rows],
+            1e6 * table[f"{kind}_{point}_m"][rows],
+            "C0--",
+            label="mean and covariance",
+        )
     panels[0].legend(fontsize=8)
     return figure
 
@@ -79,11 +97,19 @@ def _monte_carlo(result: TrainResult, point: str) -> Figure:
 def _critical(result: TrainResult) -> Figure:
     table = result.tables["critical_speeds"]
     panels = ("mean over that of the first", "deviation over that of the first")
-    figure, (upper, lower) = axes("largest displacements against the speed", "speed (rad/s)", *panels)
+    figure, (upper, lower) = axes(
+        "largest displacements against the speed", "speed (rad/s)", *panels
+    )
     for k, (point, label) in enumerate(POINTS.items()):
-        mean, deviation, still = (table[f"{n}_{point}_m"] for n in ("mean", "deviation", "without_inertia"))
+        mean, deviation, still = (
+            table[f"{n}_{point}_m"] for n in ("mean", "deviation", "without_inertia")
+        )
         upper.plot(table["speed_rad_s"], mean / mean[0], f"C{k}", lw=1.0, label=label)
-        upper.plot(table["speed_rad_s"], still / mean[0], "k:", lw=0.9, label=None if k else "quasi-static")
+        upper.plot(
+            table["speed_rad_s"], still / mean[0], "k:", lw=0.9, label=None if k else "quasi-static"
+        )
         lower.plot(table["speed_rad_s"], deviation / deviation[0], f"C{k}", lw=1.0)
-    upper.legend(fontsize=8, ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1.0))  # the curves fill the panel
+    upper.legend(
+        fontsize=8, ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1.0)
+    )  # the curves fill the panel
     return figure

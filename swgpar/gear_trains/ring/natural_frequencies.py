@@ -18,10 +18,13 @@ BENDING_SHARE = 0.5
 
 
 def distinct_frequencies(design: RingDesign, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Lowest bending frequencies (count,) in Hz, equal ones once, and a mode of each (unknowns, count)."""
+    """Lowest bending frequencies (count,) in Hz, equal ones once, and a mode of each (unknowns,
+    count)."""
     ring = design.elastic_ring()
     rate, shapes = ring.modes()
-    bent = (rate > RIGID * free_frequencies(ring.section, 2)[0]) & (ring.bending_share(shapes) > BENDING_SHARE)
+    bent = (rate > RIGID * free_frequencies(ring.section, 2)[0]) & (
+        ring.bending_share(shapes) > BENDING_SHARE
+    )
     number = np.flatnonzero(bent)
     kept = number[np.diff(rate[number], prepend=0.0) > EQUAL * rate[number]][:count]
     return rate[kept] / (2.0 * np.pi), shapes[:, kept]

@@ -1,4 +1,5 @@
-"""Quantities of an elastic ring: results that can be compared with published values, derived values of the design."""
+"""Quantities of an elastic ring: results that can be compared with published values, derived values
+of the design."""
 
 from __future__ import annotations
 
@@ -12,7 +13,10 @@ from swgpar.gear_trains.ring.natural_frequencies import distinct_frequencies
 from swgpar.results.quantity import Quantity
 from swgpar.vibration.curved_beam import free_frequencies
 
-POINTS = {"moving_point": "ring point under the first load", "middle_node": "node midway between two supports"}
+POINTS = {
+    "moving_point": "ring point under the first load",
+    "middle_node": "node midway between two supports",
+}
 """Points whose outward displacement is computed: name -> meaning."""
 
 
@@ -20,7 +24,9 @@ def quantities(design: RingDesign) -> dict[str, Quantity]:
     """Results that can be compared with published values."""
     known = {
         "frequencies": Quantity(
-            "natural frequencies of in-plane bending, equal ones once", "Hz", count=design.ring.modes
+            "natural frequencies of in-plane bending, equal ones once",
+            "Hz",
+            count=design.ring.modes,
         ),
         "dimensionless_frequencies": Quantity(
             "the same times 2 pi sqrt(density A R⁴ / (E I))", count=design.ring.modes
@@ -31,13 +37,18 @@ def quantities(design: RingDesign) -> dict[str, Quantity]:
         for point, meaning in POINTS.items():
             for speed, (kind, statistic) in product(load.speeds, STATISTICS.items()):
                 known[f"{kind}_{point}_{number_label(speed)}"] = Quantity(
-                    f"largest {statistic} of the outward displacement of the {meaning} at {speed:g} rad/s", "m"
+                    f"largest {statistic} of the outward displacement of the {meaning} at "
+                    f"{speed:g} rad/s",
+                    "m",
                 )
             known[f"dominant_cycles_{point}"] = Quantity(
-                f"largest slow harmonic, in cycles per revolution, of the {meaning} at the first speed"
+                f"largest slow harmonic, in cycles per revolution, of the {meaning} at the first "
+                f"speed"
             )
         known["critical_speeds"] = Quantity(
-            "speeds of the five highest peaks of the mean of the middle node, ascending", "rad/s", count=5
+            "speeds of the five highest peaks of the mean of the middle node, ascending",
+            "rad/s",
+            count=5,
         )
     return known
 

@@ -38,13 +38,21 @@ def compute(design: RingDesign, comm: MPI.Comm) -> TrainResult:
     logger.info("elastic ring: %d elements; %d ranks", design.ring.elements, comm.size)
     frequencies, shapes = distinct_frequencies(design, design.ring.modes)
     section = design.beam_section()
-    unit = np.sqrt(section.density * section.area * section.radius**4 / (section.E * section.inertia))
+    unit = np.sqrt(
+        section.density * section.area * section.radius**4 / (section.E * section.inertia)
+    )
     values: dict[str, float | list[float]] = {
         "frequencies": frequencies.tolist(),
         "dimensionless_frequencies": (2.0 * np.pi * frequencies * unit).tolist(),
     }
-    free = np.array([free_frequencies(section, n)[0] for n in range(2, 2 + len(frequencies))]) / (2.0 * np.pi)
-    modes = {"mode": np.arange(1, len(frequencies) + 1), "frequency_Hz": frequencies, "free_ring_Hz": free}
+    free = np.array([free_frequencies(section, n)[0] for n in range(2, 2 + len(frequencies))]) / (
+        2.0 * np.pi
+    )
+    modes = {
+        "mode": np.arange(1, len(frequencies) + 1),
+        "frequency_Hz": frequencies,
+        "free_ring_Hz": free,
+    }
     tables = {"modes": modes, "mode_shapes": _shapes(design, shapes[:, :SHAPES])}
     if design.moving_load is None:
         return TrainResult(modes, tables, values)
@@ -52,7 +60,10 @@ def compute(design: RingDesign, comm: MPI.Comm) -> TrainResult:
     for speed, response in zip(design.moving_load.speeds, responses, strict=True):
         values |= largest(response, [f"{point}_{number_label(speed)}" for point in POINTS])
     values["critical_speeds"] = _peaks(curve)
-    values |= {f"dominant_cycles_{point}": dominant_cycles(responses[0].mean[:, k]) for k, point in enumerate(POINTS)}
+    values |= {
+        f"dominant_cycles_{point}": dominant_cycles(responses[0].mean[:, k])
+        for k, point in enumerate(POINTS)
+    }
     tables |= {"critical_speeds": curve, "monte_carlo": simulated}
     return TrainResult(_history(design, responses), tables, values)
 
@@ -63,7 +74,9 @@ def _moving(design: RingDesign, comm: MPI.Comm) -> tuple[list[Response], Table, 
     loads = MovingLoads(design)
     sweep = np.linspace(*load.sweep, load.sweep_speeds)
     sizes = block_sizes(load.samples, BLOCK_SIZE)
-    tasks: list[Callable[[], Any]] = [partial(loads.respond, float(speed)) for speed in (*load.speeds, *sweep)]
+    tasks: list[Callable[[], Any]] = [
+        partial(loads.respond, float(speed)) for speed in (*load.speeds, *sweep)
+    ]
     simulations = [
         partial(loads.simulate, load.speeds[0], size, random_stream(design.gear_train.seed, block))
         for block, size in enumerate(sizes)
@@ -75,18 +88,22 @@ def _moving(design: RingDesign, comm: MPI.Comm) -> tuple[list[Response], Table, 
         curve |= {
             f"mean_{point}_m": np.array([np.abs(part.mean[:, k]).max() for part in parts]),
             f"deviation_{point}_m": np.array([part.deviation[:, k].max() for part in parts]),
-            f"without_inertia_{point}_m": np.array([np.abs(loads.quasi_static(s)[:, k]).max() for s in sweep]),
+            f"without_inertia_{point}_m": np.array(
+                [np.abs(loads.quasi_static(s)[:, k]).max() for s in sweep]
+            ),
         }
     sums = reduce(SampleMoments.merged_with, done[len(tasks) :])
     return (
         responses,
         curve,
-        {"angle_rad": responses[0].angle[_rows(load)]} | columns([_thinned(load, sums)], POINTS, "m"),
+        {"angle_rad": responses[0].angle[_rows(load)]}
+        | columns([_thinned(load, sums)], POINTS, "m"),
     )
 
 
 def _peaks(curve: Table) -> list[float]:
-    """Speeds of the highest local peaks of the middle node, ascending; NaN where there are fewer than PEAKS."""
+    """Speeds of the highest local peaks of the middle node, ascending; NaN where there are fewer
+    than PEAKS."""
     speed, mean = curve["speed_rad_s"], curve["mean_middle_node_m"]
     inner = 1 + np.flatnonzero((mean[1:-1] > mean[:-2]) & (mean[1:-1] >= mean[2:]))
     highest = np.sort(speed[inner[np.argsort(mean[inner])[::-1][:PEAKS]]])
@@ -94,7 +111,8 @@ def _peaks(curve: Table) -> list[float]:
 
 
 def _shapes(design: RingDesign, shapes: np.ndarray) -> Table:
-    """Outward and tangential displacement around the ring, each mode with its largest displacement 1."""
+    """Outward and tangential displacement around the ring, each mode with its largest displacement
+    1."""
     ring, angle = design.elastic_ring(), np.linspace(0.0, 2.0 * np.pi, AROUND)
     values = np.array([ring.interpolation(a)[:2] @ shapes for a in angle])
     values /= np.abs(values).max(axis=(0, 1))
@@ -108,7 +126,10 @@ def _history(design: RingDesign, responses: list[Response]) -> Table:
     """Means and standard deviations in the last revolution, in blocks by speed."""
     load = design.moving_load
     angle = responses[0].angle[_rows(load)]
-    out = {"speed_rad_s": np.repeat(load.speeds, len(angle)), "angle_rad": np.tile(angle, len(responses))}
+    out = {
+        "speed_rad_s": np.repeat(load.speeds, len(angle)),
+        "angle_rad": np.tile(angle, len(responses)),
+    }
     return out | columns([_thinned(load, response) for response in responses], POINTS, "m")
 
 

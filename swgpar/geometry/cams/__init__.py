@@ -36,17 +36,21 @@ class Cam(Protocol):
     """
 
     def evaluate(self, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Signed distance (n,), outward unit normal (n, 2) and k (n,), Hessian = k t t^T, at points (n, 2)."""
+        """Signed distance (n,), outward unit normal (n, 2) and k (n,), Hessian = k t t^T, at points
+        (n, 2)."""
 
     def outline(self, n: int) -> np.ndarray:
         """About n points of the surface (n, 2), mm.
 
-        Checks take the largest of the points: they lie all around the curve, with steps of about the same size.
-        Figures join them: neighbours follow each other, in either direction. Separate parts follow one after the other.
+        Checks take the largest of the points: they lie all around the curve, with steps of about
+        the same size. Figures join them: neighbours follow each other, in either direction.
+        Separate parts follow one after the other.
         """
 
 
-def make_cam(keys: WaveGenerator, a: float, b: float | None = None, name: str = "wave_generator") -> Cam:
+def make_cam(
+    keys: WaveGenerator, a: float, b: float | None = None, name: str = "wave_generator"
+) -> Cam:
     """Curve of a cam, major axis along +y.
 
     Parameters
@@ -84,10 +88,11 @@ def taut_length(cam: Cam, n: int = 7200) -> float:
 
 
 def pin_travel(cam: Cam, radius: float, lobes: int = 2, n: int = 7200) -> float:
-    """How far the pins, each a lobe of the cam, are drawn in towards the axis to fit into the circle `radius`.
+    """How far the pins, each a lobe of the cam, are drawn in towards the axis to fit into the
+    circle `radius`.
 
-    In mm; half the deflection for a cam that first touches at its tips, more when it bulges beside them (the pins
-    of section 3.2 are the halves of the cam).
+    In mm; half the deflection for a cam that first touches at its tips, more when it bulges beside
+    them (the pins of section 3.2 are the halves of the cam).
     """
     x, y = cam.outline(n).T
     upper = (np.abs(np.arctan2(x, y)) < np.pi / lobes) & (np.abs(x) < radius)

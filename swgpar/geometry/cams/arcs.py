@@ -1,7 +1,8 @@
-"""Oval cam: arcs of one radius about the major axis, of another one about the minor axis, that join smoothly.
+"""Oval cam: arcs of one radius about the major axis, of another one about the minor axis, that join
+smoothly.
 
-Along an arc the bending of the spline does not change. Of all shapes with the same deflection, arcs of the half angle
-45 degrees have the least largest bending: 0.80 of that on an ellipse.
+Along an arc the bending of the spline does not change. Of all shapes with the same deflection, arcs
+of the half angle 45 degrees have the least largest bending: 0.80 of that on an ellipse.
 """
 
 from __future__ import annotations
@@ -24,10 +25,17 @@ def arcs(a: float, b: float, beta: float, name: str) -> PiecewiseCam:
     radius, outer = a - offset, a - offset + offset / cosine
     if radius <= 0.0:
         least = np.degrees(0.5 * np.pi - 2.0 * np.arctan(b / a))
-        raise InputError(f"{name} = {np.degrees(beta):g} is out of range: allowed above {least:.3g} to below 90 deg")
+        raise InputError(
+            f"{name} = {np.degrees(beta):g} is out of range: allowed above {least:.3g} to below 90 "
+            f"deg"
+        )
     joint = np.array([radius * sine, offset + radius * cosine])
     return PiecewiseCam(
-        pieces=(Circle((b - outer, 0.0), outer), Circle((0.0, offset), radius), Circle((outer - b, 0.0), outer)),
+        pieces=(
+            Circle((b - outer, 0.0), outer),
+            Circle((0.0, offset), radius),
+            Circle((outer - b, 0.0), outer),
+        ),
         joints=joint * [[1.0, 1.0], [-1.0, 1.0]],
         tangents=np.array([[-cosine, sine], [-cosine, -sine]]),
     )

@@ -11,12 +11,17 @@ class Bearing(Section):
 
     balls: int = quantity(text="number of balls", ge=3, le=2000)
     ball_diameter: float = quantity(unit="mm", text="diameter of the balls", gt=0.0)
-    race_thickness: float = quantity(unit="mm", text="thickness of the outer race, of a rectangular section", gt=0.0)
+    race_thickness: float = quantity(
+        unit="mm", text="thickness of the outer race, of a rectangular section", gt=0.0
+    )
     race_width: float | None = quantity(
         None, unit="mm", text="width of the outer race; without it that of the cam", gt=0.0
     )
     clearance: float = quantity(
-        0.0, unit="mm", text="clearance of a ball where the outer race lies on the cam's curve", ge=0.0
+        0.0,
+        unit="mm",
+        text="clearance of a ball where the outer race lies on the cam's curve",
+        ge=0.0,
     )
     inner_conformity: float = quantity(
         0.52, text="radius of the inner race's groove across over the ball diameter", gt=0.5, le=2.0
@@ -25,15 +30,25 @@ class Bearing(Section):
         0.53, text="radius of the outer race's groove across over the ball diameter", gt=0.5, le=2.0
     )
     first_ball: float = quantity(
-        0.0, unit="deg", text="angle of a ball from the major axis before the rotation", ge=-180.0, le=180.0
+        0.0,
+        unit="deg",
+        text="angle of a ball from the major axis before the rotation",
+        ge=-180.0,
+        le=180.0,
     )
     cage_speed: float | None = quantity(
-        None, text="speed of the cage over that of the wave generator; without it that of rolling balls", ge=0.0, le=1.0
+        None,
+        text="speed of the cage over that of the wave generator; without it that of rolling balls",
+        ge=0.0,
+        le=1.0,
     )
     stiffness_factor: float = quantity(
         1.0, text="factor on the stiffness of the ball contacts; 1: Hertz", gt=0.0, le=1e6
     )
     material: OptionalMaterial = None
     load_rating: float | None = quantity(
-        None, unit="N", text="basic dynamic load rating; without it that of ISO 281 for these sizes", gt=0.0
+        None,
+        unit="N",
+        text="basic dynamic load rating; without it that of ISO 281 for these sizes",
+        gt=0.0,
     )

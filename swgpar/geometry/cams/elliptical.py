@@ -17,12 +17,14 @@ class EllipticalCam:
     def evaluate(self, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Signed distance, outward normal and Hessian factor at points near the curve.
 
-        The foot point (b sin t, a cos t) solves ((b sin t, a cos t) - p) . (b cos t, -a sin t) = 0 by Newton from
-        the angle of the radial projection; with b^2 / a above the distance inside this converges to round-off.
+        The foot point (b sin t, a cos t) solves ((b sin t, a cos t) - p) . (b cos t, -a sin t) = 0
+        by Newton from the angle of the radial projection; with b^2 / a above the distance inside
+        this converges to round-off.
 
         Returns
         -------
-        distance (n,) mm, positive outside;  normal (n, 2);  k (n,) 1/mm, Hessian of the distance = k t t^T
+        distance (n,) mm, positive outside;  normal (n, 2);  k (n,) 1/mm, Hessian of the distance =
+        k t t^T
         """
         x, y = np.asarray(xy, dtype=float).T
         a, b = self.a, self.b

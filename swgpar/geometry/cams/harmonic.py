@@ -22,17 +22,22 @@ class HarmonicCam:
         """Radius, mm, and its first two derivatives by theta."""
         wave, order = 0.5 * (self.a - self.b), self.lobes
         cosine = wave * np.cos(order * theta)
-        return 0.5 * (self.a + self.b) + cosine, -wave * order * np.sin(order * theta), -(order**2) * cosine
+        return (
+            0.5 * (self.a + self.b) + cosine,
+            -wave * order * np.sin(order * theta),
+            -(order**2) * cosine,
+        )
 
     def evaluate(self, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Signed distance, outward normal and Hessian factor at points near the curve.
 
-        The foot point X solves (X - p) . X' = 0 by Newton from the polar angle of p. Points inside must be nearer to
-        the curve than its radius of curvature.
+        The foot point X solves (X - p) . X' = 0 by Newton from the polar angle of p. Points inside
+        must be nearer to the curve than its radius of curvature.
 
         Returns
         -------
-        distance (n,) mm, positive outside;  normal (n, 2);  k (n,) 1/mm, Hessian of the distance = k t t^T
+        distance (n,) mm, positive outside;  normal (n, 2);  k (n,) 1/mm, Hessian of the distance =
+        k t t^T
         """
         x, y = np.asarray(xy, dtype=float).T
         size, angle = np.hypot(x, y), np.arctan2(-x, y)
@@ -56,7 +61,8 @@ class HarmonicCam:
         return distance, normal, curvature / (1.0 + curvature * distance)
 
     def outline(self, n: int) -> np.ndarray:
-        """Points (n, 2), mm, of the curve at equal polar angles, counter-clockwise from the tip on +y."""
+        """Points (n, 2), mm, of the curve at equal polar angles, counter-clockwise from the tip on
+        +y."""
         theta = 2.0 * np.pi * np.arange(n) / n
         radius = self._radius(theta)[0]
         return radius[:, None] * np.column_stack([-np.sin(theta), np.cos(theta)])

@@ -11,14 +11,16 @@ from swgpar.input.quantities import Section, default_type, quantity
 
 
 def _pins(default: float) -> float:
-    return quantity(default, unit="deg", text="half of the angle a pushing pin covers", gt=0.0, le=60.0)
+    return quantity(
+        default, unit="deg", text="half of the angle a pushing pin covers", gt=0.0, le=60.0
+    )
 
 
 class _WaveGenerator(Section):
     lobes: int = quantity(2, text="lobes of the cam, places around it where teeth mesh", ge=2, le=3)
     face_width: float = quantity(unit="mm", text="width of the cam", gt=0.0)
-    # Pins begin where they first touch. Flat or rotated parabolas touch beside the major axis, as far as 30 degrees
-    # from it, and rollers wherever they are: the pins have to reach that far.
+    # Pins begin where they first touch. Flat or rotated parabolas touch beside the major axis, as
+    # far as 30 degrees from it, and rollers wherever they are: the pins have to reach that far.
     pin_half_angle: float = _pins(60.0)
     bearing: Bearing | None = None
 
@@ -33,8 +35,8 @@ class Elliptical(_Reduced):
     """Section 3.2.2."""
 
     type: Literal["elliptical"] = quantity("elliptical", text="kind of cam")
-    # An ellipse first touches at its tips, so narrow pins suffice. On drivers/plane_half_turn.toml (plane_coarse) the
-    # stage DEFLECT takes 14 Newton iterations with 15 degrees, 18 with 60.
+    # An ellipse first touches at its tips, so narrow pins suffice. On drivers/plane_half_turn.toml
+    # (plane_coarse) the stage DEFLECT takes 14 Newton iterations with 15 degrees, 18 with 60.
     pin_half_angle: float = _pins(15.0)
 
 
@@ -55,14 +57,18 @@ class Arcs(_Reduced):
     """Arcs of two radii."""
 
     type: Literal["arcs"] = quantity("arcs", text="kind of cam")
-    beta: float = quantity(unit="deg", text="half angle of the arcs about the major axis", gt=0.0, lt=90.0)
+    beta: float = quantity(
+        unit="deg", text="half angle of the arcs about the major axis", gt=0.0, lt=90.0
+    )
 
 
 class SideKeys(Section):
     """The parabola of a lobe, or of one side of it, and how it is led to the minor axis."""
 
     a_p: float = quantity(unit="1/mm", text="parabola coefficient", gt=0.0)
-    C_p: float = quantity(text="half length of the parabola over the minor semi-axis", gt=0.0, le=1.0)
+    C_p: float = quantity(
+        text="half length of the parabola over the minor semi-axis", gt=0.0, le=1.0
+    )
     r_c: float = quantity(unit="mm", text="radius of the connector arc", gt=0.0)
 
 
@@ -73,11 +79,16 @@ class Parabolic(_Reduced, SideKeys):
 
 
 class AsymmetricParabolic(_Reduced):
-    """Section 5.7; right and left on the upper lobe, both rotated by the rotational angle lambda."""
+    """Section 5.7; right and left on the upper lobe, both rotated by the rotational angle
+    lambda."""
 
     type: Literal["asymmetric_parabolic"] = quantity("asymmetric_parabolic", text="kind of cam")
     rotational_angle: float = quantity(
-        0.0, unit="deg", text="rotation of the parabolas about their apexes, counter-clockwise", gt=-10.0, lt=10.0
+        0.0,
+        unit="deg",
+        text="rotation of the parabolas about their apexes, counter-clockwise",
+        gt=-10.0,
+        lt=10.0,
     )
     right: SideKeys
     left: SideKeys
@@ -87,7 +98,9 @@ class FourRoller(_WaveGenerator):
     """Section 3.2.4."""
 
     type: Literal["four_roller"] = quantity("four_roller", text="kind of cam")
-    beta: float = quantity(unit="deg", text="angle of the rollers from the major axis", gt=0.0, lt=90.0)
+    beta: float = quantity(
+        unit="deg", text="angle of the rollers from the major axis", gt=0.0, lt=90.0
+    )
     r_4: float = quantity(unit="mm", text="radius of the rollers", gt=0.0)
 
 

@@ -1,15 +1,16 @@
 """Parabolic cam (section 3.2.3) and its asymmetric kinds (section 5.7).
 
-Each quarter is a parabola y = a - a_p x^2 up to |x| = C_p b, a connector arc r_c tangent to it, and a lateral arc
-tangent to that, with its centre on the minor axis and its end at (b, 0). With n the normal at the parabola's end P,
+Each quarter is a parabola y = a - a_p x^2 up to |x| = C_p b, a connector arc r_c tangent to it, and
+a lateral arc tangent to that, with its centre on the minor axis and its end at (b, 0). With n the
+normal at the parabola's end P,
 
     c = P - r_c n (eq. 3.8),  c - (r_l - r_c) (cos alpha, sin alpha) = (b - r_l, 0)  (eqs 3.9-3.11).
 
-The two components give r_l - r_c = c_y / sin alpha and tan(alpha / 2) = (b - r_c - c_x) / c_y: the source's nonlinear
-equation for the aperture alpha of the lateral arc has this closed solution.
+The two components give r_l - r_c = c_y / sin alpha and tan(alpha / 2) = (b - r_c - c_x) / c_y: the
+source's nonlinear equation for the aperture alpha of the lateral arc has this closed solution.
 
-The lower lobe is the upper one rotated by 180 degrees. "Right" is x > 0 on the upper lobe; the cam turns
-counter-clockwise, so the left side of a lobe leads.
+The lower lobe is the upper one rotated by 180 degrees. "Right" is x > 0 on the upper lobe; the cam
+turns counter-clockwise, so the left side of a lobe leads.
 """
 
 from __future__ import annotations
@@ -24,7 +25,8 @@ from swgpar.geometry.cams.piecewise import Circle, Parabola, PiecewiseCam
 
 @dataclass(frozen=True)
 class Side:
-    """One side of a lobe: parabola coefficient a_p (1/mm), length C_p (of b) and connector radius r_c (mm).
+    """One side of a lobe: parabola coefficient a_p (1/mm), length C_p (of b) and connector radius
+    r_c (mm).
 
     `name` is that of its section in the design file.
     """
@@ -37,7 +39,8 @@ class Side:
 
 @dataclass(frozen=True)
 class Quarter:
-    """Solved right quarter: `start`, `end` of the connector arc, mm; angles `alpha`, `theta` of the normals, rad."""
+    """Solved right quarter: `start`, `end` of the connector arc, mm; angles `alpha`, `theta` of the
+    normals, rad."""
 
     start: np.ndarray
     end: np.ndarray
@@ -48,20 +51,25 @@ class Quarter:
 
 
 def solve_quarter(parabola: Parabola, b: float, side: Side) -> Quarter:
-    """Arcs that lead from the parabola's end at x = C_p b to (b, 0), mm; refuses when there are none."""
+    """Arcs that lead from the parabola's end at x = C_p b to (b, 0), mm; refuses when there are
+    none."""
     name, C_p, r_c = side.name, side.C_p, side.r_c
     end, normal = parabola.at(C_p * b)
     theta = float(np.arctan2(normal[1], normal[0]))
-    # alpha < theta, that is a connector of positive length, does not depend on r_c: it is a matter of the end alone
+    # alpha < theta, that is a connector of positive length, does not depend on r_c: it is a matter
+    # of the end alone
     if not 0.0 < b - end[0] < end[1] * np.tan(0.5 * theta):
         raise InputError(
-            f"{name}.a_p = {parabola.p:g} with {name}.C_p = {C_p:g} cannot be closed at the minor axis: allowed are a "
-            "smaller a_p or another C_p, so that the parabola ends above the connector's reach and inside b"
+            f"{name}.a_p = {parabola.p:g} with {name}.C_p = {C_p:g} cannot be closed at the minor "
+            f"axis: allowed are a "
+            "smaller a_p or another C_p, so that the parabola ends above the connector's reach and "
+            "inside b"
         )
     limit = (b - end[0]) / (1.0 - np.cos(theta))
     if r_c >= limit:
         raise InputError(
-            f"{name}.r_c = {r_c:g} is out of range: allowed above 0 to below {limit:.6g} mm, where the connector arc "
+            f"{name}.r_c = {r_c:g} is out of range: allowed above 0 to below {limit:.6g} mm, where "
+            f"the connector arc "
             "passes the minor semi-axis"
         )
     center = end - r_c * normal
@@ -73,12 +81,15 @@ def solve_quarter(parabola: Parabola, b: float, side: Side) -> Quarter:
 
 
 def parabolic(a: float, b: float, right: Side, left: Side, tilt: float = 0.0) -> PiecewiseCam:
-    """Parabolic cam with semi-axes a (along y) and b, mm; `tilt` (rad) rotates the parabolas about their apexes."""
+    """Parabolic cam with semi-axes a (along y) and b, mm; `tilt` (rad) rotates the parabolas about
+    their apexes."""
     r = solve_quarter(Parabola(a, right.a_p, tilt), b, right)
     # the left side is the mirror image of a right side with the opposite tilt
     m = solve_quarter(Parabola(a, left.a_p, -tilt), b, left)
     mirror = np.array([-1.0, 1.0])
-    connector, lateral = (Circle((-arc.center[0], arc.center[1]), arc.radius) for arc in (m.connector, m.lateral))
+    connector, lateral = (
+        Circle((-arc.center[0], arc.center[1]), arc.radius) for arc in (m.connector, m.lateral)
+    )
     pieces = (
         r.lateral,
         r.connector,

@@ -8,14 +8,16 @@ from typing import Protocol
 import numpy as np
 
 SignedDistance = tuple[np.ndarray, np.ndarray, np.ndarray]
-"""Signed distance (n,) mm, outward unit normal (n, 2), and k (n,) 1/mm with the distance's Hessian k t t^T."""
+"""Signed distance (n,) mm, outward unit normal (n, 2), and k (n,) 1/mm with the distance's Hessian
+k t t^T."""
 
 
 class Piece(Protocol):
     """A part of a circle, a line or a parabola."""
 
     def evaluate(self, xy: np.ndarray) -> SignedDistance:
-        """Signed distance, normal and k at points (n, 2), mm, of the whole circle, line or parabola."""
+        """Signed distance, normal and k at points (n, 2), mm, of the whole circle, line or
+        parabola."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +49,8 @@ class Line:
 
 @dataclass(frozen=True)
 class Parabola:
-    """Parabola y = height - p x^2 (eq. 3.5), rotated about its apex (0, height) by `tilt`, material below.
+    """Parabola y = height - p x^2 (eq. 3.5), rotated about its apex (0, height) by `tilt`, material
+    below.
 
     Attributes
     ----------
@@ -65,7 +68,8 @@ class Parabola:
         return np.array([[c, -s], [s, c]])
 
     def at(self, x: float) -> tuple[np.ndarray, np.ndarray]:
-        """Point (2,) mm and outward unit normal (2,) at the abscissa x of the parabola's own frame (eqs 3.5, 3.7)."""
+        """Point (2,) mm and outward unit normal (2,) at the abscissa x of the parabola's own frame
+        (eqs 3.5, 3.7)."""
         point = np.array([x, -self.p * x * x])
         normal = np.array([2.0 * self.p * x, 1.0]) / np.hypot(1.0, 2.0 * self.p * x)
         return self._rotation() @ point + (0.0, self.height), self._rotation() @ normal
@@ -73,8 +77,8 @@ class Parabola:
     def evaluate(self, xy: np.ndarray) -> SignedDistance:
         """The foot's abscissa is a root of x^3 + u x = v, by its closed form and a Newton step.
 
-        It is the root of largest size, on the point's side of the axis: the only one until the point lies more than
-        1 / (2 p) below the apex.
+        It is the root of largest size, on the point's side of the axis: the only one until the
+        point lies more than 1 / (2 p) below the apex.
         """
         x, y = ((xy - (0.0, self.height)) @ self._rotation()).T
         p = self.p
@@ -85,7 +89,9 @@ class Parabola:
         hollow = np.sinh(np.arcsinh(q) / 3.0)
         single = np.cosh(np.arccosh(np.maximum(q, 1.0)) / 3.0)
         triple = np.cos(np.arccos(np.minimum(q, 1.0)) / 3.0)
-        foot = np.copysign(2.0 * root * np.where(u > 0.0, hollow, np.where(q > 1.0, single, triple)), x)
+        foot = np.copysign(
+            2.0 * root * np.where(u > 0.0, hollow, np.where(q > 1.0, single, triple)), x
+        )
         foot -= (foot**3 + u * foot - v) / np.maximum(3.0 * foot**2 + u, 1e-12 / p**2)
         slope = 2.0 * p * foot
         length = np.hypot(1.0, slope)
@@ -99,8 +105,9 @@ class Parabola:
 class PiecewiseCam:
     """Convex curve with continuous tangent that equals itself after a rotation by 180 degrees.
 
-    The nearest piece to a point near the curve follows from which side of the joints' normals it lies on, on the
-    point's own side of the major axis: this holds as long as the point is nearer than the smallest radius of curvature.
+    The nearest piece to a point near the curve follows from which side of the joints' normals it
+    lies on, on the point's own side of the major axis: this holds as long as the point is nearer
+    than the smallest radius of curvature.
 
     Attributes
     ----------
@@ -115,12 +122,14 @@ class PiecewiseCam:
     tangents: np.ndarray
 
     def evaluate(self, xy: np.ndarray) -> SignedDistance:
-        """Signed distance, outward normal and Hessian factor at points (n, 2), mm, near the curve."""
+        """Signed distance, outward normal and Hessian factor at points (n, 2), mm, near the
+        curve."""
         xy = np.asarray(xy, dtype=float)
         sign = np.where(xy[:, 1] < 0.0, -1.0, 1.0)
         upper = xy * sign[:, None]
         along = upper @ self.tangents.T - np.einsum("ij,ij->i", self.joints, self.tangents)
-        # for a joint on the other side of the major axis the far end of its normal does not separate the pieces
+        # for a joint on the other side of the major axis the far end of its normal does not
+        # separate the pieces
         side = np.sign(self.joints[:, 0])
         passed = np.where(side * upper[:, :1] < 0.0, side > 0.0, along > 0.0)
         index = np.count_nonzero(passed, axis=1)
@@ -135,7 +144,8 @@ class PiecewiseCam:
         """Points (n, 2), mm, of the curve at equal polar angles, counter-clockwise from +x."""
         angle = 2.0 * np.pi * np.arange(n) / n
         ray = np.column_stack([np.cos(angle), np.sin(angle)])
-        # Newton along the ray from outside: the distance is convex, so it stays outside and converges
+        # Newton along the ray from outside: the distance is convex, so it stays outside and
+        # converges
         radius = np.full(n, 2.0 * np.abs(self.joints).max())
         for _ in range(50):
             distance, normal, _ = self.evaluate(radius[:, None] * ray)

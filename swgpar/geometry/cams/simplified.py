@@ -1,4 +1,5 @@
-"""Simplified cam (section 3.2.1): two semicircles joined by straight lines, tips on the major axis."""
+"""Simplified cam (section 3.2.1): two semicircles joined by straight lines, tips on the major
+axis."""
 
 from __future__ import annotations
 
@@ -8,10 +9,15 @@ from swgpar.geometry.cams.piecewise import Circle, Line, PiecewiseCam
 
 
 def simplified(a: float, radius: float) -> PiecewiseCam:
-    """Semicircles of `radius` (eq. 3.2) about (0, +-(a - radius)), all in mm; a circle when radius = a."""
+    """Semicircles of `radius` (eq. 3.2) about (0, +-(a - radius)), all in mm; a circle when radius
+    = a."""
     height = a - radius
     return PiecewiseCam(
-        pieces=(Line((radius, 0.0), (1.0, 0.0)), Circle((0.0, height), radius), Line((-radius, 0.0), (-1.0, 0.0))),
+        pieces=(
+            Line((radius, 0.0), (1.0, 0.0)),
+            Circle((0.0, height), radius),
+            Line((-radius, 0.0), (-1.0, 0.0)),
+        ),
         joints=np.array([[radius, height], [-radius, height]]),
         tangents=np.array([[0.0, 1.0], [0.0, -1.0]]),
     )

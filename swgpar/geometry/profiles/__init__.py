@@ -1,6 +1,7 @@
 """Exact tooth profiles (section 3.3).
 
-A new profile is a module here that returns a `ToothProfile`, its keys in `keys.py` and an entry in `make_profile`.
+A new profile is a module here that returns a `ToothProfile`, its keys in `keys.py` and an entry in
+`make_profile`.
 """
 
 from __future__ import annotations
@@ -48,7 +49,8 @@ def make_profile(
     c_P : angular tooth thickness reduction (eq. 3.22); 1 for involutes
     c_l : share of the straight segment above the pitch point; 0.5 for involutes
     gear : name of the gear's section, for messages
-    partner : the other gear's flank and the motion of the flexible spline's tooth; conjugate profiles need them
+    partner : the other gear's flank and the motion of the flexible spline's tooth; conjugate
+    profiles need them
 
     Raises InputError where the keys give no flank.
     """
@@ -62,8 +64,11 @@ def make_profile(
     raise InputError(f"{reason}; {advice}" if advice else reason)
 
 
-def _advice(keys: ExternalProfile | InternalProfile, teeth: Teeth, c_P: float, c_l: float, gear: str) -> str:
-    """What to change in keys that give no flank, as the end of a sentence; empty if the reason says it."""
+def _advice(
+    keys: ExternalProfile | InternalProfile, teeth: Teeth, c_P: float, c_l: float, gear: str
+) -> str:
+    """What to change in keys that give no flank, as the end of a sentence; empty if the reason says
+    it."""
 
     def builds(**values: float) -> bool:
         try:
@@ -85,18 +90,28 @@ def _advice(keys: ExternalProfile | InternalProfile, teeth: Teeth, c_P: float, c
         )
     if isinstance(keys, RackInvolute | ShaperInvolute):
         return ""  # the reason says what is allowed
-    return f"no other {' or '.join(lengths)} is allowed: change c_P, c_l, the pressure angle or the height of the teeth"
+    return (
+        f"no other {' or '.join(lengths)} is allowed: change c_P, c_l, the pressure angle or the "
+        f"height of the teeth"
+    )
 
 
 LENGTHS = ("r_tip", "r_addendum", "straight_l", "r_dedendum", "r_root", "cutter_radius")
 """Keys of profiles that are lengths, mm."""
 
 RADII: dict[str, dict[str, float]] = {
-    "quadruple_arc": {"r_tip": 0.5, "r_addendum": 1.0, "straight_l": 0.0, "r_dedendum": 20.0, "r_root": 0.6},
+    "quadruple_arc": {
+        "r_tip": 0.5,
+        "r_addendum": 1.0,
+        "straight_l": 0.0,
+        "r_dedendum": 20.0,
+        "r_root": 0.6,
+    },
     "double_arc": {"r_addendum": 1.0, "r_dedendum": 0.6},
     "involute": {"cutter_radius": 0.2},
 }
-"""Lengths that close for most tooth numbers, modules: of the reference drive, Table 6.12, the bottom clearance."""
+"""Lengths that close for most tooth numbers, modules: of the reference drive, Table 6.12, the
+bottom clearance."""
 
 
 def _build(
@@ -112,34 +127,59 @@ def _build(
     if isinstance(keys, QuadrupleArc):
         frame = PitchPointFrame(**asdict(teeth), c_P=c_P)
         profile = quadruple_arc(
-            frame, c_l, keys.r_tip, keys.r_addendum, keys.straight_l, keys.r_dedendum, keys.r_root, name
+            frame,
+            c_l,
+            keys.r_tip,
+            keys.r_addendum,
+            keys.straight_l,
+            keys.r_dedendum,
+            keys.r_root,
+            name,
         )
     elif isinstance(keys, DoubleArc):
-        profile = double_arc(PitchPointFrame(**asdict(teeth), c_P=c_P), c_l, keys.r_addendum, keys.r_dedendum, name)
+        profile = double_arc(
+            PitchPointFrame(**asdict(teeth), c_P=c_P), c_l, keys.r_addendum, keys.r_dedendum, name
+        )
     elif isinstance(keys, Conjugate):
-        _refuse_direct_keys(c_P, c_l, gear, f"a conjugate profile, whose tooth thickness follows from {name}.backlash")
+        _refuse_direct_keys(
+            c_P,
+            c_l,
+            gear,
+            f"a conjugate profile, whose tooth thickness follows from {name}.backlash",
+        )
         profile = conjugate(keys, teeth, *partner, name)
     else:
         _refuse_direct_keys(
-            c_P, c_l, gear, f"an involute profile, whose tooth thickness follows from {gear}.profile.shift"
+            c_P,
+            c_l,
+            gear,
+            f"an involute profile, whose tooth thickness follows from {gear}.profile.shift",
         )
         profile = involute(_cutter(keys, teeth), name)
     try:
         check_flank(profile)
     except InputError as error:
-        sizes = ", ".join(f"{key} = {show(value)}" for key, value in keys if isinstance(value, float))
-        cutters = "; allowed are cutters that stay inside the tooth" if hasattr(keys, "cutter_radius") else ""
+        sizes = ", ".join(
+            f"{key} = {show(value)}" for key, value in keys if isinstance(value, float)
+        )
+        cutters = (
+            "; allowed are cutters that stay inside the tooth"
+            if hasattr(keys, "cutter_radius")
+            else ""
+        )
         raise InputError(f"{name} with {sizes} cannot be built: {error}{cutters}") from None
     return profile
 
 
 def _refuse_direct_keys(c_P: float, c_l: float, gear: str, other: str) -> None:
-    """Refuse values of keys that shape directly defined profiles only. other : the profile, and what replaces c_P"""
+    """Refuse values of keys that shape directly defined profiles only. other : the profile, and
+    what replaces c_P"""
     if c_P != 1.0:
         raise InputError(f"{gear}.c_P = {c_P:g} is out of range: allowed 1 with {other}")
     if c_l != 0.5:
         raise InputError(
-            f"{gear}.c_l = {c_l:g} is out of range: allowed 0.5 with {other.partition(',')[0]} (no straight segment)"
+            f"{gear}.c_l = {c_l:g} is out of range: allowed 0.5 with {other.partition(',')[0]} (no "
+            f"straight segment)"
         )
 
 
@@ -149,7 +189,9 @@ def _cutter(keys: RackInvolute | ShaperInvolute, teeth: Teeth) -> Cutter:
     if keys.pressure_angle is not None:
         sizes["pressure_angle"] = float(np.radians(keys.pressure_angle))
     cutter_teeth = keys.cutter_teeth if isinstance(keys, ShaperInvolute) else 0
-    return Cutter(**sizes, tip_radius=keys.cutter_radius, shift=keys.shift, cutter_teeth=cutter_teeth)
+    return Cutter(
+        **sizes, tip_radius=keys.cutter_radius, shift=keys.shift, cutter_teeth=cutter_teeth
+    )
 
 
 __all__ = [

@@ -1,7 +1,8 @@
-"""What to change where the keys of a profile give no flank: which length, in which direction, and a value that works.
+"""What to change where the keys of a profile give no flank: which length, in which direction, and a
+value that works.
 
-Each length of the section is varied alone, the other keys as they are. The range that works is found by building the
-flank, so that it is the range that passes.
+Each length of the section is varied alone, the other keys as they are. The range that works is
+found by building the flank, so that it is the range that passes.
 """
 
 from __future__ import annotations
@@ -41,7 +42,9 @@ class WorkingRange:
         return float(np.abs(np.log(np.clip(self.value, self.low, self.high) / self.value)))
 
 
-def advise(name: str, lengths: Mapping[str, float], builds: Callable[[str, float], bool], unit: float) -> str:
+def advise(
+    name: str, lengths: Mapping[str, float], builds: Callable[[str, float], bool], unit: float
+) -> str:
     """The end of a sentence that refuses a profile; empty where no length alone mends it.
 
     Parameters
@@ -61,14 +64,19 @@ def advise(name: str, lengths: Mapping[str, float], builds: Callable[[str, float
     best = min(ranges, key=lambda working: working.change)
     direction = "larger" if best.example > best.value else "smaller"
     return (
-        f"make {name}.{best.key} {direction}: allowed {show(best.low)} to {show(best.high)} mm with the other keys as "
+        f"make {name}.{best.key} {direction}: allowed {show(best.low)} to {show(best.high)} mm "
+        f"with the other keys as "
         f"they are, for example {show(best.example)}"
     )
 
 
 def working_range(key: str, value: float, builds: Builds, unit: float) -> WorkingRange | None:
     """The range nearest to `value` in which `builds` holds; None where no sample of it works."""
-    samples = value * np.geomspace(1.0 / SPAN, SPAN, SAMPLES) if value > 0.0 else unit * np.linspace(0.0, 2.0, SAMPLES)
+    samples = (
+        value * np.geomspace(1.0 / SPAN, SPAN, SAMPLES)
+        if value > 0.0
+        else unit * np.linspace(0.0, 2.0, SAMPLES)
+    )
     works = np.array([builds(float(x)) for x in samples])
     if not works.any():
         return None
@@ -76,7 +84,10 @@ def working_range(key: str, value: float, builds: Builds, unit: float) -> Workin
     nearest = int(np.flatnonzero(works)[np.abs(np.flatnonzero(works) - middle).argmin()])
     # the samples around it that all work
     bad = np.flatnonzero(~works)
-    first, last = bad[bad < nearest].max(initial=-1) + 1, bad[bad > nearest].min(initial=SAMPLES) - 1
+    first, last = (
+        bad[bad < nearest].max(initial=-1) + 1,
+        bad[bad > nearest].min(initial=SAMPLES) - 1,
+    )
     low = samples[0] if first == 0 else _end(builds, samples[first - 1], samples[first])
     high = samples[-1] if last == SAMPLES - 1 else _end(builds, samples[last + 1], samples[last])
     # a few digits, rounded into the range
@@ -87,7 +98,9 @@ def working_range(key: str, value: float, builds: Builds, unit: float) -> Workin
     near, far = (low, high) if value <= low else (high, low)
     example = near * (far / near) ** 0.1 if min(near, far) > 0.0 else near + 0.1 * (far - near)
     example = _inward(example, low, high, up=far > near)
-    return WorkingRange(key, value, low, high, example if builds(example) else float(samples[nearest]))
+    return WorkingRange(
+        key, value, low, high, example if builds(example) else float(samples[nearest])
+    )
 
 
 def _end(builds: Builds, bad: float, good: float) -> float:

@@ -1,14 +1,16 @@
-"""Conjugate flank: the envelope of the other gear's flank in the motion that the cam gives its tooth.
+"""Conjugate flank: the envelope of the other gear's flank in the motion that the cam gives its
+tooth.
 
-The other flank is z(s), with tangents of angle phi and curvature kappa = dphi/ds, and moves as c(psi) + exp(i alpha) z
-(`ToothMotion`). With v = exp(-i alpha) c' + i alpha' z, the velocity in the moving frame, and its parts v_t along the
-tangent and v_n across, contact is where v_n(s, psi) = 0. By implicit differentiation
+The other flank is z(s), with tangents of angle phi and curvature kappa = dphi/ds, and moves as
+c(psi) + exp(i alpha) z (`ToothMotion`). With v = exp(-i alpha) c' + i alpha' z, the velocity in the
+moving frame, and its parts v_t along the tangent and v_n across, contact is where v_n(s, psi) = 0.
+By implicit differentiation
 
     psi' = -(alpha' - kappa v_t) / (d v_n / d psi),  arc length rate sigma = 1 + v_t psi',
     curvature = (kappa + alpha' psi') / sigma.
 
-So points, tangents and curvatures are exact. sigma <= 0 is undercut. A tangent and an arc lead to the root circle. At
-the tip there may be an arc of relief and a rounded edge.
+So points, tangents and curvatures are exact. sigma <= 0 is undercut. A tangent and an arc lead to
+the root circle. At the tip there may be an arc of relief and a rounded edge.
 """
 
 from __future__ import annotations
@@ -37,7 +39,8 @@ PIECE_STATIONS = 65
 """Stations on a segment of the other flank between which the angle of contact is interpolated."""
 
 REACH = np.radians(160.0)
-"""Angle from the major axis, to both sides, in which contact is looked for, times the number of lobes."""
+"""Angle from the major axis, to both sides, in which contact is looked for, times the number of
+lobes."""
 
 DEEPEST = 1e-6
 """Overlap of the flanks over the module that counts as interference."""
@@ -48,7 +51,8 @@ class Contacts:
     """Points of the given flank, s, at angles psi of the motion.
 
     psi, psi_rate : (n,) rad and its derivative by s where they touch
-    point : (n,) complex, mm;  angle, angle_rate : (n,) rad, of the tangent from tip to root, and its derivative by s
+    point : (n,) complex, mm;  angle, angle_rate : (n,) rad, of the tangent from tip to root, and
+    its derivative by s
     speed : (n,) arc length of the envelope by that of the given flank
     value, slope : (n,) mm, velocity across the flank, 0 where they touch, and its derivative by psi
     """
@@ -85,7 +89,8 @@ class Envelope:
         return pose if self.given.external else pose.inverse()
 
     def contacts(self, segment: FlankSegment, s: Floats, psi: Floats) -> Contacts:
-        """State of the points `s` (n,) mm of a segment of the given flank, at the angles psi (n,) rad."""
+        """State of the points `s` (n,) mm of a segment of the given flank, at the angles psi (n,)
+        rad."""
         x, y = segment.point(s).T
         z, phi, kappa = x + 1j * y, segment.angle(s), segment.signed_curvature(s)
         half_pitch = np.pi / self.motion.teeth_rg
@@ -128,20 +133,29 @@ class Envelope:
 
     def _at(self, s: float, psi: float) -> Contacts:
         """The same at one arc length of the whole given flank."""
-        index = int(np.clip(np.searchsorted(self.given.breaks, s) - 1, 0, len(self.given.segments) - 1))
-        return self.solved(self.given.segments[index], np.array([s - self.given.breaks[index]]), np.array([psi]))
+        index = int(
+            np.clip(np.searchsorted(self.given.breaks, s) - 1, 0, len(self.given.segments) - 1)
+        )
+        return self.solved(
+            self.given.segments[index], np.array([s - self.given.breaks[index]]), np.array([psi])
+        )
 
     @cached_property
     def branch(self) -> tuple[Floats, Floats]:
-        """Arc lengths (n,) mm of the given flank and the angles (n,) rad of their contacts, next to the major axis.
+        """Arc lengths (n,) mm of the given flank and the angles (n,) rad of their contacts, next to
+        the major axis.
 
-        They are followed from the middle of the flank as far as the envelope runs without a cusp. Empty where the
-        middle never touches.
+        They are followed from the middle of the flank as far as the envelope runs without a cusp.
+        Empty where the middle never touches.
         """
         s, middle = np.linspace(0.0, self.given.length, STATIONS), STATIONS // 2
         reach = REACH / self.motion.line.lobes
         psi = np.linspace(-reach, reach, 1601)
-        index = int(np.clip(np.searchsorted(self.given.breaks, s[middle]) - 1, 0, len(self.given.segments) - 1))
+        index = int(
+            np.clip(
+                np.searchsorted(self.given.breaks, s[middle]) - 1, 0, len(self.given.segments) - 1
+            )
+        )
         local = np.full_like(psi, s[middle] - self.given.breaks[index])
         value = self.contacts(self.given.segments[index], local, psi).value
         changes = np.flatnonzero(np.sign(value[1:]) != np.sign(value[:-1]))
@@ -160,12 +174,14 @@ class Envelope:
         return s[known], psi_of[known]
 
     def point(self, s: float) -> tuple[complex, float]:
-        """Point, mm, and tangent angle, rad, from tip to root, at the arc length s, mm, of the given flank."""
+        """Point, mm, and tangent angle, rad, from tip to root, at the arc length s, mm, of the
+        given flank."""
         contact = self._at(s, float(np.interp(s, *self.branch)))
         return complex(contact.point[0]), float(contact.angle[0])
 
     def piece(self, index: int, low: float, high: float) -> CurvedSegment:
-        """Piece of the given segment `index` between its local arc lengths `low` and `high`, mm, from tip to root."""
+        """Piece of the given segment `index` between its local arc lengths `low` and `high`, mm,
+        from tip to root."""
         segment, begin = self.given.segments[index], float(self.given.breaks[index])
         s = np.linspace(low, high, PIECE_STATIONS)
         contacts = self.solved(segment, s, np.interp(begin + s, *self.branch))
@@ -176,12 +192,15 @@ class Envelope:
             s = high + (low - high) * t
             contacts = self.contacts(segment, s, psi(s))
             point, span = np.stack((contacts.point.real, contacts.point.imag), axis=-1), low - high
-            return CurvePoints(point, contacts.angle, np.abs(span * contacts.speed), span * contacts.angle_rate)
+            return CurvePoints(
+                point, contacts.angle, np.abs(span * contacts.speed), span * contacts.angle_rate
+            )
 
         return CurvedSegment("conjugate", evaluate)
 
     def pieces(self, low: float, high: float) -> list[Segment | CurvedSegment]:
-        """Segments between two arc lengths, mm, of the given flank, from the tip to the root of the envelope."""
+        """Segments between two arc lengths, mm, of the given flank, from the tip to the root of the
+        envelope."""
         pieces: list[Segment | CurvedSegment] = []
         for index in range(len(self.given.segments) - 1, -1, -1):
             begin, end = self.given.breaks[index : index + 2]
@@ -201,7 +220,8 @@ def _start(point: complex) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class _Maker:
-    """Puts the flank together. sign : +1 for external teeth;  tip, root : mm, radii of the circles"""
+    """Puts the flank together. sign : +1 for external teeth;  tip, root : mm, radii of the
+    circles"""
 
     envelope: Envelope
     keys: Conjugate
@@ -217,8 +237,10 @@ class _Maker:
 
     def undercut(self) -> NoReturn:
         raise InputError(
-            f"{self.name}: the envelope of the other gear's flank ends in an undercut before it reaches from the tip "
-            "to the root: allowed are larger pressure angles and other profiles of the other gear, whose whole "
+            f"{self.name}: the envelope of the other gear's flank ends in an undercut before it "
+            f"reaches from the tip "
+            "to the root: allowed are larger pressure angles and other profiles of the other gear, "
+            "whose whole "
             "flank comes into contact"
         )
 
@@ -233,7 +255,8 @@ class _Maker:
         return float(brentq(beyond, low, high, xtol=1e-13))
 
     def build(self, low: float, high: float) -> list[Segment | CurvedSegment]:
-        """Segments from tip to root; `low`, `high` : arc lengths of the given flank that may touch."""
+        """Segments from tip to root; `low`, `high` : arc lengths of the given flank that may
+        touch."""
         top = self.crossing(self.tip, low, high)
         base: list[Segment | CurvedSegment] = []
         if self.keys.relief:
@@ -245,7 +268,8 @@ class _Maker:
         return (self._rounded(base) if self.keys.r_tip else base) + ending
 
     def _relief(self, begin: float, top: float) -> tuple[float, Segment]:
-        """Arc tangent at `begin` that reaches the addendum circle by the relief inside of the envelope."""
+        """Arc tangent at `begin` that reaches the addendum circle by the relief inside of the
+        envelope."""
         (point, angle), edge = self.envelope.point(begin), self.envelope.point(top)[0]
         chord = edge * _vector(self.keys.relief / self.tip) - point
         # the angle between a tangent and a chord is half of the arc's
@@ -253,25 +277,33 @@ class _Maker:
         if not 0.0 < self.sign * half < 0.5:
             raise InputError(
                 f"{self.name}.relief = {self.keys.relief:g} is out of range with relief_height = "
-                f"{self.keys.relief_height:g}: allowed are other values, for which an arc bends from the flank into "
+                f"{self.keys.relief_height:g}: allowed are other values, for which an arc bends "
+                f"from the flank into "
                 "the tooth"
             )
         curvature = -2.0 * np.sin(half) / abs(chord)
-        return begin, Segment("relief", _start(point + chord), angle + 2.0 * half, curvature, -2.0 * half / curvature)
+        return begin, Segment(
+            "relief", _start(point + chord), angle + 2.0 * half, curvature, -2.0 * half / curvature
+        )
 
-    def _arc(self, name: str, radius: float, begin: float, end: float, convex: bool, center: complex) -> Segment:
-        """Arc about `center` between tangents of two angles, rad; refused when it would run backwards."""
+    def _arc(
+        self, name: str, radius: float, begin: float, end: float, convex: bool, center: complex
+    ) -> Segment:
+        """Arc about `center` between tangents of two angles, rad; refused when it would run
+        backwards."""
         curvature = (-self.sign if convex else self.sign) / radius
         turn = float(np.angle(np.exp(1j * (end - begin))))
         if turn * curvature < 0.0:
             raise InputError(
-                f"{self.name}.r_{name} = {radius:g}: the {name} arc would run backwards: allowed are other radii"
+                f"{self.name}.r_{name} = {radius:g}: the {name} arc would run backwards: allowed "
+                f"are other radii"
             )
         start = center + (1.0 if convex else -1.0) * radius * self.normal(begin)
         return Segment(name, _start(start), begin, curvature, turn / curvature)
 
     def _root(self, low: float, top: float) -> tuple[float, list[Segment | CurvedSegment]]:
-        """Where the envelope ends, and the tangent and the arc from there to the dedendum circle."""
+        """Where the envelope ends, and the tangent and the arc from there to the dedendum
+        circle."""
         radius, reach = self.keys.r_root, self.root + self.sign * self.keys.r_root
 
         def center(s: float) -> tuple[complex, float]:
@@ -297,37 +329,56 @@ class _Maker:
         middle += length * line
         outward = self.sign * middle / abs(middle)
         end = float(np.angle(outward / (self.sign * 1j)))
-        ending: list[Segment | CurvedSegment] = [self._arc("root", radius, angle, end, False, middle)]
+        ending: list[Segment | CurvedSegment] = [
+            self._arc("root", radius, angle, end, False, middle)
+        ]
         if length > 1e-9 * self.module:
-            ending.insert(0, Segment("tangent", _start(self.envelope.point(bottom)[0]), angle, 0.0, length))
+            ending.insert(
+                0, Segment("tangent", _start(self.envelope.point(bottom)[0]), angle, 0.0, length)
+            )
         return bottom, ending
 
     def _refuse_root(self) -> NoReturn:
         raise InputError(
-            f"{self.name}.r_root = {self.keys.r_root:g} is out of range: allowed are smaller radii, whose arc reaches "
+            f"{self.name}.r_root = {self.keys.r_root:g} is out of range: allowed are smaller "
+            f"radii, whose arc reaches "
             "the dedendum circle from the flank"
         )
 
     def _rounded(self, base: list[Segment | CurvedSegment]) -> list[Segment | CurvedSegment]:
-        """The segments with their tip edge replaced by an arc that is tangent to the addendum circle."""
+        """The segments with their tip edge replaced by an arc that is tangent to the addendum
+        circle."""
         radius = self.keys.r_tip
         for index, segment in enumerate(base):
 
             def short(s: float, segment: Segment | CurvedSegment = segment) -> float:
-                (x, y), angle = segment.point(np.array([s]))[0], float(segment.angle(np.array([s]))[0])
-                return self.sign * (abs(x + 1j * y - radius * self.normal(angle)) - self.tip) + radius
+                (x, y), angle = (
+                    segment.point(np.array([s]))[0],
+                    float(segment.angle(np.array([s]))[0]),
+                )
+                return (
+                    self.sign * (abs(x + 1j * y - radius * self.normal(angle)) - self.tip) + radius
+                )
 
             if short(segment.length) > 0.0:
                 continue
             if short(0.0) < 0.0:
                 break
             cut = float(brentq(short, 0.0, segment.length, xtol=1e-13))
-            (x, y), angle = segment.point(np.array([cut]))[0], float(segment.angle(np.array([cut]))[0])
+            (x, y), angle = (
+                segment.point(np.array([cut]))[0],
+                float(segment.angle(np.array([cut]))[0]),
+            )
             center = x + 1j * y - radius * self.normal(angle)
             begin = float(np.angle(self.sign * center / abs(center) / (self.sign * 1j)))
-            return [self._arc("tip", radius, begin, angle, True, center), _shortened(segment, cut), *base[index + 1 :]]
+            return [
+                self._arc("tip", radius, begin, angle, True, center),
+                _shortened(segment, cut),
+                *base[index + 1 :],
+            ]
         raise InputError(
-            f"{self.name}.r_tip = {radius:g} is out of range: allowed are smaller radii, whose arc touches the flank "
+            f"{self.name}.r_tip = {radius:g} is out of range: allowed are smaller radii, whose arc "
+            f"touches the flank "
             "and the addendum circle"
         )
 
@@ -338,13 +389,19 @@ def _shortened(segment: Segment | CurvedSegment, cut: float) -> Segment | Curved
         start = segment.point(np.array([cut]))[0]
         direction = float(segment.angle(np.array([cut]))[0])
         return Segment(
-            segment.name, (float(start[0]), float(start[1])), direction, segment.curvature, segment.length - cut
+            segment.name,
+            (float(start[0]), float(start[1])),
+            direction,
+            segment.curvature,
+            segment.length - cut,
         )
     first = float(segment.parameter(np.array([cut]))[0])
 
     def evaluate(t: Floats) -> CurvePoints:
         curve = segment.evaluate(first + (1.0 - first) * t)
-        return CurvePoints(curve.point, curve.angle, (1.0 - first) * curve.speed, (1.0 - first) * curve.angle_rate)
+        return CurvePoints(
+            curve.point, curve.angle, (1.0 - first) * curve.speed, (1.0 - first) * curve.angle_rate
+        )
 
     return CurvedSegment(segment.name, evaluate)
 
@@ -355,8 +412,8 @@ def conjugate(
 ) -> ToothProfile:
     """Build the flank that touches `given`, the other gear's, in every position of `motion`.
 
-    name : section of the design file, for messages. Raises InputError for undercut, interference, and radii that do not
-    fit.
+    name : section of the design file, for messages. Raises InputError for undercut, interference,
+    and radii that do not fit.
     """
     sign = teeth.sign
     tip, root = teeth.r_pitch + sign * teeth.addendum, teeth.r_pitch - sign * teeth.dedendum
@@ -376,8 +433,10 @@ def conjugate(
     deepest = int(np.argmin(gaps))
     if gaps[deepest] < -DEEPEST * teeth.module:
         raise InputError(
-            f"{name}: at {np.degrees(psi[deepest]):.1f} degrees from the major axis the flanks overlap by "
-            f"{-gaps[deepest]:.3g} mm: allowed are lower teeth, larger pressure angles and other profiles of the "
+            f"{name}: at {np.degrees(psi[deepest]):.1f} degrees from the major axis the flanks "
+            f"overlap by "
+            f"{-gaps[deepest]:.3g} mm: allowed are lower teeth, larger pressure angles and other "
+            f"profiles of the "
             "other gear, whose other parts stay clear of the envelope"
         )
     return profile

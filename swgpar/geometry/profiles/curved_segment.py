@@ -13,14 +13,16 @@ from scipy.spatial import cKDTree
 from swgpar.geometry.arrays import Floats
 
 PANELS, ORDER = 64, 6
-"""Panels of the arc length's table and Gauss points in each: round-off for the smooth curves of a tooth."""
+"""Panels of the arc length's table and Gauss points in each: round-off for the smooth curves of a
+tooth."""
 
 
 @dataclass(frozen=True)
 class CurvePoints:
     """A curve at parameters t (n,).
 
-    point : (n, 2) mm;  angle : (n,) rad, of the tangents;  speed : (n,) mm, |dx/dt|;  angle_rate : (n,) rad, d angle/dt
+    point : (n, 2) mm;  angle : (n,) rad, of the tangents;  speed : (n,) mm, |dx/dt|;  angle_rate :
+    (n,) rad, d angle/dt
     """
 
     point: Floats
@@ -37,7 +39,8 @@ class CurvedSegment:
     ----------
     name : str
     evaluate : callable
-        Gives the `CurvePoints` at parameters (n,); exact, defined a little beyond 0 and 1, with a speed above 0.
+        Gives the `CurvePoints` at parameters (n,); exact, defined a little beyond 0 and 1, with a
+        speed above 0.
     """
 
     name: str
@@ -45,9 +48,12 @@ class CurvedSegment:
 
     @cached_property
     def _table(self) -> tuple[Floats, Floats]:
-        """Gauss points and weights on (0, 1), and arc lengths (PANELS + 1,), mm, at the ends of the panels."""
+        """Gauss points and weights on (0, 1), and arc lengths (PANELS + 1,), mm, at the ends of the
+        panels."""
         point, weight = np.polynomial.legendre.leggauss(ORDER)
-        return np.stack((0.5 * (point + 1.0), 0.5 * weight)), self._lengths(0.5 * (point + 1.0), 0.5 * weight)
+        return np.stack((0.5 * (point + 1.0), 0.5 * weight)), self._lengths(
+            0.5 * (point + 1.0), 0.5 * weight
+        )
 
     def _lengths(self, point: Floats, weight: Floats) -> Floats:
         start = np.arange(PANELS)[:, None] / PANELS
@@ -73,7 +79,8 @@ class CurvedSegment:
         return CubicHermiteSpline(ends, t, 1.0 / self.evaluate(t).speed)
 
     def parameter(self, s: Floats) -> Floats:
-        """Return the parameters (n,) at the arc lengths `s` : (n,) mm, by Newton's method from the table."""
+        """Return the parameters (n,) at the arc lengths `s` : (n,) mm, by Newton's method from the
+        table."""
         s = np.asarray(s, dtype=np.float64)
         t = self._inverse(s)
         for _ in range(6):
@@ -101,7 +108,8 @@ class CurvedSegment:
         return cKDTree(self.evaluate(np.linspace(0.0, 1.0, 257)).point)
 
     def nearest(self, points: Floats) -> Floats:
-        """Return the local arc length (n,), mm, of the point of the segment nearest to `points` (n, 2), mm."""
+        """Return the local arc length (n,), mm, of the point of the segment nearest to `points` (n,
+        2), mm."""
         t = self._samples.query(points)[1] / 256.0
         moving = np.arange(len(points))  # points whose iteration goes on
         for _ in range(20):

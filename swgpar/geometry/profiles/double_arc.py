@@ -1,8 +1,8 @@
 """The double-circular-arc (DCA) flank: addendum, straight and dedendum (section 3.3.2).
 
-The dedendum arc is the fillet: it is tangent to the dedendum circle, |O_d| - s r_d = r_D with O_d = P - (1 - c_l) l t +
-r_d n(alpha*), and this gives the length l of the straight segment (eq. 3.39). The addendum arc runs to the addendum
-circle and meets it at an edge.
+The dedendum arc is the fillet: it is tangent to the dedendum circle, |O_d| - s r_d = r_D with O_d =
+P - (1 - c_l) l t + r_d n(alpha*), and this gives the length l of the straight segment (eq. 3.39).
+The addendum arc runs to the addendum circle and meets it at an edge.
 """
 
 from __future__ import annotations
@@ -14,11 +14,14 @@ from swgpar.geometry.profiles.flank import ToothProfile
 from swgpar.geometry.profiles.pitch_point import PitchPointFrame
 
 
-def straight_length(frame: PitchPointFrame, c_l: float, r_dedendum: float, name: str = "profile") -> float:
+def straight_length(
+    frame: PitchPointFrame, c_l: float, r_dedendum: float, name: str = "profile"
+) -> float:
     """Length l of the straight segment, mm; refuses radii that leave none."""
     if c_l >= 1.0:
         raise InputError(
-            f"{name.rpartition('.')[0]}.c_l = {c_l:g} is out of range: allowed 0 to below 1 with a double_arc profile"
+            f"{name.rpartition('.')[0]}.c_l = {c_l:g} is out of range: allowed 0 to below 1 with a "
+            f"double_arc profile"
         )
     s = frame.sign
     center = frame.pitch_point + r_dedendum * frame.normal(frame.base_angle)
@@ -28,14 +31,17 @@ def straight_length(frame: PitchPointFrame, c_l: float, r_dedendum: float, name:
     square = along**2 - float(center @ center) + target**2
     depth = along - s * np.sqrt(square) if square >= 0.0 and target > 0.0 else -1.0
     if depth < 0.0:
-        raise InputError(f"{name}.r_dedendum = {r_dedendum:g} leaves no straight segment between the arcs")
+        raise InputError(
+            f"{name}.r_dedendum = {r_dedendum:g} leaves no straight segment between the arcs"
+        )
     return float(depth / (1.0 - c_l))
 
 
 def double_arc(
     frame: PitchPointFrame, c_l: float, r_addendum: float, r_dedendum: float, name: str = "profile"
 ) -> ToothProfile:
-    """Build the flank; lengths in mm, `c_l` is the share of the straight segment above the pitch point."""
+    """Build the flank; lengths in mm, `c_l` is the share of the straight segment above the pitch
+    point."""
     length = straight_length(frame, c_l, r_dedendum, name)
     s, star, n = frame.sign, frame.base_angle, frame.normal
     top, bottom = (
@@ -43,16 +49,25 @@ def double_arc(
         frame.pitch_point - (1.0 - c_l) * length * frame.towards_tip,
     )
     o_a, o_d = top - r_addendum * n(star), bottom + r_dedendum * n(star)
-    # |O_a + r_a n(beta)| = r_A (eqs 3.36, 3.39), with O_a at the inclination beta_a and the distance |O_a|
+    # |O_a + r_a n(beta)| = r_A (eqs 3.36, 3.39), with O_a at the inclination beta_a and the
+    # distance |O_a|
     reach = float(np.hypot(*o_a))
     cosine = (frame.r_tip_circle**2 - reach**2 - r_addendum**2) / (2.0 * reach * r_addendum)
     if abs(cosine) > 1.0:
-        raise InputError(f"{name}.r_addendum = {r_addendum:g}: its arc does not reach the addendum circle")
+        raise InputError(
+            f"{name}.r_addendum = {r_addendum:g}: its arc does not reach the addendum circle"
+        )
     beta_a = float(np.arctan2(s * o_a[1], o_a[0]))
     beta_t = beta_a - s * float(np.arccos(cosine))
     beta_r = frame.inclination(o_d)
     pieces = [
-        ("addendum", o_a + r_addendum * n(beta_t), beta_t, 1.0 / r_addendum, r_addendum * (beta_t - star)),
+        (
+            "addendum",
+            o_a + r_addendum * n(beta_t),
+            beta_t,
+            1.0 / r_addendum,
+            r_addendum * (beta_t - star),
+        ),
         ("straight", top, star, 0.0, length),
         ("dedendum", bottom, star, -1.0 / r_dedendum, r_dedendum * (beta_r - star)),
     ]

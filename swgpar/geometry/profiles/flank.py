@@ -15,7 +15,8 @@ from swgpar.geometry.arrays import Floats
 
 
 class FlankSegment(Protocol):
-    """A smooth piece of a flank, run through from the tip towards the root; local arc lengths s in mm."""
+    """A smooth piece of a flank, run through from the tip towards the root; local arc lengths s in
+    mm."""
 
     @property
     def name(self) -> str:
@@ -35,7 +36,8 @@ class FlankSegment(Protocol):
         """Change of that angle per arc length (n,), 1/mm, at `s` : (n,)."""
 
     def nearest(self, points: Floats) -> Floats:
-        """Local arc lengths (n,), mm, of the points of the segment nearest to `points` (n, 2), mm."""
+        """Local arc lengths (n,), mm, of the points of the segment nearest to `points` (n, 2),
+        mm."""
 
 
 @dataclass(frozen=True)
@@ -76,17 +78,22 @@ class Segment:
         # chord of an arc: exact for any curvature, the straight line included
         chord = s * np.sinc(half / np.pi)
         middle = self.direction + half
-        return np.stack((self.start[0] + chord * np.cos(middle), self.start[1] + chord * np.sin(middle)), axis=-1)
+        return np.stack(
+            (self.start[0] + chord * np.cos(middle), self.start[1] + chord * np.sin(middle)),
+            axis=-1,
+        )
 
     def nearest(self, points: Floats) -> Floats:
-        """Return the local arc length (n,), mm, of the point of the segment nearest to `points` (n, 2), mm."""
+        """Return the local arc length (n,), mm, of the point of the segment nearest to `points` (n,
+        2), mm."""
         offset = points - np.asarray(self.start)
         tangent = np.array((np.cos(self.direction), np.sin(self.direction)))
         along = offset @ tangent
         across = offset @ np.array((-tangent[1], tangent[0]))
         if self.curvature == 0.0:
             return np.clip(along, 0.0, self.length)
-        # polar angle about the centre of the arc, measured from the middle of the arc so that the cut lies opposite
+        # polar angle about the centre of the arc, measured from the middle of the arc so that the
+        # cut lies opposite
         radius = 1.0 / self.curvature
         angle = np.arctan2(along * np.sign(radius), (radius - across) * np.sign(radius))
         middle = 0.5 * self.curvature * self.length
@@ -128,16 +135,20 @@ class ToothProfile:
 
     @property
     def _side(self) -> float:
-        # the outward normal is the tangent rotated by +90 degrees on external teeth, by -90 degrees on internal ones
+        # the outward normal is the tangent rotated by +90 degrees on external teeth, by -90 degrees
+        # on internal ones
         return 1.0 if self.external else -1.0
 
     def _split(self, s: ArrayLike) -> tuple[Floats, NDArray[np.intp], Floats]:
         s = np.atleast_1d(np.asarray(s, dtype=np.float64))
-        index = np.clip(np.searchsorted(self.breaks, s, side="right") - 1, 0, len(self.segments) - 1)
+        index = np.clip(
+            np.searchsorted(self.breaks, s, side="right") - 1, 0, len(self.segments) - 1
+        )
         return s, index, s - self.breaks[index]
 
     def _gather(self, quantity: str, s: ArrayLike, *shape: int) -> Floats:
-        """Values (n, *shape) of the segments' method `quantity` at the arc lengths `s` (n,) that lie on them."""
+        """Values (n, *shape) of the segments' method `quantity` at the arc lengths `s` (n,) that
+        lie on them."""
         s, index, local = self._split(s)
         values = np.empty((s.size, *shape))
         for k, segment in enumerate(self.segments):
@@ -161,14 +172,16 @@ class ToothProfile:
         return self._side * np.stack((-np.sin(direction), np.cos(direction)), axis=-1)
 
     def curvature(self, s: ArrayLike) -> Floats:
-        """Return the curvature (n,), 1/mm: d tangent / d s = curvature * normal; negative where convex."""
+        """Return the curvature (n,), 1/mm: d tangent / d s = curvature * normal; negative where
+        convex."""
         return self._side * self._gather("signed_curvature", s)
 
     def crowning_weight(self, s: ArrayLike) -> Floats:
         """Return the share (n,) of the crowning that is applied at the arc lengths `s` : (n,) mm.
 
-        One on the active profile; it falls to zero along the last segment towards R, with continuous slope, so that
-        the root circle stays where it is, and along a rounded tip edge towards T. A sharp edge is crowned in full.
+        One on the active profile; it falls to zero along the last segment towards R, with
+        continuous slope, so that the root circle stays where it is, and along a rounded tip edge
+        towards T. A sharp edge is crowned in full.
         """
         s, index, local = self._split(s)
         weight = np.ones_like(s)
@@ -204,23 +217,30 @@ class ToothProfile:
             best[closer] = gap[closer]
             foot[closer] = begin + local[closer]
         side = np.einsum("ij,ij->i", points - self.point(foot), self.normal(foot))
-        # the normal of a sharp tip end does not tell a point in the tooth from one over its top land
+        # the normal of a sharp tip end does not tell a point in the tooth from one over its top
+        # land
         beyond = self._side * (np.linalg.norm(points, axis=1) - self.r_tip_circle) >= 0.0
         side[(foot == 0.0) & beyond] = 1.0
         return np.copysign(best, side), foot
 
     def polar_angle(self, s: ArrayLike) -> Floats:
-        """Return the angle (n,), rad, between the tooth's centre line and the points at `s` : (n,) mm."""
+        """Return the angle (n,), rad, between the tooth's centre line and the points at `s` : (n,)
+        mm."""
         x, y = self.point(s).T
         return np.arctan2(x, y)
 
     def thickness(self, radius: float) -> float:
-        """Return the thickness of the tooth along the circle of `radius`, mm, that its flank crosses once."""
+        """Return the thickness of the tooth along the circle of `radius`, mm, that its flank
+        crosses once."""
 
         def beyond(s: float) -> float:
             return float(np.hypot(*self.point(s)[0])) - radius
 
-        return 2.0 * radius * float(self.polar_angle(brentq(beyond, 0.0, self.length, xtol=1e-14 * radius))[0])
+        return (
+            2.0
+            * radius
+            * float(self.polar_angle(brentq(beyond, 0.0, self.length, xtol=1e-14 * radius))[0])
+        )
 
     @property
     def top_land(self) -> float:
@@ -235,7 +255,8 @@ class ToothProfile:
 
 
 def check_flank(profile: ToothProfile, tolerance: float = 1e-9) -> None:
-    """Refuse a flank that is no flank: broken tangents, folded back, or outside its half tooth sector.
+    """Refuse a flank that is no flank: broken tangents, folded back, or outside its half tooth
+    sector.
 
     Parameters
     ----------

@@ -1,12 +1,17 @@
-"""The involute flank with its fillet: external teeth cut by a rack, internal ones by a shaper (section 3.3.1).
+"""The involute flank with its fillet: external teeth cut by a rack, internal ones by a shaper
+(section 3.3.1).
 
-Generation about the pitch point I, with the gear's axis at (0, -r_P) from it: while the gear turns clockwise by psi
-(the generating angle) the rack moves by r_P psi, or the shaper turns by psi N / N_g (eq. 3.15). By the equation of
-meshing (eq. 3.14) the cutter touches the gear where its normal passes through I. So
+Generation about the pitch point I, with the gear's axis at (0, -r_P) from it: while the gear turns
+clockwise by psi (the generating angle) the rack moves by r_P psi, or the shaper turns by psi N /
+N_g (eq. 3.15). By the equation of meshing (eq. 3.14) the cutter touches the gear where its normal
+passes through I. So
 
-- the straight flank of the rack and the shaper's involute, of pressure angle alpha, touch at K = w n with
-  n = (cos alpha, s sin alpha), w = r_b (psi + alpha_P), where alpha_P is half the angular thickness of the tooth;
-- the rounded tip of the cutter, of radius rho about C(psi), touches at K = C (1 + rho / |C|) with n = -C / |C|.
+- the straight flank of the rack and the shaper's involute, of pressure angle alpha, touch at K = w
+n with
+  n = (cos alpha, s sin alpha), w = r_b (psi + alpha_P), where alpha_P is half the angular thickness
+  of the tooth;
+- the rounded tip of the cutter, of radius rho about C(psi), touches at K = C (1 + rho / |C|) with n
+= -C / |C|.
 
 The flank is x = R(psi) (K - O): K in the gear's frame. s = +1 for external, -1 for internal teeth.
 """
@@ -27,12 +32,14 @@ from swgpar.geometry.profiles.flank import ToothProfile
 from swgpar.geometry.profiles.teeth import Teeth
 
 Center = Callable[[Floats], tuple[Floats, Floats]]
-"""Centre C (n, 2) mm of the rounded tip of the cutter, and dC/dpsi (n, 2), at generating angles psi (n,)."""
+"""Centre C (n, 2) mm of the rounded tip of the cutter, and dC/dpsi (n, 2), at generating angles psi
+(n,)."""
 
 
 @dataclass(frozen=True)
 class Cutter(Teeth):
-    """Gear and cutter of the same reference profile: external teeth by a rack, internal ones by a shaper; mm.
+    """Gear and cutter of the same reference profile: external teeth by a rack, internal ones by a
+    shaper; mm.
 
     Attributes
     ----------
@@ -53,7 +60,9 @@ class Cutter(Teeth):
     @property
     def half_thickness(self) -> float:
         """Half the angular thickness of the gear's teeth at the pitch circle, alpha_P."""
-        return (0.5 * np.pi + 2.0 * self.sign * self.shift * np.tan(self.pressure_angle)) / self.n_teeth
+        return (
+            0.5 * np.pi + 2.0 * self.sign * self.shift * np.tan(self.pressure_angle)
+        ) / self.n_teeth
 
     @property
     def depth(self) -> float:
@@ -76,7 +85,8 @@ class Cutter(Teeth):
         return 0.5 * self.cutter_teeth * self.module
 
     def contact_distance(self, radius: float) -> float:
-        """Distance w from the pitch point, along the line of action, at which the involute reaches `radius`; mm."""
+        """Distance w from the pitch point, along the line of action, at which the involute reaches
+        `radius`; mm."""
         base = np.sqrt(radius**2 - self.r_base**2)
         return self.sign * (base - self.r_base * np.tan(self.pressure_angle))
 
@@ -85,18 +95,21 @@ def _check_tip(cut: Cutter, limit: float, name: str) -> None:
     """The rounding must leave the cutter's tooth a flat tip: below `limit`, mm."""
     if limit <= 0.0:
         raise InputError(
-            f"{name}.pressure_angle = {np.degrees(cut.pressure_angle):g} is out of range: allowed are smaller angles, "
+            f"{name}.pressure_angle = {np.degrees(cut.pressure_angle):g} is out of range: allowed "
+            f"are smaller angles, "
             "for which the cutter's tooth does not end in a point"
         )
     if cut.tip_radius >= limit:
         raise InputError(
-            f"{name}.cutter_radius = {cut.tip_radius:g} is out of range: allowed above 0 to below {limit:.6g} mm, "
+            f"{name}.cutter_radius = {cut.tip_radius:g} is out of range: allowed above 0 to below "
+            f"{limit:.6g} mm, "
             "where the cutter's tooth has no flat tip left"
         )
 
 
 def _rack_tip(cut: Cutter, name: str) -> tuple[float, float, Center]:
-    """Generating angles at the start and the end of the fillet, and C (n, 2) with dC/dpsi (n, 2)."""
+    """Generating angles at the start and the end of the fillet, and C (n, 2) with dC/dpsi (n,
+    2)."""
     tangent, rho = np.tan(cut.pressure_angle), cut.tip_radius
     rise = (1.0 - np.sin(cut.pressure_angle)) / np.cos(cut.pressure_angle)
     # centre of the rounding: from the tooth's centre line, and below the pitch line
@@ -108,7 +121,8 @@ def _rack_tip(cut: Cutter, name: str) -> tuple[float, float, Center]:
         c = np.stack((across + cut.r_pitch * psi, np.full_like(psi, -below)), axis=-1)
         return c, np.stack((np.full_like(psi, cut.r_pitch), np.zeros_like(psi)), axis=-1)
 
-    # psi = (c_x - across) / r_P; c_x = -below cot(alpha) where the normal is the flank's, 0 at the root
+    # psi = (c_x - across) / r_P; c_x = -below cot(alpha) where the normal is the flank's, 0 at the
+    # root
     return (-below / tangent - across) / cut.r_pitch, -across / cut.r_pitch, center
 
 
@@ -119,7 +133,8 @@ def _shaper_tip(cut: Cutter, name: str) -> tuple[float, float, Center]:
     r_c = r_g + cut.depth - rho
 
     def margin(radius: float) -> float:
-        """Polar angle between the middle of the shaper's tooth and the centre of a rounding of this radius."""
+        """Polar angle between the middle of the shaper's tooth and the centre of a rounding of this
+        radius."""
         roll = np.arccos(r_b / (r_g + cut.depth - radius))
         thickness = np.pi / cut.cutter_teeth - cut.half_thickness * ratio
         return thickness + np.tan(alpha) - alpha - (np.tan(roll) - roll) - radius / r_b
@@ -141,13 +156,15 @@ def _shaper_tip(cut: Cutter, name: str) -> tuple[float, float, Center]:
 
 
 Contact = Callable[[Floats], tuple[Floats, Floats, Floats, Floats]]
-"""K (n, 2) mm, dK/dpsi (n, 2), angle of the normal (n,) rad and its derivative (n,) at generating angles psi (n,)."""
+"""K (n, 2) mm, dK/dpsi (n, 2), angle of the normal (n,) rad and its derivative (n,) at generating
+angles psi (n,)."""
 
 
 def _curve(cut: Cutter, name: str, ends: tuple[float, float], contact: Contact) -> CurvedSegment:
     """Segment from the generating angle ends[0] to ends[1].
 
-    `contact` gives K (n, 2), dK/dpsi (n, 2), the angle of n in the fixed frame and its derivative (n,).
+    `contact` gives K (n, 2), dK/dpsi (n, 2), the angle of n in the fixed frame and its derivative
+    (n,).
     """
     first, span = ends[0], ends[1] - ends[0]
 
@@ -170,7 +187,8 @@ def _curve(cut: Cutter, name: str, ends: tuple[float, float], contact: Contact) 
 def involute(cut: Cutter, name: str = "profile") -> ToothProfile:
     """Build the flank: involute from the addendum circle, fillet down to the dedendum circle.
 
-    name : section of the design file, for messages. Raises InputError where gear and cutter give no flank.
+    name : section of the design file, for messages. Raises InputError where gear and cutter give no
+    flank.
     """
     _check_sizes(cut, name)
     s = cut.sign
@@ -186,13 +204,19 @@ def involute(cut: Cutter, name: str = "profile") -> ToothProfile:
     w_form = -float(np.hypot(*c)) - rho
     if r_b * np.tan(alpha) + s * w_form <= 0.0:
         raise InputError(
-            f"{name}.cutter_radius = {rho:g} undercuts the teeth: allowed are a larger radius, more teeth or a larger "
+            f"{name}.cutter_radius = {rho:g} undercuts the teeth: allowed are a larger radius, "
+            f"more teeth or a larger "
             "profile.shift, so that the involute begins above its base circle"
         )
 
     def flank(psi: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         k = (r_b * (psi + cut.half_thickness))[:, None] * normal
-        return k, np.broadcast_to(r_b * normal, k.shape), np.full_like(psi, s * alpha), np.zeros_like(psi)
+        return (
+            k,
+            np.broadcast_to(r_b * normal, k.shape),
+            np.full_like(psi, s * alpha),
+            np.zeros_like(psi),
+        )
 
     def fillet(psi: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         c, dc = center(psi)
@@ -214,23 +238,30 @@ def _check_sizes(cut: Cutter, name: str) -> None:
     """The base circle must lie inside the teeth, and the pitch circle must cross them."""
     if cut.r_tip_circle <= cut.r_base:
         raise InputError(
-            f"{name}.pressure_angle = {np.degrees(cut.pressure_angle):g} is out of range: allowed are angles whose "
-            f"base circle ({cut.r_base:.6g} mm) lies inside the addendum circle ({cut.r_tip_circle:.6g} mm)"
+            f"{name}.pressure_angle = {np.degrees(cut.pressure_angle):g} is out of range: allowed "
+            f"are angles whose "
+            f"base circle ({cut.r_base:.6g} mm) lies inside the addendum circle "
+            f"({cut.r_tip_circle:.6g} mm)"
         )
     if cut.depth <= 0.0 or cut.addendum + cut.sign * cut.shift * cut.module <= 0.0:
-        low, high = sorted((-cut.sign * cut.addendum / cut.module, cut.sign * cut.dedendum / cut.module))
+        low, high = sorted(
+            (-cut.sign * cut.addendum / cut.module, cut.sign * cut.dedendum / cut.module)
+        )
         raise InputError(
-            f"{name}.shift = {cut.shift:g} is out of range: allowed above {low:g} to below {high:g} modules, where the "
+            f"{name}.shift = {cut.shift:g} is out of range: allowed above {low:g} to below "
+            f"{high:g} modules, where the "
             "pitch circle crosses the teeth"
         )
 
 
 def _check_shaper(cut: Cutter, w_tip: float, name: str) -> None:
-    """The shaper's involute must exist where it cuts the ring's tips: above the shaper's own base circle."""
+    """The shaper's involute must exist where it cuts the ring's tips: above the shaper's own base
+    circle."""
     least = int(np.ceil(2.0 * w_tip / (cut.module * np.sin(cut.pressure_angle)) + 1e-9))
     if not least <= cut.cutter_teeth < cut.n_teeth:
         raise InputError(
-            f"{name}.cutter_teeth = {cut.cutter_teeth} is out of range: allowed {least} to {cut.n_teeth - 1} "
+            f"{name}.cutter_teeth = {cut.cutter_teeth} is out of range: allowed {least} to "
+            f"{cut.n_teeth - 1} "
             "(an involute down to the ring's tips, and a shaper smaller than the ring)"
         )
 
@@ -239,9 +270,14 @@ def _check_trimming(cut: Cutter, profile: ToothProfile, center: Center, name: st
     """The shaper's tips must pass the ring's tips without cutting them on their way in and out."""
     psi = np.linspace(-np.pi, np.pi, 7201) * cut.cutter_teeth / cut.n_teeth
     c = center(psi)[0] + (0.0, cut.r_pitch)
-    x, y = np.cos(psi) * c[:, 0] - np.sin(psi) * c[:, 1], np.sin(psi) * c[:, 0] + np.cos(psi) * c[:, 1]
+    x, y = (
+        np.cos(psi) * c[:, 0] - np.sin(psi) * c[:, 1],
+        np.sin(psi) * c[:, 0] + np.cos(psi) * c[:, 1],
+    )
     reach = np.hypot(x, y)
-    near = (reach > cut.r_tip_circle - cut.tip_radius) & (np.abs(np.arctan2(x, y)) < np.pi / cut.n_teeth)
+    near = (reach > cut.r_tip_circle - cut.tip_radius) & (
+        np.abs(np.arctan2(x, y)) < np.pi / cut.n_teeth
+    )
     points = np.stack((np.abs(x), y), axis=-1)[near]
     # short of the addendum circle only the edge of the top land can be met
     clear = np.where(
@@ -251,6 +287,7 @@ def _check_trimming(cut: Cutter, profile: ToothProfile, center: Center, name: st
     )
     if clear.min(initial=np.inf) < cut.tip_radius - 1e-6 * cut.module:
         raise InputError(
-            f"{name}.cutter_teeth = {cut.cutter_teeth} is out of range: allowed are fewer teeth, so that the shaper "
+            f"{name}.cutter_teeth = {cut.cutter_teeth} is out of range: allowed are fewer teeth, "
+            f"so that the shaper "
             "does not trim the tips of the ring's teeth"
         )

@@ -1,4 +1,5 @@
-"""The sections [flexible_spline.profile] and [ring_gear.profile]: one set of keys for each `type` of profile."""
+"""The sections [flexible_spline.profile] and [ring_gear.profile]: one set of keys for each `type`
+of profile."""
 
 from __future__ import annotations
 
@@ -33,7 +34,11 @@ class _Involute(Section):
 
     type: Literal["involute"] = quantity("involute", text="kind of profile")
     pressure_angle: float | None = quantity(
-        None, unit="deg", text="pressure angle of this gear; without it drive.pressure_angle", gt=0.0, lt=45.0
+        None,
+        unit="deg",
+        text="pressure angle of this gear; without it drive.pressure_angle",
+        gt=0.0,
+        lt=45.0,
     )
     cutter_radius: float = quantity(unit="mm", text="tip radius of the cutter's teeth", gt=0.0)
     shift: float = quantity(0.0, unit="modules", text="profile shift coefficient", ge=-1.0, le=1.0)
@@ -50,20 +55,26 @@ class ShaperInvolute(_Involute):
 
 
 class Conjugate(Section):
-    """The envelope of the other gear's flank in the motion of its tooth (docs/theory/conjugate.md)."""
+    """The envelope of the other gear's flank in the motion of its tooth
+    (docs/theory/conjugate.md)."""
 
     type: Literal["conjugate"] = quantity("conjugate", text="kind of profile")
     r_root: float = quantity(unit="mm", text="radius of the root arc", gt=0.0)
     r_tip: float = quantity(0.0, unit="mm", text="radius of the rounded tip edge; 0: sharp", ge=0.0)
     backlash: float = quantity(
-        0.0, unit="mm", text="circumferential backlash at the pitch circle, taken from this gear's teeth", ge=0.0
+        0.0,
+        unit="mm",
+        text="circumferential backlash at the pitch circle, taken from this gear's teeth",
+        ge=0.0,
     )
     relief: float = quantity(0.0, unit="mm", text="tip relief, along the addendum circle", ge=0.0)
     relief_height: float = quantity(
         0.2, unit="modules", text="height of the relieved part of the flank", gt=0.0, le=2.0
     )
     section: float = quantity(
-        0.0, unit="mm", text="axial coordinate of the cup's section whose motion counts; 0: mid-width"
+        0.0,
+        unit="mm",
+        text="axial coordinate of the cup's section whose motion counts; 0: mid-width",
     )
 
 

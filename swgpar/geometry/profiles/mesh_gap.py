@@ -1,4 +1,5 @@
-"""Gap between the flank of a moving tooth and the flank of the ring gear that it faces, both rigid."""
+"""Gap between the flank of a moving tooth and the flank of the ring gear that it faces, both
+rigid."""
 
 from __future__ import annotations
 
@@ -22,7 +23,8 @@ def smallest_gaps(
     rotation: Floats | float = 0.0,
     exact_below: float = np.inf,
 ) -> Floats:
-    """Smallest signed distance (n,) mm of the flexible spline's flank from the ring gear's, below 0 where they overlap.
+    """Smallest signed distance (n,) mm of the flexible spline's flank from the ring gear's, below 0
+    where they overlap.
 
     The flank is the one at x > 0 of the spline's tooth. inf where it is not in the slot.
 
@@ -46,7 +48,11 @@ def smallest_gaps(
     rough[np.abs(w) <= ring.r_tip_circle] = np.inf
     # the exact distance is computed for the nearest points only
     lowest = rough.min(axis=1)
-    near = (rough < lowest[:, None] + 2.0 * samples[1]) & (lowest < exact_below)[:, None] & np.isfinite(rough)
+    near = (
+        (rough < lowest[:, None] + 2.0 * samples[1])
+        & (lowest < exact_below)[:, None]
+        & np.isfinite(rough)
+    )
     gaps = np.where((lowest < exact_below)[:, None], np.inf, rough)
     if near.any():
         gaps[near] = ring.distance(points[near])[0]

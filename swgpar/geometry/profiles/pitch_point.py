@@ -11,7 +11,8 @@ from swgpar.geometry.profiles.flank import Segment, ToothProfile
 from swgpar.geometry.profiles.teeth import Teeth
 
 Piece = tuple[str, np.ndarray, float, float, float]
-"""Name, start, inclination, convexity and length of a segment, as `PitchPointFrame.segment` takes them."""
+"""Name, start, inclination, convexity and length of a segment, as `PitchPointFrame.segment` takes
+them."""
 
 
 @dataclass(frozen=True)
@@ -61,25 +62,43 @@ class PitchPointFrame(Teeth):
         return np.array([np.cos(beta), self.sign * np.sin(beta)])
 
     def inclination(self, center: np.ndarray) -> float:
-        """Inclination, rad, of the normal common to an arc about `center` (2,) and to a circle about the axis."""
+        """Inclination, rad, of the normal common to an arc about `center` (2,) and to a circle
+        about the axis."""
         x, y = self.sign * center / np.hypot(*center)
         return float(np.arctan2(self.sign * y, x))
 
-    def segment(self, name: str, start: np.ndarray, beta: float, convexity: float, length: float) -> Segment:
+    def segment(
+        self, name: str, start: np.ndarray, beta: float, convexity: float, length: float
+    ) -> Segment:
         """Segment from `start` (2,), mm, where the normal's inclination is beta.
 
-        `convexity` is its curvature, 1/mm, above 0 where the tooth is convex, and `length` its arc length, mm.
+        `convexity` is its curvature, 1/mm, above 0 where the tooth is convex, and `length` its arc
+        length, mm.
         """
         direction = beta - 0.5 * np.pi if self.external else 0.5 * np.pi - beta
-        return Segment(name, (float(start[0]), float(start[1])), direction, -self.sign * convexity, float(length))
+        return Segment(
+            name,
+            (float(start[0]), float(start[1])),
+            direction,
+            -self.sign * convexity,
+            float(length),
+        )
 
     def profile(self, pieces: list[Piece], name: str) -> ToothProfile:
-        """Flank of `pieces` from tip to root; those of no length are left out, a negative length is refused.
+        """Flank of `pieces` from tip to root; those of no length are left out, a negative length is
+        refused.
 
         name : section of the design file, for the message
         """
         for piece, *_, length in pieces:
             if length < 0.0:
-                raise InputError(f"{name}.r_{piece}: the {piece} arc would have a negative length ({length:.3g} mm)")
-        segments = tuple(self.segment(*piece) for piece in pieces if piece[-1] > 1e-12 * self.module)
-        return ToothProfile(segments, self.external, self.r_tip_circle, self.r_root_circle, self.n_teeth)
+                raise InputError(
+                    f"{name}.r_{piece}: the {piece} arc would have a negative length ({length:.3g} "
+                    f"mm)"
+                )
+        segments = tuple(
+            self.segment(*piece) for piece in pieces if piece[-1] > 1e-12 * self.module
+        )
+        return ToothProfile(
+            segments, self.external, self.r_tip_circle, self.r_root_circle, self.n_teeth
+        )

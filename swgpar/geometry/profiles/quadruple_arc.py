@@ -1,7 +1,8 @@
-"""The quadruple-circular-arc (QCA) flank: tip, addendum, straight, dedendum and root (section 3.3.3).
+"""The quadruple-circular-arc (QCA) flank: tip, addendum, straight, dedendum and root (section
+3.3.3).
 
-With s = +1 for external and -1 for internal teeth, the normals n of `PitchPointFrame` and its inclination alpha* at the
-pitch point P:
+With s = +1 for external and -1 for internal teeth, the normals n of `PitchPointFrame` and its
+inclination alpha* at the pitch point P:
 
     O_a = P_a - r_a n(alpha*),  O_t = O_a + (r_a - r_t) n(alpha* + alpha_a),  |O_t| + s r_t = r_A
     O_d = P_d + r_d n(alpha*),  O_r = O_d - (r_d - r_r) n(alpha* + alpha_d),  |O_r| - s r_r = r_D
@@ -20,7 +21,8 @@ from swgpar.geometry.profiles.pitch_point import PitchPointFrame
 
 
 def _closing_angle(radius: Callable[[float], float], target: float, refusal: str) -> float:
-    """Smallest angle in (0, pi/2) at which `radius` (mm) is `target`; raises InputError with `refusal` without one.
+    """Smallest angle in (0, pi/2) at which `radius` (mm) is `target`; raises InputError with
+    `refusal` without one.
 
     Long arcs reach their circle twice: `radius` has one extremum in between.
     """
@@ -43,7 +45,8 @@ def quadruple_arc(
     r_root: float,
     name: str = "profile",
 ) -> ToothProfile:
-    """Build the flank; lengths in mm, `c_l` is the share of the straight segment above the pitch point."""
+    """Build the flank; lengths in mm, `c_l` is the share of the straight segment above the pitch
+    point."""
     s, star, n = frame.sign, frame.base_angle, frame.normal
     top = frame.pitch_point + c_l * straight_l * frame.towards_tip
     bottom = frame.pitch_point - (1.0 - c_l) * straight_l * frame.towards_tip
@@ -58,20 +61,34 @@ def quadruple_arc(
     a_a = _closing_angle(
         lambda t: float(np.hypot(*tip_center(t))) + s * r_tip,
         frame.r_tip_circle,
-        f"{name}.r_tip = {r_tip:g} with r_addendum = {r_addendum:g} does not meet the addendum circle",
+        f"{name}.r_tip = {r_tip:g} with r_addendum = {r_addendum:g} does not meet the addendum "
+        f"circle",
     )
     a_d = _closing_angle(
         lambda t: float(np.hypot(*root_center(t))) - s * r_root,
         frame.r_root_circle,
-        f"{name}.r_root = {r_root:g} with r_dedendum = {r_dedendum:g} does not meet the dedendum circle",
+        f"{name}.r_root = {r_root:g} with r_dedendum = {r_dedendum:g} does not meet the dedendum "
+        f"circle",
     )
     o_t, o_r = tip_center(a_a), root_center(a_d)
     beta_t, beta_r = frame.inclination(o_t), frame.inclination(o_r)
     pieces = [
         ("tip", o_t + r_tip * n(beta_t), beta_t, 1.0 / r_tip, r_tip * (beta_t - star - a_a)),
-        ("addendum", o_a + r_addendum * n(star + a_a), star + a_a, 1.0 / r_addendum, r_addendum * a_a),
+        (
+            "addendum",
+            o_a + r_addendum * n(star + a_a),
+            star + a_a,
+            1.0 / r_addendum,
+            r_addendum * a_a,
+        ),
         ("straight", top, star, 0.0, straight_l),
         ("dedendum", bottom, star, -1.0 / r_dedendum, r_dedendum * a_d),
-        ("root", o_r - r_root * n(star + a_d), star + a_d, -1.0 / r_root, r_root * (beta_r - star - a_d)),
+        (
+            "root",
+            o_r - r_root * n(star + a_d),
+            star + a_d,
+            -1.0 / r_root,
+            r_root * (beta_r - star - a_d),
+        ),
     ]
     return frame.profile(pieces, name)

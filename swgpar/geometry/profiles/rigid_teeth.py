@@ -11,7 +11,8 @@ from swgpar.geometry.profiles.mesh_gap import smallest_gaps
 from swgpar.geometry.profiles.tooth_motion import ToothMotion
 
 WIDEST = np.radians(120.0)
-"""Angle from the tip of a lobe, to both sides, in which teeth can touch, times the number of lobes."""
+"""Angle from the tip of a lobe, to both sides, in which teeth can touch, times the number of
+lobes."""
 
 STEP = 1e-5
 """Rotation (rad) from which the rotation that closes a gap is extrapolated."""
@@ -24,9 +25,11 @@ NEAR = 1e-3
 class RigidMesh:
     """Contact of rigid teeth.
 
-    transmission_error : arc seconds, peak to peak of the output's rotation at which the first pair touches; inf where
+    transmission_error : arc seconds, peak to peak of the output's rotation at which the first pair
+    touches; inf where
         the teeth do not reach each other, or overlap at every rotation
-    teeth_share : share of the flexible spline's teeth whose gap is below `NEAR` then, mean over a pitch
+    teeth_share : share of the flexible spline's teeth whose gap is below `NEAR` then, mean over a
+    pitch
     """
 
     transmission_error: float
@@ -62,9 +65,11 @@ class RigidTeeth:
     def mesh(self, phases: int = 8, n_points: int = 300) -> RigidMesh:
         """Contact over one pitch.
 
-        In every phase the flexible spline's material is rotated until the first pair of one side touches.
+        In every phase the flexible spline's material is rotated until the first pair of one side
+        touches.
 
-        phases : positions of the cam within a pitch of the flexible spline;  n_points : points on a flank
+        phases : positions of the cam within a pitch of the flexible spline;  n_points : points on a
+        flank
         """
         touching, gaps = self._touching(phases, n_points)
         if not np.isfinite(touching).all():
@@ -73,15 +78,18 @@ class RigidTeeth:
         return RigidMesh(float(np.degrees(np.ptp(touching))) * 3600.0, share)
 
     def touching_rotation(self, n_points: int = 300) -> float:
-        """Rotation (rad) of the spline's material at which the first pair of one side touches, cam at angle zero.
+        """Rotation (rad) of the spline's material at which the first pair of one side touches, cam
+        at angle zero.
 
-        -inf where the teeth do not reach each other, or overlap at every rotation. n_points : points on a flank
+        -inf where the teeth do not reach each other, or overlap at every rotation. n_points :
+        points on a flank
         """
         touching, _ = self._touching(1, n_points)
         return float(touching.item())
 
     def _touching(self, phases: int, n_points: int) -> tuple[np.ndarray, np.ndarray]:
-        """Rotations (phases, 1) rad at which the first pair touches, and the gaps (phases, n) mm of all teeth then.
+        """Rotations (phases, 1) rad at which the first pair touches, and the gaps (phases, n) mm of
+        all teeth then.
 
         -inf where the teeth do not reach each other, or overlap at every rotation.
         """
@@ -91,15 +99,21 @@ class RigidTeeth:
 
         def gaps(rotation: np.ndarray) -> np.ndarray:
             flat, exact = np.broadcast_to(rotation, psi.shape).ravel(), 0.02 * self.module
-            smallest = smallest_gaps(self.spline, self.ring, self.motion, psi.ravel(), n_points, flat, exact)
+            smallest = smallest_gaps(
+                self.spline, self.ring, self.motion, psi.ravel(), n_points, flat, exact
+            )
             return smallest.reshape(psi.shape)
 
         touching = np.zeros((phases, 1))
-        for _ in range(2):  # the second time from where the first pair touches, so that the extrapolation is short
+        for _ in range(
+            2
+        ):  # the second time from where the first pair touches, so that the extrapolation is short
             before, after = gaps(touching), gaps(touching - STEP)
             with np.errstate(invalid="ignore"):
                 closing = touching - STEP * before / (before - after)
-            touching = np.where(np.isfinite(before) & (after < before), closing, -np.inf).max(axis=1, keepdims=True)
+            touching = np.where(np.isfinite(before) & (after < before), closing, -np.inf).max(
+                axis=1, keepdims=True
+            )
             if not (np.abs(touching) < 0.5 * pitch).all():
                 return np.full_like(touching, -np.inf), before
         smallest = gaps(touching)

@@ -1,8 +1,8 @@
 """Motion of a tooth of the flexible spline in the ring gear, as the cam passes by.
 
-A tooth is a rigid body on the neutral line. In the cam's frame the tooth of the material angle psi faces the slot at
-q psi, q = N_fs / N_rg. Points are complex numbers x + i y. With X and L of the neutral line, a point Z of the tooth's
-frame (axis at 0, tooth on +i) is, in the frame of its slot,
+A tooth is a rigid body on the neutral line. In the cam's frame the tooth of the material angle psi
+faces the slot at q psi, q = N_fs / N_rg. Points are complex numbers x + i y. With X and L of the
+neutral line, a point Z of the tooth's frame (axis at 0, tooth on +i) is, in the frame of its slot,
 
     z = c + exp(i alpha) Z,  c = (X - i r exp(i (psi + L))) exp(-i q psi),  alpha = psi + L - q psi.
 """
@@ -36,7 +36,14 @@ class Pose:
         turn = np.exp(-1j * self.angle)
         a1, a2 = self.angle1, self.angle2
         second = self.c2 - 2j * a1 * self.c1 - (1j * a2 + a1**2) * self.c
-        return Pose(-turn * self.c, -turn * (self.c1 - 1j * a1 * self.c), -turn * second, -self.angle, -a1, -a2)
+        return Pose(
+            -turn * self.c,
+            -turn * (self.c1 - 1j * a1 * self.c),
+            -turn * second,
+            -self.angle,
+            -a1,
+            -a2,
+        )
 
     def moved(self, points: np.ndarray) -> np.ndarray:
         """Points of the moving frame (n,) complex, mm, in the fixed one."""
@@ -45,14 +52,16 @@ class Pose:
 
 @dataclass(frozen=True)
 class ToothMotion:
-    """Motion on the neutral line `line` of a drive with the tooth numbers `teeth_fs` and `teeth_rg`."""
+    """Motion on the neutral line `line` of a drive with the tooth numbers `teeth_fs` and
+    `teeth_rg`."""
 
     line: NeutralLine
     teeth_fs: int
     teeth_rg: int
 
     def pose(self, psi: Floats) -> Pose:
-        """Pose of the tooth of the flexible spline in its slot, at the material angles psi (n,) rad."""
+        """Pose of the tooth of the flexible spline in its slot, at the material angles psi (n,)
+        rad."""
         line, q = self.line, self.teeth_fs / self.teeth_rg
         tilt, tilt1, tilt2 = line.tilt(psi)
         around, slip = np.exp(1j * (psi + tilt)), line.radius * (1.0 + tilt1) - line.stretched
@@ -75,10 +84,11 @@ class ToothMotion:
         return replace(self, line=replace(self.line, amplitudes=amplitudes))
 
     def mirrored(self, points: np.ndarray) -> np.ndarray:
-        """Points x + i y (n,), mm, between the slot's frame and that of the ring gear's tooth clockwise of it.
+        """Points x + i y (n,), mm, between the slot's frame and that of the ring gear's tooth
+        clockwise of it.
 
-        The image is a mirror image, so that the flank at x > 0 of that tooth is the one that faces the slot. The
-        same function leads back.
+        The image is a mirror image, so that the flank at x > 0 of that tooth is the one that faces
+        the slot. The same function leads back.
         """
         half_pitch = np.exp(1j * np.pi / self.teeth_rg)
         return -np.conj(points * half_pitch)
