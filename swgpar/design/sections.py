@@ -138,8 +138,12 @@ class Contact(Section):
     friction: float = quantity(
         0.0, text="coefficient of friction between the flanks", ge=0.0, le=1.0
     )
-    penalty_coef: float = quantity(50.0, text="penalty of the flanks over E / module, E of the softer gear", gt=0.0)
-    wg_penalty_coef: float = quantity(5.0, text="penalty of cam and pins over E / module, E of the flexible spline", gt=0.0)
+    penalty_coef: float = quantity(
+        50.0, text="penalty of the flanks over E / module, E of the softer gear", gt=0.0
+    )
+    wg_penalty_coef: float = quantity(
+        5.0, text="penalty of cam and pins over E / module, E of the flexible spline", gt=0.0
+    )
     quadrature: int = quantity(
         2, text="Gauss points per direction on segments of flank faces", ge=1, le=16
     )
