@@ -20,10 +20,10 @@ import swgpar
 from swgpar.analysis.coarse_start import solve_to_load
 from swgpar.analysis.mesh_refinement import Refinement
 from swgpar.analysis.shortcuts import with_shortcuts
-from swgpar.evaluation.contact.pair_contact import pair_contacts
 from swgpar.evaluation.place_errors import CoarseStresses, with_errors
 from swgpar.evaluation.places import find_places
 from swgpar.evaluation.windows.root_stress import LEVELS, resolve_root_stress
+from swgpar.half_space.pair_contact import pair_contacts
 from swgpar.load.load_sequence import load_sequence
 from swgpar.meshing.recipe_counts import resized
 

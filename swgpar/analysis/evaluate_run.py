@@ -13,9 +13,9 @@ from swgpar.analysis.recorder import Recorder
 from swgpar.drive_results.drive_tables import DriveTables
 from swgpar.drive_results.summary import BodySizes, DriveSummary
 from swgpar.evaluation.bearing_loads import BallLoads, evaluate_bearing
-from swgpar.evaluation.contact.largest_contact import largest_contact
 from swgpar.evaluation.fatigue import FatigueResult, evaluate_fatigue
 from swgpar.evaluation.housing_values import HousingStresses
+from swgpar.evaluation.largest_contact import largest_contact
 from swgpar.evaluation.load_sharing import LoadSharing, load_sharing
 from swgpar.evaluation.losses import DriveLosses, evaluate_losses
 from swgpar.evaluation.numerics import evaluate_numerics

@@ -20,7 +20,6 @@ from swgpar.analysis.shortcuts import finds_contacts
 from swgpar.analysis.start_states import StartStates
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError, InputError, SwgparError
-from swgpar.evaluation.contact.pair_contact import pair_contacts
 from swgpar.evaluation.place_errors import CoarseStresses
 from swgpar.evaluation.places import Place, find_places
 from swgpar.evaluation.windows.root_stress import (
@@ -30,6 +29,7 @@ from swgpar.evaluation.windows.root_stress import (
     RootStress,
     resolve_root_stress,
 )
+from swgpar.half_space.pair_contact import pair_contacts
 from swgpar.load.load_sequence import LoadSequence
 from swgpar.load.load_states import LoadState
 from swgpar.log import logger

@@ -20,8 +20,7 @@ from swgpar.drive_results.summary import DriveSummary
 from swgpar.drive_results.summary_file import summary_from, summary_to_json
 from swgpar.evaluation.bearing_loads import ball_rows
 from swgpar.evaluation.compliance import bearing_shares
-from swgpar.evaluation.contact.contact_pressure import nodal_pressure
-from swgpar.evaluation.contact.pair_contact import PairContact, pair_contacts
+from swgpar.evaluation.contact_pressure import nodal_pressure
 from swgpar.evaluation.housing_values import housing_values, keep_largest
 from swgpar.evaluation.losses import cam_force
 from swgpar.evaluation.place_errors import with_errors
@@ -33,6 +32,7 @@ from swgpar.evaluation.stiffness import loop_rows
 from swgpar.evaluation.stress_cycle import StressCycle
 from swgpar.evaluation.windows.accuracy import Accuracy
 from swgpar.fem.body import FLEXIBLE_SPLINE
+from swgpar.half_space.pair_contact import PairContact, pair_contacts
 from swgpar.input.toml_file import to_toml
 from swgpar.load.load_program import internal_torque
 from swgpar.load.load_sequence import LoadSequence

@@ -10,7 +10,7 @@ import numpy as np
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.drive_results.summary import BodySizes, DriveSummary
-from swgpar.evaluation.contact.largest_contact import LargestContact
+from swgpar.evaluation.largest_contact import LargestContact
 from swgpar.evaluation.numerics import BALANCE, Numerics
 from swgpar.evaluation.places import APART, LargestStresses
 from swgpar.evaluation.rotation import Rotation

@@ -9,9 +9,9 @@ from functools import cached_property
 from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind
 from swgpar.evaluation.bearing_loads import BallLoads
-from swgpar.evaluation.contact.largest_contact import LargestContact
 from swgpar.evaluation.fatigue import SafetyAndLife
 from swgpar.evaluation.housing_values import HousingStresses
+from swgpar.evaluation.largest_contact import LargestContact
 from swgpar.evaluation.load_sharing import LoadSharing
 from swgpar.evaluation.losses import DriveLosses
 from swgpar.evaluation.numerics import Numerics

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from swgpar.design.drive_design import DriveDesign
 from swgpar.evaluation.answers import Answer, AnswerGroup, AnswerKind, place_text
-from swgpar.evaluation.contact.contact_pressure import nodal_pressure
+from swgpar.evaluation.contact_pressure import nodal_pressure
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.load.load_states import LoadState
 from swgpar.meshing.sector import SectorMesh

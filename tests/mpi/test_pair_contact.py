@@ -12,7 +12,7 @@ from mpi4py import MPI
 from pytest_mpi import parallel_assert
 
 from support.stepping import WORLD, Row, loaded, rotate, small
-from swgpar.evaluation.contact.pair_contact import PairContact, moved_teeth, pair_contacts
+from swgpar.half_space.pair_contact import PairContact, moved_teeth, pair_contacts
 from swgpar.materials import Isotropic, contact_modulus
 
 CLOCKWISE = "clockwise"

@@ -18,7 +18,6 @@ from swgpar.constraints.distributing_coupling import node_weights
 from swgpar.constraints.supports import Supports
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError
-from swgpar.evaluation.contact.flank_loads import flank_forces, line_loads, nodal_forces
 from swgpar.evaluation.torques import torques
 from swgpar.fem.body import FLEXIBLE_SPLINE, Body
 from swgpar.fem.body_layout import BodyLayout
@@ -27,6 +26,7 @@ from swgpar.fem.partition import Partition
 from swgpar.fem.stress import principal
 from swgpar.fem.vectors import read_field, write_field
 from swgpar.geometry.rotation import rotated
+from swgpar.half_space.flank_loads import flank_forces, line_loads, nodal_forces
 from swgpar.load.load_states import LoadState, Stage
 from swgpar.log import PhaseTimes
 from swgpar.meshing import MeshRecipe

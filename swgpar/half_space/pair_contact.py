@@ -18,13 +18,13 @@ from scipy.integrate import trapezoid
 
 from swgpar.contact.flanks import FlankContact
 from swgpar.contact.search import FlankPair
-from swgpar.evaluation.contact.flank_loads import LineLoad, flank_forces, line_loads
-from swgpar.evaluation.contact.line_contact import LineContact, line_contact
-from swgpar.evaluation.contact.moved_teeth import MovedTooth
-from swgpar.evaluation.contact.patch_contact import PatchContact, patch_contact
 from swgpar.fem.body import FLEXIBLE_SPLINE
 from swgpar.fem.vectors import read_field
 from swgpar.geometry.rotation import SIXTHS, rotated
+from swgpar.half_space.flank_loads import LineLoad, flank_forces, line_loads
+from swgpar.half_space.line_contact import LineContact, line_contact
+from swgpar.half_space.moved_teeth import MovedTooth
+from swgpar.half_space.patch_contact import PatchContact, patch_contact
 from swgpar.load.load_states import LoadState
 from swgpar.log import logger
 from swgpar.materials import contact_modulus

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from swgpar.evaluation.contact.line_contact import LineContact, contact_end
+from swgpar.half_space.line_contact import LineContact, contact_end
 
 CELLS_ACROSS, CELLS_ALONG = 24, 28
 """Cells of constant pressure over the width and along the length of the grid."""

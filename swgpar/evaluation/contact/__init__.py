@@ -1,1 +1,0 @@
-"""Contact of pairs of flanks: loads, half-space pressure, nodal pressure."""
