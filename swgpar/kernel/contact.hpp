@@ -1,13 +1,15 @@
 // Contact of deformable tooth flanks by face quadrature, and block assembly of contact terms.
 //
-// The master flank is the exact tooth profile plus the finite-element displacement: between two profile
-// nodes the curve is the cubic Hermite interpolant of their exact points and tangents, so that its normal
-// is continuous; the displacement is bilinear over the facet. The curve's height over its chord rotates with the
-// body, so that a body rotated as a whole has the rotated flank. A point of the slave surface is projected
-// onto it orthogonally; the gap's first and second variations are exact for that surface at that rotation.
+// The master flank is the exact tooth profile plus the finite-element displacement: between two
+// profile nodes the curve is the cubic Hermite interpolant of their exact points and tangents, so
+// that its normal is continuous; the displacement is bilinear over the facet. The curve's height
+// over its chord rotates with the body, so that a body rotated as a whole has the rotated flank. A
+// point of the slave surface is projected onto it orthogonally; the gap's first and second
+// variations are exact for that surface at that rotation.
 //
-// Words: the foot point is the projection of a slave point onto the master flank; the gap is its distance along the
-// outward normal there, negative in penetration. Lengths in mm, forces in N, pressures in MPa, penalties in MPa / mm.
+// Words: the foot point is the projection of a slave point onto the master flank; the gap is its
+// distance along the outward normal there, negative in penetration. Lengths in mm, forces in N,
+// pressures in MPa, penalties in MPa / mm.
 #pragma once
 
 #include <Eigen/Dense>
@@ -20,19 +22,25 @@
 namespace swgpar {
 
 // Limits of the projection onto a flank; eta and zeta are counted in facets.
-// A foot point belongs to the facet in which it lies. Where the flank has a convex edge between two facets it may lie
-// in neither: after some changes from one to the other a facet's parameters may exceed it a little.
+// A foot point belongs to the facet in which it lies. Where the flank has a convex edge between two
+// facets it may lie in neither: after some changes from one to the other a facet's parameters may
+// exceed it a little.
 constexpr double kBorder = 1e-9;
 constexpr double kOverlap = 0.02;
 constexpr int kMostChanges = 6;
-constexpr double kLastStep = 1e-10;   // of Newton's iteration: round-off of positions far from the axis allows 1e-13
-constexpr double kLongestStep = 1.0;  // of Newton's iteration: one facet, after which the next facet is taken
-constexpr int kMostSteps = 40;        // some 5 within a facet, the rest walk over the flank
-constexpr double kConvex = 0.2;       // smallest share of the metric that the Hessian of the squared distance may
-                                      // have: below it the metric stands in (Gauss-Newton), which always descends
-constexpr double kGivenUp = 1.0;      // facets past the end of the grid beyond which there is no foot point
+constexpr double kLastStep =
+    1e-10;  // of Newton's iteration: round-off of positions far from the axis allows 1e-13
+constexpr double kLongestStep =
+    1.0;  // of Newton's iteration: one facet, after which the next facet is taken
+constexpr int kMostSteps = 40;  // some 5 within a facet, the rest walk over the flank
+constexpr double kConvex =
+    0.2;  // smallest share of the metric that the Hessian of the squared distance may
+          // have: below it the metric stands in (Gauss-Newton), which always descends
+constexpr double kGivenUp =
+    1.0;  // facets past the end of the grid beyond which there is no foot point
 
-// Rows of the blocked matrix that this rank owns, of a symmetric one the upper triangle; blocks are column-major.
+// Rows of the blocked matrix that this rank owns, of a symmetric one the upper triangle; blocks are
+// column-major.
 struct BlockRows {
   const std::int64_t* start;   // (n_own + 1)
   const std::int32_t* column;  // global block columns, ascending in a row
@@ -42,7 +50,8 @@ struct BlockRows {
   bool symmetric;
 
   // Adds a block; false when the pattern lacks it.
-  bool add(std::int32_t row, std::uint8_t row_flip, std::int32_t col, std::uint8_t col_flip, const Mat3& block) const {
+  bool add(std::int32_t row, std::uint8_t row_flip, std::int32_t col, std::uint8_t col_flip,
+           const Mat3& block) const {
     if (row < 0 || col < 0 || row >= n_own) return true;
     const std::int32_t wanted = number[col];
     if (symmetric && wanted < number[row]) return true;
@@ -93,8 +102,9 @@ struct Patch {
   }
 };
 
-// Foot point on a patch and what the variations of the gap need there: the position x (mm) and its derivatives by the
-// facet's coordinates eta (along the profile) and zeta (along the width), 0 .. 1 on the facet.
+// Foot point on a patch and what the variations of the gap need there: the position x (mm) and its
+// derivatives by the facet's coordinates eta (along the profile) and zeta (along the width), 0 .. 1
+// on the facet.
 struct FootPoint {
   int i = 0, j = 0;  // facet
   double eta = 0.5, zeta = 0.5, gap = 0.0;
@@ -113,17 +123,21 @@ inline void evaluate(const Patch& p, const double* u, FootPoint& f) {
   const Vec2 a = p.placed(p.point + 2 * i), b = p.placed(p.point + 2 * i + 2);
   const Vec2 ta = len * p.placed(p.tangent + 2 * i), tb = len * p.placed(p.tangent + 2 * i + 2);
   const Vec2 chord = b - a;
-  f.height_eta = p.rotated((6 * t - 6 * t2 - 1) * chord + (3 * t2 - 4 * t + 1) * ta + (3 * t2 - 2 * t) * tb);
-  f.height = p.rotated((3 * t2 - 2 * t3 - t) * chord + (t3 - 2 * t2 + t) * ta + (t3 - t2) * tb) + past * f.height_eta;
+  f.height_eta =
+      p.rotated((6 * t - 6 * t2 - 1) * chord + (3 * t2 - 4 * t + 1) * ta + (3 * t2 - 2 * t) * tb);
+  f.height = p.rotated((3 * t2 - 2 * t3 - t) * chord + (t3 - 2 * t2 + t) * ta + (t3 - t2) * tb) +
+             past * f.height_eta;
   const Vec2 x = a + f.eta * chord + f.height;
   const Vec2 d = chord + f.height_eta;
   Vec2 dd = Vec2::Zero();
   if (!f.straight) dd = p.rotated((6 - 12 * t) * chord + (6 * t - 4) * ta + (6 * t - 2) * tb);
   const double z0 = p.z[j], dz = p.z[j + 1] - z0, e = f.eta, q = f.zeta;
-  const Vec3 u00 = nodal(u, p.node(i, j), p.image(i, j)), u10 = nodal(u, p.node(i + 1, j), p.image(i + 1, j));
+  const Vec3 u00 = nodal(u, p.node(i, j), p.image(i, j)),
+             u10 = nodal(u, p.node(i + 1, j), p.image(i + 1, j));
   const Vec3 u01 = nodal(u, p.node(i, j + 1), p.image(i, j + 1));
   const Vec3 u11 = nodal(u, p.node(i + 1, j + 1), p.image(i + 1, j + 1));
-  f.x = Vec3(x[0], x[1], z0 + q * dz) + (1 - e) * (1 - q) * u00 + e * (1 - q) * u10 + (1 - e) * q * u01 + e * q * u11;
+  f.x = Vec3(x[0], x[1], z0 + q * dz) + (1 - e) * (1 - q) * u00 + e * (1 - q) * u10 +
+        (1 - e) * q * u01 + e * q * u11;
   f.x_eta = Vec3(d[0], d[1], 0) + (1 - q) * (u10 - u00) + q * (u11 - u01);
   f.x_zeta = Vec3(0, 0, dz) + (1 - e) * (u01 - u00) + e * (u11 - u10);
   f.x_etaeta = Vec3(dd[0], dd[1], 0);
@@ -150,7 +164,8 @@ inline FootPoint nearest_node(const Patch& p, const double* u, const Vec3& xs) {
   return f;
 }
 
-// Moves to the neighbouring facet when a parameter exceeds the facet by more than `overlap`; false when none does.
+// Moves to the neighbouring facet when a parameter exceeds the facet by more than `overlap`; false
+// when none does.
 inline bool change_facet(const Patch& p, FootPoint& f, double overlap) {
   if (f.eta > 1 + overlap && f.i < p.n_s - 1) {
     f.eta = std::min(1.0, (f.eta - 1) * (p.s[f.i + 1] - p.s[f.i]) / (p.s[f.i + 2] - p.s[f.i + 1]));
@@ -159,7 +174,8 @@ inline bool change_facet(const Patch& p, FootPoint& f, double overlap) {
     f.eta = std::max(0.0, 1 + f.eta * (p.s[f.i + 1] - p.s[f.i]) / (p.s[f.i] - p.s[f.i - 1]));
     --f.i;
   } else if (f.zeta > 1 + overlap && f.j < p.n_z - 1) {
-    f.zeta = std::min(1.0, (f.zeta - 1) * (p.z[f.j + 1] - p.z[f.j]) / (p.z[f.j + 2] - p.z[f.j + 1]));
+    f.zeta =
+        std::min(1.0, (f.zeta - 1) * (p.z[f.j + 1] - p.z[f.j]) / (p.z[f.j + 2] - p.z[f.j + 1]));
     ++f.j;
   } else if (f.zeta < -overlap && f.j > 0) {
     f.zeta = std::max(0.0, 1 + f.zeta * (p.z[f.j + 1] - p.z[f.j]) / (p.z[f.j] - p.z[f.j - 1]));
@@ -170,8 +186,8 @@ inline bool change_facet(const Patch& p, FootPoint& f, double overlap) {
   return true;
 }
 
-// Orthogonal projection of a point onto a patch by Newton's method for the squared distance. Not found: the point lies
-// beside the flank, by more than `beyond` facets.
+// Orthogonal projection of a point onto a patch by Newton's method for the squared distance. Not
+// found: the point lies beside the flank, by more than `beyond` facets.
 inline FootPoint project(const Patch& p, const double* u, const Vec3& xs, double beyond) {
   const auto lost = [&](double t) { return t < -kGivenUp - beyond || t > 1 + kGivenUp + beyond; };
   FootPoint f = nearest_node(p, u, xs);
@@ -182,12 +198,14 @@ inline FootPoint project(const Patch& p, const double* u, const Vec3& xs, double
     const Vec3 dist = xs - f.x;
     const Vec2 r(dist.dot(f.x_eta), dist.dot(f.x_zeta));
     Mat2 metric, h;
-    metric << f.x_eta.dot(f.x_eta), f.x_eta.dot(f.x_zeta), f.x_eta.dot(f.x_zeta), f.x_zeta.dot(f.x_zeta);
+    metric << f.x_eta.dot(f.x_eta), f.x_eta.dot(f.x_zeta), f.x_eta.dot(f.x_zeta),
+        f.x_zeta.dot(f.x_zeta);
     h = metric;
     h(0, 0) -= dist.dot(f.x_etaeta);
     h(0, 1) -= dist.dot(f.x_etazeta);
     h(1, 0) = h(0, 1);
-    if (h(0, 0) < kConvex * metric(0, 0) || h.determinant() < kConvex * metric.determinant()) h = metric;
+    if (h(0, 0) < kConvex * metric(0, 0) || h.determinant() < kConvex * metric.determinant())
+      h = metric;
     Vec2 step = h.inverse() * r;
     const double big = std::max(std::abs(step[0]), std::abs(step[1]));
     if (big > kLongestStep) step /= big;
@@ -202,7 +220,8 @@ inline FootPoint project(const Patch& p, const double* u, const Vec3& xs, double
     if (lost(f.eta) || lost(f.zeta)) return f;
   }
   const auto within = [&](double t, int facet, int count) {
-    return t >= (facet == 0 ? -beyond : -kOverlap) && t <= 1 + (facet == count - 1 ? beyond : kOverlap);
+    return t >= (facet == 0 ? -beyond : -kOverlap) &&
+           t <= 1 + (facet == count - 1 ? beyond : kOverlap);
   };
   f.found = f.found && within(f.eta, f.i, p.n_s) && within(f.zeta, f.j, p.n_z);
   if (!f.found) return f;
@@ -216,8 +235,8 @@ inline FootPoint project(const Patch& p, const double* u, const Vec3& xs, double
 // With tau_a = x_a . (dx_s - dx_m), P_a = n . dx_m,a, A = x_a . x_b, B = n . x_ab, H = A - g B:
 //   d2g = -tau A^-1 B H^-1 tau - tau H^-1 P - P H^-1 tau - g P H^-1 P.
 inline int add_contact_tangent(const FootPoint& f, const double* shape, const std::int32_t* conn,
-                               const std::uint8_t* sixths, double weight, double stiffness, double pressure,
-                               const BlockRows& rows) {
+                               const std::uint8_t* sixths, double weight, double stiffness,
+                               double pressure, const BlockRows& rows) {
   const double e = f.eta, q = f.zeta;
   const double m[4] = {(1 - e) * (1 - q), e * (1 - q), (1 - e) * q, e * q};
   const double me[4] = {-(1 - q), 1 - q, -q, q}, mz[4] = {-(1 - e), -e, 1 - e, e};
@@ -230,7 +249,8 @@ inline int add_contact_tangent(const FootPoint& f, const double* shape, const st
     d[4 + a][1] = mz[a];
   }
   Mat2 metric, b, h;
-  metric << f.x_eta.dot(f.x_eta), f.x_eta.dot(f.x_zeta), f.x_eta.dot(f.x_zeta), f.x_zeta.dot(f.x_zeta);
+  metric << f.x_eta.dot(f.x_eta), f.x_eta.dot(f.x_zeta), f.x_eta.dot(f.x_zeta),
+      f.x_zeta.dot(f.x_zeta);
   b << f.normal.dot(f.x_etaeta), f.normal.dot(f.x_etazeta), f.normal.dot(f.x_etazeta), 0;
   h = (metric - f.gap * b).inverse();
   const Mat2 w = metric.inverse() * b * h;
@@ -246,7 +266,8 @@ inline int add_contact_tangent(const FootPoint& f, const double* shape, const st
       if (conn[l] < 0) continue;
       Mat3 block = c[k] * c[l] * curved;
       const Vec3 right = xh * Vec2(d[l][0], d[l][1]), left = xh * Vec2(d[k][0], d[k][1]);
-      block += pressure * (c[k] * right * f.normal.transpose() + c[l] * f.normal * left.transpose());
+      block +=
+          pressure * (c[k] * right * f.normal.transpose() + c[l] * f.normal * left.transpose());
       const double pp = Vec2(d[k][0], d[k][1]).dot(h * Vec2(d[l][0], d[l][1]));
       block += pressure * f.gap * pp * nn;
       if (!rows.add(conn[k], sixths[k], conn[l], sixths[l], weight * block)) ++missing;

@@ -6,8 +6,9 @@
 
 namespace swgpar {
 
-// Largest cosine of the angle between the outward normals of two flanks that can touch. It is near -1 for flanks that
-// touch, whatever their load, and above 0 for a surface seen from behind or across a tooth.
+// Largest cosine of the angle between the outward normals of two flanks that can touch. It is near
+// -1 for flanks that touch, whatever their load, and above 0 for a surface seen from behind or
+// across a tooth.
 constexpr double kFacing = -0.3;
 
 struct FlankBatch {  // n_patch master flanks with the same grid
@@ -53,14 +54,18 @@ struct FaceBatch {  // slave faces and their quadrature points
   const std::int32_t* patch;  // (n_face) master patch
 };
 
-// Gaps (mm), pressures (MPa) and foot points (s, z; mm) at the quadrature points of all faces; adds the contact forces
-// to `residual`, the tangent to `rows` and the energy's derivative by the rotation of the master body to `moment`.
+// Gaps (mm), pressures (MPa) and foot points (s, z; mm) at the quadrature points of all faces; adds
+// the contact forces to `residual`, the tangent to `rows` and the energy's derivative by the
+// rotation of the master body to `moment`.
 //   p = multiplier - penalty gap;  virtual work = sum weight p dgap  (p > 0)
-// limit : MPa, bound of the pressure in the tangent's geometric terms. Returns the blocks that the pattern lacks.
-inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& faces, const double* u,
-                                  const double* multiplier, double penalty, double opening, double reach, double beyond,
-                                  double limit, const Friction& friction, double* residual, const BlockRows& rows,
-                                  double* gap, double* pressure, double* foot_point, double* moment) {
+// limit : MPa, bound of the pressure in the tangent's geometric terms. Returns the blocks that the
+// pattern lacks.
+inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& faces,
+                                  const double* u, const double* multiplier, double penalty,
+                                  double opening, double reach, double beyond, double limit,
+                                  const Friction& friction, double* residual, const BlockRows& rows,
+                                  double* gap, double* pressure, double* foot_point,
+                                  double* moment) {
   std::int64_t missing = 0;
   for (std::int64_t k = 0; k < faces.n_face; ++k) {
     const Patch patch = patches.patch(faces.patch[k]);
@@ -81,7 +86,8 @@ inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& fa
     for (int q = 0; q < faces.n_q; ++q) {
       const std::int64_t kq = k * faces.n_q + q;
       const double* shape = faces.shape + 4 * kq;
-      const Vec3 xs = shape[0] * corner[0] + shape[1] * corner[1] + shape[2] * corner[2] + shape[3] * corner[3];
+      const Vec3 xs =
+          shape[0] * corner[0] + shape[1] * corner[1] + shape[2] * corner[2] + shape[3] * corner[3];
       const FootPoint f = project(patch, u, xs, beyond);
       // a surface seen from behind, or across a tooth, is not the one this point can touch
       if (!f.found || f.normal.dot(face_normal) > kFacing || std::abs(f.gap) > reach) continue;
@@ -107,37 +113,44 @@ inline std::int64_t flank_contact(const FlankBatch& patches, const FaceBatch& fa
         moment[k] += p * w * (f.normal[1] * f.height[0] - f.normal[0] * f.height[1]);
       }
       if (p > 0.0 && rows.values != nullptr)
-        missing += add_contact_tangent(f, shape, conn, sixths, w, penalty, std::min(p, limit), rows);
+        missing +=
+            add_contact_tangent(f, shape, conn, sixths, w, penalty, std::min(p, limit), rows);
       if (friction.coefficient == 0.0 || bounding <= 0.0) continue;
       const Vec2 length(patch.s[f.i + 1] - patch.s[f.i], patch.z[f.j + 1] - patch.z[f.j]);
-      const Traction t =
-          traction(f, length, Vec2(foot_point[2 * kq], foot_point[2 * kq + 1]), friction, kq, bounding, penalty);
+      const Traction t = traction(f, length, Vec2(foot_point[2 * kq], foot_point[2 * kq + 1]),
+                                  friction, kq, bounding, penalty);
       if (!t.acts) continue;
       const Motion motion(f, shape);
       if (residual != nullptr) {
-        const Eigen::Matrix<double, 24, 1> force = w * motion.foot.transpose() * (motion.x.transpose() * t.value);
-        for (int a = 0; a < 8; ++a) add_nodal(residual, conn[a], sixths[a], force.segment<3>(3 * a));
+        const Eigen::Matrix<double, 24, 1> force =
+            w * motion.foot.transpose() * (motion.x.transpose() * t.value);
+        for (int a = 0; a < 8; ++a)
+          add_nodal(residual, conn[a], sixths[a], force.segment<3>(3 * a));
         moment[k] += w * motion.by_rotation(f).dot(motion.x.transpose() * t.value);
       }
       if (rows.values != nullptr)
-        missing +=
-            add_friction_tangent(f, t, motion, f.straight ? Vec3::Zero().eval() : patch.third_derivative(f.i), conn,
-                                 sixths, w, penalty, bounding, std::min(1.0, limit / bounding), friction, rows);
+        missing += add_friction_tangent(
+            f, t, motion, f.straight ? Vec3::Zero().eval() : patch.third_derivative(f.i), conn,
+            sixths, w, penalty, bounding, std::min(1.0, limit / bounding), friction, rows);
     }
   }
   return missing;
 }
 
-// Adds dense blocks (n, m, m, 3, 3) of the nodes conn (n, m) to the owned rows; returns the blocks that the pattern
-// lacks.
-inline std::int64_t add_blocks(std::int64_t n, int m, const std::int32_t* conn, const std::uint8_t* sixths,
-                               const double* blocks, const BlockRows& rows) {
+// Adds dense blocks (n, m, m, 3, 3) of the nodes conn (n, m) to the owned rows; returns the blocks
+// that the pattern lacks.
+inline std::int64_t add_blocks(std::int64_t n, int m, const std::int32_t* conn,
+                               const std::uint8_t* sixths, const double* blocks,
+                               const BlockRows& rows) {
   std::int64_t missing = 0;
   for (std::int64_t k = 0; k < n; ++k) {
     for (int a = 0; a < m; ++a) {
       for (int b = 0; b < m; ++b) {
-        const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> block(blocks + 9 * ((k * m + a) * m + b));
-        if (!rows.add(conn[k * m + a], sixths[k * m + a], conn[k * m + b], sixths[k * m + b], block)) ++missing;
+        const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> block(
+            blocks + 9 * ((k * m + a) * m + b));
+        if (!rows.add(conn[k * m + a], sixths[k * m + a], conn[k * m + b], sixths[k * m + b],
+                      block))
+          ++missing;
       }
     }
   }

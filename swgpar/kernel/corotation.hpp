@@ -1,9 +1,11 @@
-// Finite rotation of a linear element: energy 1/2 d^T K0 d of the displacement d seen in the element's own
-// rotated frame, with forces and tangent that are its exact first and second derivatives.
+// Finite rotation of a linear element: energy 1/2 d^T K0 d of the displacement d seen in the
+// element's own rotated frame, with forces and tangent that are its exact first and second
+// derivatives.
 //
-// R: polar rotation of F = sum_a x_a g_a^T (g_a: shape gradients at the centre);  y_a = R^T (x_a - mean),
-// d = y - X. With v = R^T dx, U = R^T F, G = tr(U) 1 - U:  spin theta = Q v, Q = G^-1 [ [g_a]x ],
-// dd = P v, P = 1 + Y Q, Y_a = [y_a]x;  f0 = K0 d, m = sum y_a x f0_a, r = f0 - Q^T m, f_a = R r_a.
+// R: polar rotation of F = sum_a x_a g_a^T (g_a: shape gradients at the centre);  y_a = R^T (x_a -
+// mean), d = y - X. With v = R^T dx, U = R^T F, G = tr(U) 1 - U:  spin theta = Q v, Q = G^-1 [
+// [g_a]x ], dd = P v, P = 1 + Y Q, Y_a = [y_a]x;  f0 = K0 d, m = sum y_a x f0_a, r = f0 - Q^T m,
+// f_a = R r_a.
 #pragma once
 
 #include "hex8i.hpp"
@@ -16,18 +18,21 @@ inline Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
   return s;
 }
 
-constexpr int kScaledSteps = 4;      // of Newton's iteration for the polar factor, the others converge by themselves
+constexpr int kScaledSteps =
+    4;  // of Newton's iteration for the polar factor, the others converge by themselves
 constexpr int kMostPolarSteps = 50;  // some 6 are needed
-constexpr double kPolarTolerance = 1e-30;  // of the squared change: round-off of a matrix of entries near 1
+constexpr double kPolarTolerance =
+    1e-30;  // of the squared change: round-off of a matrix of entries near 1
 
-// Rotation nearest to F (det F > 0) by Newton's iteration for the polar factor, scaled by Frobenius norms (Higham
-// 1986).
+// Rotation nearest to F (det F > 0) by Newton's iteration for the polar factor, scaled by Frobenius
+// norms (Higham 1986).
 inline Eigen::Matrix3d polar_rotation(const Eigen::Matrix3d& f) {
   Eigen::Matrix3d r = f;
   for (int it = 0; it < kMostPolarSteps; ++it) {
     const Eigen::Matrix3d inverse = r.inverse();
     const double size = r.squaredNorm(),
-                 scale = it < kScaledSteps ? std::sqrt(std::sqrt(inverse.squaredNorm() / size)) : 1.0;
+                 scale =
+                     it < kScaledSteps ? std::sqrt(std::sqrt(inverse.squaredNorm() / size)) : 1.0;
     const Eigen::Matrix3d next = 0.5 * (scale * r + inverse.transpose() / scale);
     const double change = (next - r).squaredNorm();
     r = next;
@@ -46,8 +51,8 @@ inline Eigen::Matrix3d plane_rotation(const Eigen::Matrix3d& f) {
   return r;
 }
 
-// N: 8 for hexahedra; 4 for plane elements, whose nodes have no displacement along z; Dynamic for condensed parts,
-// which are plane where their gradient has no z.
+// N: 8 for hexahedra; 4 for plane elements, whose nodes have no displacement along z; Dynamic for
+// condensed parts, which are plane where their gradient has no z.
 template <int N>
 struct CorotatedElement {
   static constexpr int D = N == Eigen::Dynamic ? Eigen::Dynamic : 3 * N;
@@ -63,9 +68,11 @@ struct CorotatedElement {
   Rows q;
   bool valid = true;
 
-  // small: X_a - mean(X), rotated: the same at the sector's angle, u: displacements. The displacement in the
-  // element frame is R^T (rotated + u - mean u) - small, formed from small numbers only.
-  CorotatedElement(const Nodes& small, const Nodes& rotated, const Nodes& u, const Nodes& g, const double* stiffness) {
+  // small: X_a - mean(X), rotated: the same at the sector's angle, u: displacements. The
+  // displacement in the element frame is R^T (rotated + u - mean u) - small, formed from small
+  // numbers only.
+  CorotatedElement(const Nodes& small, const Nodes& rotated, const Nodes& u, const Nodes& g,
+                   const double* stiffness) {
     const Eigen::RowVector3d mean = u.colwise().mean();
     const Nodes x = rotated + (u.rowwise() - mean);
     const int m = static_cast<int>(g.rows());
@@ -81,10 +88,12 @@ struct CorotatedElement {
     stretch = (0.5 * (stretch + stretch.transpose())).eval();
     y = x * rotation;
     d.resize(3 * m), q.resize(3, 3 * m);
-    for (int a = 0; a < m; ++a) d.template segment<3>(3 * a) = (y.row(a) - small.row(a)).transpose();
+    for (int a = 0; a < m; ++a)
+      d.template segment<3>(3 * a) = (y.row(a) - small.row(a)).transpose();
     f0.noalias() = Eigen::Map<const Square>(stiffness, 3 * m, 3 * m) * d;
     moment.setZero();
-    for (int a = 0; a < m; ++a) moment += Eigen::Vector3d(y.row(a)).cross(f0.template segment<3>(3 * a));
+    for (int a = 0; a < m; ++a)
+      moment += Eigen::Vector3d(y.row(a)).cross(f0.template segment<3>(3 * a));
     const Eigen::Matrix3d gi = (stretch.trace() * Eigen::Matrix3d::Identity() - stretch).inverse();
     for (int a = 0; a < m; ++a) q.template middleCols<3>(3 * a) = gi * skew(g.row(a));
     r = f0 - q.transpose() * moment;
@@ -103,7 +112,8 @@ struct CorotatedElement {
       spin_f0.template middleCols<3>(3 * a) = skew(f0.template segment<3>(3 * a));
       spin_r.template middleCols<3>(3 * a) = skew(r.template segment<3>(3 * a));
       const Eigen::Vector3d ga = g.row(a);
-      change.template middleCols<3>(3 * a) = n * ga.transpose() - ga.dot(n) * Eigen::Matrix3d::Identity();
+      change.template middleCols<3>(3 * a) =
+          n * ga.transpose() - ga.dot(n) * Eigen::Matrix3d::Identity();
     }
     change.noalias() -= skew(stretch * n) * q;
     // P^T K0 P + Q^T F0 P + Fr^T Q + Q^T N, gathered as K0 + A Q + Q^T A^T-like low-rank updates

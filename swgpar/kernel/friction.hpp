@@ -1,16 +1,18 @@
-// Coulomb friction at one quadrature point of two flanks: return mapping and its consistent tangent.
+// Coulomb friction at one quadrature point of two flanks: return mapping and its consistent
+// tangent.
 //
-// Everything is measured in the master's own coordinates (s, z), arc length and width of its undeformed flank, with
-// the current base vectors a_s, a_z at the foot point: a rigid rotation of both bodies changes nothing. The traction
-// is T = t^s a_s + t^z a_z. With xi the foot point now and xi_n, T_n those of the same slave point in the last
-// converged state,
+// Everything is measured in the master's own coordinates (s, z), arc length and width of its
+// undeformed flank, with the current base vectors a_s, a_z at the foot point: a rigid rotation of
+// both bodies changes nothing. The traction is T = t^s a_s + t^z a_z. With xi the foot point now
+// and xi_n, T_n those of the same slave point in the last converged state,
 //
 //   T_trial = (t_n + eps phi (xi - xi_n))^a a_a,    T = T_trial min(1, mu p / |T_trial|).
 //
-// phi is the part of the increment in which the point touches: 1 where it did before, else the gap closes in
-// proportion to the increment and phi = d / (g_n + d), d = p / penalty the depth that carries p.
-// Virtual work T . a_a dxi^a: forces and moments of both bodies balance, and the work is that of T along the path of
-// the foot point also where the quadrature point lies below the exact surface.
+// phi is the part of the increment in which the point touches: 1 where it did before, else the gap
+// closes in proportion to the increment and phi = d / (g_n + d), d = p / penalty the depth that
+// carries p. Virtual work T . a_a dxi^a: forces and moments of both bodies balance, and the work is
+// that of T along the path of the foot point also where the quadrature point lies below the exact
+// surface.
 #pragma once
 
 #include "contact.hpp"
@@ -23,7 +25,8 @@ struct Friction {  // of all quadrature points; coefficient 0: off
   const double* gap = nullptr;         // (n_face, n_q) g_n
   const double* traction = nullptr;    // (n_face, n_q, 2) t_n
   double* current = nullptr;           // (n_face, n_q, 2) t
-  const double* lagged = nullptr;      // (n_face, n_q) pressure that stands for p in the law; null: p itself
+  const double* lagged =
+      nullptr;  // (n_face, n_q) pressure that stands for p in the law; null: p itself
 };
 
 using Mat32 = Eigen::Matrix<double, 3, 2>;
@@ -31,7 +34,8 @@ using Mat3x24 = Eigen::Matrix<double, 3, 24>;
 using Mat2x24 = Eigen::Matrix<double, 2, 24>;
 using Mat24x24 = Eigen::Matrix<double, 24, 24>;
 
-// Traction at a foot point, and what its variation needs; components are those of the facet's (eta, zeta).
+// Traction at a foot point, and what its variation needs; components are those of the facet's (eta,
+// zeta).
 struct Traction {
   Vec3 value = Vec3::Zero(), trial = Vec3::Zero();
   Vec2 slip = Vec2::Zero();         // xi - xi_n
@@ -40,8 +44,8 @@ struct Traction {
   bool acts = false, slips = false;  // a point without xi_n carries none in this increment
 };
 
-inline Traction traction(const FootPoint& f, const Vec2& length, const Vec2& xi, const Friction& law, std::int64_t kq,
-                         double pressure, double penalty) {
+inline Traction traction(const FootPoint& f, const Vec2& length, const Vec2& xi,
+                         const Friction& law, std::int64_t kq, double pressure, double penalty) {
   Traction t;
   const Vec2 before(law.foot_point[2 * kq], law.foot_point[2 * kq + 1]);
   if (!(before[0] == before[0])) return t;
@@ -62,9 +66,11 @@ inline Traction traction(const FootPoint& f, const Vec2& length, const Vec2& xi,
   return t;
 }
 
-// Variation of the foot point with the nodes, and the tangential forces on these; nodes: 4 slave, then 4 master.
+// Variation of the foot point with the nodes, and the tangential forces on these; nodes: 4 slave,
+// then 4 master.
 struct Motion {
-  Mat3x24 relative, u_eta, u_zeta, u_mixed;  // x_slave - x_master(foot) and the master's derivatives, per nodal motion
+  Mat3x24 relative, u_eta, u_zeta,
+      u_mixed;  // x_slave - x_master(foot) and the master's derivatives, per nodal motion
   Mat32 x;
   Mat2 inverse;         // of H = A - g B
   Mat2x24 drive, foot;  // x_a . relative + g n . u_a, and H^-1 of it: the motion of the foot point
@@ -72,7 +78,8 @@ struct Motion {
   Motion(const FootPoint& f, const double* shape) {
     const double e = f.eta, q = f.zeta;
     const double m[4] = {(1 - e) * (1 - q), e * (1 - q), (1 - e) * q, e * q};
-    const double me[4] = {-(1 - q), 1 - q, -q, q}, mz[4] = {-(1 - e), -e, 1 - e, e}, mixed[4] = {1, -1, -1, 1};
+    const double me[4] = {-(1 - q), 1 - q, -q, q}, mz[4] = {-(1 - e), -e, 1 - e, e},
+                 mixed[4] = {1, -1, -1, 1};
     u_eta.setZero(), u_zeta.setZero(), u_mixed.setZero();
     for (int a = 0; a < 4; ++a) {
       relative.middleCols<3>(3 * a) = shape[a] * Mat3::Identity();
@@ -90,19 +97,24 @@ struct Motion {
     foot = inverse * drive;
   }
 
-  // Motion of the foot point by the rotation of the master body: the curve's height over its chord rotates, nodes do
-  // not.
+  // Motion of the foot point by the rotation of the master body: the curve's height over its chord
+  // rotates, nodes do not.
   Vec2 by_rotation(const FootPoint& f) const {
-    const Vec3 height_rate(-f.height[1], f.height[0], 0), height_rate_eta(-f.height_eta[1], f.height_eta[0], 0);
-    return inverse * Vec2(f.gap * f.normal.dot(height_rate_eta) - f.x_eta.dot(height_rate), -f.x_zeta.dot(height_rate));
+    const Vec3 height_rate(-f.height[1], f.height[0], 0),
+        height_rate_eta(-f.height_eta[1], f.height_eta[0], 0);
+    return inverse * Vec2(f.gap * f.normal.dot(height_rate_eta) - f.x_eta.dot(height_rate),
+                          -f.x_zeta.dot(height_rate));
   }
 };
 
-// Adds w times the derivative of the nodal forces T . x_a foot_a. `share` bounds the geometric terms as the pressure's
-// limit does those of the normal force. third : third derivative of the master's profile
-inline int add_friction_tangent(const FootPoint& f, const Traction& t, const Motion& v, const Vec3& third,
-                                const std::int32_t* conn, const std::uint8_t* sixths, double weight, double penalty,
-                                double pressure, double share, const Friction& law, const BlockRows& rows) {
+// Adds w times the derivative of the nodal forces T . x_a foot_a. `share` bounds the geometric
+// terms as the pressure's limit does those of the normal force. third : third derivative of the
+// master's profile
+inline int add_friction_tangent(const FootPoint& f, const Traction& t, const Motion& v,
+                                const Vec3& third, const std::int32_t* conn,
+                                const std::uint8_t* sixths, double weight, double penalty,
+                                double pressure, double share, const Friction& law,
+                                const BlockRows& rows) {
   using Row = Eigen::Matrix<double, 1, 24>;
   const Vec3& n = f.normal;
   const Row dg = n.transpose() * v.relative;
@@ -125,7 +137,8 @@ inline int add_friction_tangent(const FootPoint& f, const Traction& t, const Mot
   const Row b_ee = f.x_etaeta.transpose() * dn + n.dot(third) * v.foot.row(0);
   const Row b_ez = f.x_etazeta.transpose() * dn + n.transpose() * v.u_mixed;
   const Row h_ee = 2.0 * f.x_eta.transpose() * d_eta - n.dot(f.x_etaeta) * dg - f.gap * b_ee;
-  const Row h_ez = f.x_zeta.transpose() * d_eta + f.x_eta.transpose() * d_zeta - n.dot(f.x_etazeta) * dg - f.gap * b_ez;
+  const Row h_ez = f.x_zeta.transpose() * d_eta + f.x_eta.transpose() * d_zeta -
+                   n.dot(f.x_etazeta) * dg - f.gap * b_ez;
   const Row h_zz = 2.0 * f.x_zeta.transpose() * d_zeta;
   Mat2x24 dy = v.x.transpose() * dt;
   dy.row(0) += t.value.transpose() * d_eta - y[0] * h_ee - y[1] * h_ez;
@@ -143,7 +156,8 @@ inline int add_friction_tangent(const FootPoint& f, const Traction& t, const Mot
   for (int a = 0; a < 8; ++a) {
     if (conn[a] < 0 || conn[a] >= rows.n_own) continue;
     for (int b = 0; b < 8; ++b)
-      if (conn[b] >= 0 && !rows.add(conn[a], sixths[a], conn[b], sixths[b], weight * k.block<3, 3>(3 * a, 3 * b)))
+      if (conn[b] >= 0 &&
+          !rows.add(conn[a], sixths[a], conn[b], sixths[b], weight * k.block<3, 3>(3 * a, 3 * b)))
         ++missing;
   }
   return missing;

@@ -1,7 +1,7 @@
-// Eight-node hexahedron with nine incompatible modes (Wilson, Taylor, Beresford), linear elastic, modes
-// condensed: the counterpart of C3D8I; without the modes that of C3D8, for comparison. The modes' gradients use
-// the centre Jacobian scaled by j0 / j, so that their mean over the element vanishes and the patch test passes on
-// distorted meshes.
+// Eight-node hexahedron with nine incompatible modes (Wilson, Taylor, Beresford), linear elastic,
+// modes condensed: the counterpart of C3D8I; without the modes that of C3D8, for comparison. The
+// modes' gradients use the centre Jacobian scaled by j0 / j, so that their mean over the element
+// vanishes and the patch test passes on distorted meshes.
 #pragma once
 
 #include <Eigen/Dense>
@@ -15,8 +15,10 @@ namespace swgpar {
 using Mat24 = Eigen::Matrix<double, 24, 24>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-// Strain (xx, yy, zz, xy, yz, zx; engineering shear) of a vector shape with gradient g times unit axis c.
-inline void strain_column(Eigen::Ref<Eigen::Matrix<double, 6, 1>> col, const Eigen::Vector3d& g, int c) {
+// Strain (xx, yy, zz, xy, yz, zx; engineering shear) of a vector shape with gradient g times unit
+// axis c.
+inline void strain_column(Eigen::Ref<Eigen::Matrix<double, 6, 1>> col, const Eigen::Vector3d& g,
+                          int c) {
   col.setZero();
   col[c] = g[c];
   if (c == 0) col[3] = g[1], col[5] = g[2];
@@ -68,7 +70,8 @@ struct Hex8i {
     if (incompatible) alpha = -kaa.ldlt().solve(kau);
     stiffness = kuu + kau.transpose() * alpha;
     stiffness = (0.5 * (stiffness + stiffness.transpose())).eval();
-    // trilinear extrapolation from the Gauss points, which sit at 1/sqrt(3) of the nodes' coordinates
+    // trilinear extrapolation from the Gauss points, which sit at 1/sqrt(3) of the nodes'
+    // coordinates
     const double f = std::sqrt(3.0);
     recovery.setZero();
     for (int q = 0; q < 8; ++q) {

@@ -1,4 +1,5 @@
-// Nodes that are images of others, rotated about z: their vectors, forces and blocks. Elements and contact share it.
+// Nodes that are images of others, rotated about z: their vectors, forces and blocks. Elements and
+// contact share it.
 #pragma once
 
 #include <Eigen/Dense>
@@ -11,8 +12,9 @@ using Vec3 = Eigen::Vector3d;
 using Mat2 = Eigen::Matrix2d;
 using Mat3 = Eigen::Matrix3d;
 
-// Cosines and sines of the angles by which images are rotated about z. The flag of a node is its angle in sixths of a
-// turn, 0 where it is no image. Half a turn is exact. swgpar/geometry/rotation.py has the same table.
+// Cosines and sines of the angles by which images are rotated about z. The flag of a node is its
+// angle in sixths of a turn, 0 where it is no image. Half a turn is exact.
+// swgpar/geometry/rotation.py has the same table.
 struct PlaneRotation {
   double c, s;
 };
@@ -37,7 +39,8 @@ inline void add_nodal(double* r, std::int32_t node, std::uint8_t sixths, const V
   r[3 * node + 2] += f[2];
 }
 
-// Block of the owners of two nodes from that of the nodes, which may be images: R_row^T block R_col.
+// Block of the owners of two nodes from that of the nodes, which may be images: R_row^T block
+// R_col.
 inline Mat3 of_owners(Mat3 block, std::uint8_t row_flip, std::uint8_t col_flip) {
   if (row_flip) {
     const auto [c, s] = kSixths[row_flip];

@@ -1,6 +1,7 @@
-// Four-node plane-stress quadrilateral with four incompatible modes (Wilson, Taylor, Beresford), modes condensed: the
-// counterpart of CPS4I; without the modes that of CPS4, for comparison. Nodes have three components like those of the
-// hexahedron, of which the third has no stiffness, so that corotation, assembly and contact are the same.
+// Four-node plane-stress quadrilateral with four incompatible modes (Wilson, Taylor, Beresford),
+// modes condensed: the counterpart of CPS4I; without the modes that of CPS4, for comparison. Nodes
+// have three components like those of the hexahedron, of which the third has no stiffness, so that
+// corotation, assembly and contact are the same.
 #pragma once
 
 #include <Eigen/Dense>
@@ -19,13 +20,15 @@ struct Quad4i {
   Eigen::Matrix<double, 4, 3> gradient;      // dN/dX at the centre
   double volume = 0, smallest_jacobian = 0;  // mm^3; determinant in the plane
 
-  Quad4i(const Eigen::Matrix<double, 4, 3>& x, const Elasticity& elastic, bool incompatible, double thickness) {
+  Quad4i(const Eigen::Matrix<double, 4, 3>& x, const Elasticity& elastic, bool incompatible,
+         double thickness) {
     using Mat8 = Eigen::Matrix<double, 8, 8>;
     using Mat4x8 = Eigen::Matrix<double, 4, 8>;
     using Mat3x8 = Eigen::Matrix<double, 3, 8>;
     using Mat4x2 = Eigen::Matrix<double, 4, 2>;
     const Eigen::Matrix<double, 4, 2> plane = x.leftCols<2>();
-    // on the lower face of the hexahedron its first four shape functions are those of the quadrilateral
+    // on the lower face of the hexahedron its first four shape functions are those of the
+    // quadrilateral
     const Mat4x2 center = shape_gradient(0, 0, -1).topLeftCorner<4, 2>();
     const Eigen::Matrix2d j0 = plane.transpose() * center, j0inv = j0.inverse();
     const double det0 = j0.determinant(), p = 1.0 / std::sqrt(3.0);
@@ -77,7 +80,8 @@ struct Quad4i {
         for (int c = 0; c < 2; ++c) weight *= 1 + std::sqrt(3.0) * kCorner[a][c] * kCorner[q][c];
         for (int r = 0; r < 3; ++r)
           for (int n = 0; n < 4; ++n)
-            for (int c = 0; c < 2; ++c) recovery(6 * a + component[r], 3 * n + c) += weight * s(r, 2 * n + c);
+            for (int c = 0; c < 2; ++c)
+              recovery(6 * a + component[r], 3 * n + c) += weight * s(r, 2 * n + c);
       }
     }
   }

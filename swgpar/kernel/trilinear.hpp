@@ -1,4 +1,5 @@
-// Corners of the unit cube and derivatives of its trilinear shape functions: hexahedron and quadrilateral share them.
+// Corners of the unit cube and derivatives of its trilinear shape functions: hexahedron and
+// quadrilateral share them.
 #pragma once
 
 #include <Eigen/Dense>
