@@ -10,8 +10,8 @@ from mpi4py import MPI
 
 from swgpar.constraints.distributing_coupling import DistributingCoupling
 from swgpar.constraints.supports import Supports
-from swgpar.contact.contact import PenaltyContact
 from swgpar.contact.rigid_surface import RigidContact, SurfacePose, cam_pose, pin_pose
+from swgpar.contact.wave_generator import WaveGeneratorContacts
 from swgpar.design import sections
 from swgpar.errors import ConvergenceError, InputError
 from swgpar.evaluation.losses import work_per_cycle
@@ -174,7 +174,7 @@ class RingBody:
         self.elements = Elements(self.partition)
         self.body = self.elements.bodies[body.name]
 
-    def solver(self, contact: PenaltyContact) -> NewtonSolver:
+    def solver(self, contact: RigidContact) -> NewtonSolver:
         """Solver of the ring with one contact."""
         design, solver = self.design, self.design.solver
         couplings = [DistributingCoupling(self.partition, self.body, "bore", self.copies > 1)]
@@ -183,7 +183,7 @@ class RingBody:
             partition=self.partition,
             elements=self.elements,
             supports=Supports(self.partition, couplings, scale=scale, share=share),
-            surface_contacts=[contact],
+            wave_generator=WaveGeneratorContacts(cam=contact),
             module=REFERENCE_LENGTH,
             phases=PhaseTimes(),
         )

@@ -204,7 +204,7 @@ class DeviatingDrive:
             ideal = cam_pose(state)
             return ideal and replace(ideal, shift=shift, lean=lean)
 
-        self.model.problem.surface_contacts[0].pose = pose
+        self.model.problem.wave_generator.cam.pose = pose
 
     def _displace_bore(self, pitch: int, state: LoadState, share: float) -> None:
         """Hold the bore off the axis, in the direction that its material has at a pitch."""
@@ -228,7 +228,7 @@ class DeviatingDrive:
             start.copy(problem.x)
             for share in np.arange(1, steps + 1) / steps:
                 self._displace_bore(pitch, state, share)
-                problem.flanks[0].deviate(deviations.scaled(share))
+                problem.flanks_of(RING_GEAR).deviate(deviations.scaled(share))
                 result = self.model.solver.solve(state, search=False)
                 iterations += result.iterations
                 if not result.converged:

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from swgpar.contact import friction
-from swgpar.fem.body import FLEXIBLE_SPLINE
+from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.vectors import read_field, write_field
 from swgpar.model.drive_model import DriveModel
 from swgpar.results import parallel_hdf5
@@ -54,7 +54,7 @@ def state_rows(
         blocks[name] = Block(values, first, layout.count)
     if model.design.contact.friction:
         first, end = partition.owned_sectors(FLEXIBLE_SPLINE)
-        for row, values in model.problem.flanks[0].traction_rows(first, end).items():
+        for row, values in model.problem.flanks_of(RING_GEAR).traction_rows(first, end).items():
             blocks[row] = Block(values, first, partition.layouts[FLEXIBLE_SPLINE].count)
     return blocks
 

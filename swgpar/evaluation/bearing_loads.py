@@ -183,7 +183,7 @@ class BallLoads(AnswerGroup):
 
 def ball_rows(model: DriveModel, state: LoadState, increment: int, step: int) -> list[Row]:
     """Rows of balls.csv of the present state, a ball each, on all ranks; collective."""
-    contact, design = model.problem.balls, model.design
+    contact, design = model.problem.wave_generator.balls, model.design
     contact.evaluate(model.problem.displacement(), state, None, None)
     found = dict(
         pair for part in model.comm.allgather(list(zip(*contact.owned_loads()))) for pair in part

@@ -36,7 +36,7 @@ def bearing_shares(model: DriveModel, state: LoadState) -> dict[str, ComplianceS
     if state.control != "torque":
         return {}
     problem, system = model.problem, model.solver.system
-    u, balls = problem.displacement(), problem.balls
+    u, balls = problem.displacement(), problem.wave_generator.balls
     problem.tangent(u, state)
     border, rows = problem.supports.border(u, state)
     grounding, active = problem.supports.grounding(u), problem.matrix_rows.active

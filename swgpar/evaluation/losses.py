@@ -107,9 +107,9 @@ def cam_force(model: DriveModel) -> float:
     the ball loads.
     """
     if model.design.bearing is not None:
-        mine = float(model.problem.balls.owned_forces().sum())
+        mine = float(model.problem.wave_generator.balls.owned_forces().sum())
     else:
-        cam = model.problem.surface_contacts[0]
+        cam = model.problem.wave_generator.cam
         mine = float((cam.pressure * cam.weight)[cam.owned].sum())
     return model.copies * model.comm.allreduce(mine, op=MPI.SUM)
 

@@ -153,8 +153,9 @@ def find_places(
         APART_DISTANCE * design.drive.module,
         design.wave_generator.type == "four_roller",
     )
-    for name, prefix in ((FLEXIBLE_SPLINE, "fs"), (RING_GEAR, "rg")):
+    for name in (FLEXIBLE_SPLINE, RING_GEAR):
         body = model.elements.bodies[name]
+        prefix = body.layout.body.stress_prefixes[0]
         ring = name == RING_GEAR
         touched = np.ones(fields[name]["s3"].shape, dtype=bool) if ring else pressed
         # every sector of the ring gear is alike: one stands for all

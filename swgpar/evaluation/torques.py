@@ -55,7 +55,7 @@ def torques(problem: DiscreteProblem, state: LoadState) -> Torques:
         reactions[supports.output_gear] = state.torque
     output, wave_generator = (
         float(reactions[supports.output_gear]),
-        moment(problem.wave_generator_contacts),
+        moment(problem.wave_generator.all),
     )
     teeth = tuple(moment([flanks]) for flanks in problem.flanks)
     balance = abs(wave_generator + sum(teeth) + float(reactions[SPLINE_COUPLING]))

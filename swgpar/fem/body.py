@@ -17,6 +17,13 @@ DYNAMIC_SPLINE = "dynamic_spline"
 OUTER_RACE = "outer_race"
 """Names of the bodies of a drive, by what they do. A drive has at most one of each."""
 
+STRESS_PREFIXES = {
+    FLEXIBLE_SPLINE: ("fs",),
+    RING_GEAR: ("rg", "housing"),
+    DYNAMIC_SPLINE: ("ds",),
+    OUTER_RACE: ("race",),
+}
+
 
 @dataclass(frozen=True, eq=False)
 class Body:
@@ -38,6 +45,11 @@ class Body:
     def name(self) -> str:
         """Name of the body, as in the design file."""
         return self.mesh.body
+
+    @property
+    def stress_prefixes(self) -> tuple[str, ...]:
+        """How the names of stresses begin, for each part of the mesh."""
+        return STRESS_PREFIXES[self.name][: len(self.mesh.parts)]
 
     @cached_property
     def elements(self) -> ReferenceElements:

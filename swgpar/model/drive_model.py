@@ -19,11 +19,11 @@ from swgpar.constraints.supports import (
     FloatingRing,
     Supports,
 )
-from swgpar.contact.ball_contact import BallContact
-from swgpar.contact.contact import NO_KEYS, PenaltyContact, largest
+from swgpar.contact.contact import largest
 from swgpar.contact.flank_state import SearchRange
 from swgpar.contact.flanks import FlankContact
 from swgpar.contact.rigid_surface import RigidContact, cam_pose, pin_pose
+from swgpar.contact.wave_generator import WaveGeneratorContacts
 from swgpar.design.drive_design import DriveDesign
 from swgpar.fem.body import FLEXIBLE_SPLINE, OUTER_RACE, RING_GEAR, Body
 from swgpar.fem.body_layout import BodyLayout
@@ -59,14 +59,6 @@ distance of the tips."""
 
 FOOT_REACH = 0.5
 """Largest gap over the module at which a foot point is looked for."""
-
-PREFIXES = {
-    "flexible_spline": ("fs",),
-    "ring_gear": ("rg", "housing"),
-    "dynamic_spline": ("ds",),
-    "outer_race": ("race",),
-}
-"""Of the names of stresses, by the name of the body, for each of its parts."""
 
 EDGE = 1.0 + 1e-9
 """Factor on the width of a rigid surface: points on its edge belong to it."""
@@ -166,9 +158,8 @@ class DriveModel:
         values, fields = {}, {}
         for name, body in self.elements.bodies.items():
             fields[name] = body_fields(body, u)
-            for prefix, largest_of in zip(
-                PREFIXES[name], part_maxima(self.comm, body, u, fields[name])
-            ):
+            maxima = part_maxima(self.comm, body, u, fields[name])
+            for prefix, largest_of in zip(body.layout.body.stress_prefixes, maxima, strict=True):
                 values.update({f"{prefix}_{k}": v for k, v in largest_of.items()})
         return values, fields
 
@@ -204,15 +195,11 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
         symmetric = design.contact.friction == 0.0
         elements = Elements(partition, symmetric=symmetric)
     supports = build_supports(design, partition=partition, elements=elements)
-    surface_contacts, balls, coupling_keys = build_wave_generator_contacts(
-        design, elements=elements
-    )
     problem = DiscreteProblem(
         partition=partition,
         elements=elements,
         supports=supports,
-        surface_contacts=surface_contacts,
-        balls=balls,
+        wave_generator=build_wave_generator_contacts(design, elements=elements),
         flanks=build_flank_contacts(
             design, partition=partition, elements=elements, supports=supports
         ),
@@ -224,7 +211,6 @@ def build_drive_model(design: DriveDesign, recipe: MeshRecipe, *, comm: MPI.Comm
         whole_teeth=[
             WholeTeeth(layout.count, layout.name) for layout in layouts if layout.tooth is not None
         ],
-        coupling_keys=coupling_keys,
         phases=phases,
     )
     solver = NewtonSolver(problem, newton_settings(design))
@@ -338,28 +324,23 @@ def build_supports(design: DriveDesign, *, partition: Partition, elements: Eleme
 
 def build_wave_generator_contacts(
     design: DriveDesign, *, elements: Elements
-) -> tuple[list[PenaltyContact], BallContact | None, np.ndarray]:
-    """Contacts of the inner surface, balls of a bearing, and keys (n,) of the tangent's blocks that
-    they need."""
+) -> WaveGeneratorContacts:
+    """Contacts of cam and pins, or of a bearing."""
     if design.bearing is None:
-        return [*build_rigid_contacts(design, elements=elements)], None, NO_KEYS
+        return build_rigid_contacts(design, elements=elements)
     race = build_race_contact(
         design,
         elements,
         0.5 * design.race_width * EDGE,
         PRESSURE_LIMIT * design.modulus_of("bearing"),
     )
-    balls = build_ball_contact(design, elements)
-    keys = np.unique(
-        np.concatenate([elements.block_keys(conn).ravel() for conn in (race.conn, balls.windows)])
-    )
-    return [race], balls, keys[keys >= 0]
+    return WaveGeneratorContacts(race=race, balls=build_ball_contact(design, elements))
 
 
-def build_rigid_contacts(design: DriveDesign, *, elements: Elements) -> list[RigidContact]:
+def build_rigid_contacts(design: DriveDesign, *, elements: Elements) -> WaveGeneratorContacts:
     """Contact of the cam and of the pins on the inner surface."""
     surface = design.cam_surface()
-    return [
+    cam, pins = (
         RigidContact(
             elements.bodies[FLEXIBLE_SPLINE],
             surface,
@@ -373,7 +354,8 @@ def build_rigid_contacts(design: DriveDesign, *, elements: Elements) -> list[Rig
             pressure_limit=PRESSURE_LIMIT * design.modulus_of("flexible_spline"),
         )
         for pose in (cam_pose, pin_pose)
-    ]
+    )
+    return WaveGeneratorContacts(cam=cam, pins=pins)
 
 
 def build_flank_contacts(

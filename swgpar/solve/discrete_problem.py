@@ -12,7 +12,6 @@ import numpy as np
 from mpi4py import MPI
 
 from swgpar.constraints.supports import Supports
-from swgpar.contact.ball_contact import BallContact
 from swgpar.contact.clearance import FlankClearance
 from swgpar.contact.contact import NO_KEYS, Contact, ForceTerm, PenaltyContact, largest
 from swgpar.contact.flank_state import SearchRange
@@ -20,6 +19,7 @@ from swgpar.contact.flanks import FlankContact
 from swgpar.contact.friction import PairKey
 from swgpar.contact.frozen_segments import FrozenSegments
 from swgpar.contact.search import FlankPair, facing_flanks
+from swgpar.contact.wave_generator import WaveGeneratorContacts
 from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
@@ -78,8 +78,7 @@ class DiscreteProblem:
     ----------
     partition, elements : ownership and elements, bound to their local nodes
     supports : couplings, guide, grounding and load
-    surface_contacts : of the inner surface: with cam and pins, or with a bearing's outer race
-    balls : of the bearing, or None
+    wave_generator : its contacts; none for a body without one
     flanks, contact_search : contacts of the tooth flanks, one for each ring gear, and their search;
     none and None for a body without teeth
     boundary_terms : what holds and loads a part that is cut out
@@ -87,7 +86,6 @@ class DiscreteProblem:
     ring_sectors : ring-gear sectors that are modelled; None where all are
     whole_teeth : teeth of the flexible spline and of the ring gear that are not one element; none
     where all are
-    coupling_keys : (n,) of blocks that contacts of two bodies need, row * n_global + column, sorted
     phases : wall seconds
 
     Attributes
@@ -109,27 +107,24 @@ class DiscreteProblem:
         partition: Partition,
         elements: Elements,
         supports: Supports,
-        surface_contacts: Sequence[PenaltyContact] = (),
-        balls: BallContact | None = None,
+        wave_generator: WaveGeneratorContacts | None = None,
         flanks: Sequence[FlankContact] = (),
         contact_search: ContactSearch | None = None,
         boundary_terms: Sequence[ForceTerm] = (),
         module: float,
         ring_sectors: RingSectors | None = None,
         whole_teeth: Sequence[WholeTeeth] = (),
-        coupling_keys: np.ndarray = NO_KEYS,
         phases: PhaseTimes,
     ) -> None:
         self.partition = partition
         self.elements = elements
         self.supports = supports
         self.phases = phases
-        self.surface_contacts, self.balls = list(surface_contacts), balls
+        self.wave_generator = wave_generator or WaveGeneratorContacts()
         self.flanks, self.contact_search = list(flanks), contact_search
-        self.penalty_contacts: list[PenaltyContact] = [*surface_contacts, *flanks]
-        bearing = [] if balls is None else [balls]
-        self.wave_generator_contacts: list[Contact] = [*surface_contacts, *bearing]
-        self.contacts: list[Contact] = [*self.wave_generator_contacts, *flanks]
+        surfaces = self.wave_generator.of_inner_surface
+        self.penalty_contacts: list[PenaltyContact] = [*surfaces, *flanks]
+        self.contacts: list[Contact] = [*self.wave_generator.all, *flanks]
         self.segments = FrozenSegments(self.flanks, partition.comm)
         self.force_terms: list[ForceTerm] = [*self.contacts, *boundary_terms]
         clearances = [
@@ -141,7 +136,8 @@ class DiscreteProblem:
         self.torque_control = TorqueControl(supports, clearances)
         self.module = module
         self.ring_sectors, self.whole_teeth = ring_sectors, whole_teeth
-        self.scale, self.coupling_keys = supports.scale, coupling_keys
+        self.scale = supports.scale
+        self.coupling_keys = self.wave_generator.block_keys(elements)
         self.x, self.accepted = create_vector(partition), create_vector(partition)
         self.local_nodes = elements.local
         self.exchange = Exchange(partition, self.local_nodes.number)
@@ -164,6 +160,11 @@ class DiscreteProblem:
     def symmetric(self) -> bool:
         """Whether the tangent is symmetric."""
         return all(flanks.symmetric for flanks in self.flanks)
+
+    def flanks_of(self, ring: str) -> FlankContact:
+        """Contact of the flanks of the flexible spline with those of a ring gear."""
+        (found,) = (flanks for flanks in self.flanks if flanks.ring.layout.name == ring)
+        return found
 
     @property
     def force_floor(self) -> float:
@@ -225,7 +226,7 @@ class DiscreteProblem:
                     )
                     pattern = np.union1d(pattern, keys)
                 self._choose_modelled_sectors()
-        for contact in self.surface_contacts:
+        for contact in self.wave_generator.of_inner_surface:
             contact.reset()
         self.set_pattern(pattern)
 
@@ -451,10 +452,9 @@ class DiscreteProblem:
         self.pattern = None
 
     def resume(self, tractions: dict[PairKey, np.ndarray]) -> None:
-        """Take x and these tractions of the flanks of the first ring gear as an accepted state."""
+        """Take x and these tractions of the flanks of the ring gear as an accepted state."""
         self.x.copy(self.accepted)
-        for flanks in self.flanks[:1]:
-            flanks.resume(tractions)
+        self.flanks_of(RING_GEAR).resume(tractions)
 
     def output_rotation(self) -> float:
         """Rotation of the output (rad); collective."""

@@ -152,7 +152,9 @@ def test_stiff_balls_take_no_share() -> None:
     soft, stiff = jumped(*BEARING), jumped(*BEARING, "wave_generator.bearing.stiffness_factor=1e3")
     shares = [bearing_shares(one.model, one.load_state)["torsional"].balls for one in (soft, stiff)]
     assert abs(shares[1]) < 0.01 * shares[0]
-    stiffness = [stepper.problem.balls.balls.spring.stiffness for stepper in (stiff, soft)]
+    stiffness = [
+        stepper.problem.wave_generator.balls.balls.spring.stiffness for stepper in (stiff, soft)
+    ]
     ratio = stiffness[0] / stiffness[1]
     assert ratio == pytest.approx(1e3)
     for one in (soft, stiff):
@@ -166,9 +168,9 @@ def test_tangent() -> None:
     problem, state = stepper.problem, stepper.load_state
     u, step = problem.displacement(), 1e-9
     along = np.random.default_rng(0).normal(size=u.shape) * (1.0, 1.0, 0.0)
-    (race,) = problem.surface_contacts
+    race = problem.wave_generator.race
     race.multiplier = race.multiplier + 1.0  # all touch
-    for contact in (race, problem.balls):
+    for contact in (race, problem.wave_generator.balls):
         contact.evaluate(u, state, None, None)
         problem.rows.values[:] = 0.0
         contact.evaluate(u, state, None, problem.rows)

@@ -18,6 +18,7 @@ from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError
 from swgpar.evaluation.transmission_error import spectrum
+from swgpar.fem.body import RING_GEAR
 from swgpar.load.load_sequence import load_sequence
 from swgpar.load.load_states import Stage
 from swgpar.meshing import load_recipe
@@ -84,7 +85,7 @@ def test_renamed_deviations_are_those_of_a_drive_that_is_rotated(layout: str) ->
     stepper = loaded_stepper(turn_design(small("plane", 'deviations.mesh="same"', *overrides)))
     drive.model.problem = stepper.problem
     drive._displace_cam()
-    stepper.problem.flanks[0].deviate(tables)
+    stepper.problem.flanks_of(RING_GEAR).deviate(tables)
     stepper.advance(stepper.load_state)
     for index in (0, 1, 7):
         row = rotate(stepper, index * step) if index else stepper.row()

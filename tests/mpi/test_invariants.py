@@ -209,7 +209,7 @@ def test_rotating_the_whole_spline_changes_no_stress(model: str) -> None:
     def forces(w: np.ndarray, wg_angle: float) -> np.ndarray:
         r = np.zeros_like(w)
         problem.elements.assemble(w, r, None, None)
-        for contact in problem.surface_contacts:
+        for contact in problem.wave_generator.of_inner_surface:
             contact.evaluate(w, replace(state, angle=wg_angle), r, None)
         return r[nodes[nodes < problem.partition.n_own]]
 

@@ -12,6 +12,7 @@ from mpi4py import MPI
 from pytest_mpi import parallel_assert
 
 from support.stepping import WORLD, Row, loaded, rotate, small
+from swgpar.fem.body import RING_GEAR
 from swgpar.half_space.pair_contact import PairContact, moved_teeth, pair_contacts
 from swgpar.materials import Isotropic, contact_modulus
 
@@ -109,11 +110,11 @@ def test_sliding_is_the_motion_between_two_angles(layout: str) -> None:
         rotate(stepper, angle)
         pairs = [
             p
-            for p in stepper.problem.flanks[0].pairs
+            for p in stepper.problem.flanks_of(RING_GEAR).pairs
             if (p.sector, p.side > 0) == (one.tooth, one.flank == CLOCKWISE)
         ]
         ((_, tooth, _),), ((_, facing, _),) = moved_teeth(
-            stepper.model, pairs, stepper.problem.flanks[0]
+            stepper.model, pairs, stepper.problem.flanks_of(RING_GEAR)
         )
         places.append((tooth.sections(flat), facing.sections(flat)))
     (tooth, facing), (tooth_after, facing_after) = places

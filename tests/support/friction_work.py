@@ -12,6 +12,7 @@ from swgpar.analysis.load_stepping import LoadStepper
 from swgpar.contact.flank_pairs import Faces
 from swgpar.contact.flanks import FlankContact
 from swgpar.contact.segments import Segments
+from swgpar.fem.body import RING_GEAR
 from swgpar.kernel import contact_flanks
 
 
@@ -48,7 +49,7 @@ def foot_points(flanks: FlankContact, faces: Faces, u: np.ndarray) -> np.ndarray
 def forces(stepper: LoadStepper) -> tuple[Forces, float]:
     """Forces of the present state, and their work over the slip since the one before; metric taken
     as one."""
-    flanks, u = stepper.problem.flanks[0], stepper.problem.displacement()
+    flanks, u = stepper.problem.flanks_of(RING_GEAR), stepper.problem.displacement()
     active = flanks.saved_segments()
     if active is None or active.friction is None:
         none = np.zeros((0, 4, 2))
@@ -64,7 +65,7 @@ def forces(stepper: LoadStepper) -> tuple[Forces, float]:
 
 def onward(stepper: LoadStepper, old: Forces) -> float:
     """Work of the forces of the state before over the slip since then."""
-    flanks, u = stepper.problem.flanks[0], stepper.problem.displacement()
+    flanks, u = stepper.problem.flanks_of(RING_GEAR), stepper.problem.displacement()
     now = {p.key: k for k, p in enumerate(flanks.pairs)}
     pair, local = np.divmod(old.segments.parent, flanks.n_face)
     new = np.array([now.get(key, -1) for key in old.keys], dtype=np.int64)[pair]

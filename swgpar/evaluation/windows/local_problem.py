@@ -19,7 +19,7 @@ from swgpar.constraints.supports import Supports
 from swgpar.design.drive_design import DriveDesign
 from swgpar.errors import ConvergenceError
 from swgpar.evaluation.torques import torques
-from swgpar.fem.body import FLEXIBLE_SPLINE, Body
+from swgpar.fem.body import FLEXIBLE_SPLINE, RING_GEAR, Body
 from swgpar.fem.body_layout import BodyLayout
 from swgpar.fem.elements import Elements
 from swgpar.fem.partition import Partition
@@ -135,7 +135,7 @@ class LocalProblem:
         teeth = first + np.arange(SECTORS)
         drive_mesh = model.partition.layouts[FLEXIBLE_SPLINE].mesh
         self.loads = line_loads(
-            drive_mesh, flank_forces(model, state, teeth, model.problem.flanks[0])
+            drive_mesh, flank_forces(model, state, teeth, model.problem.flanks_of(RING_GEAR))
         )
         displacement = self._of_the_drive(teeth)
         scale = design.modulus_of(mesh.body) * design.drive.module
@@ -143,7 +143,7 @@ class LocalProblem:
             partition=self.partition,
             elements=self.elements,
             supports=Supports(self.partition, [], scale=scale, share=1.0),
-            surface_contacts=build_rigid_contacts(design, elements=self.elements),
+            wave_generator=build_rigid_contacts(design, elements=self.elements),
             boundary_terms=[self._dead_load(), self._cuts(displacement)],
             module=design.drive.module,
             phases=PhaseTimes(),
